@@ -1,0 +1,34 @@
+# Shared by the scripts beside this file: where things are, and how to install what is missing.
+# Sourced, not run.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+
+say() { printf '%s\n' "$*" >&2; }
+
+# install PACKAGE… : installs the Debian packages that are missing. Prints, one a line, those that
+# could not be installed, and succeeds all the same: what to do without them is the caller's affair.
+install() {
+    local missing=() package
+    for package in "$@"; do
+        dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' ||
+            missing+=("$package")
+    done
+    ((${#missing[@]})) || return 0
+    local sudo=()
+    ((EUID == 0)) || sudo=(sudo -n)
+    if command -v apt-get >/dev/null && { ((EUID == 0)) || sudo -n true 2>/dev/null; }; then
+        say "installing: ${missing[*]}"
+        "${sudo[@]}" apt-get update -qq >&2 || true
+        "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive \
+            apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null 2>&1 && return 0
+    fi
+    printf '%s\n' "${missing[@]}"
+}
+
+need_cargo() {
+    command -v cargo >/dev/null || {
+        say "no cargo on the PATH: install a Rust toolchain (1.89 or newer), see https://rustup.rs"
+        exit 1
+    }
+}

@@ -1,0 +1,179 @@
+//! Carries programs out: which step the arm is in and how far, one program at a time.
+
+use crate::driver::{ArmDriver, Command, Fingers};
+use kinematics::{Limb, Trajectory};
+use protocol::{PickId, PickPhase};
+use scene::ObjectId;
+use std::collections::VecDeque;
+
+/// What a program is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// To fetch what was ordered.
+    Pick(PickId),
+    /// To aim at an object.
+    Aim(ObjectId),
+    /// To bring a limb to rest.
+    Return,
+}
+
+/// Steps of one limb in order, each beginning where the one before ends.
+#[derive(Clone, Debug)]
+pub(crate) struct Program {
+    pub(crate) purpose: Purpose,
+    pub(crate) limb: Limb,
+    pub(crate) steps: VecDeque<Step>,
+}
+
+/// One motion of the arm and its fingers.
+#[derive(Clone, Debug)]
+pub(crate) struct Step {
+    pub(crate) kind: StepKind,
+    /// The phase that has to be durable before the step begins, if it belongs to a pick.
+    pub(crate) phase: Option<PickPhase>,
+    pub(crate) motion: Trajectory,
+    pub(crate) fingers: Fingers,
+}
+
+/// What a step is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StepKind {
+    /// Away from what the arm touches, straight up.
+    Clear,
+    /// To above the object and straight down to it.
+    Approach,
+    /// The fingers close.
+    Close,
+    /// Straight up with the object.
+    Lift,
+    /// To where the person takes the object.
+    HandOver,
+    /// The fingers open.
+    Release,
+    /// To where the gripper's axis passes through an object.
+    Aim,
+    /// Back to rest.
+    Return,
+}
+
+/// What the arm does.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum Executor {
+    /// Nothing.
+    #[default]
+    Standing,
+    /// A program, `t_s` seconds into its first step.
+    Running { program: Program, t_s: f64 },
+    /// It comes to rest, on the path that it was on.
+    Halting { limb: Limb, motion: Trajectory, t_s: f64 },
+}
+
+/// What came of a stretch of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Progress {
+    /// The time was used up.
+    Under,
+    /// A step ended with so many seconds left; the next one has not begun.
+    Ended(StepKind, f64),
+    /// A halt ended.
+    Halted,
+}
+
+impl Executor {
+    pub(crate) fn start(&mut self, program: Program) {
+        *self = Self::Running { program, t_s: 0.0 };
+    }
+
+    /// What the running program is for.
+    pub(crate) fn purpose(&self) -> Option<Purpose> {
+        self.program().map(|program| program.purpose)
+    }
+
+    pub(crate) fn program(&self) -> Option<&Program> {
+        match self {
+            Self::Running { program, .. } => Some(program),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn is_standing(&self) -> bool {
+        matches!(self, Self::Standing)
+    }
+
+    /// The rest of the program is for something else from here on.
+    pub(crate) fn change_purpose(&mut self, to: Purpose) {
+        if let Self::Running { program, .. } = self {
+            program.purpose = to;
+        }
+    }
+
+    /// Gives the program up and brings the arm to rest as soon as its limits allow.
+    pub(crate) fn halt(&mut self) {
+        let Self::Running { program, t_s } = self else { return };
+        *self = match program.steps.front() {
+            None => Self::Standing,
+            Some(step) => {
+                let motion = step.motion.halted_at(*t_s);
+                Self::Halting { limb: program.limb, motion, t_s: 0.0 }
+            }
+        };
+    }
+
+    /// Goes on for `seconds`, at most to the end of the step.
+    pub(crate) fn advance(&mut self, seconds: f64, driver: &mut dyn ArmDriver) -> Progress {
+        match self {
+            Self::Standing => Progress::Under,
+            Self::Halting { limb, motion, t_s } => {
+                let (ended, _) = follow(motion, t_s, seconds, (*limb, Fingers::Stay), driver);
+                if ended {
+                    *self = Self::Standing;
+                    return Progress::Halted;
+                }
+                Progress::Under
+            }
+            Self::Running { program, t_s } => {
+                let Some(step) = program.steps.front() else {
+                    *self = Self::Standing;
+                    return Progress::Under;
+                };
+                let how = (program.limb, step.fingers);
+                let (ended, left_s) = follow(&step.motion, t_s, seconds, how, driver);
+                if !ended {
+                    return Progress::Under;
+                }
+                let kind = step.kind;
+                program.steps.pop_front();
+                *t_s = 0.0;
+                if program.steps.is_empty() {
+                    *self = Self::Standing;
+                }
+                Progress::Ended(kind, left_s)
+            }
+        }
+    }
+
+    /// Simulated seconds until the object is handed over.
+    pub(crate) fn seconds_to_hand_over(&self) -> f64 {
+        let Self::Running { program, t_s } = self else { return 0.0 };
+        let before = program.steps.iter().take_while(|step| step.kind != StepKind::Return);
+        let total: f64 = before.map(|step| step.motion.duration_s()).sum();
+        (total - t_s).max(0.0)
+    }
+}
+
+/// Follows a motion for `seconds`. Whether it ended, and how many seconds were left then.
+fn follow(
+    motion: &Trajectory,
+    t_s: &mut f64,
+    seconds: f64,
+    (limb, fingers): (Limb, Fingers),
+    driver: &mut dyn ArmDriver,
+) -> (bool, f64) {
+    let remaining_s = motion.duration_s() - *t_s;
+    let passed_s = seconds.min(remaining_s).max(0.0);
+    let ended = seconds >= remaining_s;
+    *t_s += passed_s;
+    let (q, qd) = motion.sample(*t_s);
+    driver.command(&Command { limb, q, qd, fingers }, passed_s);
+    (ended, seconds - passed_s)
+}

@@ -1,0 +1,128 @@
+//! Time passes: the program goes on, and the pick with it from phase to phase.
+
+use crate::executor::{Progress, Purpose, StepKind};
+use crate::state::{Cause, side};
+use crate::{ArmNode, Fx};
+use kinematics::Limb;
+use node::{Span, Time};
+use protocol::{PickOutcome, PickPhase};
+
+/// Longest stretch of a motion that is made up for at once. A process that was suspended goes on
+/// from where it was, as a robot does whose controller was silent.
+const STRETCH_MAX: Span = Span::from_ms(50);
+/// How often the joints are remembered while they move.
+const HINT_EVERY: Span = Span::from_ms(200);
+
+impl ArmNode {
+    /// Simulated seconds since the last step.
+    pub(crate) fn passed_s(&mut self, now: Time) -> f64 {
+        let passed = now.since(self.stepped).min(STRETCH_MAX);
+        self.stepped = now;
+        passed.s() * self.config.arm.time_scale
+    }
+
+    /// Carries the motion on, over as many steps as the time allows, but never into a phase that is
+    /// not durable yet.
+    pub(crate) fn step(&mut self, mut seconds: f64, now: Time, fx: &mut Fx) {
+        loop {
+            if self.enters_phase(now, fx) {
+                return;
+            }
+            let purpose = self.executor.purpose();
+            match self.executor.advance(seconds, self.driver.as_mut()) {
+                Progress::Under => return,
+                Progress::Halted => return self.record(Cause::Moved, now, fx),
+                Progress::Ended(kind, left_s) => {
+                    self.ended(kind, purpose, now, fx);
+                    seconds = left_s;
+                }
+            }
+        }
+    }
+
+    /// Remembers the joints from time to time.
+    pub(crate) fn hint(&mut self, now: Time, fx: &mut Fx) {
+        if !self.executor.is_standing() && now >= self.recorded + HINT_EVERY {
+            self.record(Cause::Moved, now, fx);
+        }
+    }
+
+    /// Whether the next step begins a phase that has to be made durable first. If so, it has been
+    /// recorded and the step begins in a later tick.
+    fn enters_phase(&mut self, now: Time, fx: &mut Fx) -> bool {
+        let Some(program) = self.executor.program() else { return false };
+        let limb = program.limb;
+        let Some(phase) = program.steps.front().and_then(|step| step.phase) else { return false };
+        let Some(pick) = self.state.open_pick() else { return false };
+        if pick.phase.code() >= phase.code() && self.state.limb == Some(limb) {
+            return false;
+        }
+        if phase == PickPhase::Holding {
+            self.hold(limb, now, fx);
+        } else {
+            self.enter(phase, limb, now, fx);
+        }
+        true
+    }
+
+    /// The fingers have closed: either the object is held from here on, or they closed on nothing.
+    pub(crate) fn hold(&mut self, limb: Limb, now: Time, fx: &mut Fx) {
+        let measured = self.driver.measured();
+        let Some(object) = self.state.open_pick().map(|pick| pick.object) else { return };
+        // A gripper that cannot tell is trusted as long as nothing has interrupted it.
+        if measured.holding[side(limb)] == Some(false) {
+            tracing::error!("the fingers have closed on nothing");
+            return self.end(PickOutcome::Interrupted, now, fx);
+        }
+        self.state.held = self.world.grasped(object, limb, &measured);
+        self.enter(PickPhase::Holding, limb, now, fx);
+    }
+
+    fn enter(&mut self, phase: PickPhase, limb: Limb, now: Time, fx: &mut Fx) {
+        let Some(pick) = &mut self.state.pick else { return };
+        if pick.phase.code() < phase.code() {
+            pick.phase = phase;
+        }
+        tracing::info!(id = ?pick.id, ?phase, %limb, "pick goes on");
+        self.state.limb = Some(limb);
+        self.urgent = true;
+        self.record(Cause::Phase, now, fx);
+    }
+
+    /// Ends the open pick.
+    pub(crate) fn end(&mut self, outcome: PickOutcome, now: Time, fx: &mut Fx) {
+        let Some(pick) = &mut self.state.pick else { return };
+        (pick.phase, pick.outcome) = (PickPhase::Done, outcome);
+        tracing::info!(id = ?pick.id, object = pick.object.0, ?outcome, "pick is over");
+        self.state.waits_for_person = outcome == PickOutcome::Interrupted;
+        self.urgent = true;
+        self.record(Cause::Ended, now, fx);
+    }
+
+    fn ended(&mut self, kind: StepKind, purpose: Option<Purpose>, now: Time, fx: &mut Fx) {
+        match (kind, purpose) {
+            (StepKind::Release, Some(Purpose::Pick(_))) => {
+                self.state.gone.extend(self.state.held.take().map(|held| held.object));
+                self.executor.change_purpose(Purpose::Return);
+                self.end(PickOutcome::Delivered, now, fx);
+            }
+            (StepKind::Aim, Some(Purpose::Aim(object))) => {
+                self.aimed = Some(object);
+                self.record(Cause::Moved, now, fx);
+            }
+            (StepKind::Return, _) => {
+                self.urgent = true;
+                self.rest(now, fx);
+            }
+            _ => {}
+        }
+    }
+
+    /// The arm has come to rest: people put back what they were given, where they do.
+    pub(crate) fn rest(&mut self, now: Time, fx: &mut Fx) {
+        if self.config.arm.restock && self.limb_away().is_none() {
+            self.state.gone.clear();
+        }
+        self.record(Cause::Rested, now, fx);
+    }
+}

@@ -1,0 +1,250 @@
+//! Turns what is to be done into programs, from wherever the arm stands.
+
+use crate::driver::{Fingers, Measured};
+use crate::executor::{Program, Purpose, Step, StepKind};
+use crate::state::{ArmState, Held, side};
+use crate::world::{World, from_array};
+use kinematics::{
+    ArmShape, Arms, Cuboid, Limb, MotionLimits, PickPhase as PickStage, PlanError, PlanSettings,
+    Stage, Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_return,
+};
+use nalgebra::{Translation3, Vector3};
+use protocol::pick::Pick;
+use protocol::{PickId, PickPhase};
+use scene::ObjectId;
+use std::collections::VecDeque;
+
+/// Everything that a plan depends on.
+pub(crate) struct Planner<'a> {
+    pub(crate) settings: &'a PlanSettings,
+    /// The limb to be used; none: the better one.
+    pub(crate) limb: Option<Limb>,
+    pub(crate) world: &'a World,
+    pub(crate) state: &'a ArmState,
+    pub(crate) measured: &'a Measured,
+}
+
+/// Why there is no program.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum Refusal {
+    /// The scene gives it no place.
+    #[error("it has no place in the scene")]
+    NoPlace,
+    /// A person took it.
+    #[error("it was handed over and nobody has put it back (arm.restock is off)")]
+    Gone,
+    /// The limb for it is not the one that is away from rest: that one has to come home first.
+    #[error("the other limb is away from rest")]
+    OtherLimb,
+    /// The kinematics find no motion.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+}
+
+/// The last seconds of an approach, in which the fingers must be open already.
+const DESCENT_S: f64 = 1.0;
+/// Seconds that the fingers rest after they opened.
+const SETTLE_S: f64 = 0.2;
+/// The gripper is at the hand over when it is this near, metres.
+const HAND_OVER_M: f64 = 0.005;
+/// How far the gripper goes up before it goes to rest, where there is no way from lower, metres.
+const RISES_M: [f64; 2] = [0.05, 0.15];
+/// How far before and after a waypoint a corner is rounded, radians of joint distance.
+const BLEND_RAD: f64 = 0.15;
+
+impl Planner<'_> {
+    /// Fetches `pick.object`: clear of what the arm touches, approach, close, lift, hand over,
+    /// release, return.
+    pub(crate) fn fetch(&self, pick: &Pick) -> Result<Program, Refusal> {
+        let object = self.world.place(pick.object).ok_or(Refusal::NoPlace)?;
+        if self.state.gone.contains(&pick.object) {
+            return Err(Refusal::Gone);
+        }
+        let start = self.start(Some(pick.object), 0.0);
+        let plan = plan_pick(object, self.limb, &start.arms, &start.obstacles, self.settings)?;
+        self.refuse_other(plan.limb())?;
+        let mut steps = start.steps;
+        let stages = plan.timeline.stages();
+        if steps.is_empty() {
+            steps.extend(self.open_first(plan.limb(), stages[0].motion.duration_s()));
+        }
+        steps.iter_mut().for_each(|step| step.phase = Some(PickPhase::Moving));
+        steps.extend(stages.iter().map(pick_step));
+        Ok(Program { purpose: Purpose::Pick(pick.id), limb: plan.limb(), steps })
+    }
+
+    /// Brings what is held to the person: lift, hand over, release, return.
+    pub(crate) fn deliver(&self, pick: PickId, held: &Held) -> Result<Program, Refusal> {
+        let object = self.world.place(held.object).ok_or(Refusal::NoPlace)?;
+        let in_gripper = from_array(&held.in_gripper);
+        let others = self.world.obstacles(self.state, None);
+        let arms = self.arms();
+        let plan = plan_delivery(object, &in_gripper, held.limb, &arms, &others, self.settings)?;
+        let steps = plan.timeline.stages().iter().map(pick_step).collect();
+        Ok(Program { purpose: Purpose::Pick(pick), limb: held.limb, steps })
+    }
+
+    /// Opens the fingers where the gripper is.
+    pub(crate) fn release(&self, pick: PickId, held: &Held) -> Program {
+        let steps = VecDeque::from([Step {
+            kind: StepKind::Release,
+            phase: Some(PickPhase::Holding),
+            ..self.opening(held.limb)
+        }]);
+        Program { purpose: Purpose::Pick(pick), limb: held.limb, steps }
+    }
+
+    /// Aims at `object`.
+    pub(crate) fn aim(&self, object: ObjectId) -> Result<Program, Refusal> {
+        let place = self.world.place(object).ok_or(Refusal::NoPlace)?;
+        let start = self.start(None, 0.0);
+        let plan =
+            plan_point(place.xyz_m, self.limb, &start.arms, &start.obstacles, self.settings)?;
+        self.refuse_other(plan.limb())?;
+        let mut steps = start.steps;
+        steps.push_back(Step {
+            kind: StepKind::Aim,
+            phase: None,
+            motion: plan.timeline.stages()[0].motion.clone(),
+            fingers: Fingers::Open(0.0),
+        });
+        Ok(Program { purpose: Purpose::Aim(object), limb: plan.limb(), steps })
+    }
+
+    /// Brings `limb` to rest, with whatever it holds: as it stands, or else from higher up.
+    pub(crate) fn rest(&self, limb: Limb) -> Result<Program, Refusal> {
+        self.rest_from(limb, 0.0).or_else(|refusal| {
+            RISES_M.iter().find_map(|rise_m| self.rest_from(limb, *rise_m).ok()).ok_or(refusal)
+        })
+    }
+
+    fn rest_from(&self, limb: Limb, rise_m: f64) -> Result<Program, Refusal> {
+        let start = self.start(None, rise_m);
+        // A motion that was halted between two of the points at which it was checked may stand a
+        // hair inside the margin. The way home is worth that.
+        let relaxed = PlanSettings { margin_m: 0.0, ..*self.settings };
+        let plan = plan_return(limb, &start.arms, &start.obstacles, self.settings)
+            .or_else(|_| plan_return(limb, &start.arms, &start.obstacles, &relaxed))?;
+        let holds = self.state.held.is_some_and(|held| held.limb == limb);
+        let mut steps = start.steps;
+        steps.extend(plan.timeline.stages().iter().map(|stage| Step {
+            fingers: if holds { Fingers::Stay } else { Fingers::Open(stage.width_m.1) },
+            ..pick_step(stage)
+        }));
+        Ok(Program { purpose: Purpose::Return, limb, steps })
+    }
+
+    /// Whether `limb` has its gripper where objects are handed over.
+    pub(crate) fn is_at_hand_over(&self, limb: Limb) -> bool {
+        let [x, y, z] = self.settings.hand_over_xyz_m;
+        let place = Vector3::new(x, limb.side() * y, z);
+        (self.tip(limb).vector - place).norm() < HAND_OVER_M
+    }
+
+    fn refuse_other(&self, limb: Limb) -> Result<(), Refusal> {
+        let rests = self.measured.posture.is_at_rest(limb.other());
+        if rests { Ok(()) } else { Err(Refusal::OtherLimb) }
+    }
+
+    fn arms(&self) -> Arms {
+        let [left, right] = self.measured.posture.joints;
+        Arms { left, right }
+    }
+
+    fn tip(&self, limb: Limb) -> Translation3<f64> {
+        limb.forward(&self.measured.posture.joints[side(limb)]).translation
+    }
+
+    /// A pause before an approach in which fingers that start now would not open in time.
+    fn open_first(&self, limb: Limb, approach_s: f64) -> Option<Step> {
+        let short_s = self.opening_s(limb) + DESCENT_S - approach_s;
+        let q = &self.measured.posture.joints[side(limb)];
+        (short_s > 0.0 && self.opening_s(limb) > 0.0)
+            .then(|| Step { motion: Trajectory::hold(q, short_s), ..self.opening(limb) })
+    }
+
+    fn opening_s(&self, limb: Limb) -> f64 {
+        let width_m = self.measured.posture.width_m[side(limb)];
+        gripper::seconds_between(width_m, self.settings.open_width_m)
+    }
+
+    /// Stands until the fingers are open.
+    fn opening(&self, limb: Limb) -> Step {
+        let travel_s = self.opening_s(limb);
+        let seconds = if travel_s > 0.0 { travel_s + SETTLE_S } else { 0.0 };
+        let motion = Trajectory::hold(&self.measured.posture.joints[side(limb)], seconds);
+        let fingers = Fingers::Open(self.settings.open_width_m);
+        Step { kind: StepKind::Clear, phase: None, motion, fingers }
+    }
+}
+
+/// What a plan starts from.
+struct Start {
+    /// The steps before it.
+    steps: VecDeque<Step>,
+    /// Where the arms are after those.
+    arms: Arms,
+    /// What stands around.
+    obstacles: Vec<Cuboid>,
+}
+
+impl Planner<'_> {
+    /// Where plans begin: with the limb that is away from rest clear of every object, and `rise_m`
+    /// higher than it is. It may stand among them, stopped or killed on its way down; what it then
+    /// touches it leaves as it came, straight up with open fingers.
+    fn start(&self, fetched: Option<ObjectId>, rise_m: f64) -> Start {
+        let mut arms = self.arms();
+        let mut steps = VecDeque::new();
+        let away = Limb::BOTH.into_iter().find(|limb| !self.measured.posture.is_at_rest(*limb));
+        let others = self.world.obstacles(self.state, fetched);
+        let Some(limb) = away else { return Start { steps, arms, obstacles: others } };
+        if let Some(up) = self.up(limb, rise_m) {
+            let holds = self.state.held.is_some();
+            let opening = self.opening(limb);
+            let fingers = if holds { Fingers::Stay } else { opening.fingers };
+            *arms.of_mut(limb) = up.end();
+            steps.extend((!holds && opening.motion.duration_s() > 0.0).then_some(opening));
+            steps.push_back(Step { kind: StepKind::Clear, phase: None, motion: up, fingers });
+        }
+        // What it touches even so cannot be kept clear of; it is left by the way there is.
+        let shape = ArmShape::at(limb, arms.of(limb));
+        let obstacles = others.into_iter().filter(|cuboid| !touches(&shape, cuboid)).collect();
+        Start { steps, arms, obstacles }
+    }
+
+    /// Straight up from the objects that the limb touches, and at least by `rise_m`, as far as the
+    /// limb can.
+    fn up(&self, limb: Limb, rise_m: f64) -> Option<Trajectory> {
+        let q = &self.measured.posture.joints[side(limb)];
+        let shape = ArmShape::at(limb, q);
+        let (chain, pose) = (limb.chain(), limb.forward(q));
+        let touched =
+            self.world.standing(self.state, None).filter(|o| touches(&shape, &o.cuboid()));
+        let up_m = touched
+            .map(|object| object.top_z_m() + self.settings.hover_m - pose.translation.z)
+            .fold(rise_m, f64::max);
+        let line = [1.0, 0.6, 0.3].into_iter().filter(|_| up_m > 0.0).find_map(|share| {
+            chain.line(q, &(Translation3::new(0.0, 0.0, share * up_m) * pose)).ok()
+        })?;
+        let limits = MotionLimits::at_speed_ratio(self.settings.speed_ratio);
+        Trajectory::through(&line, BLEND_RAD, &limits).ok()
+    }
+}
+
+fn touches(shape: &ArmShape, cuboid: &Cuboid) -> bool {
+    shape.to_cuboid("object", cuboid, 0.0).is_some()
+}
+
+fn pick_step(stage: &Stage<PickStage>) -> Step {
+    let (_, width_m) = stage.width_m;
+    let (kind, phase, fingers) = match stage.phase {
+        PickStage::Approach => (StepKind::Approach, PickPhase::Moving, Fingers::Open(width_m)),
+        PickStage::Close => (StepKind::Close, PickPhase::Closing, Fingers::Grip(width_m)),
+        PickStage::Lift => (StepKind::Lift, PickPhase::Holding, Fingers::Grip(width_m)),
+        PickStage::HandOver => (StepKind::HandOver, PickPhase::Holding, Fingers::Grip(width_m)),
+        PickStage::Release => (StepKind::Release, PickPhase::Holding, Fingers::Open(width_m)),
+        PickStage::Return => (StepKind::Return, PickPhase::Done, Fingers::Open(width_m)),
+    };
+    let phase = Some(phase).filter(|phase| *phase != PickPhase::Done);
+    Step { kind, phase, motion: stage.motion.clone(), fingers }
+}

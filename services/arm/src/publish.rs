@@ -1,0 +1,179 @@
+//! What the arm tells the others, and how often.
+
+use crate::driver::Measured;
+use crate::executor::{Executor, Purpose};
+use crate::state::{ArmState, side};
+use crate::world::World;
+use crate::{Fx, Out};
+use kinematics::{JOINTS, Limb, gripper};
+use node::{Span, Time};
+use protocol::{ActId, ArmStatus, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates};
+
+/// How often the status is sent again while nothing changes.
+const STATUS_EVERY: Span = Span::from_ms(250);
+/// How often the world is sent while the arm moves, and while it stands.
+const WORLD_EVERY: (Span, Span) = (Span::from_ms(100), Span::from_ms(1_000));
+
+/// Publishes joints, world and status when they are due.
+pub(crate) struct Publisher {
+    /// Limb and joint of each entry of a joint state; none for the head and the torso, which stay.
+    sources: [Option<(usize, usize)>; JOINT_STATE_LEN],
+    /// Simulated seconds per second.
+    time_scale: f64,
+    joints: Every,
+    world_sent: Option<Time>,
+    status_due: Time,
+    status: ArmStatus,
+}
+
+/// Everything that is told.
+pub(crate) struct Facts<'a> {
+    pub(crate) state: &'a ArmState,
+    pub(crate) measured: &'a Measured,
+    pub(crate) executor: &'a Executor,
+    pub(crate) world: &'a World,
+    pub(crate) aimed: Option<ActId>,
+}
+
+impl Publisher {
+    pub(crate) fn new(joint_rate_hz: f64, time_scale: f64) -> Self {
+        Self {
+            sources: JOINT_STATE_NAMES.map(source),
+            time_scale,
+            joints: Every { period: Span::from_s(1.0 / joint_rate_hz), next: Time(0) },
+            world_sent: None,
+            status_due: Time(0),
+            status: ArmStatus::default(),
+        }
+    }
+
+    /// When something is due next while the arm stands. While it moves it has to be looked at more
+    /// often anyway.
+    pub(crate) fn deadline(&self) -> Time {
+        let world = self.world_sent.map_or(Time(0), |sent| sent + WORLD_EVERY.1);
+        self.joints.next.min(self.status_due).min(world)
+    }
+
+    /// Publishes what is due.
+    pub(crate) fn tick(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
+        if self.joints.is_due(now) {
+            fx.publish(Out::Joints(Box::new(self.joint_states(facts.measured, now))));
+        }
+        let (moving, standing) = WORLD_EVERY;
+        let world_every = if facts.executor.is_standing() { standing } else { moving };
+        if self.world_sent.is_none_or(|sent| now >= sent + world_every) {
+            self.send_world(facts, now, fx);
+        }
+        self.tell(facts, now, fx);
+    }
+
+    /// Publishes the status where it has changed or is due, and the world where what it holds has.
+    pub(crate) fn tell(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
+        let status = self.status(facts);
+        let changed = ArmStatus { remaining_s: self.status.remaining_s, ..status } != self.status;
+        if changed && status.phase != self.status.phase {
+            self.send_world(facts, now, fx);
+        }
+        if changed || now >= self.status_due {
+            self.status = status;
+            self.status_due = now + STATUS_EVERY;
+            fx.publish(Out::Status(status));
+        }
+    }
+
+    fn send_world(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
+        self.world_sent = Some(now);
+        let view = facts.world.view(facts.state, facts.measured, now);
+        fx.publish(Out::World(Box::new(view)));
+    }
+
+    fn status(&self, facts: &Facts<'_>) -> ArmStatus {
+        let Facts { state, executor, .. } = facts;
+        let fetching = matches!(executor.purpose(), Some(Purpose::Pick(_)));
+        let seconds = if fetching { executor.seconds_to_hand_over() } else { 0.0 };
+        let status = ArmStatus {
+            aimed_act: facts.aimed.map_or(0, |act| act.0),
+            stopped: state.stopped.into(),
+            moving: (!executor.is_standing()).into(),
+            remaining_s: seconds / self.time_scale,
+            ..ArmStatus::default()
+        };
+        let Some(pick) = &state.pick else { return status };
+        ArmStatus {
+            interaction: pick.id.interaction.0,
+            attempt: pick.id.attempt,
+            object: pick.object.0.into(),
+            phase: pick.phase.code(),
+            outcome: pick.outcome.code(),
+            ..status
+        }
+    }
+
+    fn joint_states(&self, measured: &Measured, now: Time) -> JointStates {
+        let mut states = JointStates { at_ns: now.ns(), ..JointStates::default() };
+        for (entry, source) in self.sources.iter().enumerate() {
+            let Some((limb, joint)) = *source else { continue };
+            states.position[entry] = measured.posture.joints[limb][joint];
+            states.velocity[entry] = measured.velocity[limb][joint] * self.time_scale;
+        }
+        states.gripper_percent = measured.posture.width_m.map(gripper::percent);
+        states
+    }
+}
+
+/// Limb and joint that a joint state's name stands for.
+fn source(name: &str) -> Option<(usize, usize)> {
+    let (limb, joint) = name.split_once('_')?;
+    let joint = JOINTS.iter().position(|own| *own == joint)?;
+    Some((side(Limb::named(limb)?), joint))
+}
+
+/// A steady beat.
+#[derive(Clone, Copy, Debug)]
+struct Every {
+    period: Span,
+    next: Time,
+}
+
+impl Every {
+    /// Whether the beat is due; the next one is a period after it, or after now where that has
+    /// passed already.
+    fn is_due(&mut self, now: Time) -> bool {
+        if now < self.next {
+            return false;
+        }
+        self.next = self.next + self.period;
+        if self.next <= now {
+            self.next = now + self.period;
+        }
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_joint_of_both_limbs_has_its_entry() {
+        let sources: Vec<_> = JOINT_STATE_NAMES.into_iter().filter_map(source).collect();
+        for limb in Limb::BOTH {
+            for joint in 0..JOINTS.len() {
+                assert!(sources.contains(&(side(limb), joint)));
+            }
+        }
+        assert_eq!(source("left_w2"), Some((0, 6)));
+        assert_eq!(source("right_s0"), Some((1, 0)));
+        assert_eq!(source("torso_t0"), None);
+        assert_eq!(sources.len(), 14);
+    }
+
+    #[test]
+    fn a_beat_keeps_its_rate_and_does_not_catch_up() {
+        let mut beat = Every { period: Span(10), next: Time(0) };
+        let due: Vec<u64> = (0..40).filter(|now| beat.is_due(Time(*now))).collect();
+        assert_eq!(due, [0, 10, 20, 30]);
+        assert!(beat.is_due(Time(97)));
+        assert!(!beat.is_due(Time(106)) && beat.is_due(Time(107)));
+    }
+}

@@ -1,0 +1,109 @@
+//! What to do with a pick that is open and does not move: after a restart, and just so after a
+//! motion stop. The answer depends on durable facts and sensors alone, never on what the arm did
+//! last in memory.
+
+use crate::Config;
+use crate::state::{ArmState, Record};
+use kinematics::limits;
+use node::NodeError;
+use protocol::pick::Pick;
+use protocol::{PickOutcome, PickPhase};
+use scene::Scene;
+
+/// How to go on with an open pick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Next {
+    /// Fetch the object from where the arm is. Nothing has been grasped, so closing (once more) is
+    /// no second grasp.
+    Fetch,
+    /// Bring what is held to the person.
+    Deliver,
+    /// Let go: the gripper is where the person takes the object.
+    Release,
+    /// Stay and say so: a person must look.
+    Interrupt,
+}
+
+/// The table. `holding` is what the gripper's sensor says, `at_hand_over` whether the gripper is
+/// where objects are handed over.
+pub fn next(phase: PickPhase, holding: Option<bool>, at_hand_over: bool) -> Next {
+    match (phase, holding) {
+        (PickPhase::Closing, Some(true)) => Next::Deliver,
+        (PickPhase::Closing, None) => Next::Interrupt,
+        (PickPhase::Holding, _) if at_hand_over => Next::Release,
+        (PickPhase::Holding, Some(false)) => Next::Interrupt,
+        (PickPhase::Holding, _) => Next::Deliver,
+        _ => Next::Fetch,
+    }
+}
+
+/// The state that the journal ends with; the first one where it is empty.
+///
+/// # Errors
+/// The journal's joints are not where joints can be.
+pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, NodeError> {
+    let first = || ArmState::first(config.scene.key(), config.arm.plan.open_width_m);
+    let state = records.pop().map_or_else(first, |record| record.state);
+    match state.posture.joints.iter().find(|q| !limits::within(q)) {
+        None => Ok(state),
+        Some(q) => Err(NodeError {
+            what: format!("the journal has an arm at {q:?} rad, outside its joint limits"),
+            cure: "start the group afresh: whichone up --fresh".to_owned(),
+        }),
+    }
+}
+
+/// The state for a scene with other objects, if the journal's is of another scene. What stood, was
+/// held or was ordered there means nothing here.
+pub fn other_scene(state: &ArmState, scene: &Scene) -> Option<ArmState> {
+    if state.scene_key == scene.key() {
+        return None;
+    }
+    let mut next = ArmState { scene_key: scene.key(), held: None, ..state.clone() };
+    next.gone.clear();
+    next.waits_for_person = false;
+    next.pick =
+        state.pick.map(|pick| Pick { outcome: outcome(&pick), phase: PickPhase::Done, ..pick });
+    Some(next)
+}
+
+/// How a pick ends whose scene was taken away.
+fn outcome(pick: &Pick) -> PickOutcome {
+    match pick.phase {
+        PickPhase::Done => pick.outcome,
+        PickPhase::Closing | PickPhase::Holding => PickOutcome::Interrupted,
+        _ => PickOutcome::Cancelled,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_grasped_is_fetched_and_something_grasped_is_delivered() {
+        for phase in [PickPhase::Accepted, PickPhase::Moving] {
+            for holding in [Some(false), Some(true), None] {
+                assert_eq!(next(phase, holding, false), Next::Fetch);
+            }
+        }
+        assert_eq!(next(PickPhase::Closing, Some(false), false), Next::Fetch);
+        assert_eq!(next(PickPhase::Closing, Some(true), false), Next::Deliver);
+        assert_eq!(next(PickPhase::Holding, Some(true), false), Next::Deliver);
+        assert_eq!(next(PickPhase::Holding, None, false), Next::Deliver);
+    }
+
+    #[test]
+    fn what_cannot_be_known_is_left_to_a_person() {
+        assert_eq!(next(PickPhase::Closing, None, false), Next::Interrupt);
+        assert_eq!(next(PickPhase::Holding, Some(false), false), Next::Interrupt);
+    }
+
+    #[test]
+    fn at_the_hand_over_the_object_is_the_persons() {
+        for holding in [Some(false), Some(true), None] {
+            assert_eq!(next(PickPhase::Holding, holding, true), Next::Release);
+        }
+        assert_eq!(next(PickPhase::Closing, None, true), Next::Interrupt);
+    }
+}

@@ -1,0 +1,60 @@
+//! The arm's topics and configuration.
+
+use crate::{ArmNode, Config, In, Out};
+use protocol::{ArmStatus, JointStates, MotionCommand, RobotAct, Service, WorldView, topics};
+use runtime::bus::{EncodedWriter, PortError, Reader, Writer};
+use runtime::driver::{Context, Program, Shell};
+use runtime::exit::Failure;
+use settings::Settings;
+
+/// The arm as a program.
+#[derive(Debug)]
+pub struct ArmProgram;
+
+impl Program for ArmProgram {
+    const SERVICE: Service = Service::Arm;
+    const RECORD: Option<&'static str> = Some("arm/1");
+    const ABOUT: &'static str = "fetches objects and points at them, and stops when told";
+    type Node = ArmNode;
+    type Shell = ArmShell;
+
+    fn config(settings: &Settings, _arguments: &[String]) -> Result<Config, Failure> {
+        Ok(Config { arm: settings.arm.clone(), scene: settings.scene.clone() })
+    }
+}
+
+/// The arm's topics.
+#[derive(Debug)]
+pub struct ArmShell {
+    motion: Reader<MotionCommand>,
+    acts: Reader<RobotAct>,
+    status: Writer<ArmStatus>,
+    joints: Writer<JointStates>,
+    world: EncodedWriter<WorldView>,
+}
+
+impl Shell<ArmNode> for ArmShell {
+    fn open(context: &Context<'_, In>) -> Result<Self, Failure> {
+        let bus = context.bus;
+        Ok(Self {
+            motion: bus.reader(&topics::MOTION)?,
+            acts: bus.reader(&topics::ACT)?,
+            status: bus.writer(&topics::STATUS)?,
+            joints: bus.writer(&topics::JOINTS)?,
+            world: bus.encoded_writer(&topics::WORLD)?,
+        })
+    }
+
+    fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
+        self.motion.drain(|message| take(In::Motion(*message)))?;
+        self.acts.drain(|message| take(In::Act(Box::new(*message))))
+    }
+
+    fn publish(&mut self, output: Out) -> Result<(), PortError> {
+        match output {
+            Out::Status(status) => self.status.send(&status),
+            Out::Joints(joints) => self.joints.send(&joints),
+            Out::World(world) => self.world.send(&world),
+        }
+    }
+}

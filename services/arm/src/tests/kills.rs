@@ -1,0 +1,166 @@
+//! Killed at any point, any number of times, the arm brings the ordered object once.
+
+use super::*;
+
+/// A small generator (xorshift), so that a seed has one story.
+struct Random(u64);
+
+impl Random {
+    fn new(seed: u64) -> Self {
+        Self((seed + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15))
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        (self.next() >> 16) % n
+    }
+
+    fn one_in(&mut self, n: u64) -> bool {
+        self.below(n) == 0
+    }
+}
+
+/// A pick with up to `kills` deaths anywhere in it, and now and then a motion stop.
+fn story(seed: u64, kills: u32, restart: fn(&mut Machine)) {
+    let mut random = Random::new(seed);
+    let object = random.below(OBJECTS.into()) as u16;
+    let mut machine = Machine::new(config_at(10.0));
+    machine.robot.expect_only_picks();
+    machine.act(pick(1, object));
+    let (mut left, mut stopped) = (kills, false);
+    let until = machine.now + Span::from_s(60.0);
+    while !(machine.outcome() == PickOutcome::Delivered && machine.rests()) {
+        assert!(machine.now < until, "seed {seed}: stuck; {:?}", machine.node.state());
+        if random.one_in(if stopped { 30 } else { 150 }) {
+            stopped = !stopped;
+            machine.motion(if stopped { MotionOrder::Stop } else { MotionOrder::Resume });
+        }
+        if left > 0 && random.one_in(30) {
+            left -= 1;
+            let death = [Death::Unsynced, Death::Unseen, Death::Seen][random.below(3) as usize];
+            machine.go(Some(death));
+            // A command that was dropped with the process is given again by who gave it.
+            stopped = machine.journal.last().is_some_and(|record| record.state.stopped);
+            machine.now = machine.now + Span::from_ms(200);
+            restart(&mut machine);
+        } else {
+            machine.go(None);
+        }
+    }
+    machine.assert_delivered(1, object);
+    for pair in machine.journal.windows(2) {
+        let phases = [&pair[0], &pair[1]].map(|r| r.state.pick.map_or(0, |p| p.phase.code()));
+        assert!(phases[0] <= phases[1], "seed {seed}: a phase was taken back");
+    }
+}
+
+#[test]
+fn on_the_model_that_the_journal_describes() {
+    for seed in 0..24 {
+        story(seed, 6, Machine::restart_from_journal);
+    }
+}
+
+#[test]
+fn on_a_robot_that_stands_where_it_was() {
+    for seed in 100..124 {
+        story(seed, 6, |machine| {
+            let grasps = machine.robot.grasps();
+            assert!(grasps <= 1, "{grasps} grasps");
+            machine.restart();
+        });
+    }
+}
+
+#[test]
+fn without_a_sensor_an_interrupted_grasp_is_left_to_a_person() {
+    let mut machine = Machine::new(config_at(5.0));
+    machine.robot.lose_feeling();
+    machine.act(pick(1, 1));
+    machine.run_until("closing", |m| m.phase() == PickPhase::Closing);
+    machine.restart();
+    machine.run_until("over", |m| m.phase() == PickPhase::Done);
+    assert_eq!(machine.outcome(), PickOutcome::Interrupted);
+    let posture = machine.robot.posture();
+    machine.run(2.0);
+    assert_eq!(machine.robot.posture(), posture, "it holds still");
+    machine.restart();
+    machine.run(1.0);
+    assert_eq!(machine.robot.posture(), posture, "so it does after another restart");
+    machine.act(RobotAct { attempt: 2, act: 11, ..pick(1, 1) });
+    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+    machine.robot.assert_well_behaved();
+}
+
+#[test]
+fn without_a_sensor_an_uninterrupted_grasp_is_trusted() {
+    let mut machine = Machine::new(config_at(20.0));
+    machine.robot.lose_feeling();
+    machine.act(pick(1, 3));
+    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+    machine.assert_delivered(1, 3);
+}
+
+#[test]
+fn fingers_that_close_on_nothing_are_no_grasp() {
+    let mut machine = Machine::new(config_at(20.0));
+    machine.robot.miss();
+    machine.act(pick(1, 3));
+    machine.run_until("over", |m| m.phase() == PickPhase::Done);
+    assert_eq!(machine.outcome(), PickOutcome::Interrupted);
+    assert_eq!(machine.node.state().held, None);
+    assert!(!machine.rests());
+    machine.motion(MotionOrder::Resume);
+    machine.run_until("a person has looked, so it goes to rest", Machine::rests);
+}
+
+#[test]
+fn another_scene_ends_what_was_under_way() {
+    for (phase, outcome) in [
+        (PickPhase::Moving, PickOutcome::Cancelled),
+        (PickPhase::Closing, PickOutcome::Interrupted),
+        (PickPhase::Holding, PickOutcome::Interrupted),
+    ] {
+        let mut machine = Machine::new(config_at(10.0));
+        machine.act(pick(1, 2));
+        machine.run_until("under way", |m| m.phase() == phase);
+        machine.act = None;
+        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
+        let scene = [("group.scene".to_owned(), "markers".to_owned())];
+        machine.config.scene = Settings::load(folder, None, &scene).unwrap().scene;
+        machine.restart_from_journal();
+        assert_eq!((machine.phase(), machine.outcome()), (PickPhase::Done, outcome));
+        assert_eq!(machine.journal.last().unwrap().state.scene_key, machine.config.scene.key());
+        machine.run_until("at rest", Machine::rests);
+        assert_eq!(machine.node.state().held, None);
+        machine.act(pick(2, 1));
+        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+        machine.robot.assert_well_behaved();
+    }
+}
+
+#[test]
+fn told_to_end_it_halts_and_remembers_where() {
+    for phase in [PickPhase::Moving, PickPhase::Closing, PickPhase::Holding] {
+        let mut machine = Machine::new(config());
+        machine.act(pick(1, 0));
+        machine.run_until("under way", |m| m.phase() == phase);
+        machine.run(0.4);
+        let told = machine.now;
+        machine.pass(vec![Event::Shutdown], None);
+        while !machine.exited {
+            machine.go(None);
+        }
+        assert!(machine.now.since(told).s() < 0.15);
+        assert_eq!(machine.journal.last().unwrap().state.posture, machine.robot.posture());
+        machine.restart_from_journal();
+        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+        machine.assert_delivered(1, 0);
+    }
+}

@@ -1,0 +1,252 @@
+//! The arm in a simulated process on a robot that outlives it.
+
+mod fetch;
+mod kills;
+mod orders;
+mod point;
+mod robot;
+mod stop;
+mod telling;
+
+use crate::recover;
+use crate::state::{ArmState, Record, side};
+use crate::{ArmNode, Config, In, Out};
+use kinematics::{Joints, Limb};
+use node::{Effects, Event, Node, Span, Time};
+use protocol::{
+    ActKind, ArmStatus, InteractionId, JointStates, MotionCommand, MotionOrder, PickId,
+    PickOutcome, PickPhase, RobotAct, WorldView,
+};
+use robot::Robot;
+use scene::{ObjectId, Question};
+use settings::Settings;
+use std::path::Path;
+use std::sync::OnceLock;
+
+const OBJECTS: u16 = 6;
+
+/// The shipped configuration with its six bowls, in real time.
+fn config() -> Config {
+    static SETTINGS: OnceLock<Config> = OnceLock::new();
+    let load = || {
+        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
+        let settings = Settings::load(folder, None, &[]).unwrap();
+        Config { arm: settings.arm, scene: settings.scene }
+    };
+    SETTINGS.get_or_init(load).clone()
+}
+
+/// The same, `time_scale` times as fast.
+fn config_at(time_scale: f64) -> Config {
+    let mut config = config();
+    config.arm.time_scale = time_scale;
+    config
+}
+
+/// The policy's order of a pick.
+fn pick(interaction: u64, object: u16) -> RobotAct {
+    RobotAct {
+        act: interaction * 10,
+        interaction,
+        attempt: 1,
+        kind: ActKind::Pick.code(),
+        object: object.into(),
+        ..RobotAct::default()
+    }
+}
+
+/// The policy's withdrawal of that order.
+fn cancel(interaction: u64, object: u16) -> RobotAct {
+    let act = interaction * 10 + 1;
+    RobotAct { act, kind: ActKind::Cancel.code(), ..pick(interaction, object) }
+}
+
+/// The policy's question that points at an object.
+fn point(act: u64, object: u16) -> RobotAct {
+    let question = Question::Point(ObjectId(object)).into();
+    RobotAct { act, kind: ActKind::Ask.code(), question, ..RobotAct::default() }
+}
+
+/// The policy says something.
+fn say(act: u64) -> RobotAct {
+    RobotAct { act, kind: ActKind::Say.code(), ..RobotAct::default() }
+}
+
+/// How a process dies in a pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Death {
+    /// Before the sync: nothing is durable and nothing was seen.
+    Unsynced,
+    /// After the sync, before anything was seen.
+    Unseen,
+    /// After everything.
+    Seen,
+}
+
+/// The process, its journal and what stands outside of it.
+struct Machine {
+    config: Config,
+    robot: Robot,
+    node: ArmNode,
+    journal: Vec<Record>,
+    now: Time,
+    /// The policy's standing act, sent again every 250 ms.
+    act: Option<RobotAct>,
+    waiting: Vec<In>,
+    passes: u64,
+    exited: bool,
+    joints: Vec<JointStates>,
+    statuses: Vec<ArmStatus>,
+    worlds: Vec<WorldView>,
+}
+
+impl Machine {
+    fn new(config: Config) -> Self {
+        let first = ArmState::first(config.scene.key(), config.arm.plan.open_width_m);
+        let robot = Robot::at(&first, &config.scene);
+        let node = ArmNode::with_driver(config.clone(), first, Box::new(robot.clone()));
+        let mut machine = Self {
+            config,
+            robot,
+            node,
+            journal: Vec::new(),
+            now: Time(1_000_000_000),
+            act: None,
+            waiting: Vec::new(),
+            passes: 0,
+            exited: false,
+            joints: Vec::new(),
+            statuses: Vec::new(),
+            worlds: Vec::new(),
+        };
+        machine.pass(vec![Event::Started], None);
+        machine
+    }
+
+    /// The process starts again, on the robot as it stands now.
+    fn restart(&mut self) {
+        self.robot.stand_still();
+        let state = recover::state(&self.config, self.journal.clone()).unwrap();
+        let driver = Box::new(self.robot.clone());
+        self.node = ArmNode::with_driver(self.config.clone(), state, driver);
+        self.exited = false;
+        self.pass(vec![Event::Started], None);
+    }
+
+    /// The process starts again, on the model of a robot that the journal describes.
+    fn restart_from_journal(&mut self) {
+        let state = recover::state(&self.config, self.journal.clone()).unwrap();
+        self.robot = Robot::at(&state, &self.config.scene);
+        self.restart();
+    }
+
+    /// One pass of the main loop, in the order of the runtime.
+    fn pass(&mut self, events: Vec<Event<In>>, death: Option<Death>) {
+        let mut effects = Effects::default();
+        for event in events {
+            self.node.on(event, self.now, &mut effects);
+        }
+        if self.node.deadline().is_some_and(|deadline| deadline <= self.now) {
+            self.node.on(Event::Tick, self.now, &mut effects);
+        }
+        self.exited |= effects.exits();
+        if death == Some(Death::Unsynced) {
+            return;
+        }
+        self.journal.extend(effects.take_records());
+        self.robot.set_durable(self.journal.last().and_then(|record| record.state.pick));
+        if death == Some(Death::Unseen) {
+            return;
+        }
+        for output in effects.take_outputs() {
+            match output {
+                Out::Status(status) => self.statuses.push(status),
+                Out::Joints(joints) => self.joints.push(*joints),
+                Out::World(world) => self.worlds.push(*world),
+            }
+        }
+    }
+
+    /// The loop wakes at its deadline, or after 10 ms, with what has arrived until then.
+    fn go(&mut self, death: Option<Death>) {
+        let deadline = self.node.deadline().unwrap_or(Time(u64::MAX));
+        self.now = deadline.clamp(self.now + Span(300_000), self.now + Span::from_ms(10));
+        self.passes += 1;
+        if self.passes.is_multiple_of(25) {
+            self.waiting.extend(self.act.iter().map(|act| In::Act(Box::new(*act))));
+        }
+        let events = self.waiting.drain(..).map(Event::Message).collect();
+        self.pass(events, death);
+    }
+
+    fn run(&mut self, seconds: f64) {
+        let until = self.now + Span::from_s(seconds);
+        while self.now < until {
+            self.go(None);
+        }
+    }
+
+    fn run_until(&mut self, what: &str, mut holds: impl FnMut(&Self) -> bool) {
+        let until = self.now + Span::from_s(120.0);
+        while !holds(self) {
+            assert!(self.now < until, "never: {what}; {:?}", self.node.state());
+            self.go(None);
+        }
+    }
+
+    /// The policy decides.
+    fn act(&mut self, act: RobotAct) {
+        self.act = Some(act);
+        self.waiting.push(In::Act(Box::new(act)));
+    }
+
+    fn motion(&mut self, order: MotionOrder) {
+        let command =
+            MotionCommand { given_ns: self.now.ns(), order: order.code(), ..Default::default() };
+        self.waiting.push(In::Motion(command));
+    }
+
+    fn phase(&self) -> PickPhase {
+        self.node.state().pick.map_or(PickPhase::Idle, |pick| pick.phase)
+    }
+
+    fn outcome(&self) -> PickOutcome {
+        self.node.state().pick.map_or(PickOutcome::Pending, |pick| pick.outcome)
+    }
+
+    fn rests(&self) -> bool {
+        let posture = self.robot.posture();
+        Limb::BOTH.into_iter().all(|limb| posture.is_at_rest(limb))
+    }
+
+    fn joints_of(&self, limb: Limb) -> Joints {
+        self.robot.posture().joints[side(limb)]
+    }
+
+    fn status(&self) -> ArmStatus {
+        *self.statuses.last().unwrap()
+    }
+
+    /// How often a pick entered a phase, in the journal.
+    fn entered(&self, id: PickId, phase: PickPhase) -> usize {
+        let mut last = PickPhase::Idle;
+        let mut count = 0;
+        for pick in self.journal.iter().filter_map(|record| record.state.pick) {
+            let is = if pick.id == id { pick.phase } else { PickPhase::Idle };
+            count += usize::from(is == phase && last != phase);
+            last = is;
+        }
+        count
+    }
+
+    /// The pick of that interaction was carried out, once, and nothing was done that must not be.
+    fn assert_delivered(&self, interaction: u64, object: u16) {
+        let id = PickId { interaction: InteractionId(interaction), attempt: 1 };
+        assert_eq!(self.entered(id, PickPhase::Holding), 1, "one grasp that holds");
+        assert_eq!(self.entered(id, PickPhase::Done), 1, "one end");
+        let mut ends = self.journal.iter().filter_map(|r| r.state.pick).filter(|p| p.id == id);
+        let last = ends.next_back().unwrap();
+        assert_eq!((last.object, last.outcome), (ObjectId(object), PickOutcome::Delivered));
+        self.robot.assert_well_behaved();
+    }
+}

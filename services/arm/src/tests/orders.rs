@@ -1,0 +1,142 @@
+//! Orders: taken once, given up in time, refused where nothing can be done.
+
+use super::*;
+
+#[test]
+fn a_repeated_order_is_known_and_an_old_one_obsolete() {
+    let mut machine = Machine::new(config_at(20.0));
+    machine.act(pick(3, 1));
+    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+    machine.run(3.0);
+    machine.assert_delivered(3, 1);
+    // As from a policy that was restored from an old copy.
+    machine.node.act.id = protocol::ActId(0);
+    machine.act(pick(2, 4));
+    machine.act(pick(3, 4));
+    machine.run(3.0);
+    assert_eq!(machine.node.state().pick.unwrap().object, ObjectId(1));
+    assert_eq!(machine.robot.grasps(), 1);
+}
+
+#[test]
+fn an_act_older_than_the_standing_one_is_ignored() {
+    let mut machine = Machine::new(config_at(20.0));
+    machine.act(say(50));
+    machine.run(0.05);
+    machine.act(pick(1, 1));
+    machine.run(0.5);
+    assert_eq!(machine.phase(), PickPhase::Idle);
+}
+
+#[test]
+fn given_up_before_it_closes_the_object_is_left_alone() {
+    for after_s in [0.001, 0.5, 2.0] {
+        let mut machine = Machine::new(config());
+        machine.act(pick(1, 4));
+        machine.run(after_s);
+        machine.act(cancel(1, 4));
+        machine.run(0.05);
+        assert_eq!(machine.outcome(), PickOutcome::Cancelled, "after {after_s} s");
+        machine.run_until("at rest", Machine::rests);
+        assert_eq!(machine.robot.grasps(), 0);
+        machine.robot.assert_well_behaved();
+    }
+}
+
+#[test]
+fn given_up_too_late_it_is_delivered() {
+    for phase in [PickPhase::Closing, PickPhase::Holding] {
+        let mut machine = Machine::new(config_at(5.0));
+        machine.act(pick(1, 4));
+        machine.run_until("far enough", |m| m.phase() == phase);
+        machine.act(cancel(1, 4));
+        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+        machine.assert_delivered(1, 4);
+    }
+}
+
+#[test]
+fn given_up_before_it_was_known_it_never_begins() {
+    let mut machine = Machine::new(config_at(20.0));
+    machine.act(cancel(1, 4));
+    machine.run(0.1);
+    assert_eq!(machine.outcome(), PickOutcome::Cancelled);
+    machine.node.act.id = protocol::ActId(0);
+    machine.act(pick(1, 4));
+    machine.run(1.0);
+    assert!(machine.rests());
+    assert_eq!(machine.outcome(), PickOutcome::Cancelled);
+}
+
+#[test]
+fn given_up_while_stopped_it_goes_home_only_after_the_release() {
+    let mut machine = Machine::new(config_at(5.0));
+    machine.act(pick(1, 0));
+    machine.run(0.3);
+    machine.motion(MotionOrder::Stop);
+    machine.run(0.2);
+    machine.act(cancel(1, 0));
+    machine.run(1.0);
+    assert_eq!(machine.outcome(), PickOutcome::Cancelled);
+    assert!(!machine.rests());
+    machine.motion(MotionOrder::Resume);
+    machine.run_until("at rest", Machine::rests);
+}
+
+#[test]
+fn what_no_limb_reaches_is_said_and_nothing_moves() {
+    let mut config = config();
+    let text = "name = \"far\"\nnoun = \"cup\"\n\
+        [[attributes]]\nname = \"color\"\nvalues = [\"red\", \"blue\"]\n\
+        [[objects]]\nname = \"away\"\nattributes = { color = \"red\" }\nxyz = [3.0, 0.0, 0.0]\n\
+        size = [0.1, 0.1, 0.05]\ngrasp_width = 0.006\n\
+        [[objects]]\nname = \"nowhere\"\nattributes = { color = \"blue\" }\n";
+    config.scene = scene::Scene::from_toml("far.toml", text).unwrap();
+    let mut machine = Machine::new(config);
+    for (interaction, object) in [(1, 0), (2, 1), (3, 7)] {
+        machine.act(pick(interaction, object));
+        machine.run(0.1);
+        assert_eq!(
+            (machine.phase(), machine.outcome()),
+            (PickPhase::Done, PickOutcome::Unreachable)
+        );
+        assert_eq!(machine.status().interaction, interaction);
+        assert!(machine.rests());
+    }
+    machine.act(point(40, 0));
+    machine.run(0.5);
+    assert!(machine.rests());
+    assert_eq!(machine.robot.grasps(), 0);
+}
+
+#[test]
+fn what_is_not_put_back_is_gone_also_after_a_restart() {
+    let mut config = config_at(20.0);
+    config.arm.restock = false;
+    let mut machine = Machine::new(config);
+    machine.act(pick(1, 3));
+    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+    machine.run_until("at rest", Machine::rests);
+    machine.restart_from_journal();
+    machine.run(0.1);
+    assert_eq!(machine.worlds.last().unwrap().objects[3], None);
+    machine.act(pick(2, 3));
+    machine.run(0.2);
+    assert_eq!(machine.outcome(), PickOutcome::Unreachable);
+    machine.act(pick(3, 2));
+    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+    machine.run_until("at rest", Machine::rests);
+    assert_eq!(machine.node.state().gone, [ObjectId(3), ObjectId(2)]);
+}
+
+#[test]
+fn an_act_that_makes_no_sense_changes_nothing() {
+    let mut machine = Machine::new(config());
+    machine.act(RobotAct { kind: 77, ..pick(1, 1) });
+    machine.run(0.5);
+    let far = RobotAct { object: 70_000, act: 12, ..pick(1, 1) };
+    machine.act(far);
+    machine.run(0.5);
+    assert_eq!(machine.phase(), PickPhase::Idle);
+    assert!(machine.rests());
+}

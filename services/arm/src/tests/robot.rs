@@ -1,0 +1,163 @@
+//! A robot that outlives the process that moves it, and notices whatever it must not be told.
+
+use crate::driver::{ArmDriver, Command, Fingers, KinematicArm, Measured};
+use crate::state::{ArmState, Posture, side};
+use kinematics::{ArmShape, Cuboid, MotionLimits, limits};
+use protocol::PickPhase;
+use protocol::pick::Pick;
+use scene::{Placement, Scene};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// A handle to the robot; clones are the same robot.
+#[derive(Clone)]
+pub(super) struct Robot(Rc<RefCell<Body>>);
+
+struct Body {
+    arm: KinematicArm,
+    velocity_is_zero: bool,
+    /// The objects in their places.
+    objects: Vec<Cuboid>,
+    /// What the journal says about the latest pick.
+    durable: Option<Pick>,
+    /// Whether nothing moves but for a pick.
+    only_picks: bool,
+    /// Whether the gripper can feel.
+    feels: bool,
+    /// Whether there is anything to close on.
+    finds: bool,
+    grasps: u32,
+    wrongs: Vec<String>,
+}
+
+impl Robot {
+    pub(super) fn at(state: &ArmState, scene: &Scene) -> Self {
+        let places = scene.objects().iter().filter_map(|object| object.placement);
+        let cuboid = |p: Placement| Cuboid { centre: p.xyz, size: p.size, yaw: p.yaw };
+        Self(Rc::new(RefCell::new(Body {
+            arm: KinematicArm::at(state),
+            velocity_is_zero: true,
+            objects: places.map(cuboid).collect(),
+            durable: state.pick,
+            only_picks: false,
+            feels: true,
+            finds: true,
+            grasps: 0,
+            wrongs: Vec::new(),
+        })))
+    }
+
+    pub(super) fn set_durable(&self, pick: Option<Pick>) {
+        self.0.borrow_mut().durable = pick;
+    }
+
+    /// From here on nothing may move but for a pick that is durably moving.
+    pub(super) fn expect_only_picks(&self) {
+        self.0.borrow_mut().only_picks = true;
+    }
+
+    pub(super) fn lose_feeling(&self) {
+        self.0.borrow_mut().feels = false;
+    }
+
+    pub(super) fn miss(&self) {
+        self.0.borrow_mut().finds = false;
+    }
+
+    /// The robot's own controller halts it when its commander falls silent.
+    pub(super) fn stand_still(&self) {
+        self.0.borrow_mut().velocity_is_zero = true;
+    }
+
+    pub(super) fn posture(&self) -> Posture {
+        self.0.borrow().arm.measured().posture
+    }
+
+    /// How often the fingers came to hold something.
+    pub(super) fn grasps(&self) -> u32 {
+        self.0.borrow().grasps
+    }
+
+    pub(super) fn assert_well_behaved(&self) {
+        let wrongs = &self.0.borrow().wrongs;
+        assert!(wrongs.is_empty(), "{} wrongs, the first: {}", wrongs.len(), wrongs[0]);
+    }
+}
+
+impl ArmDriver for Robot {
+    fn measured(&self) -> Measured {
+        let body = self.0.borrow();
+        let mut measured = body.arm.measured();
+        if body.velocity_is_zero {
+            measured.velocity = [[0.0; 7]; 2];
+        }
+        for holding in &mut measured.holding {
+            *holding = holding.map(|holding| holding && body.finds).filter(|_| body.feels);
+        }
+        measured
+    }
+
+    fn command(&mut self, command: &Command, seconds: f64) {
+        let mut body = self.0.borrow_mut();
+        let i = side(command.limb);
+        let before = body.arm.measured();
+        body.check(command, &before, seconds);
+        body.arm.command(command, seconds);
+        body.velocity_is_zero = false;
+        let after = body.arm.measured();
+        body.grasps += u32::from(after.holding[i] == Some(true) && before.holding[i] != Some(true));
+    }
+}
+
+impl Body {
+    /// Limits are kept, and no motion of a pick comes before its durable phase.
+    fn check(&mut self, command: &Command, before: &Measured, seconds: f64) {
+        let from = &before.posture.joints[side(command.limb)];
+        let mut moved = false;
+        if !limits::within(&command.q) {
+            self.wrongs.push(format!("outside the limits: {:?}", command.q));
+        }
+        for (j, (start, fastest)) in from.iter().zip(MotionLimits::FULL.velocity).enumerate() {
+            let way = command.q[j] - start;
+            moved |= way != 0.0;
+            if way.abs() > fastest * seconds * (1.0 + 1e-9) + 1e-9 {
+                self.wrongs.push(format!("joint {j} moved {way} rad in {seconds} s"));
+            }
+            if command.qd[j].abs() > fastest * (1.0 + 1e-9) {
+                self.wrongs.push(format!("joint {j} at {} rad/s", command.qd[j]));
+            }
+        }
+        self.check_clear(command);
+        let Some(pick) = self.durable.filter(|pick| pick.phase != PickPhase::Done) else {
+            if matches!(command.fingers, Fingers::Grip(_)) {
+                self.wrongs.push("the fingers close and no pick is open".to_owned());
+            }
+            return;
+        };
+        let needed = match command.fingers {
+            Fingers::Grip(_) if moved => PickPhase::Holding,
+            Fingers::Grip(_) => PickPhase::Closing,
+            Fingers::Stay | Fingers::Open(_) if self.only_picks => PickPhase::Moving,
+            Fingers::Stay | Fingers::Open(_) => PickPhase::Accepted,
+        };
+        if pick.phase.code() < needed.code() {
+            self.wrongs.push(format!("{command:?} in phase {:?}", pick.phase));
+        }
+    }
+
+    /// The arm touches no object but the one that it fetches.
+    fn check_clear(&mut self, command: &Command) {
+        let shape = ArmShape::at(command.limb, &command.q);
+        let fetched = self.durable.map(|pick| pick.object.index());
+        for (i, object) in self.objects.iter().enumerate().filter(|(i, _)| Some(*i) != fetched) {
+            let gap = shape.to_cuboid("object", object, -TOUCH_M);
+            if gap.is_some() {
+                self.wrongs.push(format!("{gap:?} to object {i}"));
+            }
+        }
+    }
+}
+
+/// How far the capsules round the arm may enter the box round an object, metres: motions are
+/// checked at intervals.
+const TOUCH_M: f64 = 0.003;

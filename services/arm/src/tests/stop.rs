@@ -1,0 +1,138 @@
+//! The motion stop: at once, latched, and lifted only by its release.
+
+use super::*;
+
+#[test]
+fn a_stop_at_any_moment_halts_within_100_ms_and_the_pick_goes_on_after_it() {
+    for (object, after_s) in
+        [(0, 0.3), (1, 1.5), (2, 2.2), (3, 2.9), (4, 3.6), (5, 5.0), (0, 6.4), (2, 8.5)]
+    {
+        let mut machine = Machine::new(config());
+        machine.act(pick(1, object));
+        machine.run(after_s);
+        machine.motion(MotionOrder::Stop);
+        machine.run(0.1);
+        let posture = machine.robot.posture();
+        machine.run(1.0);
+        assert_eq!(machine.robot.posture(), posture, "object {object} after {after_s} s");
+        assert_eq!((machine.status().stopped, machine.status().moving), (1, 0));
+        machine.motion(MotionOrder::Resume);
+        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+        machine.run_until("at rest", Machine::rests);
+        assert_eq!(machine.status().stopped, 0);
+        assert_eq!(machine.robot.grasps(), 1);
+        machine.assert_delivered(1, object);
+    }
+}
+
+#[test]
+fn from_beside_an_object_the_gripper_goes_straight_up_first() {
+    for object in 0..OBJECTS {
+        let mut machine = Machine::new(config());
+        machine.act(pick(1, object));
+        machine.run_until("at the object", |m| m.phase() == PickPhase::Closing);
+        machine.run(0.3);
+        machine.motion(MotionOrder::Stop);
+        machine.run(0.1);
+        let limb = machine.node.state().limb.unwrap();
+        let tip = |m: &Machine| limb.forward(&m.joints_of(limb)).translation.vector;
+        let place = machine.config.scene.object(ObjectId(object)).placement.unwrap();
+        let (at, top_m) = (tip(&machine), place.xyz[2] + 0.5 * place.size[2]);
+        machine.motion(MotionOrder::Resume);
+        machine.run_until("above it", |m| {
+            let now = tip(m);
+            let aside_m = (now - at).xy().norm();
+            assert!(aside_m < 0.002, "object {object}: {aside_m} m aside at {} m", now.z);
+            now.z > top_m + 0.1
+        });
+        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+        machine.assert_delivered(1, object);
+    }
+}
+
+#[test]
+fn a_stop_while_idle_is_latched_and_outlives_the_process() {
+    let mut machine = Machine::new(config_at(10.0));
+    machine.motion(MotionOrder::Stop);
+    machine.run(0.05);
+    assert_eq!(machine.status().stopped, 1);
+    machine.restart_from_journal();
+    machine.act(pick(1, 1));
+    machine.run(2.0);
+    assert_eq!(machine.phase(), PickPhase::Accepted);
+    assert_eq!(machine.journal.last().unwrap().state.pick, machine.node.state().pick);
+    assert!(machine.rests());
+    machine.restart_from_journal();
+    machine.run(1.0);
+    assert!(machine.rests());
+    machine.motion(MotionOrder::Resume);
+    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+    machine.assert_delivered(1, 1);
+}
+
+#[test]
+fn only_newer_orders_are_obeyed() {
+    let mut machine = Machine::new(config());
+    let given = |given_ns, order: MotionOrder| {
+        In::Motion(MotionCommand { given_ns, order: order.code(), ..Default::default() })
+    };
+    let now = machine.now.ns();
+    machine.waiting.push(given(now - 5, MotionOrder::Stop));
+    machine.run(0.02);
+    assert!(machine.node.state().stopped);
+    machine.waiting.push(given(now - 9, MotionOrder::Resume));
+    machine.waiting.push(given(now - 5, MotionOrder::Resume));
+    machine.waiting.push(given(now + 3_600_000_000_000, MotionOrder::Resume));
+    machine.waiting.push(In::Motion(MotionCommand {
+        given_ns: now,
+        order: 9,
+        ..Default::default()
+    }));
+    machine.run(0.02);
+    assert!(machine.node.state().stopped, "older, repeated, from the future, senseless");
+    machine.waiting.push(given(now - 4, MotionOrder::Resume));
+    machine.run(0.02);
+    assert!(!machine.node.state().stopped);
+}
+
+#[test]
+fn a_stop_from_the_future_stops_and_can_be_released() {
+    let mut machine = Machine::new(config());
+    let stop = MotionCommand { given_ns: u64::MAX, order: 0, ..Default::default() };
+    machine.waiting.push(In::Motion(stop));
+    machine.run(0.02);
+    assert!(machine.node.state().stopped);
+    machine.motion(MotionOrder::Resume);
+    machine.run(0.02);
+    assert!(!machine.node.state().stopped);
+}
+
+#[test]
+fn orders_of_the_machines_last_life_outrank_nothing() {
+    let mut machine = Machine::new(config());
+    machine.motion(MotionOrder::Stop);
+    machine.run(0.02);
+    machine.now = Time(1_000);
+    machine.restart_from_journal();
+    assert!(machine.node.state().stopped, "the latch itself stays");
+    machine.motion(MotionOrder::Resume);
+    machine.run(0.02);
+    assert!(!machine.node.state().stopped);
+}
+
+#[test]
+fn a_suspended_process_goes_on_from_where_it_was() {
+    let mut machine = Machine::new(config());
+    machine.act(pick(1, 0));
+    machine.run(1.0);
+    let before = machine.robot.posture();
+    machine.now = machine.now + Span::from_s(30.0);
+    machine.go(None);
+    let moved: f64 = (0..2)
+        .flat_map(|limb| (0..7).map(move |j| (limb, j)))
+        .map(|(l, j)| (machine.robot.posture().joints[l][j] - before.joints[l][j]).abs())
+        .fold(0.0, f64::max);
+    assert!(moved < 0.2, "{moved} rad at once");
+    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+    machine.assert_delivered(1, 0);
+}

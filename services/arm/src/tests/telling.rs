@@ -1,0 +1,108 @@
+//! What is published, how often, and what is remembered.
+
+use super::*;
+use crate::state::Cause;
+
+#[test]
+fn an_idle_arm_tells_its_joints_at_100_hz_and_writes_nothing() {
+    let mut machine = Machine::new(config());
+    machine.run(0.5);
+    let (journal, joints) = (machine.journal.len(), machine.joints.len());
+    let (statuses, worlds) = (machine.statuses.len(), machine.worlds.len());
+    machine.run(10.0);
+    let close = |count: usize, want: usize| count.abs_diff(want) <= 1 + want / 100;
+    assert!(close(machine.joints.len() - joints, 1000), "{}", machine.joints.len() - joints);
+    assert!(close(machine.statuses.len() - statuses, 40));
+    assert!(close(machine.worlds.len() - worlds, 10));
+    assert_eq!(machine.journal.len(), journal);
+    let last = machine.joints.last().unwrap();
+    assert_eq!(last.velocity, [0.0; 17]);
+    assert_eq!(last.gripper_percent, [100.0; 2]);
+}
+
+#[test]
+fn other_rates_are_kept_too() {
+    for (rate_hz, in_2_s) in [(1.0, 2), (25.0, 50), (400.0, 800)] {
+        let mut config = config_at(20.0);
+        config.arm.joint_rate_hz = rate_hz;
+        let mut machine = Machine::new(config);
+        machine.joints.clear();
+        machine.run(2.0);
+        let count = machine.joints.len();
+        assert!(count.abs_diff(in_2_s) <= 1 + in_2_s / 100, "{count} at {rate_hz} Hz");
+        machine.act(pick(1, 1));
+        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+        machine.assert_delivered(1, 1);
+    }
+}
+
+#[test]
+fn a_moving_arm_tells_the_world_at_10_hz_and_hints_at_5_hz() {
+    let mut machine = Machine::new(config());
+    machine.act(pick(1, 0));
+    machine.run_until("moving", |m| m.phase() == PickPhase::Moving);
+    machine.run(0.1);
+    let (worlds, records) = (machine.worlds.len(), machine.journal.len());
+    machine.run(2.0);
+    assert_eq!(machine.phase(), PickPhase::Moving);
+    assert!((19..=21).contains(&(machine.worlds.len() - worlds)));
+    let hints = &machine.journal[records..];
+    assert!((9..=10).contains(&hints.len()), "{} records in 2 s", hints.len());
+    assert!(hints.iter().all(|record| record.cause == Cause::Moved));
+}
+
+#[test]
+fn phases_are_durable_in_order_before_they_are_seen() {
+    let mut machine = Machine::new(config_at(20.0));
+    machine.act(pick(1, 5));
+    let mut seen = Vec::new();
+    while !machine.rests() || machine.outcome() != PickOutcome::Delivered {
+        machine.go(None);
+        let durable = machine.journal.last().unwrap().state.pick.unwrap().phase;
+        let told = machine.status().phase;
+        assert!(told <= durable.code());
+        if seen.last() != Some(&told) {
+            seen.push(told);
+        }
+    }
+    assert_eq!(seen.last(), Some(&PickPhase::Done.code()));
+    let mut phases: Vec<u8> =
+        machine.journal.iter().map(|r| r.state.pick.unwrap().phase.code()).collect();
+    phases.dedup();
+    assert_eq!(phases, [1, 2, 3, 4, 5]);
+    let mut causes: Vec<Cause> = machine.journal.iter().map(|record| record.cause).collect();
+    causes.dedup();
+    causes.retain(|cause| *cause != Cause::Moved);
+    assert_eq!((causes[0], causes.last()), (Cause::Ordered, Some(&Cause::Rested)));
+}
+
+#[test]
+fn a_journal_can_be_cut_short_only_at_rest() {
+    let mut machine = Machine::new(config_at(20.0));
+    machine.act(pick(1, 5));
+    machine.run_until("held", |m| m.phase() == PickPhase::Holding);
+    assert_eq!(machine.node.snapshot(), None);
+    machine.run_until("at rest", Machine::rests);
+    machine.run(0.1);
+    let snapshot = machine.node.snapshot().unwrap();
+    let [record] = &snapshot[..] else { panic!("one record") };
+    let last = &machine.journal.last().unwrap().state;
+    assert_eq!((record.cause, &record.state), (Cause::Snapshot, last));
+    machine.journal = snapshot;
+    machine.restart_from_journal();
+    machine.run(1.0);
+    assert_eq!(machine.outcome(), PickOutcome::Delivered, "not done again");
+    assert_eq!(machine.robot.grasps(), 0);
+}
+
+#[test]
+fn a_journal_with_joints_out_of_their_limits_is_refused() {
+    let mut machine = Machine::new(config_at(20.0));
+    machine.act(pick(1, 5));
+    machine.run(0.1);
+    let mut records = machine.journal.clone();
+    records.last_mut().unwrap().state.posture.joints[1][3] = 4.0;
+    let error = ArmNode::recover(machine.config.clone(), records).err().unwrap();
+    assert!(error.what.contains("outside its joint limits"), "{error}");
+    assert!(ArmNode::recover(machine.config.clone(), machine.journal).is_ok());
+}

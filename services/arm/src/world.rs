@@ -1,0 +1,103 @@
+//! Where the objects are: in their places, in a gripper, or taken.
+
+use crate::driver::Measured;
+use crate::state::{ArmState, Held, side};
+use kinematics::{Cuboid, Limb, ObjectPose, attached_pose};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+use node::Time;
+use protocol::WorldView;
+use scene::{ObjectId, Placement, Scene};
+
+/// The objects' places in the scene.
+#[derive(Clone, Debug)]
+pub(crate) struct World {
+    places: Vec<Option<ObjectPose>>,
+}
+
+impl World {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let places = scene.objects().iter().map(|object| object.placement.as_ref().map(place));
+        Self { places: places.collect() }
+    }
+
+    /// Where the object has its place; none if it has none, or the scene has no such object.
+    pub(crate) fn place(&self, object: ObjectId) -> Option<&ObjectPose> {
+        self.places.get(object.index()).and_then(Option::as_ref)
+    }
+
+    /// The objects that stand in their places, but for one.
+    pub(crate) fn standing(
+        &self,
+        state: &ArmState,
+        except: Option<ObjectId>,
+    ) -> impl Iterator<Item = &ObjectPose> {
+        let held = state.held.map(|held| held.object);
+        self.places.iter().enumerate().filter_map(move |(i, place)| {
+            let object = ObjectId::from(i);
+            let away = state.gone.contains(&object) || held == Some(object);
+            place.as_ref().filter(|_| !away && except != Some(object))
+        })
+    }
+
+    /// The boxes round the objects that stand in their places, but for one.
+    pub(crate) fn obstacles(&self, state: &ArmState, except: Option<ObjectId>) -> Vec<Cuboid> {
+        self.standing(state, except).map(ObjectPose::cuboid).collect()
+    }
+
+    /// `object` in the gripper that has closed on it.
+    pub(crate) fn grasped(
+        &self,
+        object: ObjectId,
+        limb: Limb,
+        measured: &Measured,
+    ) -> Option<Held> {
+        let gripper = limb.forward(&measured.posture.joints[side(limb)]);
+        let in_gripper = gripper.inverse() * self.place(object)?.isometry();
+        Some(Held { object, limb, in_gripper: to_array(&in_gripper) })
+    }
+
+    /// The world as clients see it.
+    pub(crate) fn view(&self, state: &ArmState, measured: &Measured, now: Time) -> WorldView {
+        let joints = &measured.posture.joints;
+        let grippers = Limb::BOTH.map(|limb| limb.forward(&joints[side(limb)]));
+        let mut objects: Vec<Option<[f64; 7]>> =
+            self.places.iter().map(|p| p.as_ref().map(|p| to_array(&p.isometry()))).collect();
+        let mut put = |object: ObjectId, pose| {
+            if let Some(entry) = objects.get_mut(object.index()) {
+                *entry = pose;
+            }
+        };
+        state.gone.iter().for_each(|object| put(*object, None));
+        if let Some(held) = &state.held {
+            let pose = attached_pose(&grippers[side(held.limb)], &from_array(&held.in_gripper));
+            put(held.object, Some(to_array(&pose)));
+        }
+        WorldView {
+            at_ns: now.ns(),
+            objects,
+            held: state.held.map(|held| held.object.0),
+            grippers: grippers.map(|gripper| to_array(&gripper)),
+        }
+    }
+}
+
+fn place(placement: &Placement) -> ObjectPose {
+    ObjectPose {
+        xyz_m: placement.xyz,
+        yaw_rad: placement.yaw,
+        size_m: placement.size,
+        grasp_width_m: placement.grasp_width,
+    }
+}
+
+/// Position in metres and quaternion: x, y, z, x, y, z, w.
+fn to_array(pose: &Isometry3<f64>) -> [f64; 7] {
+    let (p, r) = (pose.translation.vector, pose.rotation.coords);
+    [p.x, p.y, p.z, r.x, r.y, r.z, r.w]
+}
+
+/// The pose that [`Held::in_gripper`] stands for.
+pub(crate) fn from_array([x, y, z, i, j, k, w]: &[f64; 7]) -> Isometry3<f64> {
+    let rotation = UnitQuaternion::from_quaternion(Quaternion::new(*w, *i, *j, *k));
+    Isometry3::from_parts(Translation3::new(*x, *y, *z), rotation)
+}

@@ -1,0 +1,7 @@
+//! The grounding service.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    runtime::driver::run::<grounding::shell::GroundingProgram>()
+}

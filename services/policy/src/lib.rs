@@ -1,0 +1,231 @@
+//! The policy: keeps the belief over the objects, and decides what to do about it.
+//!
+//! [`PolicyNode`] is the reducer. It takes observations strictly in order, each exactly once;
+//! turns each into the next [`State`] through [`Mind`]; and has the state journaled before anything
+//! that follows from it can be seen.
+
+pub mod journal_check;
+pub mod mind;
+pub mod shell;
+pub mod state;
+mod view;
+
+#[cfg(test)]
+mod tests;
+
+use mind::{Mind, Turns};
+use node::{Effects, Event, Node, NodeError, Span, Time};
+use protocol::inbox::{Inbox, Verdict};
+use protocol::{
+    ActKind, Activity, AppliedMark, ArmStatus, Observation, PickOutcome, PickPhase, PolicyView,
+    Presentation, Presented, PromptId, RobotAct, UtteranceSeq,
+};
+use state::{Cause, Heard, Record, State};
+
+/// How often what stands is sent again.
+const RESEND_EVERY: Span = Span::from_ms(250);
+/// Longest time that a sound being heard holds back a repetition.
+const HEARING_MAX: Span = Span::from_ms(10_000);
+
+/// What arrives.
+#[derive(Clone, Debug, PartialEq)]
+pub enum In {
+    /// From grounding.
+    Observation(Box<Observation>),
+    /// From speech: the latest prompt said.
+    Presented(Presented),
+    /// From speech: whether somebody speaks.
+    Activity(Activity),
+    /// From the arm.
+    Arm(ArmStatus),
+}
+
+/// What is published.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Out {
+    /// To speech: how far the belief has come.
+    Mark(AppliedMark),
+    /// To speech and arm: what to do.
+    Act(Box<RobotAct>),
+    /// To clients: what is thought.
+    View(Box<PolicyView>),
+}
+
+type Fx = Effects<Out, Record>;
+
+/// The policy as a reducer.
+pub struct PolicyNode {
+    mind: Mind,
+    state: State,
+    presented: Presented,
+    activity: Activity,
+    refused: u64,
+    waiting_since: Option<Time>,
+    next_send: Time,
+}
+
+impl Node for PolicyNode {
+    type Config = Mind;
+    type In = In;
+    type Out = Out;
+    type Record = Record;
+
+    fn recover(mind: Mind, mut records: Vec<Record>) -> Result<Self, NodeError> {
+        let state = records.pop().map_or_else(|| mind.first(), |record| record.state);
+        check(&state)?;
+        Ok(Self {
+            mind,
+            state,
+            presented: Presented::default(),
+            activity: Activity::default(),
+            refused: 0,
+            waiting_since: None,
+            next_send: Time(0),
+        })
+    }
+
+    fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
+        match event {
+            Event::Started => self.start(now, fx),
+            Event::Message(In::Observation(observation)) => self.observe(&observation, now, fx),
+            Event::Message(In::Presented(presented)) => self.presented = presented,
+            Event::Message(In::Activity(activity)) => self.activity = activity,
+            Event::Message(In::Arm(status)) => self.watch_arm(&status, now, fx),
+            Event::Tick => self.tick(now, fx),
+            Event::Shutdown => fx.exit(),
+        }
+    }
+
+    fn deadline(&self) -> Option<Time> {
+        Some(self.next_send)
+    }
+
+    fn pending_since(&self) -> Option<Time> {
+        self.waiting_since
+    }
+
+    fn snapshot(&self) -> Option<Vec<Record>> {
+        let cause = Cause::Snapshot;
+        let record = Record { cause, at: self.state.act.decided, state: self.state.clone() };
+        self.state.open.is_none().then(|| vec![record])
+    }
+}
+
+impl PolicyNode {
+    /// The state, for tests and simulation.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn start(&mut self, now: Time, fx: &mut Fx) {
+        let other_scene = self.state.scene_key != self.mind.scene().key();
+        if other_scene && self.state.open.is_some() {
+            self.apply(Cause::SceneChanged, now, fx);
+        } else {
+            self.state.scene_key = self.mind.scene().key();
+            self.send(now, fx);
+        }
+    }
+
+    fn observe(&mut self, observation: &Observation, now: Time, fx: &mut Fx) {
+        let seq = UtteranceSeq(observation.seq);
+        match Inbox::new(self.state.applied).judge(seq) {
+            Verdict::Apply => {}
+            Verdict::Duplicate => return,
+            Verdict::Early => {
+                self.waiting_since.get_or_insert(now);
+                return;
+            }
+        }
+        let readings = observation.readings(self.mind.scene().words().len());
+        let same_scene = observation.scene_key == self.mind.scene().key();
+        let (Ok(readings), true) = (readings, same_scene) else {
+            // Not applied, so speech sends the utterance again: a grounding that is mended or
+            // swapped meanwhile gets another chance at it, and nothing is lost.
+            self.refused += 1;
+            self.waiting_since.get_or_insert(now);
+            tracing::warn!(%seq, same_scene, "observation refused; the utterance stays pending");
+            return;
+        };
+        self.waiting_since = None;
+        let heard = Heard {
+            seq,
+            prompt: PromptId(observation.heard_prompt),
+            accepted: Time(observation.accepted_ns),
+            readings,
+            unknown: observation.unknown.as_str().unwrap_or_default().to_owned(),
+        };
+        self.apply(Cause::Utterance(heard), now, fx);
+    }
+
+    /// Ends the interaction when the arm has ended its pick.
+    fn watch_arm(&mut self, status: &ArmStatus, now: Time, fx: &mut Fx) {
+        let ordered = self.state.open.as_ref().and_then(|open| open.pick);
+        let Some((pick, _)) = ordered else { return };
+        let done = status.phase == PickPhase::Done.code() && status.pick() == pick;
+        if let (true, Ok(outcome)) = (done, PickOutcome::from_code(status.outcome)) {
+            self.apply(Cause::PickEnded { pick, outcome }, now, fx);
+        }
+    }
+
+    fn tick(&mut self, now: Time, fx: &mut Fx) {
+        if self.silence_has_lasted(now) {
+            self.apply(Cause::Silence, now, fx);
+        } else if now >= self.next_send {
+            self.send(now, fx);
+        }
+    }
+
+    /// Whether the standing question was said to its end and the response window has passed since.
+    fn silence_has_lasted(&self, now: Time) -> bool {
+        let act = &self.state.act;
+        let said = self.presented.prompt == act.prompt.0
+            && self.presented.presentation == act.presentation
+            && self.presented.state == Presentation::Ended.code();
+        let window = Span::from_s(self.mind.turns().response_window_s);
+        act.kind == ActKind::Ask
+            && said
+            && !self.somebody_speaks(now)
+            && now >= Time(self.presented.ended_ns) + window
+            && now >= act.decided + window
+    }
+
+    fn somebody_speaks(&self, now: Time) -> bool {
+        let speaking =
+            self.activity.onset_ns > 0 && now < Time(self.activity.onset_ns) + HEARING_MAX;
+        speaking || self.activity.pending > 0 || self.waiting_since.is_some()
+    }
+
+    fn apply(&mut self, cause: Cause, now: Time, fx: &mut Fx) {
+        self.state = self.mind.step(&self.state, &cause, now);
+        fx.append(Record { cause, at: now, state: self.state.clone() });
+        self.send(now, fx);
+    }
+
+    fn send(&mut self, now: Time, fx: &mut Fx) {
+        fx.publish(Out::Mark(AppliedMark { seq: self.state.applied.0 }));
+        fx.publish(Out::Act(Box::new(view::act(&self.state))));
+        let view = view::view(&self.mind, &self.state, self.refused);
+        fx.publish(Out::View(Box::new(view)));
+        self.next_send = now + RESEND_EVERY;
+    }
+}
+
+/// Whether the journal's last state can be gone on from.
+fn check(state: &State) -> Result<(), NodeError> {
+    let Some(open) = &state.open else { return Ok(()) };
+    dialogue::Belief::from_log(open.belief.clone()).map(|_| ()).map_err(|error| NodeError {
+        what: format!("the journal's belief cannot be gone on from: {error}"),
+        cure: "start the group afresh: whichone up --fresh".to_owned(),
+    })
+}
+
+/// How turns are taken, from the settings.
+pub fn turns(settings: &settings::Settings) -> Turns {
+    let turns = &settings.dialogue.turns;
+    Turns {
+        response_window_s: turns.response_window_s,
+        repeats_max: turns.repeats_max,
+        questions_max: turns.questions_max,
+    }
+}

@@ -1,0 +1,7 @@
+//! The policy service.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    runtime::driver::run::<policy::shell::PolicyProgram>()
+}

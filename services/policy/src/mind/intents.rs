@@ -1,0 +1,87 @@
+//! What an utterance asks of the dialogue itself, before it says anything about an object.
+
+use super::{Mind, repeat, say, set, words};
+use crate::state::{Act, Heard, State};
+use dialogue::Belief;
+use node::Time;
+use protocol::{ActKind, Outcome, UtteranceSeq};
+use scene::Intent;
+
+impl Mind {
+    /// Takes in one utterance. Whatever it is, it counts as applied.
+    pub(super) fn hear(&mut self, state: &mut State, heard: &Heard, at: Time) {
+        state.applied = heard.seq;
+        let likeliest = heard.readings.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        match likeliest.map_or(Intent::None, |(_, reading)| reading.intent) {
+            Intent::Inform => self.inform(state, heard, at),
+            Intent::None => {}
+            Intent::Stop => self.stopped(state, at),
+            Intent::Cancel => self.cancel(state, at),
+            Intent::Repeat => repeat_last(state, at),
+            Intent::StartOver => self.start_over(state, heard.seq, at),
+            Intent::AskBack => self.answer_back(state, at),
+        }
+    }
+
+    /// The arm has been stopped by the speech service already; here it is only said. An ordered
+    /// pick goes on once the operator releases the stop, so its order must stand.
+    fn stopped(&self, state: &mut State, at: Time) {
+        if state.act.kind != ActKind::Pick {
+            let text = "I have stopped. Release the motion stop to go on.";
+            self.interject(state, text, at);
+        }
+    }
+
+    fn cancel(&self, state: &mut State, at: Time) {
+        let Some(open) = &state.open else { return };
+        if open.pick.is_none() {
+            self.close(state, Outcome::Cancelled, at, "All right.");
+        } else if state.act.kind == ActKind::Pick {
+            state.last_prompt = state.last_prompt.next();
+            let cancel = Act {
+                kind: ActKind::Cancel,
+                prompt: state.last_prompt,
+                presentation: 1,
+                pick: open.pick,
+                text: "I will leave it, unless I already hold it.".to_owned(),
+                utterance: state.applied,
+                decided: at,
+                ..Act::default()
+            };
+            set(state, cancel);
+        }
+    }
+
+    fn start_over(&mut self, state: &mut State, utterance: UtteranceSeq, at: Time) {
+        let Some(open) = &mut state.open else { return };
+        if open.pick.is_some() {
+            return;
+        }
+        open.belief = Belief::uniform(self.scene().objects().len()).log_weights().to_vec();
+        open.silences = 0;
+        let heard = state.act.prompt;
+        self.decide(state, heard, "From the beginning. ", utterance, at);
+    }
+
+    fn answer_back(&self, state: &mut State, at: Time) {
+        let text = words::inventory(self.scene());
+        self.interject(state, &text, at);
+    }
+
+    /// Says something, and asks the standing question again behind it.
+    fn interject(&self, state: &mut State, text: &str, at: Time) {
+        if state.act.kind == ActKind::Ask {
+            let question = self.scene().phrase(state.act.question);
+            repeat(state, at);
+            state.act.text = format!("{text} {question}");
+        } else if state.act.kind != ActKind::Pick {
+            say(state, text, at);
+        }
+    }
+}
+
+fn repeat_last(state: &mut State, at: Time) {
+    if !state.act.text.is_empty() {
+        repeat(state, at);
+    }
+}

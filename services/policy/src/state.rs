@@ -1,0 +1,164 @@
+//! Everything that the policy must not forget. It is small, so each journal record holds it whole,
+//! and recovery reads one record.
+
+use dialogue::Belief;
+use node::Time;
+use protocol::{ActId, ActKind, Ended, InteractionId, PickId, PickOutcome, PromptId, UtteranceSeq};
+use scene::{ObjectId, Question, Reading};
+use serde::{Deserialize, Serialize};
+
+/// The dialogue's state.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Key of the scene that the belief is about.
+    pub scene_key: u64,
+    /// Highest utterance that the state holds.
+    pub applied: UtteranceSeq,
+    /// Last interaction number given.
+    pub last_interaction: InteractionId,
+    /// Last prompt number given.
+    pub last_prompt: PromptId,
+    /// The open interaction.
+    pub open: Option<Interaction>,
+    /// The decision that stands.
+    pub act: Act,
+    /// The latest interaction that ended.
+    pub ended: Option<Ended>,
+}
+
+/// One fetch in progress.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Interaction {
+    /// Its number.
+    pub id: InteractionId,
+    /// When its first utterance was accepted.
+    pub opened: Time,
+    /// The belief as log weights, in the scene's order.
+    pub belief: Vec<f64>,
+    /// Every question asked, so that an answer can be scored against the one that was heard.
+    pub prompts: Vec<Prompt>,
+    /// How often the robot asked, repetitions included.
+    pub presentations: u32,
+    /// Decisions so far; seeds what is random in a planner.
+    pub step: u32,
+    /// Response windows in a row that passed in silence.
+    pub silences: u32,
+    /// First and last utterance.
+    pub utterances: (UtteranceSeq, UtteranceSeq),
+    /// The pick that was ordered.
+    pub pick: Option<(PickId, ObjectId)>,
+}
+
+impl Interaction {
+    /// The belief.
+    ///
+    /// # Panics
+    /// Where the weights are none. They come from a belief, or from a journal that was checked when
+    /// it was recovered.
+    pub fn belief(&self) -> Belief {
+        Belief::from_log(self.belief.clone()).expect("the weights of a belief")
+    }
+}
+
+/// A question that was asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Prompt {
+    /// Its number.
+    pub id: PromptId,
+    /// What was asked.
+    pub question: Question,
+}
+
+/// A decision with its reasons.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Act {
+    /// Its number.
+    pub id: ActId,
+    /// What kind.
+    pub kind: ActKind,
+    /// What is said, if anything is.
+    pub prompt: PromptId,
+    /// Which presentation of the prompt.
+    pub presentation: u32,
+    /// What is asked.
+    pub question: Question,
+    /// What is picked.
+    pub pick: Option<(PickId, ObjectId)>,
+    /// The words.
+    pub text: String,
+    /// The utterance that led to it.
+    pub utterance: UtteranceSeq,
+    /// When it was decided.
+    pub decided: Time,
+    /// Expected discounted return.
+    pub value: f64,
+    /// The best other actions and their values.
+    pub alternatives: Vec<(String, f64)>,
+    /// Expected number of questions still to ask.
+    pub expected_questions: f64,
+}
+
+impl Default for Act {
+    fn default() -> Self {
+        Self {
+            id: ActId(0),
+            kind: ActKind::Wait,
+            prompt: PromptId(0),
+            presentation: 0,
+            question: Question::None,
+            pick: None,
+            text: String::new(),
+            utterance: UtteranceSeq(0),
+            decided: Time(0),
+            value: 0.0,
+            alternatives: Vec::new(),
+            expected_questions: 0.0,
+        }
+    }
+}
+
+/// Why the state changed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Cause {
+    /// The journal begins anew here; the state is to be taken as it is.
+    Snapshot,
+    /// An utterance was understood.
+    Utterance(Heard),
+    /// The response window passed and nobody spoke.
+    Silence,
+    /// The arm has ended the pick.
+    PickEnded {
+        /// Which pick.
+        pick: PickId,
+        /// How.
+        outcome: PickOutcome,
+    },
+    /// The group was started with another scene in the middle of an interaction.
+    SceneChanged,
+}
+
+/// An utterance as it was understood.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Heard {
+    /// Its number.
+    pub seq: UtteranceSeq,
+    /// The last question that the person had heard whole.
+    pub prompt: PromptId,
+    /// When it was accepted.
+    pub accepted: Time,
+    /// What it may mean, with probabilities that sum to 1.
+    pub readings: Vec<(f64, Reading)>,
+    /// A word that the scene does not have; may be empty.
+    pub unknown: String,
+}
+
+/// A journal record: why the state changed, when, and the state after it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// Why.
+    pub cause: Cause,
+    /// When; the transition depends on no other clock.
+    pub at: Time,
+    /// The state after it.
+    pub state: State,
+}

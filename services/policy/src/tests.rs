@@ -1,0 +1,260 @@
+//! The policy's rules, on the shipped six bowls.
+
+use crate::mind::{Mind, questions};
+use crate::shell;
+use crate::state::{Cause, Heard, Record, State};
+use crate::{In, Out, PolicyNode, journal_check};
+use dialogue::{Answer, Model, Rng};
+use node::{Effects, Event, Node, Span, Time};
+use protocol::{
+    ActKind, ArmStatus, FixedText, Observation, Outcome, PickOutcome, PickPhase, Presentation,
+    Presented, PromptId, UtteranceSeq, WireReading,
+};
+use scene::{Intent, ObjectId, Question, Reading, Response};
+use settings::Settings;
+use std::path::Path;
+
+fn settings() -> Settings {
+    let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
+    Settings::load(config, None, &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn mind() -> Mind {
+    shell::mind(&settings()).unwrap()
+}
+
+fn heard(seq: u64, prompt: PromptId, reading: Reading) -> Cause {
+    let readings = vec![(1.0, reading)];
+    let (seq, accepted) = (UtteranceSeq(seq), Time(seq * 1_000_000_000));
+    Cause::Utterance(Heard { seq, prompt, accepted, readings, unknown: String::new() })
+}
+
+fn answer(response: Response) -> Reading {
+    Reading { response, ..Reading::default() }
+}
+
+fn at(seconds: u64) -> Time {
+    Time(seconds * 1_000_000_000)
+}
+
+/// A dialogue after the first request, with a question standing.
+fn asked(mind: &mut Mind) -> State {
+    let state = mind.step(&mind.first(), &heard(1, PromptId(0), Reading::default()), at(1));
+    assert_eq!(state.act.kind, ActKind::Ask);
+    state
+}
+
+fn belief(state: &State) -> Vec<f64> {
+    state.open.as_ref().expect("an open interaction").belief().probabilities()
+}
+
+#[test]
+fn a_late_answer_is_scored_against_the_question_that_was_heard() {
+    let mut mind = mind();
+    let first = asked(&mut mind);
+    let second = mind.step(&first, &heard(2, first.act.prompt, answer(Response::Yes)), at(2));
+    assert_ne!(second.act.question, first.act.question, "another question stands now");
+    // Said before the second question was heard: it can only be meant for the first.
+    let late = mind.step(&second, &heard(3, first.act.prompt, answer(Response::Yes)), at(3));
+    let Question::Attribute(k, v) = first.act.question else { panic!("{:?}", first.act) };
+    let scene = settings().scene;
+    let mass = |state: &State| -> f64 {
+        let has = |i: &usize| scene.has(ObjectId::from(*i), k, v);
+        belief(state).iter().enumerate().filter(|(i, _)| has(i)).map(|(_, p)| p).sum()
+    };
+    assert!(mass(&late) > mass(&second), "the first question's value gains once more");
+    assert_eq!(late.act.prompt, second.act.prompt, "the unheard question is not said again");
+}
+
+#[test]
+fn an_answer_to_nothing_begins_nothing() {
+    let mut mind = mind();
+    let state = mind.step(&mind.first(), &heard(1, PromptId(5), answer(Response::Yes)), at(1));
+    assert_eq!((state.open, state.applied), (None, UtteranceSeq(1)));
+}
+
+#[test]
+fn an_answer_to_another_interaction_s_question_changes_no_belief() {
+    let mut mind = mind();
+    let state = asked(&mut mind);
+    let stale = PromptId(state.act.prompt.0 + 70);
+    let after = mind.step(&state, &heard(2, stale, answer(Response::No)), at(2));
+    assert_eq!(belief(&state), belief(&after));
+}
+
+#[test]
+fn silence_repeats_the_same_question_and_then_ends_the_interaction() {
+    let mut mind = mind();
+    let mut state = asked(&mut mind);
+    let first = state.act.clone();
+    for n in 1..=mind.turns().repeats_max {
+        state = mind.step(&state, &Cause::Silence, at(10 * u64::from(n)));
+        assert_eq!((state.act.prompt, state.act.presentation), (first.prompt, 1 + n));
+        assert_eq!(state.open.as_ref().map(questions), Some(1));
+    }
+    state = mind.step(&state, &Cause::Silence, at(100));
+    assert_eq!(state.ended.map(|ended| ended.outcome), Some(Outcome::Abandoned));
+}
+
+#[test]
+fn starting_over_forgets_what_was_said() {
+    let mut mind = mind();
+    let state = asked(&mut mind);
+    let told = mind.step(&state, &heard(2, state.act.prompt, answer(Response::Yes)), at(2));
+    let over = Reading { intent: Intent::StartOver, ..Reading::default() };
+    let over = mind.step(&told, &heard(3, told.act.prompt, over), at(3));
+    assert_eq!(belief(&over), belief(&state));
+}
+
+/// Speaks to the reducer as grounding would.
+fn observation(seq: u64, prompt: u64, reading: &Reading) -> In {
+    let mut observation = Observation {
+        seq,
+        heard_prompt: prompt,
+        scene_key: settings().scene.key(),
+        reading_count: 1,
+        unknown: FixedText::default(),
+        ..Observation::default()
+    };
+    observation.readings[0] = WireReading::new(reading, 1.0).0;
+    In::Observation(Box::new(observation))
+}
+
+fn tell(node: &mut PolicyNode, message: In, now: Time) -> (Vec<Record>, Vec<Out>) {
+    let mut effects = Effects::default();
+    node.on(Event::Message(message), now, &mut effects);
+    (effects.take_records(), effects.take_outputs())
+}
+
+#[test]
+fn each_utterance_is_applied_once_and_in_order() {
+    let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();
+    let request = |seq| observation(seq, 0, &Reading::default());
+    assert!(tell(&mut node, request(2), at(1)).0.is_empty(), "the first is missing");
+    assert!(node.pending_since().is_some(), "the operator sees that something waits");
+    assert_eq!(tell(&mut node, request(1), at(2)).0.len(), 1);
+    assert!(tell(&mut node, request(1), at(3)).0.is_empty(), "a repeat changes nothing");
+    assert_eq!(tell(&mut node, request(2), at(4)).0.len(), 1);
+    assert_eq!(node.state().applied, UtteranceSeq(2));
+}
+
+#[test]
+fn an_observation_that_makes_no_sense_is_refused_and_comes_again() {
+    let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();
+    let In::Observation(good) = observation(1, 0, &Reading::default()) else { unreachable!() };
+    let mut other_scene = good.clone();
+    other_scene.scene_key ^= 1;
+    let mut no_readings = good.clone();
+    no_readings.reading_count = 0;
+    for bad in [other_scene, no_readings] {
+        assert!(tell(&mut node, In::Observation(bad), at(1)).0.is_empty());
+        assert_eq!(node.state().applied, UtteranceSeq(0));
+    }
+    assert_eq!(tell(&mut node, In::Observation(good), at(2)).0.len(), 1);
+}
+
+#[test]
+fn silence_counts_from_the_end_of_the_spoken_question() {
+    let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();
+    tell(&mut node, observation(1, 0, &Reading::default()), at(1));
+    let act = node.state().act.clone();
+    let silent = |node: &mut PolicyNode, now| {
+        let mut effects: Effects<Out, Record> = Effects::default();
+        node.on(Event::Tick, now, &mut effects);
+        effects.take_records().iter().any(|record| record.cause == Cause::Silence)
+    };
+    assert!(!silent(&mut node, at(1000)), "nobody has heard it yet");
+    let said = Presented {
+        prompt: act.prompt.0,
+        presentation: act.presentation,
+        state: Presentation::Ended.code(),
+        ended_ns: at(1000).ns(),
+        ..Presented::default()
+    };
+    tell(&mut node, In::Presented(said), at(1000));
+    let window = Span::from_s(mind().turns().response_window_s);
+    assert!(!silent(&mut node, at(1000) + window - Span::from_ms(1)));
+    assert!(silent(&mut node, at(1000) + window));
+}
+
+/// Whole dialogues with a person who sometimes lies, falls silent, speaks late or starts over: the
+/// journal folds again to the same states, and recovery from any prefix gives its last state.
+#[test]
+fn journals_fold_again_bit_for_bit() {
+    for seed in 0..40 {
+        let records = random_dialogue(seed);
+        journal_check::refold(&mut mind(), &records).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        for cut in 0..records.len() {
+            let node = PolicyNode::recover(mind(), records[..=cut].to_vec()).unwrap();
+            assert_eq!(node.state(), &records[cut].state, "seed {seed}, record {cut}");
+        }
+    }
+}
+
+#[test]
+fn a_journal_that_was_tampered_with_is_told() {
+    let mut records = random_dialogue(3);
+    let open = records.iter_mut().find_map(|r| r.state.open.as_mut()).expect("a dialogue");
+    open.belief[0] += 1e-15;
+    assert!(journal_check::refold(&mut mind(), &records).is_err());
+}
+
+fn random_dialogue(seed: u64) -> Vec<Record> {
+    let (mut rng, mut mind) = (Rng::new(seed), mind());
+    let settings = settings();
+    let model = Model::new(&settings.scene, settings.dialogue.params);
+    let wanted = ObjectId::from(rng.below(6));
+    let (mut state, mut records, mut seq) = (mind.first(), Vec::new(), 0);
+    for turn in 1..25 {
+        let cause = random_cause(&mut rng, &model, &state, wanted, &mut seq);
+        state = mind.step(&state, &cause, at(turn));
+        records.push(Record { cause, at: at(turn), state: state.clone() });
+    }
+    records
+}
+
+fn random_cause(
+    rng: &mut Rng,
+    model: &Model,
+    state: &State,
+    wanted: ObjectId,
+    seq: &mut u64,
+) -> Cause {
+    if let Some((pick, _)) = state.open.as_ref().and_then(|open| open.pick) {
+        return Cause::PickEnded { pick, outcome: PickOutcome::Delivered };
+    }
+    if state.open.is_some() && rng.below(8) == 0 {
+        return Cause::Silence;
+    }
+    *seq += 1;
+    let reading = match (rng.below(10), state.act.question) {
+        (0, _) => answer(Response::No),
+        (1, _) => Reading { intent: Intent::StartOver, ..Reading::default() },
+        (2, _) | (_, Question::None) => Reading::default(),
+        (_, question) => Answer::truthful(model, question, wanted).reading(model),
+    };
+    let prompt = PromptId(state.act.prompt.0.saturating_sub(rng.below(2) as u64));
+    heard(*seq, prompt, reading)
+}
+
+#[test]
+fn only_the_ordered_pick_s_end_ends_the_interaction() {
+    let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();
+    let sure = settings().scene;
+    let words = ["small", "white", "plastic", "dishwasher", "dishwasher", "dishwasher"];
+    let base = words.iter().filter_map(|word| sure.word_named(word)).collect();
+    tell(&mut node, observation(1, 0, &Reading { base, ..Reading::default() }), at(1));
+    let (pick, object) = node.state().act.pick.expect("sure enough to pick");
+    let done = |interaction| ArmStatus {
+        interaction,
+        attempt: pick.attempt,
+        object: object.0.into(),
+        phase: PickPhase::Done.code(),
+        outcome: PickOutcome::Delivered.code(),
+        ..ArmStatus::default()
+    };
+    assert!(tell(&mut node, In::Arm(done(pick.interaction.0 + 1)), at(2)).0.is_empty());
+    assert_eq!(tell(&mut node, In::Arm(done(pick.interaction.0)), at(3)).0.len(), 1);
+    assert!(tell(&mut node, In::Arm(done(pick.interaction.0)), at(4)).0.is_empty());
+    assert_eq!(node.state().ended.as_ref().map(|e| e.object), Some(Some(object.0)));
+}

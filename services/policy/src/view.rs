@@ -1,0 +1,62 @@
+//! The state as others see it.
+
+use crate::mind::{Mind, questions};
+use crate::state::{Interaction, State};
+use protocol::{ActKind, FixedText, PolicyView, RobotAct};
+
+/// The standing decision on the wire.
+pub(crate) fn act(state: &State) -> RobotAct {
+    let act = &state.act;
+    let interaction = act.pick.map_or(state.last_interaction, |(pick, _)| pick.interaction);
+    RobotAct {
+        act: act.id.0,
+        interaction: interaction.0,
+        prompt: act.prompt.0,
+        presentation: act.presentation,
+        kind: act.kind.code(),
+        question: act.question.into(),
+        object: act.pick.map_or(0, |(_, object)| object.0.into()),
+        attempt: act.pick.map_or(0, |(pick, _)| pick.attempt),
+        decided_ns: act.decided.ns(),
+        utterance: act.utterance.0,
+        text: FixedText::truncated(&act.text),
+        ..RobotAct::default()
+    }
+}
+
+/// What clients are told.
+pub(crate) fn view(mind: &Mind, state: &State, refused: u64) -> PolicyView {
+    let open = state.open.as_ref();
+    let objects = mind.scene().objects().len();
+    let belief = open
+        .map_or_else(|| vec![1.0 / objects as f64; objects], |open| open.belief().probabilities());
+    let latest = |ended: &protocol::Ended| ended.utterances;
+    let utterances = |open: &Interaction| (open.utterances.0.0, open.utterances.1.0);
+    PolicyView {
+        scene_key: state.scene_key,
+        applied: state.applied.0,
+        interaction: open.map_or(0, |open| open.id.0),
+        belief,
+        question: state.act.question,
+        prompt: state.act.prompt.0,
+        text: state.act.text.clone(),
+        decision: kind_name(state.act.kind).to_owned(),
+        value: state.act.value,
+        alternatives: state.act.alternatives.clone(),
+        expected_questions: state.act.expected_questions,
+        questions: open.map_or(0, questions),
+        utterances: open.map(utterances).or(state.ended.as_ref().map(latest)).unwrap_or_default(),
+        last: state.ended.clone(),
+        refused,
+    }
+}
+
+fn kind_name(kind: ActKind) -> &'static str {
+    match kind {
+        ActKind::Wait => "wait",
+        ActKind::Ask => "ask",
+        ActKind::Say => "say",
+        ActKind::Pick => "pick",
+        ActKind::Cancel => "cancel",
+    }
+}

@@ -1,0 +1,44 @@
+//! What people say about a scene, as a trigram language model for the recogniser.
+//!
+//! Invariant: the same scene yields the same model, byte for byte; nothing here reads a clock, a
+//! file or the machine's randomness.
+
+mod background;
+mod sentences;
+mod templates;
+mod trigram;
+
+pub use background::common_words;
+pub use sentences::scene_sentences;
+pub use trigram::{Trigram, Weights};
+
+/// The words of a text as the language model writes them: lower case, letters, digits, inner
+/// hyphens and apostrophes.
+pub fn words(text: &str) -> Vec<String> {
+    text.split_whitespace()
+        .map(|raw| {
+            let word: String = raw
+                .chars()
+                .flat_map(char::to_lowercase)
+                .map(|c| if c == '\u{2019}' { '\'' } else { c })
+                .filter(|c| c.is_alphanumeric() || matches!(c, '-' | '\''))
+                .collect();
+            word.trim_matches(|c| c == '-' || c == '\'').to_owned()
+        })
+        .filter(|word| !word.is_empty())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words;
+
+    #[test]
+    fn words_keep_inner_hyphens_and_apostrophes() {
+        assert_eq!(
+            words("  It\u{2019}s the See-Through ONE, 'please'! -- "),
+            ["it's", "the", "see-through", "one", "please"]
+        );
+        assert!(words(" ... ").is_empty());
+    }
+}

@@ -1,0 +1,258 @@
+//! An interpolated Witten-Bell trigram with a floor under its escapes, written as ARPA text.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+const START: &str = "<s>";
+const END: &str = "</s>";
+
+/// How much of the model is kept for speech that the sentences do not foresee.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Weights {
+    /// Smallest probability, after any history, of leaving the histories that were seen. 0 is
+    /// plain Witten-Bell.
+    pub escape_min: f64,
+    /// Share of the background words in the distribution without history.
+    pub background: f64,
+}
+
+impl Default for Weights {
+    fn default() -> Self {
+        Self { escape_min: 0.1, background: 0.5 }
+    }
+}
+
+/// A trigram model `p(w | u v)` over the words of its sentences and the background words.
+///
+/// For a history `h` that was followed `c(h)` times, by `T(h)` different words:
+/// `p(w|h) = (1 - e) c(hw)/c(h) + e p(w|h')`, where `h'` lacks the oldest word and the escape is
+/// `e = max(T(h) / (c(h) + T(h)), escape_min)` (Witten and Bell 1991, method C, with a floor). It
+/// sums to one over all words and the sentence's end after every history, and an ARPA file holds
+/// it exactly: the weight of an unseen word is `e`.
+#[derive(Clone, Debug)]
+pub struct Trigram {
+    words: Vec<String>,
+    unigrams: Vec<f64>,
+    bigrams: BTreeMap<u32, History>,
+    trigrams: BTreeMap<(u32, u32), History>,
+}
+
+/// What followed a history.
+#[derive(Clone, Debug, Default)]
+struct History {
+    count: f64,
+    next: BTreeMap<u32, f64>,
+    escape: f64,
+}
+
+impl History {
+    fn add(&mut self, word: u32) {
+        self.count += 1.0;
+        *self.next.entry(word).or_default() += 1.0;
+    }
+
+    fn close(&mut self, escape_min: f64) {
+        let kinds = self.next.len() as f64;
+        self.escape = (kinds / (self.count + kinds)).max(escape_min);
+    }
+
+    /// The interpolation with `shorter`, the probability after the shorter history.
+    fn probability(&self, word: u32, shorter: f64) -> f64 {
+        let seen = self.next.get(&word).map_or(0.0, |n| n / self.count);
+        (1.0 - self.escape) * seen + self.escape * shorter
+    }
+}
+
+impl Trigram {
+    /// Estimates the model from sentences (words separated by blanks) and `background` words. A
+    /// word that is both has both shares; an empty background has none.
+    pub fn train<'b, S: AsRef<str>>(
+        sentences: &[S],
+        background: impl IntoIterator<Item = &'b str>,
+        weights: Weights,
+    ) -> Self {
+        let background: BTreeSet<&str> = background.into_iter().collect();
+        let mut words: BTreeSet<&str> = background.clone();
+        words.extend(sentences.iter().flat_map(|s| s.as_ref().split_whitespace()));
+        // The end comes first and the start last, so that what can be predicted has the lower
+        // numbers without a gap.
+        let marked = std::iter::once(END).chain(words).chain(std::iter::once(START));
+        let words: Vec<String> = marked.map(str::to_owned).collect();
+        let index: BTreeMap<&str, u32> =
+            words.iter().zip(0..).map(|(word, i)| (word.as_str(), i)).collect();
+
+        let mut once = History::default();
+        let mut bigrams: BTreeMap<u32, History> = BTreeMap::new();
+        let mut trigrams: BTreeMap<(u32, u32), History> = BTreeMap::new();
+        for sentence in sentences {
+            let (mut u, mut v) = (None, index[START]);
+            let said = sentence.as_ref().split_whitespace().chain(std::iter::once(END));
+            for w in said.map(|word| index[word]) {
+                once.add(w);
+                bigrams.entry(v).or_default().add(w);
+                if let Some(u) = u {
+                    trigrams.entry((u, v)).or_default().add(w);
+                }
+                (u, v) = (Some(v), w);
+            }
+        }
+        once.close(0.0);
+        bigrams.values_mut().for_each(|h| h.close(weights.escape_min));
+        trigrams.values_mut().for_each(|h| h.close(weights.escape_min));
+        let background: Vec<u32> = background.into_iter().map(|word| index[word]).collect();
+        let unigrams = unigrams(&once, words.len() - 1, &background, weights.background);
+        Self { words, unigrams, bigrams, trigrams }
+    }
+
+    /// The words that the model knows, without the marks of a sentence's start and end.
+    pub fn vocabulary(&self) -> impl Iterator<Item = &str> {
+        self.words[1..self.words.len() - 1].iter().map(String::as_str)
+    }
+
+    /// The model as ARPA text.
+    pub fn to_arpa(&self) -> String {
+        let mut text = String::new();
+        // Writing to a string cannot fail.
+        let _ = self.write_arpa(&mut text);
+        text
+    }
+
+    fn write_arpa(&self, out: &mut String) -> std::fmt::Result {
+        let pairs: usize = self.bigrams.values().map(|h| h.next.len()).sum();
+        let triples: usize = self.trigrams.values().map(|h| h.next.len()).sum();
+        writeln!(out, "\\data\\\nngram 1={}", self.words.len())?;
+        writeln!(out, "ngram 2={pairs}\nngram 3={triples}\n\n\\1-grams:")?;
+        for (word, i) in self.words.iter().zip(0u32..) {
+            // The start of a sentence is never predicted; by custom its weight is 10^-99.
+            let p = self.unigrams.get(i as usize).map_or(-99.0, |p| p.log10());
+            writeln!(out, "{p:.5} {word}{}", backoff(self.bigrams.get(&i)))?;
+        }
+        writeln!(out, "\n\\2-grams:")?;
+        for (&u, history) in &self.bigrams {
+            for &w in history.next.keys() {
+                let p = self.after_one(u, w).log10();
+                let weight = backoff(self.trigrams.get(&(u, w)));
+                writeln!(out, "{p:.5} {} {}{weight}", self.word(u), self.word(w))?;
+            }
+        }
+        writeln!(out, "\n\\3-grams:")?;
+        for (&(u, v), history) in &self.trigrams {
+            for &w in history.next.keys() {
+                let p = self.after_two(u, v, w).log10();
+                writeln!(out, "{p:.5} {} {} {}", self.word(u), self.word(v), self.word(w))?;
+            }
+        }
+        writeln!(out, "\n\\end\\")
+    }
+
+    fn word(&self, index: u32) -> &str {
+        &self.words[index as usize]
+    }
+
+    fn after_one(&self, v: u32, w: u32) -> f64 {
+        let shorter = self.unigrams[w as usize];
+        self.bigrams.get(&v).map_or(shorter, |h| h.probability(w, shorter))
+    }
+
+    fn after_two(&self, u: u32, v: u32, w: u32) -> f64 {
+        let shorter = self.after_one(v, w);
+        self.trigrams.get(&(u, v)).map_or(shorter, |h| h.probability(w, shorter))
+    }
+}
+
+/// The distribution without history, over all words but the sentence's start: Witten-Bell against
+/// the even one, mixed with the even one over the background words.
+fn unigrams(once: &History, len: usize, background: &[u32], share: f64) -> Vec<f64> {
+    let share = if background.is_empty() { 0.0 } else { share };
+    let mut p: Vec<f64> =
+        (0..len as u32).map(|w| (1.0 - share) * once.probability(w, 1.0 / len as f64)).collect();
+    for &w in background {
+        p[w as usize] += share / background.len() as f64;
+    }
+    p
+}
+
+/// The column of an ARPA line that tells the weight of what the history has not seen.
+fn backoff(history: Option<&History>) -> String {
+    history.map(|h| format!(" {:.5}", h.escape.log10())).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn model() -> Trigram {
+        let sentences = ["get the white bowl", "the white one", "yes", "no the big white bowl"];
+        Trigram::train(&sentences, ["weather", "time", "one"], Weights::default())
+    }
+
+    #[test]
+    fn every_history_sums_to_one() {
+        let model = model();
+        let words = 0..model.unigrams.len() as u32;
+        let close = |sum: f64| assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+        close(model.unigrams.iter().sum());
+        for u in 0..model.words.len() as u32 {
+            close(words.clone().map(|w| model.after_one(u, w)).sum());
+            for v in words.clone() {
+                close(words.clone().map(|w| model.after_two(u, v, w)).sum());
+            }
+        }
+    }
+
+    #[test]
+    fn a_seen_word_is_likelier_than_an_unseen_one_and_nothing_is_impossible() {
+        let model = model();
+        let index = |word: &str| model.words.iter().position(|w| w == word).unwrap() as u32;
+        let (the, white) = (index("the"), index("white"));
+        let bowl = model.after_two(the, white, index("bowl"));
+        assert!(bowl > model.after_two(the, white, index("yes")));
+        for w in 0..model.unigrams.len() as u32 {
+            assert!(model.after_two(the, white, w) > 0.0);
+        }
+    }
+
+    /// Reads the ARPA text back by its own rules and compares with the estimate.
+    #[test]
+    fn the_arpa_text_says_what_the_model_says() {
+        let model = model();
+        let text = model.to_arpa();
+        let mut grams: BTreeMap<Vec<&str>, (f64, f64)> = BTreeMap::new();
+        for line in text.lines().filter(|l| !l.starts_with('\\') && !l.starts_with("ngram")) {
+            let mut fields = line.split(' ');
+            let Some(p) = fields.next().and_then(|p| p.parse::<f64>().ok()) else { continue };
+            let mut gram: Vec<&str> = fields.collect();
+            let weight = match gram.last().and_then(|last| last.parse::<f64>().ok()) {
+                Some(weight) => {
+                    gram.pop();
+                    weight
+                }
+                None => 0.0,
+            };
+            grams.insert(gram, (p, weight));
+        }
+        assert!(text.contains(&format!("ngram 1={}\n", model.words.len())));
+        let read = |gram: &[&str]| -> f64 {
+            let mut penalty = 0.0;
+            for from in 0..gram.len() {
+                if let Some((p, _)) = grams.get(&gram[from..]) {
+                    return penalty + p;
+                }
+                penalty += grams.get(&gram[from..gram.len() - 1]).map_or(0.0, |g| g.1);
+            }
+            panic!("no unigram for {gram:?}");
+        };
+        let n = model.unigrams.len() as u32;
+        for (u, v, w) in
+            (0..n).flat_map(|u| (0..n).flat_map(move |v| (0..n).map(move |w| (u, v, w))))
+        {
+            let told = read(&[model.word(u), model.word(v), model.word(w)]);
+            assert!((told - model.after_two(u, v, w).log10()).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn the_same_sentences_make_the_same_text() {
+        assert_eq!(model().to_arpa(), model().to_arpa());
+    }
+}

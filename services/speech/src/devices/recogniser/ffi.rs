@@ -1,0 +1,265 @@
+//! The C interface of pocketsphinx 5prealpha, found at run time.
+//!
+//! Invariant: every pointer of the library stays inside this file, and every `unsafe` block says
+//! why it holds. The declarations follow `pocketsphinx.h`, `cmd_ln.h`, `err.h` and `logmath.h` of
+//! the packages `libpocketsphinx-dev` and `libsphinxbase-dev` 0.8+5prealpha+1; the shared object's
+//! name carries the ABI (`.so.3`), so a library with other signatures is not opened.
+#![allow(unsafe_code)]
+
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::path::Path;
+use std::ptr::{self, NonNull};
+use std::sync::{PoisonError, RwLock};
+
+use libloading::Library as SharedObject;
+
+/// The library's message log is one C `FILE*` for the whole process. Opening a decoder replaces
+/// and closes it (write), decoding prints to it (read).
+static MESSAGE_LOG: RwLock<()> = RwLock::new(());
+
+type Config = *mut c_void;
+type DecoderPtr = *mut c_void;
+type NBest = *mut c_void;
+type Segment = *mut c_void;
+type LogMath = *mut c_void;
+
+/// The functions of the shared object that are used, and the object that keeps them mapped.
+pub(super) struct Library {
+    cmd_ln_init: unsafe extern "C" fn(Config, *const c_void, i32, ...) -> Config,
+    cmd_ln_free_r: unsafe extern "C" fn(Config) -> c_int,
+    err_set_logfile: unsafe extern "C" fn(*const c_char) -> c_int,
+    logmath_log_to_ln: unsafe extern "C" fn(LogMath, c_int) -> f64,
+    ps_args: unsafe extern "C" fn() -> *const c_void,
+    ps_init: unsafe extern "C" fn(Config) -> DecoderPtr,
+    ps_free: unsafe extern "C" fn(DecoderPtr) -> c_int,
+    ps_get_logmath: unsafe extern "C" fn(DecoderPtr) -> LogMath,
+    ps_start_stream: unsafe extern "C" fn(DecoderPtr) -> c_int,
+    ps_start_utt: unsafe extern "C" fn(DecoderPtr) -> c_int,
+    ps_process_raw: unsafe extern "C" fn(DecoderPtr, *const i16, usize, c_int, c_int) -> c_int,
+    ps_end_utt: unsafe extern "C" fn(DecoderPtr) -> c_int,
+    ps_get_hyp: unsafe extern "C" fn(DecoderPtr, *mut i32) -> *const c_char,
+    ps_get_prob: unsafe extern "C" fn(DecoderPtr) -> i32,
+    ps_seg_iter: unsafe extern "C" fn(DecoderPtr) -> Segment,
+    ps_seg_next: unsafe extern "C" fn(Segment) -> Segment,
+    ps_seg_word: unsafe extern "C" fn(Segment) -> *const c_char,
+    ps_seg_prob: unsafe extern "C" fn(Segment, *mut i32, *mut i32, *mut i32) -> i32,
+    ps_nbest: unsafe extern "C" fn(DecoderPtr) -> NBest,
+    ps_nbest_next: unsafe extern "C" fn(NBest) -> NBest,
+    ps_nbest_hyp: unsafe extern "C" fn(NBest, *mut i32) -> *const c_char,
+    ps_nbest_free: unsafe extern "C" fn(NBest),
+    /// Declared last: the functions above point into it.
+    _object: SharedObject,
+}
+
+impl Library {
+    /// Opens the shared object `file` (a path, or a name for the loader's search) and finds the
+    /// functions; libsphinxbase comes along as its dependency.
+    pub(super) fn open(file: &Path) -> Result<Self, libloading::Error> {
+        // SAFETY: opening runs the initialisers of pocketsphinx, sphinxbase and their BLAS, which
+        // are plain C without demands on the caller.
+        let object = unsafe { SharedObject::new(file) }?;
+        macro_rules! library {
+            ($($name:ident),*) => {
+                // SAFETY: the type of each field is the C declaration of the function of that
+                // name in the headers named above. `get` looks through dependencies too. The
+                // copied pointers stay valid because the object is kept beside them.
+                unsafe { Self { $($name: *object.get(stringify!($name))?,)* _object: object } }
+            };
+        }
+        Ok(library!(
+            cmd_ln_init,
+            cmd_ln_free_r,
+            err_set_logfile,
+            logmath_log_to_ln,
+            ps_args,
+            ps_init,
+            ps_free,
+            ps_get_logmath,
+            ps_start_stream,
+            ps_start_utt,
+            ps_process_raw,
+            ps_end_utt,
+            ps_get_hyp,
+            ps_get_prob,
+            ps_seg_iter,
+            ps_seg_next,
+            ps_seg_word,
+            ps_seg_prob,
+            ps_nbest,
+            ps_nbest_next,
+            ps_nbest_hyp,
+            ps_nbest_free
+        ))
+    }
+}
+
+/// Files that a decoder is made of; no path may hold a NUL byte.
+pub(super) struct DecoderFiles<'a> {
+    pub(super) acoustic_model: &'a Path,
+    pub(super) dictionary: &'a Path,
+    pub(super) language_model: &'a Path,
+    /// Where the library's own messages of the opening go.
+    pub(super) log: &'a Path,
+}
+
+/// A hypothesis of the library's: its text and its logarithm (natural, not normalised).
+pub(super) struct Scored {
+    pub(super) text: String,
+    pub(super) ln_score: f64,
+}
+
+/// What the library made of one utterance.
+#[derive(Default)]
+pub(super) struct Decoded {
+    /// The best path's words, fillers and pronunciation marks included, each with the natural
+    /// logarithm of its posterior.
+    pub(super) words: Vec<(String, f64)>,
+    /// Best first; a text may appear more than once (other times or pronunciations).
+    pub(super) n_best: Vec<Scored>,
+}
+
+/// A decoder: one acoustic model, dictionary and language model.
+pub(super) struct Decoder {
+    decoder: NonNull<c_void>,
+    library: Library,
+}
+
+// SAFETY: the decoder is reached only through `&mut self` and holds no thread-local state; the one
+// process-wide variable that it uses, the message log, is guarded by `MESSAGE_LOG`.
+unsafe impl Send for Decoder {}
+
+impl Decoder {
+    /// Opens a decoder. `None`: the library refused; its reasons stand in `files.log`.
+    pub(super) fn open(library: Library, files: &DecoderFiles<'_>) -> Option<Self> {
+        let path = |p: &Path| CString::new(p.as_os_str().as_encoded_bytes()).ok();
+        let (hmm, dict) = (path(files.acoustic_model)?, path(files.dictionary)?);
+        let (lm, log) = (path(files.language_model)?, path(files.log)?);
+        let _log = MESSAGE_LOG.write().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: the strings are NUL-terminated and outlive the calls, which copy them. The
+        // variadic list is pairs of strings ended by a null pointer, as `cmd_ln_init` demands; it
+        // makes a new configuration, or null where it refuses. `ps_init` refuses null, and keeps
+        // a reference of its own to the configuration, so ours is given back on both ways out
+        // (`cmd_ln_free_r` ignores null).
+        let decoder = unsafe {
+            (library.err_set_logfile)(log.as_ptr());
+            let config = (library.cmd_ln_init)(
+                ptr::null_mut(),
+                (library.ps_args)(),
+                1,
+                c"-hmm".as_ptr(),
+                hmm.as_ptr(),
+                c"-dict".as_ptr(),
+                dict.as_ptr(),
+                c"-lm".as_ptr(),
+                lm.as_ptr(),
+                ptr::null::<c_char>(),
+            );
+            let decoder = (library.ps_init)(config);
+            (library.cmd_ln_free_r)(config);
+            (library.err_set_logfile)(c"/dev/null".as_ptr());
+            decoder
+        };
+        NonNull::new(decoder).map(|decoder| Self { decoder, library })
+    }
+
+    /// Decodes one whole utterance of 16 kHz mono samples, with at most `n_best_max` hypotheses
+    /// of the lattice. `None`: the library reported a failure.
+    pub(super) fn decode(&mut self, pcm: &[i16], n_best_max: usize) -> Option<Decoded> {
+        let _log = MESSAGE_LOG.read().unwrap_or_else(PoisonError::into_inner);
+        let (lib, ps) = (&self.library, self.decoder.as_ptr());
+        // SAFETY: `ps` is alive until `drop`. The samples are only read, and only during the call;
+        // `full_utt` (the last argument) says that they are the whole utterance, so that the mean
+        // is taken over all of it. A stream is begun anew each time: the noise tracker then starts
+        // equal for equal audio.
+        let failed = unsafe {
+            (lib.ps_start_stream)(ps) < 0
+                || (lib.ps_start_utt)(ps) < 0
+                || (lib.ps_process_raw)(ps, pcm.as_ptr(), pcm.len(), 0, 1) < 0
+                || (lib.ps_end_utt)(ps) < 0
+        };
+        if failed {
+            return None;
+        }
+        let mut score = 0;
+        // SAFETY: an utterance has been ended, which is all that asking for its hypothesis needs;
+        // null means that nothing was found. `ps_get_prob` computes the posteriors that the
+        // segments below carry.
+        let silent = unsafe {
+            let hypothesis = (lib.ps_get_hyp)(ps, &raw mut score);
+            (lib.ps_get_prob)(ps);
+            hypothesis.is_null()
+        };
+        if silent {
+            return Some(Decoded::default());
+        }
+        Some(Decoded { words: self.words(), n_best: self.n_best(n_best_max) })
+    }
+
+    /// The segments of the best path.
+    fn words(&mut self) -> Vec<(String, f64)> {
+        let (lib, ps) = (&self.library, self.decoder.as_ptr());
+        let mut words = Vec::new();
+        // SAFETY: the iterator is walked to its end, where the library frees it and answers null;
+        // it is used only while not null. The word lives as long as the dictionary and is copied
+        // at once. The three null pointers are outputs that the library leaves out when null. The
+        // logarithm table belongs to the decoder.
+        unsafe {
+            let logmath = (lib.ps_get_logmath)(ps);
+            let mut segment = (lib.ps_seg_iter)(ps);
+            while !segment.is_null() {
+                let none = ptr::null_mut();
+                let posterior = (lib.ps_seg_prob)(segment, none, none, none);
+                let word = text_of((lib.ps_seg_word)(segment));
+                words.push((word, (lib.logmath_log_to_ln)(logmath, posterior)));
+                segment = (lib.ps_seg_next)(segment);
+            }
+        }
+        words
+    }
+
+    /// The best paths through the lattice of words, as texts without fillers.
+    fn n_best(&mut self, at_most: usize) -> Vec<Scored> {
+        let (lib, ps) = (&self.library, self.decoder.as_ptr());
+        let mut found = Vec::new();
+        // SAFETY: the search starts at its first result (`ps_nbest` advances it once), or is null
+        // where there is none; the library frees it when it runs out and answers null, else it is
+        // freed here. The text belongs to the search and is copied at once; it may be null.
+        unsafe {
+            let logmath = (lib.ps_get_logmath)(ps);
+            let mut search = (lib.ps_nbest)(ps);
+            while !search.is_null() && found.len() < at_most {
+                let mut score = 0;
+                let text = (lib.ps_nbest_hyp)(search, &raw mut score);
+                if !text.is_null() {
+                    let ln_score = (lib.logmath_log_to_ln)(logmath, score) * SCORE_UNIT;
+                    found.push(Scored { text: text_of(text), ln_score });
+                }
+                search = (lib.ps_nbest_next)(search);
+            }
+            if !search.is_null() {
+                (lib.ps_nbest_free)(search);
+            }
+        }
+        found
+    }
+}
+
+impl Drop for Decoder {
+    fn drop(&mut self) {
+        let _log = MESSAGE_LOG.read().unwrap_or_else(PoisonError::into_inner);
+        // SAFETY: the only reference that this file holds; nothing uses the decoder afterwards.
+        unsafe {
+            (self.library.ps_free)(self.decoder.as_ptr());
+        }
+    }
+}
+
+/// Path scores are kept divided by 2^10 so that they fit into 32 bits (`SENSCR_SHIFT`).
+const SCORE_UNIT: f64 = 1024.0;
+
+/// # Safety
+/// `text` is a NUL-terminated string that nothing changes during the call.
+unsafe fn text_of(text: *const c_char) -> String {
+    // SAFETY: as the caller promises.
+    unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned()
+}

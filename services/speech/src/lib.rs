@@ -1,0 +1,203 @@
+//! Speech: hears people, numbers what they say, and says what the robot has to say.
+//!
+//! [`SpeechNode`] is the reducer. An utterance is accepted once its record is durable; from then on
+//! it is sent, in order, until the policy's mark says that it is applied. A prompt counts as heard
+//! only once it was said to its end.
+
+pub mod devices;
+mod ears;
+mod mouth;
+pub mod record;
+pub mod shell;
+
+use ears::Ears;
+use mouth::Mouth;
+use node::{Effects, Event, Node, NodeError, Span, Time};
+use protocol::{
+    Activity, AppliedMark, ArmStatus, EarState, Injection, MotionCommand, Presented, Receipt,
+    RobotAct, Utterance,
+};
+use record::Record;
+
+/// How often what is not yet superseded is sent again.
+const RESEND_EVERY: Span = Span::from_ms(250);
+
+/// What arrives.
+#[derive(Clone, Debug)]
+pub enum In {
+    /// From a client.
+    Injection(Injection),
+    /// From the policy: how far the belief has come.
+    Mark(AppliedMark),
+    /// From the policy: what to say.
+    Act(Box<RobotAct>),
+    /// From the arm: what it points at.
+    Arm(ArmStatus),
+    /// From the recogniser.
+    Recognised(Recognised),
+    /// From the recogniser: whether it works.
+    Ear(EarState),
+    /// From the voice.
+    Voice(VoiceEvent),
+}
+
+/// What is published or asked of the devices.
+#[derive(Clone, Debug)]
+pub enum Out {
+    /// To grounding.
+    Utterance(Box<Utterance>),
+    /// To clients.
+    Receipt(Box<Receipt>),
+    /// To the policy.
+    Presented(Presented),
+    /// To the policy.
+    Activity(Activity),
+    /// To the arm: somebody said stop.
+    Motion(MotionCommand),
+    /// To the recogniser: what is in this file? The number comes back with the answer.
+    Recognise(u64, String),
+    /// To the voice: say this, breaking off what is being said.
+    Speak(Line),
+    /// To the voice: be silent.
+    Hush,
+}
+
+/// What the voice is to say.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Comes back with the voice's events.
+    pub number: u64,
+    /// The words.
+    pub text: String,
+}
+
+/// How the voice has come along with a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct VoiceEvent {
+    /// The line's number.
+    pub line: u64,
+    /// What happened.
+    pub what: Spoken,
+}
+
+/// What happened to a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spoken {
+    /// Its sound began.
+    Started,
+    /// Its sound ended as it should.
+    Ended,
+    /// It was broken off.
+    Interrupted,
+}
+
+/// What the recogniser found in a sound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recognised {
+    /// The sound's number.
+    pub sound: u64,
+    /// The utterances in it, or why it could not be listened to.
+    pub segments: Result<Vec<Segment>, String>,
+}
+
+/// One utterance in a sound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Segment {
+    /// When it begins and ends, seconds from the start of the sound.
+    pub span_s: (f64, f64),
+    /// What was heard with its weight, or what was heard but is not for the robot.
+    pub heard: Result<Vec<(String, f64)>, String>,
+}
+
+type Fx = Effects<Out, Record>;
+
+/// Speech as a reducer.
+pub struct SpeechNode {
+    ears: Ears,
+    mouth: Mouth,
+    next_send: Time,
+}
+
+/// How it hears.
+pub struct Config {
+    /// Finds the stop word.
+    pub reader: language::Reader,
+    /// Longest utterance, bytes.
+    pub utterance_bytes_max: usize,
+}
+
+impl Node for SpeechNode {
+    type Config = Config;
+    type In = In;
+    type Out = Out;
+    type Record = Record;
+
+    fn recover(config: Config, records: Vec<Record>) -> Result<Self, NodeError> {
+        let mut ears = Ears::new(config);
+        let mut mouth = Mouth::default();
+        for record in records {
+            match record {
+                Record::Accepted(accepted) => ears.remember(accepted),
+                Record::Presented(said) => mouth.remember(said),
+            }
+        }
+        Ok(Self { ears, mouth, next_send: Time(0) })
+    }
+
+    fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
+        match event {
+            Event::Started => self.send(now, fx),
+            Event::Message(message) => self.take(message, now, fx),
+            Event::Tick => {
+                self.mouth.tick(now, fx);
+                if now >= self.next_send {
+                    self.send(now, fx);
+                }
+            }
+            Event::Shutdown => {
+                fx.publish(Out::Hush);
+                fx.exit();
+            }
+        }
+    }
+
+    fn deadline(&self) -> Option<Time> {
+        Some(self.mouth.deadline().map_or(self.next_send, |at| at.min(self.next_send)))
+    }
+
+    fn pending_since(&self) -> Option<Time> {
+        self.ears.pending_since()
+    }
+
+    fn snapshot(&self) -> Option<Vec<Record>> {
+        let accepted = self.ears.snapshot()?.into_iter().map(Record::Accepted);
+        Some(accepted.chain(self.mouth.snapshot().map(Record::Presented)).collect())
+    }
+}
+
+impl SpeechNode {
+    fn take(&mut self, message: In, now: Time, fx: &mut Fx) {
+        match message {
+            In::Injection(injection) => self.ears.hear(injection, &self.mouth, now, fx),
+            In::Recognised(recognised) => {
+                self.ears.recognised(recognised, &self.mouth, now, fx);
+                self.send(now, fx);
+            }
+            In::Ear(state) => self.ears.set_state(state),
+            In::Mark(mark) => {
+                if self.ears.acknowledge(mark) {
+                    self.send(now, fx);
+                }
+            }
+            In::Act(act) => self.mouth.act(&act, now, fx),
+            In::Arm(status) => self.mouth.aimed(&status, now, fx),
+            In::Voice(event) => self.mouth.spoken(event, now, fx),
+        }
+    }
+
+    fn send(&mut self, now: Time, fx: &mut Fx) {
+        self.ears.send(fx);
+        self.mouth.send(fx);
+        self.next_send = now + RESEND_EVERY;
+    }
+}

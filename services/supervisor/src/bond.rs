@@ -1,0 +1,73 @@
+//! What ties the whole tree of service processes to this supervisor.
+//!
+//! Every service, and whatever it starts, inherits two descriptors. One is the read end of the
+//! *lifeline*, a pipe that only the supervisor could write to: it reads as ended when the
+//! supervisor is gone, however it went. The other is an open file with a shared lock: while any
+//! process of the tree exists, the file cannot be locked exclusively, so a later supervisor knows
+//! for certain when the last one has ended.
+
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd, RawFd};
+use std::path::Path;
+
+use rustix::fs::{FlockOperation, flock};
+use rustix::pipe::{PipeFlags, pipe_with};
+
+/// The supervisor's ends.
+#[derive(Debug)]
+pub(crate) struct Bond {
+    lifeline: OwnedFd,
+    _kept_open: OwnedFd,
+    alive: File,
+}
+
+impl Bond {
+    /// A new lifeline, and a shared lock on `alive`.
+    pub(crate) fn new(alive: File) -> io::Result<Self> {
+        let (lifeline, kept_open) = pipe_with(PipeFlags::CLOEXEC)?;
+        flock(&alive, FlockOperation::NonBlockingLockShared)?;
+        Ok(Self { lifeline, _kept_open: kept_open, alive })
+    }
+
+    /// Descriptors that every service inherits.
+    pub(crate) fn inherited(&self) -> [BorrowedFd<'_>; 2] {
+        [self.lifeline.as_fd(), self.alive.as_fd()]
+    }
+
+    /// Number of the lifeline's descriptor, the same in every service.
+    pub(crate) fn lifeline_number(&self) -> RawFd {
+        self.lifeline.as_raw_fd()
+    }
+}
+
+/// Opens (and makes) a lock file.
+pub(crate) fn open_lock(path: &Path) -> io::Result<File> {
+    OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)
+}
+
+/// Whether the lock could be taken exclusively just now; it is released again.
+pub(crate) fn is_free(lock: &File) -> bool {
+    flock(lock, FlockOperation::NonBlockingLockExclusive).is_ok()
+        && flock(lock, FlockOperation::Unlock).is_ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_lock_is_held_while_any_copy_of_the_descriptor_is_open() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("alive.lock");
+        let later = open_lock(&path).unwrap();
+        assert!(is_free(&later));
+        let bond = Bond::new(open_lock(&path).unwrap()).unwrap();
+        assert!(!is_free(&later));
+        let inherited = rustix::io::dup(bond.inherited()[1]).unwrap();
+        drop(bond);
+        assert!(!is_free(&later), "a child still lives");
+        drop(inherited);
+        assert!(is_free(&later));
+    }
+}

@@ -1,0 +1,45 @@
+//! Where the supervisor's orders come from.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::spec::GroupSpec;
+
+pub use from_settings::from_settings;
+
+mod from_settings;
+
+/// Reads the configuration anew: at the start, and whenever the operator asks for it. On failure,
+/// every problem, one line each.
+pub type Load = Box<dyn FnMut() -> Result<Configuration, Vec<String>>>;
+
+/// Writes what the services are to read into the group's run folder.
+pub type Publish = Box<dyn Fn(&Path) -> io::Result<()>>;
+
+/// A configuration that has been found to be right.
+pub struct Configuration {
+    /// The services and how they are kept up.
+    pub spec: GroupSpec,
+    /// The scene's name.
+    pub scene: String,
+    /// The profile in force.
+    pub profile: Option<String>,
+    /// The folder that it was read from.
+    pub directory: PathBuf,
+    /// Shared memory that must be free for the group to start, MiB.
+    pub shared_memory_free_min_mib: u64,
+    /// Puts it into force for the services.
+    pub publish: Publish,
+}
+
+impl fmt::Debug for Configuration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Configuration")
+            .field("spec", &self.spec)
+            .field("scene", &self.scene)
+            .field("profile", &self.profile)
+            .field("directory", &self.directory)
+            .finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,72 @@
+//! From the settings of the project to what the supervisor needs of them.
+
+use std::env;
+
+use settings::{Section, Service, Settings};
+
+use super::{Configuration, Load};
+use crate::launch::Options;
+use crate::spec::{GroupSpec, ServiceSpec};
+
+/// Reads the configuration folder that `options` name.
+pub fn from_settings(options: Options) -> Load {
+    Box::new(move || {
+        let loaded = Settings::load(&options.config, options.profile.as_deref(), &options.set);
+        match loaded {
+            Ok(settings) => Ok(configuration(settings, &options)),
+            Err(problems) => Err(problems.iter().map(ToString::to_string).collect()),
+        }
+    })
+}
+
+fn configuration(settings: Settings, options: &Options) -> Configuration {
+    let group = &settings.group;
+    Configuration {
+        spec: GroupSpec {
+            services: group.services.iter().map(|one| service(one, &settings)).collect(),
+            restart: group.restart,
+            log: group.log.clone(),
+        },
+        scene: group.scene.clone(),
+        profile: options.profile.clone(),
+        directory: options.config.clone(),
+        shared_memory_free_min_mib: group.shared_memory_free_min_mib.into(),
+        publish: Box::new(move |run| settings.write_snapshot(run)),
+    }
+}
+
+fn service(service: &Service, settings: &Settings) -> ServiceSpec {
+    ServiceSpec {
+        name: service.name.clone(),
+        command: service.command.clone().unwrap_or_else(|| vec![beside(&service.name)]),
+        after: service.after.clone(),
+        critical: service.critical,
+        start_deadline: service.start_deadline,
+        watchdog: service.watchdog,
+        stop_deadline: service.stop_deadline,
+        nice: service.nice,
+        restart: service.restart,
+        fingerprint: fingerprint(&service.name, settings),
+    }
+}
+
+/// A built-in service's program lies beside the supervisor's own.
+fn beside(name: &str) -> String {
+    let program = format!("whichone-{name}");
+    let own = env::current_exe().ok();
+    let path = own.and_then(|own| Some(own.parent()?.join(&program).display().to_string()));
+    path.unwrap_or(program)
+}
+
+/// Everything that a service reads: its own section, and the scene, which all read. One that is not
+/// built in may read all there is.
+fn fingerprint(name: &str, settings: &Settings) -> String {
+    let sections: &[Section] = match name {
+        "speech" => &[Section::Speech],
+        "grounding" | "policy" => &[Section::Dialogue],
+        "arm" => &[Section::Arm],
+        _ => &[Section::Speech, Section::Dialogue, Section::Arm],
+    };
+    let texts = sections.iter().map(|&section| settings.section_text(section));
+    texts.chain([settings.scene_text().to_owned()]).collect()
+}

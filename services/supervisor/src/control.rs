@@ -1,0 +1,199 @@
+//! The control protocol: what an operator asks and what the supervisor answers.
+//!
+//! One connection to the group's control socket carries one request and one reply, each a JSON
+//! object on a line of its own. A request that waits is answered when what it waits for has
+//! happened, or cannot happen any more, or its time is up; never both.
+
+use std::path::PathBuf;
+
+use runtime::exit::Exit;
+use serde::{Deserialize, Serialize};
+
+use crate::status::GroupStatus;
+
+pub use client::{CallError, call};
+
+mod client;
+
+/// Longest request, bytes; a command line of a swap is the longest part of any.
+pub const REQUEST_BYTES_MAX: usize = 64 << 10;
+
+/// What an operator asks for. `wait_ms` of 0 asks for an answer at once.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "verb", rename_all = "kebab-case", deny_unknown_fields)]
+pub enum Request {
+    /// Whether anybody listens. Answered by [`Reply::Done`].
+    Ping,
+    /// Everything an operator needs to know. Answered by [`Reply::Status`].
+    Status,
+    /// Waits until every service that is wanted up is ready.
+    WaitReady {
+        /// How long.
+        wait_ms: u64,
+    },
+    /// Wants a service up; lifts a hold.
+    Start {
+        /// Its name.
+        service: String,
+        /// How long to wait for it to be ready.
+        wait_ms: u64,
+    },
+    /// Wants a service down.
+    Stop {
+        /// Its name.
+        service: String,
+        /// How long to wait for its end.
+        wait_ms: u64,
+    },
+    /// Stops a service, if it runs, and starts it.
+    Restart {
+        /// Its name.
+        service: String,
+        /// Whether a swapped service gets its configured command back.
+        #[serde(default)]
+        original: bool,
+        /// How long to wait for the new incarnation to be ready.
+        wait_ms: u64,
+    },
+    /// Stops a service and keeps it from running until it is released.
+    Hold {
+        /// Its name.
+        service: String,
+        /// How long to wait for its end.
+        wait_ms: u64,
+    },
+    /// Lifts a hold, an operator's or the supervisor's own.
+    Release {
+        /// Its name.
+        service: String,
+        /// How long to wait for it to be ready, if it is wanted up.
+        wait_ms: u64,
+    },
+    /// Replaces a service's program; the old one is put back if the new one does not become ready
+    /// within the service's start deadline. Answered when that is decided.
+    Swap {
+        /// The service's name.
+        service: String,
+        /// Program and arguments.
+        command: Vec<String>,
+        /// The folder in which the command is meant: the caller's own.
+        directory: PathBuf,
+    },
+    /// Reads the configuration anew and restarts the services that it concerns. Answered by
+    /// [`Reply::Reloaded`].
+    Reload {
+        /// How long to wait for them to be ready.
+        wait_ms: u64,
+    },
+    /// Stops the group in order. Answered by [`Reply::Down`] when nothing of it is left.
+    Down,
+}
+
+/// What the supervisor answers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "reply", rename_all = "kebab-case")]
+pub enum Reply {
+    /// It is so, or it has been begun.
+    Done {
+        /// What is so, in a sentence.
+        message: String,
+    },
+    /// See [`Request::Status`].
+    Status(Box<GroupStatus>),
+    /// The new configuration is in force.
+    Reloaded {
+        /// Services that were restarted for it.
+        restarted: Vec<String>,
+    },
+    /// The group is down.
+    Down(DownReport),
+    /// It is not so.
+    Refused(Refusal),
+}
+
+/// How a group ended.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct DownReport {
+    /// Services that did not end when asked and were killed.
+    pub killed: Vec<String>,
+    /// Processes that services had left behind and that were killed.
+    pub strays: Vec<String>,
+    /// Files in shared memory that had to be removed by name.
+    pub leftovers: Vec<String>,
+    /// Time from the request to the end, seconds.
+    pub seconds: f64,
+}
+
+/// Why a request was not fulfilled.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Refusal {
+    /// What kind of trouble it is.
+    pub kind: RefusalKind,
+    /// What is wrong, in a sentence.
+    pub message: String,
+    /// More lines: problems of a configuration, or the tail of a log.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub details: Vec<String>,
+}
+
+/// The kinds of trouble.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RefusalKind {
+    /// The request makes no sense: no such service, no such program.
+    Usage,
+    /// The configuration is wrong.
+    Config,
+    /// What was waited for has not happened, or was taken back.
+    NotReached,
+}
+
+impl Refusal {
+    /// A refusal without further lines.
+    pub fn new(kind: RefusalKind, message: impl Into<String>) -> Self {
+        Self { kind, message: message.into(), details: Vec::new() }
+    }
+
+    /// The exit code that a command line ends with.
+    pub fn exit(&self) -> Exit {
+        match self.kind {
+            RefusalKind::Usage => Exit::Usage,
+            RefusalKind::Config => Exit::Config,
+            RefusalKind::NotReached => Exit::NotReached,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check_line(request: Request, line: &str) {
+        assert_eq!(serde_json::to_string(&request).unwrap(), line);
+        assert_eq!(serde_json::from_str::<Request>(line).unwrap(), request);
+    }
+
+    #[test]
+    fn requests_are_lines_that_a_person_could_type() {
+        check_line(Request::Ping, r#"{"verb":"ping"}"#);
+        check_line(Request::WaitReady { wait_ms: 5000 }, r#"{"verb":"wait-ready","wait_ms":5000}"#);
+        check_line(
+            Request::Swap {
+                service: "grounding".into(),
+                command: vec!["python3".into(), "grounding.py".into()],
+                directory: "/home/me".into(),
+            },
+            r#"{"verb":"swap","service":"grounding","command":["python3","grounding.py"],"directory":"/home/me"}"#,
+        );
+    }
+
+    #[test]
+    fn a_misspelt_request_is_refused_with_the_reason() {
+        let wrong = [r#"{"verb":"strat"}"#, r#"{"verb":"stop"}"#, "{"];
+        for line in wrong {
+            let error = serde_json::from_str::<Request>(line).unwrap_err().to_string();
+            assert!(!error.is_empty(), "{line}");
+        }
+    }
+}

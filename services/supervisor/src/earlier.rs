@@ -1,0 +1,167 @@
+//! Making sure that an earlier supervisor of the group, and everything that it had started, is
+//! gone.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use runtime::group::{ENV_GROUP, ENV_HOME, ENV_INCARNATION, GroupPaths};
+use rustix::fs::{FlockOperation, flock};
+use rustix::io::Errno;
+use rustix::process::{Pid, PidfdFlags, Signal, getpid, pidfd_open, pidfd_send_signal};
+use thiserror::Error;
+
+use crate::bond::{is_free, open_lock};
+use crate::procfs::{self, Process};
+
+/// How long the kernel may take to end what was killed.
+const KILL_PATIENCE: Duration = Duration::from_secs(5);
+
+/// How often it is looked.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+
+/// The group is not this supervisor's to run.
+#[derive(Debug, Error)]
+pub enum EarlierError {
+    /// Another supervisor runs it.
+    #[error("group {group} is running already{}", with_pid(.pid))]
+    Running {
+        /// The group's name.
+        group: String,
+        /// The other supervisor's process, if it has written it down yet.
+        pid: Option<u32>,
+    },
+    /// Processes of an earlier one do not end even when killed.
+    #[error("processes of an earlier run of the group do not end: {}", .0.join(", "))]
+    Undying(Vec<String>),
+    /// A lock file cannot be used.
+    #[error("{}: {error}", .path.display())]
+    Io {
+        /// The lock file.
+        path: PathBuf,
+        /// What the operating system says.
+        error: io::Error,
+    },
+}
+
+fn with_pid(pid: &Option<u32>) -> String {
+    pid.map(|pid| format!(" (supervisor {pid})")).unwrap_or_default()
+}
+
+/// Takes the group for this process, for as long as the file is kept open.
+///
+/// # Errors
+/// Another supervisor has it.
+pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, EarlierError> {
+    let path = paths.supervisor_lock();
+    let failed = |error| EarlierError::Io { path: path.clone(), error };
+    let mut file = open_lock(&path).map_err(failed)?;
+    match flock(&file, FlockOperation::NonBlockingLockExclusive) {
+        Err(Errno::WOULDBLOCK) => {
+            let mut text = String::new();
+            let read = file.read_to_string(&mut text);
+            let pid = read.ok().and_then(|_| text.trim().parse().ok());
+            return Err(EarlierError::Running { group: paths.name().to_string(), pid });
+        }
+        taken => taken.map_err(|error| failed(error.into()))?,
+    }
+    let write = |file: &mut File| -> io::Result<()> {
+        file.set_len(0)?;
+        file.rewind()?;
+        writeln!(file, "{}", std::process::id())
+    };
+    write(&mut file).map_err(failed)?;
+    Ok(file)
+}
+
+/// Waits until every process of an earlier supervisor has ended, and kills those that take longer
+/// than `patience`. Returns the lock that the services of this one are to share.
+///
+/// # Errors
+/// Some process survives even that.
+pub(crate) fn await_end(paths: &GroupPaths, patience: Duration) -> Result<File, EarlierError> {
+    let path = paths.alive_lock();
+    let failed = |error| EarlierError::Io { path: path.clone(), error };
+    let alive = open_lock(&path).map_err(failed)?;
+    if is_free(&alive) {
+        return Ok(alive);
+    }
+    tracing::warn!(left = ?names(&leftovers(paths)), "waiting for services of an earlier run");
+    if wait(&alive, patience) {
+        return Ok(alive);
+    }
+    let left = leftovers(paths);
+    tracing::warn!(left = ?names(&left), "killing services of an earlier run");
+    left.iter().for_each(|process| kill(process.pid, paths));
+    if wait(&alive, KILL_PATIENCE) {
+        return Ok(alive);
+    }
+    Err(EarlierError::Undying(names(&leftovers(paths))))
+}
+
+fn wait(alive: &File, patience: Duration) -> bool {
+    let until = Instant::now() + patience;
+    while Instant::now() < until {
+        if is_free(alive) {
+            return true;
+        }
+        thread::sleep(LOOK_EVERY);
+    }
+    false
+}
+
+/// Processes that belong to a group's services.
+fn leftovers(paths: &GroupPaths) -> Vec<Process> {
+    let lock = paths.alive_lock();
+    let lock = lock.canonicalize().unwrap_or(lock);
+    let all = procfs::processes().into_iter();
+    all.filter(|process| process.pid != getpid() && is_of(process.pid, paths, &lock)).collect()
+}
+
+/// A process belongs to the group if a supervisor gave it the environment that says so, or if it
+/// holds the lock that only services inherit: it may have lost one of them, hardly both.
+fn is_of(pid: Pid, paths: &GroupPaths, lock: &Path) -> bool {
+    let environment = procfs::environment(pid);
+    let is = |key, value: &std::ffi::OsStr| environment.get(key) == Some(value);
+    let told = environment.get(ENV_INCARNATION).is_some()
+        && is(ENV_GROUP, paths.name().as_str().as_ref())
+        && is(ENV_HOME, paths.home().as_os_str());
+    told || procfs::has_open(pid, lock)
+}
+
+/// Kills a process of the group; nobody else can be hit, since it is looked at again when its
+/// descriptor already stands for it.
+fn kill(pid: Pid, paths: &GroupPaths) {
+    let Ok(pidfd) = pidfd_open(pid, PidfdFlags::empty()) else { return };
+    let lock = paths.alive_lock();
+    if is_of(pid, paths, &lock.canonicalize().unwrap_or(lock)) {
+        // It may have ended meanwhile.
+        let _ = pidfd_send_signal(&pidfd, Signal::KILL);
+    }
+}
+
+fn names(processes: &[Process]) -> Vec<String> {
+    processes.iter().map(|process| format!("{} ({})", process.name, process.pid)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use runtime::group::GroupName;
+
+    use super::*;
+
+    #[test]
+    fn a_group_can_be_taken_once() {
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &GroupName::new("lab").unwrap()).unwrap();
+        std::fs::create_dir_all(paths.root()).unwrap();
+        let first = take_group(&paths).unwrap();
+        let told = take_group(&paths).unwrap_err().to_string();
+        let me = std::process::id();
+        assert_eq!(told, format!("group lab is running already (supervisor {me})"));
+        drop(first);
+        take_group(&paths).unwrap();
+    }
+}

@@ -1,0 +1,94 @@
+//! How a service ended.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+/// Exit code of a service that will never work as configured (`EX_CONFIG`).
+pub const EXIT_CONFIG: i32 = 78;
+
+/// Exit code of a service that does not understand its command line (`EX_USAGE`).
+pub const EXIT_USAGE: i32 = 64;
+
+/// How one incarnation ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Exit {
+    /// It exited with this code.
+    Code(i32),
+    /// This signal ended it.
+    Signal(i32),
+    /// It could not be started, and trying again may help (no process slot, say).
+    NotStarted,
+    /// It could not be started, and trying again will not help (no such program, say).
+    NotStartable,
+}
+
+impl Exit {
+    /// Whether starting the same thing again cannot help.
+    pub fn is_permanent(self) -> bool {
+        matches!(self, Self::Code(EXIT_CONFIG | EXIT_USAGE) | Self::NotStartable)
+    }
+
+    /// Whether it ended as a finished program does.
+    pub fn is_clean(self) -> bool {
+        self == Self::Code(0)
+    }
+}
+
+impl fmt::Display for Exit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Code(EXIT_CONFIG) => write!(f, "exit 78 (configuration or schema refused)"),
+            Self::Code(EXIT_USAGE) => write!(f, "exit 64 (command line refused)"),
+            Self::Code(code) => write!(f, "exit {code}"),
+            Self::Signal(signal) => match signal_name(signal) {
+                Some(name) => write!(f, "signal {name}"),
+                None => write!(f, "signal {signal}"),
+            },
+            Self::NotStarted | Self::NotStartable => write!(f, "could not be started"),
+        }
+    }
+}
+
+/// Names of the signals that end services in practice; the same numbers on every Linux this runs on.
+fn signal_name(signal: i32) -> Option<&'static str> {
+    Some(match signal {
+        1 => "HUP",
+        2 => "INT",
+        3 => "QUIT",
+        4 => "ILL",
+        6 => "ABRT",
+        7 => "BUS",
+        8 => "FPE",
+        9 => "KILL",
+        11 => "SEGV",
+        13 => "PIPE",
+        15 => "TERM",
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_cannot_get_better_is_permanent() {
+        for exit in [Exit::Code(64), Exit::Code(78), Exit::NotStartable] {
+            assert!(exit.is_permanent(), "{exit}");
+        }
+        for exit in
+            [Exit::Code(0), Exit::Code(1), Exit::Code(75), Exit::Signal(9), Exit::NotStarted]
+        {
+            assert!(!exit.is_permanent(), "{exit}");
+        }
+    }
+
+    #[test]
+    fn ends_are_told_in_words() {
+        assert_eq!(Exit::Signal(9).to_string(), "signal KILL");
+        assert_eq!(Exit::Signal(40).to_string(), "signal 40");
+        assert_eq!(Exit::Code(3).to_string(), "exit 3");
+    }
+}

@@ -1,0 +1,194 @@
+use std::time::Duration;
+
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+use super::*;
+use crate::exit::Exit;
+use crate::spec::{Log, Restart, RestartLimits, ServiceSpec};
+
+/// The same cases in every run, and no files.
+pub(crate) fn seeded() -> ProptestConfig {
+    ProptestConfig {
+        cases: 512,
+        rng_seed: RngSeed::Fixed(20_260_821),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+/// A service that differs from others by its name and place only.
+pub(crate) fn service(name: &str, after: &[&str]) -> ServiceSpec {
+    ServiceSpec {
+        name: name.into(),
+        command: vec!["true".into()],
+        after: after.iter().map(|&name| name.into()).collect(),
+        critical: false,
+        start_deadline: Duration::from_secs(10),
+        watchdog: Some(Duration::from_secs(3)),
+        stop_deadline: Duration::from_secs(5),
+        nice: 0,
+        restart: Restart::Always,
+        fingerprint: String::new(),
+    }
+}
+
+/// The limits that groups have by default.
+pub(crate) const LIMITS: RestartLimits = RestartLimits {
+    exits_max: 5,
+    window: Duration::from_secs(60),
+    backoff_first: Duration::from_millis(100),
+    backoff_max: Duration::from_secs(5),
+    backoff_reset: Duration::from_secs(30),
+};
+
+fn group(services: &[(&str, &[&str])]) -> Group {
+    Group::new(&GroupSpec {
+        services: services.iter().map(|(name, after)| service(name, after)).collect(),
+        restart: LIMITS,
+        log: Log { level: "info".into(), file_bytes_max: 1 << 20, files_kept: 1 },
+    })
+    .unwrap()
+}
+
+const NOW: Time = Duration::from_secs(1);
+
+fn settle(group: &mut Group) -> Vec<(usize, Effect)> {
+    std::iter::from_fn(|| group.settle(NOW)).collect()
+}
+
+fn up(group: &mut Group) {
+    group.start(NOW);
+    while let Some((service, effect)) = group.settle(NOW) {
+        assert_eq!(effect, Effect::Spawn);
+        group.on(service, Event::Ready, NOW);
+    }
+    assert_eq!(group.state(), GroupState::Ready);
+}
+
+const CHAIN: &[(&str, &[&str])] = &[("c", &["b"]), ("a", &[]), ("b", &["a"])];
+const CRASH: Event = Event::Exited(Exit::Signal(9));
+
+#[test]
+fn services_start_when_those_before_them_are_ready() {
+    let mut group = group(CHAIN);
+    group.start(NOW);
+    assert_eq!(settle(&mut group), [(1, Effect::Spawn)]);
+    assert_eq!(group.waits_for(2), [1]);
+    group.on(1, Event::Ready, NOW);
+    assert_eq!(settle(&mut group), [(2, Effect::Spawn)]);
+    group.on(2, Event::Ready, NOW);
+    assert_eq!(settle(&mut group), [(0, Effect::Spawn)]);
+    assert_eq!(group.state(), GroupState::Starting);
+    group.on(0, Event::Ready, NOW);
+    assert_eq!(settle(&mut group), []);
+    assert_eq!(group.state(), GroupState::Ready);
+}
+
+#[test]
+fn a_restart_leaves_the_services_behind_alone() {
+    let mut group = group(CHAIN);
+    up(&mut group);
+    assert_eq!(group.on(1, CRASH, NOW), Some(Effect::Spawn));
+    assert_eq!(settle(&mut group), []);
+    assert_eq!(group.state(), GroupState::Degraded);
+    group.on(1, Event::Ready, NOW);
+    assert_eq!(group.state(), GroupState::Ready);
+}
+
+#[test]
+fn services_stop_when_those_behind_them_are_at_rest() {
+    let mut group = group(CHAIN);
+    up(&mut group);
+    group.stop(NOW);
+    for service in [0, 2, 1] {
+        assert_eq!(settle(&mut group), [(service, Effect::Terminate)]);
+        assert!(!group.is_stopped());
+        assert_eq!(group.on(service, Event::Exited(Exit::Code(0)), NOW), None);
+    }
+    assert_eq!(settle(&mut group), []);
+    assert!(group.is_stopped());
+}
+
+#[test]
+fn a_service_that_crashes_during_the_stop_is_not_started_again() {
+    let mut group = group(CHAIN);
+    up(&mut group);
+    group.stop(NOW);
+    assert_eq!(group.on(1, CRASH, NOW), None);
+    assert_eq!(settle(&mut group), [(0, Effect::Terminate)]);
+}
+
+#[test]
+fn only_a_critical_service_that_was_given_up_loses_the_group() {
+    let mut group = group(CHAIN);
+    up(&mut group);
+    group.critical[2] = true;
+    group.on(0, Event::Exited(Exit::Code(78)), NOW);
+    assert_eq!(group.lost(), None);
+    group.on(2, Event::Hold, NOW);
+    group.on(2, Event::Exited(Exit::Code(0)), NOW);
+    assert_eq!(group.lost(), None);
+    group.on(2, Event::Start, NOW);
+    assert_eq!(settle(&mut group), [(2, Effect::Spawn)]);
+    group.on(2, Event::Exited(Exit::Code(78)), NOW);
+    assert_eq!(group.lost(), Some((2, HeldBecause::Permanent(Exit::Code(78)))));
+}
+
+proptest! {
+    #![proptest_config(seeded())]
+
+    /// Whatever order readiness and crashes come in, no service starts for the first time before
+    /// those that it comes after are ready, none is stopped before those behind it are at rest, and
+    /// a stopped group is still.
+    #[test]
+    fn order_holds_under_any_interleaving(
+        steps in prop::collection::vec((0usize..4, 0u8..4), 0..60),
+        stop_at in 0usize..60,
+    ) {
+        const DIAMOND: &[(&str, &[&str])] =
+            &[("d", &["b", "c"]), ("b", &["a"]), ("c", &["a"]), ("a", &[])];
+        let mut group = group(DIAMOND);
+        let mut now = NOW;
+        group.start(now);
+        for (step, (service, event)) in steps.into_iter().enumerate() {
+            now += Duration::from_millis(37);
+            if step == stop_at {
+                group.stop(now);
+            }
+            let event = match event {
+                0 | 1 => Event::Ready,
+                2 => CRASH,
+                _ => Event::Exited(Exit::Code(0)),
+            };
+            if group.machine(service).is_live() {
+                group.on(service, event, now);
+            }
+            while let Some((service, effect)) = group.settle(now) {
+                let schedule = group.schedule.clone();
+                if effect == Effect::Spawn && group.machine(service).incarnation() == 1 {
+                    for &other in schedule.before(service) {
+                        prop_assert_eq!(group.machine(other).actual(), Actual::Ready);
+                    }
+                }
+                if group.is_stopping() && effect == Effect::Terminate {
+                    for &other in schedule.behind(service) {
+                        prop_assert!(!group.machine(other).is_live());
+                    }
+                }
+            }
+        }
+        group.stop(now);
+        for _ in 0..group.order().len() {
+            while group.settle(now).is_some() {}
+            for service in 0..group.order().len() {
+                let machine = group.machine(service);
+                if machine.actual() == Actual::Stopping {
+                    group.on(service, Event::Exited(Exit::Signal(15)), now);
+                }
+            }
+        }
+        prop_assert!(group.is_stopped());
+        prop_assert_eq!(group.settle(now + Duration::from_secs(3600)), None);
+    }
+}

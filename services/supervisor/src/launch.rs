@@ -1,0 +1,248 @@
+//! Starting a supervisor from the command line: in the foreground, or detached from the terminal.
+
+use std::env;
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use runtime::exit::Exit;
+use runtime::group::{ENV_HOME, GroupName, GroupPaths};
+use settings::Log;
+use thiserror::Error;
+
+use crate::control::{CallError, Refusal, Reply, Request, call};
+use crate::logs;
+
+/// Name of the supervisor's program.
+pub const PROGRAM: &str = "whichone-supervisor";
+
+/// How often a supervisor that is just starting is asked whether it listens.
+const ASK_EVERY: Duration = Duration::from_millis(5);
+
+/// How long a supervisor that listens may take for an answer.
+const ANSWER_PATIENCE: Duration = Duration::from_secs(2);
+
+/// Rotation of the supervisor's own log, before it has read any configuration.
+const LOG_BYTES_MAX: u64 = 8 << 20;
+
+/// What a supervisor is started with.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// The group to run.
+    pub group: GroupName,
+    /// Folder of the configuration.
+    pub config: PathBuf,
+    /// Name of a profile in it.
+    pub profile: Option<String>,
+    /// Values that count more than those of the files: dotted key and TOML value.
+    pub set: Vec<(String, String)>,
+    /// Whether to put the journals aside and begin a new epoch.
+    pub fresh: bool,
+}
+
+/// A supervisor did not come up.
+#[derive(Debug, Error)]
+pub enum LaunchError {
+    /// It could not be started, or its log could not be made.
+    #[error("{}: {error}", .path.display())]
+    Io {
+        /// The program or file.
+        path: PathBuf,
+        /// What the operating system says.
+        error: io::Error,
+    },
+    /// It ended before it listened.
+    #[error("the supervisor ended with {status}{}", indented(.log))]
+    Ended {
+        /// How it ended.
+        status: ExitStatus,
+        /// What it had to say.
+        log: Vec<String>,
+    },
+    /// It does not listen in time.
+    #[error("the supervisor is not up after {} s; see {}", .after.as_secs_f64(), .log.display())]
+    Late {
+        /// How long it was waited for.
+        after: Duration,
+        /// Its log.
+        log: PathBuf,
+    },
+    /// It cannot be asked.
+    #[error(transparent)]
+    Call(#[from] CallError),
+    /// The group did not become ready.
+    #[error("{}{}", .0.message, indented(&.0.details))]
+    Refused(Refusal),
+}
+
+impl LaunchError {
+    /// The exit code that a command line ends with.
+    pub fn exit(&self) -> Exit {
+        match self {
+            Self::Ended { status, .. } => match status.code() {
+                Some(64) => Exit::Usage,
+                Some(70) => Exit::Invariant,
+                Some(74) => Exit::Storage,
+                Some(78) => Exit::Config,
+                _ => Exit::NotReached,
+            },
+            Self::Refused(refusal) => refusal.exit(),
+            Self::Io { .. } => Exit::Storage,
+            Self::Late { .. } | Self::Call(_) => Exit::NotReached,
+        }
+    }
+}
+
+/// A supervisor that has been started and not yet been heard of.
+#[derive(Debug)]
+pub struct Launched {
+    process: Child,
+    paths: GroupPaths,
+    log_from: u64,
+}
+
+impl Options {
+    /// The command line that a supervisor is started with.
+    pub fn arguments(&self) -> Vec<OsString> {
+        let mut arguments: Vec<OsString> = vec![
+            "--group".into(),
+            self.group.as_str().into(),
+            "--config".into(),
+            self.config.clone().into(),
+        ];
+        if let Some(profile) = &self.profile {
+            arguments.extend(["--profile".into(), profile.into()]);
+        }
+        for (key, value) in &self.set {
+            arguments.extend(["--set".into(), format!("{key}={value}").into()]);
+        }
+        if self.fresh {
+            arguments.push("--fresh".into());
+        }
+        arguments
+    }
+}
+
+/// The supervisor's program: beside the running one, else searched for in `PATH`.
+pub fn program() -> PathBuf {
+    let beside = env::current_exe().ok().and_then(|own| Some(own.parent()?.join(PROGRAM)));
+    beside.filter(|path| path.is_file()).unwrap_or_else(|| PROGRAM.into())
+}
+
+/// Becomes the supervisor, whose program is at `program` (see [`program`]). Returns only if that
+/// fails.
+pub fn foreground(program: &Path, options: &Options, paths: &GroupPaths) -> LaunchError {
+    let error = command(program, options, paths).exec();
+    LaunchError::Io { path: program.to_owned(), error }
+}
+
+/// Starts a supervisor in a session of its own, that logs to `log/supervisor.log`.
+///
+/// # Errors
+/// It cannot be started.
+pub fn detached(
+    program: &Path,
+    options: &Options,
+    paths: &GroupPaths,
+) -> Result<Launched, LaunchError> {
+    let path = paths.log_file("supervisor");
+    let (log, log_from) = open_log(paths).map_err(|error| LaunchError::Io { path, error })?;
+    let process = command(program, options, paths)
+        .arg("--detached")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(log)
+        .spawn()
+        .map_err(|error| LaunchError::Io { path: program.to_owned(), error })?;
+    Ok(Launched { process, paths: paths.clone(), log_from })
+}
+
+fn command(program: &Path, options: &Options, paths: &GroupPaths) -> Command {
+    let mut command = Command::new(program);
+    command.args(options.arguments()).env(ENV_HOME, paths.home());
+    command
+}
+
+fn open_log(paths: &GroupPaths) -> io::Result<(File, u64)> {
+    fs::create_dir_all(paths.log())?;
+    let path = paths.log_file("supervisor");
+    let limits = Log { level: String::new(), file_bytes_max: LOG_BYTES_MAX, files_kept: 3 };
+    let log = logs::open(&path, &limits)?;
+    let from = logs::size(&path);
+    Ok((log, from))
+}
+
+impl Launched {
+    /// Waits until the supervisor listens. It first waits itself for the services of an earlier one
+    /// that was killed, for as long as the longest stop deadline and 5 s more.
+    ///
+    /// # Errors
+    /// It ended (a wrong configuration, a group that runs already), or does not listen in time.
+    pub fn wait_listening(&mut self, timeout: Duration) -> Result<(), LaunchError> {
+        let until = Instant::now() + timeout;
+        let socket = self.paths.control_socket();
+        loop {
+            let answer = call(&socket, &Request::Status, ANSWER_PATIENCE);
+            // The group may be one that somebody else runs already.
+            if let Ok(Reply::Status(status)) = answer
+                && status.supervisor_pid == self.process.id()
+            {
+                return Ok(());
+            }
+            if let Ok(Some(status)) = self.process.try_wait() {
+                let log = logs::tail(&self.paths.log_file("supervisor"), self.log_from);
+                return Err(LaunchError::Ended { status, log });
+            }
+            if Instant::now() > until {
+                let log = self.paths.log_file("supervisor");
+                return Err(LaunchError::Late { after: timeout, log });
+            }
+            thread::sleep(ASK_EVERY);
+        }
+    }
+}
+
+/// Waits until every service of a running group is ready; what the supervisor says then.
+///
+/// # Errors
+/// No group runs, or some service is given up or not ready in time.
+pub fn wait_ready(paths: &GroupPaths, timeout: Duration) -> Result<String, LaunchError> {
+    let wait_ms = u64::try_from(timeout.as_millis()).unwrap_or(u64::MAX);
+    let request = Request::WaitReady { wait_ms };
+    match call(&paths.control_socket(), &request, timeout + ANSWER_PATIENCE)? {
+        Reply::Done { message } => Ok(message),
+        Reply::Refused(refusal) => Err(LaunchError::Refused(refusal)),
+        other => Err(LaunchError::Call(CallError::Unintelligible {
+            group: paths.name().to_string(),
+            why: format!("{other:?}"),
+        })),
+    }
+}
+
+fn indented(lines: &[String]) -> String {
+    lines.iter().map(|line| format!("\n  {line}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_become_a_command_line() {
+        let options = Options {
+            group: GroupName::new("lab").unwrap(),
+            config: "config".into(),
+            profile: Some("ci".into()),
+            set: vec![("group.scene".into(), "tools".into())],
+            fresh: true,
+        };
+        let words = ["--group", "lab", "--config", "config", "--profile", "ci", "--set"];
+        let words = words.into_iter().chain(["group.scene=tools", "--fresh"]);
+        assert_eq!(options.arguments(), words.map(OsString::from).collect::<Vec<_>>());
+    }
+}

@@ -1,0 +1,44 @@
+//! The supervisor of a process group: starts its services in order, watches, restarts and stops
+//! them, and answers the operator.
+//!
+//! One thread, one poll, and nothing in it ever waits for a service: datagrams come in, signals go
+//! out. Of a service there are never two incarnations at once, it is never started more often than
+//! its limits allow, and when the group is down no process of it is left. What to do is decided by
+//! pure state ([`machine`], [`group`], [`swap`]); the rest carries it out.
+//!
+//! The command line uses [`launch`] to start a supervisor and [`control`] to talk to it.
+
+use std::time::Duration;
+
+pub mod configuration;
+pub mod control;
+pub mod exit;
+pub mod group;
+pub mod launch;
+pub mod machine;
+pub mod schedule;
+pub mod spec;
+pub mod status;
+pub mod swap;
+
+mod before_exec;
+mod bond;
+mod child;
+mod earlier;
+mod epoch;
+mod logs;
+mod notify;
+mod procfs;
+mod server;
+mod service;
+mod signals;
+mod spawn;
+mod supervisor;
+mod systemd;
+mod tally;
+
+pub use earlier::EarlierError;
+pub use supervisor::{StartError, Supervisor};
+
+/// Time since the supervisor's start, on the monotonic clock.
+pub type Time = Duration;

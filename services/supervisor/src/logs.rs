@@ -1,0 +1,171 @@
+//! The services' logs: files that the services themselves append to, so that nothing is lost when
+//! either side dies and nobody waits for a reader. The supervisor only bounds them.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use crate::spec::Log;
+
+/// Lines and bytes of a log's tail as told to an operator.
+const TAIL_LINES_MAX: usize = 12;
+const TAIL_BYTES_MAX: u64 = 4096;
+
+/// Opens a log to append to, after putting a large one aside.
+///
+/// # Errors
+/// The file cannot be opened.
+pub(crate) fn open(path: &Path, limits: &Log) -> io::Result<File> {
+    if size(path) > limits.file_bytes_max {
+        shift(path, limits.files_kept)?;
+        if limits.files_kept > 0 {
+            fs::rename(path, numbered(path, 1))?;
+        } else {
+            fs::remove_file(path)?;
+        }
+    }
+    OpenOptions::new().append(true).create(true).open(path)
+}
+
+/// Puts the newest part of an overgrown log aside and empties it, under the feet of the service
+/// that appends to it. Lines written during the copy are lost: a log that grows this fast has said
+/// what it had to say.
+///
+/// # Errors
+/// The copy cannot be made; the log is emptied all the same.
+pub(crate) fn bound(path: &Path, limits: &Log) -> io::Result<bool> {
+    let bytes = size(path);
+    if bytes <= limits.file_bytes_max {
+        return Ok(false);
+    }
+    let kept = if limits.files_kept > 0 {
+        shift(path, limits.files_kept).and_then(|()| copy_end(path, bytes, limits.file_bytes_max))
+    } else {
+        Ok(())
+    };
+    OpenOptions::new().write(true).open(path)?.set_len(0)?;
+    kept.map(|()| true)
+}
+
+/// The last lines of a log from byte `from` on: what the last incarnation has said.
+pub(crate) fn tail(path: &Path, from: u64) -> Vec<String> {
+    let read = || -> io::Result<String> {
+        let mut file = File::open(path)?;
+        let length = file.metadata()?.len();
+        // A log that has been put aside meanwhile is shorter than it was.
+        let from = if from <= length { from } else { 0 };
+        file.seek(SeekFrom::Start(from.max(length.saturating_sub(TAIL_BYTES_MAX))))?;
+        let mut bytes = Vec::new();
+        file.take(TAIL_BYTES_MAX).read_to_end(&mut bytes)?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    };
+    let text = read().unwrap_or_default();
+    let lines: Vec<&str> = text.lines().collect();
+    lines[lines.len().saturating_sub(TAIL_LINES_MAX)..].iter().map(|line| plain(line)).collect()
+}
+
+/// Size of a log, bytes; 0 where there is none.
+pub(crate) fn size(path: &Path) -> u64 {
+    path.metadata().map_or(0, |meta| meta.len())
+}
+
+/// A line without what would act upon an operator's terminal.
+fn plain(line: &str) -> String {
+    line.chars().filter(|&c| !c.is_control() || c == '\t').collect()
+}
+
+fn copy_end(path: &Path, bytes: u64, bytes_max: u64) -> io::Result<()> {
+    let mut log = File::open(path)?;
+    log.seek(SeekFrom::Start(bytes.saturating_sub(bytes_max)))?;
+    io::copy(&mut log.take(bytes_max), &mut File::create(numbered(path, 1))?)?;
+    Ok(())
+}
+
+/// Makes room for a new `.1`: every older one moves one up, the oldest goes.
+fn shift(path: &Path, files_kept: u32) -> io::Result<()> {
+    for number in (1..files_kept).rev() {
+        match fs::rename(numbered(path, number), numbered(path, number + 1)) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn numbered(path: &Path, number: u32) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(format!(".{number}"));
+    name.into()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    fn limits(files_kept: u32) -> Log {
+        Log { level: "info".into(), file_bytes_max: 100, files_kept }
+    }
+
+    fn read(path: &Path) -> String {
+        fs::read_to_string(path).unwrap_or_default()
+    }
+
+    #[test]
+    fn a_large_log_is_put_aside_at_the_next_start() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("arm.log");
+        for round in 0..5 {
+            let mut log = open(&path, &limits(2)).unwrap();
+            write!(log, "{round}{}", "x".repeat(100)).unwrap();
+        }
+        assert!(read(&path).starts_with('4'));
+        assert!(read(&numbered(&path, 1)).starts_with('3'));
+        assert!(read(&numbered(&path, 2)).starts_with('2'));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+    }
+
+    #[test]
+    fn a_small_log_is_continued() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("arm.log");
+        for word in ["one", "two"] {
+            write!(open(&path, &limits(2)).unwrap(), "{word} ").unwrap();
+        }
+        assert_eq!(read(&path), "one two ");
+        assert!(!bound(&path, &limits(2)).unwrap());
+    }
+
+    #[test]
+    fn a_log_that_grows_while_it_is_written_is_bounded() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("arm.log");
+        let mut log = open(&path, &limits(2)).unwrap();
+        write!(log, "old{}new", "x".repeat(200)).unwrap();
+        assert!(bound(&path, &limits(2)).unwrap());
+        write!(log, "next").unwrap();
+        assert_eq!(read(&path), "next", "the writer goes on at the beginning");
+        let kept = read(&numbered(&path, 1));
+        assert_eq!(kept.len(), 100);
+        assert!(kept.ends_with("new"));
+        write!(log, "{}", "x".repeat(200)).unwrap();
+        assert!(bound(&path, &limits(0)).unwrap());
+        assert_eq!(size(&path), 0);
+    }
+
+    #[test]
+    fn a_tail_holds_the_last_lines_of_the_last_incarnation() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("arm.log");
+        fs::write(&path, "before\nafter\n\x1b[1mlast\n").unwrap();
+        assert_eq!(tail(&path, 7), ["after", "[1mlast"]);
+        let many: String = (0..1000).map(|line| format!("line {line}\n")).collect();
+        fs::write(&path, many).unwrap();
+        let told = tail(&path, 0);
+        assert_eq!(told.len(), TAIL_LINES_MAX);
+        assert_eq!(told.last().unwrap(), "line 999");
+        assert_eq!(tail(&path, 1 << 40).len(), TAIL_LINES_MAX);
+        assert_eq!(tail(&folder.path().join("none"), 0), [""; 0]);
+    }
+}

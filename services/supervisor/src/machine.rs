@@ -1,0 +1,322 @@
+//! The state machine of one service: what is wanted of it, what it actually does, and the one thing
+//! to do next.
+//!
+//! Pure: an event and the time go in, at most one [`Effect`] comes out. [`Effect::Spawn`] is only
+//! ever given when no incarnation lives, every state in which an incarnation owes something has a
+//! deadline, and the only way out of a live state is [`Event::Exited`].
+
+use std::time::Duration;
+
+use crate::Time;
+use crate::exit::Exit;
+use crate::spec::Restart;
+use crate::tally::{Tally, Verdict};
+
+pub use vocabulary::{Actual, Effect, Event, Failure, HeldBecause, Limits, Wanted};
+
+use state::{State, Step, Why};
+
+mod state;
+mod vocabulary;
+
+#[cfg(test)]
+mod properties;
+#[cfg(test)]
+mod tests;
+
+/// Time between an abort signal, or the stop of a service that failed, and the kill: enough to
+/// write a backtrace, too short to be waited for.
+pub const KILL_GRACE: Duration = Duration::from_millis(500);
+
+/// A killed process that does not end sits in the kernel; it is killed again in this interval.
+const KILL_AGAIN: Duration = Duration::from_secs(1);
+
+/// A service may ask for more time (`EXTEND_TIMEOUT_USEC`), but not for more than this many times
+/// its deadline, so that a stuck one cannot keep a stop waiting for ever.
+const EXTENSIONS_MAX: u32 = 4;
+
+/// One service's state.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    /// The limits that it keeps; a change counts from the next event on.
+    pub limits: Limits,
+    wanted: Wanted,
+    state: State,
+    incarnation: u32,
+    deadline: Option<Time>,
+    tally: Tally,
+    failure: Option<Failure>,
+}
+
+impl Machine {
+    /// A service that has never run and is not wanted yet.
+    pub fn new(limits: Limits) -> Self {
+        Self {
+            limits,
+            wanted: Wanted::Down,
+            state: State::Down,
+            incarnation: 0,
+            deadline: None,
+            tally: Tally::default(),
+            failure: None,
+        }
+    }
+
+    /// Takes one event at time `now` and says what to do about it.
+    ///
+    /// The effect has to be carried out before the next event is given.
+    pub fn on(&mut self, event: Event, now: Time) -> Option<Effect> {
+        match event {
+            Event::Start => self.start(),
+            Event::Admit => self.admit(now),
+            Event::Stop => self.stop(now),
+            Event::Retire => self.retire(),
+            Event::Restart => self.restart(now),
+            Event::Hold => self.hold(now),
+            Event::Release => self.release(),
+            Event::Ready => self.ready(now),
+            Event::Beat => self.beat(now),
+            Event::Extend(by) => self.extend(by, now),
+            Event::Exited(exit) => self.exited(exit, now),
+            Event::Clock => self.clock(now),
+        }
+    }
+
+    /// What is wanted of it.
+    pub fn wanted(&self) -> Wanted {
+        self.wanted
+    }
+
+    /// What it does.
+    pub fn actual(&self) -> Actual {
+        self.state.actual()
+    }
+
+    /// Whether a process of it exists.
+    pub fn is_live(&self) -> bool {
+        matches!(self.actual(), Actual::Starting | Actual::Ready | Actual::Stopping)
+    }
+
+    /// Why it is held, if it is.
+    pub fn held_because(&self) -> Option<HeldBecause> {
+        match self.state {
+            State::Held(because) => Some(because),
+            _ => None,
+        }
+    }
+
+    /// What the current or last incarnation was stopped for.
+    pub fn failure(&self) -> Option<Failure> {
+        self.failure
+    }
+
+    /// Number of the current or last incarnation; 0 before the first.
+    pub fn incarnation(&self) -> u32 {
+        self.incarnation
+    }
+
+    /// When [`Event::Clock`] is due.
+    pub fn deadline(&self) -> Option<Time> {
+        self.deadline
+    }
+
+    /// Moves the deadline of a live incarnation: the supervisor itself stood still for `by`, and
+    /// no service may be judged by time in which nobody could listen.
+    pub fn postpone(&mut self, by: Duration) {
+        if self.is_live() {
+            self.deadline = self.deadline.map(|deadline| deadline + by);
+        }
+    }
+
+    fn start(&mut self) -> Option<Effect> {
+        self.wanted = Wanted::Up;
+        match self.state {
+            State::Held(_) | State::Backoff => self.rest(),
+            State::Stopping { ref mut why, .. } if *why == Why::Hold => *why = Why::Asked,
+            _ => {}
+        }
+        None
+    }
+
+    fn admit(&mut self, now: Time) -> Option<Effect> {
+        (self.wanted == Wanted::Up && self.state == State::Down).then(|| self.spawn(now))
+    }
+
+    fn stop(&mut self, now: Time) -> Option<Effect> {
+        self.wanted = Wanted::Down;
+        self.end(Why::Asked, now)
+    }
+
+    fn retire(&mut self) -> Option<Effect> {
+        self.wanted = Wanted::Down;
+        if !self.is_live() {
+            self.rest();
+        }
+        None
+    }
+
+    fn restart(&mut self, now: Time) -> Option<Effect> {
+        self.wanted = Wanted::Up;
+        self.tally.forget();
+        if self.is_live() {
+            return self.end(Why::Asked, now);
+        }
+        Some(self.spawn(now))
+    }
+
+    fn hold(&mut self, now: Time) -> Option<Effect> {
+        if self.is_live() {
+            return self.end(Why::Hold, now);
+        }
+        self.keep_held(HeldBecause::Operator);
+        None
+    }
+
+    fn release(&mut self) -> Option<Effect> {
+        match self.state {
+            State::Held(_) => self.rest(),
+            State::Stopping { ref mut why, .. } if *why == Why::Hold => *why = Why::Asked,
+            _ => {}
+        }
+        None
+    }
+
+    fn ready(&mut self, now: Time) -> Option<Effect> {
+        if let State::Starting { .. } = self.state {
+            self.state = State::Ready { since: now };
+            self.deadline = self.limits.watchdog.map(|period| now + period);
+        }
+        None
+    }
+
+    fn beat(&mut self, now: Time) -> Option<Effect> {
+        if let (State::Ready { .. }, Some(period)) = (self.state, self.limits.watchdog) {
+            // A beat never takes back time that was granted.
+            self.deadline = self.deadline.max(Some(now + period));
+        }
+        None
+    }
+
+    fn extend(&mut self, by: Duration, now: Time) -> Option<Effect> {
+        let latest = match self.state {
+            State::Starting { since } => since + self.limits.start * EXTENSIONS_MAX,
+            State::Stopping {
+                since, step: Step::Terminating, why: Why::Asked | Why::Hold, ..
+            } => since + self.limits.stop * EXTENSIONS_MAX,
+            State::Ready { .. } => now + self.limits.watchdog? * EXTENSIONS_MAX,
+            _ => return None,
+        };
+        self.deadline = self.deadline.max(Some((now + by).min(latest)));
+        None
+    }
+
+    fn exited(&mut self, exit: Exit, now: Time) -> Option<Effect> {
+        let (why, ready_for) = match self.state {
+            State::Starting { .. } => (None, None),
+            State::Ready { since } => (None, Some(now.saturating_sub(since))),
+            State::Stopping { why, ready_for, .. } => (Some(why), ready_for),
+            State::Down | State::Backoff | State::Held(_) => return None,
+        };
+        (self.state, self.deadline) = (State::Down, None);
+        match why {
+            Some(Why::Hold) => self.keep_held(HeldBecause::Operator),
+            _ if self.wanted == Wanted::Down => self.rest(),
+            Some(Why::Asked) => return Some(self.spawn(now)),
+            None if exit.is_permanent() => self.keep_held(HeldBecause::Permanent(exit)),
+            Some(Why::Failed) => return self.again(false, ready_for, now),
+            None => return self.again(exit.is_clean(), ready_for, now),
+        }
+        None
+    }
+
+    /// After an exit that nobody asked for.
+    fn again(&mut self, clean: bool, ready_for: Option<Duration>, now: Time) -> Option<Effect> {
+        match self.limits.restart {
+            Restart::Never | Restart::OnFailure if clean => {
+                self.wanted = Wanted::Down;
+                self.rest();
+                return None;
+            }
+            Restart::Never => {
+                self.keep_held(HeldBecause::Policy);
+                return None;
+            }
+            Restart::Always | Restart::OnFailure => {}
+        }
+        match self.tally.count(&self.limits.tally, ready_for, now) {
+            Verdict::Again => return Some(self.spawn(now)),
+            Verdict::After(pause) => {
+                self.state = State::Backoff;
+                self.deadline = Some(now + pause);
+            }
+            Verdict::GiveUp { exits } => self.keep_held(HeldBecause::TooOften(exits)),
+        }
+        None
+    }
+
+    fn clock(&mut self, now: Time) -> Option<Effect> {
+        if self.deadline.is_none_or(|deadline| now < deadline) {
+            return None;
+        }
+        match self.state {
+            State::Starting { .. } => self.fail(Failure::NotReady, now),
+            State::Ready { .. } => self.fail(Failure::NoBeat, now),
+            State::Stopping { ref mut step, .. } => {
+                *step = Step::Killing;
+                self.deadline = Some(now + KILL_AGAIN);
+                Some(Effect::Kill)
+            }
+            State::Backoff => Some(self.spawn(now)),
+            State::Down | State::Held(_) => None,
+        }
+    }
+
+    /// Stops a live incarnation for what it failed to do.
+    fn fail(&mut self, failure: Failure, now: Time) -> Option<Effect> {
+        self.failure = Some(failure);
+        let (step, effect) = match failure {
+            Failure::NotReady => (Step::Terminating, Effect::Terminate),
+            Failure::NoBeat => (Step::Aborting, Effect::Abort),
+        };
+        let ready_for = self.state.ready_for(now);
+        self.state = State::Stopping { since: now, step, why: Why::Failed, ready_for };
+        self.deadline = Some(now + KILL_GRACE);
+        Some(effect)
+    }
+
+    /// Ends a live incarnation because somebody asked for it; one that is ending already goes on.
+    fn end(&mut self, reason: Why, now: Time) -> Option<Effect> {
+        match self.state {
+            State::Starting { .. } | State::Ready { .. } => {
+                let (step, ready_for) = (Step::Terminating, self.state.ready_for(now));
+                self.state = State::Stopping { since: now, step, why: reason, ready_for };
+                self.deadline = Some(now + self.limits.stop);
+                return Some(Effect::Terminate);
+            }
+            State::Stopping { ref mut why, .. } => *why = reason,
+            State::Down | State::Backoff | State::Held(_) => self.rest(),
+        }
+        None
+    }
+
+    fn spawn(&mut self, now: Time) -> Effect {
+        assert!(!self.is_live(), "an incarnation lives: {:?}", self.state);
+        self.incarnation += 1;
+        self.failure = None;
+        self.state = State::Starting { since: now };
+        self.deadline = Some(now + self.limits.start);
+        Effect::Spawn
+    }
+
+    /// Down, with nothing remembered against it.
+    fn rest(&mut self) {
+        self.tally.forget();
+        self.state = State::Down;
+        self.deadline = None;
+    }
+
+    fn keep_held(&mut self, because: HeldBecause) {
+        self.state = State::Held(because);
+        self.deadline = None;
+    }
+}

@@ -1,0 +1,253 @@
+use std::time::Duration;
+
+use super::*;
+use crate::group::tests::{LIMITS, service};
+
+/// One machine with a clock, driven by short names.
+struct Bench {
+    machine: Machine,
+    now: Time,
+}
+
+const CRASH: Event = Event::Exited(Exit::Signal(9));
+const STOPPED: Event = Event::Exited(Exit::Code(0));
+const REFUSED: Event = Event::Exited(Exit::Code(78));
+
+impl Bench {
+    fn new() -> Self {
+        let limits = Limits::of(&service("arm", &[]), LIMITS);
+        Self { machine: Machine::new(limits), now: Duration::from_secs(100) }
+    }
+
+    fn starting() -> Self {
+        let mut bench = Self::new();
+        assert_eq!(bench.on(Event::Start), None);
+        assert_eq!(bench.on(Event::Admit), Some(Effect::Spawn));
+        bench
+    }
+
+    fn ready() -> Self {
+        let mut bench = Self::starting();
+        assert_eq!(bench.on(Event::Ready), None);
+        bench
+    }
+
+    fn on(&mut self, event: Event) -> Option<Effect> {
+        self.machine.on(event, self.now)
+    }
+
+    /// Lets time pass and asks what the clock says.
+    fn after_ms(&mut self, ms: u64) -> Option<Effect> {
+        self.now += Duration::from_millis(ms);
+        self.on(Event::Clock)
+    }
+
+    #[track_caller]
+    fn is(&self, wanted: Wanted, actual: Actual) {
+        assert_eq!((self.machine.wanted(), self.machine.actual()), (wanted, actual));
+    }
+}
+
+#[test]
+fn it_starts_becomes_ready_and_stops() {
+    let mut bench = Bench::ready();
+    bench.is(Wanted::Up, Actual::Ready);
+    assert_eq!(bench.on(Event::Stop), Some(Effect::Terminate));
+    bench.is(Wanted::Down, Actual::Stopping);
+    assert_eq!(bench.on(STOPPED), None);
+    bench.is(Wanted::Down, Actual::Down);
+    assert_eq!(bench.machine.deadline(), None);
+    assert_eq!(bench.machine.incarnation(), 1);
+}
+
+#[test]
+fn it_waits_to_be_admitted() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.on(Event::Admit), None, "not wanted yet");
+    assert_eq!(bench.on(Event::Start), None);
+    bench.is(Wanted::Up, Actual::Down);
+    assert_eq!(bench.on(Event::Admit), Some(Effect::Spawn));
+    assert_eq!(bench.on(Event::Admit), None, "once");
+}
+
+#[test]
+fn a_stop_that_is_ignored_ends_in_kills() {
+    let mut bench = Bench::ready();
+    bench.on(Event::Stop);
+    assert_eq!(bench.after_ms(4_999), None);
+    assert_eq!(bench.after_ms(1), Some(Effect::Kill));
+    assert_eq!(bench.after_ms(1_000), Some(Effect::Kill));
+    bench.on(CRASH);
+    bench.is(Wanted::Down, Actual::Down);
+}
+
+#[test]
+fn a_start_that_is_never_ready_is_stopped_and_waits() {
+    let mut bench = Bench::starting();
+    assert_eq!(bench.after_ms(10_000), Some(Effect::Terminate));
+    assert_eq!(bench.machine.failure(), Some(Failure::NotReady));
+    assert_eq!(bench.after_ms(500), Some(Effect::Kill));
+    assert_eq!(bench.on(CRASH), None);
+    bench.is(Wanted::Up, Actual::Backoff);
+    assert_eq!(bench.after_ms(99), None);
+    assert_eq!(bench.after_ms(1), Some(Effect::Spawn));
+    assert_eq!(bench.machine.incarnation(), 2);
+}
+
+#[test]
+fn silence_is_answered_with_abort_then_kill() {
+    let mut bench = Bench::ready();
+    assert_eq!(bench.after_ms(2_900), None);
+    bench.on(Event::Beat);
+    assert_eq!(bench.after_ms(2_999), None);
+    assert_eq!(bench.after_ms(1), Some(Effect::Abort));
+    assert_eq!(bench.machine.failure(), Some(Failure::NoBeat));
+    assert_eq!(bench.after_ms(500), Some(Effect::Kill));
+    assert_eq!(bench.on(CRASH), Some(Effect::Spawn), "it had been ready");
+}
+
+#[test]
+fn a_killed_service_is_back_at_once_the_first_time() {
+    let mut bench = Bench::ready();
+    assert_eq!(bench.on(CRASH), Some(Effect::Spawn));
+    bench.on(Event::Ready);
+    assert_eq!(bench.on(CRASH), None);
+    bench.is(Wanted::Up, Actual::Backoff);
+    assert_eq!(bench.after_ms(100), Some(Effect::Spawn));
+}
+
+#[test]
+fn too_many_exits_hold_it_until_released() {
+    let mut bench = Bench::starting();
+    for _ in 0..4 {
+        bench.on(CRASH);
+        bench.is(Wanted::Up, Actual::Backoff);
+        assert_eq!(bench.after_ms(5_000), Some(Effect::Spawn));
+    }
+    bench.on(CRASH);
+    assert_eq!(bench.machine.held_because(), Some(HeldBecause::TooOften(5)));
+    assert_eq!(bench.after_ms(3_600_000), None);
+    bench.on(Event::Release);
+    assert_eq!(bench.on(Event::Admit), Some(Effect::Spawn));
+    bench.on(CRASH);
+    bench.is(Wanted::Up, Actual::Backoff);
+}
+
+#[test]
+fn a_permanent_exit_holds_it_at_once() {
+    for exit in [Exit::Code(78), Exit::Code(64), Exit::NotStartable] {
+        let mut bench = Bench::starting();
+        assert_eq!(bench.on(Event::Exited(exit)), None);
+        assert_eq!(bench.machine.held_because(), Some(HeldBecause::Permanent(exit)));
+        assert_eq!(bench.on(Event::Restart), Some(Effect::Spawn));
+    }
+}
+
+#[test]
+fn restart_policies_differ_in_what_follows_an_exit() {
+    let after = |restart, exit| {
+        let mut bench = Bench::ready();
+        bench.machine.limits.restart = restart;
+        bench.on(exit);
+        (bench.machine.wanted(), bench.machine.actual())
+    };
+    let (up, down) = (Wanted::Up, Wanted::Down);
+    assert_eq!(after(Restart::Always, STOPPED), (up, Actual::Starting));
+    assert_eq!(after(Restart::OnFailure, CRASH), (up, Actual::Starting));
+    assert_eq!(after(Restart::OnFailure, STOPPED), (down, Actual::Down));
+    assert_eq!(after(Restart::Never, STOPPED), (down, Actual::Down));
+    assert_eq!(after(Restart::Never, CRASH), (up, Actual::Held));
+}
+
+#[test]
+fn a_restart_asked_for_is_not_held_against_it() {
+    let mut bench = Bench::ready();
+    for _ in 0..20 {
+        assert_eq!(bench.on(Event::Restart), Some(Effect::Terminate));
+        assert_eq!(bench.on(STOPPED), Some(Effect::Spawn));
+        bench.on(Event::Ready);
+    }
+    bench.is(Wanted::Up, Actual::Ready);
+    assert_eq!(bench.on(CRASH), Some(Effect::Spawn));
+}
+
+#[test]
+fn a_hold_stops_it_and_lasts() {
+    let mut bench = Bench::ready();
+    assert_eq!(bench.on(Event::Hold), Some(Effect::Terminate));
+    assert_eq!(bench.on(STOPPED), None);
+    assert_eq!(bench.machine.held_because(), Some(HeldBecause::Operator));
+    assert_eq!(bench.on(Event::Admit), None);
+    bench.on(Event::Release);
+    bench.is(Wanted::Up, Actual::Down);
+    assert_eq!(bench.on(Event::Admit), Some(Effect::Spawn));
+}
+
+#[test]
+fn a_hold_can_be_lifted_while_it_still_stops() {
+    let mut bench = Bench::ready();
+    bench.on(Event::Hold);
+    bench.on(Event::Release);
+    assert_eq!(bench.on(STOPPED), Some(Effect::Spawn));
+}
+
+#[test]
+fn a_change_of_mind_during_a_stop_counts_at_its_end() {
+    let mut bench = Bench::ready();
+    bench.on(Event::Stop);
+    bench.on(Event::Start);
+    assert_eq!(bench.on(STOPPED), Some(Effect::Spawn));
+    bench.on(Event::Restart);
+    bench.on(Event::Stop);
+    assert_eq!(bench.on(STOPPED), None);
+    bench.is(Wanted::Down, Actual::Down);
+}
+
+#[test]
+fn a_refusal_while_it_stops_is_no_reason_to_hold_it() {
+    let mut bench = Bench::ready();
+    bench.on(Event::Restart);
+    assert_eq!(bench.on(REFUSED), Some(Effect::Spawn));
+}
+
+#[test]
+fn time_can_be_asked_for_but_not_for_ever() {
+    let mut bench = Bench::starting();
+    bench.on(Event::Extend(Duration::from_secs(3_600)));
+    assert_eq!(bench.after_ms(39_999), None);
+    assert_eq!(bench.after_ms(1), Some(Effect::Terminate));
+
+    let mut bench = Bench::ready();
+    bench.on(Event::Extend(Duration::from_secs(6)));
+    bench.on(Event::Beat);
+    assert_eq!(bench.after_ms(5_999), None);
+    assert_eq!(bench.after_ms(1), Some(Effect::Abort));
+    bench.on(Event::Extend(Duration::from_secs(6)));
+    assert_eq!(bench.after_ms(500), Some(Effect::Kill), "a stuck service gets no more");
+
+    let mut bench = Bench::ready();
+    bench.on(Event::Stop);
+    bench.on(Event::Extend(Duration::from_secs(12)));
+    assert_eq!(bench.after_ms(11_999), None);
+    bench.on(Event::Extend(Duration::from_secs(3_600)));
+    assert_eq!(bench.after_ms(8_000), None);
+    assert_eq!(bench.after_ms(1), Some(Effect::Kill));
+}
+
+#[test]
+fn time_in_which_nobody_listened_does_not_count() {
+    let mut bench = Bench::ready();
+    bench.now += Duration::from_secs(10);
+    bench.machine.postpone(Duration::from_secs(10));
+    assert_eq!(bench.after_ms(2_999), None);
+    assert_eq!(bench.after_ms(1), Some(Effect::Abort));
+}
+
+#[test]
+fn without_a_watchdog_silence_is_fine() {
+    let mut bench = Bench::starting();
+    bench.machine.limits.watchdog = None;
+    bench.on(Event::Ready);
+    assert_eq!(bench.machine.deadline(), None);
+    assert_eq!(bench.after_ms(3_600_000), None);
+}

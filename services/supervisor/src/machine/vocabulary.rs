@@ -1,0 +1,141 @@
+//! The words of the state machine: what is wanted, what is, what happened, what to do about it.
+
+use std::fmt;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use crate::exit::Exit;
+use crate::spec::{Restart, RestartLimits, ServiceSpec};
+
+/// What is wanted of a service.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Wanted {
+    /// It should run.
+    Up,
+    /// It should not run.
+    Down,
+}
+
+/// What a service actually does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Actual {
+    /// Not running; if wanted up, it waits for the services that it comes after.
+    Down,
+    /// Running, not ready yet.
+    Starting,
+    /// Running and ready.
+    Ready,
+    /// Running, told to end.
+    Stopping,
+    /// Not running, about to be started again.
+    Backoff,
+    /// Not running, not started again until an operator says so.
+    Held,
+}
+
+/// What happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// It is wanted up, once the services that it comes after are ready.
+    Start,
+    /// The services that it comes after are ready.
+    Admit,
+    /// It is wanted down, now.
+    Stop,
+    /// It is wanted down; if it runs, its turn to stop comes later.
+    Retire,
+    /// It is wanted up, in a new incarnation, now.
+    Restart,
+    /// It is to be kept from running until released.
+    Hold,
+    /// Lifts a hold, whoever put it.
+    Release,
+    /// It said that it is ready.
+    Ready,
+    /// Its main loop went round.
+    Beat,
+    /// It asks for this much more time for what it does.
+    Extend(Duration),
+    /// Its process has been reaped (or could not be made).
+    Exited(Exit),
+    /// Time has passed.
+    Clock,
+}
+
+/// What to do about it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// Start a new incarnation.
+    Spawn,
+    /// Ask it to end: TERM, then CONT, since a stopped process would keep TERM pending.
+    Terminate,
+    /// Make it abort, so that it leaves a trace of where it was stuck: ABRT, then CONT.
+    Abort,
+    /// Kill its process group.
+    Kill,
+}
+
+/// What a service failed to do, for which it was stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Failure {
+    /// It was not ready within its start deadline.
+    NotReady,
+    /// Its main loop did not go round within the watchdog's period.
+    NoBeat,
+}
+
+/// Why a service is held.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeldBecause {
+    /// An operator wants it so.
+    Operator,
+    /// Its last exit says that another start cannot help.
+    Permanent(Exit),
+    /// It ended this often within the window.
+    TooOften(u32),
+    /// It failed, and its restart policy is `never`.
+    Policy,
+}
+
+impl fmt::Display for HeldBecause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Operator => write!(f, "held by the operator"),
+            Self::Permanent(exit) => write!(f, "{exit}"),
+            Self::TooOften(exits) => write!(f, "{exits} exits in a short time"),
+            Self::Policy => write!(f, "failed, and is never restarted"),
+        }
+    }
+}
+
+/// The deadlines and limits that a machine keeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Time from start to ready.
+    pub start: Duration,
+    /// Longest silence between beats once ready.
+    pub watchdog: Option<Duration>,
+    /// Time from the request to stop to the kill.
+    pub stop: Duration,
+    /// Which exits are followed by a new start.
+    pub restart: Restart,
+    /// How often and how soon.
+    pub tally: RestartLimits,
+}
+
+impl Limits {
+    /// Those of a service in a group with these restart limits.
+    pub fn of(service: &ServiceSpec, tally: RestartLimits) -> Self {
+        Self {
+            start: service.start_deadline,
+            watchdog: service.watchdog,
+            stop: service.stop_deadline,
+            restart: service.restart,
+            tally,
+        }
+    }
+}

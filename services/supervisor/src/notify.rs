@@ -1,0 +1,163 @@
+//! What services say: datagrams of the `sd_notify` protocol, each of lines `KEY=VALUE`.
+//!
+//! Every incarnation has a socket of its own, so there is never a doubt who speaks.
+
+use std::fs;
+use std::io;
+use std::os::fd::{AsFd, BorrowedFd};
+use std::os::unix::net::UnixDatagram;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Longest datagram that is looked at, bytes; systemd's own limit is of the same size.
+const DATAGRAM_BYTES_MAX: usize = 4096;
+
+/// Datagrams taken in one go, so that a service that floods its socket cannot keep the supervisor
+/// from the others.
+const DATAGRAMS_MAX: usize = 64;
+
+/// Longest text that is kept, characters.
+const TEXT_CHARS_MAX: usize = 160;
+
+/// One thing that a service says.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Notification {
+    /// `READY=1`
+    Ready,
+    /// `WATCHDOG=1`: its main loop went round.
+    Beat,
+    /// `EXTEND_TIMEOUT_USEC=n`: it needs this much more time.
+    Extend(Duration),
+    /// `STATUS=text`: what it does.
+    Status(String),
+    /// `X_VERSION=text`
+    Version(String),
+    /// `X_INPUT_AGE_MS=n`: age of its oldest input that it has not dealt with.
+    InputAge(Duration),
+}
+
+/// The socket of one incarnation; its file goes with it.
+#[derive(Debug)]
+pub(crate) struct NotifySocket {
+    socket: UnixDatagram,
+    path: PathBuf,
+}
+
+impl NotifySocket {
+    /// A new socket at `path`; a file that was left there is removed.
+    ///
+    /// # Errors
+    /// The socket cannot be made.
+    pub(crate) fn bind(path: &Path) -> io::Result<Self> {
+        match fs::remove_file(path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+            _ => {}
+        }
+        let socket = UnixDatagram::bind(path)?;
+        socket.set_nonblocking(true)?;
+        Ok(Self { socket, path: path.to_owned() })
+    }
+
+    /// Everything that has been said since the last call, up to a bound.
+    pub(crate) fn drain(&self) -> Vec<Notification> {
+        let mut buffer = [0; DATAGRAM_BYTES_MAX];
+        let mut said = Vec::new();
+        for _ in 0..DATAGRAMS_MAX {
+            match self.socket.recv(&mut buffer) {
+                Ok(bytes) => said.extend(parse(&buffer[..bytes])),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(_) => break,
+            }
+        }
+        said
+    }
+}
+
+impl AsFd for NotifySocket {
+    fn as_fd(&self) -> BorrowedFd<'_> {
+        self.socket.as_fd()
+    }
+}
+
+impl Drop for NotifySocket {
+    fn drop(&mut self) {
+        // Gone already where the run folder has been removed.
+        let _ = fs::remove_file(&self.path);
+    }
+}
+
+/// The lines of a datagram that mean something here; all others are somebody else's extensions.
+fn parse(datagram: &[u8]) -> Vec<Notification> {
+    String::from_utf8_lossy(datagram).lines().filter_map(line).collect()
+}
+
+fn line(line: &str) -> Option<Notification> {
+    let (key, value) = line.split_once('=')?;
+    let number = || value.trim().parse::<u64>().ok();
+    Some(match key {
+        "READY" if value == "1" => Notification::Ready,
+        "WATCHDOG" if value == "1" => Notification::Beat,
+        "EXTEND_TIMEOUT_USEC" => Notification::Extend(Duration::from_micros(number()?)),
+        "X_INPUT_AGE_MS" => Notification::InputAge(Duration::from_millis(number()?)),
+        "STATUS" => Notification::Status(text(value)),
+        "X_VERSION" => Notification::Version(text(value)),
+        _ => return None,
+    })
+}
+
+/// Text that is safe to print on an operator's terminal.
+fn text(value: &str) -> String {
+    value.chars().filter(|c| !c.is_control()).take(TEXT_CHARS_MAX).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_told_apart() {
+        let said =
+            parse(b"READY=1\nSTATUS=all \x1b[31mwell\nX_VERSION=0.1.0\nMAINPID=7\nWATCHDOG=1");
+        assert_eq!(
+            said,
+            [
+                Notification::Ready,
+                Notification::Status("all [31mwell".into()),
+                Notification::Version("0.1.0".into()),
+                Notification::Beat,
+            ]
+        );
+        assert_eq!(
+            parse(b"X_INPUT_AGE_MS=12\nEXTEND_TIMEOUT_USEC=2500000"),
+            [
+                Notification::InputAge(Duration::from_millis(12)),
+                Notification::Extend(Duration::from_millis(2500)),
+            ]
+        );
+    }
+
+    #[test]
+    fn nonsense_is_passed_over() {
+        let nonsense: [&[u8]; 6] =
+            [b"", b"READY", b"READY=2", b"X_INPUT_AGE_MS=-1", b"\xff\xfe=1", b"="];
+        for datagram in nonsense {
+            assert_eq!(parse(datagram), [], "{datagram:?}");
+        }
+        let long = format!("STATUS={}", "x".repeat(4000));
+        assert_eq!(parse(long.as_bytes()), [Notification::Status("x".repeat(TEXT_CHARS_MAX))]);
+    }
+
+    #[test]
+    fn a_flood_is_taken_in_bounded_gulps_and_the_file_goes_with_the_socket() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("n");
+        let socket = NotifySocket::bind(&path).unwrap();
+        let speaker = UnixDatagram::unbound().unwrap();
+        speaker.set_nonblocking(true).unwrap();
+        speaker.connect(&path).unwrap();
+        let sent = (0..200).take_while(|_| speaker.send(b"WATCHDOG=1").is_ok()).count();
+        assert_eq!(socket.drain().len(), sent.min(DATAGRAMS_MAX));
+        drop(socket);
+        assert!(!path.exists());
+    }
+}

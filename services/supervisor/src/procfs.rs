@@ -1,0 +1,135 @@
+//! What `/proc` tells about processes.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::os::unix::ffi::OsStrExt;
+use std::path::Path;
+
+use rustix::process::Pid;
+
+/// Clock ticks per second in `/proc`. Fixed by the kernel's interface at 100 on every architecture
+/// that Rust's standard library is shipped for.
+const TICKS_PER_S: f64 = 100.0;
+
+/// One process as its `stat` line tells it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Process {
+    pub(crate) pid: Pid,
+    /// Name of the program, at most 15 bytes.
+    pub(crate) name: String,
+    /// Whether it has ended and waits to be reaped.
+    pub(crate) is_zombie: bool,
+    /// Its parent's number.
+    pub(crate) parent: i32,
+    /// Its process group's number.
+    pub(crate) group: i32,
+    /// Processor time used, seconds.
+    pub(crate) cpu_s: f64,
+}
+
+/// All processes that exist. One that comes or goes meanwhile may or may not be among them.
+pub(crate) fn processes() -> Vec<Process> {
+    let Ok(entries) = fs::read_dir("/proc") else { return Vec::new() };
+    entries
+        .filter_map(|entry| entry.ok()?.file_name().to_str()?.parse().ok())
+        .filter_map(|number| process(Pid::from_raw(number)?))
+        .collect()
+}
+
+/// One process, if it exists.
+pub(crate) fn process(pid: Pid) -> Option<Process> {
+    parse_stat(&fs::read_to_string(format!("/proc/{pid}/stat")).ok()?)
+}
+
+/// Resident memory of a process, KiB.
+pub(crate) fn rss_kib(pid: Pid) -> Option<u64> {
+    let status = fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+/// The environment that a process was started with; empty if it may not be read.
+pub(crate) fn environment(pid: Pid) -> Environment {
+    Environment(fs::read(format!("/proc/{pid}/environ")).unwrap_or_default())
+}
+
+/// Whether a process has the file at `path` open.
+pub(crate) fn has_open(pid: Pid, path: &Path) -> bool {
+    let Ok(entries) = fs::read_dir(format!("/proc/{pid}/fd")) else { return false };
+    entries.flatten().any(|entry| fs::read_link(entry.path()).is_ok_and(|target| target == path))
+}
+
+/// See [`environment`].
+#[derive(Clone, Debug)]
+pub(crate) struct Environment(Vec<u8>);
+
+impl Environment {
+    /// The value of one variable.
+    pub(crate) fn get(&self, key: &str) -> Option<&OsStr> {
+        self.0.split(|&byte| byte == 0).find_map(|variable| {
+            let value = variable.strip_prefix(key.as_bytes())?.strip_prefix(b"=")?;
+            Some(OsStr::from_bytes(value))
+        })
+    }
+}
+
+/// `pid (name) state ppid pgrp … utime stime …`; the name may hold spaces and parentheses.
+fn parse_stat(line: &str) -> Option<Process> {
+    let (pid, rest) = line.split_once(" (")?;
+    let (name, rest) = rest.rsplit_once(") ")?;
+    let fields: Vec<&str> = rest.split_whitespace().collect();
+    let ticks = |field: usize| fields.get(field)?.parse::<f64>().ok();
+    Some(Process {
+        pid: Pid::from_raw(pid.parse().ok()?)?,
+        name: name.to_owned(),
+        is_zombie: matches!(*fields.first()?, "Z" | "X"),
+        parent: fields.get(1)?.parse().ok()?,
+        group: fields.get(2)?.parse().ok()?,
+        cpu_s: (ticks(11)? + ticks(12)?) / TICKS_PER_S,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stat_line_with_an_awkward_name_is_read() {
+        let line = "42 (a (b) c) S 7 9 9 0 -1 4194560 1 0 0 0 150 50 0 0 20 0 1 0 100 0 0";
+        let expected = Process {
+            pid: Pid::from_raw(42).unwrap(),
+            name: "a (b) c".into(),
+            is_zombie: false,
+            parent: 7,
+            group: 9,
+            cpu_s: 2.0,
+        };
+        assert_eq!(parse_stat(line), Some(expected));
+        assert_eq!(parse_stat("42 (a"), None);
+    }
+
+    #[test]
+    fn this_very_process_is_found() {
+        let me = rustix::process::getpid();
+        let found = processes().into_iter().find(|process| process.pid == me).unwrap();
+        assert_eq!(
+            Some(found.parent),
+            rustix::process::getppid().map(|p| p.as_raw_nonzero().get())
+        );
+        assert!(!found.is_zombie);
+        assert!(rss_kib(me).unwrap() > 100);
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let path = file.path().canonicalize().unwrap();
+        assert!(has_open(me, &path));
+        drop(file);
+        assert!(!has_open(me, &path));
+    }
+
+    #[test]
+    fn variables_are_told_apart_by_their_whole_name() {
+        let environment = Environment(b"AB=1\0A=2\0C=\0".to_vec());
+        assert_eq!(environment.get("A"), Some(OsStr::new("2")));
+        assert_eq!(environment.get("C"), Some(OsStr::new("")));
+        assert_eq!(environment.get("B"), None);
+    }
+}

@@ -1,0 +1,273 @@
+//! One service as the supervisor runs it: its processes one after the other, and what they say.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use runtime::admin::NoRoom;
+use runtime::group::{self, GroupPaths};
+
+use crate::Time;
+use crate::bond::Bond;
+use crate::child::Child;
+use crate::exit::Exit;
+use crate::logs;
+use crate::machine::{Effect, Event, Failure};
+use crate::notify::{Notification, NotifySocket};
+use crate::spawn::{self, Launch, SpawnError};
+use crate::spec::{Log, ServiceSpec};
+
+/// A service, whether or not a process of it runs.
+#[derive(Debug)]
+pub(crate) struct Service {
+    pub(crate) spec: ServiceSpec,
+    /// A command that has taken the place of the configured one.
+    pub(crate) swapped: Option<Command>,
+    pub(crate) running: Option<Running>,
+    pub(crate) ended: Option<Ended>,
+    /// Where in its log the last incarnation began.
+    pub(crate) log_from: u64,
+}
+
+/// A command and the folder in which it is meant.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Command {
+    pub(crate) words: Vec<String>,
+    pub(crate) directory: PathBuf,
+}
+
+/// One incarnation that has a process.
+#[derive(Debug)]
+pub(crate) struct Running {
+    pub(crate) child: Child,
+    pub(crate) notify: NotifySocket,
+    pub(crate) incarnation: u32,
+    pub(crate) since: Time,
+    pub(crate) beat: Option<Time>,
+    pub(crate) input: Option<(Duration, Time)>,
+    pub(crate) version: Option<String>,
+    pub(crate) says: Option<String>,
+    pub(crate) killed: bool,
+}
+
+/// How the incarnation before ended.
+#[derive(Clone, Debug)]
+pub(crate) struct Ended {
+    pub(crate) incarnation: u32,
+    pub(crate) exit: Exit,
+    pub(crate) failure: Option<Failure>,
+    pub(crate) killed: bool,
+    pub(crate) at: Time,
+    /// What the operating system said where it could not be started.
+    pub(crate) error: Option<String>,
+}
+
+/// What all services of a group are started with.
+#[derive(Debug)]
+pub(crate) struct Surroundings {
+    pub(crate) paths: GroupPaths,
+    pub(crate) bond: Bond,
+    pub(crate) epoch: u64,
+    pub(crate) log: Log,
+    /// The folder in which configured commands are meant.
+    pub(crate) directory: PathBuf,
+}
+
+impl Service {
+    pub(crate) fn new(spec: ServiceSpec) -> Self {
+        Self { spec, swapped: None, running: None, ended: None, log_from: 0 }
+    }
+
+    /// Starts incarnation `incarnation`, if there is room for it.
+    ///
+    /// # Errors
+    /// It could not be started; this is noted as its end.
+    pub(crate) fn spawn(
+        &mut self,
+        incarnation: u32,
+        around: &Surroundings,
+        room: Result<(), NoRoom>,
+        now: Time,
+    ) -> Result<(), Exit> {
+        assert!(self.running.is_none(), "{} runs already", self.spec.name);
+        let started = room.map_err(SpawnError::from);
+        match started.and_then(|()| self.try_spawn(incarnation, around, now)) {
+            Ok(running) => {
+                let (service, pid) = (&self.spec.name, running.child.pid());
+                tracing::info!(service, incarnation, %pid, "started");
+                self.running = Some(running);
+                Ok(())
+            }
+            Err(error) => {
+                let exit = error.as_exit();
+                let error = error.to_string();
+                tracing::error!(service = self.spec.name, incarnation, error, "not started");
+                let ended = Ended {
+                    incarnation,
+                    exit,
+                    failure: None,
+                    killed: false,
+                    at: now,
+                    error: Some(error),
+                };
+                self.ended = Some(ended);
+                Err(exit)
+            }
+        }
+    }
+
+    fn try_spawn(
+        &mut self,
+        incarnation: u32,
+        around: &Surroundings,
+        now: Time,
+    ) -> Result<Running, SpawnError> {
+        let path = around.paths.log_file(&self.spec.name);
+        let socket = around.paths.notify_socket(&self.spec.name, incarnation);
+        let failed =
+            |path: &Path, error| SpawnError::Io { program: path.display().to_string(), error };
+        let log = logs::open(&path, &around.log).map_err(|error| failed(&path, error))?;
+        self.log_from = logs::size(&path);
+        let notify = NotifySocket::bind(&socket).map_err(|error| failed(&socket, error))?;
+        let (words, directory) = match &self.swapped {
+            Some(command) => (&command.words, &command.directory),
+            None => (&self.spec.command, &around.directory),
+        };
+        let child = spawn::spawn(Launch {
+            command: words,
+            directory,
+            environment: self.environment(incarnation, around),
+            log,
+            nice: self.spec.nice,
+            bond: &around.bond,
+        })?;
+        Ok(Running {
+            child,
+            notify,
+            incarnation,
+            since: now,
+            beat: None,
+            input: None,
+            version: None,
+            says: None,
+            killed: false,
+        })
+    }
+
+    fn environment(
+        &self,
+        incarnation: u32,
+        around: &Surroundings,
+    ) -> Vec<(&'static str, OsString)> {
+        let Surroundings { paths, .. } = around;
+        let socket = paths.notify_socket(&self.spec.name, incarnation);
+        let mut environment: Vec<(&str, OsString)> = vec![
+            (group::ENV_GROUP, paths.name().as_str().into()),
+            (group::ENV_HOME, paths.home().into()),
+            (group::ENV_SERVICE, (&self.spec.name).into()),
+            (group::ENV_INCARNATION, incarnation.to_string().into()),
+            (group::ENV_EPOCH, around.epoch.to_string().into()),
+            (group::ENV_LIFELINE_FD, around.bond.lifeline_number().to_string().into()),
+            ("NOTIFY_SOCKET", socket.into()),
+        ];
+        if let Some(period) = self.spec.watchdog {
+            environment.push(("WATCHDOG_USEC", period.as_micros().to_string().into()));
+        }
+        if std::env::var_os(group::ENV_LOG).is_none() {
+            environment.push((group::ENV_LOG, (&around.log.level).into()));
+        }
+        environment
+    }
+
+    /// Carries out an effect upon the running process.
+    pub(crate) fn signal(&mut self, effect: Effect) {
+        let Some(running) = &mut self.running else { return };
+        let (service, incarnation) = (&self.spec.name, running.incarnation);
+        match effect {
+            Effect::Kill => tracing::warn!(service, incarnation, "killed: it did not end"),
+            Effect::Abort => tracing::warn!(service, incarnation, "aborted: it no longer beats"),
+            Effect::Terminate => tracing::info!(service, incarnation, "told to end"),
+            Effect::Spawn => {}
+        }
+        running.killed |= effect == Effect::Kill;
+        running.child.signal(effect);
+    }
+
+    /// What it has said since the last call, as events; the rest is noted.
+    pub(crate) fn listen(&mut self, now: Time) -> Vec<Event> {
+        let Some(running) = &mut self.running else { return Vec::new() };
+        let mut events = Vec::new();
+        for said in running.notify.drain() {
+            match said {
+                Notification::Ready => {
+                    let (service, incarnation) = (&self.spec.name, running.incarnation);
+                    let ms = (now - running.since).as_millis();
+                    tracing::info!(service, incarnation, ms, "ready");
+                    events.push(Event::Ready);
+                }
+                Notification::Beat => {
+                    running.beat = Some(now);
+                    events.push(Event::Beat);
+                }
+                Notification::Extend(by) => events.push(Event::Extend(by)),
+                Notification::InputAge(age) => running.input = Some((age, now)),
+                Notification::Version(version) => running.version = Some(version),
+                Notification::Status(text) => running.says = Some(text),
+            }
+        }
+        events
+    }
+
+    /// Whether a process of it has ended and waits to be reaped.
+    pub(crate) fn has_ended(&self) -> bool {
+        self.running.as_ref().is_some_and(|running| running.child.has_ended())
+    }
+
+    /// Reaps the ended process, with whatever is left of its group, and notes how it ended.
+    pub(crate) fn reap(&mut self, failure: Option<Failure>, now: Time) -> Option<Exit> {
+        let Running { child, incarnation, killed, .. } = self.running.take()?;
+        let exit = child.reap();
+        let ended = Ended { incarnation, exit, failure, killed, at: now, error: None };
+        tracing::info!(service = self.spec.name, incarnation, "ended: {}", ended.text());
+        self.ended = Some(ended);
+        Some(exit)
+    }
+
+    /// The last lines of the last incarnation's log.
+    pub(crate) fn log_tail(&self, paths: &GroupPaths) -> Vec<String> {
+        logs::tail(&paths.log_file(&self.spec.name), self.log_from)
+    }
+
+    /// Puts a command in the place of the current one; `None` is the configured one.
+    pub(crate) fn replace_command(&mut self, command: Option<Command>) -> Option<Command> {
+        std::mem::replace(&mut self.swapped, command)
+    }
+}
+
+impl Running {
+    /// Age of its oldest input that it has not dealt with: what it said, and the time since.
+    pub(crate) fn input_age(&self, now: Time) -> Option<Duration> {
+        let (age, said) = self.input?;
+        // Nothing waited, so nothing has aged.
+        Some(if age.is_zero() { age } else { age + now.saturating_sub(said) })
+    }
+}
+
+impl Ended {
+    /// The end in a few words.
+    pub(crate) fn text(&self) -> String {
+        let mut text = match &self.error {
+            Some(error) => error.clone(),
+            None => self.exit.to_string(),
+        };
+        match self.failure {
+            Some(Failure::NotReady) => text.push_str(", was not ready in time"),
+            Some(Failure::NoBeat) => text.push_str(", no longer beat"),
+            None => {}
+        }
+        if self.killed {
+            text.push_str(", had to be killed");
+        }
+        text
+    }
+}

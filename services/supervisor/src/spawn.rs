@@ -1,0 +1,159 @@
+//! Starting a service's process.
+
+use std::ffi::{OsStr, OsString};
+use std::fs::File;
+use std::io::{self, ErrorKind};
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use runtime::admin::NoRoom;
+use rustix::fs::{Access, access};
+use rustix::process::Pid;
+use thiserror::Error;
+
+use crate::before_exec;
+use crate::bond::Bond;
+use crate::child::Child;
+use crate::exit::Exit;
+
+/// What to start, and with what.
+#[derive(Debug)]
+pub(crate) struct Launch<'a> {
+    pub(crate) command: &'a [String],
+    /// The folder that the command is meant in and runs in.
+    pub(crate) directory: &'a Path,
+    pub(crate) environment: Vec<(&'static str, OsString)>,
+    /// Takes the process's standard output and error.
+    pub(crate) log: File,
+    pub(crate) nice: i32,
+    pub(crate) bond: &'a Bond,
+}
+
+/// A program could not be started.
+#[derive(Debug, Error)]
+pub(crate) enum SpawnError {
+    /// There is no command.
+    #[error("the command is empty")]
+    Empty,
+    /// There is no such program.
+    #[error("{0}: no such program")]
+    Missing(String),
+    /// The program may not be run.
+    #[error("{}: not an executable file", .0.display())]
+    NotExecutable(PathBuf),
+    /// Shared memory is short.
+    #[error(transparent)]
+    Room(#[from] NoRoom),
+    /// The operating system refuses.
+    #[error("{program}: {error}")]
+    Io {
+        /// The program's path.
+        program: String,
+        /// What the operating system says.
+        error: io::Error,
+    },
+}
+
+impl SpawnError {
+    /// The error as an end of the service: whether trying again may help.
+    pub(crate) fn as_exit(&self) -> Exit {
+        match self {
+            Self::Io { error, .. } => match error.kind() {
+                ErrorKind::NotFound | ErrorKind::PermissionDenied => Exit::NotStartable,
+                ErrorKind::InvalidInput | ErrorKind::ArgumentListTooLong => Exit::NotStartable,
+                _ => Exit::NotStarted,
+            },
+            Self::Room(_) => Exit::NotStarted,
+            Self::Empty | Self::Missing(_) | Self::NotExecutable(_) => Exit::NotStartable,
+        }
+    }
+}
+
+/// Starts a process that leads its own process group.
+pub(crate) fn spawn(launch: Launch<'_>) -> Result<Child, SpawnError> {
+    let program = find_program(launch.command, launch.directory)?;
+    let failed = |error| SpawnError::Io { program: program.display().to_string(), error };
+    let mut command = Command::new(&program);
+    command
+        .args(&launch.command[1..])
+        .current_dir(launch.directory)
+        // Meant for the supervisor itself, where an init system has started it.
+        .env_remove("WATCHDOG_PID")
+        .env_remove("WATCHDOG_USEC")
+        .envs(launch.environment)
+        .stdin(Stdio::null())
+        .stdout(launch.log.try_clone().map_err(failed)?)
+        .stderr(launch.log)
+        .process_group(0);
+    before_exec::prepare(&mut command, launch.bond.inherited(), launch.nice);
+    let started = command.spawn().map_err(failed)?;
+    // The handle is dropped without a wait: the child is reaped through its pidfd.
+    let pid = Pid::from_child(&started);
+    let child = Child::new(pid).map_err(failed)?;
+    tell_niceness(pid, launch.nice);
+    Ok(child)
+}
+
+/// The path of a command's program: searched for in `PATH` where it has no slash, else taken as
+/// seen from `directory`.
+///
+/// # Errors
+/// There is no such program, or it cannot be run.
+pub(crate) fn find_program(command: &[String], directory: &Path) -> Result<PathBuf, SpawnError> {
+    let program = command.first().filter(|name| !name.is_empty()).ok_or(SpawnError::Empty)?;
+    if program.contains('/') {
+        let path = directory.join(program);
+        return match path.metadata() {
+            Ok(meta) if meta.is_file() && is_executable(&path) => Ok(path),
+            Ok(_) => Err(SpawnError::NotExecutable(path)),
+            Err(_) => Err(SpawnError::Missing(path.display().to_string())),
+        };
+    }
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    search(program, &path).ok_or_else(|| SpawnError::Missing(program.clone()))
+}
+
+fn search(program: &str, path: &OsStr) -> Option<PathBuf> {
+    std::env::split_paths(path)
+        .map(|folder| folder.join(program))
+        .find(|candidate| candidate.is_file() && is_executable(candidate))
+}
+
+fn is_executable(path: &Path) -> bool {
+    access(path, Access::EXEC_OK).is_ok()
+}
+
+/// A niceness below that of the supervisor needs a permission that few have.
+fn tell_niceness(pid: Pid, wanted: i32) {
+    let found = rustix::process::getpriority_process(Some(pid));
+    if wanted != 0 && found.is_ok_and(|found| found != wanted) {
+        tracing::warn!(%pid, wanted, "niceness not permitted; it runs without");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn find(command: &[&str], directory: &Path) -> Result<PathBuf, SpawnError> {
+        let command: Vec<String> = command.iter().map(|&part| part.into()).collect();
+        find_program(&command, directory)
+    }
+
+    #[test]
+    fn programs_are_found_as_a_shell_would() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("plain"), "").unwrap();
+        let anywhere = Path::new("/");
+        assert_eq!(find(&["/bin/sh"], anywhere).unwrap(), Path::new("/bin/sh"));
+        assert_eq!(find(&["bin/sh", "-c"], anywhere).unwrap(), Path::new("/bin/sh"));
+        assert!(find(&["sh"], anywhere).unwrap().is_absolute());
+        assert!(matches!(find(&[], anywhere), Err(SpawnError::Empty)));
+        assert!(matches!(find(&[""], anywhere), Err(SpawnError::Empty)));
+        assert!(matches!(find(&["no-such-program"], anywhere), Err(SpawnError::Missing(_))));
+        assert!(matches!(find(&["./none"], anywhere), Err(SpawnError::Missing(_))));
+        let told = find(&["./plain"], folder.path());
+        assert!(matches!(told, Err(SpawnError::NotExecutable(_))), "{told:?}");
+    }
+}

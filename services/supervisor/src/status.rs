@@ -1,0 +1,97 @@
+//! What `status` tells: plain, serialisable facts.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use crate::exit::Exit;
+use crate::group::GroupState;
+use crate::machine::{Actual, Failure, Wanted};
+
+/// A group at one moment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GroupStatus {
+    /// Its name.
+    pub name: String,
+    /// What it does as a whole.
+    pub state: GroupState,
+    /// The supervisor's process.
+    pub supervisor_pid: u32,
+    /// The supervisor's version.
+    pub version: String,
+    /// Time since the supervisor's start, seconds.
+    pub uptime_s: f64,
+    /// Life of the journals.
+    pub epoch: u64,
+    /// The scene's name.
+    pub scene: String,
+    /// The profile in force.
+    pub profile: Option<String>,
+    /// The configuration's folder.
+    pub config: PathBuf,
+    /// Processes that services had left behind and that were killed, since the start.
+    pub strays_killed: u32,
+    /// The supervisor's own memory, KiB.
+    pub rss_kib: Option<u64>,
+    /// Processor time that the supervisor has used, seconds.
+    pub cpu_s: Option<f64>,
+    /// The services, in the order of the configuration.
+    pub services: Vec<ServiceStatus>,
+}
+
+/// A service at one moment. What only a running process has is `None` while none runs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ServiceStatus {
+    /// Its name.
+    pub name: String,
+    /// What is wanted of it.
+    pub wanted: Wanted,
+    /// What it does.
+    pub actual: Actual,
+    /// Why it does not do what is wanted: what it waits for, why it is held.
+    pub why: Option<String>,
+    /// Its process.
+    pub pid: Option<u32>,
+    /// Number of the current or last start; 0 before the first.
+    pub incarnation: u32,
+    /// Time since that start, seconds.
+    pub uptime_s: Option<f64>,
+    /// Starts after the first.
+    pub restarts: u32,
+    /// Time since the last beat of its main loop, milliseconds.
+    pub beat_age_ms: Option<u64>,
+    /// Age of its oldest input that it has not dealt with, milliseconds, as it last said.
+    pub input_age_ms: Option<u64>,
+    /// Its version, as it said.
+    pub version: Option<String>,
+    /// What it says that it does.
+    pub says: Option<String>,
+    /// The command that has replaced the configured one.
+    pub swapped: Option<Vec<String>>,
+    /// How the incarnation before ended.
+    pub last_exit: Option<LastExit>,
+    /// The last lines of its log, where it is held.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub log_tail: Vec<String>,
+    /// Resident memory, KiB.
+    pub rss_kib: Option<u64>,
+    /// Processor time used, seconds.
+    pub cpu_s: Option<f64>,
+}
+
+/// The end of an incarnation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LastExit {
+    /// Which one.
+    pub incarnation: u32,
+    /// How it ended.
+    pub exit: Exit,
+    /// What it was stopped for, if it had failed to do something.
+    pub failure: Option<Failure>,
+    /// Whether it had to be killed.
+    pub killed: bool,
+    /// How long ago, seconds.
+    pub age_s: f64,
+    /// All of this in a few words.
+    pub text: String,
+}

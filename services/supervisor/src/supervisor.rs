@@ -1,0 +1,278 @@
+//! The running supervisor: one thread that waits for anything to happen and acts upon it.
+//!
+//! It never waits for a service or a client. What takes time is bounded file work: the cleanup of
+//! shared memory after a process has ended, and a look through `/proc` for what it left behind.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use runtime::admin::{Admin, NoRoom, check_room};
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use rustix::process::Pid;
+
+use crate::Time;
+use crate::configuration::{Configuration, Load, Publish};
+use crate::group::Group;
+use crate::machine::{Effect, Event};
+use crate::server::Server;
+use crate::service::{Service, Surroundings};
+use crate::signals::Signals;
+use crate::systemd::Systemd;
+
+pub use start::StartError;
+
+use ending::Ending;
+use poll::Ready;
+use replacing::Replacement;
+use waits::Wait;
+
+mod ending;
+mod poll;
+mod reload;
+mod replacing;
+mod report;
+mod requests;
+mod start;
+mod strays;
+mod waits;
+
+/// How often things are looked at that nobody tells of: sizes of logs, files of topics.
+const TICK: Duration = Duration::from_secs(1);
+
+/// How much later than asked for the loop may go round before time is taken to have stood still.
+const STANDSTILL: Duration = Duration::from_millis(500);
+
+/// The supervisor of one group.
+#[derive(Debug)]
+pub struct Supervisor {
+    started: Instant,
+    around: Surroundings,
+    about: About,
+    load: LoadBox,
+    group: Group,
+    services: Vec<Service>,
+    admin: Option<Admin>,
+    server: Server,
+    signals: Signals,
+    systemd: Systemd,
+    waits: Vec<Wait>,
+    replacements: BTreeMap<usize, Replacement>,
+    strays: Vec<String>,
+    strays_killed: u32,
+    /// Strays that have been killed and not reaped yet.
+    condemned: Vec<Pid>,
+    ending: Option<Ending>,
+    last_renewal: Option<Time>,
+    last_pass: Time,
+    next_tick: Time,
+    told_ready: bool,
+    taken: File,
+}
+
+/// What of the configuration concerns the group as a whole.
+struct About {
+    scene: String,
+    profile: Option<String>,
+    config: PathBuf,
+    shared_memory_free_min_mib: u64,
+    publish: Publish,
+}
+
+struct LoadBox(Load);
+
+impl Supervisor {
+    /// Takes the group, makes its folders and its shared memory, and wants its services up.
+    ///
+    /// To be called on the process's main thread, which must also be the one that runs it:
+    /// services are told to end when the thread that started them does. Waits for the services of
+    /// an earlier supervisor that was killed, and takes over TERM, INT, HUP and CHLD.
+    ///
+    /// # Errors
+    /// The group cannot be started; see [`StartError`].
+    pub fn start(paths: GroupPaths, load: Load, fresh: bool) -> Result<Self, StartError> {
+        start::start(paths, load, fresh)
+    }
+
+    /// Runs the group until it has ended, and says how the process should.
+    pub fn run(mut self) -> Exit {
+        self.settle(self.last_pass);
+        loop {
+            if let Some(ending) = self.ended() {
+                return self.finish(ending);
+            }
+            let ready = self.wait();
+            let now = self.now();
+            self.forgive_standstill(now);
+            self.take(ready, now);
+            if now >= self.next_tick {
+                self.next_tick = now + TICK;
+                self.tick(now);
+            }
+            self.settle(now);
+        }
+    }
+
+    fn now(&self) -> Time {
+        self.started.elapsed()
+    }
+
+    /// The supervisor itself may have been stopped, or the whole machine. No service is judged by
+    /// such a time: nobody listened.
+    fn forgive_standstill(&mut self, now: Time) {
+        let pass = now.saturating_sub(self.last_pass);
+        self.last_pass = now;
+        if pass > TICK + STANDSTILL {
+            tracing::warn!(seconds = pass.as_secs_f64(), "time stood still; deadlines are moved");
+            self.group.postpone(pass);
+        }
+    }
+
+    /// Acts upon what has happened: first what services say, so that none is judged by a silence
+    /// that it has already broken.
+    fn take(&mut self, ready: Ready, now: Time) {
+        if self.signals.asked_to_end() {
+            self.end(ending::Cause::Signal, now);
+        }
+        for service in 0..self.services.len() {
+            self.listen(service, now);
+        }
+        for service in ready.ended {
+            if self.services[service].has_ended() {
+                self.reap(service);
+            }
+        }
+        if self.signals.child_ended() {
+            self.clear_strays();
+        }
+        if ready.listener {
+            self.server.accept(now);
+        }
+        for (client, flags) in ready.clients {
+            if let Some(request) = self.server.advance(client, flags, now) {
+                self.request(client, request, now);
+            }
+        }
+    }
+
+    /// Brings everything forward that can go forward now: the time of this pass, at which all that
+    /// was said has been heard. A later look at the clock might follow a standstill.
+    fn settle(&mut self, now: Time) {
+        loop {
+            while let Some((service, effect)) = self.group.settle(now) {
+                self.carry_out(service, effect, now);
+            }
+            if !self.advance_replacements(now) {
+                break;
+            }
+        }
+        self.check_critical(now);
+        self.answer_waits(now);
+        if !self.told_ready && self.group.state() == crate::group::GroupState::Ready {
+            self.told_ready = true;
+            tracing::info!(ms = now.as_millis(), "every service is ready");
+            self.systemd.tell("READY=1");
+        }
+    }
+
+    fn tick(&mut self, now: Time) {
+        self.systemd.tell("WATCHDOG=1");
+        self.server.drop_slow(now);
+        self.bound_logs();
+        self.check_topics(now);
+    }
+
+    fn listen(&mut self, service: usize, now: Time) {
+        for event in self.services[service].listen(now) {
+            self.give(service, event, now);
+        }
+    }
+
+    /// Gives an event to a service and carries out what follows.
+    fn give(&mut self, service: usize, event: Event, now: Time) {
+        if let Some(effect) = self.group.on(service, event, now) {
+            self.carry_out(service, effect, now);
+        }
+    }
+
+    fn carry_out(&mut self, service: usize, effect: Effect, now: Time) {
+        if effect != Effect::Spawn {
+            return self.services[service].signal(effect);
+        }
+        let incarnation = self.group.machine(service).incarnation();
+        let room = self.room_for_one();
+        if let Err(exit) = self.services[service].spawn(incarnation, &self.around, room, now) {
+            // A start that failed is never followed by another one at once.
+            let effect = self.group.on(service, Event::Exited(exit), now);
+            debug_assert_eq!(effect, None);
+        }
+    }
+
+    /// Where shared memory has filled up meanwhile, a service that is started again would die of
+    /// it without a word; its share is looked for first.
+    fn room_for_one(&self) -> Result<(), NoRoom> {
+        let services = self.services.len().max(1) as u64;
+        check_room(self.about.shared_memory_free_min_mib.div_ceil(services))
+    }
+
+    /// Reaps a service's ended process, cleans up after it, and only then starts its successor.
+    fn reap(&mut self, service: usize) {
+        self.listen(service, self.now());
+        let failure = self.group.machine(service).failure();
+        self.note_left_behind(service);
+        let ended_at = self.now();
+        let Some(exit) = self.services[service].reap(failure, ended_at) else { return };
+        if let Some(admin) = &self.admin {
+            admin.clean_dead();
+        }
+        self.clear_strays();
+        self.give(service, Event::Exited(exit), self.now());
+    }
+
+    fn bound_logs(&self) {
+        let services = self.services.iter().filter(|service| service.running.is_some());
+        let names = services.map(|service| service.spec.name.as_str()).chain(["supervisor"]);
+        for name in names {
+            match crate::logs::bound(&self.around.paths.log_file(name), &self.around.log) {
+                Ok(true) => tracing::warn!(service = name, "its log grew too fast and was cut"),
+                Ok(false) => {}
+                Err(error) => tracing::warn!(service = name, %error, "its log is not bounded"),
+            }
+        }
+    }
+
+    /// Position of the service with this name.
+    fn position(&self, name: &str) -> Option<usize> {
+        self.services.iter().position(|service| service.spec.name == name)
+    }
+
+    fn name(&self, service: usize) -> &str {
+        &self.services[service].spec.name
+    }
+}
+
+impl About {
+    fn of(configuration: Configuration) -> Self {
+        Self {
+            scene: configuration.scene,
+            profile: configuration.profile,
+            config: configuration.directory,
+            shared_memory_free_min_mib: configuration.shared_memory_free_min_mib,
+            publish: configuration.publish,
+        }
+    }
+}
+
+impl std::fmt::Debug for About {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("About").field("config", &self.config).finish_non_exhaustive()
+    }
+}
+
+impl std::fmt::Debug for LoadBox {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Load")
+    }
+}

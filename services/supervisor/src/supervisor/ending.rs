@@ -1,0 +1,170 @@
+//! The end of a group, and its renewal when its shared memory is gone.
+
+use std::fs;
+use std::time::Duration;
+
+use protocol::Epoch;
+use runtime::admin::{Admin, remove_leftovers};
+use runtime::exit::Exit;
+
+use super::Supervisor;
+use super::start::{Folder, StartError, make_folder};
+use super::waits::Goal;
+use crate::Time;
+use crate::control::{DownReport, Refusal, RefusalKind, Reply};
+use crate::machine::HeldBecause;
+use crate::server::Server;
+
+/// A second loss of the topics' files within this time is no accident; the group is given up.
+const RENEWAL_INTERVAL: Duration = Duration::from_secs(60);
+
+/// A group that is being stopped.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ending {
+    cause: Cause,
+    since: Time,
+}
+
+/// Why it is being stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Cause {
+    /// The operator wants it so.
+    Asked,
+    /// The process was told to end.
+    Signal,
+    /// A critical service was given up.
+    Critical(HeldBecause),
+    /// Its files were removed by somebody else: it is started again.
+    FilesGone,
+    /// They were removed again, or could not be made again.
+    Unusable,
+}
+
+impl Supervisor {
+    /// Begins to stop the group, in order. A wish to end counts more than a renewal.
+    pub(super) fn end(&mut self, cause: Cause, now: Time) {
+        match &mut self.ending {
+            Some(ending) if ending.cause == Cause::FilesGone => ending.cause = cause,
+            Some(_) => {}
+            None => {
+                tracing::info!(?cause, "the group stops");
+                self.systemd.tell("STOPPING=1");
+                self.ending = Some(Ending { cause, since: now });
+                self.group.stop(now);
+            }
+        }
+    }
+
+    /// The end, once it has come.
+    pub(super) fn ended(&mut self) -> Option<Ending> {
+        let ending = self.ending.filter(|_| self.group.is_stopped())?;
+        if ending.cause != Cause::FilesGone {
+            return Some(ending);
+        }
+        match self.renew() {
+            Ok(()) => {
+                self.ending = None;
+                self.settle(self.now());
+                None
+            }
+            Err(error) => {
+                tracing::error!(%error, "the group cannot be started again");
+                Some(Ending { cause: Cause::Unusable, ..ending })
+            }
+        }
+    }
+
+    /// Leaves nothing behind, tells those who waited for it, and says how the process ends.
+    pub(super) fn finish(mut self, ending: Ending) -> Exit {
+        self.clear_all();
+        let report = self.clear_files(ending);
+        let Self { around, server, waits, taken, started, services, .. } = self;
+        let now = started.elapsed();
+        let paths = around.paths.clone();
+        // Released before anybody is told, so that whoever is told can start the group anew.
+        drop((services, around, taken));
+        let mut server: Server = server;
+        let down = Reply::Down(report);
+        let refused = Reply::Refused(Refusal::new(RefusalKind::NotReached, "the group has ended"));
+        for wait in waits {
+            let reply = if wait.goal == Goal::Down { &down } else { &refused };
+            server.reply(wait.client, reply, now);
+        }
+        server.finish();
+        tracing::info!(group = %paths.name(), "the group is down");
+        match ending.cause {
+            Cause::Asked | Cause::Signal => Exit::Ok,
+            Cause::Critical(HeldBecause::Permanent(_)) => Exit::Config,
+            Cause::Critical(_) => Exit::NotReached,
+            Cause::FilesGone | Cause::Unusable => Exit::Storage,
+        }
+    }
+
+    /// Stops the group when a service that it cannot do without has been given up.
+    pub(super) fn check_critical(&mut self, now: Time) {
+        if self.ending.is_some() {
+            return;
+        }
+        if let Some((service, because)) = self.group.lost()
+            && !self.replacements.contains_key(&service)
+        {
+            let service = self.name(service);
+            tracing::error!(service, %because, "a critical service is lost");
+            self.end(Cause::Critical(because), now);
+        }
+    }
+
+    /// Looks after the files that newcomers find the group by. Where they are gone, every newcomer
+    /// would silently begin a group of its own; only a new start of all cures that.
+    pub(super) fn check_topics(&mut self, now: Time) {
+        let is_intact = self.admin.as_ref().is_some_and(Admin::intact)
+            && self.around.paths.control_socket().exists();
+        if is_intact || self.ending.is_some() {
+            return;
+        }
+        let is_first = self.last_renewal.is_none_or(|last| now - last > RENEWAL_INTERVAL);
+        let cause = if is_first { Cause::FilesGone } else { Cause::Unusable };
+        let folder = self.around.paths.run();
+        tracing::warn!(folder = %folder.display(), ?cause, "files of the running group are gone");
+        self.end(cause, now);
+    }
+
+    /// Makes everything anew that lies in the run folder, and starts the group.
+    fn renew(&mut self) -> Result<(), StartError> {
+        let failed = |what| move |error| StartError::Io { what, error };
+        let paths = &self.around.paths;
+        self.admin = None;
+        remove_leftovers(paths);
+        make_folder(paths, Folder::Others)?;
+        (self.about.publish)(&paths.run()).map_err(failed("settings for the services"))?;
+        self.admin = Some(Admin::open(paths, Epoch(self.around.epoch))?);
+        if !paths.control_socket().exists() {
+            self.server.rebind(&paths.control_socket()).map_err(failed("control socket"))?;
+        }
+        let now = self.now();
+        self.last_renewal = Some(now);
+        self.told_ready = false;
+        self.group.start(now);
+        Ok(())
+    }
+
+    fn clear_files(&mut self, ending: Ending) -> DownReport {
+        self.admin = None;
+        let paths = &self.around.paths;
+        let leftovers = remove_leftovers(paths);
+        if let Err(error) = fs::remove_dir_all(paths.run())
+            && error.kind() != std::io::ErrorKind::NotFound
+        {
+            tracing::error!(folder = %paths.run().display(), %error, "not removed");
+        }
+        let killed = self.services.iter().filter(|service| {
+            service.ended.as_ref().is_some_and(|ended| ended.killed && ended.at >= ending.since)
+        });
+        DownReport {
+            killed: killed.map(|service| service.spec.name.clone()).collect(),
+            strays: std::mem::take(&mut self.strays),
+            leftovers: leftovers.iter().map(|path| path.display().to_string()).collect(),
+            seconds: (self.now() - ending.since).as_secs_f64(),
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! What `status` tells.
+
+use std::time::Duration;
+
+use rustix::process::getpid;
+
+use super::Supervisor;
+use crate::Time;
+use crate::machine::Actual;
+use crate::procfs;
+use crate::service::Ended;
+use crate::status::{GroupStatus, LastExit, ServiceStatus};
+
+impl Supervisor {
+    /// The group at this moment.
+    pub(super) fn status(&self, now: Time) -> GroupStatus {
+        let me = getpid();
+        GroupStatus {
+            name: self.around.paths.name().to_string(),
+            state: self.group.state(),
+            supervisor_pid: std::process::id(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            uptime_s: now.as_secs_f64(),
+            epoch: self.around.epoch,
+            scene: self.about.scene.clone(),
+            profile: self.about.profile.clone(),
+            config: self.about.config.clone(),
+            strays_killed: self.strays_killed,
+            rss_kib: procfs::rss_kib(me),
+            cpu_s: procfs::process(me).map(|process| process.cpu_s),
+            services: (0..self.services.len()).map(|s| self.service_status(s, now)).collect(),
+        }
+    }
+
+    fn service_status(&self, service: usize, now: Time) -> ServiceStatus {
+        let entry = &self.services[service];
+        let machine = self.group.machine(service);
+        let running = entry.running.as_ref();
+        let pid = running.map(|running| running.child.pid());
+        let log_tail = match machine.actual() {
+            Actual::Held => entry.log_tail(&self.around.paths),
+            _ => Vec::new(),
+        };
+        ServiceStatus {
+            name: entry.spec.name.clone(),
+            wanted: machine.wanted(),
+            actual: machine.actual(),
+            why: self.why(service),
+            pid: pid.map(|pid| pid.as_raw_nonzero().get().unsigned_abs()),
+            incarnation: machine.incarnation(),
+            uptime_s: running.map(|running| (now.saturating_sub(running.since)).as_secs_f64()),
+            restarts: machine.incarnation().saturating_sub(1),
+            beat_age_ms: running.and_then(|running| Some(ms(now.saturating_sub(running.beat?)))),
+            input_age_ms: running.and_then(|running| running.input_age(now)).map(ms),
+            version: running.and_then(|running| running.version.clone()),
+            says: running.and_then(|running| running.says.clone()),
+            swapped: entry.swapped.as_ref().map(|command| command.words.clone()),
+            last_exit: entry.ended.as_ref().map(|ended| last_exit(ended, now)),
+            log_tail,
+            rss_kib: pid.and_then(procfs::rss_kib),
+            cpu_s: pid.and_then(procfs::process).map(|process| process.cpu_s),
+        }
+    }
+
+    /// Why a service does not do what is wanted.
+    fn why(&self, service: usize) -> Option<String> {
+        if let Some(because) = self.group.machine(service).held_because() {
+            return Some(because.to_string());
+        }
+        let missing = self.group.waits_for(service);
+        let names: Vec<&str> = missing.iter().map(|&other| self.name(other)).collect();
+        (!names.is_empty()).then(|| format!("waits for {}", names.join(" and ")))
+    }
+}
+
+fn last_exit(ended: &Ended, now: Time) -> LastExit {
+    LastExit {
+        incarnation: ended.incarnation,
+        exit: ended.exit,
+        failure: ended.failure,
+        killed: ended.killed,
+        age_s: now.saturating_sub(ended.at).as_secs_f64(),
+        text: ended.text(),
+    }
+}
+
+fn ms(time: Duration) -> u64 {
+    u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
+}

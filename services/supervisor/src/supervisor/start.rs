@@ -1,0 +1,183 @@
+//! From nothing to a group whose services are wanted.
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io;
+use std::os::unix::fs::DirBuilderExt;
+use std::time::{Duration, Instant};
+
+use protocol::Epoch;
+use runtime::admin::{Admin, NoRoom, check_room};
+use runtime::bus::BusError;
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use rustix::process::{Resource, Rlimit, getpid, set_child_subreaper, setrlimit};
+use thiserror::Error;
+
+use super::{About, LoadBox, Supervisor, TICK};
+use crate::bond::Bond;
+use crate::configuration::{Configuration, Load};
+use crate::earlier::{self, EarlierError};
+use crate::epoch;
+use crate::group::Group;
+use crate::schedule::ScheduleError;
+use crate::server::Server;
+use crate::service::{Service, Surroundings};
+use crate::signals::Signals;
+use crate::spec::GroupSpec;
+use crate::systemd::Systemd;
+
+/// A group cannot be started.
+#[derive(Debug, Error)]
+pub enum StartError {
+    /// The configuration is wrong; every problem is told.
+    #[error("{}", .0.join("\n"))]
+    Config(Vec<String>),
+    /// The services cannot be put in order.
+    #[error(transparent)]
+    Order(#[from] ScheduleError),
+    /// An earlier supervisor, or what it had started, is still there.
+    #[error(transparent)]
+    Earlier(#[from] EarlierError),
+    /// Too little shared memory.
+    #[error(transparent)]
+    Room(#[from] NoRoom),
+    /// The group's shared memory cannot be made.
+    #[error("shared memory: {0}")]
+    SharedMemory(#[from] BusError),
+    /// A folder, file, socket or setting is refused by the operating system.
+    #[error("{what}: {error}")]
+    Io {
+        /// What was to be done.
+        what: &'static str,
+        /// What the operating system says.
+        error: io::Error,
+    },
+}
+
+impl StartError {
+    /// How a process ends for it.
+    pub fn exit(&self) -> Exit {
+        match self {
+            Self::Config(_) | Self::Order(_) => Exit::Config,
+            Self::Earlier(_) | Self::Room(_) | Self::SharedMemory(_) => Exit::NotReached,
+            Self::Io { .. } => Exit::Storage,
+        }
+    }
+}
+
+/// See [`Supervisor::start`].
+pub(super) fn start(
+    paths: GroupPaths,
+    mut load: Load,
+    fresh: bool,
+) -> Result<Supervisor, StartError> {
+    let started = Instant::now();
+    let configuration = load().map_err(StartError::Config)?;
+    let group = Group::new(&configuration.spec)?;
+    make_folder(&paths, Folder::Root)?;
+    let taken = earlier::take_group(&paths)?;
+    let alive = earlier::await_end(&paths, longest_stop(&configuration.spec))?;
+    let raised = raise(&paths, &configuration, alive, fresh);
+    let raised = raised.inspect_err(|_| {
+        // The folder says that a group runs. What cannot be removed is removed at the next start.
+        let _ = fs::remove_dir_all(paths.run());
+    })?;
+    let Raised { admin, signals, server, around } = raised;
+    tracing::info!(group = %around.paths.name(), epoch = around.epoch, "supervisor started");
+    let services = configuration.spec.services.iter().cloned().map(Service::new).collect();
+    let now = started.elapsed();
+    let mut supervisor = Supervisor {
+        started,
+        around,
+        about: About::of(configuration),
+        load: LoadBox(load),
+        group,
+        services,
+        admin: Some(admin),
+        server,
+        signals,
+        systemd: Systemd::from_env(),
+        waits: Vec::new(),
+        replacements: BTreeMap::new(),
+        strays: Vec::new(),
+        strays_killed: 0,
+        condemned: Vec::new(),
+        ending: None,
+        last_renewal: None,
+        last_pass: now,
+        next_tick: now + TICK,
+        told_ready: false,
+        taken,
+    };
+    supervisor.group.start(now);
+    Ok(supervisor)
+}
+
+/// What has to be there before the first service.
+struct Raised {
+    admin: Admin,
+    signals: Signals,
+    server: Server,
+    around: Surroundings,
+}
+
+fn raise(
+    paths: &GroupPaths,
+    configuration: &Configuration,
+    alive: File,
+    fresh: bool,
+) -> Result<Raised, StartError> {
+    check_room(configuration.shared_memory_free_min_mib)?;
+    make_folder(paths, Folder::Others)?;
+    let epoch = epoch::open(paths, fresh).map_err(failed("epoch"))?;
+    (configuration.publish)(&paths.run()).map_err(failed("settings for the services"))?;
+    let admin = Admin::open(paths, Epoch(epoch))?;
+    let signals = Signals::new().map_err(failed("signals"))?;
+    adopt_orphans().map_err(failed("process settings"))?;
+    let server = Server::bind(&paths.control_socket()).map_err(failed("control socket"))?;
+    let around = Surroundings {
+        bond: Bond::new(alive).map_err(failed("lifeline"))?,
+        epoch,
+        log: configuration.spec.log.clone(),
+        directory: std::env::current_dir().map_err(failed("current folder"))?,
+        paths: paths.clone(),
+    };
+    Ok(Raised { admin, signals, server, around })
+}
+
+/// Services of a supervisor that was killed end by themselves (an arm comes to rest first) and get
+/// as long for it as when they are told to.
+fn longest_stop(spec: &GroupSpec) -> Duration {
+    let deadlines = spec.services.iter().map(|service| service.stop_deadline);
+    deadlines.max().unwrap_or_default()
+}
+
+/// Folders of a group. The root comes first, since it holds the lock that the others wait for.
+pub(super) enum Folder {
+    Root,
+    Others,
+}
+
+/// Makes folders that only their owner can look into.
+pub(super) fn make_folder(paths: &GroupPaths, which: Folder) -> Result<(), StartError> {
+    let folders = match which {
+        Folder::Root => vec![paths.root().to_owned()],
+        Folder::Others => vec![paths.run(), paths.log(), paths.journal()],
+    };
+    let mut builder = fs::DirBuilder::new();
+    builder.recursive(true).mode(0o700);
+    folders.iter().try_for_each(|folder| builder.create(folder)).map_err(failed("folders"))
+}
+
+/// What services start and leave behind becomes this process's own to reap. Nothing in the tree
+/// dumps core: a backtrace is in the log, and a core of a process with shared memory is large.
+fn adopt_orphans() -> io::Result<()> {
+    set_child_subreaper(Some(getpid()))?;
+    setrlimit(Resource::Core, Rlimit { current: Some(0), maximum: Some(0) })?;
+    Ok(())
+}
+
+fn failed(what: &'static str) -> impl Fn(io::Error) -> StartError {
+    move |error| StartError::Io { what, error }
+}

@@ -1,0 +1,124 @@
+//! Processes that services leave behind. As the nearest subreaper the supervisor inherits them.
+
+use std::thread;
+use std::time::{Duration, Instant};
+
+use runtime::group::{ENV_INCARNATION, ENV_SERVICE};
+use rustix::process::{
+    Pid, PidfdFlags, Signal, WaitOptions, getpid, pidfd_open, pidfd_send_signal, waitpid,
+};
+
+use super::Supervisor;
+use crate::procfs::{self, Process};
+
+/// How long the kernel may take to end the last processes that were killed.
+const END_PATIENCE: Duration = Duration::from_secs(2);
+
+/// The last ones are told by name when the group is down.
+const STRAYS_TOLD_MAX: usize = 100;
+
+impl Supervisor {
+    /// Notes what else lives in the process group of a service that has ended; it is killed when
+    /// the service is reaped.
+    pub(super) fn note_left_behind(&mut self, service: usize) {
+        let Some(running) = &self.services[service].running else { return };
+        let leader = running.child.pid();
+        let group = leader.as_raw_nonzero().get();
+        let left: Vec<Process> = procfs::processes()
+            .into_iter()
+            .filter(|process| process.group == group && process.pid != leader)
+            .filter(|process| !process.is_zombie)
+            .collect();
+        let name = self.name(service).to_owned();
+        self.tell_strays(&left, &name);
+    }
+
+    /// Reaps children that are nobody's any more, and kills those that no running incarnation has
+    /// started.
+    pub(super) fn clear_strays(&mut self) {
+        for process in self.strays() {
+            if process.is_zombie || !self.belongs_to_running(process.pid) {
+                self.clear(process, "a service that has ended");
+            }
+        }
+    }
+
+    /// Kills and reaps every last child, at the end.
+    pub(super) fn clear_all(&mut self) {
+        let until = Instant::now() + END_PATIENCE;
+        loop {
+            let left = self.strays();
+            if left.is_empty() || Instant::now() > until {
+                break;
+            }
+            for process in left {
+                self.clear(process, "the group");
+            }
+            thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    /// Reaps a stray, or kills it, which is told once: it may take a while to end.
+    fn clear(&mut self, process: Process, of: &str) {
+        let pid = process.pid;
+        if process.is_zombie {
+            // Its number cannot be anybody else's: it is this process's own child.
+            let _ = waitpid(Some(pid), WaitOptions::NOHANG);
+            self.condemned.retain(|&condemned| condemned != pid);
+        } else if !self.condemned.contains(&pid) {
+            kill(pid);
+            self.condemned.push(pid);
+            self.tell_strays(&[process], of);
+        }
+    }
+
+    /// Children of this process that are not the process of a service.
+    fn strays(&self) -> Vec<Process> {
+        let me = getpid().as_raw_nonzero().get();
+        let leaders: Vec<Pid> = self
+            .services
+            .iter()
+            .filter_map(|service| Some(service.running.as_ref()?.child.pid()))
+            .collect();
+        let all = procfs::processes().into_iter();
+        all.filter(|process| process.parent == me && !leaders.contains(&process.pid)).collect()
+    }
+
+    /// Whether the process says that an incarnation which runs now has started it: some programs
+    /// put helpers into the background on purpose.
+    fn belongs_to_running(&self, pid: Pid) -> bool {
+        let environment = procfs::environment(pid);
+        let (Some(service), Some(incarnation)) =
+            (environment.get(ENV_SERVICE), environment.get(ENV_INCARNATION))
+        else {
+            // One that has wiped its environment is left alone until the group ends.
+            return true;
+        };
+        self.services.iter().any(|entry| {
+            let running = entry.running.as_ref();
+            service == entry.spec.name.as_str()
+                && running
+                    .is_some_and(|running| incarnation == running.incarnation.to_string().as_str())
+        })
+    }
+
+    fn tell_strays(&mut self, processes: &[Process], of: &str) {
+        for process in processes {
+            let stray = format!("{} ({})", process.name, process.pid);
+            tracing::warn!(stray, of, "killed a process that was left behind");
+            self.strays_killed += 1;
+            self.strays.push(stray);
+            if self.strays.len() > STRAYS_TOLD_MAX {
+                self.strays.remove(0);
+            }
+        }
+    }
+}
+
+/// Kills one of this process's own children, whose number is nobody else's until it is reaped.
+fn kill(pid: Pid) {
+    if let Ok(pidfd) = pidfd_open(pid, PidfdFlags::empty()) {
+        // It may have ended by itself.
+        let _ = pidfd_send_signal(&pidfd, Signal::KILL);
+    }
+}

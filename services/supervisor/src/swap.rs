@@ -1,0 +1,135 @@
+//! Replacing a service's program while the group goes on, and putting the old one back when the new
+//! one does not become ready.
+//!
+//! Pure: it looks at the service's machine after each of its events and says what to do next.
+
+use crate::machine::{Actual, Machine};
+
+/// A replacement under way. It begins by giving the machine the new command and
+/// [`Event::Restart`](crate::machine::Event::Restart).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Swap {
+    step: Step,
+    /// The last incarnation before the current step's restart.
+    earlier: u32,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Step {
+    /// The new command stops the old one, starts, and should become ready.
+    Trying,
+    /// The old command is started again.
+    Restoring,
+}
+
+/// What to do next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Move {
+    /// Nothing yet.
+    Wait,
+    /// The new command was not ready in time: put the old one back and restart, then go on asking.
+    Restore,
+    /// Finished: the new command is ready.
+    Kept,
+    /// Finished: the old command is ready again.
+    Restored,
+    /// Finished: even the old command did not become ready again; the usual rules apply to it.
+    Lost,
+}
+
+impl Swap {
+    /// To be made before the machine is told to restart.
+    pub fn new(machine: &Machine) -> Self {
+        Self { step: Step::Trying, earlier: machine.incarnation() }
+    }
+
+    /// What the machine's present state means for the replacement.
+    pub fn next(&mut self, machine: &Machine) -> Move {
+        let has_begun = machine.incarnation() > self.earlier;
+        match (machine.actual(), self.step) {
+            (Actual::Ready, Step::Trying) if has_begun => Move::Kept,
+            (Actual::Ready, Step::Restoring) if has_begun => Move::Restored,
+            (Actual::Starting | Actual::Ready | Actual::Stopping, _) => Move::Wait,
+            (Actual::Down | Actual::Backoff | Actual::Held, Step::Trying) => {
+                self.step = Step::Restoring;
+                self.earlier = machine.incarnation();
+                Move::Restore
+            }
+            (Actual::Down | Actual::Backoff | Actual::Held, Step::Restoring) => Move::Lost,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::Time;
+    use crate::exit::Exit;
+    use crate::group::tests::{LIMITS, service};
+    use crate::machine::{Event, Limits};
+
+    const NOW: Time = Duration::from_secs(1);
+
+    fn running() -> Machine {
+        let mut machine = Machine::new(Limits::of(&service("grounding", &[]), LIMITS));
+        for event in [Event::Start, Event::Admit, Event::Ready] {
+            machine.on(event, NOW);
+        }
+        machine
+    }
+
+    /// Gives the events and says what the replacement wants after each.
+    fn moves(swap: &mut Swap, machine: &mut Machine, events: &[Event]) -> Vec<Move> {
+        let mut after = |event: &Event| {
+            machine.on(*event, NOW);
+            swap.next(machine)
+        };
+        events.iter().map(&mut after).collect()
+    }
+
+    const STOPPED: Event = Event::Exited(Exit::Code(0));
+    const REFUSED: Event = Event::Exited(Exit::Code(78));
+
+    #[test]
+    fn a_new_command_that_becomes_ready_is_kept() {
+        let mut machine = running();
+        let mut swap = Swap::new(&machine);
+        let found = moves(&mut swap, &mut machine, &[Event::Restart, STOPPED, Event::Ready]);
+        assert_eq!(found, [Move::Wait, Move::Wait, Move::Kept]);
+    }
+
+    #[test]
+    fn a_new_command_that_is_refused_is_taken_back() {
+        let mut machine = running();
+        let mut swap = Swap::new(&machine);
+        let found = moves(
+            &mut swap,
+            &mut machine,
+            &[Event::Restart, STOPPED, REFUSED, Event::Restart, Event::Ready],
+        );
+        assert_eq!(found, [Move::Wait, Move::Wait, Move::Restore, Move::Wait, Move::Restored]);
+    }
+
+    #[test]
+    fn an_old_command_that_fails_too_is_reported() {
+        let mut machine = running();
+        let mut swap = Swap::new(&machine);
+        let found = moves(
+            &mut swap,
+            &mut machine,
+            &[Event::Restart, STOPPED, REFUSED, Event::Restart, REFUSED],
+        );
+        assert_eq!(found.last(), Some(&Move::Lost));
+    }
+
+    #[test]
+    fn a_service_at_rest_can_be_replaced() {
+        let mut machine = running();
+        moves(&mut Swap::new(&machine), &mut machine, &[Event::Stop, STOPPED]);
+        let mut swap = Swap::new(&machine);
+        let found = moves(&mut swap, &mut machine, &[Event::Restart, Event::Ready]);
+        assert_eq!(found, [Move::Wait, Move::Kept]);
+    }
+}

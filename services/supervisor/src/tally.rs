@@ -1,0 +1,129 @@
+//! How soon a service that ended is started again, and when it is given up.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use crate::Time;
+use crate::spec::RestartLimits;
+
+/// The unasked exits of one service.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Tally {
+    /// Exits that may still lie within the window, oldest first; never more than `exits_max`.
+    exits: VecDeque<Time>,
+    /// Pauses since the last reset: the exponent of the next one.
+    pauses: u32,
+    /// Whether the one start without a pause has been used since the last reset.
+    spared: bool,
+}
+
+/// What follows an unasked exit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    /// Start again at once.
+    Again,
+    /// Start again after this pause.
+    After(Duration),
+    /// Too many exits: do not start again.
+    GiveUp {
+        /// Exits within the window.
+        exits: u32,
+    },
+}
+
+impl Tally {
+    /// Counts an exit at `now` of an incarnation that had been ready for `ready_for` (`None`: it
+    /// never was) and says what follows.
+    ///
+    /// The first exit of a service that had been ready is answered at once, since a service that
+    /// works and is killed from outside should be back soon; one that never became ready always
+    /// waits, so that a broken one cannot spin.
+    pub(crate) fn count(
+        &mut self,
+        limits: &RestartLimits,
+        ready_for: Option<Duration>,
+        now: Time,
+    ) -> Verdict {
+        if ready_for.is_some_and(|time| time >= limits.backoff_reset) {
+            self.pauses = 0;
+            self.spared = false;
+        }
+        while self.exits.front().is_some_and(|&exit| now.saturating_sub(exit) >= limits.window) {
+            self.exits.pop_front();
+        }
+        self.exits.push_back(now);
+        let exits = u32::try_from(self.exits.len()).unwrap_or(u32::MAX);
+        if exits >= limits.exits_max {
+            return Verdict::GiveUp { exits };
+        }
+        if ready_for.is_some() && !self.spared {
+            self.spared = true;
+            return Verdict::Again;
+        }
+        let pause = limits.backoff_first.saturating_mul(1u32 << self.pauses.min(16));
+        self.pauses = self.pauses.saturating_add(1);
+        Verdict::After(pause.min(limits.backoff_max))
+    }
+
+    /// Forgets everything: an operator has taken the matter in hand.
+    pub(crate) fn forget(&mut self) {
+        *self = Self::default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: RestartLimits = RestartLimits {
+        exits_max: 100,
+        window: Duration::from_secs(60),
+        backoff_first: Duration::from_millis(100),
+        backoff_max: Duration::from_secs(5),
+        backoff_reset: Duration::from_secs(30),
+    };
+
+    fn pause(ms: u64) -> Verdict {
+        Verdict::After(Duration::from_millis(ms))
+    }
+
+    #[test]
+    fn pauses_double_up_to_the_longest() {
+        let mut tally = Tally::default();
+        let found: Vec<_> =
+            (0..8).map(|s| tally.count(&LIMITS, None, Time::from_secs(s))).collect();
+        let expected = [100, 200, 400, 800, 1600, 3200, 5000, 5000].map(pause);
+        assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn the_first_exit_after_ready_is_answered_at_once_and_only_that() {
+        let mut tally = Tally::default();
+        let soon = Some(Duration::from_secs(1));
+        assert_eq!(tally.count(&LIMITS, soon, Time::from_secs(1)), Verdict::Again);
+        assert_eq!(tally.count(&LIMITS, soon, Time::from_secs(2)), pause(100));
+        assert_eq!(tally.count(&LIMITS, soon, Time::from_secs(3)), pause(200));
+    }
+
+    #[test]
+    fn a_long_time_of_being_ready_resets_the_pauses() {
+        let mut tally = Tally::default();
+        for s in 0..4 {
+            tally.count(&LIMITS, None, Time::from_secs(s));
+        }
+        let long = Some(LIMITS.backoff_reset);
+        assert_eq!(tally.count(&LIMITS, long, Time::from_secs(40)), Verdict::Again);
+        assert_eq!(tally.count(&LIMITS, None, Time::from_secs(41)), pause(100));
+    }
+
+    #[test]
+    fn the_window_slides() {
+        let limits = RestartLimits { exits_max: 3, ..LIMITS };
+        let mut tally = Tally::default();
+        assert_eq!(tally.count(&limits, None, Time::from_secs(0)), pause(100));
+        assert_eq!(tally.count(&limits, None, Time::from_secs(59)), pause(200));
+        assert_eq!(tally.count(&limits, None, Time::from_secs(60)), pause(400));
+        let last = tally.count(&limits, None, Time::from_secs(118));
+        assert_eq!(last, Verdict::GiveUp { exits: 3 });
+    }
+}

@@ -1,0 +1,101 @@
+use std::time::{Duration, Instant};
+
+use rustix::process::Signal;
+use serde_json::json;
+use supervisor::control::{DownReport, Reply, Request};
+use supervisor::machine::Actual;
+
+use crate::harness::{Group, WAIT_MS, send, service, wait_for, with};
+
+#[track_caller]
+fn down(group: &mut Group) -> DownReport {
+    let Reply::Down(report) = group.ask(&Request::Down) else { panic!("not down") };
+    assert_eq!(group.wait_end().code(), Some(0));
+    group.check_nothing_left();
+    report
+}
+
+#[test]
+fn services_end_in_the_reverse_order() {
+    let mut group = Group::ready(vec![
+        service("arm", &[]),
+        with(service("policy", &["ends-slowly", "100"]), "after", json!(["arm"])),
+        with(service("speech", &["ends-slowly", "100"]), "after", json!(["policy"])),
+    ]);
+    let report = down(&mut group);
+    assert_eq!(report.killed, [""; 0]);
+    assert_eq!(report.strays, [""; 0]);
+    assert_eq!(group.events()[3..], ["speech 1 ended", "policy 1 ended", "arm 1 ended"]);
+}
+
+#[test]
+fn a_service_that_ignores_the_request_is_killed_and_named() {
+    let mut group = Group::ready(vec![
+        with(service("arm", &["ignores-term"]), "stop_ms", json!(200)),
+        service("policy", &[]),
+    ]);
+    assert_eq!(down(&mut group).killed, ["arm"]);
+}
+
+#[test]
+fn a_stopped_process_still_ends_in_order() {
+    let mut group = Group::ready(vec![service("arm", &[])]);
+    send(group.pid("arm"), Signal::STOP);
+    let begun = Instant::now();
+    let report = down(&mut group);
+    assert_eq!(report.killed, [""; 0], "it was woken and ended by itself");
+    assert!(begun.elapsed() < Duration::from_secs(10));
+    assert_eq!(group.events().last().unwrap(), "arm 1 ended");
+}
+
+#[test]
+fn a_signal_to_the_supervisor_is_a_wish_to_go_down() {
+    for signal in [Signal::TERM, Signal::INT, Signal::HUP] {
+        let mut group = Group::ready(vec![service("arm", &[])]);
+        send(group.supervisor_pid(), signal);
+        assert_eq!(group.wait_end().code(), Some(0));
+        group.check_nothing_left();
+        assert_eq!(group.events().last().unwrap(), "arm 1 ended");
+    }
+}
+
+#[test]
+fn what_a_service_left_in_its_group_is_killed_and_reported() {
+    let mut group = Group::ready(vec![service("arm", &["leaves", "child"])]);
+    let left = group.left_behind();
+    assert!(crate::harness::is_alive(left));
+    let report = down(&mut group);
+    assert_eq!(report.strays, [format!("sleep ({left})")]);
+}
+
+#[test]
+fn what_left_the_group_is_killed_as_well_and_only_when_its_service_ends() {
+    let group = Group::ready(vec![service("arm", &["leaves", "daemon"]), service("policy", &[])]);
+    let left = group.left_behind();
+    send(group.pid("policy"), Signal::KILL);
+    group.until_ready("policy", 2);
+    assert!(crate::harness::is_alive(left), "its own service still runs");
+    group.done(&Request::Stop { service: "arm".into(), wait_ms: WAIT_MS });
+    wait_for("the daemon to be killed", || (!crate::harness::is_alive(left)).then_some(()));
+    assert_eq!(group.status().strays_killed, 1);
+}
+
+#[test]
+fn a_group_that_is_going_down_takes_no_other_orders() {
+    let mut group = Group::ready(vec![service("arm", &["ends-slowly", "1000"])]);
+    send(group.supervisor_pid(), Signal::TERM);
+    group.until("arm", Actual::Stopping);
+    let refusal = group.refused(&Request::Start { service: "arm".into(), wait_ms: 0 });
+    assert_eq!(refusal.message, "the group is stopping");
+    assert_eq!(down(&mut group).killed, [""; 0]);
+}
+
+#[test]
+fn a_group_can_be_started_again_as_soon_as_it_is_down() {
+    let mut group = Group::ready(vec![service("arm", &[])]);
+    for _ in 0..3 {
+        group.ask(&Request::Down);
+        group.run();
+        group.done(&Request::WaitReady { wait_ms: WAIT_MS });
+    }
+}

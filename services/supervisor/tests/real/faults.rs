@@ -1,0 +1,145 @@
+use std::time::{Duration, Instant};
+
+use rustix::process::Signal;
+use serde_json::json;
+use supervisor::control::{RefusalKind, Request};
+use supervisor::exit::Exit;
+use supervisor::group::GroupState;
+use supervisor::machine::{Actual, Failure};
+
+use crate::harness::{Group, WAIT_MS, send, service, wait_for, with};
+
+#[test]
+fn a_killed_service_is_back_and_the_others_never_notice() {
+    let group = Group::ready(vec![
+        service("arm", &[]),
+        with(service("policy", &[]), "after", json!(["arm"])),
+    ]);
+    let policy = group.pid("policy");
+    send(group.pid("arm"), Signal::KILL);
+    let again = group.until_ready("arm", 2);
+    let last = again.last_exit.unwrap();
+    assert_eq!((last.exit, last.incarnation, last.killed), (Exit::Signal(9), 1, false));
+    assert_eq!(again.restarts, 1);
+    assert_eq!(group.pid("policy"), policy);
+    assert_eq!(group.status().state, GroupState::Ready);
+}
+
+#[test]
+fn a_service_that_refuses_its_configuration_is_held_at_once() {
+    let group = Group::start(vec![service("arm", &["exits", "78"]), service("policy", &[])]);
+    let held = group.until("arm", Actual::Held);
+    assert_eq!(held.incarnation, 1);
+    assert_eq!(held.why.as_deref(), Some("exit 78 (configuration or schema refused)"));
+    group.until("policy", Actual::Ready);
+    assert_eq!(group.status().state, GroupState::Degraded);
+    let refused = group.refused(&Request::WaitReady { wait_ms: WAIT_MS });
+    assert_eq!(refused.kind, RefusalKind::NotReached);
+    assert!(refused.message.starts_with("arm is held"), "{}", refused.message);
+}
+
+#[test]
+fn a_crash_loop_is_slowed_down_and_then_held_with_the_log() {
+    let begun = Instant::now();
+    let shell = json!({ "name": "arm", "command": ["sh", "-c", "echo so it goes >&2; exit 3"] });
+    let group = Group::start(vec![shell, service("policy", &[])]);
+    let held = group.until("arm", Actual::Held);
+    assert_eq!(held.incarnation, 5);
+    assert_eq!(held.why.as_deref(), Some("5 exits in a short time"));
+    assert_eq!(held.last_exit.unwrap().exit, Exit::Code(3));
+    assert_eq!(held.log_tail, ["so it goes"]);
+    let pauses = Duration::from_millis(100 + 200 + 400 + 800);
+    assert!(begun.elapsed() >= pauses, "{:?}", begun.elapsed());
+    group.until("policy", Actual::Ready);
+    group.done(&Request::Release { service: "arm".into(), wait_ms: 0 });
+    wait_for("a sixth start", || Some(group.service("arm")).filter(|s| s.incarnation > 5));
+}
+
+#[test]
+fn a_service_that_no_longer_beats_is_aborted_and_replaced() {
+    let group = Group::start(vec![with(service("arm", &["hangs"]), "watchdog_ms", json!(400))]);
+    let again =
+        wait_for("a second start", || Some(group.service("arm")).filter(|s| s.incarnation > 1));
+    let last = again.last_exit.unwrap();
+    assert_eq!(last.failure, Some(Failure::NoBeat));
+    assert_eq!(last.exit, Exit::Signal(6), "it leaves a trace of where it hung");
+}
+
+#[test]
+fn a_stopped_process_is_noticed_and_killed() {
+    let group = Group::ready(vec![with(service("arm", &[]), "watchdog_ms", json!(400))]);
+    send(group.pid("arm"), Signal::STOP);
+    let again = group.until_ready("arm", 2);
+    assert_eq!(again.last_exit.unwrap().failure, Some(Failure::NoBeat));
+}
+
+#[test]
+fn a_critical_service_that_is_given_up_takes_the_group_down() {
+    let mut group = Group::start(vec![
+        with(service("arm", &["exits", "78"]), "critical", json!(true)),
+        service("policy", &[]),
+    ]);
+    assert_eq!(group.wait_end().code(), Some(78));
+    group.check_nothing_left();
+}
+
+#[test]
+fn a_program_that_does_not_exist_is_held_with_the_reason() {
+    let missing = json!({ "name": "arm", "command": ["/no/such/arm"] });
+    let group = Group::start(vec![missing, service("policy", &[])]);
+    let held = group.until("arm", Actual::Held);
+    assert_eq!(held.last_exit.unwrap().text, "/no/such/arm: no such program");
+    group.until("policy", Actual::Ready);
+}
+
+#[test]
+fn a_log_that_floods_is_bounded_and_blocks_nobody() {
+    let bytes_max = 1 << 20;
+    let group = Group::start_with(json!({
+        "services": [service("arm", &["floods"]), service("policy", &[])],
+        "log_bytes_max": bytes_max,
+    }));
+    let log = group.paths.log_file("arm");
+    let aside = log.with_extension("log.1");
+    let kept = wait_for("the log to be cut", || aside.metadata().ok().map(|meta| meta.len()));
+    assert!(kept <= bytes_max, "{kept}");
+    group.until("policy", Actual::Ready);
+    group.done(&Request::Stop { service: "arm".into(), wait_ms: WAIT_MS });
+}
+
+#[test]
+fn time_in_which_everything_stood_still_is_held_against_nobody() {
+    let watched = |name| with(service(name, &[]), "watchdog_ms", json!(2000));
+    let group = Group::ready(vec![watched("arm"), watched("policy")]);
+    let (arm, supervisor) = (group.pid("arm"), group.supervisor_pid());
+    // The policy goes on beating into a queue that nobody empties; the arm does not even beat.
+    send(arm, Signal::STOP);
+    send(supervisor, Signal::STOP);
+    std::thread::sleep(Duration::from_secs(3));
+    send(supervisor, Signal::CONT);
+    wait_for("the pause to be noticed", || group.log().contains("time stood still").then_some(()));
+    send(arm, Signal::CONT);
+    let status = group.status();
+    assert_eq!(status.state, GroupState::Ready);
+    assert!(status.services.iter().all(|service| service.incarnation == 1));
+}
+
+#[test]
+fn files_removed_by_hand_restart_the_group_once() {
+    let group = Group::ready(vec![service("arm", &[]), service("policy", &[])]);
+    std::fs::remove_dir_all(group.paths.run()).unwrap();
+    wait_for("the group to be made anew", || {
+        let call = |request| {
+            supervisor::control::call(
+                &group.paths.control_socket(),
+                request,
+                crate::harness::PATIENCE,
+            )
+        };
+        call(&Request::WaitReady { wait_ms: WAIT_MS }).ok()
+    });
+    for name in ["arm", "policy"] {
+        group.until_ready(name, 2);
+    }
+    assert!(group.log().contains("files of the running group are gone"));
+}

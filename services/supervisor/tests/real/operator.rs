@@ -1,0 +1,93 @@
+use serde_json::json;
+use supervisor::control::{RefusalKind, Reply, Request};
+use supervisor::machine::{Actual, Wanted};
+
+use crate::harness::{Group, WAIT_MS, service, with};
+
+fn start(service: &str) -> Request {
+    Request::Start { service: service.into(), wait_ms: WAIT_MS }
+}
+
+fn stop(service: &str) -> Request {
+    Request::Stop { service: service.into(), wait_ms: WAIT_MS }
+}
+
+fn restart(service: &str) -> Request {
+    Request::Restart { service: service.into(), original: false, wait_ms: WAIT_MS }
+}
+
+#[test]
+fn services_are_stopped_started_and_restarted_one_by_one() {
+    let group = Group::ready(vec![service("arm", &[]), service("policy", &[])]);
+    let policy = group.pid("policy");
+    assert_eq!(group.done(&stop("arm")), "arm is down");
+    let arm = group.service("arm");
+    assert_eq!((arm.wanted, arm.actual, arm.pid), (Wanted::Down, Actual::Down, None));
+    assert_eq!(group.done(&start("arm")), "arm is ready");
+    assert_eq!(group.done(&start("arm")), "arm is ready", "again changes nothing");
+    assert_eq!(group.service("arm").incarnation, 2);
+    assert_eq!(group.done(&restart("arm")), "arm is ready");
+    assert_eq!(group.service("arm").incarnation, 3);
+    assert_eq!(group.pid("policy"), policy);
+}
+
+#[test]
+fn a_held_service_stays_down_until_it_is_released() {
+    let group = Group::ready(vec![service("arm", &[])]);
+    let hold = Request::Hold { service: "arm".into(), wait_ms: WAIT_MS };
+    assert_eq!(group.done(&hold), "arm is held");
+    let held = group.service("arm");
+    assert_eq!((held.wanted, held.actual), (Wanted::Up, Actual::Held));
+    assert_eq!(held.why.as_deref(), Some("held by the operator"));
+    let release = Request::Release { service: "arm".into(), wait_ms: WAIT_MS };
+    assert_eq!(group.done(&release), "arm is ready");
+}
+
+#[test]
+fn mistakes_are_told() {
+    let group = Group::ready(vec![service("arm", &[])]);
+    let refusal = group.refused(&stop("leg"));
+    assert_eq!(refusal.kind, RefusalKind::Usage);
+    assert_eq!(refusal.message, "there is no service leg; there are arm");
+}
+
+#[test]
+fn a_reload_restarts_what_it_concerns_and_nothing_else() {
+    let description = |fingerprint: &str, stop_ms: u64| {
+        let policy = with(service("policy", &[]), "fingerprint", json!(fingerprint));
+        json!({ "services": [with(service("arm", &[]), "stop_ms", json!(stop_ms)), policy] })
+    };
+    let group = Group::start_with(description("a", 5000));
+    group.done(&Request::WaitReady { wait_ms: WAIT_MS });
+    let reload = || group.ask(&Request::Reload { wait_ms: WAIT_MS });
+    assert_eq!(reload(), Reply::Reloaded { restarted: vec![] });
+    group.describe(&description("b", 6000));
+    assert_eq!(reload(), Reply::Reloaded { restarted: vec!["policy".into()] });
+    assert_eq!((group.service("arm").incarnation, group.service("policy").incarnation), (1, 2));
+    let published = std::fs::read_to_string(group.paths.run().join("published")).unwrap();
+    assert!(published.contains("6000"));
+}
+
+#[test]
+fn a_reload_of_nonsense_changes_nothing() {
+    let group = Group::ready(vec![service("arm", &[])]);
+    let reload = Request::Reload { wait_ms: WAIT_MS };
+    group.describe(&json!({ "services": "none" }));
+    let refusal = group.refused(&reload);
+    assert_eq!(refusal.kind, RefusalKind::Config);
+    assert_eq!(refusal.details.len(), 1);
+    group.describe(&json!({ "services": [service("arm", &[]), service("leg", &[])] }));
+    assert_eq!(group.refused(&reload).kind, RefusalKind::Config);
+    assert_eq!(group.service("arm").incarnation, 1);
+}
+
+#[test]
+fn a_reload_is_the_cure_for_a_service_that_refused_its_configuration() {
+    let description = |words: &[&str]| json!({ "services": [service("arm", words)] });
+    let group = Group::start_with(description(&["exits", "78"]));
+    group.until("arm", Actual::Held);
+    group.describe(&description(&["ready"]));
+    let reply = group.ask(&Request::Reload { wait_ms: WAIT_MS });
+    assert_eq!(reply, Reply::Reloaded { restarted: vec!["arm".into()] });
+    assert_eq!(group.service("arm").actual, Actual::Ready);
+}

@@ -1,0 +1,63 @@
+use rustix::process::Signal;
+use serde_json::json;
+use supervisor::control::Request;
+
+use crate::harness::{Group, WAIT_MS, is_alive, send, service, wait_for, with};
+
+/// Kills the supervisor and waits until it is reaped.
+fn kill_supervisor(group: &mut Group) {
+    send(group.supervisor_pid(), Signal::KILL);
+    group.wait_end();
+}
+
+#[test]
+fn services_end_by_themselves_when_the_supervisor_is_killed() {
+    let deaf = with(service("policy", &["ignores-term"]), "stop_ms", json!(500));
+    let mut group = Group::ready(vec![service("arm", &[]), deaf]);
+    let services = [group.pid("arm"), group.pid("policy")];
+    kill_supervisor(&mut group);
+    wait_for("the services to end", || services.iter().all(|&pid| !is_alive(pid)).then_some(()));
+    assert!(group.events().contains(&"policy 1 orphaned".to_owned()), "by its lifeline");
+    group.run();
+    group.done(&Request::WaitReady { wait_ms: WAIT_MS });
+    group.ask(&Request::Down);
+    group.wait_end();
+    group.check_nothing_left();
+}
+
+#[test]
+fn a_program_that_knows_nothing_of_supervisors_ends_with_its_own() {
+    let sleep = json!({ "name": "arm", "command": ["sleep", "1000"] });
+    let mut group = Group::start(vec![sleep]);
+    let arm = wait_for("a process", || group.service("arm").pid);
+    kill_supervisor(&mut group);
+    wait_for("its end", || (!is_alive(arm)).then_some(()));
+}
+
+#[test]
+fn a_new_supervisor_waits_for_services_that_still_end() {
+    let mut group = Group::ready(vec![service("arm", &["ends-slowly", "1500"])]);
+    let arm = group.pid("arm");
+    kill_supervisor(&mut group);
+    group.run();
+    assert!(!is_alive(arm));
+    assert!(group.log().contains("waiting for services of an earlier run"));
+    group.done(&Request::WaitReady { wait_ms: WAIT_MS });
+    assert_eq!(group.events(), ["arm 1 ready", "arm 1 orphaned", "arm 1 ready"]);
+}
+
+#[test]
+fn a_service_that_outlives_its_supervisor_for_good_is_killed_by_the_next() {
+    let shell = "trap '' TERM; echo deaf > $WHICHONE_HOME/lab/events; while :; do sleep 1; done";
+    let stubborn = json!({ "name": "arm", "command": ["sh", "-c", shell], "stop_ms": 500 });
+    let mut group = Group::start(vec![stubborn]);
+    wait_for("its deafness", || (group.events() == ["deaf"]).then_some(()));
+    let arm = group.pid("arm");
+    kill_supervisor(&mut group);
+    assert!(is_alive(arm));
+    group.describe(&json!({ "services": [with(service("arm", &[]), "stop_ms", json!(500))] }));
+    group.run();
+    assert!(!is_alive(arm));
+    assert!(group.log().contains("killing services of an earlier run"));
+    group.done(&Request::WaitReady { wait_ms: WAIT_MS });
+}

@@ -1,0 +1,143 @@
+//! Arguments of the batch tools.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, ValueEnum};
+use dialogue::{Costs, Mode};
+use kinematics::Limb;
+use language::Language;
+
+use super::ConfigArgs;
+
+/// Where the lines come from.
+#[derive(Clone, Debug, Default, Args)]
+pub struct InputArgs {
+    /// Read this file in place of standard input.
+    #[arg(long, value_name = "FILE")]
+    pub input: Option<PathBuf>,
+}
+
+/// Arguments of `belief`.
+#[derive(Debug, Args)]
+pub struct BeliefArgs {
+    /// The lines.
+    #[command(flatten)]
+    pub input: InputArgs,
+}
+
+/// Arguments of `ground`.
+#[derive(Debug, Args)]
+pub struct GroundArgs {
+    /// The scene, TOML or JSON.
+    #[arg(long, value_name = "FILE")]
+    pub scene: PathBuf,
+    /// How utterances are read.
+    #[arg(long, value_enum, default_value_t = LanguageArg::Careful)]
+    pub language: LanguageArg,
+    /// The lines.
+    #[command(flatten)]
+    pub input: InputArgs,
+}
+
+/// Arguments of `plan`.
+#[derive(Debug, Args)]
+pub struct PlanArgs {
+    /// The scene, TOML or JSON.
+    #[arg(long, value_name = "FILE")]
+    pub scene: PathBuf,
+    /// What decides; the configuration's where nothing is said.
+    #[arg(long, value_name = "NAME", value_parser = planner_names())]
+    pub planner: Option<String>,
+    /// Whether person and robot share the room; the robot points only then.
+    #[arg(long, value_enum, default_value_t = ModeArg::Remote)]
+    pub mode: ModeArg,
+    /// Do not ask "Is it white?".
+    #[arg(long)]
+    pub no_attr: bool,
+    /// Do not ask "What colour is it?".
+    #[arg(long)]
+    pub no_which: bool,
+    /// What actions cost and a pick is worth; the configuration's where nothing is said.
+    #[arg(long, value_name = "PRESET", value_parser = cost_names())]
+    pub costs: Option<String>,
+    /// The configuration, for what is not said here.
+    #[command(flatten)]
+    pub config: ConfigArgs,
+    /// The lines.
+    #[command(flatten)]
+    pub input: InputArgs,
+}
+
+/// Arguments of `fk` and `ik`.
+#[derive(Debug, Args)]
+pub struct LimbArgs {
+    /// The arm.
+    #[arg(long, value_enum)]
+    pub limb: LimbArg,
+    /// The lines.
+    #[command(flatten)]
+    pub input: InputArgs,
+}
+
+/// [`Language`] on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LanguageArg {
+    /// Synonyms, negation, corrections, requests to stop or to start over.
+    Careful,
+    /// The scene's own words and the answer words, as in the publication.
+    Paper,
+}
+
+/// [`Mode`] on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ModeArg {
+    /// The person does not see the robot.
+    Remote,
+    /// The person sees what the robot points at.
+    Present,
+}
+
+/// [`Limb`] on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum LimbArg {
+    /// The arm at the robot's left.
+    Left,
+    /// The arm at the robot's right.
+    Right,
+}
+
+impl From<LanguageArg> for Language {
+    fn from(arg: LanguageArg) -> Self {
+        match arg {
+            LanguageArg::Careful => Self::Careful,
+            LanguageArg::Paper => Self::Paper,
+        }
+    }
+}
+
+impl From<ModeArg> for Mode {
+    fn from(arg: ModeArg) -> Self {
+        match arg {
+            ModeArg::Remote => Self::Remote,
+            ModeArg::Present => Self::Present,
+        }
+    }
+}
+
+impl From<LimbArg> for Limb {
+    fn from(arg: LimbArg) -> Self {
+        match arg {
+            LimbArg::Left => Self::Left,
+            LimbArg::Right => Self::Right,
+        }
+    }
+}
+
+fn planner_names() -> PossibleValuesParser {
+    dialogue::registry::names().to_vec().into()
+}
+
+fn cost_names() -> PossibleValuesParser {
+    Costs::PRESETS.map(|(name, _)| name).into()
+}

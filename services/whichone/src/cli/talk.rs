@@ -1,0 +1,129 @@
+//! Arguments of the verbs that talk to the robot and look at it.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Args, ValueEnum};
+use clap_complete::Shell;
+
+use super::ConfigArgs;
+
+/// Arguments of `say`.
+#[derive(Debug, Args)]
+pub struct SayArgs {
+    /// The words.
+    #[arg(required = true, value_name = "TEXT")]
+    pub text: Vec<String>,
+    /// Longest wait until it is accepted, seconds.
+    #[arg(long, value_name = "S", default_value = "10", value_parser = seconds)]
+    pub timeout: Duration,
+}
+
+/// Arguments of `listen`.
+#[derive(Debug, Args)]
+pub struct ListenArgs {
+    /// A WAV file with speech.
+    #[arg(value_name = "FILE.wav")]
+    pub file: PathBuf,
+    /// Longest wait until it is recognised, seconds.
+    #[arg(long, value_name = "S", default_value = "60", value_parser = seconds)]
+    pub timeout: Duration,
+}
+
+/// Arguments of `watch`.
+#[derive(Debug, Args)]
+pub struct WatchArgs {
+    /// Print one picture and end.
+    #[arg(long)]
+    pub once: bool,
+}
+
+/// Arguments of `chat`.
+#[derive(Debug, Args)]
+pub struct ChatArgs {
+    /// The configuration, where a group has to be started.
+    #[command(flatten)]
+    pub config: ConfigArgs,
+    /// Leave a group that was started for this chat running.
+    #[arg(long)]
+    pub keep: bool,
+}
+
+/// Arguments of `await`.
+#[derive(Debug, Args)]
+pub struct AwaitArgs {
+    /// What to wait for.
+    #[arg(value_enum)]
+    pub what: Awaited,
+    /// Longest wait, seconds.
+    #[arg(long, value_name = "S", default_value = "120", value_parser = seconds)]
+    pub timeout: Duration,
+    /// Answer the robot's questions meanwhile, truthfully, as somebody who wants this object.
+    #[arg(long, value_name = "OBJECT")]
+    pub answer_as: Option<String>,
+}
+
+/// What can be waited for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Awaited {
+    /// The end of an interaction; told at once if no earlier `await` has told of it.
+    Pick,
+}
+
+/// Arguments of `stop-motion` and `resume-motion`.
+#[derive(Debug, Args)]
+pub struct MotionArgs {
+    /// Longest wait until the arm confirms, seconds.
+    #[arg(long, value_name = "S", default_value = "5", value_parser = seconds)]
+    pub timeout: Duration,
+}
+
+/// Arguments of `journal`.
+#[derive(Debug, Args)]
+pub struct JournalArgs {
+    /// Name of the service.
+    #[arg(default_value = "policy", value_parser = ["speech", "policy", "arm"])]
+    pub service: String,
+    /// Check that it holds together; exit code 70 if not.
+    ///
+    /// Of the policy: every utterance applied once and in order, every state the one that follows
+    /// from the one before it, bit for bit, and no interaction with two deliveries.
+    #[arg(long)]
+    pub verify: bool,
+    /// The configuration that the journal was written with, where the group does not run.
+    #[command(flatten)]
+    pub config: ConfigArgs,
+}
+
+/// Arguments of `completions`.
+#[derive(Debug, Args)]
+pub struct CompletionsArgs {
+    /// The shell.
+    #[arg(value_enum)]
+    pub shell: Shell,
+}
+
+/// A length of time that people wait.
+pub(super) fn seconds(text: &str) -> Result<Duration, String> {
+    let wrong = || "write seconds, e.g. 30".to_owned();
+    let seconds: f64 = text.trim().parse().map_err(|_| wrong())?;
+    let sensible = (0.0..=SECONDS_MAX).contains(&seconds);
+    sensible.then(|| Duration::from_secs_f64(seconds)).ok_or_else(wrong)
+}
+
+/// A month: nobody waits longer, and sums of times stay far from overflow.
+const SECONDS_MAX: f64 = 2_678_400.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seconds_are_numbers_that_somebody_would_wait() {
+        assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
+        assert_eq!(seconds("0"), Ok(Duration::ZERO));
+        for wrong in ["", "-1", "soon", "NaN", "inf", "1e300"] {
+            assert!(seconds(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,48 @@
+//! The command line: what people and scripts do with a robot, and the batch tools.
+//!
+//! A verb that talks to a group holds no state of its own: it asks the supervisor over its control
+//! socket, or is one more client of the group's topics, and can be killed at any moment without
+//! harm. The batch tools run the very code that the services run, on lines in place of messages.
+
+use std::ffi::OsString;
+use std::io::ErrorKind;
+
+use clap::Parser;
+use runtime::exit::Exit;
+
+use crate::cli::Cli;
+use crate::output::{Output, complain};
+use crate::trouble::Trouble;
+
+pub mod batch;
+pub mod cli;
+pub mod output;
+pub mod scene_file;
+pub mod trouble;
+pub mod verbs;
+
+/// Runs the command line `arguments`, program name first, and says how the process should end.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Nobody to tell where the output is closed.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::Usage } else { Exit::Ok };
+        }
+    };
+    let mut out = Output::standard(cli.json);
+    let ended = verbs::run(cli, &mut out).and_then(|exit| out.flush().map(|()| exit));
+    match ended {
+        Ok(exit) => exit,
+        // Whoever read this has seen enough.
+        Err(Trouble::Output(error)) if error.kind() == ErrorKind::BrokenPipe => Exit::Ok,
+        Err(trouble) => {
+            complain(&trouble);
+            match trouble {
+                Trouble::Failure(failure) => failure.exit,
+                Trouble::Output(_) => Exit::Storage,
+            }
+        }
+    }
+}

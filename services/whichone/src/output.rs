@@ -1,0 +1,212 @@
+//! The one place that prints.
+//!
+//! Invariant: what a verb has to say goes to standard output, for people or as JSON; progress and
+//! trouble go to standard error. Colour appears on terminals only, and never where `NO_COLOR` is
+//! set.
+
+use std::fmt::{self, Display};
+use std::io::{self, BufWriter, IsTerminal, Write};
+
+use serde::Serialize;
+
+use crate::trouble::Trouble;
+
+/// Where a verb prints to.
+pub struct Output<'a> {
+    sink: Box<dyn Write + 'a>,
+    json: bool,
+    terminal: bool,
+    style: Style,
+}
+
+/// Whether text may be coloured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Style {
+    /// Escape sequences are understood.
+    pub colour: bool,
+}
+
+/// How a word is set apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ink {
+    /// What matters most.
+    Bold,
+    /// What matters least.
+    Dim,
+    /// As it should be.
+    Green,
+    /// On its way.
+    Yellow,
+    /// Not as it should be.
+    Red,
+    /// The robot's words.
+    Cyan,
+}
+
+/// Text in an [`Ink`], or plain.
+#[derive(Clone, Copy, Debug)]
+pub struct Painted<T> {
+    text: T,
+    ink: Option<Ink>,
+}
+
+impl Output<'static> {
+    /// Standard output. What is printed appears when a line is complete.
+    pub fn standard(json: bool) -> Self {
+        let terminal = io::stdout().is_terminal();
+        let sink = Box::new(BufWriter::with_capacity(1 << 16, io::stdout().lock()));
+        Self { sink, json, terminal, style: Style { colour: terminal && colour_is_welcome() } }
+    }
+}
+
+impl<'a> Output<'a> {
+    /// Prints to `sink`, without colour.
+    pub fn to(sink: impl Write + 'a, json: bool) -> Self {
+        Self { sink: Box::new(sink), json, terminal: false, style: Style::default() }
+    }
+
+    /// Whether JSON is asked for.
+    pub fn is_json(&self) -> bool {
+        self.json
+    }
+
+    /// Whether a person looks at it on a screen that can be drawn over.
+    pub fn is_terminal(&self) -> bool {
+        self.terminal
+    }
+
+    /// How words may be set apart.
+    pub fn style(&self) -> Style {
+        self.style
+    }
+
+    /// Prints a line, at once.
+    ///
+    /// # Errors
+    /// Nobody takes it.
+    pub fn line(&mut self, text: impl Display) -> Result<(), Trouble> {
+        self.queue_line(text)?;
+        self.flush()
+    }
+
+    /// Prints a line some time before [`Output::flush`] returns.
+    ///
+    /// # Errors
+    /// Nobody takes it.
+    pub fn queue_line(&mut self, text: impl Display) -> Result<(), Trouble> {
+        writeln!(self.sink, "{text}").map_err(Trouble::Output)
+    }
+
+    /// Prints a value as one line of JSON, at once.
+    ///
+    /// # Errors
+    /// Nobody takes it.
+    pub fn json(&mut self, value: &impl Serialize) -> Result<(), Trouble> {
+        self.queue_json(value)?;
+        self.flush()
+    }
+
+    /// Prints a value as one line of JSON some time before [`Output::flush`] returns.
+    ///
+    /// # Errors
+    /// Nobody takes it.
+    pub fn queue_json(&mut self, value: &impl Serialize) -> Result<(), Trouble> {
+        serde_json::to_writer(&mut self.sink, value).map_err(|e| Trouble::Output(e.into()))?;
+        self.sink.write_all(b"\n").map_err(Trouble::Output)
+    }
+
+    /// Prints text as it is, at once.
+    ///
+    /// # Errors
+    /// Nobody takes it.
+    pub fn text(&mut self, text: &str) -> Result<(), Trouble> {
+        self.sink.write_all(text.as_bytes()).map_err(Trouble::Output)?;
+        self.flush()
+    }
+
+    /// Makes everything printed so far appear.
+    ///
+    /// # Errors
+    /// Nobody takes it.
+    pub fn flush(&mut self) -> Result<(), Trouble> {
+        self.sink.flush().map_err(Trouble::Output)
+    }
+}
+
+impl Style {
+    /// `text` in `ink`, where that is understood.
+    pub fn paint<T: Display>(self, ink: Ink, text: T) -> Painted<T> {
+        Painted { text, ink: self.colour.then_some(ink) }
+    }
+}
+
+impl<T: Display> Display for Painted<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(ink) = self.ink else { return self.text.fmt(f) };
+        let code = match ink {
+            Ink::Bold => 1,
+            Ink::Dim => 2,
+            Ink::Red => 31,
+            Ink::Green => 32,
+            Ink::Yellow => 33,
+            Ink::Cyan => 36,
+        };
+        write!(f, "\x1b[{code}m{}\x1b[0m", self.text)
+    }
+}
+
+/// Says something beside the verb's result, on standard error.
+pub fn note(text: impl Display) {
+    // Where standard error is closed nobody wants to know.
+    let _ = writeln!(io::stderr(), "{text}");
+}
+
+/// Tells what went wrong.
+pub fn complain(trouble: &Trouble) {
+    let style = Style { colour: io::stderr().is_terminal() && colour_is_welcome() };
+    note(format_args!("{} {trouble}", style.paint(Ink::Red, "error:")));
+}
+
+fn colour_is_welcome() -> bool {
+    std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
+}
+
+/// Rows below their heads, each column as wide as its widest cell.
+pub fn table(heads: &[&str], rows: &[Vec<String>]) -> Vec<String> {
+    let width = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column));
+        cells.map(|cell| cell.chars().count()).chain([heads[column].len()]).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..heads.len()).map(width).collect();
+    let line = |cells: &[&str]| {
+        let padded = cells.iter().zip(&widths).map(|(cell, width)| format!("{cell:width$}"));
+        padded.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    let rows = rows.iter().map(|row| line(&row.iter().map(String::as_str).collect::<Vec<_>>()));
+    std::iter::once(line(heads)).chain(rows).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_as_wide_as_their_widest_cell() {
+        let rows = [vec!["arm".to_owned(), "ready".to_owned()], vec!["grounding".to_owned()]];
+        let lines = table(&["SERVICE", "STATE"], &rows);
+        assert_eq!(lines, ["SERVICE    STATE", "arm        ready", "grounding"]);
+    }
+
+    #[test]
+    fn colour_is_put_only_where_it_is_understood() {
+        assert_eq!(Style { colour: false }.paint(Ink::Red, "no").to_string(), "no");
+        assert_eq!(Style { colour: true }.paint(Ink::Red, "no").to_string(), "\x1b[31mno\x1b[0m");
+    }
+
+    #[test]
+    fn a_value_is_one_line_of_json() {
+        let mut bytes = Vec::new();
+        Output::to(&mut bytes, true).json(&serde_json::json!({"a": "b\nc"})).unwrap();
+        assert_eq!(bytes, b"{\"a\":\"b\\nc\"}\n");
+    }
+}

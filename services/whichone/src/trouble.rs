@@ -1,0 +1,98 @@
+//! Why a verb ends before its time.
+
+use std::io;
+
+use runtime::bus::{BusError, PortError};
+use runtime::client::ClientError;
+use runtime::exit::{Exit, Failure};
+use runtime::group::GroupError;
+use scene::Problem;
+use settings::Problems;
+use supervisor::control::{CallError, Refusal};
+use supervisor::launch::LaunchError;
+
+/// What every verb ends with: the exit code of a verb that said all there is to say, or trouble.
+pub type Outcome = Result<Exit, Trouble>;
+
+/// Why a verb ends before its time.
+#[derive(Debug, thiserror::Error)]
+pub enum Trouble {
+    /// Something to tell the person, with the exit code that tells it to scripts.
+    #[error(transparent)]
+    Failure(#[from] Failure),
+    /// Nobody takes what is printed: a closed pipe is no failure, anything else is.
+    #[error("cannot print: {0}")]
+    Output(io::Error),
+}
+
+impl Trouble {
+    /// Trouble with its exit code and reason.
+    pub fn new(exit: Exit, reason: impl Into<String>) -> Self {
+        Self::Failure(Failure::new(exit, reason))
+    }
+
+    /// A file that cannot be read or written.
+    pub fn file(path: &std::path::Path, error: &io::Error) -> Self {
+        Self::new(Exit::Storage, format!("{}: {error}", path.display()))
+    }
+}
+
+impl From<ClientError> for Trouble {
+    fn from(error: ClientError) -> Self {
+        match error {
+            ClientError::Bus(error) => error.into(),
+            other => Self::new(Exit::NotReached, other.to_string()),
+        }
+    }
+}
+
+impl From<BusError> for Trouble {
+    fn from(error: BusError) -> Self {
+        Self::Failure(error.into())
+    }
+}
+
+impl From<PortError> for Trouble {
+    fn from(error: PortError) -> Self {
+        Self::Failure(error.into())
+    }
+}
+
+impl From<GroupError> for Trouble {
+    fn from(error: GroupError) -> Self {
+        Self::new(Exit::Usage, error.to_string())
+    }
+}
+
+impl From<CallError> for Trouble {
+    fn from(error: CallError) -> Self {
+        Self::new(Exit::NotReached, error.to_string())
+    }
+}
+
+impl From<LaunchError> for Trouble {
+    fn from(error: LaunchError) -> Self {
+        Self::new(error.exit(), error.to_string())
+    }
+}
+
+impl From<Refusal> for Trouble {
+    fn from(refusal: Refusal) -> Self {
+        let details = refusal.details.iter().map(|line| format!("\n  {line}"));
+        let exit = refusal.exit();
+        Self::new(exit, details.fold(refusal.message, |text, line| text + &line))
+    }
+}
+
+impl From<Problems> for Trouble {
+    fn from(problems: Problems) -> Self {
+        Self::new(Exit::Config, problems.to_string())
+    }
+}
+
+impl From<Vec<Problem>> for Trouble {
+    fn from(problems: Vec<Problem>) -> Self {
+        let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
+        Self::new(Exit::Config, lines.join("\n"))
+    }
+}

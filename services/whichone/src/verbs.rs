@@ -1,0 +1,75 @@
+//! The verbs, a file each or a family a file.
+
+use protocol::MotionOrder;
+
+use crate::cli::{Awaited, Cli, Verb};
+use crate::output::Output;
+use crate::trouble::Outcome;
+use crate::{batch, scene_file};
+
+mod await_pick;
+mod chat;
+mod check;
+mod completions;
+mod conversation;
+mod doctor;
+mod interrupt;
+mod journal;
+mod leftovers;
+mod logs;
+mod motion;
+mod operate;
+mod place;
+mod planning;
+mod speak;
+mod status;
+mod up;
+mod watch;
+mod words;
+
+/// Does what the command line asks for.
+///
+/// # Errors
+/// Why it was not done.
+pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
+    let paths = || place::paths(&cli.group);
+    match cli.verb {
+        Verb::Up(args) => up::up(&paths()?, &args, out),
+        Verb::Down(args) => operate::down(&paths()?, args.timeout, out),
+        Verb::Status => status::status(&paths()?, out),
+        Verb::Start(args) => operate::start(&paths()?, args, out),
+        Verb::Stop(args) => operate::stop(&paths()?, args, out),
+        Verb::Restart(args) => operate::restart(&paths()?, args, out),
+        Verb::Hold(args) => operate::hold(&paths()?, args, out),
+        Verb::Release(args) => operate::release(&paths()?, args, out),
+        Verb::Logs(args) => logs::logs(&paths()?, &args, out),
+        Verb::Reload(args) => operate::reload(&paths()?, args.timeout, out),
+        Verb::Check(args) => check::check(&args, out),
+        Verb::Swap(args) => operate::swap(&paths()?, args, out),
+        Verb::Say(args) => speak::say(&paths()?, &args.text, args.timeout, out),
+        Verb::Listen(args) => speak::listen(&paths()?, &args.file, args.timeout, out),
+        Verb::Watch(args) => watch::watch(&paths()?, &args, out),
+        Verb::Chat(args) => chat::chat(&paths()?, &args, out),
+        Verb::Await(args) => match args.what {
+            Awaited::Pick => await_pick::await_pick(&paths()?, &args, out),
+        },
+        Verb::StopMotion(args) => motion::motion(&paths()?, MotionOrder::Stop, args.timeout, out),
+        Verb::ResumeMotion(args) => {
+            motion::motion(&paths()?, MotionOrder::Resume, args.timeout, out)
+        }
+        Verb::Journal(args) => journal::journal(&paths()?, &args, out),
+        Verb::Completions(args) => completions::completions(args.shell, out),
+        Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
+        Verb::Belief(args) => batch::belief(batch::open(&args.input)?, out),
+        Verb::Ground(args) => {
+            let scene = scene_file::load(&args.scene)?;
+            let grounder = batch::Grounder::new(scene, args.language.into());
+            batch::ground(&grounder, batch::open(&args.input)?, out)
+        }
+        Verb::Plan(args) => {
+            batch::plan(&mut planning::decider(&args)?, batch::open(&args.input)?, out)
+        }
+        Verb::Fk(args) => batch::fk(args.limb.into(), batch::open(&args.input)?, out),
+        Verb::Ik(args) => batch::ik(args.limb.into(), batch::open(&args.input)?, out),
+    }
+}

@@ -1,0 +1,136 @@
+//! `await pick`: the outcome of an interaction, and a simulated user who meanwhile answers.
+
+use std::thread;
+use std::time::Instant;
+
+use protocol::{Ended, Outcome as How};
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use serde_json::json;
+
+use super::conversation::{Conversation, LOOK_EVERY};
+use super::words;
+use crate::cli::AwaitArgs;
+use crate::output::Output;
+use crate::trouble::{Outcome, Trouble};
+
+use user::TruthfulUser;
+use waiting::Waiting;
+
+mod user;
+mod waiting;
+
+/// Waits for the outcome that the words said so far lead to, and prints it.
+pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<'_>) -> Outcome {
+    let started = Instant::now();
+    let mut conversation = Conversation::join(paths)?;
+    let wanted = args.answer_as.as_deref();
+    let user = wanted.map(|name| TruthfulUser::new(conversation.scene(), name));
+    let mut user = user.transpose().map_err(|what| Trouble::new(Exit::Usage, what))?;
+    let mut waiting = Waiting::new(told_before(paths));
+    loop {
+        conversation.look()?;
+        if let Some(ended) = waiting.look(conversation.seen()) {
+            remember(paths, ended.interaction)?;
+            return tell(&conversation, &ended, out);
+        }
+        if let Some(answer) = user.as_mut().and_then(|user| user.answer(conversation.seen())) {
+            conversation.say(&answer)?;
+        }
+        if started.elapsed() >= args.timeout {
+            return tell_timeout(&conversation, started, out);
+        }
+        thread::sleep(LOOK_EVERY);
+    }
+}
+
+fn tell(conversation: &Conversation, ended: &Ended, out: &mut Output<'_>) -> Outcome {
+    let object = ended.object.and_then(|i| {
+        let object = conversation.scene().objects().get(usize::from(i));
+        object.map(|object| object.name.as_str())
+    });
+    if out.is_json() {
+        out.json(&json!({
+            "object": object,
+            "questions": ended.questions,
+            "seconds": ended.seconds,
+            "outcome": ended.outcome,
+        }))?;
+    } else {
+        out.line(sentence(ended, object))?;
+    }
+    let delivered = ended.outcome == How::Delivered;
+    Ok(if delivered { Exit::Ok } else { Exit::NotReached })
+}
+
+/// The outcome for people, e.g. `delivered clear after 2 questions and 14.2 s`.
+pub(super) fn sentence(ended: &Ended, object: Option<&str>) -> String {
+    let what = match ended.outcome {
+        How::Delivered => "delivered",
+        How::Failed => "failed to fetch",
+        How::Cancelled => "cancelled",
+        How::Abandoned => "abandoned: nobody answered",
+        How::SceneChanged => "ended: the scene was changed",
+    };
+    let object = object.map(|name| format!(" {name}")).unwrap_or_default();
+    let questions = words::count(ended.questions.into(), "question");
+    format!("{what}{object} after {questions} and {}", words::time(ended.seconds))
+}
+
+fn tell_timeout(conversation: &Conversation, started: Instant, out: &mut Output<'_>) -> Outcome {
+    let seconds = started.elapsed().as_secs_f64();
+    if out.is_json() {
+        let questions = conversation.seen().view.as_ref().map_or(0, |view| view.questions);
+        out.json(&json!({
+            "object": null,
+            "questions": questions,
+            "seconds": seconds,
+            "outcome": "timeout",
+        }))?;
+    } else {
+        let after = words::time(seconds);
+        out.line(format_args!("no interaction has ended within {after}; see: whichone watch"))?;
+    }
+    Ok(Exit::NotReached)
+}
+
+/// The last interaction that an earlier `await` of this run told of.
+fn told_before(paths: &GroupPaths) -> u64 {
+    let text = std::fs::read_to_string(paths.run().join(AWAITED)).unwrap_or_default();
+    text.trim().parse().unwrap_or(0)
+}
+
+fn remember(paths: &GroupPaths, interaction: u64) -> Result<(), Trouble> {
+    let path = paths.run().join(AWAITED);
+    std::fs::write(&path, format!("{interaction}\n")).map_err(|error| Trouble::file(&path, &error))
+}
+
+/// Holds the number of the last interaction told of.
+const AWAITED: &str = "awaited";
+
+#[cfg(test)]
+mod tests {
+    use super::super::conversation::example;
+    use super::*;
+
+    #[test]
+    fn outcomes_are_told_in_a_sentence() {
+        let ended = example::ended(3).view.and_then(|view| view.last).unwrap();
+        let told = sentence(&ended, Some("clear"));
+        assert_eq!(told, "delivered clear after 2 questions and 12.5 s");
+        let cancelled = Ended { outcome: How::Cancelled, questions: 1, ..ended };
+        assert_eq!(sentence(&cancelled, None), "cancelled after 1 question and 12.5 s");
+    }
+
+    #[test]
+    fn what_was_told_of_is_remembered_for_as_long_as_the_group_runs() {
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
+        assert_eq!(told_before(&paths), 0);
+        std::fs::create_dir_all(paths.run()).unwrap();
+        remember(&paths, 41).unwrap();
+        assert_eq!(told_before(&paths), 41);
+        std::fs::write(paths.run().join(AWAITED), "?").unwrap();
+        assert_eq!(told_before(&paths), 0);
+    }
+}

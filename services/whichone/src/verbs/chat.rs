@@ -1,0 +1,211 @@
+//! `chat`: talking to the robot in the terminal.
+
+use std::io::{self, BufRead, IsTerminal};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use protocol::{MotionOrder, Receipt, ReceiptStatus};
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use serde_json::json;
+
+use super::conversation::{Conversation, LOOK_EVERY};
+use super::interrupt::Interrupt;
+use super::{await_pick, operate, up};
+use crate::cli::ChatArgs;
+use crate::output::{Ink, Output, note};
+use crate::trouble::{Outcome, Trouble};
+
+/// How long the end of a chat waits for what was said last to come to its end.
+const LAST_WORDS: Duration = Duration::from_secs(120);
+/// How long a started group may take to stop.
+const STOP: Duration = Duration::from_secs(60);
+
+/// Talks until `quit` or the end of the input.
+pub(super) fn chat(paths: &GroupPaths, args: &ChatArgs, out: &mut Output<'_>) -> Outcome {
+    let started = !up::is_running(paths)?;
+    let interrupt = Interrupt::listen()?;
+    if started {
+        note(format_args!("no group {} is running; starting one", paths.name()));
+    }
+    let ready = if started { up::bring_up(paths, &args.config) } else { Ok(()) };
+    let talked = ready.and_then(|()| talk(paths, &interrupt, out));
+    if started && !args.keep {
+        note("stopping the group that was started for this chat");
+        operate::down(paths, STOP, &mut Output::to(io::sink(), true))?;
+    }
+    talked
+}
+
+fn talk(paths: &GroupPaths, interrupt: &Interrupt, out: &mut Output<'_>) -> Outcome {
+    let mut chat = Chat::new(Conversation::join(paths)?, out);
+    chat.conversation.first_look()?;
+    chat.greet()?;
+    let lines = typed_lines();
+    while !interrupt.is_told() {
+        chat.look()?;
+        match lines.try_recv() {
+            Ok(line) => match line.trim() {
+                "" => {}
+                "quit" | "exit" => return Ok(Exit::Ok),
+                "resume" => chat.resume()?,
+                words => chat.conversation.say(words)?,
+            },
+            Err(TryRecvError::Empty) => thread::sleep(LOOK_EVERY * 2),
+            Err(TryRecvError::Disconnected) => return chat.finish(interrupt),
+        }
+    }
+    Ok(Exit::Ok)
+}
+
+/// Lines from standard input, read on a thread of their own because reading blocks.
+fn typed_lines() -> Receiver<String> {
+    let (typed, lines) = channel();
+    thread::spawn(move || {
+        let mut input = io::stdin().lock();
+        let mut bytes = Vec::new();
+        while input.read_until(b'\n', &mut bytes).is_ok_and(|read| read > 0) {
+            if typed.send(String::from_utf8_lossy(&bytes).into_owned()).is_err() {
+                return;
+            }
+            bytes.clear();
+        }
+    });
+    lines
+}
+
+struct Chat<'a, 'b> {
+    conversation: Conversation,
+    out: &'a mut Output<'b>,
+    /// The words of the robot's that were printed last.
+    printed: Option<(u64, u32)>,
+    /// The last interaction whose end is known.
+    ended: Option<u64>,
+}
+
+impl<'a, 'b> Chat<'a, 'b> {
+    fn new(conversation: Conversation, out: &'a mut Output<'b>) -> Self {
+        Self { conversation, out, printed: None, ended: None }
+    }
+
+    fn greet(&mut self) -> Result<(), Trouble> {
+        if self.out.is_json() || !io::stdin().is_terminal() {
+            return Ok(());
+        }
+        let scene = self.conversation.scene();
+        let noun = scene.noun();
+        let objects: Vec<String> =
+            (0..scene.objects().len()).map(|i| scene.describe(i.into())).take(12).collect();
+        note(format_args!("There are: {}.", objects.join(", ")));
+        note(format_args!("Ask for a {noun}, e.g. \"get me the {}\"; quit ends.", objects[0]));
+        Ok(())
+    }
+
+    /// Prints what has happened.
+    fn look(&mut self) -> Result<(), Trouble> {
+        for receipt in self.conversation.look()? {
+            if self.conversation.is_own(&receipt) {
+                self.refused(&receipt)?;
+            }
+        }
+        let words = self.conversation.seen().words();
+        let words = words.map(|(said, text)| (said, text.to_owned()));
+        if let Some((said, text)) = words
+            && self.printed != Some(said)
+        {
+            // What was said before this chat began is over, unless a question stands.
+            let seen = self.conversation.seen();
+            let stands = seen.view.as_ref().is_some_and(|view| view.interaction != 0);
+            let news = self.ended.is_some() || stands;
+            self.printed = Some(said);
+            if news {
+                self.robot_says(&text)?;
+            }
+        }
+        self.outcome()
+    }
+
+    fn robot_says(&mut self, text: &str) -> Result<(), Trouble> {
+        if self.out.is_json() {
+            return self.out.json(&json!({ "robot": text }));
+        }
+        let robot = self.out.style().paint(Ink::Cyan, "robot:");
+        self.out.line(format_args!("{robot} {text}"))
+    }
+
+    /// Tells of words that were not taken; accepted ones stand in the terminal already.
+    fn refused(&mut self, receipt: &Receipt) -> Result<(), Trouble> {
+        if receipt.status == ReceiptStatus::Accepted.code() {
+            return Ok(());
+        }
+        let why = receipt.note.as_str().unwrap_or("no reason was given");
+        if self.out.is_json() {
+            return self.out.json(&json!({ "refused": why }));
+        }
+        let line = format!("not accepted: {why}");
+        self.out.line(self.out.style().paint(Ink::Red, line))
+    }
+
+    fn outcome(&mut self) -> Result<(), Trouble> {
+        let Some(view) = &self.conversation.seen().view else { return Ok(()) };
+        let last = view.last.clone();
+        let id = last.as_ref().map_or(0, |last| last.interaction);
+        let before = self.ended.replace(id);
+        let (Some(last), Some(true)) = (last, before.map(|before| before < id)) else {
+            return Ok(());
+        };
+        let objects = self.conversation.scene().objects();
+        let object = last.object.and_then(|i| objects.get(usize::from(i)));
+        let object = object.map(|object| object.name.clone());
+        if self.out.is_json() {
+            return self.out.json(&json!({
+                "object": object, "questions": last.questions, "seconds": last.seconds,
+                "outcome": last.outcome,
+            }));
+        }
+        let sentence = await_pick::sentence(&last, object.as_deref());
+        self.out.line(self.out.style().paint(Ink::Dim, format!("({sentence})")))
+    }
+
+    fn resume(&mut self) -> Result<(), Trouble> {
+        self.conversation.motion(MotionOrder::Resume)?;
+        note("the arm may move");
+        Ok(())
+    }
+
+    /// Nobody will say any more: waits for what was said to come to its end, or to a question that
+    /// nobody will answer.
+    fn finish(&mut self, interrupt: &Interrupt) -> Outcome {
+        let until = Instant::now() + LAST_WORDS;
+        let mut over_since = None;
+        while Instant::now() < until && !interrupt.is_told() {
+            self.look()?;
+            if !self.is_over() {
+                over_since = None;
+            } else if over_since.get_or_insert_with(Instant::now).elapsed() >= self.farewell() {
+                return Ok(Exit::Ok);
+            }
+            thread::sleep(LOOK_EVERY * 2);
+        }
+        Ok(Exit::NotReached)
+    }
+
+    fn is_over(&self) -> bool {
+        let seen = self.conversation.seen();
+        let rests = seen.view.as_ref().is_some_and(|view| view.interaction == 0);
+        let asks = seen.open_question().is_some();
+        self.conversation.is_heard() && seen.is_settled() && (rests || asks)
+    }
+
+    /// How long to stay once all is over: until the robot's last words are said, but they may have
+    /// been cut short.
+    fn farewell(&self) -> Duration {
+        let view = self.conversation.seen().view.as_ref();
+        let said = self.printed.map(|(prompt, _)| prompt);
+        match view.is_some_and(|view| Some(view.prompt) == said || view.text.is_empty()) {
+            true => Duration::from_millis(50),
+            false => Duration::from_secs(5),
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! `check`: whether a configuration is right, and what would run.
+
+use runtime::exit::Exit;
+use serde_json::{Value as Json, json};
+use settings::{Problems, Settings};
+
+use super::{place, words};
+use crate::cli::CheckArgs;
+use crate::output::{Ink, Output, note, table};
+use crate::trouble::{Outcome, Trouble};
+
+/// Tells every problem at once, or what would run.
+pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
+    let folder = place::config_folder(&args.config)?;
+    let loaded = Settings::load(&folder, args.config.profile.as_deref(), &args.config.set);
+    match loaded {
+        Err(problems) => refused(&problems, out),
+        Ok(settings) if out.is_json() => {
+            out.json(&as_json(&settings, args.values))?;
+            Ok(Exit::Ok)
+        }
+        Ok(settings) => {
+            let good = out.style().paint(Ink::Green, "is right");
+            out.line(format_args!("{} {good}", folder.display()))?;
+            for line in summary(&settings) {
+                out.line(line)?;
+            }
+            if args.values {
+                values(&settings, out)?;
+            }
+            Ok(Exit::Ok)
+        }
+    }
+}
+
+fn refused(problems: &Problems, out: &mut Output<'_>) -> Outcome {
+    if out.is_json() {
+        let problems: Vec<Json> = (problems.iter())
+            .map(|p| json!({ "file": p.file, "key": p.key, "what": p.what, "cure": p.cure }))
+            .collect();
+        out.json(&json!({ "ok": false, "problems": problems }))?;
+    } else {
+        note(problems);
+        note(words::count(problems.iter().count() as u64, "problem"));
+    }
+    Ok(Exit::Config)
+}
+
+fn summary(settings: &Settings) -> Vec<String> {
+    let Settings { group, dialogue, speech, arm, scene, .. } = settings;
+    let objects = words::count(scene.objects().len() as u64, "object");
+    let attributes: Vec<&str> = scene.attributes().iter().map(|a| a.name.as_str()).collect();
+    let params = dialogue.params;
+    let asks = [
+        (dialogue.actions.attribute, "yes/no"),
+        (dialogue.actions.which, "open"),
+        (dialogue.actions.point(), "pointing"),
+    ];
+    let asks: Vec<&str> = asks.into_iter().filter(|(on, _)| *on).map(|(_, what)| what).collect();
+    let asks = if asks.is_empty() { "no".to_owned() } else { asks.join(", ") };
+    let limb = arm.limb.map_or("the nearer limb".to_owned(), |limb| format!("the {limb} limb"));
+    let mut lines = vec![
+        format!("  scene     {} ({objects}; {})", scene.name(), attributes.join(", ")),
+        format!(
+            "  dialogue  planner {}, {:?} language, {asks} questions; p_l {}, epsilon {}, alpha {}",
+            dialogue.planner, dialogue.language, params.p_l, params.epsilon, params.alpha
+        )
+        .to_lowercase(),
+        format!("  speech    voice {:?}, recogniser {:?}", speech.voice, speech.recogniser)
+            .to_lowercase(),
+        format!(
+            "  arm       {limb}, {:.0} % of its speed, time × {}",
+            arm.plan.speed_ratio * 100.0,
+            arm.time_scale
+        ),
+        "  services".to_owned(),
+    ];
+    let rows: Vec<Vec<String>> = group.services.iter().map(service).collect();
+    let heads = ["NAME", "RUNS", "AFTER", "WATCHDOG", "RESTART"];
+    lines.extend(table(&heads, &rows).into_iter().map(|line| format!("    {line}")));
+    lines
+}
+
+fn service(service: &settings::Service) -> Vec<String> {
+    let program = |command: &Vec<String>| command.join(" ");
+    let command = service.command.as_ref();
+    let seconds = |time: std::time::Duration| format!("{} s", time.as_secs_f64());
+    vec![
+        service.name.clone(),
+        command.map_or_else(|| format!("whichone-{}", service.name), program),
+        if service.after.is_empty() { "-".to_owned() } else { service.after.join(", ") },
+        service.watchdog.map_or_else(|| "-".to_owned(), seconds),
+        format!("{:?}", service.restart).to_lowercase(),
+    ]
+}
+
+fn values(settings: &Settings, out: &mut Output<'_>) -> Result<(), Trouble> {
+    let rows: Vec<Vec<String>> =
+        settings.origins().into_iter().map(|o| vec![o.key, o.value, o.from]).collect();
+    table(&["KEY", "VALUE", "FROM"], &rows).into_iter().try_for_each(|line| out.line(line))
+}
+
+fn as_json(settings: &Settings, values: bool) -> Json {
+    let services: Vec<Json> = (settings.group.services.iter())
+        .map(|service| {
+            json!({ "name": service.name, "command": service.command, "after": service.after,
+                    "critical": service.critical, "nice": service.nice })
+        })
+        .collect();
+    let mut json = json!({
+        "ok": true,
+        "scene": { "name": settings.scene.name(), "objects": settings.scene.objects().len() },
+        "planner": settings.dialogue.planner,
+        "params": settings.dialogue.params,
+        "costs": settings.dialogue.costs,
+        "actions": settings.dialogue.actions,
+        "services": services,
+    });
+    if values {
+        let values: Vec<Json> = (settings.origins().into_iter())
+            .map(|o| json!({ "key": o.key, "value": o.value, "from": o.from }))
+            .collect();
+        json["values"] = Json::from(values);
+    }
+    json
+}

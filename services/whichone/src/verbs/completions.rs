@@ -1,0 +1,17 @@
+//! `completions`: what a shell needs to complete command lines.
+
+use clap::CommandFactory;
+use clap_complete::{Shell, generate};
+use runtime::exit::Exit;
+
+use crate::cli::Cli;
+use crate::output::Output;
+use crate::trouble::Outcome;
+
+/// Prints the script.
+pub(super) fn completions(shell: Shell, out: &mut Output<'_>) -> Outcome {
+    let mut script = Vec::new();
+    generate(shell, &mut Cli::command(), "whichone", &mut script);
+    out.text(&String::from_utf8_lossy(&script))?;
+    Ok(Exit::Ok)
+}

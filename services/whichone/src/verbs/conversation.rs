@@ -1,0 +1,226 @@
+//! A client that follows the dialogue: what the policy thinks, what is being said and heard, what
+//! the arm does.
+//!
+//! Invariant: nothing here waits for a service. Topics outlive the services that write them, so a
+//! service that is killed and started again is only quiet for a while.
+
+use std::collections::{HashSet, VecDeque};
+use std::os::unix::fs::MetadataExt;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use node::Span;
+use protocol::{
+    Activity, ArmStatus, Injection, PolicyView, Presented, Receipt, RequestKey, Sound, topics,
+};
+use runtime::bus::{EncodedReader, EncodedWriter, PortError, Reader};
+use runtime::client::{Client, random_key};
+use runtime::clock;
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use scene::Scene;
+use settings::Settings;
+
+use crate::trouble::Trouble;
+
+mod seen;
+
+pub(super) use seen::Seen;
+#[cfg(test)]
+pub(super) use seen::example;
+
+/// How often whoever follows a dialogue looks at it.
+pub(super) const LOOK_EVERY: Duration = Duration::from_millis(5);
+/// How long the policy may be silent before it is taken to be down.
+const FIRST_PATIENCE: Duration = Duration::from_secs(1);
+/// How often words that have no receipt yet are sent again.
+const RESEND_EVERY: Duration = Duration::from_millis(250);
+/// How often it is checked that the group is still the same one.
+const CHECK_EVERY: Duration = Duration::from_secs(1);
+
+/// A client of one group.
+pub(super) struct Conversation {
+    views: EncodedReader<PolicyView>,
+    presented: Reader<Presented>,
+    activity: Reader<Activity>,
+    receipts: Reader<Receipt>,
+    statuses: Reader<ArmStatus>,
+    injections: Option<EncodedWriter<Injection>>,
+    /// Words on their way to the robot, first to last; only the first has been sent.
+    saying: VecDeque<Words>,
+    /// Keys of everything said here.
+    own: HashSet<RequestKey>,
+    seen: Seen,
+    scene: Scene,
+    paths: GroupPaths,
+    /// The folder of the group's shared memory as it was: another one is another run.
+    folder: u64,
+    checked: Instant,
+    client: Client,
+}
+
+struct Words {
+    injection: Injection,
+    sent: Option<Instant>,
+}
+
+impl Conversation {
+    /// Joins a running group.
+    ///
+    /// # Errors
+    /// It does not run, or is of another build.
+    pub(super) fn join(paths: &GroupPaths) -> Result<Self, Trouble> {
+        let client = Client::join(paths)?;
+        let bus = client.bus();
+        Ok(Self {
+            views: client.views()?,
+            presented: bus.reader(&topics::PRESENTED)?,
+            activity: bus.reader(&topics::ACTIVITY)?,
+            receipts: bus.reader(&topics::RECEIPT)?,
+            statuses: bus.reader(&topics::STATUS)?,
+            injections: None,
+            saying: VecDeque::new(),
+            own: HashSet::new(),
+            seen: Seen::default(),
+            scene: Settings::load_snapshot(&paths.run())?.scene,
+            paths: paths.clone(),
+            folder: folder(paths).ok_or_else(|| ended(paths))?,
+            checked: Instant::now(),
+            client,
+        })
+    }
+
+    /// What has been seen so far.
+    pub(super) fn seen(&self) -> &Seen {
+        &self.seen
+    }
+
+    /// The scene that the dialogue is about.
+    pub(super) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The group's folders.
+    pub(super) fn paths(&self) -> &GroupPaths {
+        &self.paths
+    }
+
+    /// Says something, after what is already being said. It is sent under one key until it is
+    /// answered, so that no restart in between loses or doubles it.
+    ///
+    /// # Errors
+    /// The topic cannot be opened.
+    pub(super) fn say(&mut self, text: &str) -> Result<(), Trouble> {
+        if self.injections.is_none() {
+            self.injections = Some(self.client.bus().encoded_writer(&topics::INJECTION)?);
+        }
+        let sound = Sound::Text(text.to_owned());
+        let injection = Injection { key: random_key(), onset_ns: clock::now().ns(), sound };
+        self.own.insert(injection.key);
+        self.saying.push_back(Words { injection, sent: None });
+        Ok(())
+    }
+
+    /// Looks until the policy has been heard of, but not for long: whoever speaks first wants to
+    /// know what was before.
+    ///
+    /// # Errors
+    /// The group has ended.
+    pub(super) fn first_look(&mut self) -> Result<(), Trouble> {
+        let until = Instant::now() + FIRST_PATIENCE;
+        while Instant::now() < until && self.seen.view.is_none() {
+            self.look()?;
+            thread::sleep(LOOK_EVERY);
+        }
+        Ok(())
+    }
+
+    /// Whether the receipt is for something said here.
+    pub(super) fn is_own(&self, receipt: &Receipt) -> bool {
+        self.own.contains(&receipt.request())
+    }
+
+    /// Whether everything said here has been answered by a receipt.
+    pub(super) fn is_heard(&self) -> bool {
+        self.saying.is_empty()
+    }
+
+    /// Latches or releases the motion stop.
+    ///
+    /// # Errors
+    /// The arm does not answer.
+    pub(super) fn motion(&self, order: protocol::MotionOrder) -> Result<(), Trouble> {
+        Ok(self.client.motion(order, Span::from_ms(5_000))?)
+    }
+
+    /// Takes in everything that has happened since the last look. Returns the receipts among it,
+    /// of whoever's words.
+    ///
+    /// # Errors
+    /// The group has ended.
+    pub(super) fn look(&mut self) -> Result<Vec<Receipt>, Trouble> {
+        if self.checked.elapsed() >= CHECK_EVERY {
+            self.check()?;
+        }
+        let mut receipts = Vec::new();
+        quiet(self.receipts.drain(|receipt| receipts.push(*receipt)).map(Some));
+        for receipt in &receipts {
+            self.seen.receipt(receipt);
+            self.answered(receipt.request());
+        }
+        // What is pending is looked at before the view, so that the view is the newer of the two.
+        self.seen.activity = quiet(self.activity.latest()).or(self.seen.activity);
+        self.seen.presented = quiet(self.presented.latest()).unwrap_or(self.seen.presented);
+        self.seen.arm = quiet(self.statuses.latest()).or(self.seen.arm);
+        if let Some(view) = quiet(self.views.latest()) {
+            self.seen.view = Some(view);
+        }
+        self.send();
+        Ok(receipts)
+    }
+
+    fn answered(&mut self, key: RequestKey) {
+        if self.saying.front().is_some_and(|words| words.injection.key == key) {
+            self.saying.pop_front();
+        }
+    }
+
+    fn send(&mut self) {
+        let (Some(writer), Some(words)) = (&self.injections, self.saying.front_mut()) else {
+            return;
+        };
+        if words.sent.is_none_or(|sent| sent.elapsed() >= RESEND_EVERY) {
+            quiet(writer.send(&words.injection).map(Some));
+            words.sent = Some(Instant::now());
+        }
+    }
+
+    /// Notices the group's end, and a scene that was changed under way.
+    fn check(&mut self) -> Result<(), Trouble> {
+        self.checked = Instant::now();
+        if folder(&self.paths) != Some(self.folder) {
+            return Err(ended(&self.paths));
+        }
+        let changed = |view: &PolicyView| view.scene_key != 0 && view.scene_key != self.scene.key();
+        if self.seen.view.as_ref().is_some_and(changed)
+            && let Ok(settings) = Settings::load_snapshot(&self.paths.run())
+        {
+            self.scene = settings.scene;
+        }
+        Ok(())
+    }
+}
+
+/// A connection that breaks as a service dies is made anew by the next one; until then there is
+/// nothing to take.
+fn quiet<T>(result: Result<Option<T>, PortError>) -> Option<T> {
+    result.ok().flatten()
+}
+
+fn folder(paths: &GroupPaths) -> Option<u64> {
+    paths.ipc().metadata().ok().map(|metadata| metadata.ino())
+}
+
+fn ended(paths: &GroupPaths) -> Trouble {
+    Trouble::new(Exit::NotReached, format!("group {} has ended", paths.name()))
+}

@@ -1,0 +1,189 @@
+//! `doctor`: what is missing on this machine, and the cure.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use runtime::admin;
+use runtime::exit::Exit;
+use runtime::group::{GroupName, GroupPaths};
+use serde::Serialize;
+use settings::{BUILT_IN, Settings};
+use supervisor::launch;
+
+use super::{leftovers, place, up, words};
+use crate::cli::ConfigArgs;
+use crate::output::{Ink, Output, Style};
+use crate::trouble::Outcome;
+
+mod sound;
+
+/// One thing that was looked at.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+struct Finding {
+    what: &'static str,
+    state: State,
+    note: String,
+}
+
+/// How a thing is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum State {
+    /// As it should be.
+    Good,
+    /// Something is switched off by it.
+    Poor,
+    /// No group can run.
+    Bad,
+}
+
+/// Looks at everything that a group needs, and tells what is missing with its cure.
+pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>) -> Outcome {
+    let settings = place::settings(args);
+    let mut findings = vec![
+        programs(),
+        folder(paths),
+        match &settings {
+            Ok(settings) => good("configuration", format!("scene {}", settings.group.scene)),
+            Err(trouble) => bad("configuration", trouble.to_string()),
+        },
+        shared_memory(settings.as_ref().ok()),
+        left_behind(paths),
+    ];
+    if let Ok(settings) = &settings {
+        findings.push(sound::recogniser(settings));
+        findings.push(sound::voice(settings));
+    }
+    for finding in &findings {
+        if out.is_json() {
+            out.json(finding)?;
+        } else {
+            out.line(line(finding, out.style()))?;
+        }
+    }
+    let ill = findings.iter().any(|finding| finding.state == State::Bad);
+    Ok(if ill { Exit::NotReached } else { Exit::Ok })
+}
+
+fn line(finding: &Finding, style: Style) -> String {
+    let mark = match finding.state {
+        State::Good => style.paint(Ink::Green, "good"),
+        State::Poor => style.paint(Ink::Yellow, "poor"),
+        State::Bad => style.paint(Ink::Red, "bad "),
+    };
+    let note = finding.note.replace('\n', "\n                       ");
+    format!("{mark}  {:<16} {note}", finding.what)
+}
+
+fn good(what: &'static str, note: impl Into<String>) -> Finding {
+    Finding { what, state: State::Good, note: note.into() }
+}
+
+fn poor(what: &'static str, note: impl Into<String>) -> Finding {
+    Finding { what, state: State::Poor, note: note.into() }
+}
+
+fn bad(what: &'static str, note: impl Into<String>) -> Finding {
+    Finding { what, state: State::Bad, note: note.into() }
+}
+
+/// The programs of the group, beside this one.
+fn programs() -> Finding {
+    let folder = env::current_exe().ok().and_then(|own| Some(own.parent()?.to_owned()));
+    let folder = folder.unwrap_or_default();
+    let names = BUILT_IN.map(|name| format!("whichone-{name}"));
+    let names = names.into_iter().chain([launch::PROGRAM.to_owned()]);
+    let missing: Vec<String> = names.filter(|name| !folder.join(name).is_file()).collect();
+    if missing.is_empty() {
+        return good("programs", folder.display().to_string());
+    }
+    let cure = "build all of them: cargo build --release --workspace";
+    bad("programs", format!("{} has no {}; {cure}", folder.display(), missing.join(", ")))
+}
+
+/// Whether the groups' folder can be written.
+fn folder(paths: &GroupPaths) -> Finding {
+    const WHAT: &str = "groups' folder";
+    let home = paths.home();
+    let probe = home.join(format!(".doctor-{}", std::process::id()));
+    let written = fs::create_dir_all(home).and_then(|()| fs::write(&probe, "x"));
+    match written.and_then(|()| fs::remove_file(&probe)) {
+        Ok(()) => good(WHAT, home.display().to_string()),
+        Err(error) => {
+            let cure = "make it writable, or name another one in WHICHONE_HOME";
+            bad(WHAT, format!("{}: {error}; {cure}", home.display()))
+        }
+    }
+}
+
+fn shared_memory(settings: Option<&Settings>) -> Finding {
+    const WHAT: &str = "shared memory";
+    let needed = settings.map_or(32, |settings| settings.group.shared_memory_free_min_mib);
+    if let Err(error) = admin::check_room(needed.into()) {
+        return bad(WHAT, error.to_string());
+    }
+    let probe = Path::new("/dev/shm").join(format!("whichone-doctor-{}", std::process::id()));
+    match fs::write(&probe, "x").and_then(|()| fs::remove_file(&probe)) {
+        Ok(()) => good(WHAT, format!("more than {needed} MiB are free")),
+        Err(error) => bad(WHAT, format!("/dev/shm: {error}; mount a writable tmpfs there")),
+    }
+}
+
+/// Groups that were killed, and what they left.
+fn left_behind(paths: &GroupPaths) -> Finding {
+    const WHAT: &str = "leftovers";
+    let groups = groups(paths.home());
+    let dead = |group: &&GroupPaths| {
+        let traces = group.run().exists() || !admin::leftovers(group).is_empty();
+        traces && !leftovers::some_service_lives(group) && !up::is_running(group).unwrap_or(true)
+    };
+    let dead: Vec<&str> = groups.iter().filter(dead).map(|group| group.name().as_str()).collect();
+    match dead.as_slice() {
+        [] => good(WHAT, format!("none of {}", words::count(groups.len() as u64, "group"))),
+        [first, ..] => {
+            let cure = format!("remove them: whichone down --group {first}");
+            poor(WHAT, format!("of killed groups: {}; {cure}", dead.join(", ")))
+        }
+    }
+}
+
+fn groups(home: &Path) -> Vec<GroupPaths> {
+    let entries = fs::read_dir(home).into_iter().flatten().flatten();
+    let name = |path: PathBuf| GroupName::new(path.file_name()?.to_str()?).ok();
+    let names = entries.filter_map(|entry| name(entry.path()));
+    names.filter_map(|name| GroupPaths::in_home(home, &name).ok()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lab() -> (tempfile::TempDir, GroupPaths) {
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
+        (home, paths)
+    }
+
+    #[test]
+    fn a_killed_groups_traces_are_found() {
+        let (_home, paths) = lab();
+        assert_eq!(left_behind(&paths).note, "none of 0 groups");
+        fs::create_dir_all(paths.run()).unwrap();
+        let finding = left_behind(&paths);
+        assert_eq!(finding.state, State::Poor);
+        assert!(finding.note.contains("whichone down --group lab"), "{}", finding.note);
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_written_is_told_with_the_cure() {
+        let (home, paths) = lab();
+        assert_eq!(folder(&paths).state, State::Good);
+        let file = home.path().join("file");
+        fs::write(&file, "").unwrap();
+        let inside = GroupPaths::in_home(&file, &"lab".parse().unwrap()).unwrap();
+        let finding = folder(&inside);
+        assert_eq!(finding.state, State::Bad);
+        assert!(finding.note.contains("WHICHONE_HOME"), "{}", finding.note);
+    }
+}

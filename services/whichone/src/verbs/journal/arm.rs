@@ -1,0 +1,127 @@
+//! The arm's records.
+
+use std::collections::BTreeMap;
+
+use arm::state::Record;
+use protocol::pick::Pick;
+use protocol::{PickId, PickOutcome, PickPhase};
+
+use super::{Broken, Part, at};
+
+/// A record for people.
+pub(super) fn line(record: &Record) -> String {
+    let pick = record.state.pick.as_ref().map_or("no pick".to_owned(), |pick| {
+        let PickId { interaction, attempt } = pick.id;
+        let object = pick.object.index();
+        format!("pick {interaction}.{attempt} of object {object}: {:?}", pick.phase).to_lowercase()
+            + &match pick.outcome {
+                PickOutcome::Pending => String::new(),
+                outcome => format!(", {outcome:?}").to_lowercase(),
+            }
+    });
+    let stopped = if record.state.stopped { ", motion stopped" } else { "" };
+    format!("{}  {:<12}  {pick}{stopped}", at(record.at), format!("{:?}", record.cause))
+}
+
+/// What an interaction has come to.
+#[derive(Debug, Default)]
+struct Tally {
+    lifted: u32,
+    delivered: u32,
+}
+
+/// One object per pick, no step back, and in each interaction at most one grasp that lifts and one
+/// delivery.
+pub(super) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Broken> {
+    let mut tallies: BTreeMap<u64, Tally> = BTreeMap::new();
+    let mut before: Option<Pick> = None;
+    for part in parts {
+        for (seq, record) in part.numbered() {
+            let Some(pick) = record.state.pick else { continue };
+            step(before.as_ref(), &pick, &mut tallies).map_err(|what| part.broken(seq, what))?;
+            before = Some(pick);
+        }
+    }
+    let delivered: u32 = tallies.values().map(|tally| tally.delivered).sum();
+    Ok(vec![format!("{delivered} deliveries, at most one in each interaction")])
+}
+
+fn step(
+    before: Option<&Pick>,
+    pick: &Pick,
+    tallies: &mut BTreeMap<u64, Tally>,
+) -> Result<(), String> {
+    let PickId { interaction, attempt } = pick.id;
+    let name = format!("pick {interaction}.{attempt}");
+    let same = before.filter(|before| before.id == pick.id);
+    if before.is_some_and(|before| pick.id < before.id) {
+        return Err(format!("{name} follows a later one"));
+    }
+    if same.is_some_and(|before| before.object != pick.object) {
+        return Err(format!("{name} is of two objects"));
+    }
+    if same.is_some_and(|before| before.phase.code() > pick.phase.code()) {
+        return Err(format!("{name} goes back to {:?}", pick.phase));
+    }
+    let phase_before = same.map(|before| before.phase);
+    let tally = tallies.entry(interaction.0).or_default();
+    if pick.phase == PickPhase::Holding && phase_before != Some(PickPhase::Holding) {
+        tally.lifted += 1;
+    }
+    let is_new = phase_before != Some(PickPhase::Done);
+    if pick.phase == PickPhase::Done && is_new && pick.outcome == PickOutcome::Delivered {
+        tally.delivered += 1;
+    }
+    match (tally.lifted, tally.delivered) {
+        (0..=1, 0..=1) => Ok(()),
+        (lifted, delivered) => Err(format!(
+            "interaction {interaction} lifted {lifted} times and delivered {delivered} times"
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use protocol::InteractionId;
+    use scene::ObjectId;
+
+    use super::*;
+
+    fn pick(interaction: u64, attempt: u32, phase: PickPhase) -> Pick {
+        let outcome = match phase {
+            PickPhase::Done => PickOutcome::Delivered,
+            _ => PickOutcome::Pending,
+        };
+        let id = PickId { interaction: InteractionId(interaction), attempt };
+        Pick { id, object: ObjectId(1), phase, outcome }
+    }
+
+    fn check(picks: &[Pick]) -> Result<(), String> {
+        let mut tallies = BTreeMap::new();
+        let mut before: Option<Pick> = None;
+        picks.iter().try_for_each(|pick| {
+            let judged = step(before.as_ref(), pick, &mut tallies);
+            before = Some(*pick);
+            judged
+        })
+    }
+
+    #[test]
+    fn a_pick_goes_forward_and_is_done_once() {
+        use PickPhase::{Accepted, Closing, Done, Holding, Moving};
+        let phases = [Accepted, Moving, Closing, Closing, Holding, Holding, Done, Done];
+        let picks: Vec<Pick> = phases.map(|phase| pick(3, 1, phase)).to_vec();
+        assert_eq!(check(&picks), Ok(()));
+        assert_eq!(check(&[picks.clone(), vec![pick(4, 1, Done)]].concat()), Ok(()));
+        let wrong = [
+            vec![pick(3, 1, Moving), pick(3, 1, Accepted)],
+            vec![pick(3, 1, Done), pick(3, 2, Done)],
+            vec![pick(3, 1, Holding), pick(3, 2, Holding)],
+            vec![pick(3, 1, Moving), pick(2, 1, Moving)],
+            vec![pick(3, 1, Moving), Pick { object: ObjectId(2), ..pick(3, 1, Closing) }],
+        ];
+        for picks in wrong {
+            assert!(check(&picks).is_err(), "{picks:?}");
+        }
+    }
+}

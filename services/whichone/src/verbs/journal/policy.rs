@@ -1,0 +1,171 @@
+//! The policy's records.
+
+use std::collections::BTreeMap;
+
+use dialogue::Belief;
+use policy::journal_check::refold;
+use policy::mind::Mind;
+use policy::state::{Cause, Record};
+use protocol::{ActKind, PickOutcome};
+
+use super::{Broken, Part, at};
+
+/// A record for people.
+pub(super) fn line(record: &Record) -> String {
+    let Record { cause, state, .. } = record;
+    let why = match cause {
+        Cause::Snapshot => "begun anew".to_owned(),
+        Cause::Utterance(heard) => format!("utterance {}", heard.seq),
+        Cause::Silence => "silence".to_owned(),
+        Cause::PickEnded { pick, outcome } => {
+            format!("pick {}.{} {outcome:?}", pick.interaction, pick.attempt).to_lowercase()
+        }
+        Cause::SceneChanged => "another scene".to_owned(),
+    };
+    let does = match state.act.kind {
+        ActKind::Wait => "wait".to_owned(),
+        kind => format!("{kind:?}: {}", state.act.text),
+    };
+    let where_ = state.open.as_ref().map(|open| {
+        let best = open.belief.iter().copied().fold(f64::NEG_INFINITY, f64::max).exp();
+        format!("interaction {}, best {:.1} %", open.id, best * 100.0)
+    });
+    format!("{}  {why:<16}  {does}  ({})", at(record.at), where_.as_deref().unwrap_or("at rest"))
+}
+
+/// Every utterance applied once and in order, every belief a distribution, no interaction with two
+/// deliveries, and every state the one that follows, bit for bit.
+pub(super) fn verify(mind: &mut Mind, parts: &[Part<Record>]) -> Result<Vec<String>, Broken> {
+    let mut delivered: BTreeMap<u64, u32> = BTreeMap::new();
+    let mut applied = None;
+    for part in parts {
+        for (seq, record) in part.numbered() {
+            step(record, &mut applied, &mut delivered).map_err(|what| part.broken(seq, what))?;
+        }
+    }
+    let refolded: usize = parts.iter().map(|part| fold(mind, part)).sum::<Result<_, _>>()?;
+    Ok(vec![
+        format!("{} utterances applied, each once and in order", applied.unwrap_or(0)),
+        format!("{} deliveries, at most one in each interaction", delivered.len()),
+        format!("{refolded} states follow from those before them, bit for bit"),
+    ])
+}
+
+fn step(
+    record: &Record,
+    applied: &mut Option<u64>,
+    delivered: &mut BTreeMap<u64, u32>,
+) -> Result<(), String> {
+    let now = record.state.applied.0;
+    match (&record.cause, *applied) {
+        (Cause::Utterance(heard), before) if before.is_some_and(|b| heard.seq.0 != b + 1) => {
+            let before = before.unwrap_or(0);
+            return Err(format!("utterance {} applied after {before}", heard.seq));
+        }
+        (Cause::Utterance(heard), None) if heard.seq.0 != 1 => {
+            return Err(format!("utterance {} applied first", heard.seq));
+        }
+        (Cause::Utterance(heard), _) if heard.seq.0 != now => {
+            return Err(format!("utterance {} applied, {now} marked", heard.seq));
+        }
+        (Cause::Utterance(_) | Cause::Snapshot, _) | (_, None) => {}
+        (_, Some(before)) if before != now => {
+            return Err(format!("{now} marked without an utterance, {before} before"));
+        }
+        _ => {}
+    }
+    *applied = Some(now);
+    if let Some(open) = &record.state.open {
+        Belief::from_log(open.belief.clone()).map_err(|error| error.to_string())?;
+    }
+    if let Cause::PickEnded { pick, outcome: PickOutcome::Delivered } = record.cause {
+        let count = delivered.entry(pick.interaction.0).or_default();
+        *count += 1;
+        if *count > 1 {
+            return Err(format!("interaction {} delivered {count} times", pick.interaction));
+        }
+    }
+    Ok(())
+}
+
+/// Refolds the records that are about the mind's scene; how many those are. The first of them is
+/// taken as it is where it follows a record about another scene.
+fn fold(mind: &mut Mind, part: &Part<Record>) -> Result<usize, Broken> {
+    let records = &part.reading.records;
+    let key = mind.scene().key();
+    let others = records.iter().rposition(|record| record.state.scene_key != key);
+    let from = others.map_or(0, |last| last + 1);
+    let mut same = records[from..].to_vec();
+    if let (Some(first), true) = (same.first_mut(), from > 0) {
+        first.cause = Cause::Snapshot;
+    }
+    refold(mind, &same).map_err(|mismatch| {
+        let seq = part.reading.first_seq + (from + mismatch.index) as u64;
+        let what = format!("the state does not follow from the one before it: {}", mismatch.part);
+        part.broken(seq, format!("{what} differs (with these settings)"))
+    })?;
+    Ok(same.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use policy::state::{Heard, State};
+    use protocol::{InteractionId, PickId, UtteranceSeq};
+
+    use super::*;
+
+    fn heard(seq: u64) -> Record {
+        let heard = Heard {
+            seq: UtteranceSeq(seq),
+            prompt: Default::default(),
+            accepted: Default::default(),
+            readings: Vec::new(),
+            unknown: String::new(),
+        };
+        let state = State { applied: UtteranceSeq(seq), ..State::default() };
+        Record { cause: Cause::Utterance(heard), at: node::Time(0), state }
+    }
+
+    fn delivered(applied: u64, interaction: u64) -> Record {
+        let pick = PickId { interaction: InteractionId(interaction), attempt: 1 };
+        let cause = Cause::PickEnded { pick, outcome: PickOutcome::Delivered };
+        let state = State { applied: UtteranceSeq(applied), ..State::default() };
+        Record { cause, at: node::Time(0), state }
+    }
+
+    fn check(records: &[Record]) -> Result<(), String> {
+        let (mut applied, mut counts) = (None, BTreeMap::new());
+        records.iter().try_for_each(|record| step(record, &mut applied, &mut counts))
+    }
+
+    #[test]
+    fn utterances_are_applied_once_and_in_order() {
+        assert_eq!(check(&[heard(1), heard(2), delivered(2, 1), heard(3)]), Ok(()));
+        let wrong = [
+            vec![heard(2)],
+            vec![heard(1), heard(3)],
+            vec![heard(1), heard(1)],
+            vec![heard(1), delivered(2, 1)],
+        ];
+        for records in wrong {
+            assert!(check(&records).is_err(), "{records:?}");
+        }
+        let snapshot = Record { cause: Cause::Snapshot, ..heard(7) };
+        assert_eq!(check(&[snapshot, heard(8)]), Ok(()));
+    }
+
+    #[test]
+    fn no_interaction_delivers_twice() {
+        assert_eq!(check(&[heard(1), delivered(1, 1), delivered(1, 2)]), Ok(()));
+        let told = check(&[heard(1), delivered(1, 1), delivered(1, 1)]).unwrap_err();
+        assert_eq!(told, "interaction 1 delivered 2 times");
+    }
+
+    #[test]
+    fn a_belief_that_is_none_is_found() {
+        let mut record = heard(1);
+        record.state.open =
+            Some(policy::state::Interaction { belief: vec![0.0, 0.0], ..Default::default() });
+        assert!(check(&[record]).unwrap_err().contains("sums to 2"));
+    }
+}

@@ -1,0 +1,60 @@
+//! The speech service's records.
+
+use std::collections::HashSet;
+
+use speech::record::Record;
+
+use super::{Broken, Part, at};
+
+/// A record for people.
+pub(super) fn line(record: &Record) -> String {
+    match record {
+        Record::Accepted(accepted) => {
+            let words = accepted.hypotheses.first().map_or("", |(words, _)| words.as_str());
+            format!("{}  utterance {}: {words}", at(accepted.accepted), accepted.seq)
+        }
+        Record::Presented(said) => {
+            let times = said.presentation;
+            format!(
+                "{}  prompt {} said to its end, presentation {times}",
+                at(said.ended),
+                said.prompt
+            )
+        }
+    }
+}
+
+/// Utterances numbered without a gap, none accepted twice.
+pub(super) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Broken> {
+    let mut last = None;
+    let mut keys = HashSet::new();
+    for part in parts {
+        for (seq, record) in part.numbered() {
+            let Record::Accepted(accepted) = record else { continue };
+            let number = accepted.seq.0;
+            // A journal that was begun anew says again what was not yet applied.
+            let again = last.is_some_and(|last| number <= last) && seq_in_snapshot(part, seq);
+            if again {
+                continue;
+            }
+            if last.is_some_and(|last| number != last + 1) {
+                let last = last.unwrap_or(0);
+                return Err(part.broken(seq, format!("utterance {number} follows {last}")));
+            }
+            if !keys.insert((accepted.key, accepted.segment.0)) {
+                return Err(part.broken(seq, format!("utterance {number} was accepted before")));
+            }
+            last = Some(number);
+        }
+    }
+    let number = last.unwrap_or(0);
+    Ok(vec![format!("{number} utterances accepted, each once and without a gap")])
+}
+
+/// Whether the record belongs to the summary at the beginning of a journal that was begun anew.
+fn seq_in_snapshot(part: &Part<Record>, seq: u64) -> bool {
+    part.reading.first_seq > 1 && {
+        let before = part.numbered().take_while(|(n, _)| *n <= seq);
+        before.into_iter().all(|(_, record)| matches!(record, Record::Accepted(_)))
+    }
+}

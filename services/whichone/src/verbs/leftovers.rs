@@ -1,0 +1,80 @@
+//! What a group that was killed has left on the machine.
+
+use std::fs::{File, TryLockError};
+use std::io::ErrorKind;
+use std::path::PathBuf;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use runtime::admin;
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+
+use crate::trouble::Trouble;
+
+/// How often it is looked whether the last service has ended.
+const LOOK_EVERY: Duration = Duration::from_millis(50);
+
+/// Removes what is left of a group that has no supervisor, once its last service has ended; they
+/// notice that they are alone and end by themselves. What was removed.
+///
+/// # Errors
+/// Some service still runs when the time is up.
+pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBuf>, Trouble> {
+    let until = Instant::now() + timeout;
+    while some_service_lives(paths) {
+        if Instant::now() >= until {
+            let what = format!("group {}: services without a supervisor still run", paths.name());
+            let cure = "wait, or start the group and stop it again";
+            return Err(Trouble::new(Exit::NotReached, format!("{what}; {cure}")));
+        }
+        thread::sleep(LOOK_EVERY);
+    }
+    let run = paths.run();
+    let mut removed = admin::remove_leftovers(paths);
+    match std::fs::remove_dir_all(&run) {
+        Ok(()) => removed.push(run),
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        Err(error) => return Err(Trouble::file(&run, &error)),
+    }
+    Ok(removed)
+}
+
+/// Whether a service of the group still runs: each holds a shared lock for its life.
+pub(super) fn some_service_lives(paths: &GroupPaths) -> bool {
+    let Ok(file) = File::open(paths.alive_lock()) else { return false };
+    matches!(file.try_lock(), Err(TryLockError::WouldBlock))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn paths() -> (tempfile::TempDir, GroupPaths) {
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
+        std::fs::create_dir_all(paths.run()).unwrap();
+        (home, paths)
+    }
+
+    #[test]
+    fn a_dead_groups_run_folder_goes_and_its_journals_stay() {
+        let (_home, paths) = paths();
+        std::fs::create_dir_all(paths.journal()).unwrap();
+        assert_eq!(remove(&paths, Duration::ZERO).unwrap(), [paths.run()]);
+        assert!(!paths.run().exists() && paths.journal().is_dir());
+        assert!(remove(&paths, Duration::ZERO).unwrap().is_empty());
+    }
+
+    #[test]
+    fn nothing_is_touched_while_a_service_lives() {
+        let (_home, paths) = paths();
+        let service = File::create(paths.alive_lock()).unwrap();
+        service.lock_shared().unwrap();
+        let trouble = remove(&paths, Duration::from_millis(60)).unwrap_err();
+        assert!(trouble.to_string().contains("still run"), "{trouble}");
+        assert!(paths.run().is_dir());
+        drop(service);
+        remove(&paths, Duration::ZERO).unwrap();
+    }
+}

@@ -1,0 +1,143 @@
+//! `logs`: what the services say about their work.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+use std::thread;
+use std::time::Duration;
+
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use serde_json::json;
+
+use crate::cli::LogsArgs;
+use crate::output::{Ink, Output};
+use crate::trouble::{Outcome, Trouble};
+
+use file::LogFile;
+
+mod file;
+
+/// How often it is looked for new lines.
+const LOOK_EVERY: Duration = Duration::from_millis(200);
+
+/// Shows the last lines of the logs, and then what comes on.
+pub(super) fn logs(paths: &GroupPaths, args: &LogsArgs, out: &mut Output<'_>) -> Outcome {
+    let mut files = files(paths, args.service.as_deref())?;
+    let mut lines = Vec::new();
+    for file in &mut files {
+        let last = file.last_lines(args.tail).map_err(|e| Trouble::file(file.path(), &e))?;
+        lines.extend(last.into_iter().map(|line| (file.service().to_owned(), line)));
+    }
+    let lines = in_order_of_time(lines);
+    let several = files.len() > 1;
+    for (service, line) in &lines[lines.len().saturating_sub(args.tail)..] {
+        tell(several, service, line, out)?;
+    }
+    if !args.follow {
+        return Ok(Exit::Ok);
+    }
+    loop {
+        thread::sleep(LOOK_EVERY);
+        follow(paths, args, &mut files, out)?;
+    }
+}
+
+fn follow(
+    paths: &GroupPaths,
+    args: &LogsArgs,
+    files: &mut Vec<LogFile>,
+    out: &mut Output<'_>,
+) -> Result<(), Trouble> {
+    if args.service.is_none() {
+        // A service that was not there before has all of its log still to be told.
+        let new = self::files(paths, None)?;
+        let known = |file: &LogFile| files.iter().any(|k| k.service() == file.service());
+        let new: Vec<LogFile> = new.into_iter().filter(|file| !known(file)).collect();
+        files.extend(new);
+    }
+    let several = files.len() > 1;
+    let mut lines = Vec::new();
+    for file in files {
+        let new = file.new_lines().map_err(|e| Trouble::file(file.path(), &e))?;
+        lines.extend(new.into_iter().map(|line| (file.service().to_owned(), line)));
+    }
+    in_order_of_time(lines).iter().try_for_each(|(service, line)| tell(several, service, line, out))
+}
+
+fn tell(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Result<(), Trouble> {
+    if out.is_json() {
+        return out.json(&json!({ "service": service, "line": line }));
+    }
+    let line: String = line.chars().filter(|&c| !c.is_control() || c == '\t').collect();
+    if !several {
+        return out.line(line);
+    }
+    let service = out.style().paint(Ink::Cyan, format!("{service:<10}"));
+    out.line(format_args!("{service} {line}"))
+}
+
+/// The log of one service, or all logs of the group.
+fn files(paths: &GroupPaths, service: Option<&str>) -> Result<Vec<LogFile>, Trouble> {
+    let names = names(&paths.log())?;
+    match service {
+        None => Ok(names.iter().map(|name| LogFile::new(name, paths.log_file(name))).collect()),
+        Some(name) if names.iter().any(|known| known == name) => {
+            Ok(vec![LogFile::new(name, paths.log_file(name))])
+        }
+        Some(name) => {
+            let what = format!("there is no log of {name} in {}", paths.log().display());
+            let cure = match names.is_empty() {
+                true => "start the group first: whichone up".to_owned(),
+                false => format!("there are {}", names.join(", ")),
+            };
+            Err(Trouble::new(Exit::Usage, format!("{what}; {cure}")))
+        }
+    }
+}
+
+fn names(folder: &Path) -> Result<Vec<String>, Trouble> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(|error| Trouble::file(folder, &error))?,
+    };
+    let name = |entry: std::io::Result<fs::DirEntry>| {
+        Some(entry.ok()?.file_name().to_str()?.strip_suffix(".log")?.to_owned())
+    };
+    let mut names: Vec<String> = entries.filter_map(name).collect();
+    names.sort();
+    Ok(names)
+}
+
+/// Lines of several logs as they were written. A line without a time of its own goes with the one
+/// before it.
+fn in_order_of_time(lines: Vec<(String, String)>) -> Vec<(String, String)> {
+    let mut time = String::new();
+    let mut dated: Vec<(String, (String, String))> = Vec::with_capacity(lines.len());
+    let mut service = String::new();
+    for line in lines {
+        if line.0 != service {
+            service.clone_from(&line.0);
+            time.clear();
+        }
+        if let Some(own) = time_of(&line.1) {
+            time = own.to_owned();
+        }
+        dated.push((time.clone(), line));
+    }
+    dated.sort_by(|a, b| a.0.cmp(&b.0));
+    dated.into_iter().map(|(_, line)| line).collect()
+}
+
+/// The time that a line begins with: as in RFC 3339, always UTC, so that texts compare as times.
+fn time_of(line: &str) -> Option<&str> {
+    let line = line.strip_prefix("{\"timestamp\":\"").unwrap_or(line);
+    let end = line.find(|c: char| !matches!(c, '0'..='9' | '-' | ':' | '.' | 'T' | 'Z'))?;
+    let time = &line[..end];
+    let shape = time.as_bytes();
+    (time.len() >= 20 && shape[4] == b'-' && shape[10] == b'T' && time.ends_with('Z'))
+        .then_some(time)
+}
+
+#[cfg(test)]
+mod tests;

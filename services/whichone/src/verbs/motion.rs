@@ -1,0 +1,32 @@
+//! `stop-motion` and `resume-motion`.
+
+use std::time::Duration;
+
+use node::Span;
+use protocol::MotionOrder;
+use runtime::client::Client;
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use serde_json::json;
+
+use crate::output::Output;
+use crate::trouble::Outcome;
+
+/// Latches or releases the motion stop, and returns once the arm has confirmed it.
+pub(super) fn motion(
+    paths: &GroupPaths,
+    order: MotionOrder,
+    timeout: Duration,
+    out: &mut Output<'_>,
+) -> Outcome {
+    Client::join(paths)?.motion(order, Span::from_s(timeout.as_secs_f64()))?;
+    let stopped = order == MotionOrder::Stop;
+    if out.is_json() {
+        out.json(&json!({ "stopped": stopped }))?;
+    } else if stopped {
+        out.line("the arm is stopped; let it move again with: whichone resume-motion")?;
+    } else {
+        out.line("the arm may move")?;
+    }
+    Ok(Exit::Ok)
+}

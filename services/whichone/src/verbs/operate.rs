@@ -1,0 +1,203 @@
+//! The verbs that the supervisor fulfils: start, stop, restart, hold, release, reload, swap, down.
+
+use std::os::fd::OwnedFd;
+use std::time::Duration;
+
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::process::{Pid, PidfdFlags, pidfd_open};
+use rustix::time::Timespec;
+use serde_json::json;
+use supervisor::control::{CallError, DownReport, Refusal, Reply, Request, call};
+use supervisor::status::GroupStatus;
+
+use super::{leftovers, words};
+use crate::cli::{RestartArgs, ServiceArgs, SwapArgs};
+use crate::output::Output;
+use crate::trouble::{Outcome, Trouble};
+
+/// How long the supervisor may take for an answer, beyond what it is asked to wait for.
+const ANSWER_PATIENCE: Duration = Duration::from_secs(5);
+
+/// Why a request was not fulfilled.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum Unanswered {
+    /// There was no reply.
+    #[error(transparent)]
+    Call(#[from] CallError),
+    /// The reply was no.
+    #[error("{}", .0.message)]
+    Refused(Refusal),
+}
+
+impl From<Unanswered> for Trouble {
+    fn from(unanswered: Unanswered) -> Self {
+        match unanswered {
+            Unanswered::Call(error) => error.into(),
+            Unanswered::Refused(refusal) => refusal.into(),
+        }
+    }
+}
+
+/// Asks the group's supervisor; `wait` is how long the request itself may wait.
+pub(super) fn ask(
+    paths: &GroupPaths,
+    request: &Request,
+    wait: Duration,
+) -> Result<Reply, Unanswered> {
+    match call(&paths.control_socket(), request, wait + ANSWER_PATIENCE)? {
+        Reply::Refused(refusal) => Err(Unanswered::Refused(refusal)),
+        reply => Ok(reply),
+    }
+}
+
+/// What the group does.
+pub(super) fn status_of(paths: &GroupPaths) -> Result<GroupStatus, Unanswered> {
+    match ask(paths, &Request::Status, Duration::ZERO)? {
+        Reply::Status(status) => Ok(*status),
+        other => Err(unintelligible(paths, &other)),
+    }
+}
+
+/// Starts a service.
+pub(super) fn start(paths: &GroupPaths, args: ServiceArgs, out: &mut Output<'_>) -> Outcome {
+    let ServiceArgs { service, timeout } = args;
+    order(paths, &Request::Start { service, wait_ms: ms(timeout) }, timeout, out)
+}
+
+/// Stops a service.
+pub(super) fn stop(paths: &GroupPaths, args: ServiceArgs, out: &mut Output<'_>) -> Outcome {
+    let ServiceArgs { service, timeout } = args;
+    order(paths, &Request::Stop { service, wait_ms: ms(timeout) }, timeout, out)
+}
+
+/// Stops a service and starts it again.
+pub(super) fn restart(paths: &GroupPaths, args: RestartArgs, out: &mut Output<'_>) -> Outcome {
+    let RestartArgs { service, original, timeout } = args;
+    order(paths, &Request::Restart { service, original, wait_ms: ms(timeout) }, timeout, out)
+}
+
+/// Keeps a service from running.
+pub(super) fn hold(paths: &GroupPaths, args: ServiceArgs, out: &mut Output<'_>) -> Outcome {
+    let ServiceArgs { service, timeout } = args;
+    order(paths, &Request::Hold { service, wait_ms: ms(timeout) }, timeout, out)
+}
+
+/// Lets a held service run.
+pub(super) fn release(paths: &GroupPaths, args: ServiceArgs, out: &mut Output<'_>) -> Outcome {
+    let ServiceArgs { service, timeout } = args;
+    order(paths, &Request::Release { service, wait_ms: ms(timeout) }, timeout, out)
+}
+
+/// Has the configuration read anew.
+pub(super) fn reload(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) -> Outcome {
+    order(paths, &Request::Reload { wait_ms: ms(timeout) }, timeout, out)
+}
+
+/// Replaces a service's program.
+pub(super) fn swap(paths: &GroupPaths, args: SwapArgs, out: &mut Output<'_>) -> Outcome {
+    let directory = std::env::current_dir()
+        .map_err(|error| Trouble::new(Exit::NotReached, format!("the current folder: {error}")))?;
+    let SwapArgs { service, command, timeout } = args;
+    order(paths, &Request::Swap { service, command, directory }, timeout, out)
+}
+
+/// Stops the group. One that does not run is down already; what a killed one has left is removed.
+pub(super) fn down(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) -> Outcome {
+    let supervisor = supervisor(paths);
+    let report = match ask(paths, &Request::Down, timeout) {
+        Ok(Reply::Down(report)) => report,
+        Ok(other) => return Err(unintelligible(paths, &other).into()),
+        Err(Unanswered::Call(CallError::NoGroup { .. })) => {
+            return not_running(paths, timeout, out);
+        }
+        Err(other) => return Err(other.into()),
+    };
+    supervisor.iter().for_each(await_end);
+    if out.is_json() {
+        out.json(&report)?;
+    } else {
+        tell_down(paths, &report, out)?;
+    }
+    Ok(Exit::Ok)
+}
+
+/// The supervisor's process, to wait for its end; none where it does not run.
+fn supervisor(paths: &GroupPaths) -> Option<OwnedFd> {
+    let pid = status_of(paths).ok()?.supervisor_pid;
+    pidfd_open(Pid::from_raw(i32::try_from(pid).ok()?)?, PidfdFlags::empty()).ok()
+}
+
+/// Waits until the process has ended, which the supervisor does right after its last reply: a script
+/// may look for leftovers, or start the group again, at once.
+fn await_end(process: &OwnedFd) {
+    let patience = Timespec { tv_sec: ANSWER_PATIENCE.as_secs().cast_signed(), tv_nsec: 0 };
+    // Where this fails the group is down all the same; only a hurried caller would notice.
+    let _ = poll(&mut [PollFd::new(process, PollFlags::IN)], Some(&patience));
+}
+
+fn tell_down(paths: &GroupPaths, report: &DownReport, out: &mut Output<'_>) -> Result<(), Trouble> {
+    let after = words::time(report.seconds);
+    out.line(format_args!("group {} is down after {after}", paths.name()))?;
+    let remarks = [
+        ("did not end when asked and were killed", &report.killed),
+        ("left behind by services and killed", &report.strays),
+        ("left in shared memory and removed", &report.leftovers),
+    ];
+    for (what, names) in remarks.into_iter().filter(|(_, names)| !names.is_empty()) {
+        out.line(format_args!("  {what}: {}", names.join(", ")))?;
+    }
+    Ok(())
+}
+
+fn not_running(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) -> Outcome {
+    let removed = leftovers::remove(paths, timeout)?;
+    if out.is_json() {
+        let leftovers = removed.iter().map(|path| path.display().to_string()).collect();
+        out.json(&DownReport { leftovers, ..DownReport::default() })?;
+        return Ok(Exit::Ok);
+    }
+    let name = paths.name();
+    match removed.len() as u64 {
+        0 => out.line(format_args!("group {name} is not running"))?,
+        files => {
+            let files = words::count(files, "file");
+            out.line(format_args!("group {name} is not running; {files} of it removed"))?;
+        }
+    }
+    Ok(Exit::Ok)
+}
+
+/// Has one request fulfilled and tells what came of it.
+fn order(paths: &GroupPaths, request: &Request, wait: Duration, out: &mut Output<'_>) -> Outcome {
+    match ask(paths, request, wait)? {
+        Reply::Done { message } if out.is_json() => out.json(&json!({ "message": message }))?,
+        Reply::Done { message } => out.line(message)?,
+        Reply::Reloaded { restarted } if out.is_json() => {
+            out.json(&json!({ "restarted": restarted }))?;
+        }
+        Reply::Reloaded { restarted } if restarted.is_empty() => {
+            out.line("the configuration is in force; no service had to be restarted")?;
+        }
+        Reply::Reloaded { restarted } => {
+            let names = restarted.join(", ");
+            out.line(format_args!("the configuration is in force; restarted: {names}"))?;
+        }
+        other => return Err(unintelligible(paths, &other).into()),
+    }
+    Ok(Exit::Ok)
+}
+
+/// As the supervisor is asked to wait; nobody waits for more milliseconds than fit.
+fn ms(time: Duration) -> u64 {
+    u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
+}
+
+fn unintelligible(paths: &GroupPaths, reply: &Reply) -> Unanswered {
+    let group = paths.name().to_string();
+    CallError::Unintelligible { group, why: format!("{reply:?}") }.into()
+}
+
+#[cfg(test)]
+mod tests;

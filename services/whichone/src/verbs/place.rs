@@ -1,0 +1,103 @@
+//! Where things are: the group's folders, and the folder of the configuration.
+
+use std::env;
+use std::path::{Path, PathBuf};
+
+use runtime::exit::Exit;
+use runtime::group::{GroupName, GroupPaths};
+use settings::Settings;
+
+use crate::cli::ConfigArgs;
+use crate::trouble::Trouble;
+
+/// A file that tells a folder of this configuration from another that happens to have its name.
+const MARK: &str = "group.toml";
+
+/// The folders of the group.
+///
+/// # Errors
+/// There is no place for groups.
+pub(super) fn paths(group: &GroupName) -> Result<GroupPaths, Trouble> {
+    Ok(GroupPaths::resolve(group)?)
+}
+
+/// The settings that the command line names.
+///
+/// # Errors
+/// No configuration is found, or everything that is wrong with it.
+pub(super) fn settings(args: &ConfigArgs) -> Result<Settings, Trouble> {
+    let folder = config_folder(args)?;
+    Ok(Settings::load(&folder, args.profile.as_deref(), &args.set)?)
+}
+
+/// The settings of a running group, else those that the command line names.
+///
+/// # Errors
+/// As [`settings`].
+pub(super) fn settings_in_force(
+    paths: &GroupPaths,
+    args: &ConfigArgs,
+) -> Result<Settings, Trouble> {
+    let named = args.config.is_some() || args.profile.is_some() || !args.set.is_empty();
+    if !named && paths.run().join(settings::SNAPSHOT_FILE).is_file() {
+        return Ok(Settings::load_snapshot(&paths.run())?);
+    }
+    settings(args)
+}
+
+/// The configuration's folder, absolute: the one that is named, else `./config`, else `config`
+/// beside the program or one of the folders above it.
+///
+/// # Errors
+/// None of them is there.
+pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, Trouble> {
+    if let Some(named) = args.config.as_ref().filter(|path| !path.as_os_str().is_empty()) {
+        return Ok(absolute(named));
+    }
+    find(&env::current_dir().unwrap_or_default(), env::current_exe().ok().as_deref())
+        .map(|found| absolute(&found))
+        .ok_or_else(|| {
+            let what = format!("no configuration: there is no ./config with {MARK}");
+            let cure = "name its folder with --config DIR or WHICHONE_CONFIG";
+            Trouble::new(Exit::Config, format!("{what}; {cure}"))
+        })
+}
+
+fn find(here: &Path, program: Option<&Path>) -> Option<PathBuf> {
+    let beside = program.into_iter().flat_map(|program| program.ancestors().skip(1));
+    let folders = std::iter::once(here).chain(beside).map(|folder| folder.join("config"));
+    folders.into_iter().find(|folder| folder.join(MARK).is_file())
+}
+
+/// Other processes are told of it, and they work in other folders.
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn config_in(folder: &Path) -> PathBuf {
+        let config = folder.join("config");
+        std::fs::create_dir_all(&config).unwrap();
+        std::fs::write(config.join(MARK), "").unwrap();
+        config
+    }
+
+    #[test]
+    fn the_nearest_configuration_is_found() {
+        let root = tempfile::tempdir().unwrap();
+        let here = root.path().join("work");
+        let program = root.path().join("checkout/target/release/whichone");
+        std::fs::create_dir_all(&here).unwrap();
+        assert_eq!(find(&here, Some(&program)), None);
+        // A folder of that name that is something else.
+        std::fs::create_dir_all(here.join("config")).unwrap();
+        let beside = config_in(&root.path().join("checkout"));
+        assert_eq!(find(&here, Some(&program)), Some(beside));
+        let own = config_in(&here);
+        assert_eq!(find(&here, Some(&program)), Some(own));
+        assert_eq!(find(Path::new("/"), None), None);
+    }
+}

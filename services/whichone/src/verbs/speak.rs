@@ -1,0 +1,72 @@
+//! `say` and `listen`: giving the robot something to hear.
+
+use std::path::Path;
+use std::time::Duration;
+
+use node::Span;
+use protocol::{Receipt, ReceiptStatus, Sound};
+use runtime::client::Client;
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use serde_json::json;
+
+use crate::output::{Ink, Output};
+use crate::trouble::{Outcome, Trouble};
+
+/// Says words, and tells whether they were accepted.
+pub(super) fn say(
+    paths: &GroupPaths,
+    words: &[String],
+    timeout: Duration,
+    out: &mut Output<'_>,
+) -> Outcome {
+    give(paths, Sound::Text(words.join(" ")), timeout, out)
+}
+
+/// Plays a file to the robot, and tells what was heard in it.
+pub(super) fn listen(
+    paths: &GroupPaths,
+    file: &Path,
+    timeout: Duration,
+    out: &mut Output<'_>,
+) -> Outcome {
+    let absolute = file.canonicalize().map_err(|error| Trouble::file(file, &error))?;
+    std::fs::File::open(&absolute).map_err(|error| Trouble::file(file, &error))?;
+    let path = absolute.into_os_string().into_string().map_err(|path| {
+        let what = format!("{}: the path is not UTF-8; rename the file", path.display());
+        Trouble::new(Exit::Usage, what)
+    })?;
+    give(paths, Sound::Wav(path), timeout, out)
+}
+
+fn give(paths: &GroupPaths, sound: Sound, timeout: Duration, out: &mut Output<'_>) -> Outcome {
+    let client = Client::join(paths)?;
+    let receipts = client.inject(sound, Span::from_s(timeout.as_secs_f64()))?;
+    for receipt in &receipts {
+        tell(receipt, out)?;
+    }
+    let accepted = |receipt: &Receipt| receipt.status == ReceiptStatus::Accepted.code();
+    Ok(if receipts.iter().any(accepted) { Exit::Ok } else { Exit::NotReached })
+}
+
+fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Trouble> {
+    let unclear = |error: protocol::WireError| Trouble::new(Exit::NotReached, error.to_string());
+    let status = ReceiptStatus::from_code(receipt.status).map_err(unclear)?;
+    let note = receipt.note.as_str().map_err(unclear)?;
+    let utterance = receipt.utterance().map(|seq| seq.0);
+    if out.is_json() {
+        return out.json(&json!({ "status": status, "utterance": utterance, "note": note }));
+    }
+    let style = out.style();
+    match (status, utterance) {
+        (ReceiptStatus::Accepted, Some(seq)) => {
+            out.line(format_args!("heard as utterance {seq}: {note}"))
+        }
+        (ReceiptStatus::Accepted, None) => out.line(format_args!("heard: {note}")),
+        (ReceiptStatus::NotForMe, _) => out
+            .line(style.paint(Ink::Yellow, format!("heard, but not meant for the robot: {note}"))),
+        (ReceiptStatus::Refused, _) => {
+            Err(Trouble::new(Exit::NotReached, format!("not accepted: {note}")))
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! `status`: what an operator needs to see.
+
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use serde_json::json;
+use supervisor::control::CallError;
+use supervisor::group::GroupState;
+use supervisor::machine::{Actual, Wanted};
+use supervisor::status::{GroupStatus, ServiceStatus};
+
+use super::operate::{Unanswered, status_of};
+use super::words;
+use crate::output::{Ink, Output, Style, table};
+use crate::trouble::Outcome;
+
+/// Shows the group. The exit code says whether everything that is wanted is ready.
+pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
+    let status = match status_of(paths) {
+        Ok(status) => status,
+        Err(Unanswered::Call(CallError::NoGroup { .. })) => return down(paths, out),
+        Err(other) => return Err(other.into()),
+    };
+    if out.is_json() {
+        out.json(&status)?;
+    } else {
+        for line in lines(&status, out.style()) {
+            out.line(line)?;
+        }
+    }
+    Ok(if status.state == GroupState::Ready { Exit::Ok } else { Exit::NotReached })
+}
+
+fn down(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
+    let name = paths.name();
+    if out.is_json() {
+        out.json(&json!({ "name": name, "state": "down", "services": [] }))?;
+    } else {
+        out.line(format_args!("group {name} is not running; start it with: whichone up"))?;
+    }
+    Ok(Exit::NotReached)
+}
+
+/// The group in a line and each service in one, with the end of the log of those that are held.
+pub(super) fn lines(status: &GroupStatus, style: Style) -> Vec<String> {
+    let heads = ["SERVICE", "STATE", "PID", "UP", "STARTS", "BEAT", "INPUT", "MEMORY", "NOTE"];
+    let rows: Vec<Vec<String>> = status.services.iter().map(row).collect();
+    let mut lines = vec![head(status, style)];
+    let mut table = table(&heads, &rows).into_iter();
+    lines.extend(table.next().map(|heads| style.paint(Ink::Dim, heads).to_string()));
+    for (service, line) in status.services.iter().zip(table) {
+        lines.push(coloured(service, line, style));
+        let tail = service.log_tail.iter();
+        lines.extend(tail.map(|line| format!("    {}", style.paint(Ink::Dim, line))));
+    }
+    lines
+}
+
+fn head(status: &GroupStatus, style: Style) -> String {
+    let state = match status.state {
+        GroupState::Ready => style.paint(Ink::Green, "ready"),
+        GroupState::Starting => style.paint(Ink::Yellow, "starting"),
+        GroupState::Stopping => style.paint(Ink::Yellow, "stopping"),
+        GroupState::Degraded => style.paint(Ink::Red, "degraded"),
+    };
+    let mut head = format!(
+        "group {} is {state}: scene {}, up {}, supervisor {}, configuration {}",
+        style.paint(Ink::Bold, &status.name),
+        status.scene,
+        words::time(status.uptime_s),
+        status.supervisor_pid,
+        status.config.display(),
+    );
+    if let Some(profile) = &status.profile {
+        head += &format!(" with profile {profile}");
+    }
+    if status.strays_killed > 0 {
+        let strays = words::count(status.strays_killed.into(), "stray");
+        head += &format!(", {strays} killed");
+    }
+    head
+}
+
+fn row(service: &ServiceStatus) -> Vec<String> {
+    let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
+    let age = |ms: Option<u64>| or_dash(ms.map(|ms| words::time(ms as f64 / 1e3)));
+    vec![
+        service.name.clone(),
+        state(service).to_owned(),
+        or_dash(service.pid.map(|pid| pid.to_string())),
+        or_dash(service.uptime_s.map(words::time)),
+        service.incarnation.to_string(),
+        age(service.beat_age_ms),
+        age(service.input_age_ms),
+        or_dash(service.rss_kib.map(words::memory)),
+        remarks(service),
+    ]
+}
+
+fn state(service: &ServiceStatus) -> &'static str {
+    match service.actual {
+        Actual::Down if service.wanted == Wanted::Up => "waiting",
+        Actual::Down => "down",
+        Actual::Starting => "starting",
+        Actual::Ready => "ready",
+        Actual::Stopping => "stopping",
+        Actual::Backoff => "backoff",
+        Actual::Held => "held",
+    }
+}
+
+fn remarks(service: &ServiceStatus) -> String {
+    let swapped = service.swapped.as_ref().map(|command| format!("swapped: {}", command.join(" ")));
+    let exit = service
+        .last_exit
+        .as_ref()
+        .map(|exit| format!("last ended {} ago with {}", words::time(exit.age_s), exit.text));
+    let remarks = [service.why.clone(), service.says.clone(), swapped, exit];
+    remarks.into_iter().flatten().collect::<Vec<_>>().join("; ")
+}
+
+/// A service that is as it is wanted goes without colour, so that the others stand out.
+fn coloured(service: &ServiceStatus, line: String, style: Style) -> String {
+    let ink = match (service.actual, service.wanted) {
+        (Actual::Ready, Wanted::Up) => return line,
+        (Actual::Held | Actual::Backoff, _) => Ink::Red,
+        (Actual::Down, Wanted::Down) => Ink::Dim,
+        _ => Ink::Yellow,
+    };
+    style.paint(ink, line).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_service_in_trouble_says_why() {
+        let service = json!({
+            "name": "policy", "wanted": "up", "actual": "held", "why": "5 exits in a short time",
+            "incarnation": 5, "restarts": 4, "log_tail": ["it broke"],
+            "last_exit": {"incarnation": 5, "exit": {"code": 1}, "failure": null, "killed": false,
+                          "age_s": 2.0, "text": "exit 1"},
+        });
+        let status = json!({
+            "name": "lab", "state": "degraded", "supervisor_pid": 7, "version": "0", "epoch": 1,
+            "uptime_s": 61.0, "scene": "bowls", "profile": "ci", "config": "/c",
+            "strays_killed": 1, "services": [service],
+        });
+        let status = serde_json::from_value(status).unwrap();
+        let told = lines(&status, Style::default());
+        assert_eq!(
+            told,
+            [
+                "group lab is degraded: scene bowls, up 1 min 1 s, supervisor 7, configuration /c \
+                 with profile ci, 1 stray killed",
+                "SERVICE  STATE  PID  UP  STARTS  BEAT  INPUT  MEMORY  NOTE",
+                "policy   held   -    -   5       -     -      -       5 exits in a short time; \
+                 last ended 2.0 s ago with exit 1",
+                "    it broke",
+            ]
+        );
+    }
+}

@@ -1,0 +1,101 @@
+//! `up`: starting a group.
+
+use std::time::Duration;
+
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use supervisor::control::{CallError, Request};
+use supervisor::launch::{self, Options};
+
+use super::{operate, place};
+use crate::cli::{ConfigArgs, UpArgs, WaitFor};
+use crate::output::{Output, note};
+use crate::trouble::{Outcome, Trouble};
+
+/// A new supervisor first waits this long for services of one that was killed.
+const EARLIER_SERVICES: Duration = Duration::from_secs(25);
+
+/// Starts the group: in the foreground, where this process becomes its supervisor, or detached.
+pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Outcome {
+    refuse_twice(paths)?;
+    let options = options(paths, &args.config, args.fresh)?;
+    let name = paths.name();
+    if !args.detach {
+        note(format_args!("group {name} starts; Ctrl-C or `whichone down` stops it"));
+        out.flush()?;
+        return Err(launch::foreground(&launch::program(), &options, paths).into());
+    }
+    let ready = match args.wait {
+        None => start(paths, &options, None)?,
+        Some(WaitFor::Ready) => start(paths, &options, Some(args.timeout))?,
+    };
+    let status = operate::status_of(paths)?;
+    if out.is_json() {
+        out.json(&status)?;
+    } else {
+        let pid = status.supervisor_pid;
+        out.line(format_args!("group {name} is up (supervisor {pid}): {ready}"))?;
+    }
+    Ok(Exit::Ok)
+}
+
+/// Starts a detached group with everything ready, for a verb that needs one.
+pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<(), Trouble> {
+    let options = options(paths, config, false)?;
+    start(paths, &options, Some(Duration::from_secs(30))).map(drop)
+}
+
+/// Whether a supervisor answers for the group.
+pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, Trouble> {
+    match operate::ask(paths, &Request::Ping, Duration::ZERO) {
+        Ok(_) => Ok(true),
+        Err(operate::Unanswered::Call(CallError::NoGroup { .. })) => Ok(false),
+        Err(other) => Err(other.into()),
+    }
+}
+
+fn refuse_twice(paths: &GroupPaths) -> Result<(), Trouble> {
+    if !is_running(paths)? {
+        return Ok(());
+    }
+    let name = paths.name();
+    let pid = operate::status_of(paths)?.supervisor_pid;
+    let what = format!("group {name} is running already (supervisor {pid})");
+    Err(Trouble::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
+}
+
+/// What the supervisor is started with. It checks the configuration itself; here it is checked
+/// first so that problems are told without its log around them.
+fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Options, Trouble> {
+    place::settings(config)?;
+    Ok(Options {
+        group: paths.name().clone(),
+        config: place::config_folder(config)?,
+        profile: config.profile.clone(),
+        set: config.set.clone(),
+        fresh,
+    })
+}
+
+/// Starts a detached supervisor and waits until it listens, and until every service is ready
+/// where that is asked for. What it says then.
+fn start(paths: &GroupPaths, options: &Options, wait: Option<Duration>) -> Result<String, Trouble> {
+    let mut launched = launch::detached(&launch::program(), options, paths)?;
+    launched.wait_listening(EARLIER_SERVICES)?;
+    let Some(timeout) = wait else { return Ok("services are starting".to_owned()) };
+    Ok(launch::wait_ready(paths, timeout)?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_running_where_nothing_was_started() {
+        let home = tempfile::tempdir().unwrap();
+        let name = "lab".parse().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &name).unwrap();
+        assert!(!is_running(&paths).unwrap());
+        refuse_twice(&paths).unwrap();
+    }
+}

@@ -1,0 +1,190 @@
+//! The picture as lines of text.
+
+use protocol::{ArmStatus, PickOutcome, PickPhase, PolicyView};
+use scene::Scene;
+use supervisor::group::GroupState;
+use supervisor::machine::{Actual, Wanted};
+use supervisor::status::{GroupStatus, ServiceStatus};
+
+use super::picture::{Picture, Speaker, object_name};
+use crate::output::{Ink, Style};
+use crate::verbs::{await_pick, words};
+
+/// Begins drawing: an empty screen beside the one that was there, without a cursor.
+pub(super) const BEGIN: &str = "\x1b[?1049h\x1b[?25l";
+/// Ends drawing and brings the former screen back.
+pub(super) const END: &str = "\x1b[?25h\x1b[?1049l";
+
+/// Objects that are shown, the most probable ones.
+const OBJECTS_MAX: usize = 12;
+/// Longest bar, characters.
+const BAR_MAX: usize = 40;
+
+/// Draws `lines` over what stands on the screen.
+pub(super) fn redraw(lines: &[String]) -> String {
+    let lines: String = lines.iter().map(|line| format!("{line}\x1b[K\r\n")).collect();
+    format!("\x1b[H{lines}\x1b[J")
+}
+
+/// The picture, no line wider than `columns`.
+pub(super) fn lines(picture: &Picture, style: Style, columns: usize) -> Vec<String> {
+    let scene = picture.scene();
+    let seen = picture.seen();
+    let mut lines = head(scene, picture.status.as_ref(), style);
+    lines.push(String::new());
+    match &seen.view {
+        Some(view) => lines.extend(dialogue(scene, view, style, columns)),
+        None => lines.push(style.paint(Ink::Yellow, "the policy is silent").to_string()),
+    }
+    lines.push(String::new());
+    lines.extend(said(picture, style, columns));
+    lines.push(String::new());
+    lines.push(match &seen.arm {
+        Some(arm) => arm_line(scene, arm, style),
+        None => style.paint(Ink::Yellow, "the arm is silent").to_string(),
+    });
+    lines
+}
+
+fn head(scene: &Scene, status: Option<&GroupStatus>, style: Style) -> Vec<String> {
+    let Some(status) = status else {
+        return vec![style.paint(Ink::Yellow, "the supervisor does not answer").to_string()];
+    };
+    let ink = match status.state {
+        GroupState::Ready => Ink::Green,
+        GroupState::Starting | GroupState::Stopping => Ink::Yellow,
+        GroupState::Degraded => Ink::Red,
+    };
+    let state = style.paint(ink, format!("{:?}", status.state).to_lowercase());
+    let name = style.paint(Ink::Bold, &status.name);
+    let services: Vec<String> = status.services.iter().map(|s| service(s, style)).collect();
+    vec![
+        format!("{name} {state}, scene {}, up {}", scene.name(), words::time(status.uptime_s)),
+        services.join("  "),
+    ]
+}
+
+fn service(service: &ServiceStatus, style: Style) -> String {
+    let ink = match (service.actual, service.wanted) {
+        (Actual::Ready, _) => Ink::Green,
+        (Actual::Down, Wanted::Down) => Ink::Dim,
+        (Actual::Held | Actual::Backoff, _) => Ink::Red,
+        _ => Ink::Yellow,
+    };
+    let starts = match service.restarts {
+        0 => String::new(),
+        restarts => format!(" (restarted {restarts})"),
+    };
+    let state = format!("{:?}", service.actual).to_lowercase();
+    format!("{} {}{starts}", service.name, style.paint(ink, state))
+}
+
+fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> Vec<String> {
+    let mut lines = vec![match view.interaction {
+        0 => "nothing is asked for".to_owned(),
+        id => {
+            let asked = words::count(view.questions.into(), "question");
+            format!("interaction {id}: {asked} asked, {:.1} to come", view.expected_questions)
+        }
+    }];
+    lines.extend(belief(scene, &view.belief, style, columns));
+    if view.interaction != 0 {
+        let decision = style.paint(Ink::Bold, &view.decision);
+        lines.push(format!("decision: {decision} (value {:.1})", view.value));
+        let others = view.alternatives.iter().take(3);
+        let others: Vec<String> =
+            others.map(|(action, value)| format!("{action} {value:.1}")).collect();
+        if !others.is_empty() {
+            let text = cut(&format!("  before {}", others.join(" · ")), columns);
+            lines.push(style.paint(Ink::Dim, text).to_string());
+        }
+    }
+    if let Some(last) = &view.last {
+        let object = last.object.and_then(|i| object_name(scene, i.into()));
+        let text = await_pick::sentence(last, object);
+        let text = cut(&format!("interaction {}: {text}", last.interaction), columns);
+        lines.push(style.paint(Ink::Dim, text).to_string());
+    }
+    lines
+}
+
+/// A bar for each object, in the scene's order; of many only the most probable.
+fn belief(scene: &Scene, belief: &[f64], style: Style, columns: usize) -> Vec<String> {
+    let mut shown: Vec<(usize, f64)> = belief.iter().copied().enumerate().collect();
+    shown.sort_by(|a, b| b.1.total_cmp(&a.1));
+    shown.truncate(OBJECTS_MAX);
+    shown.sort_unstable_by_key(|(i, _)| *i);
+    let name = |i: usize| object_name(scene, i as u32).unwrap_or("?");
+    let widest = shown.iter().map(|(i, _)| name(*i).chars().count()).max().unwrap_or(0).min(24);
+    let length = columns.saturating_sub(widest + 12).clamp(5, BAR_MAX);
+    let best = belief.iter().copied().fold(0.0, f64::max);
+    let hidden = belief.len() - shown.len();
+    let mut lines: Vec<String> = shown
+        .into_iter()
+        .map(|(i, p)| {
+            let ink = if p >= best { Ink::Green } else { Ink::Cyan };
+            let bar = style.paint(ink, bar(p, length));
+            format!("  {:widest$} {:5.1} % {bar}", cut(name(i), widest), p * 100.0)
+        })
+        .collect();
+    if hidden > 0 {
+        lines.push(format!("  and {hidden} less probable ones"));
+    }
+    lines
+}
+
+/// A bar of `p` times `length` characters, to an eighth of one.
+fn bar(p: f64, length: usize) -> String {
+    const EIGHTHS: [&str; 8] = ["", "▏", "▎", "▍", "▌", "▋", "▊", "▉"];
+    let eighths = (p.clamp(0.0, 1.0) * length as f64 * 8.0).round() as usize;
+    format!("{}{}", "█".repeat(eighths / 8), EIGHTHS[eighths % 8])
+}
+
+fn said(picture: &Picture, style: Style, columns: usize) -> Vec<String> {
+    let line = |(speaker, text): &(Speaker, String)| {
+        let text = cut(text, columns.saturating_sub(8));
+        match speaker {
+            Speaker::Person => format!("   you  {text}"),
+            Speaker::Robot => format!(" {}  {text}", style.paint(Ink::Cyan, "robot")),
+        }
+    };
+    picture.said.iter().map(line).collect()
+}
+
+fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
+    let object = object_name(scene, arm.object).unwrap_or("?");
+    let left = words::time(arm.remaining_s);
+    let does = match PickPhase::from_code(arm.phase) {
+        Ok(PickPhase::Idle) => "rests".to_owned(),
+        Ok(PickPhase::Accepted) => format!("sets out for {object}"),
+        Ok(PickPhase::Moving) => format!("moves to {object}, {left} to go"),
+        Ok(PickPhase::Closing) => format!("grasps {object}, {left} to go"),
+        Ok(PickPhase::Holding) => format!("brings {object}, {left} to go"),
+        Ok(PickPhase::Done) => match PickOutcome::from_code(arm.outcome) {
+            Ok(PickOutcome::Delivered) => format!("has delivered {object}"),
+            Ok(PickOutcome::Unreachable) => format!("cannot reach {object}"),
+            Ok(PickOutcome::Interrupted) => format!("was interrupted at {object}"),
+            Ok(PickOutcome::Cancelled) => format!("has left {object} where it was"),
+            _ => "is done".to_owned(),
+        },
+        Err(_) => "does what this program does not know".to_owned(),
+    };
+    if arm.stopped != 0 {
+        let stop = style.paint(Ink::Red, "STOPPED (whichone resume-motion)");
+        return format!("arm {does} {stop}");
+    }
+    let moves = if arm.moving != 0 { ", moving" } else { "" };
+    format!("arm {does}{moves}")
+}
+
+/// The text, or as much of it as `width` characters hold.
+fn cut(text: &str, width: usize) -> String {
+    let clean = text.chars().map(|c| if c.is_control() { ' ' } else { c });
+    if text.chars().count() <= width {
+        return clean.collect();
+    }
+    clean.take(width.saturating_sub(1)).chain(['…']).collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,128 @@
+//! The program as a process: exit codes, streams, and what happens where nothing runs.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on says where")]
+
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+/// A home without any group.
+struct Home(tempfile::TempDir);
+
+impl Home {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_whichone"));
+        command.args(line.split_whitespace()).current_dir(self.0.path());
+        command.env_clear().env("WHICHONE_HOME", self.0.path()).stdin(Stdio::null());
+        command
+    }
+
+    fn run(&self, line: &str) -> Output {
+        self.command(line).output().unwrap()
+    }
+
+    #[track_caller]
+    fn check(&self, line: &str, code: i32, part: &str) {
+        let output = self.run(line);
+        let text = |bytes| String::from_utf8_lossy(bytes).into_owned();
+        let (out, err) = (text(&output.stdout), text(&output.stderr));
+        assert_eq!(output.status.code(), Some(code), "{line}: {out}{err}");
+        assert!(format!("{out}{err}").contains(part), "{line}: {out}{err}");
+        if code > 1 {
+            assert_eq!(out, "", "{line}: trouble is told on standard error");
+        }
+    }
+}
+
+#[test]
+fn wrong_calls_exit_64_and_help_0() {
+    let home = Home::new();
+    home.check("", 64, "Usage");
+    home.check("dance", 64, "dance");
+    home.check("fk", 64, "--limb");
+    home.check("fk --limb middle", 64, "left");
+    home.check("swap grounding", 64, "COMMAND");
+    home.check("await supper", 64, "pick");
+    home.check("status --group No", 64, "a-z");
+    home.check("up --set scene", 64, "KEY=VALUE");
+    home.check("say --timeout soon hello", 64, "seconds");
+    home.check("--help", 0, "whichone");
+    home.check("ik --help", 0, "--limb");
+    home.check("--version", 0, env!("CARGO_PKG_VERSION"));
+}
+
+#[test]
+fn without_a_group_every_verb_says_how_to_start_one() {
+    let home = Home::new();
+    let cure = "whichone up";
+    for line in ["say hello", "watch --once", "await pick", "stop-motion", "restart arm", "reload"]
+    {
+        home.check(line, 1, cure);
+    }
+    home.check("status", 1, cure);
+    home.check("status --json --group lab", 1, "{\"name\":\"lab\",\"state\":\"down\",");
+    home.check("logs arm", 64, cure);
+    home.check("down", 0, "not running");
+    home.check("journal speech", 1, cure);
+}
+
+#[test]
+fn a_configuration_is_looked_for_and_checked() {
+    let home = Home::new();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+    let shipped = shipped.display();
+    home.check(&format!("check --config {shipped}"), 0, "is right");
+    home.check(&format!("check --values --config {shipped}"), 0, "dialogue.alpha");
+    home.check(&format!("check --json --config {shipped}"), 0, "\"ok\":true");
+    home.check(&format!("check --config {shipped} --set dialogue.alpa=1"), 78, "alpha");
+    home.check(&format!("check --config {shipped} --profile nowhere"), 78, "nowhere");
+    home.check("check --config nowhere", 78, "nowhere");
+    home.check(&format!("up --config {shipped} --set arm.speed=2"), 78, "arm.speed");
+    let output = home.run(&format!("check --json --config {shipped} --set dialogue.alpa=1"));
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(told["problems"][0]["key"], "dialogue.alpa");
+}
+
+#[test]
+fn batch_tools_read_standard_input_or_a_file() {
+    let home = Home::new();
+    let line = "{\"id\":1,\"q\":[0,0,0,0,0,0,0]}\n";
+    let mut child = home
+        .command("fk --limb left")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child.stdin.take().unwrap().write_all(line.as_bytes()).unwrap();
+    let piped = child.wait_with_output().unwrap();
+    assert_eq!(piped.status.code(), Some(0));
+    std::fs::write(home.0.path().join("lines"), format!("{line}\nbad\n")).unwrap();
+    let read = home.run("fk --limb left --input lines");
+    assert_eq!(read.status.code(), Some(1));
+    assert!(read.stdout.starts_with(&piped.stdout));
+    home.check("fk --limb left --input nowhere", 74, "nowhere");
+    home.check("ground --scene nowhere.toml", 74, "nowhere.toml");
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_failure() {
+    let home = Home::new();
+    let lines = "{\"id\":1,\"q\":[0,0,0,0,0,0,0]}\n".repeat(2_000);
+    std::fs::write(home.0.path().join("lines"), lines).unwrap();
+    let mut command = home.command("fk --limb left --input lines");
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]));
+}
+
+#[test]
+fn completions_are_made_for_the_common_shells() {
+    let home = Home::new();
+    for shell in ["bash", "zsh", "fish"] {
+        home.check(&format!("completions {shell}"), 0, "stop-motion");
+    }
+}

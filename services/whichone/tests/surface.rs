@@ -1,0 +1,57 @@
+//! The command surface as people see it. It is a contract: scripts rest on it, so a change shows
+//! here. `WHICHONE_BLESS=1` writes the new text.
+
+use std::path::Path;
+
+use clap::CommandFactory;
+use whichone::cli::Cli;
+
+/// The help of every verb, one below the other.
+fn surface() -> String {
+    let mut command = Cli::command().color(clap::ColorChoice::Never);
+    command.build();
+    let mut text = format!("$ whichone --help\n{}", command.clone().render_long_help());
+    for verb in command.get_subcommands_mut() {
+        let help = verb.render_long_help();
+        text += &format!("\n$ whichone {} --help\n{help}", verb.get_name());
+    }
+    let lines = text.lines().map(str::trim_end);
+    lines.flat_map(|line| [line, "\n"]).collect()
+}
+
+#[test]
+fn the_command_surface_is_as_agreed() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/surface.txt");
+    let found = surface();
+    if std::env::var_os("WHICHONE_BLESS").is_some() {
+        std::fs::write(&path, &found).unwrap();
+    }
+    let agreed = std::fs::read_to_string(&path).unwrap_or_default();
+    let differs = agreed.lines().zip(found.lines()).position(|(a, b)| a != b);
+    let line = differs.unwrap_or(agreed.lines().count().min(found.lines().count())) + 1;
+    assert!(
+        agreed == found,
+        "{} differs from line {line} on; if that is meant, run the test with WHICHONE_BLESS=1",
+        path.display()
+    );
+}
+
+#[test]
+fn every_verb_and_every_argument_has_help() {
+    let mut command = Cli::command();
+    command.build();
+    for verb in command.get_subcommands() {
+        assert!(verb.get_about().is_some(), "{}", verb.get_name());
+        for argument in verb.get_arguments() {
+            let (verb, argument) = (verb.get_name(), argument.get_id());
+            let help = command.find_subcommand(verb).unwrap().get_arguments();
+            let mut help = help.filter(|a| a.get_id() == argument);
+            assert!(help.any(|a| a.get_help().is_some()), "{verb} {argument}");
+        }
+    }
+}
+
+#[test]
+fn the_definition_holds_together() {
+    Cli::command().debug_assert();
+}

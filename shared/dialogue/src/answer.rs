@@ -1,0 +1,169 @@
+//! What can be heard after a question: the observation space that planners look ahead in.
+//!
+//! The paper's observation model read literally lets a base word come with probability `p_l` after
+//! every action, which makes waiting as informative as asking. Planners therefore expect a
+//! question to be answered with yes, no, or (an open one) a value, or not at all, and expect
+//! nothing while they wait. The belief is still updated with whatever was really said.
+
+use scene::{AttributeId, ObjectId, Question, Reading, Response, Scene, ValueId};
+
+use crate::{Model, OpenQuestion};
+
+/// An answer to a question.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Answer {
+    /// Nothing was heard.
+    Silence,
+    /// Yes, to a yes/no question.
+    Yes,
+    /// No, to a yes/no question.
+    No,
+    /// The value of the attribute, to an open question.
+    Value(AttributeId, ValueId),
+}
+
+impl Answer {
+    /// Every answer that a question can get.
+    pub fn possible(model: &Model, question: Question) -> Vec<Self> {
+        match question {
+            Question::None => vec![Self::Silence],
+            Question::Point(_) | Question::Attribute(..) => {
+                vec![Self::Yes, Self::No, Self::Silence]
+            }
+            Question::Which(k) => {
+                let values = (0..model.values(k)).map(|v| Self::Value(k, ValueId::from(v)));
+                values.chain([Self::Silence]).collect()
+            }
+        }
+    }
+
+    /// What somebody answers who wants `wanted` and neither errs nor stays silent, except that
+    /// there is nothing to say about an attribute that the object lacks.
+    pub fn truthful(model: &Model, question: Question, wanted: ObjectId) -> Self {
+        match question {
+            Question::None => Self::Silence,
+            Question::Point(i) if i == wanted => Self::Yes,
+            Question::Attribute(k, v) if model.has(wanted, k, v) => Self::Yes,
+            Question::Point(_) | Question::Attribute(..) => Self::No,
+            Question::Which(k) => {
+                model.value(wanted, k).map_or(Self::Silence, |v| Self::Value(k, v))
+            }
+        }
+    }
+
+    /// `P(answer | D = wanted, question)`; 0 for an answer that the question cannot get.
+    pub fn probability(self, model: &Model, question: Question, wanted: ObjectId) -> f64 {
+        let params = model.params();
+        match (self, question) {
+            (Self::Silence, Question::None) => 1.0,
+            (Self::Silence, _) => 1.0 - params.p_l,
+            (Self::Yes | Self::No, Question::Point(_) | Question::Attribute(..)) => {
+                let right = self == Self::truthful(model, question, wanted);
+                params.p_l * if right { 1.0 - params.epsilon } else { params.epsilon }
+            }
+            (Self::Value(k, v), Question::Which(asked)) if k == asked => {
+                let entry = model.column(k)[wanted.index()];
+                params.p_l * OpenQuestion::new(model, k).answer(v, entry)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The answer as the belief hears it.
+    pub fn reading(self, model: &Model) -> Reading {
+        match self {
+            Self::Silence => Reading::default(),
+            Self::Yes => Reading { response: Response::Yes, ..Reading::default() },
+            Self::No => Reading { response: Response::No, ..Reading::default() },
+            Self::Value(k, v) => Reading { base: vec![model.word(k, v)], ..Reading::default() },
+        }
+    }
+
+    /// The answer as a person says it; nothing for silence.
+    pub fn text(self, scene: &Scene) -> &str {
+        match self {
+            Self::Silence => "",
+            Self::Yes => "yes",
+            Self::No => "no",
+            Self::Value(k, v) => &scene.attributes()[k.index()].values[v.index()].name,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{bowls, everyone, random_scene};
+    use crate::{Actions, Belief, Mode, Params, Rng};
+
+    fn scenes() -> Vec<Scene> {
+        let mut rng = Rng::new(51);
+        vec![bowls(), random_scene(&mut rng, 12, &[4, 1, 2], 3)]
+    }
+
+    #[test]
+    fn answers_are_a_distribution() {
+        for scene in scenes() {
+            let model = Model::new(&scene, Params::default());
+            let actions = Actions { mode: Mode::Present, ..Actions::default() };
+            for question in actions.questions(&model) {
+                for wanted in everyone(model.objects()) {
+                    let answers = Answer::possible(&model, question);
+                    let sum: f64 =
+                        answers.iter().map(|a| a.probability(&model, question, wanted)).sum();
+                    assert!((sum - 1.0).abs() < 1e-14, "{question:?} {wanted:?}: {sum}");
+                }
+            }
+        }
+    }
+
+    /// What planners expect is what the belief is updated with.
+    #[test]
+    fn answers_move_the_belief_by_their_probability() {
+        for scene in scenes() {
+            let model = Model::new(&scene, Params::default());
+            let actions = Actions { mode: Mode::Present, ..Actions::default() };
+            for question in actions.questions(&model) {
+                for answer in Answer::possible(&model, question) {
+                    let weights: Vec<f64> = everyone(model.objects())
+                        .map(|i| answer.probability(&model, question, i))
+                        .collect();
+                    let expected = Belief::from_probabilities(&weights).unwrap();
+                    let mut belief = Belief::uniform(model.objects());
+                    belief.update(&model, question, &answer.reading(&model));
+                    for i in everyone(model.objects()) {
+                        let (a, b) = (belief.probability(i), expected.probability(i));
+                        assert!((a - b).abs() < 1e-14, "{question:?} {answer:?}: {a} {b}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_truthful_answer_is_the_most_probable_one() {
+        let scene = bowls();
+        let model = Model::new(&scene, Params::default());
+        let actions = Actions { mode: Mode::Present, ..Actions::default() };
+        for question in actions.questions(&model) {
+            for wanted in everyone(6) {
+                let truth = Answer::truthful(&model, question, wanted);
+                let p = truth.probability(&model, question, wanted);
+                for other in Answer::possible(&model, question) {
+                    assert!(other == truth || other.probability(&model, question, wanted) < p);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn answers_are_said_in_the_scenes_words() {
+        let scene = bowls();
+        let model = Model::new(&scene, Params::default());
+        let color = scene.attribute_named("color").unwrap();
+        let clear = scene.object_named("clear").unwrap();
+        let answer = Answer::truthful(&model, Question::Which(color), clear);
+        assert_eq!(answer.text(&scene), "clear");
+        assert_eq!((Answer::Yes.text(&scene), Answer::Silence.text(&scene)), ("yes", ""));
+    }
+}

@@ -1,0 +1,214 @@
+//! The belief: how probable it is, for every object, that it is the one that is wanted.
+
+use scene::{ObjectId, Question, Reading};
+use serde::{Deserialize, Serialize};
+
+use crate::Model;
+use crate::observation::log_likelihood;
+
+/// A distribution over the objects of a scene.
+///
+/// It is held as natural logarithms that are normalised after every update, so that neither
+/// thousands of utterances nor hundreds of objects can under- or overflow, and an object that was
+/// all but ruled out can always come back. The logarithms are its whole state: stored and restored
+/// by [`Belief::log_weights`] and [`Belief::from_log`], it goes on bit for bit as before.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
+pub struct Belief {
+    log: Vec<f64>,
+}
+
+/// Why numbers are not a belief.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum BeliefError {
+    /// There is no object.
+    #[error("a belief needs at least one object")]
+    Empty,
+    /// The entry is negative, infinite or not a number.
+    #[error("entry {index} of the belief is {value}, not a probability")]
+    NotAProbability {
+        /// Position in the list.
+        index: usize,
+        /// What stands there.
+        value: f64,
+    },
+    /// Every entry is zero.
+    #[error("every entry of the belief is zero")]
+    AllZero,
+    /// Stored logarithms that are not those of a distribution.
+    #[error("the stored belief sums to {sum}, not to 1")]
+    NotNormalised {
+        /// Sum of the probabilities.
+        sum: f64,
+    },
+}
+
+impl Belief {
+    /// Every object alike.
+    ///
+    /// # Panics
+    /// If `objects` is 0; a scene has at least one.
+    pub fn uniform(objects: usize) -> Self {
+        assert!(objects > 0, "a belief needs at least one object");
+        Self { log: vec![-(objects as f64).ln(); objects] }
+    }
+
+    /// The belief with these probabilities, or with weights in these proportions. Zero is allowed
+    /// and final: no observation brings such an object back.
+    ///
+    /// # Errors
+    /// On no entry, an entry that is negative or not finite, or zeros alone.
+    pub fn from_probabilities(probabilities: &[f64]) -> Result<Self, BeliefError> {
+        if probabilities.is_empty() {
+            return Err(BeliefError::Empty);
+        }
+        let wrong = probabilities.iter().position(|p| !p.is_finite() || *p < 0.0);
+        if let Some(index) = wrong {
+            return Err(BeliefError::NotAProbability { index, value: probabilities[index] });
+        }
+        if probabilities.iter().all(|p| *p == 0.0) {
+            return Err(BeliefError::AllZero);
+        }
+        let mut belief = Self { log: probabilities.iter().map(|p| p.ln()).collect() };
+        belief.normalise();
+        Ok(belief)
+    }
+
+    /// The belief with exactly these logarithms, as [`Belief::log_weights`] gave them.
+    ///
+    /// # Errors
+    /// If they are not the logarithms of a distribution.
+    pub fn from_log(log: Vec<f64>) -> Result<Self, BeliefError> {
+        if log.is_empty() {
+            return Err(BeliefError::Empty);
+        }
+        if let Some(index) = log.iter().position(|l| l.is_nan() || *l == f64::INFINITY) {
+            return Err(BeliefError::NotAProbability { index, value: log[index] });
+        }
+        let sum: f64 = log.iter().map(|l| l.exp()).sum();
+        // Thousands of objects leave rounding errors near 1e-12; anything larger was not ours.
+        if (sum - 1.0).abs() > 1e-6 {
+            return Err(BeliefError::NotNormalised { sum });
+        }
+        Ok(Self { log })
+    }
+
+    /// Natural logarithm of every object's probability; −∞ where it is zero.
+    pub fn log_weights(&self) -> &[f64] {
+        &self.log
+    }
+
+    /// Every object's probability, in the scene's order.
+    pub fn probabilities(&self) -> Vec<f64> {
+        self.log.iter().map(|l| l.exp()).collect()
+    }
+
+    /// The probability that object `i` is wanted.
+    pub fn probability(&self, i: ObjectId) -> f64 {
+        self.log[i.index()].exp()
+    }
+
+    /// The most probable object; of several the first.
+    pub fn most_likely(&self) -> ObjectId {
+        let first = (self.log.iter().enumerate())
+            .reduce(|best, next| if next.1 > best.1 { next } else { best })
+            .map_or(0, |(i, _)| i);
+        ObjectId::from(first)
+    }
+
+    /// Shannon entropy, bits: 0 when certain, `log2 |I|` when every object is alike.
+    pub fn entropy_bits(&self) -> f64 {
+        let nats: f64 = (self.log.iter()).filter(|l| l.is_finite()).map(|l| -l.exp() * l).sum();
+        (nats / std::f64::consts::LN_2).max(0.0)
+    }
+
+    /// How many objects the belief is about.
+    #[expect(clippy::len_without_is_empty, reason = "a belief is never empty")]
+    pub fn len(&self) -> usize {
+        self.log.len()
+    }
+
+    /// Bayes' rule with an utterance that answers `question`: `b'(D) ∝ P(l_b, l_r | D, Q) b(D)`.
+    ///
+    /// An utterance that is as likely whatever is wanted, silence among them, leaves the belief
+    /// unchanged bit for bit.
+    ///
+    /// # Panics
+    /// If belief, question and reading are not about the model's scene.
+    pub fn update(&mut self, model: &Model, question: Question, reading: &Reading) {
+        self.multiply(&log_likelihood(model, question, reading));
+    }
+
+    /// Bayes' rule where it is uncertain what was heard, or which question it answers:
+    /// `P(o | D) = Σ_j w_j P(o_j | D, Q_j)`.
+    ///
+    /// Weights are relative; hypotheses of weight zero are left out, and without any other the
+    /// belief stays as it is.
+    ///
+    /// # Panics
+    /// If a weight is negative or not finite, or anything is not about the model's scene.
+    pub fn update_mixture(&mut self, model: &Model, heard: &[(f64, Question, Reading)]) {
+        for (weight, ..) in heard {
+            assert!(weight.is_finite() && *weight >= 0.0, "{weight} is not a weight");
+        }
+        let mut hypotheses = heard.iter().filter(|(weight, ..)| *weight > 0.0);
+        let Some((weight, question, reading)) = hypotheses.next() else { return };
+        let mut mixture = log_likelihood(model, *question, reading);
+        let mut weighted = false;
+        for (more, question, reading) in hypotheses {
+            if !weighted {
+                mixture.iter_mut().for_each(|log| *log += weight.ln());
+                weighted = true;
+            }
+            for (sum, log) in mixture.iter_mut().zip(log_likelihood(model, *question, reading)) {
+                *sum = log_add(*sum, log + more.ln());
+            }
+        }
+        self.multiply(&mixture);
+    }
+
+    fn multiply(&mut self, log_likelihood: &[f64]) {
+        assert_eq!(self.log.len(), log_likelihood.len(), "belief and model are of one scene");
+        if log_likelihood.iter().all(|l| *l == log_likelihood[0]) {
+            return;
+        }
+        for (weight, likelihood) in self.log.iter_mut().zip(log_likelihood) {
+            *weight += likelihood;
+        }
+        self.normalise();
+    }
+
+    /// Subtracts the logarithm of the sum. The largest term is taken out first, so that at least
+    /// one exponential is 1 and none overflows.
+    fn normalise(&mut self) {
+        let largest = self.log.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = self.log.iter().map(|l| (l - largest).exp()).sum();
+        let log_sum = largest + sum.ln();
+        self.log.iter_mut().for_each(|l| *l -= log_sum);
+    }
+}
+
+/// `ln(e^a + e^b)` without overflow.
+fn log_add(a: f64, b: f64) -> f64 {
+    let (low, high) = if a < b { (a, b) } else { (b, a) };
+    high + (low - high).exp().ln_1p()
+}
+
+impl TryFrom<Vec<f64>> for Belief {
+    type Error = BeliefError;
+
+    fn try_from(log: Vec<f64>) -> Result<Self, BeliefError> {
+        Self::from_log(log)
+    }
+}
+
+impl From<Belief> for Vec<f64> {
+    fn from(belief: Belief) -> Self {
+        belief.log
+    }
+}
+
+#[cfg(test)]
+mod golden;
+#[cfg(test)]
+mod tests;

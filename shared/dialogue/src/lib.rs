@@ -1,0 +1,35 @@
+//! The dialogue: what an utterance says about the wanted object, and what to do next.
+//!
+//! This crate is pure: no IO, no clock, no threads. What it computes depends on its arguments
+//! alone, so that a replay believes and decides the same, bit for bit on the same build.
+
+mod action;
+mod answer;
+mod belief;
+mod costs;
+mod evaluate;
+mod model;
+mod observation;
+mod params;
+mod planner;
+mod planners;
+mod planning;
+pub mod registry;
+mod rng;
+mod user;
+
+#[cfg(test)]
+mod testing;
+
+pub use action::{Action, Actions, Decision, Mode};
+pub use answer::Answer;
+pub use belief::{Belief, BeliefError};
+pub use costs::Costs;
+pub use evaluate::{Evaluation, evaluate};
+pub use model::Model;
+pub use observation::{OpenQuestion, log_likelihood};
+pub use params::{Fault, Params};
+pub use planner::{DecisionProblem, Planner, Step};
+pub use planners::Lookahead;
+pub use rng::Rng;
+pub use user::{SimulatedUser, truthful_answer};

@@ -1,0 +1,148 @@
+use scene::ObjectId;
+
+use super::*;
+use crate::Params;
+use crate::testing::{bowls, everyone, heard, scene};
+
+const P_L: f64 = 0.9;
+const EPSILON: f64 = 0.1;
+const ALPHA: f64 = 0.5;
+
+fn model(scene: &scene::Scene) -> Model {
+    Model::new(scene, Params { p_l: P_L, epsilon: EPSILON, alpha: ALPHA })
+}
+
+/// Three objects: a red one with a lid, a blue one without, a green one that has no such thing.
+fn pots() -> scene::Scene {
+    scene(
+        r#"{"objects":[
+            {"name":"a","attributes":{"color":"red","lid":"lidded"}},
+            {"name":"b","attributes":{"color":"blue","lid":"open"}},
+            {"name":"c","attributes":{"color":"green"}}],
+            "values":{"color":["red","blue","green"],"lid":["lidded","open"]}}"#,
+    )
+}
+
+fn assert_likelihood(question: Question, words: &[&str], response: Response, expected: [f64; 3]) {
+    let scene = pots();
+    let got = log_likelihood(&model(&scene), question, &heard(&scene, words, response));
+    for (i, (got, expected)) in got.iter().zip(expected).enumerate() {
+        let got = got.exp();
+        assert!((got - expected).abs() < 1e-14, "object {i}: {got} not {expected}");
+    }
+}
+
+const COLOR: AttributeId = AttributeId(0);
+const LID: AttributeId = AttributeId(1);
+const RED: ValueId = ValueId(0);
+
+/// P(w|D) by hand: |V| = 5, so the denominators are 2 + 2.5, 2 + 2.5 and 1 + 2.5.
+#[test]
+fn base_words_by_hand() {
+    let third = 1.0 / 3.0;
+    assert_likelihood(Question::None, &[], Response::None, [0.1 * third; 3]);
+    let red = [1.5 / 4.5, 0.5 / 4.5, 0.5 / 3.5];
+    assert_likelihood(Question::None, &["red"], Response::None, red.map(|p| P_L * p * third));
+    let twice = red.map(|p| P_L * p * p * third);
+    assert_likelihood(Question::None, &["red", "red"], Response::Yes, twice);
+}
+
+#[test]
+fn answers_by_hand() {
+    let (right, wrong) = (P_L * (1.0 - EPSILON), P_L * EPSILON);
+    let silent = 1.0 - P_L;
+    let base = 1.0 - P_L;
+    let point = Question::Point(ObjectId(1));
+    let red = Question::Attribute(COLOR, RED);
+    let lidded = Question::Attribute(LID, ValueId(0));
+    let times = |p: [f64; 3]| p.map(|p| base * p);
+    assert_likelihood(point, &[], Response::Yes, times([wrong, right, wrong]));
+    assert_likelihood(point, &[], Response::No, times([right, wrong, right]));
+    assert_likelihood(point, &[], Response::None, times([silent; 3]));
+    assert_likelihood(red, &[], Response::Yes, times([right, wrong, wrong]));
+    assert_likelihood(lidded, &[], Response::No, times([wrong, right, right]));
+}
+
+#[test]
+fn the_value_answers_an_open_question() {
+    let third = 1.0 / 3.0;
+    let other = EPSILON / 2.0;
+    let which = Question::Which(COLOR);
+    let answer = [1.0 - EPSILON, other, other].map(|p| P_L * p * third);
+    assert_likelihood(which, &["red"], Response::None, answer);
+    assert_likelihood(which, &["red", "red"], Response::None, answer);
+    assert_likelihood(which, &["red"], Response::Yes, answer);
+    assert_likelihood(which, &[], Response::No, [(1.0 - P_L) * third; 3]);
+    // A word of another attribute keeps its own factor beside the answer.
+    let lidded = [1.5 / 4.5, 0.5 / 4.5, 0.5 / 3.5];
+    let both = [0, 1, 2].map(|i| answer[i] * lidded[i]);
+    assert_likelihood(which, &["lidded", "red"], Response::None, both);
+    // Two values are no answer; their words count as any others.
+    let red = [1.5 / 4.5, 0.5 / 4.5, 0.5 / 3.5];
+    let blue = [0.5 / 4.5, 1.5 / 4.5, 0.5 / 3.5];
+    let neither = [0, 1, 2].map(|i| P_L * third * red[i] * blue[i]);
+    assert_likelihood(which, &["red", "blue"], Response::None, neither);
+}
+
+#[test]
+fn an_object_without_the_attribute_may_be_called_anything() {
+    let third = 1.0 / 3.0;
+    let answer = [1.0 - EPSILON, EPSILON, 0.5].map(|p| P_L * p * third);
+    assert_likelihood(Question::Which(LID), &["lidded"], Response::None, answer);
+}
+
+/// The answers to an open question and silence exhaust what can be said.
+#[test]
+fn open_answers_are_a_distribution() {
+    let scene = pots();
+    let model = model(&scene);
+    for k in [COLOR, LID] {
+        let open = OpenQuestion::new(&model, k);
+        for i in everyone(3) {
+            let sum: f64 = (0..model.values(k))
+                .map(|v| open.answer(ValueId::from(v), model.column(k)[i.index()]))
+                .sum();
+            assert!((sum - 1.0).abs() < 1e-15, "{k:?} {i:?}: {sum}");
+        }
+    }
+}
+
+#[test]
+fn a_single_value_cannot_be_confused() {
+    let scene = scene(
+        r#"{"objects":[{"name":"a","attributes":{"shape":"round"}},{"name":"b","attributes":{}}],
+            "values":{"shape":["round"]}}"#,
+    );
+    let open = OpenQuestion::new(&model(&scene), AttributeId(0));
+    assert_eq!((open.own, open.lacking), (1.0, 1.0));
+    let round = heard(&scene, &["round"], Response::None);
+    let log = log_likelihood(&model(&scene), Question::Which(AttributeId(0)), &round);
+    assert_eq!(log[0], log[1]);
+}
+
+#[test]
+fn exclusion_rules_out_what_has_every_word_of_a_group() {
+    let scene = bowls();
+    let model = model(&scene);
+    let word = |name: &str| scene.word_named(name).unwrap();
+    let plain = heard(&scene, &[], Response::None);
+    let mut reading = plain.clone();
+    reading.excluded = vec![vec![word("small"), word("white")], vec![]];
+    let (without, with) = (
+        log_likelihood(&model, Question::None, &plain),
+        log_likelihood(&model, Question::None, &reading),
+    );
+    for i in everyone(6) {
+        let small_white = model.has_word(i, word("small")) && model.has_word(i, word("white"));
+        let factor = (with[i.index()] - without[i.index()]).exp();
+        let expected = if small_white { EPSILON } else { 1.0 - EPSILON };
+        assert!((factor - expected).abs() < 1e-14, "{i:?}");
+    }
+}
+
+#[test]
+#[should_panic(expected = "not about this scene")]
+fn a_question_of_another_scene_is_refused() {
+    let scene = pots();
+    let _ = log_likelihood(&model(&scene), Question::Point(ObjectId(3)), &Reading::default());
+}

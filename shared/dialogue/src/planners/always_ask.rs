@@ -1,0 +1,38 @@
+//! `always-ask`: the predecessor's baseline that never picks without having asked.
+
+use crate::{Actions, Belief, Decision, DecisionProblem, Mode, Planner, Step};
+
+use super::Outlook;
+
+/// Asks at least once, and until one object is very probable: present, it points at the most
+/// probable object; remotely, where it cannot, it asks the most informative question. Objects that
+/// no question can tell apart count as one.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct AlwaysAsk;
+
+/// Probability from which on it is sure.
+const SURE: f64 = 0.95;
+
+impl Planner for AlwaysAsk {
+    fn name(&self) -> &'static str {
+        "always-ask"
+    }
+
+    fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
+        let actions = match problem.actions.mode {
+            Mode::Present => Actions { mode: Mode::Present, attribute: false, which: false },
+            Mode::Remote => problem.actions,
+        };
+        let problem = &DecisionProblem { actions, ..*problem };
+        let outlook = Outlook::new(problem, belief);
+        // Pointing questions come in order of falling probability: the first is at the most
+        // probable object, even where pointing at the next tells as much.
+        let choices = outlook.glance.choices.iter();
+        let question = choices.reduce(|a, b| {
+            let more = problem.actions.mode == Mode::Remote && b.information > a.information;
+            if more { b } else { a }
+        });
+        let sure = outlook.glance.peak >= SURE && step.step > 0;
+        outlook.decide(problem, belief, question.filter(|_| !sure))
+    }
+}

@@ -1,0 +1,93 @@
+//! The planners, one file each, and what their decisions have in common.
+
+mod always_ask;
+mod entropy;
+mod lookahead;
+mod never_ask;
+mod no_attribute;
+
+pub(crate) use always_ask::AlwaysAsk;
+pub(crate) use entropy::Entropy;
+pub use lookahead::Lookahead;
+pub(crate) use never_ask::NeverAsk;
+pub(crate) use no_attribute::NoAttribute;
+
+use crate::planning::{Bound, Choice, Glance, Glancer, Reduced};
+use crate::{Action, Belief, Decision, DecisionProblem};
+
+/// Most picks that a decision weighs.
+const PICKS_MAX: usize = 3;
+
+/// A belief seen one step ahead, as the planners see it that look no further.
+struct Outlook {
+    reduced: Reduced,
+    glance: Glance,
+}
+
+impl Outlook {
+    fn new(problem: &DecisionProblem<'_>, belief: &Belief) -> Self {
+        let reduced = Reduced::new(problem, belief);
+        let bound = Bound::new(&reduced, &problem.costs);
+        let glance = Glancer::new(&reduced, &bound).glance(&reduced.mass);
+        Self { reduced, glance }
+    }
+
+    /// The better of picking and waiting.
+    fn stop(&self, problem: &DecisionProblem<'_>) -> Action {
+        stop(problem, &self.reduced, self.glance.class, self.glance.stop.lower)
+    }
+
+    /// The decision to stop, or to ask `choice`. A question is worth what stopping is worth after
+    /// its answer.
+    fn decide(
+        &self,
+        problem: &DecisionProblem<'_>,
+        belief: &Belief,
+        choice: Option<&Choice>,
+    ) -> Decision {
+        let asks = |choice: &Choice| Action::Ask(self.reduced.question(choice.query));
+        let asked = self.glance.choices.iter().map(|c| (asks(c), c.value.lower)).collect();
+        let (action, value) = choice.map_or_else(
+            || (self.stop(problem), self.glance.stop.lower),
+            |choice| (asks(choice), choice.value.lower),
+        );
+        let expected_questions = choice.map_or(0.0, |choice| {
+            self.reduced.channel(choice.query).times_until_spent(self.glance.entropy)
+        });
+        let alternatives = alternatives(problem, belief, asked, action);
+        Decision { action, value, alternatives, expected_questions, bounds: None }
+    }
+}
+
+/// The better of picking from a class and waiting, given the value of the better one.
+fn stop(problem: &DecisionProblem<'_>, reduced: &Reduced, class: usize, value: f64) -> Action {
+    if value <= problem.costs.wait_value() {
+        return Action::Wait;
+    }
+    Action::Pick(reduced.best[class])
+}
+
+/// Questions with their values, the best picks and waiting, without what was chosen, best first.
+fn alternatives(
+    problem: &DecisionProblem<'_>,
+    belief: &Belief,
+    mut weighed: Vec<(Action, f64)>,
+    chosen: Action,
+) -> Vec<(Action, f64)> {
+    weighed.push((Action::Wait, problem.costs.wait_value()));
+    let mut picks: Vec<(usize, f64)> = belief.probabilities().into_iter().enumerate().collect();
+    let likelier = |a: &(usize, f64), b: &(usize, f64)| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0));
+    if picks.len() > PICKS_MAX {
+        picks.select_nth_unstable_by(PICKS_MAX, likelier);
+        picks.truncate(PICKS_MAX);
+    }
+    let picks = picks.into_iter();
+    weighed.extend(picks.map(|(i, p)| (Action::Pick(i.into()), problem.costs.pick_value(p))));
+    weighed.retain(|(action, _)| *action != chosen);
+    weighed.sort_by(|a, b| b.1.total_cmp(&a.1));
+    weighed.truncate(Decision::ALTERNATIVES_MAX);
+    weighed
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,133 @@
+//! Questions as noisy channels: what they cost and how their answers depend on the class.
+
+use crate::{Costs, DecisionProblem, OpenQuestion, Params};
+
+/// A question about classes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Query {
+    /// Yes/no: is the class in that cell of the column?
+    Is { column: u16, cell: u16 },
+    /// Open: in which cell of the column is it?
+    Which { column: u16 },
+    /// Yes/no: is it that class?
+    Point { class: u32 },
+}
+
+/// How a question is answered, given that the answer tells something. Answers that leave every
+/// belief as it is are folded into the price.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Channel {
+    /// What it costs until an answer tells something.
+    pub(crate) price: Price,
+    /// Cost of asking once.
+    pub(crate) cost: f64,
+    /// Probability of the true answer.
+    pub(crate) own: f64,
+    /// Probability of one particular wrong answer.
+    pub(crate) other: f64,
+    /// Probability of one particular answer about a class that lacks the attribute.
+    pub(crate) lacking: f64,
+    /// Probability of naming a value that no class has, of a class that has the attribute.
+    pub(crate) absent_other: f64,
+    /// The same of a class that lacks the attribute.
+    pub(crate) absent_lacking: f64,
+    /// Entropy of the answers about one class, nats: what is left open once all is told.
+    pub(crate) noise: f64,
+    /// Most information that an answer can carry, nats, whatever the belief.
+    pub(crate) capacity: f64,
+}
+
+/// What it costs to ask until an answer is heard that tells something.
+///
+/// With `q` the probability of hearing nothing, asking again until heard has the return
+/// `Q = −c + γ((1−q) V' + q Q)`, so it costs `c / (1−γq)` and discounts by `γ(1−q) / (1−γq)`.
+/// Silence leaves the belief as it is, so what was best before it is best after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Price {
+    /// Expected discounted cost.
+    pub(crate) cost: f64,
+    /// Expected discount of what follows.
+    pub(crate) discount: f64,
+    /// Expected number of times that it is asked.
+    pub(crate) times: f64,
+}
+
+impl Price {
+    /// The price of a question of that cost to which nothing is heard with probability `unheard`.
+    pub(crate) fn new(costs: &Costs, cost: f64, unheard: f64) -> Self {
+        let again = 1.0 - costs.discount * unheard;
+        Self {
+            cost: cost / again,
+            discount: costs.discount * (1.0 - unheard) / again,
+            times: 1.0 / (1.0 - unheard),
+        }
+    }
+
+    /// Value of asking, given the value after the answer.
+    pub(crate) fn pay(&self, after: f64) -> f64 {
+        self.discount * after - self.cost
+    }
+}
+
+impl Channel {
+    /// A yes/no question, eq. (6) and (7).
+    pub(crate) fn yes_no(params: Params, costs: &Costs, cost: f64) -> Self {
+        let own = 1.0 - params.epsilon;
+        let noise = surprise(own) + surprise(params.epsilon);
+        Self {
+            price: Price::new(costs, cost, 1.0 - params.p_l),
+            cost,
+            own,
+            other: params.epsilon,
+            lacking: params.epsilon,
+            absent_other: 0.0,
+            absent_lacking: 0.0,
+            noise,
+            capacity: 2.0_f64.ln() - noise,
+        }
+    }
+
+    /// An open question that can be answered with `named` values that classes have and `absent`
+    /// that none has. An answer of the latter kind tells nothing, unless classes lack the
+    /// attribute.
+    pub(crate) fn open(
+        problem: &DecisionProblem<'_>,
+        answer: OpenQuestion,
+        named: usize,
+        absent: usize,
+        lacking: bool,
+    ) -> Self {
+        let absent_other = absent as f64 * answer.other;
+        let told = if lacking { 1.0 } else { 1.0 - absent_other };
+        let unheard = 1.0 - problem.model.params().p_l * told;
+        let (own, other) = (answer.own / told, answer.other / told);
+        let absent_other = if lacking { absent_other } else { 0.0 };
+        let answers = named + usize::from(lacking && absent > 0);
+        // No class is answered for with less noise than one that has the attribute.
+        let noise = surprise(own) + (named as f64 - 1.0) * surprise(other) + surprise(absent_other);
+        Self {
+            price: Price::new(&problem.costs, problem.costs.which_s, unheard),
+            cost: problem.costs.which_s,
+            own,
+            other,
+            lacking: answer.lacking,
+            absent_other,
+            absent_lacking: if lacking { absent as f64 * answer.lacking } else { 0.0 },
+            noise,
+            capacity: (answers as f64).ln() - noise,
+        }
+    }
+}
+
+impl Channel {
+    /// How often questions like this are asked until an entropy, nats, is spent, if every answer
+    /// carries all it can and the last leaves no more open than its noise.
+    pub(crate) fn times_until_spent(&self, entropy: f64) -> f64 {
+        self.price.times * ((entropy - self.noise) / self.capacity).max(1.0)
+    }
+}
+
+/// `−p ln p`.
+fn surprise(p: f64) -> f64 {
+    if p > 0.0 { -p * p.ln() } else { 0.0 }
+}

@@ -1,0 +1,202 @@
+//! One step ahead from a belief: the value of every question, from one pass over the belief per
+//! attribute.
+//!
+//! Each attribute's cells collect what the bounds need of their classes. A question's answers
+//! weigh whole cells, so the beliefs after them never have to be written down.
+
+use super::bound::{Bound, Summary, Value};
+use super::cell::{Cell, TwoGreatest};
+use super::channel::{Channel, Query};
+use super::reduced::Reduced;
+
+/// A belief seen one step ahead.
+#[derive(Clone, Debug)]
+pub(crate) struct Glance {
+    /// What can be said without asking.
+    pub(crate) stop: Value,
+    /// The class that would be picked.
+    pub(crate) class: usize,
+    /// Entropy over classes, nats.
+    pub(crate) entropy: f64,
+    /// Probability of the most probable class.
+    pub(crate) peak: f64,
+    /// Every question that can tell anything, but for pointing at improbable classes.
+    pub(crate) choices: Vec<Choice>,
+    /// Upper bound on the questions that are not among the choices.
+    pub(crate) rest: f64,
+}
+
+/// A question as it looks from one step ahead.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Choice {
+    pub(crate) query: Query,
+    pub(crate) value: Value,
+    /// Expected information of an answer, nats.
+    pub(crate) information: f64,
+}
+
+/// Most pointing questions that are looked at: those at the most probable classes tell most.
+const POINTED_MAX: usize = 24;
+
+/// Takes glances at beliefs about one reduced problem.
+#[derive(Debug)]
+pub(crate) struct Glancer<'a> {
+    reduced: &'a Reduced,
+    bound: &'a Bound,
+    /// Share and worth of every class, where all classes have the same.
+    alike: Option<(f64, f64)>,
+    classes: Vec<Cell>,
+    all: Cell,
+    entropy: f64,
+}
+
+impl<'a> Glancer<'a> {
+    pub(crate) fn new(reduced: &'a Reduced, bound: &'a Bound) -> Self {
+        let first = reduced.share[0];
+        let alike = reduced.share.iter().all(|share| *share == first);
+        let alike = alike.then(|| (first, bound.worth[0]));
+        Self { reduced, bound, alike, classes: Vec::new(), all: Cell::default(), entropy: 0.0 }
+    }
+
+    /// Looks one step ahead from a belief over the classes.
+    pub(crate) fn glance(&mut self, mass: &[f64]) -> Glance {
+        let (share, worth) = (&self.reduced.share, &self.bound.worth);
+        self.classes.clear();
+        self.classes.extend((0..mass.len()).map(|c| Cell::class(mass[c], share[c], worth[c])));
+        self.all = self.classes.iter().fold(Cell::default(), |sum, cell| sum.plus(cell));
+        let summary = self.all.summary();
+        self.entropy = summary.entropy;
+        let stop = self.bound.value(&summary);
+        let class = self.classes.iter().position(|class| class.top >= self.all.top).unwrap_or(0);
+        let mut choices = Vec::with_capacity(self.reduced.queries.len());
+        self.ask_about_attributes(&mut choices);
+        let rest = self.point(mass, &mut choices);
+        Glance { stop, class, entropy: summary.entropy, peak: summary.peak, choices, rest }
+    }
+
+    fn ask_about_attributes(&self, choices: &mut Vec<Choice>) {
+        let mut collected = None;
+        let mut cells = Vec::new();
+        let mut greatest = TwoGreatest::default();
+        for &query in &self.reduced.queries {
+            let (Query::Is { column, .. } | Query::Which { column }) = query else { continue };
+            if collected != Some(column) {
+                collected = Some(column);
+                self.collect(column, &mut cells);
+                greatest = TwoGreatest::of(cells.iter());
+            }
+            choices.push(match query {
+                Query::Is { cell, .. } => {
+                    let yes = &cells[usize::from(cell)];
+                    self.yes_no(query, yes, &self.all.without(yes, greatest.but(yes)))
+                }
+                _ => self.open(query, column, &cells),
+            });
+        }
+    }
+
+    /// Sums the classes of every cell of a column: the inner loop of all planning.
+    fn collect(&self, column: u16, cells: &mut Vec<Cell>) {
+        let column = self.reduced.column(column);
+        cells.clear();
+        cells.resize(column.values.len(), Cell::default());
+        let classes = column.cells.iter().zip(&self.classes);
+        let Some((share, worth)) = self.alike else {
+            return classes.for_each(|(cell, class)| {
+                let sum = &mut cells[usize::from(*cell)];
+                *sum = sum.plus(class);
+            });
+        };
+        for (cell, class) in classes {
+            let sum = &mut cells[usize::from(*cell)];
+            sum.mass += class.mass;
+            sum.log += class.log;
+            sum.peak = if class.mass > sum.peak { class.mass } else { sum.peak };
+        }
+        for sum in cells {
+            sum.worth = sum.mass * worth;
+            sum.top = sum.peak * share;
+        }
+    }
+
+    fn yes_no(&self, query: Query, yes: &Cell, no: &Cell) -> Choice {
+        let channel = self.reduced.channel(query);
+        let mut outlook = Outlook::new(self.bound);
+        outlook.add(&yes.weigh(channel.own).plus(&no.weigh(channel.other)));
+        outlook.add(&yes.weigh(channel.other).plus(&no.weigh(channel.own)));
+        outlook.choice(query, channel, self.entropy)
+    }
+
+    fn open(&self, query: Query, column: u16, cells: &[Cell]) -> Choice {
+        let column = self.reduced.column(column);
+        let channel = &column.open;
+        let lacking = column.lacking();
+        let lack = lacking.map_or(Cell::default(), |cell| cells[cell]);
+        let named =
+            || cells.iter().enumerate().filter(|(c, _)| Some(*c) != lacking).map(|(_, s)| s);
+        let greatest = TwoGreatest::of(named());
+        // No cell is greater than all of them, so nothing is left out of the maxima here.
+        let having = self.all.without(&lack, greatest.but(&Cell::default()));
+        let mut outlook = Outlook::new(self.bound);
+        for own in named() {
+            let others = having.without(own, greatest.but(own));
+            let heard = own.weigh(channel.own).plus(&others.weigh(channel.other));
+            outlook.add(&heard.plus(&lack.weigh(channel.lacking)));
+        }
+        if channel.absent_other > 0.0 {
+            let heard = having.weigh(channel.absent_other);
+            outlook.add(&heard.plus(&lack.weigh(channel.absent_lacking)));
+        }
+        outlook.choice(query, channel, self.entropy)
+    }
+
+    /// Pointing questions at the most probable classes, and an upper bound on the others: whoever
+    /// points at a less probable class learns less than by pointing at the last of these.
+    fn point(&self, mass: &[f64], choices: &mut Vec<Choice>) -> f64 {
+        let mut pointed = self.reduced.pointed.clone();
+        let more = pointed.len() > POINTED_MAX;
+        let rank =
+            |a: &u32, b: &u32| mass[*b as usize].total_cmp(&mass[*a as usize]).then(a.cmp(b));
+        if more {
+            pointed.select_nth_unstable_by(POINTED_MAX, rank);
+            pointed.truncate(POINTED_MAX);
+        }
+        pointed.sort_unstable_by(rank);
+        pointed.dedup_by(|next, kept| self.reduced.interchange(*next, *kept, mass));
+        let greatest = TwoGreatest::of(self.classes.iter());
+        for class in pointed {
+            let yes = &self.classes[class as usize];
+            let no = self.all.without(yes, greatest.but(yes));
+            choices.push(self.yes_no(Query::Point { class }, yes, &no));
+        }
+        let last = choices.last().filter(|_| more);
+        last.map_or(f64::NEG_INFINITY, |last| {
+            let informed = self.bound.informed(&self.all.summary(), last.information);
+            self.reduced.point.price.pay(informed)
+        })
+    }
+}
+
+/// What is expected after an answer.
+struct Outlook<'a> {
+    bound: &'a Bound,
+    value: Value,
+    entropy: f64,
+}
+
+impl<'a> Outlook<'a> {
+    fn new(bound: &'a Bound) -> Self {
+        Self { bound, value: Value::default(), entropy: 0.0 }
+    }
+
+    fn add(&mut self, heard: &Cell) {
+        let belief: Summary = heard.summary();
+        self.value.add(heard.mass, &self.bound.value(&belief));
+        self.entropy += heard.mass * belief.entropy;
+    }
+
+    fn choice(self, query: Query, channel: &Channel, entropy: f64) -> Choice {
+        let value = self.value.pay(&channel.price);
+        Choice { query, value, information: (entropy - self.entropy).max(0.0) }
+    }
+}

@@ -1,0 +1,144 @@
+//! The decision problem at one belief, without everything that cannot matter.
+//!
+//! Objects of negligible probability are left out; objects that no question can tell apart become
+//! one class; questions with the same answers for every class are asked in the cheapest way only;
+//! silence, which leaves the belief as it is, is folded into the price of a question.
+
+use std::collections::HashSet;
+use std::ops::Range;
+
+use scene::{AttributeId, ObjectId, Question, ValueId};
+
+use super::channel::{Channel, Query};
+use super::classes::Classes;
+use super::column::Column;
+use crate::{Belief, DecisionProblem, Rng};
+
+/// Classes of objects and the questions that tell them apart.
+#[derive(Debug)]
+pub(crate) struct Reduced {
+    /// Probability of each class; sums to 1.
+    pub(crate) mass: Vec<f64>,
+    /// The most probable object of each class.
+    pub(crate) best: Vec<ObjectId>,
+    /// That object's share of its class, for ever: nothing that is asked can change it.
+    pub(crate) share: Vec<f64>,
+    /// Attributes that tell classes apart.
+    pub(crate) columns: Vec<Column>,
+    /// Yes/no and open questions about attributes, none the double of another; those about one
+    /// attribute together.
+    pub(crate) queries: Vec<Query>,
+    /// Classes that are worth pointing at.
+    pub(crate) pointed: Vec<u32>,
+    /// How a pointing question is answered.
+    pub(crate) point: Channel,
+    /// Runs of classes that only pointing tells apart, so that the problem is the same however
+    /// their probabilities are permuted. Each run is in order of falling probability.
+    pub(crate) interchangeable: Vec<Range<usize>>,
+}
+
+impl Reduced {
+    /// The problem at that belief.
+    ///
+    /// # Panics
+    /// If the belief is not about the problem's scene.
+    pub(crate) fn new(problem: &DecisionProblem<'_>, belief: &Belief) -> Self {
+        let model = problem.model;
+        assert_eq!(belief.len(), model.objects(), "belief and model are of one scene");
+        let Classes { mass, best, share, interchangeable } = Classes::of(problem, belief);
+        let asked = if problem.actions.about_attributes() { model.attributes() } else { 0 };
+        let columns =
+            (0..asked).filter_map(|k| Column::of(problem, AttributeId::from(k), &best)).collect();
+        let point = Channel::yes_no(model.params(), &problem.costs, problem.costs.point_s);
+        let (queries, pointed) = (Vec::new(), Vec::new());
+        let mut reduced =
+            Self { mass, best, share, columns, queries, pointed, point, interchangeable };
+        reduced.find_questions(problem);
+        reduced
+    }
+
+    /// How many classes there are.
+    pub(crate) fn classes(&self) -> usize {
+        self.mass.len()
+    }
+
+    /// The question of the scene that a query stands for.
+    pub(crate) fn question(&self, query: Query) -> Question {
+        match query {
+            Query::Point { class } => Question::Point(self.best[class as usize]),
+            Query::Which { column } => Question::Which(self.column(column).attribute),
+            Query::Is { column, cell } => {
+                let column = self.column(column);
+                let value = column.values[usize::from(cell)].unwrap_or(ValueId(0));
+                Question::Attribute(column.attribute, value)
+            }
+        }
+    }
+
+    /// How a query is answered.
+    pub(crate) fn channel(&self, query: Query) -> &Channel {
+        match query {
+            Query::Point { .. } => &self.point,
+            Query::Is { column, .. } => &self.column(column).yes_no,
+            Query::Which { column } => &self.column(column).open,
+        }
+    }
+
+    /// The different channels among the questions.
+    pub(crate) fn channels(&self) -> Vec<Channel> {
+        let point = (!self.pointed.is_empty()).then_some(Query::Point { class: 0 });
+        let mut channels = Vec::new();
+        for query in self.queries.iter().copied().chain(point) {
+            let channel = *self.channel(query);
+            if !channels.contains(&channel) {
+                channels.push(channel);
+            }
+        }
+        channels
+    }
+
+    /// Whether pointing at one class is, but for names, the same as pointing at the other.
+    pub(crate) fn interchange(&self, a: u32, b: u32, mass: &[f64]) -> bool {
+        let (a, b) = (a as usize, b as usize);
+        (mass[a] - mass[b]).abs() < 1e-12
+            && self.interchangeable.iter().any(|run| run.contains(&a) && run.contains(&b))
+    }
+
+    pub(super) fn column(&self, column: u16) -> &Column {
+        &self.columns[usize::from(column)]
+    }
+
+    /// Collects the questions. Two yes/no questions are equal if they split the classes alike,
+    /// whichever half says yes. A set of classes is known by the exclusive or of random numbers,
+    /// one per class.
+    fn find_questions(&mut self, problem: &DecisionProblem<'_>) {
+        let mut rng = Rng::new(0x5eed);
+        let codes: Vec<u64> = self.mass.iter().map(|_| rng.next_u64()).collect();
+        let everyone = codes.iter().fold(0, |all, code| all ^ code);
+        let split = |set: u64| set.min(set ^ everyone);
+        let (mut splits, mut partitions) = (HashSet::new(), HashSet::new());
+        for (index, column) in self.columns.iter().enumerate() {
+            let index = index as u16;
+            let plain = problem.actions.attribute
+                && column.is_yes_no()
+                && problem.costs.attribute_s <= problem.costs.which_s;
+            let open = problem.actions.which && column.tells() && !plain;
+            if open && partitions.insert(column.identity()) {
+                self.queries.push(Query::Which { column: index });
+            }
+            if problem.actions.attribute {
+                for (cell, set) in column.sets(&codes) {
+                    if splits.insert(split(set)) {
+                        self.queries.push(Query::Is { column: index, cell });
+                    }
+                }
+            }
+        }
+        if problem.actions.point() && self.classes() > 1 {
+            let cheaper = problem.costs.attribute_s <= problem.costs.point_s;
+            let known = |code: u64| cheaper && splits.contains(&split(code));
+            let pointed = codes.iter().enumerate().filter(|(_, code)| !known(**code));
+            self.pointed = pointed.map(|(class, _)| class as u32).collect();
+        }
+    }
+}

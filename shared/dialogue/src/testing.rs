@@ -1,0 +1,68 @@
+//! Scenes and readings for the tests of this crate.
+
+use scene::{ObjectId, Reading, Response, Scene};
+use serde_json::{Value as Json, json};
+
+use crate::Rng;
+
+pub(crate) fn scene(text: &str) -> Scene {
+    let json: Json = serde_json::from_str(text).unwrap();
+    scene_of(&json)
+}
+
+pub(crate) fn scene_of(json: &Json) -> Scene {
+    Scene::from_json("test", json).unwrap_or_else(|problems| panic!("{problems:?}"))
+}
+
+/// The paper's six bowls (section 6).
+pub(crate) fn bowls() -> Scene {
+    scene(include_str!("../../../tests/fixtures/scenes/bowls.json"))
+}
+
+/// Ten tools.
+pub(crate) fn tools() -> Scene {
+    scene(include_str!("../../../tests/fixtures/scenes/tools.json"))
+}
+
+/// The two markers of section 4.1.
+pub(crate) fn markers() -> Scene {
+    scene(
+        r#"{"objects":[{"name":"R","attributes":{"color":"red"}},
+            {"name":"B","attributes":{"color":"blue"}}],"values":{"color":["red","blue"]}}"#,
+    )
+}
+
+/// Objects with random values; about one in `lacking` values is missing (0: none).
+pub(crate) fn random_scene(
+    rng: &mut Rng,
+    objects: usize,
+    values: &[usize],
+    lacking: usize,
+) -> Scene {
+    let named = |k: usize, v: usize| format!("a{k}v{v}");
+    let mut list = Vec::new();
+    for i in 0..objects {
+        let mut attributes = serde_json::Map::new();
+        for (k, &count) in values.iter().enumerate() {
+            if lacking == 0 || rng.below(lacking) > 0 {
+                attributes.insert(format!("a{k}"), json!(named(k, rng.below(count))));
+            }
+        }
+        list.push(json!({ "name": format!("o{i}"), "attributes": attributes }));
+    }
+    let all: serde_json::Map<String, Json> = (values.iter().enumerate())
+        .map(|(k, &count)| {
+            (format!("a{k}"), json!((0..count).map(|v| named(k, v)).collect::<Vec<_>>()))
+        })
+        .collect();
+    scene_of(&json!({ "objects": list, "values": all }))
+}
+
+pub(crate) fn heard(scene: &Scene, words: &[&str], response: Response) -> Reading {
+    let base = words.iter().map(|word| scene.word_named(word).unwrap()).collect();
+    Reading { base, response, ..Reading::default() }
+}
+
+pub(crate) fn everyone(count: usize) -> impl Iterator<Item = ObjectId> {
+    (0..count).map(ObjectId::from)
+}

@@ -1,0 +1,89 @@
+//! Simulated people who want one object: a truthful one and one who answers as the model says.
+
+use scene::{ObjectId, Question};
+
+use crate::{Answer, Model, Rng};
+
+/// What somebody answers who neither errs nor stays silent; [`Answer::text`] has the words.
+pub fn truthful_answer(model: &Model, question: Question, wanted: ObjectId) -> Answer {
+    Answer::truthful(model, question, wanted)
+}
+
+/// A person who answers with the probabilities of eq. (6) and (7): silent with `1 − p_l`, wrong
+/// with `ε`. The same seed answers the same.
+#[derive(Clone, Debug)]
+pub struct SimulatedUser {
+    wanted: ObjectId,
+    rng: Rng,
+}
+
+impl SimulatedUser {
+    /// A person who wants that object.
+    pub fn new(wanted: ObjectId, seed: u64) -> Self {
+        Self { wanted, rng: Rng::new(seed) }
+    }
+
+    /// A person who wants one of the objects, each as likely.
+    pub fn wanting_any(model: &Model, seed: u64) -> Self {
+        let mut rng = Rng::new(seed);
+        Self { wanted: rng.below(model.objects()).into(), rng }
+    }
+
+    /// What the person wants.
+    pub fn wanted(&self) -> ObjectId {
+        self.wanted
+    }
+
+    /// Draws an answer.
+    pub fn answer(&mut self, model: &Model, question: Question) -> Answer {
+        let mut left = self.rng.uniform();
+        for answer in Answer::possible(model, question) {
+            left -= answer.probability(model, question, self.wanted);
+            if left < 0.0 {
+                return answer;
+            }
+        }
+        Answer::Silence
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::bowls;
+    use crate::{Actions, Mode, Params};
+
+    #[test]
+    fn people_answer_with_the_models_probabilities() {
+        let scene = bowls();
+        let model = Model::new(&scene, Params { p_l: 0.8, epsilon: 0.2, alpha: 0.2 });
+        let wanted = scene.object_named("metal2").unwrap();
+        let mut user = SimulatedUser::new(wanted, 61);
+        let actions = Actions { mode: Mode::Present, ..Actions::default() };
+        for question in actions.questions(&model) {
+            const DRAWS: u32 = 2_000;
+            let drawn: Vec<Answer> = (0..DRAWS).map(|_| user.answer(&model, question)).collect();
+            for answer in Answer::possible(&model, question) {
+                let p = answer.probability(&model, question, wanted);
+                let count = drawn.iter().filter(|d| **d == answer).count();
+                let share = count as f64 / f64::from(DRAWS);
+                let sigma = (p * (1.0 - p) / f64::from(DRAWS)).sqrt();
+                assert!((share - p).abs() < 5.0 * sigma + 1e-9, "{question:?} {answer:?}: {share}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_same_seed_is_the_same_person() {
+        let model = Model::new(&bowls(), Params::default());
+        let talk = |seed| {
+            let mut user = SimulatedUser::wanting_any(&model, seed);
+            let answers: Vec<_> =
+                (0..50).map(|i| user.answer(&model, Question::Point((i % 6).into()))).collect();
+            (user.wanted(), answers)
+        };
+        assert_eq!(talk(62), talk(62));
+        let wanted: std::collections::HashSet<_> = (0..100).map(|seed| talk(seed).0).collect();
+        assert_eq!(wanted.len(), 6, "everything is wanted by somebody");
+    }
+}

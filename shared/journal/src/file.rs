@@ -1,0 +1,232 @@
+//! The journal on disk: open, append, sync, rotate, read.
+
+use std::fs::{self, File, OpenOptions};
+use std::io;
+use std::marker::PhantomData;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::header::{self, Header, StoredHeader};
+use crate::lock::Lock;
+use crate::rotate::{self, KEEP_DEFAULT, Step};
+use crate::scan::{self, Ending, Position, Scan};
+use crate::tail::{Batch, Tail};
+use crate::{AppendError, JournalOpenError, RotateError, SyncError, frame};
+
+/// The one writer of a journal. Records that were not synced are forgotten when it is dropped.
+#[derive(Debug)]
+pub struct Journal<R> {
+    path: PathBuf,
+    header: Header,
+    tail: Tail<File>,
+    keep: usize,
+    _lock: Lock,
+    _record: PhantomData<fn(&R)>,
+}
+
+/// What [`Journal::open`] found. All of it is durable.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recovered<R> {
+    /// Every record of the file, oldest first; a file that was rotated starts with its snapshot.
+    pub records: Vec<R>,
+    /// Number of the first of them: 1, or more after a rotation.
+    pub first_seq: u64,
+    /// Bytes of an unacknowledged write that were cut off.
+    pub truncated_bytes: u64,
+}
+
+/// What [`read`] found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reading<R> {
+    /// Whose journal it is.
+    pub header: Header,
+    /// Every record up to the ending, oldest first.
+    pub records: Vec<R>,
+    /// Number of the first of them.
+    pub first_seq: u64,
+    /// How the file ends.
+    pub ending: Ending,
+}
+
+impl<R: Serialize + DeserializeOwned> Journal<R> {
+    /// Opens the journal at `path`, or makes a new one where there is none or an empty file. The
+    /// folder must exist. What a killed writer had written without syncing is synced before this
+    /// returns, so every recovered record may be acted on.
+    ///
+    /// # Errors
+    /// See [`JournalOpenError`]; the file is left as it is.
+    pub fn open(path: &Path, header: &Header) -> Result<(Self, Recovered<R>), JournalOpenError> {
+        let lock = Lock::take(path)?;
+        rotate::clear_unfinished(path)
+            .map_err(JournalOpenError::io("clear an unfinished rotation"))?;
+        let bytes = match fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
+            Err(error) => return Err(JournalOpenError::io("read the journal")(error)),
+        };
+        let (tail, recovered) = match bytes.is_empty() {
+            true => create(path, header)?,
+            false => recover(path, header, &bytes)?,
+        };
+        let journal = Self {
+            path: path.to_owned(),
+            header: header.clone(),
+            tail,
+            keep: KEEP_DEFAULT,
+            _lock: lock,
+            _record: PhantomData,
+        };
+        Ok((journal, recovered))
+    }
+
+    /// How many old journals a rotation keeps ([`KEEP_DEFAULT`] where nothing is said).
+    #[must_use]
+    pub fn keeping(mut self, keep: usize) -> Self {
+        self.keep = keep;
+        self
+    }
+
+    /// Takes a record for the next sync. Not durable yet.
+    ///
+    /// # Errors
+    /// See [`AppendError`]; the record is not taken.
+    pub fn append(&mut self, record: &R) -> Result<(), AppendError> {
+        self.tail.append(record)
+    }
+
+    /// Makes everything appended so far durable, with one write and one `fdatasync`, as a whole.
+    /// Does nothing where nothing waits.
+    ///
+    /// # Errors
+    /// See [`SyncError`]; nothing of it may be acted on.
+    pub fn sync(&mut self) -> Result<(), SyncError> {
+        self.tail.sync()
+    }
+
+    /// Continues in a new file that starts with `snapshot`; the old one is kept as `<name>.1`.
+    /// Records that wait are synced into the old file first. Numbers go on. A crash at any moment
+    /// leaves either the old or the new journal.
+    ///
+    /// # Errors
+    /// See [`RotateError`].
+    pub fn rotate(&mut self, snapshot: &[R]) -> Result<(), RotateError> {
+        self.rotate_until(snapshot, |_| Ok(()))
+    }
+
+    pub(crate) fn rotate_until(
+        &mut self,
+        snapshot: &[R],
+        before: impl FnMut(Step) -> io::Result<()>,
+    ) -> Result<(), RotateError> {
+        self.tail.sync()?;
+        let (bytes, position) = compose(&self.header, self.next_seq(), snapshot)?;
+        match rotate::replace(&self.path, &bytes, self.keep, before) {
+            Ok(file) => self.tail = Tail::new(file, position),
+            Err((Step::SyncFolder, error)) => {
+                self.tail.poison();
+                return Err(SyncError::Unknown(error).into());
+            }
+            Err((step, source)) => return Err(RotateError::Io { doing: step.doing(), source }),
+        }
+        Ok(())
+    }
+
+    /// Where the journal is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Number that the next record synced gets.
+    pub fn next_seq(&self) -> u64 {
+        self.tail.position().next_seq
+    }
+
+    /// Bytes of the file that are durable.
+    pub fn bytes(&self) -> u64 {
+        self.tail.position().end
+    }
+
+    /// Records that wait for a sync.
+    pub fn waiting(&self) -> usize {
+        self.tail.waiting()
+    }
+}
+
+/// Reads a journal without taking it, also while its writer lives and where it is damaged.
+///
+/// # Errors
+/// Where the header or the record layout is another one; damage is told by [`Reading::ending`].
+pub fn read<R: DeserializeOwned>(path: &Path) -> Result<Reading<R>, JournalOpenError> {
+    let bytes = fs::read(path).map_err(JournalOpenError::io("read the journal"))?;
+    let stored = header::decode(&bytes)?;
+    let Scan { records, ending, .. } = scan::scan(&bytes, &stored)?;
+    Ok(Reading { header: stored.header, records, first_seq: stored.first_seq, ending })
+}
+
+/// Reads whose journal a file is, whatever its records are.
+///
+/// # Errors
+/// Where it is no journal, one of another format, or its header is damaged.
+pub fn read_header(path: &Path) -> Result<Header, JournalOpenError> {
+    let bytes = fs::read(path).map_err(JournalOpenError::io("read the journal"))?;
+    Ok(header::decode(&bytes)?.header)
+}
+
+fn create<R: Serialize>(
+    path: &Path,
+    header: &Header,
+) -> Result<(Tail<File>, Recovered<R>), JournalOpenError> {
+    let (bytes, position) =
+        compose::<R>(header, 1, &[]).expect("a header without records always encodes");
+    let file = rotate::replace(path, &bytes, 0, |_| Ok(()))
+        .map_err(|(step, source)| JournalOpenError::Io { doing: step.doing(), source })?;
+    let recovered = Recovered { records: Vec::new(), first_seq: 1, truncated_bytes: 0 };
+    Ok((Tail::new(file, position), recovered))
+}
+
+fn recover<R: DeserializeOwned>(
+    path: &Path,
+    header: &Header,
+    bytes: &[u8],
+) -> Result<(Tail<File>, Recovered<R>), JournalOpenError> {
+    let stored = header::decode(bytes)?;
+    header::check(&stored.header, header)?;
+    let Scan { records, position, ending } = scan::scan(bytes, &stored)?;
+    let truncated_bytes = match ending {
+        Ending::Whole => 0,
+        Ending::Torn { bytes, .. } => bytes,
+        Ending::Corrupt { at, seq, .. } => return Err(JournalOpenError::Corrupt { at, seq }),
+    };
+    let io = JournalOpenError::io;
+    let file = OpenOptions::new().write(true).open(path).map_err(io("open the journal"))?;
+    let tail = Tail::resume(file, position, truncated_bytes > 0).map_err(io("sync the journal"))?;
+    // A killed writer may also have put a new file in place without syncing the folder.
+    rotate::sync_folder(path).map_err(io("sync the journal's folder"))?;
+    let first_seq = stored.first_seq;
+    Ok((tail, Recovered { records, first_seq, truncated_bytes }))
+}
+
+/// The bytes of a whole new file, and the place where its next frame belongs.
+fn compose<R: Serialize>(
+    header: &Header,
+    first_seq: u64,
+    snapshot: &[R],
+) -> Result<(Vec<u8>, Position), AppendError> {
+    let (mut bytes, crc) = header::encode(header, first_seq)?;
+    let stored = StoredHeader { header: header.clone(), first_seq, crc, len: bytes.len() };
+    let mut position = Position::after(&stored);
+    if !snapshot.is_empty() {
+        let mut batch = Batch::default();
+        snapshot.iter().try_for_each(|record| batch.push(record))?;
+        let (sealed, crc) = frame::seal(first_seq, crc, &batch.body());
+        bytes.extend_from_slice(&sealed);
+        position = Position {
+            end: bytes.len() as u64,
+            next_seq: first_seq + snapshot.len() as u64,
+            prev_crc: crc,
+        };
+    }
+    Ok((bytes, position))
+}

@@ -1,0 +1,105 @@
+//! The start of the file: whose journal it is.
+
+use serde::{Deserialize, Serialize};
+
+use crate::JournalOpenError;
+use crate::frame::words;
+
+/// Format number of the file layout that this version writes.
+pub const FORMAT: u32 = 1;
+
+/// Magic, format, length and checksum before the header's body.
+const PREFIX_BYTES: usize = 20;
+const MAGIC: [u8; 8] = *b"WHICHJNL";
+
+/// Whose journal a file is. All fields must match when it is opened again.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Header {
+    /// Kind of record, e.g. `policy`; told when another kind is found.
+    pub record: String,
+    /// Structural key of the record type: a changed layout has another key.
+    pub schema: u64,
+    /// Key of the scene or configuration that the records mean something in; 0 where they mean
+    /// the same in every scene.
+    pub scene: u64,
+    /// Name of the process group.
+    pub group: String,
+    /// Epoch of the group: numbers of another epoch are never compared.
+    pub epoch: u64,
+}
+
+/// A header as it stands in the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct StoredHeader {
+    pub(crate) header: Header,
+    /// Number of the first record in this file; above 1 after a rotation.
+    pub(crate) first_seq: u64,
+    /// The checksum that the first frame refers to.
+    pub(crate) crc: u32,
+    /// Where the first frame starts.
+    pub(crate) len: usize,
+}
+
+/// The bytes of a header and its checksum.
+pub(crate) fn encode(header: &Header, first_seq: u64) -> Result<(Vec<u8>, u32), postcard::Error> {
+    let body = postcard::to_stdvec(&(header, first_seq))?;
+    let len = u32::try_from(body.len()).map_err(|_| postcard::Error::SerializeBufferFull)?;
+    let crc = checksum(FORMAT, &body);
+    let mut bytes = Vec::with_capacity(PREFIX_BYTES + body.len());
+    bytes.extend_from_slice(&MAGIC);
+    for word in [FORMAT, len, crc] {
+        bytes.extend_from_slice(&word.to_le_bytes());
+    }
+    bytes.extend_from_slice(&body);
+    Ok((bytes, crc))
+}
+
+/// Reads the header at the start of a file.
+///
+/// # Errors
+/// `NotAJournal`, `Format`, or `Corrupt { at: 0 }` where the checksum does not match.
+pub(crate) fn decode(bytes: &[u8]) -> Result<StoredHeader, JournalOpenError> {
+    let corrupt = || JournalOpenError::Corrupt { at: 0, seq: 1 };
+    if !bytes.starts_with(&MAGIC) {
+        return Err(JournalOpenError::NotAJournal);
+    }
+    let [format, len, crc] = words(&bytes[MAGIC.len()..]).ok_or_else(corrupt)?;
+    if format != FORMAT {
+        return Err(JournalOpenError::Format { found: format, expected: FORMAT });
+    }
+    let len = len as usize;
+    let body = bytes.get(PREFIX_BYTES..PREFIX_BYTES + len);
+    let body = body.filter(|body| checksum(format, body) == crc);
+    let (header, first_seq) =
+        body.and_then(|body| postcard::from_bytes(body).ok()).ok_or_else(corrupt)?;
+    Ok(StoredHeader { header, first_seq, crc, len: PREFIX_BYTES + len })
+}
+
+/// Refuses a journal that belongs to somebody else.
+pub(crate) fn check(found: &Header, expected: &Header) -> Result<(), JournalOpenError> {
+    if found.group != expected.group {
+        return Err(JournalOpenError::Group {
+            found: found.group.clone(),
+            expected: expected.group.clone(),
+        });
+    }
+    if found.record != expected.record || found.schema != expected.schema {
+        return Err(JournalOpenError::Record {
+            found: found.record.clone(),
+            found_schema: found.schema,
+            expected: expected.record.clone(),
+            expected_schema: expected.schema,
+        });
+    }
+    if found.epoch != expected.epoch {
+        return Err(JournalOpenError::Epoch { found: found.epoch, expected: expected.epoch });
+    }
+    if found.scene != expected.scene {
+        return Err(JournalOpenError::Scene { found: found.scene, expected: expected.scene });
+    }
+    Ok(())
+}
+
+fn checksum(format: u32, body: &[u8]) -> u32 {
+    crc32c::crc32c_append(crc32c::crc32c(&format.to_le_bytes()), body)
+}

@@ -1,0 +1,152 @@
+//! Putting a new file in the place of a journal, and keeping the old ones as `<name>.1` (the
+//! latest) to `<name>.N`.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+use crate::JournalOpenError;
+use crate::lock::Lock;
+
+/// Old journals kept where nothing else is said.
+pub const KEEP_DEFAULT: usize = 4;
+
+/// What a replacement does, in this order. A crash before any of them leaves either the old or
+/// the new journal whole under its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Step {
+    WriteNew,
+    ShiftOld,
+    LinkOld,
+    Replace,
+    SyncFolder,
+}
+
+impl Step {
+    #[cfg(test)]
+    pub(crate) const ALL: [Self; 5] =
+        [Self::WriteNew, Self::ShiftOld, Self::LinkOld, Self::Replace, Self::SyncFolder];
+
+    pub(crate) fn doing(self) -> &'static str {
+        match self {
+            Self::WriteNew => "write the new journal",
+            Self::ShiftOld => "number the old journals",
+            Self::LinkOld => "keep the old journal",
+            Self::Replace => "put the new journal in place",
+            Self::SyncFolder => "sync the journal's folder",
+        }
+    }
+}
+
+/// Puts a file with `bytes` in the place of `path`; the old one, if any, becomes `<name>.1`.
+/// Returns the new file, open for writing.
+///
+/// `before` is called before each step and may fail in its stead: tests crash there.
+///
+/// # Errors
+/// The step that failed. Only after a failed [`Step::SyncFolder`] is it unknown which of the two
+/// files a power loss leaves.
+pub(crate) fn replace(
+    path: &Path,
+    bytes: &[u8],
+    keep: usize,
+    mut before: impl FnMut(Step) -> io::Result<()>,
+) -> Result<File, (Step, io::Error)> {
+    let new = beside(path, "new");
+    let at = |step| move |error| (step, error);
+    let mut enter = |step| before(step).map_err(at(step));
+
+    enter(Step::WriteNew)?;
+    let file = write_new(&new, bytes).map_err(at(Step::WriteNew))?;
+    enter(Step::ShiftOld)?;
+    shift(path, keep).map_err(at(Step::ShiftOld))?;
+    enter(Step::LinkOld)?;
+    link(path, keep).map_err(at(Step::LinkOld))?;
+    enter(Step::Replace)?;
+    fs::rename(&new, path).map_err(at(Step::Replace))?;
+    enter(Step::SyncFolder)?;
+    sync_folder(path).map_err(at(Step::SyncFolder))?;
+    Ok(file)
+}
+
+/// Keeps the journal at `path` as `<name>.1` and leaves its place empty, so that the next
+/// [`Journal::open`](crate::Journal::open) starts anew. Does nothing where there is none.
+///
+/// # Errors
+/// `Locked` while a process writes it, `Io`.
+pub fn set_aside(path: &Path, keep: usize) -> Result<(), JournalOpenError> {
+    let _lock = Lock::take(path)?;
+    clear_unfinished(path).map_err(JournalOpenError::io("clear an unfinished rotation"))?;
+    if !path.exists() {
+        return Ok(());
+    }
+    let moved = shift(path, keep.max(1)).and_then(|()| fs::rename(path, beside(path, "1")));
+    moved.and_then(|()| sync_folder(path)).map_err(JournalOpenError::io("set the journal aside"))
+}
+
+/// Removes what a replacement that did not finish has left.
+pub(crate) fn clear_unfinished(path: &Path) -> io::Result<()> {
+    absent_is_fine(fs::remove_file(beside(path, "new")))?;
+    let old = beside(path, "1");
+    // A crash between linking and replacing: both names mean the journal that is still in use.
+    match (fs::metadata(path), fs::metadata(&old)) {
+        (Ok(now), Ok(then)) if now.ino() == then.ino() && now.dev() == then.dev() => {
+            fs::remove_file(old)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// `<path>.<suffix>`
+pub(crate) fn beside(path: &Path, suffix: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".");
+    name.push(suffix);
+    name.into()
+}
+
+fn write_new(new: &Path, bytes: &[u8]) -> io::Result<File> {
+    let mut file = File::create(new)?;
+    file.write_all(bytes)?;
+    file.sync_all()?;
+    Ok(file)
+}
+
+/// Makes room for `<name>.1` and drops what would be above `<name>.keep`.
+fn shift(path: &Path, keep: usize) -> io::Result<()> {
+    if keep == 0 {
+        return Ok(());
+    }
+    let numbered = |n: usize| beside(path, &n.to_string());
+    absent_is_fine(fs::remove_file(numbered(keep)))?;
+    for n in (1..keep).rev() {
+        absent_is_fine(fs::rename(numbered(n), numbered(n + 1)))?;
+    }
+    Ok(())
+}
+
+/// Gives the old journal its second name. A copy does as well where the file system has no links.
+fn link(path: &Path, keep: usize) -> io::Result<()> {
+    if keep == 0 {
+        return Ok(());
+    }
+    let old = beside(path, "1");
+    absent_is_fine(fs::hard_link(path, &old).or_else(|_| fs::copy(path, &old).map(drop)))
+}
+
+/// A renamed or new file is only found again after a power loss once its folder is synced.
+pub(crate) fn sync_folder(path: &Path) -> io::Result<()> {
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    File::open(folder)?.sync_all()
+}
+
+fn absent_is_fine(result: io::Result<()>) -> io::Result<()> {
+    match result {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        other => other,
+    }
+}

@@ -1,0 +1,112 @@
+//! Reading a whole file back: the valid records, and how the file ends.
+
+use serde::de::DeserializeOwned;
+
+use crate::JournalOpenError;
+use crate::frame::{self, Frame, PREFIX_BYTES};
+use crate::header::StoredHeader;
+
+/// How a journal file ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// With its last whole frame.
+    Whole,
+    /// With a write that was never acknowledged; opening the journal cuts it off.
+    Torn {
+        /// Where the torn frame starts.
+        at: u64,
+        /// Bytes from there to the end of the file.
+        bytes: u64,
+    },
+    /// With records that had been acknowledged and can no longer be reached.
+    Corrupt {
+        /// Where the damaged frame starts.
+        at: u64,
+        /// Number of the first record that cannot be read.
+        seq: u64,
+        /// Where the next valid frame starts.
+        resumes_at: u64,
+    },
+}
+
+/// What a scan found before the ending.
+#[derive(Debug)]
+pub(crate) struct Scan<R> {
+    pub(crate) records: Vec<R>,
+    pub(crate) position: Position,
+    pub(crate) ending: Ending,
+}
+
+/// The place where the next frame belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Position {
+    /// Offset in the file.
+    pub(crate) end: u64,
+    /// Number of the next record.
+    pub(crate) next_seq: u64,
+    /// Checksum that the next frame refers to.
+    pub(crate) prev_crc: u32,
+}
+
+impl Position {
+    /// The place right after a header.
+    pub(crate) fn after(stored: &StoredHeader) -> Self {
+        Self { end: stored.len as u64, next_seq: stored.first_seq, prev_crc: stored.crc }
+    }
+
+    fn continues_with(&self, frame: &Frame<'_>) -> bool {
+        frame.seq == self.next_seq && frame.prev_crc == self.prev_crc
+    }
+
+    fn advance(&mut self, frame: &Frame<'_>, records: usize) {
+        self.end += frame.len() as u64;
+        self.next_seq += records as u64;
+        self.prev_crc = frame.crc;
+    }
+}
+
+/// Reads every record of a file, up to the first frame that is not valid in its place.
+///
+/// # Errors
+/// `Undecodable`; damage is no error here but an [`Ending`].
+pub(crate) fn scan<R: DeserializeOwned>(
+    bytes: &[u8],
+    stored: &StoredHeader,
+) -> Result<Scan<R>, JournalOpenError> {
+    let mut position = Position::after(stored);
+    let mut records = Vec::new();
+    loop {
+        let rest = &bytes[position.end as usize..];
+        if rest.is_empty() {
+            return Ok(Scan { records, position, ending: Ending::Whole });
+        }
+        let next = frame::parse(rest, |seq| seq == position.next_seq);
+        let Some(frame) = next.filter(|frame| position.continues_with(frame)) else {
+            return Ok(Scan { records, position, ending: ending_of(rest, &position) });
+        };
+        let batch = decode::<R>(&frame)
+            .ok_or(JournalOpenError::Undecodable { at: position.end, seq: position.next_seq })?;
+        position.advance(&frame, batch.len());
+        records.extend(batch);
+    }
+}
+
+/// Tells a torn tail from corruption: frames are written one after the other, each only after the
+/// one before was acknowledged, so a valid frame proves that everything before it was.
+fn ending_of(rest: &[u8], position: &Position) -> Ending {
+    let at = position.end;
+    let expected = position.next_seq;
+    let plausible = |seq| seq >= expected && seq - expected <= u64::from(u32::MAX);
+    let last_start = rest.len().saturating_sub(PREFIX_BYTES);
+    match (0..=last_start).find(|&i| frame::parse(&rest[i..], plausible).is_some()) {
+        Some(i) => Ending::Corrupt { at, seq: expected, resumes_at: at + i as u64 },
+        None => Ending::Torn { at, bytes: rest.len() as u64 },
+    }
+}
+
+fn decode<R: DeserializeOwned>(frame: &Frame<'_>) -> Option<Vec<R>> {
+    match postcard::take_from_bytes(frame.body) {
+        Ok((records, [])) => Some(records),
+        _ => None,
+    }
+}

@@ -1,0 +1,82 @@
+use super::*;
+use crate::baxter;
+use crate::samples::{Random, joints, numbers, table};
+
+/// The table of the reference.
+const TABLE: Cuboid = Cuboid::aligned([0.9, 0.0, -0.2], [0.6, 1.4, 0.04]);
+
+#[test]
+fn clearances_equal_the_reference() {
+    let (_, rows) = table("clearance_reference.csv");
+    assert_eq!(rows.len(), 100);
+    for row in rows {
+        let n = numbers(&row[..23]);
+        let found = Clearance::of(&joints(&n[..7]), &joints(&n[7..14]), &[TABLE]);
+        let groups = [
+            found.left_right,
+            found.left_body,
+            found.right_body,
+            found.left_self,
+            found.right_self,
+            found.left_surroundings,
+            found.right_surroundings,
+        ];
+        for (group, expected) in groups.iter().zip(&n[14..21]) {
+            assert!((group.distance_m - expected).abs() < 1e-6, "{group:?} {expected}");
+        }
+        if found.robot().distance_m.abs() > 1e-4 {
+            assert_eq!(found.robot().distance_m < 0.0, n[21] == 1.0, "{row:?}");
+        }
+    }
+}
+
+#[test]
+fn capsules_are_the_facts() {
+    let facts: toml::Table = crate::samples::fixture("baxter_facts.toml").parse().unwrap();
+    let facts = facts["capsule"].as_array().unwrap();
+    assert_eq!(facts.len(), CAPSULES.len());
+    for (fact, own) in facts.iter().zip(&CAPSULES) {
+        let end = |key: &str| -> Vec<f64> { fact[key].clone().try_into().unwrap() };
+        assert_eq!(fact["link"].as_str(), Some(own.name));
+        assert_eq!(fact["radius"].as_float(), Some(own.radius));
+        assert_eq!((end("a"), end("b")), (own.a.to_vec(), own.b.to_vec()));
+    }
+}
+
+#[test]
+fn a_bound_changes_nothing_below_it_and_hides_what_is_above() {
+    let mut random = Random::seeded(41);
+    for _ in 0..300 {
+        let limb = random.limb();
+        let arm = ArmShape::at(limb, &random.posture());
+        let other = ArmShape::at(limb.other(), &random.posture());
+        let asks: [&dyn Fn(f64) -> Gap; 4] = [
+            &|within| arm.to_itself(within),
+            &|within| arm.to_trunk(within),
+            &|within| arm.to_arm(&other, within),
+            &|within| arm.to_cuboid("table", &TABLE, within),
+        ];
+        for ask in asks {
+            let whole = ask(f64::INFINITY);
+            assert!(whole.is_some());
+            for within in [-0.05, 0.0, 0.01, 0.2] {
+                let bounded = ask(within);
+                if whole.distance_m < within {
+                    assert_eq!(bounded, whole);
+                } else {
+                    assert_eq!(bounded, Gap::none(within));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn named_postures_are_clear_except_the_tuck() {
+    let clear = |left: &Joints, right: &Joints| Clearance::of(left, right, &[]).robot().distance_m;
+    assert!(clear(&baxter::NEUTRAL, &baxter::NEUTRAL) > 0.06);
+    let untuck = Limb::BOTH.map(baxter::untuck);
+    assert!(clear(&untuck[0], &untuck[1]) > 0.02);
+    let tuck = Limb::BOTH.map(baxter::tuck);
+    assert!(clear(&tuck[0], &tuck[1]) < -0.07);
+}

@@ -1,0 +1,98 @@
+use super::*;
+use crate::samples::Random;
+
+const BOWL: ObjectPose = ObjectPose {
+    xyz_m: [0.7, 0.2, -0.12],
+    yaw_rad: 0.0,
+    size_m: [0.18, 0.18, 0.07],
+    grasp_width_m: 0.006,
+};
+
+const MARKER: ObjectPose = ObjectPose {
+    xyz_m: [0.68, -0.15, -0.148],
+    yaw_rad: 0.3,
+    size_m: [0.14, 0.014, 0.014],
+    grasp_width_m: 0.014,
+};
+
+fn axes(grasp: &Grasp) -> (Vector3<f64>, Vector3<f64>) {
+    (grasp.gripper.rotation * Vector3::y(), grasp.gripper.rotation * Vector3::z())
+}
+
+#[test]
+fn a_bowl_is_held_at_its_rim() {
+    let grasps = BOWL.grasps().unwrap();
+    assert_eq!(grasps.len(), 24);
+    for grasp in &grasps {
+        let (fingers, down) = axes(grasp);
+        assert!((down + Vector3::z()).norm() < 1e-9);
+        let out = grasp.gripper.translation.vector - Vector3::from(BOWL.xyz_m);
+        let radial = Vector3::new(out.x, out.y, 0.0);
+        assert!((radial.norm() - 0.087).abs() < 1e-9, "on the wall's middle");
+        assert!((fingers.dot(&radial.normalize()).abs() - 1.0).abs() < 1e-9, "across the wall");
+        assert!((grasp.gripper.translation.z - (BOWL.top_z_m() - DEPTH_M)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_marker_is_held_across_its_middle() {
+    let grasps = MARKER.grasps().unwrap();
+    assert_eq!(grasps.len(), 2);
+    for grasp in &grasps {
+        let (fingers, _) = axes(grasp);
+        let along = Vector3::new(0.3f64.cos(), 0.3f64.sin(), 0.0);
+        assert!(fingers.dot(&along).abs() < 1e-9);
+        let at = grasp.gripper.translation.vector;
+        assert!((at - Vector3::from(MARKER.xyz_m)).norm() < 1e-12);
+    }
+}
+
+#[test]
+fn fingertips_stay_above_what_the_object_stands_on() {
+    let mut random = Random::seeded(61);
+    for _ in 0..200 {
+        let object = ObjectPose {
+            xyz_m: std::array::from_fn(|_| random.between(-0.5, 0.9)),
+            yaw_rad: random.between(-3.0, 3.0),
+            size_m: std::array::from_fn(|_| random.between(0.002, 0.3)),
+            grasp_width_m: random.between(0.001, STROKE_M),
+        };
+        for grasp in object.grasps().unwrap() {
+            let z = grasp.gripper.translation.z;
+            assert!(z >= object.bottom_z_m() + TIP_CLEAR_M - 1e-12, "{object:?}");
+            let held = grasp.gripper * grasp.object_in_gripper(&object);
+            assert!((held.translation.vector - Vector3::from(object.xyz_m)).norm() < 1e-12);
+            let raised = grasp.raised(0.2).translation.vector;
+            assert!((raised.z - z - 0.2).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_long_box_is_held_at_the_middles_of_its_sides() {
+    let object = ObjectPose { size_m: [0.3, 0.1, 0.05], yaw_rad: 1.0, ..BOWL };
+    let grasps = object.grasps().unwrap();
+    assert_eq!(grasps.len(), 8);
+    let mut radii: Vec<f64> = grasps
+        .iter()
+        .map(|grasp| (grasp.gripper.translation.vector - Vector3::from(object.xyz_m)).xy().norm())
+        .collect();
+    radii.sort_by(f64::total_cmp);
+    assert!((radii[0] - 0.047).abs() < 1e-9 && (radii[7] - 0.147).abs() < 1e-9, "{radii:?}");
+}
+
+#[test]
+fn what_cannot_be_held_is_refused() {
+    let wide = ObjectPose { grasp_width_m: 0.05, ..BOWL };
+    let error = wide.grasps().unwrap_err();
+    assert_eq!(error, GraspError::TooWide { width_m: 0.05 });
+    assert!(error.to_string().contains("50 mm") && error.to_string().contains("42 mm"));
+    for (object, what) in [
+        (ObjectPose { xyz_m: [f64::NAN, 0.0, 0.0], ..BOWL }, "xyz"),
+        (ObjectPose { yaw_rad: f64::INFINITY, ..BOWL }, "yaw"),
+        (ObjectPose { size_m: [0.1, 0.0, 0.1], ..BOWL }, "size"),
+        (ObjectPose { grasp_width_m: -0.001, ..BOWL }, "grasp_width"),
+    ] {
+        assert!(object.grasps().unwrap_err().to_string().contains(what));
+    }
+}

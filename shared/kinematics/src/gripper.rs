@@ -1,0 +1,87 @@
+//! The electric gripper: how wide it is, how long it takes, and what it holds.
+
+use nalgebra::Isometry3;
+
+use crate::baxter::FINGER_TRAVEL_M;
+
+/// Distance between the fingers when they are fully open, metres: both fingers' travel.
+pub const STROKE_M: f64 = 2.0 * FINGER_TRAVEL_M;
+
+/// Seconds from fully open to closed at the SDK's default velocity.
+pub const STROKE_S: f64 = 1.0;
+
+/// Share of the stroke below which closed fingers hold nothing: the SDK's dead zone.
+pub const DEAD_ZONE: f64 = 0.05;
+
+/// Width between the fingers at a position in percent (0 closed, 100 open), metres.
+pub fn width_m(percent: f64) -> f64 {
+    STROKE_M * percent.clamp(0.0, 100.0) / 100.0
+}
+
+/// Position in percent at a width in metres.
+pub fn percent(width_m: f64) -> f64 {
+    100.0 * (width_m / STROKE_M).clamp(0.0, 1.0)
+}
+
+/// Seconds that the fingers take from one width to another, both in metres.
+pub fn seconds_between(from_m: f64, to_m: f64) -> f64 {
+    STROKE_S * (to_m - from_m).abs() / STROKE_M
+}
+
+/// Width at which the fingers stop when they close on an object that is `object_m` wide, metres.
+pub fn closed_on(object_m: f64) -> f64 {
+    object_m.clamp(0.0, STROKE_M)
+}
+
+/// Whether fingers that were told to close and stopped at `width_m` have something between them.
+/// What is thinner than the dead zone cannot be told from nothing by width alone.
+pub fn holds(width_m: f64) -> bool {
+    width_m > DEAD_ZONE * STROKE_M
+}
+
+/// Pose in `base` of an object that was attached with `object_in_gripper`, when `<limb>_gripper`
+/// is at `gripper`.
+pub fn attached_pose(
+    gripper: &Isometry3<f64>,
+    object_in_gripper: &Isometry3<f64>,
+) -> Isometry3<f64> {
+    gripper * object_in_gripper
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn percent_and_width_are_inverse() {
+        for percent_open in [0.0, 12.5, 50.0, 100.0] {
+            assert!((percent(width_m(percent_open)) - percent_open).abs() < 1e-12);
+        }
+        assert_eq!((width_m(250.0), width_m(-1.0)), (STROKE_M, 0.0));
+        assert!((STROKE_M - 0.041666).abs() < 1e-12);
+    }
+
+    #[test]
+    fn closing_takes_its_share_of_a_second() {
+        assert_eq!(seconds_between(STROKE_M, 0.0), 1.0);
+        assert_eq!(seconds_between(0.0, 0.5 * STROKE_M), 0.5);
+        assert_eq!(seconds_between(0.01, 0.01), 0.0);
+    }
+
+    #[test]
+    fn closed_fingers_tell_something_from_nothing() {
+        assert!(holds(closed_on(0.004)) && holds(closed_on(0.1)));
+        assert!(!holds(closed_on(0.0)) && !holds(closed_on(0.001)));
+    }
+
+    #[test]
+    fn a_held_object_moves_with_the_gripper() {
+        let offset = Isometry3::translation(0.0, 0.0, 0.02);
+        let gripper = Isometry3::new(Vector3::new(0.5, 0.1, 0.2), Vector3::x() * 3.0);
+        let moved = Isometry3::translation(0.1, 0.0, 0.0) * gripper;
+        let step = attached_pose(&moved, &offset).translation.vector
+            - attached_pose(&gripper, &offset).translation.vector;
+        assert!((step - Vector3::new(0.1, 0.0, 0.0)).norm() < 1e-12);
+    }
+}

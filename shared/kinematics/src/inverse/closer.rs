@@ -1,0 +1,125 @@
+//! The closer look at a target that no sample of the sweep hit: between two samples of s0, then by
+//! refinement.
+
+use super::IkSolution;
+use super::goal::Goal;
+use super::golden;
+use super::posture::{Branch, Posture};
+use super::refine::{Refined, refine};
+use super::slice::Slice;
+use super::solve::exact;
+use crate::baxter;
+use crate::limits::POSITION_LIMITS;
+
+/// Closed forms spent between the neighbours of one sample; they narrow s0 to 5e-5 rad.
+const LOOKS: usize = 16;
+
+/// Local minima looked at between their neighbours. In two million random postures the tenth was
+/// never the one.
+const MINIMA: usize = 16;
+
+/// Violation below which the stretched arm and the straight wrist may still hide a solution that
+/// only refinement finds, radians.
+const HOPEFUL_RAD: f64 = 0.002;
+
+/// Refinement steps for a hopeful posture.
+const STEPS_HOPEFUL: usize = 40;
+
+/// Refinement steps towards the nearest posture when there is no hope of an exact one.
+const STEPS_NEAREST: usize = 16;
+
+/// What the sweep saw of postures that are not solutions.
+pub(crate) struct Nearly {
+    /// Width of a cell, radians.
+    cell_rad: f64,
+    seen: Vec<Seen>,
+}
+
+struct Seen {
+    cell: u32,
+    branch: Branch,
+    posture: Posture,
+}
+
+impl Nearly {
+    pub(crate) fn new(cells: u32) -> Self {
+        let (lower, upper) = POSITION_LIMITS[0];
+        Self { cell_rad: (upper - lower) / f64::from(cells), seen: Vec::with_capacity(32) }
+    }
+
+    #[inline]
+    pub(crate) fn add(&mut self, cell: u32, branch: Branch, posture: Posture) {
+        self.seen.push(Seen { cell, branch, posture });
+    }
+
+    /// Follows every local minimum of the violation along s0, then refines what came nearest.
+    pub(crate) fn look_closer(mut self, goal: &Goal) -> Result<IkSolution, Refined> {
+        let mut closer = Vec::with_capacity(MINIMA);
+        for (branch, posture) in self.minima() {
+            let found = least_violation(goal, self.cell_rad, branch, posture);
+            if found.violation == 0.0 {
+                let settled = Slice::new(goal, found.q[0]).posture(branch).unwrap_or(found);
+                if let Some(answer) = exact(goal, &settled) {
+                    return Ok(answer);
+                }
+            }
+            closer.push(found);
+        }
+        closer.sort_by(|a, b| a.violation.total_cmp(&b.violation));
+        let mut best = nearest(goal, closer.first());
+        for posture in closer.iter().take_while(|p| p.violation < HOPEFUL_RAD) {
+            let refined = refine(goal, &posture.q, STEPS_HOPEFUL);
+            if let Some(answer) = IkSolution::accept(&refined) {
+                return Ok(answer);
+            }
+            if refined.error() < best.error() {
+                best = refined;
+            }
+        }
+        Err(best)
+    }
+
+    /// Samples whose two neighbours of the same branch violate more (or have no posture at all),
+    /// least violation first.
+    fn minima(&mut self) -> Vec<(Branch, Posture)> {
+        self.seen.sort_unstable_by_key(|seen| (seen.branch.index(), seen.cell));
+        let better = |a: &Seen, b: Option<&Seen>| {
+            !b.is_some_and(|b| {
+                b.branch == a.branch
+                    && b.cell.abs_diff(a.cell) == 1
+                    && b.posture.violation < a.posture.violation
+            })
+        };
+        let mut minima: Vec<_> = (0..self.seen.len())
+            .filter(|&i| {
+                let before = i.checked_sub(1).map(|i| &self.seen[i]);
+                better(&self.seen[i], before) && better(&self.seen[i], self.seen.get(i + 1))
+            })
+            .map(|i| (self.seen[i].branch, self.seen[i].posture))
+            .collect();
+        minima.sort_by(|a, b| a.1.violation.total_cmp(&b.1.violation));
+        minima.truncate(MINIMA);
+        minima
+    }
+}
+
+/// The nearest posture in a few steps: from the best one known, or from the neutral one where the
+/// target lies beyond the arm's reach.
+fn nearest(goal: &Goal, best: Option<&Posture>) -> Refined {
+    refine(goal, &best.map_or(baxter::NEUTRAL, |posture| posture.q), STEPS_NEAREST)
+}
+
+/// The least violation of a branch within one cell of s0 either side, or the first solution there.
+fn least_violation(goal: &Goal, cell_rad: f64, branch: Branch, from: Posture) -> Posture {
+    let (lower, upper) = POSITION_LIMITS[0];
+    let mut best = from;
+    let range = ((from.q[0] - cell_rad).max(lower), (from.q[0] + cell_rad).min(upper));
+    golden::narrow(range, LOOKS, |s0| {
+        let Some(posture) = Slice::roughly(goal, s0).posture(branch) else { return f64::INFINITY };
+        if posture.violation < best.violation || posture.is_solution() {
+            best = posture;
+        }
+        posture.violation
+    });
+    best
+}

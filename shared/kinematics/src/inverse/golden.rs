@@ -1,0 +1,54 @@
+//! Golden-section search.
+
+/// Narrows `(a, b)` towards the least value of `f` with `looks` evaluations; ends early where it
+/// is 0. The caller keeps what `f` saw.
+pub(crate) fn narrow((mut a, mut b): (f64, f64), looks: usize, mut f: impl FnMut(f64) -> f64) {
+    const SHARE: f64 = 0.618_033_988_749_894_8;
+    let (mut c, mut d) = (b - SHARE * (b - a), a + SHARE * (b - a));
+    let (mut at_c, mut at_d) = (f(c), f(d));
+    for _ in 2..looks {
+        if at_c == 0.0 || at_d == 0.0 {
+            break;
+        }
+        if at_c < at_d {
+            (b, d, at_d) = (d, c, at_c);
+            c = b - SHARE * (b - a);
+            at_c = f(c);
+        } else {
+            (a, c, at_c) = (c, d, at_d);
+            d = a + SHARE * (b - a);
+            at_d = f(d);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_minimum_is_closed_in_on() {
+        let mut best = (f64::INFINITY, 0.0);
+        let mut looks = 0;
+        narrow((-1.0, 3.0), 30, |x| {
+            looks += 1;
+            let y = (x - 0.7).abs() + 0.5;
+            if y < best.0 {
+                best = (y, x);
+            }
+            y
+        });
+        assert_eq!(looks, 30);
+        assert!((best.1 - 0.7).abs() < 1e-5, "{best:?}");
+    }
+
+    #[test]
+    fn a_zero_ends_the_search() {
+        let mut looks = 0;
+        narrow((0.0, 1.0), 30, |_| {
+            looks += 1;
+            0.0
+        });
+        assert_eq!(looks, 2);
+    }
+}

@@ -1,0 +1,53 @@
+//! Kinematics of Baxter's arms: where every link is, which joint positions reach a pose, and how
+//! to move there and fetch an object.
+//!
+//! This crate is pure: no IO, no clock, no threads, and the same question has the same answer
+//! every time. What it returns keeps the joint limits to the last bit, the velocity and
+//! acceleration limits at every instant, and touches nothing that it was told of; what it cannot
+//! do is a typed error, never a motion.
+//!
+//! Units are metres, radians and seconds throughout; poses are in frame `base` of the robot
+//! description unless said otherwise. `<limb>_gripper` is the tip of the electric gripper with
+//! extended fingers, 0.1577 m past the hand; [`Chain::with_tool`] says otherwise.
+//!
+//! Numbers from baxter_common 1.2.0, BSD-3-Clause, Copyright (c) 2013-2015 Rethink Robotics.
+//!
+//! Start at [`Limb`], then [`plan_pick`].
+
+pub mod baxter;
+mod cartesian;
+mod chain;
+mod clearance;
+mod grasp;
+pub mod gripper;
+mod inverse;
+mod limb;
+pub mod limits;
+pub mod links;
+mod path;
+mod plan;
+mod route;
+#[cfg(test)]
+mod samples;
+mod shape;
+mod timeline;
+mod timing;
+mod trajectory;
+mod trig;
+
+pub use cartesian::LineError;
+pub use chain::{Chain, Frame, Jacobian};
+pub use clearance::{ArmShape, Clearance, Gap};
+pub use grasp::{Grasp, GraspError, ObjectPose};
+pub use gripper::attached_pose;
+pub use inverse::{IkSolution, SAMPLES, TOLERANCE_M, TOLERANCE_RAD, Unreachable};
+pub use limb::{JOINTS, Joints, Limb};
+pub use limits::MotionLimits;
+pub use path::Path;
+pub use plan::{
+    Arms, PickPhase, PickPlan, PlanError, PlanSettings, PointPhase, PointPlan, check_reachable,
+    plan_delivery, plan_pick, plan_point, plan_return,
+};
+pub use shape::{Capsule, Cuboid};
+pub use timeline::{Moment, Stage, Timeline};
+pub use trajectory::{INTERVALS_MIN, Trajectory, TrajectoryError};

@@ -1,0 +1,138 @@
+//! Which arm, and how its joints are named and ordered.
+
+use std::fmt;
+
+use nalgebra::Isometry3;
+use serde::{Deserialize, Serialize};
+
+use crate::chain::Chain;
+use crate::inverse::{IkSolution, Unreachable};
+
+/// Joint positions of one limb in radians, ordered `s0 s1 e0 e1 w0 w1 w2`.
+pub type Joints = [f64; 7];
+
+/// Joint names without their limb, from the shoulder to the wrist: the order of [`Joints`] and of
+/// everything in Baxter's own interface except its alphabetical joint-state message.
+pub const JOINTS: [&str; 7] = ["s0", "s1", "e0", "e1", "w0", "w1", "w2"];
+
+/// One of Baxter's two arms.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Limb {
+    /// The arm at +y of frame `base`.
+    Left,
+    /// The arm at −y of frame `base`.
+    Right,
+}
+
+impl Limb {
+    /// Both limbs, left first.
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+
+    /// `left` or `right`: the prefix of the limb's link and joint names.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Left => "left",
+            Self::Right => "right",
+        }
+    }
+
+    /// The limb of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::BOTH.into_iter().find(|limb| limb.name() == name)
+    }
+
+    /// The other arm.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+
+    /// +1 for the left limb, −1 for the right: the sign of everything mirrored in the xz plane.
+    pub fn side(self) -> f64 {
+        match self {
+            Self::Left => 1.0,
+            Self::Right => -1.0,
+        }
+    }
+
+    /// The joint's full name, e.g. `left_s0`.
+    ///
+    /// # Panics
+    /// If `i` is above 6.
+    pub fn joint_name(self, i: usize) -> String {
+        format!("{self}_{}", JOINTS[i])
+    }
+
+    /// The seven full joint names in the order of [`Joints`].
+    pub fn joint_names(self) -> [String; 7] {
+        JOINTS.map(|joint| format!("{self}_{joint}"))
+    }
+
+    /// The chain from `base` to `<limb>_gripper` with the default electric gripper.
+    pub fn chain(self) -> Chain {
+        Chain::new(self)
+    }
+
+    /// Pose of `<limb>_gripper` in frame `base` at joint positions `q`.
+    pub fn forward(self, q: &Joints) -> Isometry3<f64> {
+        self.chain().forward(q)
+    }
+
+    /// Every link of the limb in frame `base` at joint positions `q`, named as in the robot
+    /// description, fingers closed; see [`crate::links::links`].
+    pub fn links(self, q: &Joints) -> Vec<(String, Isometry3<f64>)> {
+        crate::links::links(self, q, 0.0)
+    }
+
+    /// Joint positions that bring `<limb>_gripper` to `target` (frame `base`); see
+    /// [`Chain::inverse`].
+    ///
+    /// # Errors
+    /// [`Unreachable`] with the nearest posture if none does.
+    pub fn inverse(
+        self,
+        target: &Isometry3<f64>,
+        seed: Option<&Joints>,
+    ) -> Result<IkSolution, Unreachable> {
+        self.chain().inverse(target, seed)
+    }
+
+    /// The posture reflected in the xz plane: what the other limb does when this one does `q`.
+    pub fn mirror(q: &Joints) -> Joints {
+        [-q[0], q[1], -q[2], q[3], -q[4], q[5], -q[6]]
+    }
+}
+
+impl fmt::Display for Limb {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_baxters() {
+        assert_eq!(Limb::Left.joint_name(0), "left_s0");
+        assert_eq!(Limb::Right.joint_names()[6], "right_w2");
+        assert_eq!(serde_json::to_string(&Limb::Right).unwrap(), "\"right\"");
+        assert_eq!(serde_json::from_str::<Limb>("\"left\"").unwrap(), Limb::Left);
+        for limb in Limb::BOTH {
+            assert_eq!(Limb::named(limb.name()), Some(limb));
+            assert_eq!(limb.other().other(), limb);
+        }
+        assert_eq!(Limb::named("Left"), None);
+    }
+
+    #[test]
+    fn mirroring_twice_changes_nothing() {
+        let q = [0.1, -0.2, 0.3, 0.4, -0.5, 0.6, -0.7];
+        assert_eq!(Limb::mirror(&Limb::mirror(&q)), q);
+        assert_ne!(Limb::mirror(&q), q);
+    }
+}

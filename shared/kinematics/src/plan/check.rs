@@ -1,0 +1,36 @@
+//! Whether a scene's objects can be fetched at all.
+
+use super::error::{Furthest, PlanError};
+use super::pick::{Choice, situations};
+use super::situation::{Arms, PlanSettings, Search};
+use crate::grasp::ObjectPose;
+use crate::limb::Limb;
+use crate::shape::Cuboid;
+
+/// For each object, the limb that can fetch it from the neutral posture among the others, or why
+/// none can: what a scene is checked for before anything moves. Ways between are not searched.
+pub fn check_reachable(
+    objects: &[ObjectPose],
+    limb: Option<Limb>,
+    settings: &PlanSettings,
+) -> Vec<Result<Limb, PlanError>> {
+    let cuboids: Vec<Cuboid> = objects.iter().map(ObjectPose::cuboid).collect();
+    let check = |i: usize| {
+        let mut others = cuboids.clone();
+        others.remove(i);
+        let situations = situations(&objects[i], limb, &Arms::NEUTRAL, &others, settings)?;
+        let mut furthest = Furthest::default();
+        for situation in &situations {
+            for grasp in objects[i].grasps()? {
+                let fetched = Choice::new(situation, grasp)
+                    .and_then(|choice| choice.carry(&choice.hold()?, Search::No));
+                match fetched {
+                    Ok(_) => return Ok(situation.limb),
+                    Err((progress, error)) => furthest.add(progress, error),
+                }
+            }
+        }
+        Err(furthest.report())
+    };
+    (0..objects.len()).map(check).collect()
+}

@@ -1,0 +1,141 @@
+//! The second half of a pick: lift, hand over, release, return; and the way home alone.
+
+use nalgebra::{Isometry3, Translation3};
+
+use super::error::PlanError;
+use super::fetch::{ABOVE, Carry, HAND_OVER, HOME};
+use super::pick::{PickPhase, PickPlan, situation};
+use super::situation::{Arms, PlanSettings, Search, Situation};
+use crate::baxter::NEUTRAL;
+use crate::grasp::ObjectPose;
+use crate::gripper;
+use crate::limb::{Joints, Limb};
+use crate::shape::Cuboid;
+use crate::timeline::{Stage, Timeline};
+use crate::trajectory::{Trajectory, refuse_outside};
+
+/// Waypoints of a straight line left out at its upper end, so that the corner there has room: 3 cm.
+pub(crate) const CORNER: usize = 6;
+
+/// Seconds that the fingers rest after they closed or opened.
+const SETTLE_S: f64 = 0.2;
+
+/// The enclosing capsules end this far below the fingertips, and a little, metres.
+const BELOW_TIP_M: f64 = 0.005;
+
+/// Plans the rest of a pick for an arm that already holds `object`, given as it stood, at
+/// `object_in_gripper`: lift it if the gripper is still over its place, hand over, release, return.
+///
+/// # Errors
+/// [`PlanError`] if the hand over cannot be reached from here.
+pub fn plan_delivery(
+    object: &ObjectPose,
+    object_in_gripper: &Isometry3<f64>,
+    limb: Limb,
+    arms: &Arms,
+    others: &[Cuboid],
+    settings: &PlanSettings,
+) -> Result<PickPlan, PlanError> {
+    let situation = situation(object, limb, arms, others, settings)?;
+    let held = situation.chain.forward(&situation.q);
+    let above = Translation3::new(0.0, 0.0, still_to_lift_m(object, &held, settings)) * held;
+    let lift = situation.chain.line(&situation.q, &above).map_err(|line| PlanError::Line {
+        at: ABOVE,
+        limb,
+        line,
+    })?;
+    let width_m = gripper::closed_on(object.grasp_width_m);
+    let stages = deliver(&situation, lift, width_m, Search::Yes)?;
+    let timeline = Timeline::new(limb, stages);
+    Ok(PickPlan { timeline, grasp: None, object_in_gripper: *object_in_gripper })
+}
+
+/// How much higher the gripper must go before it may leave the object's place; 0 elsewhere.
+pub(crate) fn still_to_lift_m(
+    object: &ObjectPose,
+    held: &Isometry3<f64>,
+    settings: &PlanSettings,
+) -> f64 {
+    let [x, y, _] = object.xyz_m;
+    let beside = (held.translation.x - x).hypot(held.translation.y - y);
+    if beside > object.size_m[0].hypot(object.size_m[1]) {
+        return 0.0;
+    }
+    (object.top_z_m() + settings.hover_m - held.translation.z).max(0.0)
+}
+
+/// Plans the way back to the neutral posture from wherever the arm is, fingers open. `others` is
+/// everything that stands around except what the fingers are at.
+///
+/// # Errors
+/// [`PlanError`] if every way is blocked.
+pub fn plan_return(
+    limb: Limb,
+    arms: &Arms,
+    others: &[Cuboid],
+    settings: &PlanSettings,
+) -> Result<PickPlan, PlanError> {
+    refuse_outside(arms.of(limb))?;
+    let chain = limb.chain();
+    let at = chain.forward(arms.of(limb)).translation;
+    // Whatever the arm is over now it has reached down to without touching.
+    let place = ([at.x, at.y, at.z], at.z - BELOW_TIP_M);
+    let situation = Situation::new(limb, arms, others, place, settings);
+    let way = home(&situation, &situation.q, Search::Yes)?;
+    let stage = Stage {
+        phase: PickPhase::Return,
+        motion: situation.motion(HOME, &way)?,
+        width_m: (settings.open_width_m, settings.open_width_m),
+    };
+    let timeline = Timeline::new(limb, vec![stage]);
+    Ok(PickPlan { timeline, grasp: None, object_in_gripper: Isometry3::identity() })
+}
+
+/// Lift, hand over, release and return, from the low end of `lift`.
+pub(crate) fn deliver(
+    situation: &Situation<'_>,
+    lift: Vec<Joints>,
+    width_m: f64,
+    search: Search,
+) -> Result<Vec<Stage<PickPhase>>, PlanError> {
+    let above = lift[lift.len() - 1];
+    let carry = Carry::find(situation, &above, search)?;
+    let mut waypoints = lift[..lift.len().saturating_sub(CORNER).max(1)].to_vec();
+    waypoints.push(above);
+    waypoints.extend(carry.waypoints.iter().skip(if carry.straight { CORNER } else { 1 }));
+    waypoints.push(*carry.end());
+    let whole = situation.motion(HAND_OVER, &waypoints)?;
+    let (lift, hand_over) = whole.split(whole.time_nearest(&above));
+    let open_m = situation.settings.open_width_m;
+    let home = situation.motion(HOME, &home(situation, carry.end(), search)?)?;
+    let closed = (width_m, width_m);
+    Ok(vec![
+        Stage { phase: PickPhase::Lift, motion: lift, width_m: closed },
+        Stage { phase: PickPhase::HandOver, motion: hand_over, width_m: closed },
+        fingers(PickPhase::Release, carry.end(), width_m, open_m),
+        Stage { phase: PickPhase::Return, motion: home, width_m: (open_m, open_m) },
+    ])
+}
+
+/// The way to the neutral posture; straight up first if something is in the way.
+fn home(
+    situation: &Situation<'_>,
+    from: &Joints,
+    search: Search,
+) -> Result<Vec<Joints>, PlanError> {
+    if let Some(way) = situation.way(from, &NEUTRAL, Search::No) {
+        return Ok(way);
+    }
+    let pose = situation.chain.forward(from);
+    let raised = Translation3::new(0.0, 0.0, situation.settings.hover_m) * pose;
+    let mut up = situation.chain.line(from, &raised).unwrap_or_else(|_| vec![*from]);
+    let rest = situation.way(&up[up.len() - 1], &NEUTRAL, search);
+    let rest = rest.ok_or_else(|| situation.no_way(HOME))?;
+    up.extend(rest.into_iter().skip(1));
+    Ok(up)
+}
+
+pub(crate) fn fingers(phase: PickPhase, q: &Joints, from_m: f64, to_m: f64) -> Stage<PickPhase> {
+    let seconds = gripper::seconds_between(from_m, to_m) + SETTLE_S;
+    Stage { phase, motion: Trajectory::hold(q, seconds), width_m: (from_m, to_m) }
+}

@@ -1,0 +1,75 @@
+//! What the tests draw from: random postures and the reference rows.
+
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+
+use crate::limb::{Joints, Limb};
+use crate::limits::POSITION_LIMITS;
+
+/// A small generator (xorshift); tests name its seed when they fail.
+pub(crate) struct Random(u64);
+
+impl Random {
+    pub(crate) fn seeded(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
+    }
+
+    /// Uniform in [0, 1).
+    pub(crate) fn unit(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    pub(crate) fn limb(&mut self) -> Limb {
+        if self.unit() < 0.5 { Limb::Left } else { Limb::Right }
+    }
+
+    /// A posture within the limits; now and then a joint is exactly at one.
+    pub(crate) fn posture(&mut self) -> Joints {
+        POSITION_LIMITS.map(|(lower, upper)| match self.unit() {
+            x if x < 0.01 => lower,
+            x if x > 0.99 => upper,
+            _ => self.between(lower, upper),
+        })
+    }
+}
+
+/// A file of the reference.
+pub(crate) fn fixture(name: &str) -> String {
+    let path = format!("{}/../../tests/fixtures/baxter/{name}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// Column names and rows of a CSV fixture.
+pub(crate) fn table(name: &str) -> (Vec<String>, Vec<Vec<String>>) {
+    let text = fixture(name);
+    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect());
+    (lines.next().expect("a header"), lines.collect())
+}
+
+pub(crate) fn numbers(fields: &[String]) -> Vec<f64> {
+    fields.iter().map(|field| field.parse().unwrap()).collect()
+}
+
+/// x y z, then the quaternion x y z w.
+pub(crate) fn pose(n: &[f64]) -> Isometry3<f64> {
+    Isometry3::from_parts(
+        Translation3::new(n[0], n[1], n[2]),
+        UnitQuaternion::new_normalize(Quaternion::new(n[6], n[3], n[4], n[5])),
+    )
+}
+
+pub(crate) fn joints(numbers: &[f64]) -> Joints {
+    numbers.try_into().expect("seven numbers")
+}
+
+/// The greatest difference of any number of two poses, quaternions compared as they are.
+pub(crate) fn difference(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
+    let translation = (a.translation.vector - b.translation.vector).amax();
+    translation.max((a.rotation.coords - b.rotation.coords).amax())
+}

@@ -1,0 +1,63 @@
+//! The question that an utterance answers, as far as words go.
+
+use scene::{AttributeId, Question, Scene, WordId};
+
+/// What was asked, in words of the scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Asked<'a> {
+    /// Nothing.
+    Nothing,
+    /// "This one?": the words of the object pointed at.
+    Object(&'a [WordId]),
+    /// "Is it white?"
+    Value(AttributeId, WordId),
+    /// "What colour is it?"
+    Attribute,
+}
+
+impl Asked<'_> {
+    /// Whether the words answer the question when they are ruled out: what was asked about is
+    /// among what they rule out.
+    pub(crate) fn is_denied_by(self, group: &[WordId]) -> bool {
+        match self {
+            Self::Value(_, asked) => group.iter().all(|word| *word == asked),
+            Self::Object(words) => group.iter().all(|word| words.contains(word)),
+            Self::Nothing | Self::Attribute => false,
+        }
+    }
+}
+
+/// The scene's part of [`Asked`], without the scene.
+#[derive(Clone, Debug)]
+pub(crate) struct Askable {
+    objects: Vec<Box<[WordId]>>,
+    attributes: Vec<Box<[WordId]>>,
+}
+
+impl Askable {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let objects = (0..scene.objects().len()).map(scene::ObjectId::from);
+        let words =
+            |attribute: &scene::Attribute| attribute.values.iter().map(|v| v.word).collect();
+        Self {
+            objects: objects.map(|i| scene.vocabulary(i).collect()).collect(),
+            attributes: scene.attributes().iter().map(words).collect(),
+        }
+    }
+
+    /// The question in words; one that the scene does not have asks nothing.
+    pub(crate) fn asked(&self, question: Question) -> Asked<'_> {
+        match question {
+            Question::None => Asked::Nothing,
+            Question::Which(_) => Asked::Attribute,
+            Question::Point(i) => {
+                self.objects.get(i.index()).map_or(Asked::Nothing, |words| Asked::Object(words))
+            }
+            Question::Attribute(k, v) => {
+                let values = self.attributes.get(k.index());
+                let word = values.and_then(|values| values.get(v.index()));
+                word.map_or(Asked::Nothing, |word| Asked::Value(k, *word))
+            }
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! What a "not" rules out: the noun phrases in its scope, as groups of values.
+
+use scene::{Role, WordId};
+
+use crate::lexicon::ValueSense;
+
+/// A negation whose scope is still open.
+#[derive(Debug)]
+pub(crate) struct Denial<'a> {
+    groups: Vec<Group<'a>>,
+    /// A preposition or conjunction has just been heard: the next noun phrase belongs to it.
+    joined: bool,
+    /// An "and" has been heard inside the current group.
+    coordinated: bool,
+    /// Words that were not expected between the negation and a noun phrase.
+    strayed: usize,
+}
+
+/// One noun phrase: an object with all of the values is ruled out.
+#[derive(Clone, Debug, Default)]
+struct Group<'a> {
+    values: Vec<&'a ValueSense>,
+    headed: bool,
+    /// Names something that the scene lacks: "not the purple pen" rules out no pen.
+    elsewhere: bool,
+}
+
+impl Group<'_> {
+    fn is_open(&self) -> bool {
+        self.values.is_empty() && !self.headed && !self.elsewhere
+    }
+}
+
+impl<'a> Denial<'a> {
+    pub(crate) fn new() -> Self {
+        Self { groups: vec![Group::default()], joined: false, coordinated: false, strayed: 0 }
+    }
+
+    /// Whether nothing has been ruled out yet.
+    pub(crate) fn is_pending(&self) -> bool {
+        self.groups.iter().all(Group::is_open)
+    }
+
+    /// Whether the noun phrase at hand is complete, so that what follows is another.
+    fn is_closed(&self) -> bool {
+        self.last().headed && !self.joined
+    }
+
+    fn last(&self) -> &Group<'a> {
+        self.groups.last().expect("a denial has a group")
+    }
+
+    fn last_mut(&mut self) -> &mut Group<'a> {
+        self.groups.last_mut().expect("a denial has a group")
+    }
+
+    /// Takes a value in; `false` if it lies beyond the scope. `adjacent`: it follows another value.
+    pub(crate) fn value(&mut self, value: &'a ValueSense, adjacent: bool) -> bool {
+        if self.is_closed() && !adjacent {
+            return false;
+        }
+        let rival =
+            |other: &&ValueSense| other.attributes.iter().any(|k| value.attributes.contains(k));
+        if let Some(at) = self.last().values.iter().position(rival) {
+            // "not white clear": nothing is both, so the second is what is wanted instead.
+            if !self.coordinated && !self.joined {
+                return false;
+            }
+            let mut values = self.last().values.clone();
+            values.remove(at);
+            self.groups.push(Group { values, ..Group::default() });
+        }
+        if value.role == Role::Kind {
+            // "not the red or blue marker": the noun is every member's.
+            for group in self.groups.iter_mut().filter(|group| !group.headed) {
+                group.values.push(value);
+                group.headed = true;
+            }
+        } else {
+            self.last_mut().values.push(value);
+        }
+        self.joined = false;
+        true
+    }
+
+    /// The noun phrase has its noun.
+    pub(crate) fn head(&mut self) {
+        for group in &mut self.groups {
+            group.headed = true;
+        }
+        self.joined = false;
+    }
+
+    /// A word for what the scene does not have.
+    pub(crate) fn elsewhere(&mut self) {
+        self.last_mut().elsewhere = true;
+    }
+
+    /// A determiner: `false` if it starts a noun phrase beyond the scope.
+    pub(crate) fn determiner(&mut self) -> bool {
+        self.joined || self.last().is_open()
+    }
+
+    /// "in", "that is": what follows describes the same thing.
+    pub(crate) fn join(&mut self) {
+        self.joined = true;
+    }
+
+    /// "or": another noun phrase.
+    pub(crate) fn or(&mut self) {
+        if !self.last().is_open() {
+            self.groups.push(Group::default());
+        }
+        self.joined = true;
+    }
+
+    /// "and" before a noun phrase or value: another group after a noun, more of the same before.
+    pub(crate) fn and(&mut self) {
+        if self.last().headed {
+            self.groups.push(Group::default());
+        }
+        self.joined = true;
+        self.coordinated = true;
+    }
+
+    /// A word that is neither value nor noun; `false` once there are too many.
+    pub(crate) fn stray(&mut self) -> bool {
+        const STRAYS_MAX: usize = 2;
+        self.strayed += 1;
+        !self.is_pending() || self.strayed <= STRAYS_MAX
+    }
+
+    /// Whether a verb may still come between the negation and what it denies.
+    pub(crate) fn reaches_verb(&self) -> bool {
+        self.is_pending() && self.strayed == 0
+    }
+
+    /// The groups that were ruled out.
+    pub(crate) fn into_groups(self) -> impl Iterator<Item = Vec<WordId>> + use<'a> {
+        let words = |group: Group<'a>| group.values.iter().map(|value| value.word).collect();
+        self.groups
+            .into_iter()
+            .filter(|group| !group.values.is_empty() && !group.elsewhere)
+            .map(words)
+    }
+}

@@ -1,0 +1,89 @@
+//! The forms in which a value's words turn up: plurals, comparatives, compounds written apart.
+
+/// Inflected forms of a word: plural, and for a quality its comparative, superlative and "-ish".
+/// Forms that no English speaker would build do no harm: nobody says them.
+pub(crate) fn inflected(word: &str, quality: bool) -> Vec<String> {
+    let Some(last) = word.chars().last().filter(char::is_ascii_alphabetic) else {
+        return Vec::new();
+    };
+    if word.len() < 2 {
+        return Vec::new();
+    }
+    let mut forms = plurals(word, last);
+    if quality {
+        let stem = quality_stem(word, last);
+        forms.extend(["er", "est", "ish"].map(|ending| format!("{stem}{ending}")));
+    }
+    forms
+}
+
+fn plurals(word: &str, last: char) -> Vec<String> {
+    let stem = &word[..word.len() - 1];
+    let hisses = word.ends_with("ch") || word.ends_with("sh") || matches!(last, 's' | 'x' | 'z');
+    let mut forms = match last {
+        'y' if !stem.ends_with(is_vowel) => vec![format!("{stem}ies")],
+        'f' if !stem.ends_with('f') => vec![format!("{stem}ves"), format!("{word}s")],
+        'o' => vec![format!("{word}s"), format!("{word}es")],
+        _ if hisses => vec![format!("{word}es")],
+        _ => vec![format!("{word}s")],
+    };
+    if let Some(stem) = word.strip_suffix("fe") {
+        forms.push(format!("{stem}ves"));
+    }
+    forms
+}
+
+/// "big" to "bigg-", "white" to "whit-", "shiny" to "shini-".
+fn quality_stem(word: &str, last: char) -> String {
+    let stem = &word[..word.len() - 1];
+    let mut before = stem.chars().rev();
+    let (vowel, onset) = (before.next(), before.next());
+    match last {
+        'e' => stem.to_owned(),
+        'y' => format!("{stem}i"),
+        c if !is_vowel(c)
+            && !matches!(c, 'w' | 'x')
+            && vowel.is_some_and(is_vowel)
+            && !onset.is_some_and(is_vowel)
+            && word.len() <= 4 =>
+        {
+            format!("{word}{c}")
+        }
+        _ => word.to_owned(),
+    }
+}
+
+fn is_vowel(c: char) -> bool {
+    matches!(c, 'a' | 'e' | 'i' | 'o' | 'u')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::inflected;
+
+    #[test]
+    fn forms_are_english() {
+        for (word, forms) in [
+            ("big", "bigs bigger biggest biggish"),
+            ("white", "whites whiter whitest whitish"),
+            ("shiny", "shinies shinier shiniest shiniish"),
+            ("clear", "clears clearer clearest clearish"),
+            ("round", "rounds rounder roundest roundish"),
+            ("red", "reds redder reddest reddish"),
+        ] {
+            assert_eq!(inflected(word, true).join(" "), forms);
+        }
+        for (word, forms) in [
+            ("shelf", "shelves shelfs"),
+            ("wrench", "wrenches"),
+            ("knife", "knifes knives"),
+            ("tray", "trays"),
+            ("berry", "berries"),
+            ("potato", "potatos potatoes"),
+            ("7", ""),
+            ("é", ""),
+        ] {
+            assert_eq!(inflected(word, false).join(" "), forms);
+        }
+    }
+}

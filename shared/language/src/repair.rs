@@ -1,0 +1,94 @@
+//! Self-repair: "the red, no, the blue one". What is said after the repair replaces what it
+//! competes with, and leaves the rest standing.
+
+use scene::{Role, WordId};
+
+use crate::cue::{Cue, cues};
+use crate::lexicon::{Lexicon, ValueSense};
+use crate::marks::Mark;
+use crate::meaning::{is_place, rivals};
+use crate::tokens::Gap;
+
+/// How decidedly the words before are taken back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Strength {
+    /// "the red uh blue one".
+    Stumble,
+    /// "sorry", "I mean".
+    Soft,
+    /// "no", "scratch that".
+    Hard,
+}
+
+/// The values that follow a repair, up to the end of their noun phrase.
+#[derive(Debug)]
+pub(crate) struct Replacement<'a> {
+    values: Vec<&'a ValueSense>,
+    /// Starts with a determiner: a noun phrase of its own, not a word put in another's place.
+    whole: bool,
+    /// "it is …": a statement that adds rather than replaces.
+    statement: bool,
+}
+
+impl<'a> Replacement<'a> {
+    /// The replacement whose first value is at `at`.
+    pub(crate) fn at(lexicon: &'a Lexicon, marks: &[Mark<'_>], at: usize) -> Self {
+        const REACH: usize = 12;
+        let ends = |mark: &Mark<'_>| {
+            mark.gap == Gap::Stop
+                || mark.is_any(cues![Repair Withdraw No Not Except But Landmark Than])
+        };
+        let after = marks[at + 1..].iter().take(REACH).take_while(|mark| !ends(mark));
+        let values = std::iter::once(&marks[at]).chain(after).filter_map(Mark::value);
+        let lead = marks[..at].iter().rev().take_while(|mark| !ends(mark)).take(3);
+        let lead: Vec<&Mark<'_>> = lead.collect();
+        Self {
+            values: values.map(|value| lexicon.value(value)).collect(),
+            whole: lead.first().is_some_and(|mark| mark.is(Cue::Determiner)),
+            statement: lead.iter().any(|mark| mark.is(Cue::Be)),
+        }
+    }
+
+    /// Takes out of `base` what the replacement stands in for.
+    pub(crate) fn replace(&self, base: &mut Vec<&'a ValueSense>, strength: Strength) {
+        let rival = |old: &ValueSense| self.values.iter().any(|new| rivals(old, new));
+        if base.iter().any(|old| rival(old)) {
+            // "the blue pen, no, the marker": another kind of thing, the rest goes with the old.
+            let renamed = self.whole && strength > Strength::Stumble && self.renames(base);
+            base.retain(|old| !rival(old) && (!renamed || is_place(old)));
+        } else if strength == Strength::Hard || strength == Strength::Soft && !self.statement {
+            // "the white one, no, the metal one": nothing in common, so one for the other; but
+            // "…, no, in the cabinet" only says where.
+            if self.values.iter().any(|new| !is_place(new)) {
+                base.retain(|old| is_place(old));
+            }
+        }
+    }
+
+    fn renames(&self, base: &[&ValueSense]) -> bool {
+        let kind = |value: &&&ValueSense| value.role == Role::Kind;
+        let new: Vec<WordId> = self.values.iter().filter(kind).map(|value| value.word).collect();
+        !new.is_empty()
+            && base.iter().filter(kind).all(|old| !new.contains(&old.word))
+            && base.iter().any(|old| old.role == Role::Kind)
+            && self.values.iter().all(|value| value.role == Role::Kind)
+    }
+}
+
+/// "the red uh blue one", "the red one uh the blue one": a hesitation between rivals.
+pub(crate) fn is_stumble(lexicon: &Lexicon, marks: &[Mark<'_>], at: usize) -> bool {
+    const REACH: usize = 6;
+    let Some(new) = marks[at].value().map(|value| lexicon.value(value)) else { return false };
+    let mut hesitated = false;
+    for mark in marks[..at].iter().rev().take(REACH) {
+        if let Some(old) = mark.value() {
+            return hesitated && rivals(lexicon.value(old), new);
+        }
+        match mark.cue() {
+            Some(Cue::Filler) => hesitated = true,
+            Some(Cue::Determiner | Cue::Head) => {}
+            _ => return false,
+        }
+    }
+    false
+}

@@ -1,0 +1,233 @@
+//! The reader on whole utterances: the public set, our own table, and any text at all.
+
+mod table;
+
+use std::sync::LazyLock;
+use std::time::Instant;
+
+use proptest::prelude::*;
+use scene::{Question, Response, Scene, question_from_json};
+use serde_json::Value as Json;
+
+use crate::{Language, Reader};
+
+const BOWLS: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml"));
+const TOOLS: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/tools.toml"));
+const PUBLIC: &str = include_str!(concat!(
+    env!("CARGO_MANIFEST_DIR"),
+    "/../../tests/fixtures/utterances/public.jsonl"
+));
+
+fn scene(name: &str) -> Scene {
+    let text = match name {
+        "bowls" => BOWLS,
+        "tools" => TOOLS,
+        other => panic!("no scene {other}"),
+    };
+    Scene::from_toml(name, text).expect("a shipped scene")
+}
+
+/// The tools and a reader of each language, built once for the many cases of random tests.
+static TOOLS_READERS: LazyLock<(Scene, [Reader; 2])> = LazyLock::new(|| {
+    let scene = scene("tools");
+    let readers =
+        [Language::Paper, Language::Careful].map(|language| Reader::new(&scene, language));
+    (scene, readers)
+});
+
+/// A meaning with the scene's words, in a form that compares as sets do.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Meaning {
+    base: Vec<String>,
+    response: String,
+    excluded: Vec<Vec<String>>,
+    intent: String,
+}
+
+impl Meaning {
+    fn of(json: &Json) -> Self {
+        let set = |json: &Json| {
+            let words = json.as_array().into_iter().flatten();
+            let mut words: Vec<String> =
+                words.map(|word| word.as_str().expect("a word").to_owned()).collect();
+            words.sort();
+            words.dedup();
+            words
+        };
+        let mut excluded: Vec<Vec<String>> =
+            json["excluded"].as_array().into_iter().flatten().map(set).collect();
+        excluded.sort();
+        excluded.dedup();
+        Self {
+            base: set(&json["base"]),
+            response: json["response"].as_str().unwrap_or("none").to_owned(),
+            excluded,
+            intent: json["intent"].as_str().unwrap_or("inform").to_owned(),
+        }
+    }
+
+    fn read(reader: &Reader, scene: &Scene, text: &str, question: Question) -> Self {
+        let understood = reader.read(text, question);
+        Self::of(&scene::reading_to_json(scene, &understood.reading))
+    }
+}
+
+/// Reads every public line; gives how many there are and what went wrong.
+fn failures(language: Language, right: impl Fn(&Json, &Meaning) -> bool) -> Vec<String> {
+    let scenes = ["bowls", "tools"].map(|name| (name, scene(name)));
+    let readers = scenes.each_ref().map(|(_, scene)| Reader::new(scene, language));
+    let mut failures = Vec::new();
+    for line in PUBLIC.lines() {
+        let json: Json = serde_json::from_str(line).expect("a line of JSON");
+        let n = usize::from(json["scene"] == "tools");
+        let scene = &scenes[n].1;
+        let question = question_from_json(scene, &json["last_question"]).expect("a question");
+        let text = json["text"].as_str().expect("a text");
+        let read = Meaning::read(&readers[n], scene, text, question);
+        if !right(&json, &read) {
+            failures.push(format!("{}: {text:?} read as {read:?}", json["id"]));
+        }
+    }
+    failures
+}
+
+#[test]
+fn paper_mode_reproduces_the_word_spotting_model() {
+    assert_eq!(PUBLIC.lines().count(), 60);
+    let failures = failures(Language::Paper, |json, read| Meaning::of(&json["seed"]) == *read);
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn careful_mode_understands_the_public_utterances() {
+    let failures = failures(Language::Careful, |json, read| {
+        let others = json["accept"].as_array().into_iter().flatten();
+        std::iter::once(&json["expect"]).chain(others).any(|json| Meaning::of(json) == *read)
+    });
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn unknown_words_are_named() {
+    let scene = scene("bowls");
+    let reader = Reader::new(&scene, Language::Careful);
+    for (text, unknown) in [
+        ("get me the purple one", vec!["purple"]),
+        ("the big wooden bowl", vec!["wooden"]),
+        ("bring me the frobnitz", vec!["frobnitz"]),
+        ("the white one", vec![]),
+        ("my phone is ringing", vec![]),
+    ] {
+        assert_eq!(reader.read(text, Question::None).unknown, unknown, "{text}");
+    }
+}
+
+#[test]
+fn time_grows_with_the_length_and_no_faster() {
+    let scene = scene("bowls");
+    let reader = Reader::new(&scene, Language::Careful);
+    let pieces = [
+        "white ",
+        "not the white one or ",
+        "no ",
+        "counter foo ",
+        "a",
+        "dish ",
+        "yes and ",
+        "my shirt is white ",
+        "the red uh ",
+        "mmm",
+        "but not ",
+        "\u{301}",
+        "whiteone",
+        "x-",
+    ];
+    for piece in pieces {
+        // The quickest of a few runs: other work on the machine only ever adds.
+        let seconds = |chars: usize| {
+            let text: String = piece.chars().cycle().take(chars).collect();
+            let run = || {
+                let start = Instant::now();
+                reader.read(&text, Question::None);
+                start.elapsed().as_secs_f64()
+            };
+            (0..5).map(|_| run()).fold(f64::INFINITY, f64::min)
+        };
+        // 64 times the text: a quadratic reader takes 4,096 times as long, and between the two
+        // there is room for a busy machine.
+        let growth = seconds(16_000) / seconds(250);
+        assert!(growth < 1_000.0, "{piece:?} grows {growth:.0} times");
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_text_is_read(text in any::<String>(), n in 0..4_usize) {
+        let questions = [
+            Question::None,
+            Question::Point(scene::ObjectId(3)),
+            Question::Attribute(scene::AttributeId(1), scene::ValueId(2)),
+            Question::Which(scene::AttributeId(0)),
+        ];
+        for reader in &TOOLS_READERS.1 {
+            reader.read(&text, questions[n]);
+        }
+    }
+
+    /// Any order of the words of the dialogue is read, and without a question nothing is answered.
+    #[test]
+    fn any_order_of_known_words_is_read(words in proptest::collection::vec(0..60_usize, 0..30)) {
+        const WORDS: &[&str] = &[
+            "the", "not", "no", "yes", "red", "blue", "marker", "one", "and", "or", "but", ",",
+            ".", "on", "table", "sorry", "i", "do", "want", "get", "me", "is", "it", "that",
+            "what", "other", "than", "anything", "foo", "uh", "sure", "if", "next to", "short",
+            "never mind", "start over", "stop", "isn't", "you", "my", "was", "clear", "pen", "any",
+            "except", "maybe", "think", "so", "wait", "right", "of", "in", "dish", "-", "'", "?",
+            "le", "drop table", "put", "non",
+        ];
+        let text: Vec<&str> = words.iter().map(|&word| WORDS[word]).collect();
+        let (scene, [_, reader]) = &*TOOLS_READERS;
+        let understood = reader.read(&text.join(" "), Question::None);
+        prop_assert_eq!(understood.reading.response, Response::None);
+        let said = |w: &scene::WordId| w.index() < scene.words().len();
+        prop_assert!(understood.reading.base.iter().all(said));
+        prop_assert!(understood.reading.excluded.iter().all(|group| !group.is_empty()));
+    }
+}
+
+/// A scene whose values are words that mean something else in other scenes, or are several words.
+#[test]
+fn scenes_bring_their_own_words() {
+    let json = serde_json::json!({"noun": "jar", "objects": [], "values": {
+        "position": ["left", "middle", "right"],
+        "color": ["blue", "light blue", "orange", "medium grey"],
+        "label": ["no. 7", "x-aligned", "stop", "ÄPFEL"],
+        "state": ["lit", "unlit", "broken"],
+    }});
+    let mut json = json;
+    json["objects"] = serde_json::json!([{"name": "a", "attributes": {"color": "blue"}}]);
+    let scene = Scene::from_json("jars", &json).expect("a scene");
+    let reader = Reader::new(&scene, Language::Careful);
+    for (text, base) in [
+        ("the one on the left", vec!["left"]),
+        ("the light blue jar", vec!["light blue"]),
+        ("the blue jar", vec!["blue"]),
+        ("the right one", vec!["right"]),
+        ("get me the medium grey one", vec!["medium grey"]),
+        ("the x aligned jar", vec!["x-aligned"]),
+        ("the broken jar in the middle", vec!["broken", "middle"]),
+        ("the äpfel jar", vec!["ÄPFEL"]),
+        ("the jar with the no 7", vec!["no. 7"]),
+        ("the orange jars", vec!["orange"]),
+        ("the lightblue jar", vec!["light blue"]),
+        ("the blue, no, the light blue one", vec!["light blue"]),
+    ] {
+        let read = Meaning::read(&reader, &scene, text, Question::None);
+        let mut base: Vec<String> = base.iter().map(|word| (*word).to_owned()).collect();
+        base.sort();
+        assert_eq!(read.base, base, "{text}");
+        assert_eq!(read.excluded, Vec::<Vec<String>>::new(), "{text}");
+    }
+}

@@ -1,0 +1,230 @@
+//! Normalised text to words: contractions opened ("isn't" is "is not"), compounds taken apart at
+//! their hyphens, punctuation kept as the pause that it stands for.
+
+/// The pause before a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Gap {
+    /// Written with a hyphen to the word before.
+    Glued,
+    /// A space.
+    None,
+    /// A comma, dash, colon, bracket or suspension points.
+    Pause,
+    /// The end of a sentence.
+    Stop,
+}
+
+/// A word and what stood before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Token<'a> {
+    pub(crate) word: &'a str,
+    pub(crate) gap: Gap,
+}
+
+/// The words of a text.
+#[derive(Debug, Default)]
+pub(crate) struct Tokens<'a> {
+    pub(crate) words: Vec<Token<'a>>,
+    /// Braces, tags or shell marks: nobody says these.
+    pub(crate) code: bool,
+}
+
+impl<'a> Tokens<'a> {
+    /// Splits a normalised text.
+    pub(crate) fn of(text: &'a str) -> Self {
+        let mut tokens =
+            Self { words: Vec::with_capacity(text.len() / 5 + 1), code: is_code(text) };
+        let mut gap = Gap::Stop;
+        let mut rest = text;
+        while let Some(c) = rest.chars().next() {
+            let end = if c.is_alphanumeric() { word_end(rest) } else { 0 };
+            if end > 0 {
+                let (word, after) = rest.split_at(end);
+                tokens.push_word(word, gap);
+                rest = after;
+                gap = Gap::None;
+                if let Some(after) = hyphenated(rest) {
+                    rest = after;
+                    gap = Gap::Glued;
+                }
+                continue;
+            }
+            let (pause, len) = pause(rest, c);
+            gap = gap.max(Gap::None).max(pause);
+            rest = &rest[len..];
+        }
+        tokens
+    }
+
+    fn push_word(&mut self, word: &'a str, mut gap: Gap) {
+        let mut push = |word: &'a str| {
+            if !word.is_empty() {
+                self.words.push(Token { word, gap });
+                gap = Gap::None;
+            }
+        };
+        if let Some(opened) = opened(word) {
+            opened.split(' ').for_each(push);
+            return;
+        }
+        let Some(quote) = word.rfind('\'') else { return push(word) };
+        let (stem, ending) = word.split_at(quote);
+        match ending {
+            "'t" if stem.ends_with('n') => {
+                push(&stem[..stem.len() - 1]);
+                push("not");
+            }
+            "'re" => [stem, "are"].into_iter().for_each(push),
+            "'ve" => [stem, "have"].into_iter().for_each(push),
+            "'ll" => [stem, "will"].into_iter().for_each(push),
+            "'d" => [stem, "would"].into_iter().for_each(push),
+            "'m" => [stem, "am"].into_iter().for_each(push),
+            "'s" if takes_is(stem) => [stem, "is"].into_iter().for_each(push),
+            "'s" => push(stem),
+            _ => word.split('\'').for_each(push),
+        }
+    }
+}
+
+/// Words whose contraction is not spelled out by its ending, and contractions typed without their
+/// apostrophe.
+fn opened(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "can't" | "cannot" | "cant" => "can not",
+        "won't" | "wont" => "will not",
+        "shan't" => "shall not",
+        "ain't" | "aint" => "is not",
+        "let's" | "lets" => "let us",
+        "dont" => "do not",
+        "doesnt" | "doesent" => "does not",
+        "didnt" => "did not",
+        "isnt" => "is not",
+        "arent" => "are not",
+        "wasnt" => "was not",
+        "wouldnt" => "would not",
+        "couldnt" => "could not",
+        "havent" => "have not",
+        "hasnt" => "has not",
+        "its" => "it is",
+        "thats" => "that is",
+        "whats" => "what is",
+        "wheres" => "where is",
+        "theres" => "there is",
+        "im" => "i am",
+        "ive" => "i have",
+        "youre" => "you are",
+        "theyre" => "they are",
+        "gonna" => "going to",
+        "wanna" => "want to",
+        "gotta" => "got to",
+        "gimme" | "gimmie" => "give me",
+        "lemme" => "let me",
+        "dunno" => "do not know",
+        "y'all" | "yall" => "you",
+        "o'clock" => "oclock",
+        _ => return None,
+    })
+}
+
+/// Whether "…'s" is "… is" and not a possessive.
+fn takes_is(stem: &str) -> bool {
+    matches!(
+        stem,
+        "it" | "that"
+            | "this"
+            | "there"
+            | "here"
+            | "what"
+            | "where"
+            | "who"
+            | "which"
+            | "how"
+            | "he"
+            | "she"
+            | "one"
+            | "everything"
+            | "nothing"
+    )
+}
+
+/// End of the word that starts `text`: letters and digits, and apostrophes between letters.
+fn word_end(text: &str) -> usize {
+    let mut end = 0;
+    let mut chars = text.char_indices().peekable();
+    while let Some((at, c)) = chars.next() {
+        let inside = c == '\'' && at > 0 && chars.peek().is_some_and(|(_, c)| c.is_alphabetic());
+        if !c.is_alphanumeric() && !inside {
+            break;
+        }
+        end = at + c.len_utf8();
+    }
+    end
+}
+
+/// What follows a hyphen that ties two words together.
+fn hyphenated(text: &str) -> Option<&str> {
+    text.strip_prefix('-').filter(|after| after.starts_with(char::is_alphanumeric))
+}
+
+/// The pause that a character stands for, and its length in bytes.
+fn pause(text: &str, c: char) -> (Gap, usize) {
+    match c {
+        '.' => {
+            let dots = text.bytes().take_while(|byte| *byte == b'.').count();
+            (if dots > 1 { Gap::Pause } else { Gap::Stop }, dots)
+        }
+        '!' | '?' => (Gap::Stop, 1),
+        ',' | ';' | ':' | '(' | ')' | '[' | ']' | '"' | '/' | '|' | '\n' => (Gap::Pause, 1),
+        '-' if text.starts_with("- ") || text.starts_with("--") => (Gap::Pause, 1),
+        c => (Gap::None, c.len_utf8()),
+    }
+}
+
+fn is_code(text: &str) -> bool {
+    let tag = |at: usize| {
+        text[at + 1..].starts_with(|c: char| c.is_ascii_alphabetic() || c == '/' || c == '|')
+    };
+    text.contains(['{', '}', '`', '\\'])
+        || text.contains("://")
+        || text.contains("$(")
+        || text.match_indices('<').any(|(at, _)| tag(at))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Gap, Tokens};
+
+    fn words(text: &str) -> Vec<&str> {
+        Tokens::of(text).words.iter().map(|token| token.word).collect()
+    }
+
+    #[test]
+    fn contractions_are_opened() {
+        for (text, opened) in [
+            ("isn't it", "is not it"),
+            ("can't i won't", "can not i will not"),
+            ("that's what i'd like", "that is what i would like"),
+            ("my mother's bowl", "my mother bowl"),
+            ("dont", "do not"),
+            ("rock'n'roll", "rock n roll"),
+            ("'white'", "white"),
+        ] {
+            assert_eq!(words(text).join(" "), opened);
+        }
+    }
+
+    #[test]
+    fn punctuation_is_a_pause() {
+        let tokens = Tokens::of("red, no... blue-ish. yes");
+        let gaps: Vec<Gap> = tokens.words.iter().map(|token| token.gap).collect();
+        assert_eq!(gaps, [Gap::Stop, Gap::Pause, Gap::Pause, Gap::Glued, Gap::Stop]);
+        assert!(words("... ?! --").is_empty());
+    }
+
+    #[test]
+    fn code_is_recognised_and_hearts_are_not_code() {
+        assert!(Tokens::of("{\"base\":[]}").code);
+        assert!(Tokens::of("<script>").code);
+        assert!(!Tokens::of("the white one <3 thanks").code);
+    }
+}

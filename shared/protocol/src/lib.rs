@@ -1,0 +1,26 @@
+//! The contract between the services: what travels over shared memory and what it means.
+//!
+//! Messages are plain fixed-layout structs that are read where the writer left them (no copy, no
+//! decoding); payloads of variable size are postcard. Nothing here opens a topic, reads a clock or
+//! does any IO: that is the runtime's part. Values read from the wire are never trusted: every
+//! accessor that interprets a byte is checked and can fail.
+
+pub mod ids;
+pub mod inbox;
+pub mod messages;
+pub mod outbox;
+pub mod payloads;
+pub mod pick;
+pub mod schema;
+pub mod text;
+pub mod topics;
+pub mod wire;
+
+pub use ids::{
+    ActId, Epoch, Incarnation, InteractionId, PickId, PromptId, RequestKey, UtteranceSeq,
+};
+pub use messages::*;
+pub use payloads::*;
+pub use text::{FixedText, TextTooLong};
+pub use topics::{Service, Topic};
+pub use wire::WireError;

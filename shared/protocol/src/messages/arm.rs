@@ -1,0 +1,126 @@
+//! What the arm tells, and how it is stopped.
+
+use crate::schema::wire_struct;
+use crate::wire::wire_enum;
+use crate::{ActId, InteractionId, PickId};
+use iceoryx2::prelude::ZeroCopySend;
+
+/// Joints of a joint state: 7 a limb, head pan and nod, torso.
+pub const JOINT_STATE_LEN: usize = 17;
+
+/// Baxter's own joint names in the order of `/robot/joint_states`.
+pub const JOINT_STATE_NAMES: [&str; JOINT_STATE_LEN] = [
+    "head_nod", "head_pan", "left_e0", "left_e1", "left_s0", "left_s1", "left_w0", "left_w1",
+    "left_w2", "right_e0", "right_e1", "right_s0", "right_s1", "right_w0", "right_w1", "right_w2",
+    "torso_t0",
+];
+
+wire_enum! {
+    /// How far a pick has come. Each is durable before the arm acts on it.
+    PickPhase {
+        /// Nothing to do.
+        Idle = 0,
+        /// Taken on; nothing has moved.
+        Accepted = 1,
+        /// On the way to the object, gripper open.
+        Moving = 2,
+        /// The gripper closes on the object.
+        Closing = 3,
+        /// The object is held: lifted and carried to the person.
+        Holding = 4,
+        /// Over; see the outcome.
+        Done = 5,
+    }
+}
+
+wire_enum! {
+    /// How a pick ended.
+    PickOutcome {
+        /// Not yet.
+        Pending = 0,
+        /// The object was handed over.
+        Delivered = 1,
+        /// No motion reaches it; nothing moved.
+        Unreachable = 2,
+        /// It could not be known whether the object was grasped; a person must look.
+        Interrupted = 3,
+        /// Given up on the policy's or the operator's word, object put back or never touched.
+        Cancelled = 4,
+    }
+}
+
+wire_struct! {
+    /// State of the arm executor. Arm to policy and speech.
+    ArmStatus = "ArmStatus" {
+        /// [`InteractionId`] of the latest pick.
+        interaction: u64,
+        /// [`ActId`] of the pointing question that the gripper aims at, 0 for none.
+        aimed_act: u64,
+        /// Attempt of the latest pick.
+        attempt: u32,
+        /// [`ObjectId`] of the latest pick.
+        object: u32,
+        /// [`PickPhase`] of the latest pick.
+        phase: u8,
+        /// [`PickOutcome`] of the latest pick.
+        outcome: u8,
+        /// 1 while the motion stop is latched.
+        stopped: u8,
+        /// 1 while any joint moves.
+        moving: u8,
+        /// Zero.
+        reserved: [u8; 4],
+        /// Expected seconds until the pick is done, 0 where none runs.
+        remaining_s: f64,
+    }
+}
+
+impl ArmStatus {
+    /// The latest pick.
+    pub fn pick(&self) -> PickId {
+        PickId { interaction: InteractionId(self.interaction), attempt: self.attempt }
+    }
+
+    /// The pointing question that the gripper aims at.
+    pub fn aimed_at(&self) -> Option<ActId> {
+        (self.aimed_act > 0).then_some(ActId(self.aimed_act))
+    }
+}
+
+wire_struct! {
+    /// Joint states at 100 Hz, in the order of [`JOINT_STATE_NAMES`]. Arm to clients.
+    JointStates = "JointStates" {
+        /// When the joints were so.
+        at_ns: u64,
+        /// Position, radians.
+        position: [f64; JOINT_STATE_LEN],
+        /// Velocity, radians a second.
+        velocity: [f64; JOINT_STATE_LEN],
+        /// Effort, newton metres; the kinematic arm has none.
+        effort: [f64; JOINT_STATE_LEN],
+        /// Opening of the left and right gripper, percent of the stroke.
+        gripper_percent: [f64; 2],
+    }
+}
+
+wire_enum! {
+    /// What the motion stop is told.
+    MotionOrder {
+        /// Halt and latch.
+        Stop = 0,
+        /// Release the latch.
+        Resume = 1,
+    }
+}
+
+wire_struct! {
+    /// Stops the arm, past everything else. Speech and clients to arm.
+    MotionCommand = "MotionCommand" {
+        /// When it was given; an older one than the last obeyed is ignored.
+        given_ns: u64,
+        /// [`MotionOrder`].
+        order: u8,
+        /// Zero.
+        reserved: [u8; 7],
+    }
+}

@@ -1,0 +1,84 @@
+//! What the robot has decided, and how far its belief has come.
+
+use crate::messages::common::WireQuestion;
+use crate::schema::wire_struct;
+use crate::text::FixedText;
+use crate::wire::{WireError, wire_enum};
+use crate::{InteractionId, PickId};
+use iceoryx2::prelude::ZeroCopySend;
+use scene::ObjectId;
+
+wire_struct! {
+    /// The highest utterance that the belief holds. Policy to speech.
+    AppliedMark = "AppliedMark" {
+        /// [`UtteranceSeq`].
+        seq: u64,
+    }
+}
+
+wire_enum! {
+    /// What the robot does.
+    ActKind {
+        /// Waits for the person.
+        Wait = 0,
+        /// Asks `question`, saying `text`.
+        Ask = 1,
+        /// Says `text`; no answer is expected.
+        Say = 2,
+        /// Picks `object` and says `text`.
+        Pick = 3,
+        /// Gives up the pick of `interaction` and `attempt`, if the object is not yet grasped.
+        Cancel = 4,
+    }
+}
+
+wire_struct! {
+    /// The policy's standing decision. Policy to speech and arm, sent again until superseded.
+    RobotAct = "RobotAct" nests [WireQuestion] {
+        /// [`ActId`].
+        act: u64,
+        /// [`InteractionId`].
+        interaction: u64,
+        /// [`PromptId`] of an `Ask` or `Say`.
+        prompt: u64,
+        /// How often the prompt has been asked for: 1, and one more for each repetition.
+        presentation: u32,
+        /// [`ActKind`].
+        kind: u8,
+        /// Zero.
+        reserved: [u8; 3],
+        /// The question of an `Ask`.
+        question: WireQuestion,
+        /// [`ObjectId`] of a `Pick`.
+        object: u32,
+        /// Attempt of a `Pick`.
+        attempt: u32,
+        /// When it was decided.
+        decided_ns: u64,
+        /// The utterance that it answers, 0 for none.
+        utterance: u64,
+        /// What to say.
+        text: FixedText<244>,
+    }
+}
+
+impl RobotAct {
+    /// [`ActKind`] of the act.
+    ///
+    /// # Errors
+    /// An unknown byte.
+    pub fn kind(&self) -> Result<ActKind, WireError> {
+        ActKind::from_code(self.kind)
+    }
+
+    /// The pick that it orders, if it orders one.
+    pub fn pick(&self) -> Option<(PickId, ObjectId)> {
+        let object = u16::try_from(self.object).ok()?;
+        (self.kind == ActKind::Pick.code()).then_some((self.pick_id(), ObjectId(object)))
+    }
+
+    /// The key of the pick that it orders or gives up.
+    pub fn pick_id(&self) -> PickId {
+        PickId { interaction: InteractionId(self.interaction), attempt: self.attempt }
+    }
+}

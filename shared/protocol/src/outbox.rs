@@ -1,0 +1,77 @@
+//! The sender's half of "in order, exactly once": it keeps everything above the receiver's mark and
+//! sends it again, a window at a time.
+
+use crate::UtteranceSeq;
+use std::collections::VecDeque;
+
+/// Accepted messages that the receiver has not yet applied.
+#[derive(Clone, Debug)]
+pub struct Outbox<T> {
+    last: UtteranceSeq,
+    waiting: VecDeque<(UtteranceSeq, T)>,
+    window: usize,
+    capacity: usize,
+}
+
+/// Too many messages wait; the newest was not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{waiting} utterances are still waiting to be understood; say it again in a moment")]
+pub struct Full {
+    /// How many wait.
+    pub waiting: usize,
+}
+
+impl<T> Outbox<T> {
+    /// An outbox whose last number given was `last`, that keeps `capacity` messages and sends
+    /// `window` of them at a time.
+    pub fn new(last: UtteranceSeq, window: usize, capacity: usize) -> Self {
+        Self { last, waiting: VecDeque::new(), window, capacity }
+    }
+
+    /// The number that the next message will get, if there is room for it.
+    ///
+    /// # Errors
+    /// The outbox is full.
+    pub fn next(&self) -> Result<UtteranceSeq, Full> {
+        if self.waiting.len() >= self.capacity {
+            return Err(Full { waiting: self.waiting.len() });
+        }
+        Ok(self.last.next())
+    }
+
+    /// Takes the message with the number from [`Outbox::next`] (or, at recovery, from the journal).
+    pub fn push(&mut self, seq: UtteranceSeq, message: T) {
+        debug_assert!(seq > self.last, "numbers only rise");
+        self.last = seq;
+        self.waiting.push_back((seq, message));
+    }
+
+    /// The receiver has applied everything up to `mark`. A mark beyond our own last number means
+    /// that our journal was lost; numbering goes on after it.
+    pub fn acknowledge(&mut self, mark: UtteranceSeq) {
+        while self.waiting.front().is_some_and(|(seq, _)| *seq <= mark) {
+            self.waiting.pop_front();
+        }
+        self.last = self.last.max(mark);
+    }
+
+    /// What is to be sent now, in order.
+    pub fn window(&self) -> impl Iterator<Item = &(UtteranceSeq, T)> {
+        self.waiting.iter().take(self.window)
+    }
+
+    /// How many wait.
+    pub fn len(&self) -> usize {
+        self.waiting.len()
+    }
+
+    /// Whether nothing waits.
+    pub fn is_empty(&self) -> bool {
+        self.waiting.is_empty()
+    }
+
+    /// The last number given.
+    pub fn last(&self) -> UtteranceSeq {
+        self.last
+    }
+}

@@ -1,0 +1,149 @@
+//! Payloads of variable size: postcard in a byte slice.
+
+use crate::schema::{Field, Schema};
+use crate::{PickOutcome, RequestKey};
+use scene::Question;
+use serde::{Deserialize, Serialize};
+
+/// Declares a payload's identity: encoded ones have no layout, so their key hashes a description
+/// that is changed by hand together with the type.
+macro_rules! encoded {
+    ($ty:ty, $name:literal, $shape:literal) => {
+        impl Schema for $ty {
+            const NAME: &'static str = $name;
+
+            fn fields() -> Vec<Field> {
+                vec![Field { name: $shape, ty: "postcard", offset: 0, size: 0 }]
+            }
+
+            fn size() -> usize {
+                0
+            }
+        }
+    };
+}
+
+/// Something that a client gives to the speech service to hear. Clients to speech; sent again with
+/// the same key until its receipt arrives.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Injection {
+    /// Made by the client, kept through its retries.
+    pub key: RequestKey,
+    /// When the person began to speak or type, monotonic clock; 0: when it arrives.
+    pub onset_ns: u64,
+    /// What is to be heard.
+    pub sound: Sound,
+}
+encoded!(Injection, "Injection", "key[u8;16] onset_ns:u64 sound{Text(str),Wav(path str)}");
+
+/// What a client gives.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Sound {
+    /// Written words.
+    Text(String),
+    /// A WAV file, absolute path.
+    Wav(String),
+}
+
+/// What the policy thinks, for people and their tools. Policy to clients.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PolicyView {
+    /// The scene's key, to match object names.
+    pub scene_key: u64,
+    /// Highest utterance applied.
+    pub applied: u64,
+    /// The open interaction, 0 for none.
+    pub interaction: u64,
+    /// Probability of each object, in the scene's order.
+    pub belief: Vec<f64>,
+    /// The question that stands.
+    pub question: Question,
+    /// Its prompt, 0 for none.
+    pub prompt: u64,
+    /// What the robot last said or asked.
+    pub text: String,
+    /// What the standing decision is, e.g. `ask`, `wait`, `pick`.
+    pub decision: String,
+    /// Expected discounted return of the decision.
+    pub value: f64,
+    /// The best other actions with their values, as text.
+    pub alternatives: Vec<(String, f64)>,
+    /// Expected number of questions still to ask.
+    pub expected_questions: f64,
+    /// Questions asked in the open interaction.
+    pub questions: u32,
+    /// First and last utterance of the latest interaction.
+    pub utterances: (u64, u64),
+    /// The latest interaction that ended.
+    pub last: Option<Ended>,
+    /// Observations refused because they made no sense.
+    pub refused: u64,
+}
+encoded!(
+    PolicyView,
+    "PolicyView",
+    "scene_key:u64 applied:u64 interaction:u64 belief[f64] question prompt:u64 text decision \
+     value:f64 alternatives[(str,f64)] expected_questions:f64 questions:u32 utterances(u64,u64) \
+     last?Ended refused:u64; \
+     Ended(interaction:u64 object?u16 outcome questions:u32 seconds:f64 utterances(u64,u64))"
+);
+
+/// How an interaction ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ended {
+    /// [`crate::InteractionId`].
+    pub interaction: u64,
+    /// The object that was picked or tried, its place in the scene.
+    pub object: Option<u16>,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Questions that were asked.
+    pub questions: u32,
+    /// Seconds from the first utterance to the end.
+    pub seconds: f64,
+    /// First and last utterance.
+    pub utterances: (u64, u64),
+}
+
+/// How an interaction ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// An object was handed over.
+    Delivered,
+    /// The arm could not; the object is named.
+    Failed,
+    /// The person withdrew the request.
+    Cancelled,
+    /// The person fell silent, or no question helped.
+    Abandoned,
+    /// The scene was changed under the dialogue.
+    SceneChanged,
+}
+
+impl Outcome {
+    /// What a pick's end means for its interaction; none while it is pending.
+    pub fn of_pick(outcome: PickOutcome) -> Option<Self> {
+        match outcome {
+            PickOutcome::Pending => None,
+            PickOutcome::Delivered => Some(Self::Delivered),
+            PickOutcome::Unreachable | PickOutcome::Interrupted => Some(Self::Failed),
+            PickOutcome::Cancelled => Some(Self::Cancelled),
+        }
+    }
+}
+
+/// Where the objects are in the simulated world. Arm to clients.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WorldView {
+    /// When it was so.
+    pub at_ns: u64,
+    /// Pose of each object in the scene's order, frame `base`: x, y, z in metres and quaternion
+    /// x, y, z, w. None: handed over.
+    pub objects: Vec<Option<[f64; 7]>>,
+    /// The object in the gripper.
+    pub held: Option<u16>,
+    /// Pose of the left and right gripper, as the objects'.
+    pub grippers: [[f64; 7]; 2],
+}
+encoded!(WorldView, "WorldView", "at_ns:u64 objects[?[f64;7]] held?u16 grippers[[f64;7];2]");

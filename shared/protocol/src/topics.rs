@@ -1,0 +1,168 @@
+//! The table of topics: who writes, who reads, and how much is kept.
+//!
+//! Every topic has safe overflow and never blocks its writer: what a reader missed is sent again by
+//! the writer until its effect is seen. A reader with a wake-up is notified after each send; clients
+//! poll.
+
+use crate::schema::{Schema, SchemaKey};
+use crate::*;
+
+/// A service of the standard group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Service {
+    /// Hears and speaks.
+    Speech,
+    /// Understands.
+    Grounding,
+    /// Believes and decides.
+    Policy,
+    /// Moves.
+    Arm,
+}
+
+impl Service {
+    /// Every service, in start order.
+    pub const ALL: [Self; 4] = [Self::Arm, Self::Policy, Self::Grounding, Self::Speech];
+
+    /// Its name in configuration, journals and status.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Speech => "speech",
+            Self::Grounding => "grounding",
+            Self::Policy => "policy",
+            Self::Arm => "arm",
+        }
+    }
+}
+
+/// One topic: its name, its traffic and its bounds.
+#[derive(Clone, Copy, Debug)]
+pub struct Topic {
+    /// Name of the iceoryx2 service.
+    pub name: &'static str,
+    /// Identity of the payload.
+    pub schema: fn() -> SchemaKey,
+    /// Name of the payload type.
+    pub payload: &'static str,
+    /// Bytes of a message; 0 for a byte slice.
+    pub size: fn() -> usize,
+    /// Who writes; clients where none is named.
+    pub writer: Option<Service>,
+    /// Services that are woken after a send.
+    pub readers: &'static [Service],
+    /// Writers at a time; above 1 only where clients write.
+    pub writers_max: usize,
+    /// Unread messages that a reader holds; the oldest gives way.
+    pub buffer: usize,
+    /// Messages that a late reader still gets.
+    pub history: usize,
+}
+
+/// Readers of one topic at a time: services, clients, consoles, recorders.
+pub const READERS_MAX: usize = 24;
+/// Clients that write at a time.
+pub const CLIENTS_MAX: usize = 16;
+/// Processes that have a topic open at a time.
+pub const NODES_MAX: usize = 48;
+/// Utterances that are on their way at a time; the buffers of their topics hold them all.
+pub const WINDOW: usize = 16;
+
+const fn topic<T: Schema>(name: &'static str, writer: Option<Service>) -> Topic {
+    Topic {
+        name,
+        schema: T::key,
+        payload: T::NAME,
+        size: T::size,
+        writer,
+        readers: &[],
+        writers_max: 1,
+        buffer: 1,
+        history: 1,
+    }
+}
+
+/// Clients to speech.
+pub const INJECTION: Topic = Topic {
+    readers: &[Service::Speech],
+    writers_max: CLIENTS_MAX,
+    buffer: WINDOW,
+    history: 0,
+    ..topic::<Injection>("speech/inject", None)
+};
+/// Speech to clients.
+pub const RECEIPT: Topic = Topic {
+    buffer: WINDOW,
+    history: WINDOW,
+    ..topic::<Receipt>("speech/receipt", Some(Service::Speech))
+};
+/// Speech to grounding.
+pub const UTTERANCE: Topic = Topic {
+    readers: &[Service::Grounding],
+    buffer: WINDOW,
+    history: WINDOW,
+    ..topic::<Utterance>("speech/utterance", Some(Service::Speech))
+};
+/// Speech to policy.
+pub const PRESENTED: Topic = Topic {
+    readers: &[Service::Policy],
+    ..topic::<Presented>("speech/presented", Some(Service::Speech))
+};
+/// Speech to policy.
+pub const ACTIVITY: Topic = Topic {
+    readers: &[Service::Policy],
+    ..topic::<Activity>("speech/activity", Some(Service::Speech))
+};
+/// Grounding to policy.
+pub const OBSERVATION: Topic = Topic {
+    readers: &[Service::Policy],
+    buffer: WINDOW,
+    history: WINDOW,
+    ..topic::<Observation>("grounding/observation", Some(Service::Grounding))
+};
+/// Policy to speech.
+pub const MARK: Topic = Topic {
+    readers: &[Service::Speech],
+    ..topic::<AppliedMark>("policy/mark", Some(Service::Policy))
+};
+/// Policy to speech and arm.
+pub const ACT: Topic = Topic {
+    readers: &[Service::Speech, Service::Arm],
+    ..topic::<RobotAct>("policy/act", Some(Service::Policy))
+};
+/// Policy to clients.
+pub const VIEW: Topic = topic::<PolicyView>("policy/view", Some(Service::Policy));
+/// Arm to policy and speech.
+pub const STATUS: Topic = Topic {
+    readers: &[Service::Policy, Service::Speech],
+    ..topic::<ArmStatus>("arm/status", Some(Service::Arm))
+};
+/// Arm to clients, 100 Hz.
+pub const JOINTS: Topic =
+    Topic { buffer: WINDOW, ..topic::<JointStates>("arm/joints", Some(Service::Arm)) };
+/// Arm to clients.
+pub const WORLD: Topic = topic::<WorldView>("arm/world", Some(Service::Arm));
+/// Speech and clients to arm, past the dialogue.
+pub const MOTION: Topic = Topic {
+    readers: &[Service::Arm],
+    writers_max: CLIENTS_MAX,
+    buffer: 4,
+    history: 0,
+    ..topic::<MotionCommand>("arm/motion", None)
+};
+
+/// Every topic of the group.
+pub const ALL: [Topic; 13] = [
+    INJECTION,
+    RECEIPT,
+    UTTERANCE,
+    PRESENTED,
+    ACTIVITY,
+    OBSERVATION,
+    MARK,
+    ACT,
+    VIEW,
+    STATUS,
+    JOINTS,
+    WORLD,
+    MOTION,
+];

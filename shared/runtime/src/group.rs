@@ -1,0 +1,239 @@
+//! Where a group lives: its name, its folders, its identity among the processes of the machine.
+
+use std::path::{Path, PathBuf};
+
+/// Name of the environment variable that holds the group's name.
+pub const ENV_GROUP: &str = "WHICHONE_GROUP";
+/// … the folder that holds all groups.
+pub const ENV_HOME: &str = "WHICHONE_HOME";
+/// … the service's own name.
+pub const ENV_SERVICE: &str = "WHICHONE_SERVICE";
+/// … the service's incarnation.
+pub const ENV_INCARNATION: &str = "WHICHONE_INCARNATION";
+/// … the epoch of the group's journals.
+pub const ENV_EPOCH: &str = "WHICHONE_EPOCH";
+/// … the file descriptor whose end of file says that the supervisor is gone.
+pub const ENV_LIFELINE_FD: &str = "WHICHONE_LIFELINE_FD";
+/// … the log filter, as of `tracing_subscriber::EnvFilter`.
+pub const ENV_LOG: &str = "WHICHONE_LOG";
+
+/// Longest path of a Unix socket, without the final zero.
+const SOCKET_PATH_MAX: usize = 107;
+
+/// A group's name: 1 to 32 of `a–z 0–9 -`, beginning with a letter or digit.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct GroupName(String);
+
+/// Not a group's name, or no place for it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum GroupError {
+    /// The name is not allowed.
+    #[error("group name {0:?}: use 1 to 32 of a-z, 0-9 and -, beginning with a letter or digit")]
+    Name(String),
+    /// No home folder is known.
+    #[error("no home folder: set {ENV_HOME} to a folder for the groups, or HOME")]
+    Home,
+    /// A socket's path would be too long for the operating system.
+    #[error("{0}: {1} bytes are too long for a socket; set {ENV_HOME} to a shorter folder")]
+    TooLong(PathBuf, usize),
+}
+
+impl GroupName {
+    /// The default group.
+    pub const DEFAULT: &'static str = "whichone";
+
+    /// Checks a name.
+    ///
+    /// # Errors
+    /// A name that is not allowed.
+    pub fn new(name: &str) -> Result<Self, GroupError> {
+        let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+        let fits = (1..=32).contains(&name.len()) && !name.starts_with('-');
+        if fits && name.chars().all(allowed) {
+            Ok(Self(name.to_owned()))
+        } else {
+            Err(GroupError::Name(name.to_owned()))
+        }
+    }
+
+    /// The name.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl std::fmt::Display for GroupName {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+impl std::str::FromStr for GroupName {
+    type Err = GroupError;
+
+    fn from_str(name: &str) -> Result<Self, GroupError> {
+        Self::new(name)
+    }
+}
+
+impl TryFrom<String> for GroupName {
+    type Error = GroupError;
+
+    fn try_from(name: String) -> Result<Self, GroupError> {
+        Self::new(&name)
+    }
+}
+
+impl From<GroupName> for String {
+    fn from(name: GroupName) -> String {
+        name.0
+    }
+}
+
+/// The folders and files of one group. `run/` exists only while the group runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GroupPaths {
+    name: GroupName,
+    root: PathBuf,
+}
+
+impl GroupPaths {
+    /// The group's place: `$WHICHONE_HOME/<name>`, else `$XDG_STATE_HOME/whichone/<name>`, else
+    /// `~/.local/state/whichone/<name>`.
+    ///
+    /// # Errors
+    /// No home folder, or one whose path is too long for sockets.
+    pub fn resolve(name: &GroupName) -> Result<Self, GroupError> {
+        let var = |key| std::env::var_os(key).filter(|v| !v.is_empty()).map(PathBuf::from);
+        let home = var(ENV_HOME)
+            .or_else(|| var("XDG_STATE_HOME").map(|state| state.join("whichone")))
+            .or_else(|| var("HOME").map(|home| home.join(".local/state/whichone")))
+            .ok_or(GroupError::Home)?;
+        Self::in_home(&home, name)
+    }
+
+    /// The group's place in the given home folder.
+    ///
+    /// # Errors
+    /// A path that is too long for sockets.
+    pub fn in_home(home: &Path, name: &GroupName) -> Result<Self, GroupError> {
+        let home = std::path::absolute(home).unwrap_or_else(|_| home.to_owned());
+        let paths = Self { root: home.join(name.as_str()), name: name.clone() };
+        let longest = paths.notify_socket("a-service-of-a-user", u32::MAX);
+        match longest.as_os_str().len() {
+            bytes if bytes > SOCKET_PATH_MAX => Err(GroupError::TooLong(longest, bytes)),
+            _ => Ok(paths),
+        }
+    }
+
+    /// The group's name.
+    pub fn name(&self) -> &GroupName {
+        &self.name
+    }
+
+    /// The folder that holds all groups.
+    pub fn home(&self) -> &Path {
+        self.root.parent().unwrap_or(&self.root)
+    }
+
+    /// The group's folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// Sockets, the settings in force, and iceoryx2's files; gone after `down`.
+    pub fn run(&self) -> PathBuf {
+        self.root.join("run")
+    }
+
+    /// Logs of the services and the supervisor.
+    pub fn log(&self) -> PathBuf {
+        self.root.join("log")
+    }
+
+    /// Journals.
+    pub fn journal(&self) -> PathBuf {
+        self.root.join("journal")
+    }
+
+    /// A service's journal.
+    pub fn journal_file(&self, service: &str) -> PathBuf {
+        self.journal().join(format!("{service}.journal"))
+    }
+
+    /// A service's log.
+    pub fn log_file(&self, service: &str) -> PathBuf {
+        self.log().join(format!("{service}.log"))
+    }
+
+    /// The number of the journals' life.
+    pub fn epoch_file(&self) -> PathBuf {
+        self.root.join("epoch")
+    }
+
+    /// Held by the supervisor for its life.
+    pub fn supervisor_lock(&self) -> PathBuf {
+        self.root.join("supervisor.lock")
+    }
+
+    /// Share-locked by every service for its life, so that the end of the last one can be awaited.
+    pub fn alive_lock(&self) -> PathBuf {
+        self.root.join("alive.lock")
+    }
+
+    /// The supervisor's control socket.
+    pub fn control_socket(&self) -> PathBuf {
+        self.run().join("control.sock")
+    }
+
+    /// Where one incarnation of a service sends its notifications.
+    pub fn notify_socket(&self, service: &str, incarnation: u32) -> PathBuf {
+        self.run().join(format!("n-{service}-{incarnation}"))
+    }
+
+    /// iceoryx2's own files.
+    pub fn ipc(&self) -> PathBuf {
+        self.run().join("ipc")
+    }
+
+    /// Prefix of everything that iceoryx2 makes in shared memory for this group: two groups differ
+    /// even where they share a name in different homes.
+    pub fn ipc_prefix(&self) -> String {
+        format!("wo{:016x}_", fnv(self.root.as_os_str().as_encoded_bytes()))
+    }
+}
+
+fn fnv(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_checked() {
+        assert!(GroupName::new("lab-2").is_ok());
+        for bad in ["", "-a", "Lab", "a/b", "a b", &"x".repeat(33)] {
+            assert_eq!(GroupName::new(bad), Err(GroupError::Name(bad.to_owned())));
+        }
+    }
+
+    #[test]
+    fn groups_of_different_homes_never_meet() {
+        let name = GroupName::new("lab").unwrap();
+        let one = GroupPaths::in_home(Path::new("/a"), &name).unwrap();
+        let two = GroupPaths::in_home(Path::new("/b"), &name).unwrap();
+        assert_ne!(one.ipc_prefix(), two.ipc_prefix());
+    }
+
+    #[test]
+    fn a_home_too_deep_for_sockets_is_refused() {
+        let deep = PathBuf::from(format!("/{}", "x".repeat(90)));
+        let error = GroupPaths::in_home(&deep, &GroupName::new("lab").unwrap()).unwrap_err();
+        assert!(error.to_string().contains(ENV_HOME));
+    }
+}

@@ -1,0 +1,235 @@
+//! From what a text says to a scene that holds: every invariant of [`Scene`] is checked here, for
+//! both syntaxes, and every breach is reported.
+
+use std::collections::HashMap;
+
+use crate::problem::Report;
+use crate::{Attribute, Object, Placement, Scene, Value, ValueId, WordId, wording};
+
+/// How many of anything a 16-bit index can name.
+const COUNT_MAX: usize = 65_535;
+
+/// A scene as written: typed, nothing else promised. An empty name stands for one that was
+/// missing or empty; the reader has complained about it already.
+pub(crate) struct Draft {
+    pub(crate) name: String,
+    pub(crate) noun: String,
+    pub(crate) attributes: Vec<DraftAttribute>,
+    pub(crate) objects: Vec<DraftObject>,
+}
+
+pub(crate) struct DraftAttribute {
+    pub(crate) key: String,
+    pub(crate) name: String,
+    pub(crate) synonyms: Vec<String>,
+    pub(crate) ask_yes_no: Option<String>,
+    pub(crate) ask_which: Option<String>,
+    pub(crate) values: Vec<DraftValue>,
+}
+
+pub(crate) struct DraftValue {
+    pub(crate) key: String,
+    pub(crate) name: String,
+    pub(crate) synonyms: Vec<String>,
+    pub(crate) spoken: Option<String>,
+}
+
+impl DraftValue {
+    pub(crate) fn plain(key: String, name: String) -> Self {
+        Self { key, name, synonyms: Vec::new(), spoken: None }
+    }
+}
+
+pub(crate) struct DraftObject {
+    pub(crate) key: String,
+    pub(crate) name: String,
+    pub(crate) attributes: Vec<(String, String)>,
+    pub(crate) placement: Option<Placement>,
+}
+
+impl Draft {
+    /// The scene; `None` only after a problem that leaves nothing to build.
+    pub(crate) fn check(self, report: &mut Report) -> Option<Scene> {
+        self.check_counts(report);
+        self.check_attribute_names(report);
+        for attribute in &self.attributes {
+            check_values(attribute, report);
+            check_wording(attribute, report);
+        }
+        let places = self.check_objects(report);
+        let words = self.words();
+        if words.len() > COUNT_MAX {
+            report.add("", "too many different values", format!("use at most {COUNT_MAX}"));
+        }
+        let counted = self.attributes.len() <= COUNT_MAX
+            && self.objects.len() <= COUNT_MAX
+            && words.len() <= COUNT_MAX
+            && self.attributes.iter().all(|attribute| attribute.values.len() <= COUNT_MAX);
+        counted.then(|| self.build(words, places))
+    }
+
+    fn check_counts(&self, report: &mut Report) {
+        let count = |key: &str, n: usize, one: &str, report: &mut Report| {
+            if n == 0 {
+                report.add(key, format!("no {key}"), format!("add at least one `{one}`"));
+            }
+            if n > COUNT_MAX {
+                report.add(key, format!("{n} are too many"), format!("use at most {COUNT_MAX}"));
+            }
+        };
+        count("attributes", self.attributes.len(), "[[attributes]]", report);
+        count("objects", self.objects.len(), "[[objects]]", report);
+        for attribute in &self.attributes {
+            let key = format!("{}.values", attribute.key);
+            let n = attribute.values.len();
+            if n == 0 {
+                report.add(key, "no values", "list at least one");
+            } else if n > COUNT_MAX {
+                report.add(key, format!("{n} are too many"), format!("use at most {COUNT_MAX}"));
+            }
+        }
+    }
+
+    fn check_attribute_names(&self, report: &mut Report) {
+        let mut seen = HashMap::new();
+        for attribute in self.attributes.iter().filter(|attribute| !attribute.name.is_empty()) {
+            if let Some(first) = seen.insert(&attribute.name, &attribute.key) {
+                let what = format!("attribute `{}` is already at {first}", attribute.name);
+                report.add(format!("{}.name", attribute.key), what, "rename or merge them");
+            }
+        }
+    }
+
+    /// Checks the objects; gives each one's values by attribute.
+    fn check_objects(&self, report: &mut Report) -> Vec<Vec<Option<ValueId>>> {
+        let attributes: HashMap<&str, usize> = (self.attributes.iter().enumerate())
+            .map(|(k, attribute)| (attribute.name.as_str(), k))
+            .collect();
+        let values: Vec<HashMap<&str, usize>> = (self.attributes.iter())
+            .map(|a| a.values.iter().enumerate().map(|(v, value)| (&*value.name, v)).collect())
+            .collect();
+        let mut seen = HashMap::new();
+        let mut places = Vec::with_capacity(self.objects.len());
+        for object in &self.objects {
+            if !object.name.is_empty()
+                && let Some(first) = seen.insert(&object.name, &object.key)
+            {
+                let what = format!("object `{}` is already at {first}", object.name);
+                report.add(format!("{}.name", object.key), what, "give each its own name");
+            }
+            let mut row = vec![None; self.attributes.len()];
+            for (name, value) in &object.attributes {
+                let key = format!("{}.attributes.{name}", object.key);
+                let Some(&k) = attributes.get(name.as_str()) else {
+                    let cure = format!("use one of {}", self.attribute_names());
+                    report.add(key, format!("unknown attribute `{name}`"), cure);
+                    continue;
+                };
+                match values[k].get(value.as_str()) {
+                    Some(&v) if v < COUNT_MAX => row[k] = Some(ValueId::from(v)),
+                    Some(_) => {}
+                    None => {
+                        let what = format!("`{value}` is not a value of `{name}`");
+                        let list = names(self.attributes[k].values.iter().map(|v| &*v.name));
+                        report.add(key, what, format!("use one of {list} or list it there"));
+                    }
+                }
+            }
+            places.push(row);
+        }
+        places
+    }
+
+    fn attribute_names(&self) -> String {
+        names(self.attributes.iter().map(|attribute| &*attribute.name))
+    }
+
+    /// `V`, in order of first appearance.
+    fn words(&self) -> Vec<String> {
+        let mut seen = std::collections::HashSet::new();
+        let all = self.attributes.iter().flat_map(|a| &a.values).map(|value| &value.name);
+        all.filter(|name| seen.insert(name.as_str())).cloned().collect()
+    }
+
+    fn build(self, words: Vec<String>, places: Vec<Vec<Option<ValueId>>>) -> Scene {
+        let ids: HashMap<String, WordId> =
+            words.iter().enumerate().map(|(w, word)| (word.clone(), WordId::from(w))).collect();
+        let attributes = self.attributes.into_iter().map(|a| build_attribute(a, &ids)).collect();
+        let objects = (self.objects.into_iter().zip(places))
+            .map(|(object, values)| Object {
+                name: object.name,
+                values,
+                placement: object.placement,
+            })
+            .collect();
+        Scene::assemble(self.name, self.noun, objects, attributes, words)
+    }
+}
+
+fn build_attribute(attribute: DraftAttribute, ids: &HashMap<String, WordId>) -> Attribute {
+    let values = (attribute.values.into_iter())
+        .map(|value| Value {
+            word: ids[&value.name],
+            spoken: value.spoken.unwrap_or_else(|| value.name.clone()),
+            synonyms: value.synonyms.iter().map(|synonym| synonym.to_lowercase()).collect(),
+            name: value.name,
+        })
+        .collect();
+    Attribute {
+        name: attribute.name,
+        synonyms: attribute.synonyms.iter().map(|synonym| synonym.to_lowercase()).collect(),
+        values,
+        ask_yes_no: attribute.ask_yes_no.unwrap_or_else(|| wording::ASK_YES_NO.to_owned()),
+        ask_which: attribute.ask_which.unwrap_or_else(|| wording::ASK_WHICH.to_owned()),
+    }
+}
+
+/// Within one attribute every name and synonym must lead to one value, upper case aside.
+fn check_values(attribute: &DraftAttribute, report: &mut Report) {
+    let mut owners: HashMap<String, &str> = HashMap::new();
+    for value in attribute.values.iter().filter(|value| !value.name.is_empty()) {
+        if owners.insert(value.name.to_lowercase(), &value.key).is_some() {
+            let what = format!("value `{}` is listed twice", value.name);
+            report.add(value.key.clone(), what, "list it once");
+        }
+    }
+    for value in &attribute.values {
+        for (n, synonym) in value.synonyms.iter().enumerate() {
+            let owner = owners.entry(synonym.to_lowercase()).or_insert(&value.key);
+            let key = format!("{}.synonyms[{n}]", value.key);
+            if *owner != value.key {
+                let what = format!("synonym `{synonym}` already stands for {owner}");
+                report.add(key, what, "let it stand for one value");
+            } else if value.synonyms[..n].iter().any(|other| other == synonym) {
+                report.add(key, format!("synonym `{synonym}` is listed twice"), "list it once");
+            }
+        }
+    }
+}
+
+fn check_wording(attribute: &DraftAttribute, report: &mut Report) {
+    let mut check = |name: &str, text: &Option<String>, takes_value: bool| {
+        let Some(text) = text else { return };
+        let key = format!("{}.{name}", attribute.key);
+        if text.contains("{value}") != takes_value {
+            match takes_value {
+                true => report.add(&key, "does not say {value}", "write {value} where it belongs"),
+                false => report.add(&key, "an open question has no {value}", "remove {value}"),
+            }
+        }
+        if let Some(slot) = wording::unknown_slot(text) {
+            let cure = "the slots are {value}, {attribute} and {noun}";
+            report.add(&key, format!("unknown slot {slot}"), cure);
+        }
+    };
+    check("ask_yes_no", &attribute.ask_yes_no, true);
+    check("ask_which", &attribute.ask_which, false);
+}
+
+/// The first few names, for a cure that fits a line.
+fn names<'a>(all: impl Iterator<Item = &'a str>) -> String {
+    const SHOWN_MAX: usize = 8;
+    let names: Vec<&str> = all.filter(|name| !name.is_empty()).take(SHOWN_MAX + 1).collect();
+    let shown = names[..names.len().min(SHOWN_MAX)].join(", ");
+    if names.len() > SHOWN_MAX { format!("{shown}, …") } else { shown }
+}

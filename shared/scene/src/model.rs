@@ -1,0 +1,253 @@
+//! The checked scene. Built only by the readers of this crate, so every invariant below holds:
+//! at least one object, names unique, every value of an object listed by its attribute.
+
+use std::collections::HashMap;
+
+use crate::{AttributeId, ObjectId, Question, ValueId, WordId, key};
+
+/// A scene: objects `I`, attributes `K`, values `V_k` (section 3.1 of the paper).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    name: String,
+    noun: String,
+    objects: Vec<Object>,
+    attributes: Vec<Attribute>,
+    words: Vec<String>,
+    key: u64,
+    names: Names,
+    vocabularies: Vocabularies,
+}
+
+/// One object that can be fetched.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Unique name; not something that people say.
+    pub name: String,
+    /// Value per attribute, in the scene's attribute order; an object may lack one.
+    pub values: Vec<Option<ValueId>>,
+    /// Where it stands; scenes without geometry (JSON) have none.
+    pub placement: Option<Placement>,
+}
+
+/// Where an object stands and how large it is, in frame `base` of the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placement {
+    /// Centre of the object, metres, frame `base`.
+    pub xyz: [f64; 3],
+    /// Rotation about the vertical, radians.
+    pub yaw: f64,
+    /// Extents along the object's own x, y and z, metres.
+    pub size: [f64; 3],
+    /// Width that the gripper closes on, metres.
+    pub grasp_width: f64,
+}
+
+/// An attribute with its values and the wording of its questions.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attribute {
+    /// Name, e.g. `color`.
+    pub name: String,
+    /// Other words for the attribute itself, lower case, e.g. `colour`.
+    pub synonyms: Vec<String>,
+    /// `V_k`, in the scene file's order.
+    pub values: Vec<Value>,
+    /// Yes/no wording with `{value}`, e.g. `Is it {value}?`.
+    pub ask_yes_no: String,
+    /// Open wording, e.g. `What colour is it?`.
+    pub ask_which: String,
+}
+
+/// A value of an attribute.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Value {
+    /// The scene's own spelling; a member of `V`.
+    pub name: String,
+    /// Other words and phrases for it, lower case.
+    pub synonyms: Vec<String>,
+    /// How a question names it, e.g. `in the dishwasher`; the name itself where nothing is said.
+    pub spoken: String,
+    /// The same string in `V`.
+    pub word: WordId,
+}
+
+/// How a value is used in a sentence; its `spoken` form tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// "white": stands before a noun, has degrees.
+    Quality,
+    /// "a marker": is a noun.
+    Kind,
+    /// "in the dishwasher": stands after a preposition.
+    Place,
+}
+
+impl Value {
+    /// How the value is used in a sentence.
+    pub fn role(&self) -> Role {
+        match self.spoken.split_once(' ') {
+            Some(("a" | "an", _)) => Role::Kind,
+            Some((
+                "in" | "on" | "at" | "under" | "inside" | "behind" | "near" | "by" | "above",
+                _,
+            )) => Role::Place,
+            _ => Role::Quality,
+        }
+    }
+}
+
+/// Where each name is, so that a lookup costs the same in any scene.
+#[derive(Clone, Debug, PartialEq)]
+struct Names {
+    objects: HashMap<String, ObjectId>,
+    attributes: HashMap<String, AttributeId>,
+    values: Vec<HashMap<String, ValueId>>,
+    words: HashMap<String, WordId>,
+}
+
+/// `V_D` of every object as a sorted set, one after the other.
+#[derive(Clone, Debug, PartialEq)]
+struct Vocabularies {
+    words: Vec<WordId>,
+    ends: Vec<usize>,
+}
+
+impl Scene {
+    /// Puts checked parts together and computes what is looked up often.
+    pub(crate) fn assemble(
+        name: String,
+        noun: String,
+        objects: Vec<Object>,
+        attributes: Vec<Attribute>,
+        words: Vec<String>,
+    ) -> Self {
+        let names = Names {
+            objects: index(objects.iter().map(|object| &object.name)),
+            attributes: index(attributes.iter().map(|attribute| &attribute.name)),
+            values: attributes.iter().map(|a| index(a.values.iter().map(|v| &v.name))).collect(),
+            words: index(words.iter()),
+        };
+        let vocabularies = vocabularies(&objects, &attributes);
+        let key = key::of(&objects, &attributes);
+        Self { name, noun, objects, attributes, words, key, names, vocabularies }
+    }
+
+    /// The scene's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What the objects are called when nothing distinguishes them, e.g. `bowl`.
+    pub fn noun(&self) -> &str {
+        &self.noun
+    }
+
+    /// The objects, in order.
+    pub fn objects(&self) -> &[Object] {
+        &self.objects
+    }
+
+    /// The attributes, in order.
+    pub fn attributes(&self) -> &[Attribute] {
+        &self.attributes
+    }
+
+    /// `V`: every value string once, in order of first appearance.
+    pub fn words(&self) -> &[String] {
+        &self.words
+    }
+
+    /// Identity of the decision problem: a hash of objects, attributes and values (not of poses,
+    /// synonyms or wording), equal on every machine.
+    pub fn key(&self) -> u64 {
+        self.key
+    }
+
+    /// The object of that name.
+    pub fn object_named(&self, name: &str) -> Option<ObjectId> {
+        self.names.objects.get(name).copied()
+    }
+
+    /// The attribute of that name.
+    pub fn attribute_named(&self, name: &str) -> Option<AttributeId> {
+        self.names.attributes.get(name).copied()
+    }
+
+    /// The value of that name in attribute `k`.
+    pub fn value_named(&self, k: AttributeId, name: &str) -> Option<ValueId> {
+        self.names.values[k.index()].get(name).copied()
+    }
+
+    /// The word of `V` with that spelling.
+    pub fn word_named(&self, word: &str) -> Option<WordId> {
+        self.names.words.get(word).copied()
+    }
+
+    /// The word of `V` that value `v` of attribute `k` is.
+    pub fn word_of(&self, k: AttributeId, v: ValueId) -> WordId {
+        self.attributes[k.index()].values[v.index()].word
+    }
+
+    /// The object `i`.
+    pub fn object(&self, i: ObjectId) -> &Object {
+        &self.objects[i.index()]
+    }
+
+    /// `attr_k,v(i)`: whether object `i` has value `v` for attribute `k`. An object that lacks the
+    /// attribute has none of its values.
+    pub fn has(&self, i: ObjectId, k: AttributeId, v: ValueId) -> bool {
+        self.objects[i.index()].values[k.index()] == Some(v)
+    }
+
+    /// `1_{V_D}(w)`: whether `w` is among object `i`'s own values.
+    pub fn has_word(&self, i: ObjectId, w: WordId) -> bool {
+        self.vocabulary_set(i).binary_search(&w).is_ok()
+    }
+
+    /// `V_D` as a set: the words of object `i`'s values, each once, in word order.
+    pub fn vocabulary(&self, i: ObjectId) -> impl Iterator<Item = WordId> + '_ {
+        self.vocabulary_set(i).iter().copied()
+    }
+
+    /// `|V_D|`.
+    pub fn vocabulary_len(&self, i: ObjectId) -> usize {
+        self.vocabulary_set(i).len()
+    }
+
+    fn vocabulary_set(&self, i: ObjectId) -> &[WordId] {
+        let Vocabularies { words, ends } = &self.vocabularies;
+        let start = if i.index() == 0 { 0 } else { ends[i.index() - 1] };
+        &words[start..ends[i.index()]]
+    }
+
+    /// Whether the question names an object, attribute and value that this scene has.
+    pub fn contains(&self, question: Question) -> bool {
+        match question {
+            Question::None => true,
+            Question::Point(i) => i.index() < self.objects.len(),
+            Question::Which(k) => k.index() < self.attributes.len(),
+            Question::Attribute(k, v) => {
+                self.attributes.get(k.index()).is_some_and(|a| v.index() < a.values.len())
+            }
+        }
+    }
+}
+
+fn index<'a, Id: From<usize>>(names: impl Iterator<Item = &'a String>) -> HashMap<String, Id> {
+    names.enumerate().map(|(at, name)| (name.clone(), Id::from(at))).collect()
+}
+
+fn vocabularies(objects: &[Object], attributes: &[Attribute]) -> Vocabularies {
+    let mut words = Vec::new();
+    let mut ends = Vec::with_capacity(objects.len());
+    let mut own = Vec::new();
+    for object in objects {
+        own.clear();
+        let values = object.values.iter().zip(attributes);
+        own.extend(values.filter_map(|(v, attribute)| v.map(|v| attribute.values[v.index()].word)));
+        own.sort_unstable();
+        own.dedup();
+        words.extend_from_slice(&own);
+        ends.push(words.len());
+    }
+    Vocabularies { words, ends }
+}

@@ -1,0 +1,347 @@
+//! What the readers accept, what they refuse, and that the shipped scenes are the paper's.
+
+use proptest::prelude::*;
+use serde_json::json;
+
+use crate::{
+    AttributeId, ObjectId, Question, QuestionError, Reading, Scene, ValueId, WordId,
+    question_from_json, question_to_json, reading_to_json,
+};
+
+const BOWLS: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml"));
+const MARKERS: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/markers.toml"));
+const TOOLS: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/tools.toml"));
+const BOWLS_JSON: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/fixtures/scenes/bowls.json"));
+const TOOLS_JSON: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/fixtures/scenes/tools.json"));
+
+fn shipped(text: &str) -> Scene {
+    Scene::from_toml("shipped.toml", text).unwrap_or_else(|problems| panic!("{problems:#?}"))
+}
+
+/// The problems of a scene file as `key: what`, in order.
+fn problems(text: &str) -> Vec<String> {
+    let problems = Scene::from_toml("x.toml", text).expect_err("the text has problems");
+    problems.iter().map(|problem| format!("{}: {}", problem.key, problem.what)).collect()
+}
+
+#[test]
+fn shipped_scenes_are_the_reference_ones() {
+    for (toml, reference) in [(BOWLS, BOWLS_JSON), (TOOLS, TOOLS_JSON)] {
+        let json = serde_json::from_str(reference).expect("the fixture is JSON");
+        let reference = Scene::from_json("reference", &json).expect("the fixture is a scene");
+        assert_eq!(shipped(toml).key(), reference.key());
+    }
+    let markers = shipped(MARKERS);
+    assert_eq!(markers.words(), ["red", "blue"]);
+    assert_eq!(markers.objects().len(), 2);
+}
+
+#[test]
+fn shipped_objects_stand_clear_of_each_other() {
+    for scene in [BOWLS, MARKERS, TOOLS].map(shipped) {
+        let places: Vec<_> =
+            scene.objects().iter().map(|o| (&o.name, o.placement.expect("placed"))).collect();
+        for (n, (name, a)) in places.iter().enumerate() {
+            assert!((0.55..=0.80).contains(&a.xyz[0]) && a.xyz[1].abs() <= 0.6, "{name}");
+            assert!(a.grasp_width <= 0.041, "{name} fits between the fingers");
+            for (other, b) in &places[..n] {
+                let apart = (a.xyz[0] - b.xyz[0]).hypot(a.xyz[1] - b.xyz[1]);
+                assert!(apart > 0.119, "{name} and {other} are {apart} m apart");
+            }
+        }
+    }
+}
+
+#[test]
+fn questions_are_worded_by_the_scene() {
+    let bowls = shipped(BOWLS);
+    let ask = |json| bowls.phrase(question_from_json(&bowls, &json).expect("a question"));
+    let attr = |k: &str, v: &str| ask(json!({"type": "attr", "attribute": k, "value": v}));
+    assert_eq!(attr("location", "dishwasher"), "Is it in the dishwasher?");
+    assert_eq!(attr("color", "white"), "Is it white?");
+    assert_eq!(attr("material", "metal"), "Is it made of metal?");
+    assert_eq!(ask(json!({"type": "which", "attribute": "color"})), "What colour is it?");
+    assert_eq!(ask(json!({"type": "point", "object": "clear"})), "This one?");
+    assert_eq!(ask(json!(null)), "Which bowl would you like?");
+}
+
+#[test]
+fn objects_are_described_by_what_tells_them_apart() {
+    let (bowls, tools) = (shipped(BOWLS), shipped(TOOLS));
+    let describe = |scene: &Scene, name| scene.describe(scene.object_named(name).expect("there"));
+    assert_eq!(describe(&bowls, "white"), "bowl in the dishwasher");
+    assert_eq!(describe(&bowls, "clear"), "clear bowl");
+    assert_eq!(describe(&tools, "m_green"), "green tool");
+    assert_eq!(describe(&tools, "s_blue"), "blue screwdriver");
+    let names = |scene: &Scene| -> std::collections::HashSet<String> {
+        (0..scene.objects().len()).map(|i| scene.describe(ObjectId::from(i))).collect()
+    };
+    assert_eq!((names(&bowls).len(), names(&tools).len()), (6, 10));
+}
+
+#[test]
+fn wording_has_defaults() {
+    let json = json!({"objects": [{"name": "a", "attributes": {"age": "old"}}]});
+    let scene = Scene::from_json("s", &json).expect("a scene");
+    let old = Question::Attribute(AttributeId(0), ValueId(0));
+    assert_eq!(scene.phrase(old), "Is the age old?");
+    assert_eq!(scene.phrase(Question::Which(AttributeId(0))), "What is the age?");
+}
+
+#[test]
+fn every_problem_is_reported_at_once() {
+    let text = r#"
+        name = ""
+        nuon = "bowl"
+        [[attributes]]
+        name = "color"
+        ask_yes_no = "Is it so?"
+        ask_which = "What {hue} is it?"
+        values = ["red", "blue", "red", { name = "pink", synonyms = ["rosy", "blue"] }, 7]
+        [[attributes]]
+        name = "color"
+        values = []
+        [[objects]]
+        name = "a"
+        attributes = { color = "green", weight = "heavy" }
+        xyz = [0.1, inf, 0.2]
+        size = [0.1, -0.1, 0.1]
+        [[objects]]
+        name = "a"
+        xyz = [1, 2]
+        size = [1, 1, 1]
+        grasp_width = 0
+        colour = "red"
+    "#;
+    assert_eq!(
+        problems(text),
+        [
+            "name: is empty",
+            "noun: missing",
+            "nuon: unknown key",
+            "attributes[0].values[4]: expected a string, found a number",
+            "objects[0].xyz[1]: is not a finite number",
+            "objects[0].grasp_width: missing",
+            "objects[0].size[1]: -0.1 is not a length",
+            "objects[1].xyz: expected three numbers, found 2",
+            "objects[1].grasp_width: 0 is not a length",
+            "objects[1].colour: unknown key",
+            "attributes[1].values: no values",
+            "attributes[1].name: attribute `color` is already at attributes[0]",
+            "attributes[0].values[2]: value `red` is listed twice",
+            "attributes[0].values[3].synonyms[1]: synonym `blue` already stands for \
+             attributes[0].values[1]",
+            "attributes[0].ask_yes_no: does not say {value}",
+            "attributes[0].ask_which: unknown slot {hue}",
+            "objects[0].attributes.color: `green` is not a value of `color`",
+            "objects[0].attributes.weight: unknown attribute `weight`",
+            "objects[1].name: object `a` is already at objects[0]",
+        ]
+    );
+}
+
+#[test]
+fn an_empty_scene_lacks_everything() {
+    assert_eq!(
+        problems(""),
+        ["name: missing", "noun: missing", "attributes: no attributes", "objects: no objects"]
+    );
+}
+
+#[test]
+fn a_text_that_is_not_toml_is_placed() {
+    let problems = Scene::from_toml("x.toml", "name = \"é\"\nnoun = = 3\n").expect_err("not TOML");
+    assert_eq!(problems.len(), 1);
+    assert_eq!(problems[0].key, "line 2, column 8");
+    assert!(problems[0].to_string().starts_with("x.toml: line 2, column 8: "));
+}
+
+#[test]
+fn more_than_an_index_can_name_is_refused() {
+    let objects: Vec<_> =
+        (0..65_536).map(|n| json!({"name": format!("o{n}"), "attributes": {"k": "v"}})).collect();
+    let problems = Scene::from_json("s", &json!({"objects": objects})).expect_err("too many");
+    assert_eq!(problems[0].to_string(), "s: objects: 65536 are too many (use at most 65535)");
+}
+
+#[test]
+fn json_reports_every_problem_too() {
+    let json = json!({
+        "objects": [
+            {"name": "a", "attributes": {"color": "red", "size": "big"}, "pose": []},
+            {"attributes": {"color": 3}},
+        ],
+        "values": {"color": ["red", "red"], "shape": "round"},
+        "synonyms": {"color": {"blue": ["navy"]}, "mood": {}},
+    });
+    let problems = Scene::from_json("s", &json).expect_err("has problems");
+    let keys: Vec<&str> = problems.iter().map(|problem| problem.key.as_str()).collect();
+    assert_eq!(
+        keys,
+        [
+            "objects[0].pose",
+            "objects[1].name",
+            "objects[1].attributes.color",
+            "values.shape",
+            "synonyms.color.blue",
+            "synonyms.mood",
+            "values.shape.values",
+            "values.color[1]",
+            "objects[0].attributes.size",
+        ]
+    );
+    assert!(Scene::from_json("s", &json!([1])).is_err());
+}
+
+#[test]
+fn json_without_values_takes_them_from_the_objects() {
+    let json = json!({"objects": [
+        {"name": "a", "attributes": {"size": "big", "color": "red"}},
+        {"name": "b", "attributes": {"color": "blue"}},
+    ]});
+    let scene = Scene::from_json("s", &json).expect("a scene");
+    assert_eq!(scene.words(), ["big", "red", "blue"]);
+    assert_eq!(scene.objects()[1].values, [None, Some(ValueId(1))]);
+}
+
+#[test]
+fn a_word_of_two_attributes_counts_once() {
+    let json = json!({"objects": [
+        {"name": "a", "attributes": {"skin": "orange", "pulp": "orange"}},
+        {"name": "b", "attributes": {"skin": "green", "pulp": "orange"}},
+    ]});
+    let scene = Scene::from_json("s", &json).expect("a scene");
+    assert_eq!(scene.words(), ["orange", "green"]);
+    assert_eq!(scene.vocabulary_len(ObjectId(0)), 1);
+    assert_eq!(scene.vocabulary(ObjectId(1)).collect::<Vec<_>>(), [WordId(0), WordId(1)]);
+    assert!(!scene.has_word(ObjectId(0), WordId(1)));
+}
+
+#[test]
+fn the_key_sees_the_problem_and_not_its_dress() {
+    let key = |text: &str| shipped(text).key();
+    let original = key(MARKERS);
+    for (from, to, same) in [
+        ("0.15, -0.148", "0.25, -0.148", true),
+        ("What colour", "Which colour", true),
+        ("values = [\"red\", \"blue\"]", "values = [\"blue\", \"red\"]", false),
+        ("name = \"red\"\n", "name = \"crimson\"\n", false),
+    ] {
+        assert!(MARKERS.contains(from));
+        assert_eq!(key(&MARKERS.replacen(from, to, 1)) == original, same, "{from} -> {to}");
+    }
+}
+
+#[test]
+fn ten_thousand_objects_with_twenty_attributes_are_read_at_once() {
+    let objects: Vec<_> = (0..10_000_usize)
+        .map(|n| {
+            let values = (0..20).map(|k| (format!("k{k}"), json!(format!("v{}", (n >> k) % 7))));
+            json!({"name": format!("o{n}"), "attributes": values.collect::<serde_json::Map<_, _>>()})
+        })
+        .collect();
+    let scene = Scene::from_json("s", &json!({"objects": objects})).expect("a scene");
+    assert_eq!(scene.object_named("o9999"), Some(ObjectId(9_999)));
+    assert_eq!(scene.vocabulary_len(ObjectId(0)), 1);
+}
+
+#[test]
+fn questions_refuse_what_the_scene_lacks() {
+    let bowls = shipped(BOWLS);
+    let refuse = |json| question_from_json(&bowls, &json).expect_err("not a question");
+    assert_eq!(refuse(json!("attr")), QuestionError::Shape);
+    assert_eq!(refuse(json!({"type": "why"})), QuestionError::Type("why".into()));
+    assert_eq!(refuse(json!({"type": "which"})), QuestionError::Missing("attribute"));
+    assert_eq!(
+        refuse(json!({"type": "point", "object": "cup"})),
+        QuestionError::Object("cup".into())
+    );
+    assert_eq!(
+        refuse(json!({"type": "attr", "attribute": "color", "value": "big"})).to_string(),
+        "attribute \"color\" has no value \"big\""
+    );
+}
+
+#[test]
+fn readings_are_written_with_the_scenes_words() {
+    let bowls = shipped(BOWLS);
+    let word = |name| bowls.word_named(name).expect("a word");
+    let reading = Reading {
+        base: vec![word("white"), word("white")],
+        excluded: vec![vec![word("small"), word("clear")]],
+        ..Reading::default()
+    };
+    assert_eq!(
+        reading_to_json(&bowls, &reading),
+        json!({"base": ["white", "white"], "response": "none",
+               "excluded": [["small", "clear"]], "intent": "inform"})
+    );
+}
+
+/// A scene of any size and shape, as JSON: up to 6 attributes with up to 5 values that attributes
+/// may share, and up to 12 objects that may lack some.
+fn any_scene() -> impl Strategy<Value = serde_json::Value> {
+    let values = proptest::collection::vec(1..5_usize, 1..6);
+    let objects = proptest::collection::vec(proptest::collection::vec(0..6_usize, 6), 1..12);
+    (values, objects).prop_map(|(counts, objects)| {
+        let name = |k: usize, v: usize| format!("v{}", v + k % 2);
+        let values: serde_json::Map<_, _> = (counts.iter().enumerate())
+            .map(|(k, &n)| (format!("k{k}"), json!((0..n).map(|v| name(k, v)).collect::<Vec<_>>())))
+            .collect();
+        let objects = objects.iter().enumerate().map(|(i, row)| {
+            let own = row.iter().zip(&counts).enumerate().filter(|(_, (v, n))| v < n);
+            let own = own.map(|(k, (&v, _))| (format!("k{k}"), json!(name(k, v))));
+            json!({"name": format!("o{i}"), "attributes": own.collect::<serde_json::Map<_, _>>()})
+        });
+        json!({"objects": objects.collect::<Vec<_>>(), "values": values})
+    })
+}
+
+proptest! {
+    #[test]
+    fn json_form_goes_round(json in any_scene()) {
+        let scene = Scene::from_json("s", &json).expect("a scene");
+        let again = Scene::from_json("s", &scene.to_json()).expect("its own form");
+        prop_assert_eq!(scene, again);
+    }
+
+    #[test]
+    fn vocabulary_is_the_set_of_an_objects_values(json in any_scene()) {
+        let scene = Scene::from_json("s", &json).expect("a scene");
+        for i in (0..scene.objects().len()).map(ObjectId::from) {
+            let values = scene.object(i).values.iter().zip(scene.attributes());
+            let own: std::collections::BTreeSet<&str> =
+                values.filter_map(|(v, a)| v.map(|v| &*a.values[v.index()].name)).collect();
+            prop_assert_eq!(scene.vocabulary_len(i), own.len());
+            for w in (0..scene.words().len()).map(WordId::from) {
+                prop_assert_eq!(scene.has_word(i, w), own.contains(&*scene.words()[w.index()]));
+            }
+        }
+    }
+
+    #[test]
+    fn every_question_goes_round(json in any_scene()) {
+        let scene = Scene::from_json("s", &json).expect("a scene");
+        let points = (0..scene.objects().len()).map(|i| Question::Point(ObjectId::from(i)));
+        let attributes = scene.attributes().iter().enumerate().flat_map(|(k, attribute)| {
+            let k = AttributeId::from(k);
+            let values = 0..attribute.values.len();
+            values.map(move |v| Question::Attribute(k, ValueId::from(v))).chain([Question::Which(k)])
+        });
+        for question in points.chain(attributes).chain([Question::None]) {
+            prop_assert!(scene.contains(question));
+            let back = question_from_json(&scene, &question_to_json(&scene, question));
+            prop_assert_eq!(back, Ok(question));
+        }
+    }
+
+    #[test]
+    fn no_text_makes_the_reader_panic(text in any::<String>()) {
+        let _ = Scene::from_toml("x", &text);
+    }
+}

@@ -1,0 +1,95 @@
+//! `dialogue.toml`: how the robot understands, believes and decides.
+
+use dialogue::{Actions, Costs, Fault, Mode, Params};
+use language::Language;
+
+use crate::fields::Fields;
+
+/// The dialogue.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dialogue {
+    /// How utterances are read.
+    pub language: Language,
+    /// Parameters of the observation model (section 3.6 of the paper).
+    pub params: Params,
+    /// Name of the planner; one of [`dialogue::registry::names`].
+    pub planner: String,
+    /// What the robot may do.
+    pub actions: Actions,
+    /// What its actions cost.
+    pub costs: Costs,
+    /// How turns are taken.
+    pub turns: Turns,
+}
+
+/// How turns are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turns {
+    /// Seconds after a question in which an answer is waited for.
+    pub response_window_s: f64,
+    /// How often a question without an answer is asked again before something else is tried.
+    pub repeats_max: u32,
+    /// Questions of one interaction after which the robot decides with what it knows.
+    pub questions_max: u32,
+}
+
+pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
+    let planner = f.text("planner");
+    if !f.is_wrong("planner") && !dialogue::registry::names().contains(&planner.as_str()) {
+        f.not_one_of("planner", &planner, &dialogue::registry::names());
+    }
+    Dialogue {
+        language: f
+            .choice("language", &[("careful", Language::Careful), ("paper", Language::Paper)]),
+        params: params(f),
+        planner,
+        actions: Actions {
+            mode: f.choice("mode", &[("remote", Mode::Remote), ("present", Mode::Present)]),
+            attribute: f.flag("attribute_questions"),
+            which: f.flag("open_questions"),
+        },
+        costs: f.table("costs", costs),
+        turns: f.table("turns", turns),
+    }
+}
+
+fn params(f: &mut Fields<'_>) -> Params {
+    let params = Params {
+        p_l: f.any_number("p_l"),
+        epsilon: f.any_number("epsilon"),
+        alpha: f.any_number("alpha"),
+    };
+    tell(params.check(), f);
+    params
+}
+
+fn costs(f: &mut Fields<'_>) -> Costs {
+    let costs = Costs {
+        wait_s: f.any_number("wait_s"),
+        attribute_s: f.any_number("attribute_s"),
+        which_s: f.any_number("which_s"),
+        point_s: f.any_number("point_s"),
+        correct: f.any_number("correct"),
+        wrong: f.any_number("wrong"),
+        discount: f.any_number("discount"),
+    };
+    tell(costs.check(), f);
+    costs
+}
+
+fn turns(f: &mut Fields<'_>) -> Turns {
+    Turns {
+        response_window_s: f.number("response_window_s", 0.05..=600.0),
+        repeats_max: f.whole("repeats_max", 0..=100),
+        questions_max: f.whole("questions_max", 0..=1000),
+    }
+}
+
+/// The model's own checks, for the values that are numbers at all.
+fn tell(faults: Vec<Fault>, f: &mut Fields<'_>) {
+    for (key, what, cure) in faults {
+        if !f.is_wrong(key) {
+            f.problem(key, what, cure);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! `group.toml`: which scene, which services, and how they are kept up.
+
+use std::time::Duration;
+
+use crate::fields::Fields;
+use crate::services::{self, Service};
+
+/// The process group.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Group {
+    /// The scene as it was named: a name in `scenes/`, or a path that ends with `.toml`.
+    pub scene: String,
+    /// The services, the built-in ones first, then the others in the order of the text. Every
+    /// `after` names one of them and they form no cycle.
+    pub services: Vec<Service>,
+    /// How often and how fast a service that ends is started again.
+    pub restart: RestartLimits,
+    /// Logs of the services.
+    pub log: Log,
+    /// Shared memory that must be free for the group to start, MiB.
+    pub shared_memory_free_min_mib: u32,
+}
+
+/// Intensity and backoff of restarts, the same for every service.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RestartLimits {
+    /// Unasked exits within [`window`](Self::window) after which a service is held.
+    pub exits_max: u32,
+    /// See [`exits_max`](Self::exits_max).
+    pub window: Duration,
+    /// First pause before a new start; each further one doubles it.
+    pub backoff_first: Duration,
+    /// Longest pause before a new start; not below the first.
+    pub backoff_max: Duration,
+    /// Time of being ready after which pauses begin anew with the first.
+    pub backoff_reset: Duration,
+}
+
+/// Level and size of the logs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Log {
+    /// Filter given to the services, e.g. `info` or `info,policy=debug`.
+    pub level: String,
+    /// Size at which a log is rotated, bytes.
+    pub file_bytes_max: u64,
+    /// Rotated logs kept beside the current one.
+    pub files_kept: u32,
+}
+
+pub(crate) fn read(f: &mut Fields<'_>) -> Group {
+    Group {
+        scene: f.text("scene"),
+        services: services::read(f),
+        restart: f.table("restart", restart),
+        log: f.table("log", log),
+        shared_memory_free_min_mib: f
+            .table("shared_memory", |f| f.whole("free_min_mib", 0..=1 << 20)),
+    }
+}
+
+fn restart(f: &mut Fields<'_>) -> RestartLimits {
+    let limits = RestartLimits {
+        exits_max: f.whole("exits_max", 1..=1_000_000),
+        window: f.seconds("window_s", 0.1..=86_400.0),
+        backoff_first: Duration::from_millis(f.whole("backoff_first_ms", 1..=600_000)),
+        backoff_max: Duration::from_millis(f.whole("backoff_max_ms", 1..=600_000)),
+        backoff_reset: f.seconds("backoff_reset_s", 0.0..=86_400.0),
+    };
+    let whole = !f.is_wrong("backoff_first_ms") && !f.is_wrong("backoff_max_ms");
+    if whole && limits.backoff_max < limits.backoff_first {
+        let keys = ["backoff_max_ms", "backoff_first_ms"];
+        let key = if f.is_built_in(&keys[..1]) { keys[1] } else { keys[0] };
+        let cure = "raise backoff_max_ms or lower backoff_first_ms";
+        f.problem(key, "the first pause is longer than the longest", cure);
+    }
+    limits
+}
+
+fn log(f: &mut Fields<'_>) -> Log {
+    let log = Log {
+        level: f.text("level"),
+        file_bytes_max: f.whole("file_bytes_max", 4096..=1 << 40),
+        files_kept: f.whole("files_kept", 0..=1000),
+    };
+    if !f.is_wrong("level")
+        && let Some(wrong) = log.level.split(',').find(|part| !is_directive(part))
+    {
+        let what = format!("`{}` is no log level", wrong.trim());
+        let cure = format!("use one of {}, or NAME=LEVEL,…", LEVELS.join(", "));
+        f.problem("level", what, cure);
+    }
+    log
+}
+
+const LEVELS: [&str; 6] = ["off", "error", "warn", "info", "debug", "trace"];
+
+/// `LEVEL` or `NAME=LEVEL`.
+fn is_directive(part: &str) -> bool {
+    let level = part.rsplit_once('=').map_or(part, |(_, level)| level).trim();
+    LEVELS.contains(&level.to_lowercase().as_str())
+}

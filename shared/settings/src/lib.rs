@@ -1,0 +1,95 @@
+//! The settings of a group: read once, checked as a whole, and the same for every service.
+//!
+//! Invariant: a [`Settings`] is complete and consistent. Reading either yields one or every
+//! problem at once, each with its file, key and cure; no service ever meets a wrong value.
+//!
+//! Values come in layers, each over the one before: the defaults (the files of `config/` as they
+//! were when this was built), the files of the configuration folder, a profile, and overrides from
+//! the command line. The supervisor resolves them when the group starts or reloads, and writes a
+//! snapshot; services read only that, so that editing a file changes nothing until it is asked for.
+
+mod arm;
+mod dialogue;
+mod fields;
+mod group;
+mod layer;
+mod load;
+mod nearest;
+mod problems;
+mod reach;
+mod resolved;
+mod scene_file;
+mod services;
+mod snapshot;
+mod speech;
+
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use scene::Scene;
+
+pub use crate::arm::{Arm, Driver};
+pub use crate::dialogue::{Dialogue, Turns};
+pub use crate::group::{Group, Log, RestartLimits};
+pub use crate::problems::Problems;
+pub use crate::resolved::{Origin, Section};
+pub use crate::services::{BUILT_IN, Restart, Service};
+pub use crate::snapshot::SNAPSHOT_FILE;
+pub use crate::speech::{Recogniser, Speech, Voice};
+
+use crate::resolved::Resolved;
+
+/// All settings of a group. Two are equal when their snapshots are.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// The scene, the services and how they are kept up.
+    pub group: Group,
+    /// Understanding, believing, deciding.
+    pub dialogue: Dialogue,
+    /// Hearing and speaking.
+    pub speech: Speech,
+    /// Moving.
+    pub arm: Arm,
+    /// The objects and the words for them. Every object has a place that the arm can reach.
+    pub scene: Scene,
+    resolved: Resolved,
+}
+
+impl Settings {
+    /// Reads the configuration folder `dir` with a profile (`profiles/NAME.toml`) and overrides
+    /// (`("arm.time_scale", "50")`; a value that is not TOML is a text).
+    ///
+    /// # Errors
+    /// Every problem of every file at once.
+    pub fn load(
+        dir: &Path,
+        profile: Option<&str>,
+        overrides: &[(String, String)],
+    ) -> Result<Self, Problems> {
+        load::load(dir, profile, overrides)
+    }
+
+    /// The merged values of one section as TOML: what a service that reads only that section
+    /// depends on.
+    pub fn section_text(&self, section: Section) -> String {
+        self.resolved.section_text(section)
+    }
+
+    /// The scene file as it was read.
+    pub fn scene_text(&self) -> &str {
+        &self.resolved.scene.text
+    }
+
+    /// Every value with the file that it came from, in the order of the files.
+    pub fn origins(&self) -> Vec<Origin> {
+        self.resolved.origins()
+    }
+}
+
+impl PartialEq for Settings {
+    fn eq(&self, other: &Self) -> bool {
+        self.snapshot() == other.snapshot()
+    }
+}

@@ -1,0 +1,116 @@
+//! The layers merged: what the settings were made of.
+
+use crate::layer::{Node, Source, Table};
+use crate::problems::Report;
+use crate::scene_file::SceneFile;
+
+/// A part of the settings with a file of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Section {
+    /// `group.toml`
+    Group,
+    /// `dialogue.toml`
+    Dialogue,
+    /// `speech.toml`
+    Speech,
+    /// `arm.toml`
+    Arm,
+}
+
+impl Section {
+    /// Every section.
+    pub const ALL: [Self; 4] = [Self::Group, Self::Dialogue, Self::Speech, Self::Arm];
+
+    /// Its name: the first part of its keys.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Group => "group",
+            Self::Dialogue => "dialogue",
+            Self::Speech => "speech",
+            Self::Arm => "arm",
+        }
+    }
+
+    /// Its file in the configuration folder.
+    pub fn file(self) -> String {
+        format!("{}.toml", self.name())
+    }
+
+    /// The file as it is shipped, which is also what holds where nothing else is said.
+    fn shipped(self) -> &'static str {
+        match self {
+            Self::Group => include_str!("../../../config/group.toml"),
+            Self::Dialogue => include_str!("../../../config/dialogue.toml"),
+            Self::Speech => include_str!("../../../config/speech.toml"),
+            Self::Arm => include_str!("../../../config/arm.toml"),
+        }
+    }
+}
+
+/// One value and where it came from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// Dotted key with its section, e.g. `arm.time_scale`.
+    pub key: String,
+    /// The value as TOML.
+    pub value: String,
+    /// The file, `--set`, or `built-in defaults`.
+    pub from: String,
+}
+
+/// What a checked [`Settings`](crate::Settings) was made of.
+#[derive(Clone, Debug)]
+pub(crate) struct Resolved {
+    /// One table per section, complete.
+    pub(crate) tree: Table,
+    pub(crate) scene: SceneFile,
+}
+
+impl Resolved {
+    pub(crate) fn section_text(&self, section: Section) -> String {
+        match self.tree.get(section.name()) {
+            Some(Node::Table(table)) => to_toml(table),
+            _ => String::new(),
+        }
+    }
+
+    pub(crate) fn origins(&self) -> Vec<Origin> {
+        let mut origins = Vec::new();
+        collect(&self.tree, &mut Vec::new(), &mut origins);
+        origins
+    }
+}
+
+/// The defaults of every section: the bottom layer.
+pub(crate) fn defaults() -> Table {
+    let source = Source::built_in();
+    let mut tree = Table::empty(source.clone());
+    for section in Section::ALL {
+        let mut report = Report::default();
+        let table = Table::parse(section.shipped(), &source, &mut report);
+        let table = report.verdict(table).expect("the shipped files are TOML");
+        tree.entries.push((section.name().to_owned(), Node::Table(table)));
+    }
+    tree
+}
+
+/// # Panics
+/// Never: a table that was parsed can be written.
+pub(crate) fn to_toml(table: &Table) -> String {
+    toml::to_string_pretty(table).expect("what was parsed can be written")
+}
+
+fn collect(table: &Table, path: &mut Vec<String>, origins: &mut Vec<Origin>) {
+    for (key, node) in &table.entries {
+        path.push(key.clone());
+        match node {
+            Node::Table(table) => collect(table, path, origins),
+            Node::Leaf(value, source) => origins.push(Origin {
+                key: path.join("."),
+                value: value.to_string(),
+                from: source.label.to_string(),
+            }),
+        }
+        path.pop();
+    }
+}

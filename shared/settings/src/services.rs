@@ -1,0 +1,166 @@
+//! `[services.NAME]` of `group.toml`.
+
+use std::time::Duration;
+
+use crate::fields::Fields;
+use crate::layer::{Node, Source, Table};
+use crate::nearest;
+use crate::problems::Report;
+
+/// The services that every group has, in the order in which they are listed.
+pub const BUILT_IN: [&str; 4] = ["speech", "grounding", "policy", "arm"];
+
+/// What a service is where nothing else is said.
+const EACH: &str = r#"
+after = []
+critical = false
+start_deadline_s = 10.0
+watchdog_s = 3.0
+stop_deadline_s = 5.0
+nice = 0
+restart = "always"
+"#;
+
+/// Longest name of a service: it is part of a socket's path, which must be short.
+const NAME_LEN_MAX: usize = 19;
+
+/// One service as configured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Service {
+    /// Unique name: 1 to 19 of `a–z 0–9 -`.
+    pub name: String,
+    /// Program and arguments. `None`, for built-in services only: the program `whichone-NAME`
+    /// beside this one.
+    pub command: Option<Vec<String>>,
+    /// Services that must be ready before this one is started for the first time.
+    pub after: Vec<String>,
+    /// Whether the whole group stops in order when this service is given up.
+    pub critical: bool,
+    /// Time from start to readiness.
+    pub start_deadline: Duration,
+    /// Longest silence between two beats once ready; `None` where there is no watchdog.
+    pub watchdog: Option<Duration>,
+    /// Time from the request to stop to the kill.
+    pub stop_deadline: Duration,
+    /// Scheduling niceness, −20 … 19.
+    pub nice: i32,
+    /// Which exits are followed by a new start.
+    pub restart: Restart,
+}
+
+/// Which exits are followed by a new start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Restart {
+    /// Every exit that nobody asked for, even a clean one.
+    Always,
+    /// Every exit but a clean one (code 0).
+    OnFailure,
+    /// None.
+    Never,
+}
+
+/// Lays the defaults of a service under every service that `group` names.
+pub(crate) fn complete(group: &mut Table, report: &mut Report) {
+    let source = Source::built_in();
+    let each = Table::parse(EACH, &source, report).expect("the defaults are TOML");
+    for (name, node) in &mut group.table_at("services").entries {
+        if let Node::Table(service) = node {
+            let own = std::mem::replace(service, each.clone());
+            let mut path = ["group", "services", name].map(str::to_owned).to_vec();
+            service.source = own.source.clone();
+            service.merge(own, &mut path, report);
+        }
+    }
+}
+
+pub(crate) fn read(f: &mut Fields<'_>) -> Vec<Service> {
+    let services = f.each("services", |name, f| {
+        check_name(name, f);
+        one(name, f)
+    });
+    check_order(&services, f);
+    services
+}
+
+fn one(name: &str, f: &mut Fields<'_>) -> Service {
+    let command = f.optional_command("command");
+    if command.is_none() && !f.is_wrong("command") && !BUILT_IN.contains(&name) {
+        let cure = "write `command = [\"program\", \"argument\"]`";
+        f.problem("command", "missing: only built-in services know their program", cure);
+    }
+    let watchdog = f.seconds("watchdog_s", 0.0..=3600.0);
+    Service {
+        name: name.to_owned(),
+        command,
+        after: f.texts("after"),
+        critical: f.flag("critical"),
+        start_deadline: f.seconds("start_deadline_s", 0.1..=3600.0),
+        watchdog: (!watchdog.is_zero()).then_some(watchdog),
+        stop_deadline: f.seconds("stop_deadline_s", 0.0..=3600.0),
+        nice: f.whole("nice", -20..=19),
+        restart: f.choice(
+            "restart",
+            &[
+                ("always", Restart::Always),
+                ("on-failure", Restart::OnFailure),
+                ("never", Restart::Never),
+            ],
+        ),
+    }
+}
+
+fn check_name(name: &str, f: &mut Fields<'_>) {
+    let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+    let fits = (1..=NAME_LEN_MAX).contains(&name.len()) && !name.starts_with('-');
+    if !fits || !name.chars().all(allowed) {
+        let cure =
+            format!("use 1 to {NAME_LEN_MAX} of a-z, 0-9 and -, beginning with a letter or digit");
+        f.problem_at(&[], "is no name for a service", cure);
+    } else if name == "supervisor" {
+        f.problem_at(&[], "is the name of the supervisor itself", "choose another one");
+    }
+}
+
+/// Every `after` must name a service, and following them must come to an end.
+fn check_order(services: &[Service], f: &mut Fields<'_>) {
+    let names: Vec<&str> = services.iter().map(|service| &*service.name).collect();
+    for service in services {
+        for missing in service.after.iter().filter(|other| !names.contains(&other.as_str())) {
+            let what = format!("there is no service `{missing}`");
+            let key = ["services", &service.name, "after"];
+            f.problem_at(&key, what, nearest::cure(missing, &names));
+        }
+    }
+    if let Some(mut cycle) = cycle(services) {
+        let written = |name: &&str| !f.is_built_in(&["services", name, "after"]);
+        let start = cycle.iter().position(written).unwrap_or(0);
+        cycle.rotate_left(start);
+        let names = cycle.iter().chain(&cycle[..1]).copied().collect::<Vec<_>>();
+        let what = format!("these services wait for each other: {}", names.join(" after "));
+        f.problem_at(&["services", cycle[0], "after"], what, "remove one of them from an `after`");
+    }
+}
+
+/// A way along `after` that comes back to where it began.
+fn cycle(services: &[Service]) -> Option<Vec<&str>> {
+    let find = |name: &str| services.iter().find(|service| service.name == name);
+    let mut done: Vec<&str> = Vec::new();
+    for start in services {
+        let mut way: Vec<(&Service, usize)> = vec![(start, 0)];
+        while let Some((service, next)) = way.last_mut() {
+            let Some(name) = service.after.get(*next) else {
+                done.push(&service.name);
+                way.pop();
+                continue;
+            };
+            *next += 1;
+            if let Some(from) = way.iter().position(|(service, _)| service.name == *name) {
+                return Some(way[from..].iter().map(|(service, _)| &*service.name).collect());
+            }
+            if !done.contains(&name.as_str()) {
+                way.extend(find(name).map(|service| (service, 0)));
+            }
+        }
+    }
+    None
+}

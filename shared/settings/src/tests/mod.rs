@@ -1,0 +1,74 @@
+//! Configuration folders as people write them, right and wrong.
+
+mod layering;
+mod reach;
+mod snapshot;
+mod wrong;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use crate::{Problems, Settings};
+
+/// The folder that is shipped.
+fn shipped() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config")
+}
+
+/// A configuration folder with the given files. The scene that the defaults name is always there,
+/// with one object, for which reach is found out quickly.
+struct Folder(TempDir);
+
+const ONE_BOWL: &str = r#"
+name = "one bowl"
+noun = "bowl"
+
+[[attributes]]
+name = "color"
+values = ["red"]
+
+[[objects]]
+name = "red_one"
+attributes = { color = "red" }
+xyz = [0.7, 0.2, -0.125]
+size = [0.10, 0.10, 0.06]
+grasp_width = 0.004
+"#;
+
+impl Folder {
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        folder.write("scenes/bowls.toml", ONE_BOWL);
+        files.iter().for_each(|(name, text)| folder.write(name, text));
+        folder
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        let path = self.0.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn load(
+        &self,
+        profile: Option<&str>,
+        overrides: &[(&str, &str)],
+    ) -> Result<Settings, Problems> {
+        let overrides: Vec<_> =
+            overrides.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+        Settings::load(self.path(), profile, &overrides)
+    }
+
+    /// Every problem on a line of its own, with files named from this folder.
+    fn complaints(&self, profile: Option<&str>, overrides: &[(&str, &str)]) -> Vec<String> {
+        let problems = self.load(profile, overrides).unwrap_err().to_string();
+        let folder = format!("{}/", self.path().display());
+        problems.lines().map(|line| line.replace(&folder, "")).collect()
+    }
+}

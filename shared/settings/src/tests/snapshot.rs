@@ -1,0 +1,88 @@
+//! What the supervisor writes is what the services read.
+
+use std::fs;
+
+use super::{Folder, shipped};
+use crate::{SNAPSHOT_FILE, Section, Settings};
+
+#[test]
+fn a_snapshot_reads_back_equal() {
+    let overrides = [("arm.time_scale", "12.5"), ("group.scene", "markers"), ("arm.limb", "right")]
+        .map(|(key, value)| (key.to_owned(), value.to_owned()));
+    for profile in [None, Some("ci"), Some("lab"), Some("paper")] {
+        let settings = Settings::load(&shipped(), profile, &overrides).unwrap();
+        let run = tempfile::tempdir().unwrap();
+        settings.write_snapshot(run.path()).unwrap();
+        let read = Settings::load_snapshot(run.path()).unwrap();
+        assert_eq!(read, settings);
+        assert_eq!(read.group, settings.group);
+        assert_eq!(read.dialogue, settings.dialogue);
+        assert_eq!(read.speech, settings.speech);
+        assert_eq!(read.arm, settings.arm);
+        assert_eq!(read.scene, settings.scene);
+        assert_eq!(read.scene_text(), settings.scene_text());
+        let names: Vec<_> =
+            fs::read_dir(run.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
+        assert_eq!(names, [SNAPSHOT_FILE], "nothing else is left in the folder");
+    }
+}
+
+#[test]
+fn editing_the_files_changes_nothing_until_the_next_snapshot() {
+    let folder = Folder::new(&[("arm.toml", "speed_ratio = 0.3")]);
+    let run = tempfile::tempdir().unwrap();
+    folder.load(None, &[]).unwrap().write_snapshot(run.path()).unwrap();
+    folder.write("arm.toml", "speed_ratio = 0.9");
+    folder.write("scenes/bowls.toml", "not a scene any more");
+    let read = Settings::load_snapshot(run.path()).unwrap();
+    assert_eq!((read.arm.plan.speed_ratio, read.scene.name()), (0.3, "one bowl"));
+    assert!(folder.load(None, &[]).is_err());
+}
+
+#[test]
+fn the_order_of_services_survives() {
+    let folder = Folder::new(&[(
+        "group.toml",
+        "[services.zoom]\ncommand = ['zoom']\n[services.camera]\ncommand = ['camera']\n",
+    )]);
+    let settings = folder.load(None, &[]).unwrap();
+    let run = tempfile::tempdir().unwrap();
+    settings.write_snapshot(run.path()).unwrap();
+    let read = Settings::load_snapshot(run.path()).unwrap();
+    assert_eq!(read.group.services, settings.group.services);
+}
+
+#[test]
+fn a_section_differs_exactly_when_its_values_do() {
+    let folder = Folder::new(&[]);
+    let before = folder.load(None, &[]).unwrap();
+    folder.write("arm.toml", "# a remark\nspeed_ratio = 0.6\n");
+    let same = folder.load(None, &[]).unwrap();
+    let other = folder.load(None, &[("arm.speed_ratio", "0.5")]).unwrap();
+    for section in Section::ALL {
+        assert_eq!(before.section_text(section), same.section_text(section));
+        let differs = before.section_text(section) != other.section_text(section);
+        assert_eq!(differs, section == Section::Arm, "{section:?}");
+    }
+    assert_eq!(before, same);
+    assert_ne!(before, other);
+}
+
+#[test]
+fn a_missing_or_damaged_snapshot_is_told() {
+    let run = tempfile::tempdir().unwrap();
+    let missing = Settings::load_snapshot(run.path()).unwrap_err().to_string();
+    assert!(missing.contains("is missing"), "{missing}");
+
+    let settings = Folder::new(&[]).load(None, &[]).unwrap();
+    settings.write_snapshot(run.path()).unwrap();
+    let path = run.path().join(SNAPSHOT_FILE);
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("speed_ratio = 0.6", "speed_ratio = 6.0")).unwrap();
+    let damaged = Settings::load_snapshot(run.path()).unwrap_err().to_string();
+    assert!(damaged.contains("arm.speed_ratio: 6 is out of range"), "{damaged}");
+
+    fs::write(&path, "[group]\n").unwrap();
+    let bare = Settings::load_snapshot(run.path()).unwrap_err().to_string();
+    assert!(bare.contains("the scene is missing"), "{bare}");
+}

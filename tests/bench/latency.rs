@@ -1,0 +1,112 @@
+//! From an utterance handed in to the decision that answers it, through all processes, by stage.
+
+use crate::peers::{SYNC, WAKE};
+use crate::report::{Report, percentile};
+use node::Span;
+use protocol::{Injection, Observation, Receipt, RobotAct, Sound, Utterance, topics};
+use runtime::bus::Reader;
+use runtime::client::Client;
+use runtime::clock;
+use std::time::Duration;
+use whichone_tests::{Group, wait_for};
+
+/// Utterances measured.
+const UTTERANCES: usize = 200;
+
+/// The stages between the moments of [`Moments`], in order.
+const STAGES: [&str; 6] = [
+    "client to speech (hop)",
+    "accept: number, append, sync",
+    "speech to grounding (hop)",
+    "ground: words to reading",
+    "grounding to policy (hop)",
+    "decide: belief, plan, append, sync",
+];
+
+/// When the utterance was given, accepted, sent; read, sent; taken in, and its act sent.
+type Moments = [u64; 7];
+
+pub(crate) fn measure(report: &mut Report) {
+    let group = Group::up(&["dialogue.turns.questions_max=1000"]);
+    let client = Client::join(group.paths()).expect("a running group");
+    let mut taps = Taps::open(&client);
+    let samples: Vec<Moments> = (0..UTTERANCES).map(|n| taps.utter(&client, n)).collect();
+    let ms = |from: usize, to: usize| -> Vec<f64> {
+        samples.iter().map(|m| m[to].saturating_sub(m[from]) as f64 / 1e6).collect()
+    };
+    let total = ms(0, 6);
+    report.add_beside("utterance in to decision out", "ms", &total, SYNC, "two syncs, three hops");
+    for (i, stage) in STAGES.iter().enumerate() {
+        let samples = ms(i, i + 1);
+        let share = 100.0 * percentile(&samples, 0.5) / percentile(&total, 0.5);
+        let peer = if stage.contains("hop") { WAKE } else { SYNC };
+        report.add_beside(stage, "ms", &samples, peer, &format!("{share:.0} % of the whole"));
+    }
+    drop(taps);
+    drop(client);
+    group.down();
+}
+
+struct Taps {
+    utterances: Reader<Utterance>,
+    observations: Reader<Observation>,
+    acts: Reader<RobotAct>,
+    receipts: Reader<Receipt>,
+    injections: runtime::bus::EncodedWriter<Injection>,
+}
+
+impl Taps {
+    fn open(client: &Client) -> Self {
+        let bus = client.bus();
+        Self {
+            utterances: bus.reader(&topics::UTTERANCE).expect("utterances"),
+            observations: bus.reader(&topics::OBSERVATION).expect("observations"),
+            acts: bus.reader(&topics::ACT).expect("acts"),
+            receipts: bus.reader(&topics::RECEIPT).expect("receipts"),
+            injections: bus.encoded_writer(&topics::INJECTION).expect("injections"),
+        }
+    }
+
+    /// Says something that changes nothing for good, and collects the moments of its way.
+    fn utter(&mut self, client: &Client, n: usize) -> Moments {
+        std::thread::sleep(Duration::from_millis(20));
+        let text = if n.is_multiple_of(2) { "the white one" } else { "start over" };
+        let mut moments = [clock::now().ns(), 0, 0, 0, 0, 0, 0];
+        let sound = Sound::Text(text.to_owned());
+        let patience = Span::from_ms(10_000);
+        let receipts = client.inject_with(&self.injections, &self.receipts, sound, patience);
+        let seq = receipts.expect("a receipt")[0].utterance().expect("an accepted utterance").0;
+        wait_for("the decision", 10.0, || {
+            self.collect(seq, &mut moments);
+            moments.iter().all(|&at| at > 0).then_some(())
+        });
+        moments
+    }
+
+    fn collect(&self, seq: u64, moments: &mut Moments) {
+        let once = |slot: &mut u64, at: u64| {
+            if *slot == 0 {
+                *slot = at;
+            }
+        };
+        let utterances = self.utterances.drain_stamped(|utterance, stamp| {
+            if utterance.seq == seq {
+                once(&mut moments[1], utterance.accepted_ns);
+                once(&mut moments[2], stamp.sent_ns);
+            }
+        });
+        let observations = self.observations.drain_stamped(|observation, stamp| {
+            if observation.seq == seq {
+                once(&mut moments[3], observation.grounded_ns);
+                once(&mut moments[4], stamp.sent_ns);
+            }
+        });
+        let acts = self.acts.drain_stamped(|act, stamp| {
+            if act.utterance == seq {
+                once(&mut moments[5], act.decided_ns);
+                once(&mut moments[6], stamp.sent_ns);
+            }
+        });
+        utterances.and(observations).and(acts).expect("topics that can be read");
+    }
+}

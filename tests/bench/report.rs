@@ -1,0 +1,96 @@
+//! The table that is printed and written.
+
+use serde::Serialize;
+use std::io::Write;
+
+/// One measured figure.
+#[derive(Debug, Serialize)]
+pub(crate) struct Figure {
+    what: String,
+    unit: &'static str,
+    runs: usize,
+    p50: f64,
+    p99: f64,
+    /// The peer's name, and this p50 over the peer's.
+    peer: Option<(String, f64)>,
+    note: String,
+}
+
+/// All figures of a run.
+#[derive(Debug, Default, Serialize)]
+pub(crate) struct Report {
+    figures: Vec<Figure>,
+}
+
+pub(crate) fn print(line: &str) {
+    // A closed pipe is the reader's choice.
+    let _ = writeln!(std::io::stdout(), "{line}");
+}
+
+/// The value below which `share` of the samples lie.
+pub(crate) fn percentile(samples: &[f64], share: f64) -> f64 {
+    let mut sorted = samples.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let place = (share * (sorted.len().saturating_sub(1)) as f64).round() as usize;
+    sorted.get(place).copied().unwrap_or(f64::NAN)
+}
+
+impl Report {
+    /// Adds a figure from its samples.
+    pub(crate) fn add(&mut self, what: &str, unit: &'static str, samples: &[f64], note: &str) {
+        self.figures.push(Figure {
+            what: what.to_owned(),
+            unit,
+            runs: samples.len(),
+            p50: percentile(samples, 0.5),
+            p99: percentile(samples, 0.99),
+            peer: None,
+            note: note.to_owned(),
+        });
+    }
+
+    /// Adds a figure with its ratio to a peer measured before.
+    pub(crate) fn add_beside(
+        &mut self,
+        what: &str,
+        unit: &'static str,
+        samples: &[f64],
+        peer: &str,
+        note: &str,
+    ) {
+        self.add(what, unit, samples, note);
+        let peer_p50 = self.figures.iter().find(|figure| figure.what == peer).map(|f| f.p50);
+        if let (Some(peer_p50), Some(figure)) = (peer_p50, self.figures.last_mut()) {
+            figure.peer = Some((peer.to_owned(), figure.p50 / peer_p50));
+        }
+    }
+
+    fn table(&self) -> String {
+        let mut text = String::from(
+            "| figure | runs | p50 | p99 | unit | ratio of p50 to peer | note |\n|---|---|---|---|---|---|---|\n",
+        );
+        for f in &self.figures {
+            let peer = f
+                .peer
+                .as_ref()
+                .map_or(String::new(), |(name, ratio)| format!("{ratio:.2} × {name}"));
+            let row = format!(
+                "| {} | {} | {:.3} | {:.3} | {} | {peer} | {} |\n",
+                f.what, f.runs, f.p50, f.p99, f.unit, f.note
+            );
+            text.push_str(&row);
+        }
+        text
+    }
+
+    /// Prints the table and writes it to `target/bench`.
+    pub(crate) fn write(&self) -> std::io::Result<()> {
+        let table = self.table();
+        print(&table);
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/bench");
+        std::fs::create_dir_all(&folder)?;
+        std::fs::write(folder.join("report.md"), table)?;
+        let json = serde_json::to_vec_pretty(self).map_err(std::io::Error::other)?;
+        std::fs::write(folder.join("report.json"), json)
+    }
+}

@@ -1,0 +1,144 @@
+//! Random faults on real processes, while a truthful person has one object after the other fetched.
+//!
+//! Every dialogue must end with the right object picked once, and the journals must fold again to
+//! the same belief. Prints the seed and what was done; exit code 70 on a broken invariant.
+
+use dialogue::Rng;
+use rustix::process::Signal;
+use std::io::Write;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+use whichone_tests::Group;
+
+const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
+const SERVICES: [&str; 4] = ["speech", "grounding", "policy", "arm"];
+
+/// When to stop, and the seed.
+struct Plan {
+    kills: u64,
+    until: Option<Instant>,
+    seed: u64,
+}
+
+/// What was done.
+#[derive(Debug, Default)]
+struct Counters {
+    dialogues: u64,
+    kills: [u64; 4],
+    pauses: u64,
+    restarts: u64,
+}
+
+impl Counters {
+    fn kills(&self) -> u64 {
+        self.kills.iter().sum()
+    }
+}
+
+fn main() -> ExitCode {
+    let plan = match plan(std::env::args().skip(1).collect()) {
+        Ok(plan) => plan,
+        Err(usage) => {
+            print(&usage);
+            return ExitCode::from(64);
+        }
+    };
+    print(&format!("seed {}", plan.seed));
+    let ran = std::panic::catch_unwind(|| run(&plan));
+    match ran {
+        Ok(counters) => {
+            print(&format!("{counters:?}: every dialogue ended with the right single pick"));
+            ExitCode::SUCCESS
+        }
+        Err(_) => {
+            print(&format!("broken; repeat with: scripts/chaos --seed {}", plan.seed));
+            ExitCode::from(70)
+        }
+    }
+}
+
+fn print(line: &str) {
+    // A closed pipe is the reader's choice.
+    let _ = writeln!(std::io::stdout(), "{line}");
+}
+
+fn plan(words: Vec<String>) -> Result<Plan, String> {
+    let usage = || "scripts/chaos [--minutes N | --kills N] [--seed S]".to_owned();
+    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    let mut plan =
+        Plan { kills: 200, until: None, seed: now.map_or(1, |t| u64::from(t.subsec_nanos())) };
+    for pair in words.chunks(2) {
+        let [key, value] = pair else { return Err(usage()) };
+        let number: u64 = value.parse().map_err(|_| usage())?;
+        match key.as_str() {
+            "--kills" => plan.kills = number,
+            "--seed" => plan.seed = number,
+            "--minutes" => {
+                plan.until = Some(Instant::now() + Duration::from_secs(60 * number));
+                plan.kills = u64::MAX;
+            }
+            _ => return Err(usage()),
+        }
+    }
+    Ok(plan)
+}
+
+fn run(plan: &Plan) -> Counters {
+    let mut rng = Rng::new(plan.seed);
+    let group = Group::up(&["arm.time_scale=20.0"]);
+    let mut counters = Counters::default();
+    while counters.kills() < plan.kills && plan.until.is_none_or(|until| Instant::now() < until) {
+        let bowl = BOWLS[rng.below(BOWLS.len())];
+        dialogue(&group, bowl, plan, &mut rng, &mut counters);
+        counters.dialogues += 1;
+        if counters.dialogues.is_multiple_of(10) {
+            print(&format!("{counters:?}"));
+        }
+    }
+    group.verify_journals();
+    group.down();
+    counters
+}
+
+/// One dialogue with faults until its end.
+fn dialogue(group: &Group, bowl: &str, plan: &Plan, rng: &mut Rng, counters: &mut Counters) {
+    let over = AtomicBool::new(false);
+    let outcome = std::thread::scope(|scope| {
+        let person = scope.spawn(|| {
+            let outcome = group.fetch("get me the bowl", bowl);
+            over.store(true, Ordering::SeqCst);
+            outcome
+        });
+        while !over.load(Ordering::SeqCst) && !person.is_finished() {
+            std::thread::sleep(Duration::from_millis(10 + rng.below(250) as u64));
+            if counters.kills() < plan.kills {
+                fault(group, rng, counters);
+            }
+        }
+        person.join().expect("the person gets an outcome")
+    });
+    assert_eq!(outcome["outcome"], "delivered", "{outcome}\n{}", group.logs());
+    assert_eq!(outcome["object"], bowl, "{outcome}\n{}", group.logs());
+}
+
+/// Mostly kills; now and then a pause below the watchdog, or an orderly restart.
+fn fault(group: &Group, rng: &mut Rng, counters: &mut Counters) {
+    let which = rng.below(SERVICES.len());
+    match rng.below(10) {
+        0 => {
+            group.signal(SERVICES[which], Signal::STOP);
+            std::thread::sleep(Duration::from_millis(100));
+            group.signal(SERVICES[which], Signal::CONT);
+            counters.pauses += 1;
+        }
+        1 => {
+            let _ = group.call(&["restart", SERVICES[which]]);
+            counters.restarts += 1;
+        }
+        _ => {
+            group.signal(SERVICES[which], Signal::KILL);
+            counters.kills[which] += 1;
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The batch tools as scripts call them: the same code as the services, line by line.
+
+use serde_json::{Value, json};
+use std::process::Command;
+use whichone_tests::{Ended, program, run};
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
+fn batch(words: &[&str], lines: &[Value]) -> Ended {
+    let input: String = lines.iter().map(|line| format!("{line}\n")).collect();
+    run(Command::new(program("whichone")).args(words).current_dir(ROOT), &input, 120.0)
+}
+
+fn outputs(ended: &Ended) -> Vec<Value> {
+    ended.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn beliefs_agree_with_the_paper_s() {
+    let text = std::fs::read_to_string(format!("{ROOT}/tests/fixtures/belief/cases_public.json"));
+    let cases: Value = serde_json::from_str(&text.unwrap()).unwrap();
+    let cases = cases["cases"].as_array().unwrap();
+    let ended = batch(&["belief"], cases);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    for (case, output) in cases.iter().zip(outputs(&ended)) {
+        assert_eq!(case["id"], output["id"]);
+        for (object, expected) in case["expected"].as_object().unwrap() {
+            let (found, expected) = (output["belief"][object].as_f64(), expected.as_f64());
+            let error = (found.unwrap() - expected.unwrap()).abs();
+            assert!(error < 1e-9, "{}: {object} is off by {error}", case["id"]);
+        }
+    }
+}
+
+#[test]
+fn a_bad_line_is_told_and_the_rest_goes_on() {
+    let scene = json!({"objects": [{"name": "A", "attributes": {"color": "red"}},
+                                   {"name": "B", "attributes": {"color": "blue"}}],
+                       "values": {"color": ["red", "blue"]}});
+    let good = json!({"id": "g", "scene": scene, "prior": "uniform",
+                      "params": {"p_l": 0.95, "epsilon": 0.01, "alpha": 0.2},
+                      "turns": [{"question": {"type": "none"}, "utterance": "blue"}]});
+    let ended = batch(&["belief"], &[json!({"id": "b"}), good.clone(), json!(3), good]);
+    assert_eq!(ended.code, Some(1));
+    let outputs = outputs(&ended);
+    assert_eq!((outputs[0]["line"].as_u64(), outputs[2]["line"].as_u64()), (Some(1), Some(3)));
+    assert!(outputs[0]["error"].is_string());
+    assert!((outputs[1]["belief"]["B"].as_f64().unwrap() - 6.0 / 7.0).abs() < 1e-12);
+    assert_eq!(outputs[1], outputs[3]);
+}
+
+#[test]
+fn utterances_are_read_with_the_scene_s_words() {
+    let question = json!({"type": "attr", "attribute": "color", "value": "white"});
+    let line = json!({"id": 1, "text": "no, the see-through one", "last_question": question});
+    let ended = batch(&["ground", "--scene", "config/scenes/bowls.toml"], &[line]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let output = &outputs(&ended)[0];
+    assert_eq!((&output["base"], &output["response"]), (&json!(["clear"]), &json!("no")));
+}
+
+#[test]
+fn plans_pick_when_sure_and_ask_when_not() {
+    let scene = ["--scene", "config/scenes/bowls.toml"];
+    let lines = [
+        json!({"id": 1, "belief": [0.995, 0.001, 0.001, 0.001, 0.001, 0.001]}),
+        json!({"id": 2, "belief": vec![1.0 / 6.0; 6]}),
+    ];
+    let ended = batch(&[&["plan"], &scene[..]].concat(), &lines);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let outputs = outputs(&ended);
+    assert_eq!(outputs[0]["action"], json!({"type": "pick", "object": "white"}));
+    assert_eq!(outputs[1]["action"]["type"], "which");
+    let ended = batch(&[&["plan", "--no-which"], &scene[..]].concat(), &lines[1..]);
+    assert_eq!(self::outputs(&ended)[0]["action"]["type"], "attr");
+}
+
+#[test]
+fn kinematics_there_and_back() {
+    let q = [0.1, -0.5, 0.2, 0.9, -0.1, 1.1, 0.3];
+    let ended = batch(&["fk", "--limb", "left"], &[json!({"id": 7, "q": q})]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let gripper = outputs(&ended)[0]["links"]["left_gripper"].clone();
+    let line = json!({"id": 7, "xyz": gripper["xyz"], "xyzw": gripper["xyzw"], "q_seed": q});
+    let ended = batch(&["ik", "--limb", "left"], &[line]);
+    let output = &outputs(&ended)[0];
+    assert_eq!(output["ok"], true);
+    assert!(output["position_error_m"].as_f64().unwrap() <= 1e-6);
+    assert!(output["rotation_error_rad"].as_f64().unwrap() <= 1e-6);
+}

@@ -1,0 +1,128 @@
+//! A configuration that is wrong is refused as a whole, with every problem, its file and its key.
+
+use std::path::{Path, PathBuf};
+use whichone_tests::Group;
+
+fn shipped() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../config")
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() {
+            copy(&path, &target);
+        } else {
+            std::fs::copy(&path, &target).unwrap();
+        }
+    }
+}
+
+/// A copy of the shipped configuration in which `file` is changed by `edit`.
+fn edited(file: &str, edit: impl Fn(String) -> String) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    copy(&shipped(), folder.path());
+    let path = folder.path().join(file);
+    let text = std::fs::read_to_string(&path).unwrap();
+    let changed = edit(text.clone());
+    assert_ne!(text, changed, "the edit changes something");
+    std::fs::write(path, changed).unwrap();
+    folder
+}
+
+/// Both `check` and `up` refuse it with exit code 78 and all of `words`.
+fn assert_refused(folder: &tempfile::TempDir, words: &[&str]) {
+    let mut group = Group::with_config(folder.path().to_owned());
+    let config = folder.path().display().to_string();
+    let checked = group.call(&["check", "--config", &config]);
+    let started = group.start(&[]);
+    for ended in [checked, started] {
+        assert_eq!(ended.code, Some(78), "{ended:?}");
+        for word in words {
+            let text = format!("{}{}", ended.stdout, ended.stderr);
+            assert!(text.contains(word), "no {word} in: {text}");
+        }
+    }
+    assert!(group.processes().is_empty());
+}
+
+#[test]
+fn every_problem_is_told_at_once() {
+    let folder = edited("dialogue.toml", |text| {
+        text.replace("epsilon = 0.01", "epsilon = 1.5").replace("p_l = 0.95", "p_el = 0.95")
+    });
+    let path = folder.path().join("scenes/bowls.toml");
+    let scene = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, scene.replace("name = \"white2\"", "name = \"white\"")).unwrap();
+    assert_refused(&folder, &["dialogue.toml", "epsilon", "p_el", "bowls.toml", "white"]);
+}
+
+#[test]
+fn a_duplicate_value() {
+    let folder = edited("scenes/markers.toml", |text| {
+        let values = text.find("values").expect("a list of values");
+        let (before, list) = text.split_at(values);
+        format!("{before}{}", list.replacen("\"blue\"", "\"red\"", 1))
+    });
+    let group =
+        edited("group.toml", |text| text.replace("scene = \"bowls\"", "scene = \"markers\""));
+    std::fs::copy(
+        folder.path().join("scenes/markers.toml"),
+        group.path().join("scenes/markers.toml"),
+    )
+    .unwrap();
+    assert_refused(&group, &["markers.toml", "red"]);
+}
+
+#[test]
+fn an_object_out_of_reach() {
+    let folder = edited("scenes/bowls.toml", |text| text.replacen("xyz = [0.", "xyz = [4.", 1));
+    assert_refused(&folder, &["bowls.toml", "xyz", "reach"]);
+}
+
+#[test]
+fn a_scene_without_objects() {
+    let folder = edited("scenes/bowls.toml", |text| {
+        let first = text.find("[[objects]]").expect("objects");
+        text[..first].to_owned()
+    });
+    assert_refused(&folder, &["bowls.toml", "objects"]);
+}
+
+#[test]
+fn a_scene_that_is_not_there() {
+    let folder =
+        edited("group.toml", |text| text.replace("scene = \"bowls\"", "scene = \"plates\""));
+    assert_refused(&folder, &["group.toml", "scene", "plates"]);
+}
+
+#[test]
+fn text_that_is_no_toml() {
+    let folder = edited("arm.toml", |text| format!("{text}\nthis is not = = toml"));
+    assert_refused(&folder, &["arm.toml"]);
+}
+
+#[test]
+fn reload_takes_over_what_is_right_and_refuses_what_is_wrong() {
+    let folder = edited("dialogue.toml", |text| text.replace("epsilon = 0.01", "epsilon = 0.02"));
+    let mut group = Group::with_config(folder.path().to_owned());
+    assert_eq!(group.start(&[]).code, Some(0));
+    let (policy, arm) = (group.incarnation("policy"), group.incarnation("arm"));
+    let path = folder.path().join("dialogue.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+
+    std::fs::write(&path, text.replace("epsilon = 0.02", "epsilon = 7")).unwrap();
+    let refused = group.call(&["reload"]);
+    assert_ne!(refused.code, Some(0));
+    assert!(refused.stderr.contains("epsilon"), "{}", refused.stderr);
+    assert_eq!(group.incarnation("policy"), policy, "nothing was restarted");
+
+    std::fs::write(&path, text.replace("epsilon = 0.02", "epsilon = 0.05")).unwrap();
+    group.must(&["reload"]);
+    group.wait_for_restart("policy", policy);
+    assert_eq!(group.incarnation("arm"), arm, "what it does not concern goes on");
+    assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
+    group.down();
+}

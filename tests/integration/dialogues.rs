@@ -1,0 +1,85 @@
+//! Ambiguous requests end with the right object.
+
+use whichone_tests::Group;
+
+const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
+
+fn assert_delivered(outcome: &serde_json::Value, object: &str, questions_max: u64) {
+    assert_eq!(outcome["outcome"], "delivered", "{outcome}");
+    assert_eq!(outcome["object"], object, "{outcome}");
+    assert!(outcome["questions"].as_u64().unwrap() <= questions_max, "{outcome}");
+}
+
+/// `rounds` dialogues over all six bowls, starting from no information.
+fn fetch_all(group: &Group, rounds: usize, questions_max: u64) {
+    for bowl in BOWLS.iter().cycle().take(rounds) {
+        assert_delivered(&group.fetch("get me the bowl", bowl), bowl, questions_max);
+    }
+}
+
+#[test]
+fn a_hundred_dialogues_with_attribute_questions_in_remote_mode() {
+    let group = Group::up(&["dialogue.open_questions=false"]);
+    fetch_all(&group, 100, 3);
+    group.verify_journals();
+    group.down();
+}
+
+#[test]
+fn every_bowl_by_pointing_alone_in_present_mode() {
+    let group = Group::up(&["dialogue.planner=no-attribute", "dialogue.mode=present"]);
+    fetch_all(&group, 6, 5);
+    group.verify_journals();
+    group.down();
+}
+
+#[test]
+fn open_questions_need_no_more() {
+    let group = Group::up(&["dialogue.open_questions=true"]);
+    fetch_all(&group, 6, 3);
+    group.down();
+}
+
+#[test]
+fn a_request_that_says_enough_needs_no_question() {
+    let group = Group::up(&[]);
+    let outcome = group.fetch("the small white plastic bowl from the dishwasher", "white");
+    assert_delivered(&outcome, "white", 1);
+    group.down();
+}
+
+#[test]
+fn a_half_specified_request_is_asked_about() {
+    let group = Group::up(&[]);
+    group.say("get me the small white bowl");
+    let asked = group.wait_for_decision("ask")["text"].as_str().unwrap().to_owned();
+    // Two bowls are small and white, and only their places tell them apart.
+    assert!(asked.contains("counter") || asked.contains("dishwasher"), "{asked}");
+    assert_delivered(&group.await_pick(Some("white2")), "white2", 3);
+    group.down();
+}
+
+#[test]
+fn the_two_markers() {
+    let group = Group::up(&["group.scene=markers"]);
+    for marker in ["red", "blue"] {
+        assert_delivered(&group.fetch("hand me the marker", marker), marker, 2);
+    }
+    group.down();
+}
+
+#[test]
+fn the_ten_tools() {
+    let group = Group::up(&["group.scene=tools"]);
+    for tool in ["m_red", "p_black", "w_red"] {
+        assert_delivered(&group.fetch("I need a tool", tool), tool, 6);
+    }
+    group.down();
+}
+
+#[test]
+fn the_paper_s_own_reading_works_too() {
+    let group = Group::up(&["dialogue.language=paper"]);
+    assert_delivered(&group.fetch("the white one", "white3"), "white3", 3);
+    group.down();
+}

@@ -1,0 +1,14 @@
+//! The real supervisor and the real processes, driven as their users drive them: through the
+//! command line. Every test has a group of its own, so they run side by side.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+mod batch;
+mod config;
+mod dialogues;
+mod isolation;
+mod people;
+mod recovery;
+mod speech;
+mod supervision;
+mod swap;

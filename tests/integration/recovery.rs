@@ -1,0 +1,131 @@
+//! Kill any service at any stage of a dialogue: nothing said is lost or counted twice, the right
+//! object is picked once, and the journal folds again to the same belief.
+
+use rustix::process::Signal;
+use whichone_tests::{Group, wait_for};
+
+const SERVICES: [&str; 4] = ["speech", "grounding", "policy", "arm"];
+
+fn kill(group: &Group, service: &str) -> u64 {
+    let before = group.incarnation(service);
+    group.signal(service, Signal::KILL);
+    before
+}
+
+fn assert_fetched(group: &Group, object: &str) {
+    let outcome = group.await_pick(Some(object));
+    assert_delivered(group, &outcome, object);
+}
+
+fn assert_delivered(group: &Group, outcome: &serde_json::Value, object: &str) {
+    assert_eq!(outcome["outcome"], "delivered", "{outcome}\n{}", group.logs());
+    assert_eq!(outcome["object"], object, "{outcome}");
+    group.verify_journals();
+}
+
+#[test]
+fn killed_before_the_request() {
+    let group = Group::up(&[]);
+    for service in SERVICES {
+        kill(&group, service);
+        group.say("get me the bowl");
+        assert_fetched(&group, "white2");
+    }
+    group.down();
+}
+
+#[test]
+fn killed_while_a_question_stands() {
+    let group = Group::up(&[]);
+    for service in SERVICES {
+        group.say("get me the bowl");
+        group.wait_for_decision("ask");
+        kill(&group, service);
+        assert_fetched(&group, "metal2");
+    }
+    group.down();
+}
+
+#[test]
+fn killed_right_after_an_answer() {
+    let group = Group::up(&[]);
+    for service in SERVICES {
+        group.say("get me the bowl");
+        group.say("the white one");
+        kill(&group, service);
+        assert_fetched(&group, "white3");
+    }
+    group.down();
+}
+
+#[test]
+fn killed_while_the_arm_moves() {
+    let group = Group::up(&["arm.time_scale=15.0"]);
+    for service in SERVICES {
+        let outcome = group.fetch_while("the clear bowl", "clear", || {
+            kill(&group, service);
+        });
+        assert_delivered(&group, &outcome, "clear");
+    }
+    group.down();
+}
+
+#[test]
+fn the_arm_is_killed_again_and_again_in_one_pick() {
+    let group = Group::up(&["arm.time_scale=8.0"]);
+    let outcome = group.fetch_while("the clear bowl", "clear", || {
+        for _ in 0..4 {
+            let before = kill(&group, "arm");
+            group.wait_for_restart("arm", before);
+        }
+    });
+    assert_delivered(&group, &outcome, "clear");
+    group.down();
+}
+
+#[test]
+fn all_services_are_killed_at_once() {
+    let group = Group::up(&[]);
+    group.say("get me the bowl");
+    group.say("the metal one");
+    for service in SERVICES {
+        kill(&group, service);
+    }
+    assert_fetched(&group, "metal");
+    group.down();
+}
+
+#[test]
+fn an_utterance_survives_a_policy_that_is_down() {
+    let group = Group::up(&[]);
+    group.say("get me the bowl");
+    group.must(&["stop", "policy"]);
+    group.say("the small metal one");
+    group.must(&["start", "policy"]);
+    assert_fetched(&group, "metal");
+    group.down();
+}
+
+#[test]
+fn the_belief_is_restored_bit_for_bit() {
+    let group = Group::up(&[]);
+    group.say("the white one");
+    let before = group.wait_for_decision("ask");
+    let incarnation = kill(&group, "policy");
+    group.wait_for_restart("policy", incarnation);
+    let after = group.wait_for_decision("ask");
+    assert_eq!(before, after, "belief, question and reasons are the very same");
+    group.down();
+}
+
+#[test]
+fn the_group_comes_back_where_it_was() {
+    let mut group = Group::up(&[]);
+    group.say("get me the bowl");
+    group.say("the white one");
+    wait_for("both to be applied", 10.0, || (group.dialogue()["applied"] == 2).then_some(()));
+    group.must(&["down"]);
+    assert_eq!(group.start(&[]).code, Some(0));
+    assert_fetched(&group, "white3");
+    group.down();
+}

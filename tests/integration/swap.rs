@@ -1,0 +1,50 @@
+//! Replacing a service while the dialogue goes on.
+
+use whichone_tests::{Group, program};
+
+fn swap(group: &Group, service: &str, command: &[&str]) -> whichone_tests::Ended {
+    let mut words = vec!["swap", service, "--"];
+    words.extend(command);
+    group.call(&words)
+}
+
+#[test]
+fn grounding_is_swapped_under_traffic() {
+    let group = Group::up(&[]);
+    let grounding = program("whichone-grounding").display().to_string();
+    for round in 0..6 {
+        group.say("get me the bowl");
+        let language = if round % 2 == 0 { "paper" } else { "careful" };
+        let talk = std::thread::scope(|scope| {
+            let talk = scope.spawn(|| group.await_pick(Some("metal2")));
+            let ended = swap(&group, "grounding", &[&grounding, "--language", language]);
+            assert_eq!(ended.code, Some(0), "{ended:?}");
+            talk.join().expect("the dialogue")
+        });
+        assert_eq!(talk["object"], "metal2", "round {round}: {talk}");
+    }
+    group.verify_journals();
+    group.down();
+}
+
+#[test]
+fn a_service_that_does_not_become_ready_gives_way_to_the_old_one() {
+    let group = Group::up(&["group.services.grounding.start_deadline_s=1.0"]);
+    for command in [&["/bin/sleep", "60"][..], &["/bin/false"], &["/no/such/program"]] {
+        let ended = swap(&group, "grounding", command);
+        assert_ne!(ended.code, Some(0), "{command:?}");
+        assert!(!ended.stderr.is_empty(), "it says why");
+        assert_eq!(group.fetch("get me the bowl", "clear")["object"], "clear", "{command:?}");
+    }
+    group.down();
+}
+
+#[test]
+fn arguments_that_a_service_does_not_know_are_refused() {
+    let group = Group::up(&[]);
+    let grounding = program("whichone-grounding").display().to_string();
+    let ended = swap(&group, "grounding", &[&grounding, "--language", "klingon"]);
+    assert_ne!(ended.code, Some(0));
+    assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
+    group.down();
+}

@@ -1,0 +1,79 @@
+//! A node in a simulated process: it can die at any point between an event and the last of its
+//! effects, and comes back from what its journal had synced by then.
+
+use node::{Effects, Event, Node, Time};
+
+/// Where in a pass the process dies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Crash {
+    /// After deciding, before the sync: the records are gone and nothing was seen.
+    BeforeSync,
+    /// After the sync and this many outputs.
+    AfterOutputs(usize),
+}
+
+/// A node, its journal, and how to make it anew.
+pub(crate) struct Host<N: Node> {
+    config: Box<dyn Fn() -> N::Config>,
+    node: Option<N>,
+    journal: Vec<N::Record>,
+    /// How often it was started.
+    pub(crate) incarnation: u32,
+}
+
+impl<N: Node> Host<N>
+where
+    N::Record: Clone,
+{
+    pub(crate) fn new(config: impl Fn() -> N::Config + 'static) -> Self {
+        Self { config: Box::new(config), node: None, journal: Vec::new(), incarnation: 0 }
+    }
+
+    /// Starts the process, if it is not up. Returns what its start makes visible.
+    pub(crate) fn start(&mut self, now: Time) -> Vec<N::Out> {
+        if self.node.is_some() {
+            return Vec::new();
+        }
+        self.incarnation += 1;
+        let node = N::recover((self.config)(), self.journal.clone());
+        self.node = Some(node.unwrap_or_else(|e| panic!("recovery: {e}")));
+        self.pass(vec![Event::Started], now, None)
+    }
+
+    pub(crate) fn is_up(&self) -> bool {
+        self.node.is_some()
+    }
+
+    /// What is durable.
+    pub(crate) fn journal(&self) -> &[N::Record] {
+        &self.journal
+    }
+
+    pub(crate) fn deadline(&self) -> Option<Time> {
+        self.node.as_ref().and_then(Node::deadline)
+    }
+
+    /// One pass of the main loop: the events, then the sync, then the outputs, in the order of the
+    /// real driver. Returns what became visible.
+    pub(crate) fn pass(
+        &mut self,
+        events: Vec<Event<N::In>>,
+        now: Time,
+        crash: Option<Crash>,
+    ) -> Vec<N::Out> {
+        let Some(node) = &mut self.node else { return Vec::new() };
+        let mut effects = Effects::default();
+        events.into_iter().for_each(|event| node.on(event, now, &mut effects));
+        if crash == Some(Crash::BeforeSync) {
+            self.node = None;
+            return Vec::new();
+        }
+        self.journal.extend(effects.take_records());
+        let mut outputs = effects.take_outputs();
+        if let Some(Crash::AfterOutputs(count)) = crash {
+            self.node = None;
+            outputs.truncate(count);
+        }
+        outputs
+    }
+}

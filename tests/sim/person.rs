@@ -1,0 +1,86 @@
+//! A truthful person who wants one object: asks for it vaguely, and answers what was asked after a
+//! moment. Like the real client, it gives its sentence again under the same key until it is
+//! acknowledged.
+
+use dialogue::{Answer, Model};
+use node::{Span, Time};
+use protocol::{Injection, Presentation, Presented, Receipt, RequestKey, Sound};
+use scene::{ObjectId, Question, Scene};
+
+const REACTION: Span = Span::from_ms(700);
+const RESEND: Span = Span::from_ms(250);
+
+/// What the person is doing.
+pub(crate) struct Person {
+    pub(crate) wanted: ObjectId,
+    saying: Option<Saying>,
+    answered: Vec<(u64, u32)>,
+    keys: u8,
+    /// Everything that was acknowledged as accepted, in order.
+    pub(crate) accepted: Vec<RequestKey>,
+    /// The questions by prompt, as they were announced.
+    questions: Vec<(u64, Question)>,
+}
+
+struct Saying {
+    injection: Injection,
+    next: Time,
+}
+
+impl Person {
+    pub(crate) fn new(wanted: usize) -> Self {
+        let mut person = Self {
+            wanted: ObjectId::from(wanted),
+            saying: None,
+            answered: Vec::new(),
+            keys: 0,
+            accepted: Vec::new(),
+            questions: Vec::new(),
+        };
+        person.say("get me the bowl".to_owned(), Time(0));
+        person
+    }
+
+    fn say(&mut self, text: String, at: Time) {
+        self.keys += 1;
+        let key = RequestKey([self.keys; 16]);
+        let injection = Injection { key, onset_ns: at.ns().max(1), sound: Sound::Text(text) };
+        self.saying = Some(Saying { injection, next: at });
+    }
+
+    /// What the person says now, if anything.
+    pub(crate) fn speak(&mut self, now: Time) -> Option<Injection> {
+        let saying = self.saying.as_mut().filter(|saying| saying.next <= now)?;
+        saying.next = now + RESEND;
+        Some(saying.injection.clone())
+    }
+
+    pub(crate) fn acknowledge(&mut self, receipt: &Receipt) {
+        let mine = |saying: &Saying| saying.injection.key == receipt.request();
+        if self.saying.as_ref().is_some_and(mine) {
+            assert!(receipt.utterance().is_some(), "a plain sentence is accepted: {receipt:?}");
+            self.accepted.push(receipt.request());
+            self.saying = None;
+        }
+    }
+
+    /// The robot announces a question; it is answered once it was presented to its end.
+    pub(crate) fn announce(&mut self, prompt: u64, question: Question) {
+        if question != Question::None && self.questions.iter().all(|(p, _)| *p != prompt) {
+            self.questions.push((prompt, question));
+        }
+    }
+
+    pub(crate) fn hear(&mut self, presented: &Presented, scene: &Scene, model: &Model, now: Time) {
+        let heard = (presented.prompt, presented.presentation);
+        let ended = presented.state == Presentation::Ended.code();
+        let question = self.questions.iter().find(|(prompt, _)| *prompt == presented.prompt);
+        let Some((_, question)) = question.copied() else { return };
+        if !ended || self.saying.is_some() || self.answered.contains(&heard) {
+            return;
+        }
+        self.answered.push(heard);
+        let answer = Answer::truthful(model, question, self.wanted);
+        self.say(answer.text(scene).to_owned(), now + REACTION);
+    }
+}

@@ -1,0 +1,301 @@
+//! The simulated machine: a bus that forgets, a voice, a clock, and the processes on it.
+
+use crate::faults::Faults;
+use crate::host::Host;
+use crate::person::Person;
+use arm::ArmNode;
+use dialogue::Model;
+use grounding::GroundingNode;
+use node::{Event, Node, Span, Time};
+use policy::PolicyNode;
+use protocol::{ActKind, Outcome, PolicyView};
+use scene::{Question, Scene};
+use settings::Settings;
+use speech::{SpeechNode, Spoken, VoiceEvent};
+use std::path::Path;
+
+/// How long the voice takes for a line.
+const LINE: Span = Span::from_ms(400);
+/// No dialogue takes longer; one that does is stuck.
+const END: Time = Time(240_000_000_000);
+
+/// The machine and what happened on it.
+pub(crate) struct World {
+    pub(crate) scene: Scene,
+    pub(crate) model: Model,
+    pub(crate) speech: Host<SpeechNode>,
+    pub(crate) grounding: Host<GroundingNode>,
+    pub(crate) policy: Host<PolicyNode>,
+    pub(crate) arm: Host<ArmNode>,
+    pub(crate) person: Person,
+    pub(crate) faults: Faults,
+    /// The latest that clients were told.
+    pub(crate) view: PolicyView,
+    /// Acts that became visible before their decision was durable.
+    pub(crate) premature: Vec<String>,
+    now: Time,
+    inboxes: Inboxes,
+    restarts: [Option<Time>; 4],
+    voice: Option<(u64, Time)>,
+    log: Vec<String>,
+}
+
+/// What waits for each process.
+#[derive(Default)]
+struct Inboxes {
+    speech: Vec<speech::In>,
+    grounding: Vec<Box<protocol::Utterance>>,
+    policy: Vec<policy::In>,
+    arm: Vec<arm::In>,
+}
+
+fn settings() -> Settings {
+    let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"));
+    Settings::load(config, Some("ci"), &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+impl World {
+    pub(crate) fn new(_seed: u64, wanted: usize, faults: Faults) -> Self {
+        let all = settings();
+        let (s, g, p, a) = (all.clone(), all.clone(), all.clone(), all.clone());
+        Self {
+            model: Model::new(&all.scene, all.dialogue.params),
+            scene: all.scene,
+            speech: Host::new(move || program_config::<speech::shell::SpeechProgram>(&s)),
+            grounding: Host::new(move || program_config::<grounding::shell::GroundingProgram>(&g)),
+            policy: Host::new(move || program_config::<policy::shell::PolicyProgram>(&p)),
+            arm: Host::new(move || program_config::<arm::shell::ArmProgram>(&a)),
+            person: Person::new(wanted),
+            faults,
+            view: PolicyView::default(),
+            premature: Vec::new(),
+            now: Time(1),
+            inboxes: Inboxes::default(),
+            restarts: [Some(Time(1)); 4],
+            voice: None,
+            log: Vec::new(),
+        }
+    }
+
+    /// What happened, for a person who has to find out why.
+    pub(crate) fn story(&self) -> String {
+        self.log.join("\n")
+    }
+
+    /// Runs until the interaction is over and everybody knows, or nothing more can come.
+    pub(crate) fn run(&mut self) {
+        while self.now < END && !self.is_over() {
+            self.now = self.now + Span::from_ms(10);
+            self.restart_the_dead();
+            self.person_speaks();
+            self.voice_goes_on();
+            self.pass_speech();
+            self.pass_grounding();
+            self.pass_policy();
+            self.pass_arm();
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        let up = self.speech.is_up() && self.policy.is_up() && self.arm.is_up();
+        up && self.view.last.is_some() && self.view.interaction == 0
+    }
+
+    /// How the interaction ended.
+    pub(crate) fn outcome(&self) -> Option<(Outcome, Option<u16>)> {
+        self.view.last.as_ref().map(|ended| (ended.outcome, ended.object))
+    }
+
+    fn tell(&mut self, what: impl std::fmt::Display) {
+        self.log.push(format!("{:9.3} s  {what}", self.now.ns() as f64 / 1e9));
+    }
+
+    fn restart_the_dead(&mut self) {
+        let due = |at: Option<Time>| at.is_some_and(|at| at <= self.now);
+        let [speech, grounding, policy, arm] = self.restarts.map(due);
+        if speech {
+            self.restarts[0] = None;
+            let outputs = self.speech.start(self.now);
+            self.voice = None;
+            self.route_speech(outputs);
+        }
+        if grounding {
+            self.restarts[1] = None;
+            let outputs = self.grounding.start(self.now);
+            self.route_grounding(outputs);
+        }
+        if policy {
+            self.restarts[2] = None;
+            let outputs = self.policy.start(self.now);
+            self.route_policy(outputs);
+        }
+        if arm {
+            self.restarts[3] = None;
+            let outputs = self.arm.start(self.now);
+            self.route_arm(outputs);
+        }
+    }
+
+    fn person_speaks(&mut self) {
+        if let Some(injection) = self.person.speak(self.now) {
+            for _ in 0..self.faults.copies(self.now) {
+                self.inboxes.speech.push(speech::In::Injection(injection.clone()));
+            }
+        }
+    }
+
+    fn voice_goes_on(&mut self) {
+        if let Some((line, ends)) = self.voice
+            && ends <= self.now
+        {
+            self.voice = None;
+            let ended = VoiceEvent { line, what: Spoken::Ended };
+            self.inboxes.speech.push(speech::In::Voice(ended));
+        }
+    }
+
+    fn pass_speech(&mut self) {
+        let inbox = std::mem::take(&mut self.inboxes.speech);
+        let outputs = pass(&mut self.speech, inbox, self.now, &mut self.faults);
+        self.bury(0, self.speech.is_up(), "speech");
+        self.route_speech(outputs);
+    }
+
+    fn pass_grounding(&mut self) {
+        let inbox = std::mem::take(&mut self.inboxes.grounding);
+        let outputs = pass(&mut self.grounding, inbox, self.now, &mut self.faults);
+        self.bury(1, self.grounding.is_up(), "grounding");
+        self.route_grounding(outputs);
+    }
+
+    fn pass_policy(&mut self) {
+        let inbox = std::mem::take(&mut self.inboxes.policy);
+        let outputs = pass(&mut self.policy, inbox, self.now, &mut self.faults);
+        self.bury(2, self.policy.is_up(), "policy");
+        self.route_policy(outputs);
+    }
+
+    fn pass_arm(&mut self) {
+        let inbox = std::mem::take(&mut self.inboxes.arm);
+        let outputs = pass(&mut self.arm, inbox, self.now, &mut self.faults);
+        self.bury(3, self.arm.is_up(), "arm");
+        self.route_arm(outputs);
+    }
+
+    /// Notes that a process has died in its pass, and when it will be back.
+    fn bury(&mut self, which: usize, is_up: bool, name: &str) {
+        if !is_up && self.restarts[which].is_none() {
+            self.restarts[which] = Some(self.now + self.faults.downtime());
+            self.tell(format_args!("{name} dies"));
+        }
+    }
+
+    fn route_speech(&mut self, outputs: Vec<speech::Out>) {
+        for output in outputs {
+            let copies = self.faults.copies(self.now);
+            match output {
+                speech::Out::Utterance(utterance) => {
+                    let inbox = &mut self.inboxes.grounding;
+                    inbox.extend(std::iter::repeat_n(utterance, copies));
+                }
+                speech::Out::Receipt(receipt) if copies > 0 => self.person.acknowledge(&receipt),
+                speech::Out::Receipt(_) => {}
+                speech::Out::Presented(presented) => {
+                    self.person.hear(&presented, &self.scene, &self.model, self.now);
+                    let message = policy::In::Presented(presented);
+                    self.inboxes.policy.extend(std::iter::repeat_n(message, copies));
+                }
+                speech::Out::Activity(activity) => {
+                    let message = policy::In::Activity(activity);
+                    self.inboxes.policy.extend(std::iter::repeat_n(message, copies));
+                }
+                speech::Out::Motion(command) => self.inboxes.arm.push(arm::In::Motion(command)),
+                speech::Out::Speak(line) => {
+                    self.tell(format_args!("robot: {}", line.text));
+                    self.voice = Some((line.number, self.now + LINE));
+                    let started = VoiceEvent { line: line.number, what: Spoken::Started };
+                    self.inboxes.speech.push(speech::In::Voice(started));
+                }
+                speech::Out::Hush => self.voice = None,
+                speech::Out::Recognise(..) => unreachable!("the person types"),
+            }
+        }
+    }
+
+    #[allow(clippy::vec_box, reason = "the node's own output type")]
+    fn route_grounding(&mut self, outputs: Vec<Box<protocol::Observation>>) {
+        for observation in outputs {
+            for _ in 0..self.faults.copies(self.now) {
+                let message = policy::In::Observation(observation.clone());
+                // The bus may hand over a doubled message out of turn.
+                self.inboxes.policy.insert(0, message);
+            }
+        }
+    }
+
+    fn route_policy(&mut self, outputs: Vec<policy::Out>) {
+        for output in outputs {
+            let copies = self.faults.copies(self.now);
+            match output {
+                policy::Out::Mark(mark) => {
+                    let message = speech::In::Mark(mark);
+                    self.inboxes.speech.extend(std::iter::repeat_n(message, copies));
+                }
+                policy::Out::Act(act) => {
+                    self.check_durable(&act);
+                    let question = Question::try_from(act.question).expect("a question");
+                    self.person.announce(act.prompt, question);
+                    let (to_speech, to_arm) = (speech::In::Act(act.clone()), arm::In::Act(act));
+                    self.inboxes.speech.extend(std::iter::repeat_n(to_speech, copies));
+                    self.inboxes.arm.extend(std::iter::repeat_n(to_arm, copies));
+                }
+                policy::Out::View(view) => self.view = *view,
+            }
+        }
+    }
+
+    fn route_arm(&mut self, outputs: Vec<arm::Out>) {
+        for output in outputs {
+            if let arm::Out::Status(status) = output {
+                let copies = self.faults.copies(self.now);
+                let (to_policy, to_speech) = (policy::In::Arm(status), speech::In::Arm(status));
+                self.inboxes.policy.extend(std::iter::repeat_n(to_policy, copies));
+                self.inboxes.speech.extend(std::iter::repeat_n(to_speech, copies));
+            }
+        }
+    }
+
+    /// Whatever becomes visible must be durable already.
+    fn check_durable(&mut self, act: &protocol::RobotAct) {
+        let durable = self.policy.journal().last().map_or(0, |record| record.state.act.id.0);
+        if act.act > durable && act.kind != ActKind::Wait.code() {
+            self.premature.push(format!("act {} before record {durable}", act.act));
+        }
+    }
+}
+
+/// The configuration that the real program would give its node.
+fn program_config<P: runtime::driver::Program>(settings: &Settings) -> <P::Node as Node>::Config {
+    P::config(settings, &[]).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn pass<N: Node>(
+    host: &mut Host<N>,
+    inbox: Vec<N::In>,
+    now: Time,
+    faults: &mut Faults,
+) -> Vec<N::Out>
+where
+    N::Record: Clone,
+{
+    let due = host.deadline().is_some_and(|deadline| deadline <= now);
+    if inbox.is_empty() && !due {
+        return Vec::new();
+    }
+    let mut events: Vec<Event<N::In>> = inbox.into_iter().map(Event::Message).collect();
+    if due {
+        events.push(Event::Tick);
+    }
+    let crash = if host.is_up() { faults.crash(now) } else { None };
+    host.pass(events, now, crash)
+}

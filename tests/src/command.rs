@@ -1,0 +1,81 @@
+//! Running the built programs with a deadline.
+
+use std::io::{Read, Write};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// How a command ended.
+#[derive(Debug)]
+pub struct Ended {
+    /// Its exit code; none where a signal ended it.
+    pub code: Option<i32>,
+    /// What it printed.
+    pub stdout: String,
+    /// What it complained about.
+    pub stderr: String,
+}
+
+impl Ended {
+    /// Its output as one JSON value.
+    ///
+    /// # Panics
+    /// Where it is none.
+    pub fn json(&self) -> serde_json::Value {
+        serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e}: {self:?}"))
+    }
+}
+
+/// A program of the group, as this build made it.
+///
+/// # Panics
+/// Where it is not built: `cargo build --workspace` does that, and `scripts/test` does it first.
+pub fn program(name: &str) -> PathBuf {
+    let test = std::env::current_exe().expect("the test's own path");
+    let folder = test.ancestors().find(|folder| folder.join(name).is_file());
+    let folder = folder.unwrap_or_else(|| panic!("{name} is not built: cargo build --workspace"));
+    folder.join(name)
+}
+
+/// Runs `command` to its end, giving it `input`.
+///
+/// # Panics
+/// When it takes longer than `seconds`; it is killed then.
+pub fn run(command: &mut Command, input: &str, seconds: f64) -> Ended {
+    let started = Instant::now();
+    let mut child = command
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap_or_else(|e| panic!("{command:?}: {e}"));
+    let mut stdin = child.stdin.take().expect("piped");
+    let input = input.to_owned();
+    // A program that reads nothing may end before it is given everything.
+    let writer = std::thread::spawn(move || drop(stdin.write_all(input.as_bytes())));
+    let stdout = drain(child.stdout.take().expect("piped"));
+    let stderr = drain(child.stderr.take().expect("piped"));
+    let status = loop {
+        if let Some(status) = child.try_wait().expect("a child of ours") {
+            break status;
+        }
+        if started.elapsed() > Duration::from_secs_f64(seconds) {
+            child.kill().expect("a child of ours");
+            let _ = child.wait();
+            let (out, err) = (stdout.join(), stderr.join());
+            panic!("{command:?}: still running after {seconds} s\n{out:?}\n{err:?}");
+        }
+        std::thread::sleep(Duration::from_millis(3));
+    };
+    writer.join().expect("the writer ends with its pipe");
+    let text = |reader: std::thread::JoinHandle<String>| reader.join().expect("a reader of ours");
+    Ended { code: status.code(), stdout: text(stdout), stderr: text(stderr) }
+}
+
+fn drain(mut pipe: impl Read + Send + 'static) -> std::thread::JoinHandle<String> {
+    std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        let _ = pipe.read_to_end(&mut bytes);
+        String::from_utf8_lossy(&bytes).into_owned()
+    })
+}

@@ -1,0 +1,238 @@
+//! A process group for one test: its own name, home and shared memory.
+
+use crate::command::{Ended, program, run};
+use crate::wait_for;
+use runtime::group::{ENV_HOME, GroupName, GroupPaths};
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// No call of the command line takes longer.
+const CALL_S: f64 = 60.0;
+
+static NUMBER: AtomicU32 = AtomicU32::new(0);
+
+/// A running group. Dropping it stops it; [`Group::down`] also checks that nothing is left.
+#[derive(Debug)]
+pub struct Group {
+    home: tempfile::TempDir,
+    paths: GroupPaths,
+    config: PathBuf,
+    is_up: bool,
+}
+
+/// The repository's own configuration.
+fn shipped_config() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../config")
+}
+
+impl Group {
+    /// A group that is not started yet, on the shipped configuration.
+    pub fn new() -> Self {
+        Self::with_config(shipped_config())
+    }
+
+    /// A group that is not started yet, on a configuration of its own.
+    pub fn with_config(config: PathBuf) -> Self {
+        let home = tempfile::Builder::new().prefix("wo").tempdir().expect("a temporary folder");
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let name = format!("t{}-{number}", std::process::id());
+        let name = GroupName::new(&name).expect("an allowed name");
+        let paths = GroupPaths::in_home(home.path(), &name).expect("a short path");
+        Self { home, paths, config, is_up: false }
+    }
+
+    /// A ready group with the profile for tests and these settings over it (`key=value`).
+    pub fn up(settings: &[&str]) -> Self {
+        let mut group = Self::new();
+        let ended = group.start(settings);
+        assert_eq!(ended.code, Some(0), "{ended:?}\n{}", group.logs());
+        group
+    }
+
+    /// Starts the group with the profile for tests and waits until it is ready or refused.
+    pub fn start(&mut self, settings: &[&str]) -> Ended {
+        let config = self.config.display().to_string();
+        let mut words = vec!["up", "--detach", "--wait", "ready", "--timeout", "40", "--config"];
+        words.extend([config.as_str(), "--profile", "ci"]);
+        settings.iter().for_each(|setting| words.extend(["--set", setting]));
+        let ended = self.call(&words);
+        self.is_up = ended.code == Some(0);
+        ended
+    }
+
+    /// Where the group lives.
+    pub fn paths(&self) -> &GroupPaths {
+        &self.paths
+    }
+
+    /// `whichone WORDS…` for this group.
+    pub fn command(&self, words: &[&str]) -> Command {
+        let mut command = Command::new(program("whichone"));
+        command.env(ENV_HOME, self.home.path()).env("WHICHONE_GROUP", self.paths.name().as_str());
+        command.args(words);
+        command
+    }
+
+    /// Runs `whichone WORDS…` for this group to its end.
+    pub fn call(&self, words: &[&str]) -> Ended {
+        run(&mut self.command(words), "", CALL_S)
+    }
+
+    /// As [`Group::call`], for what must succeed.
+    pub fn must(&self, words: &[&str]) -> Ended {
+        let ended = self.call(words);
+        assert_eq!(ended.code, Some(0), "whichone {words:?}: {ended:?}\n{}", self.logs());
+        ended
+    }
+
+    /// Says something to the robot.
+    pub fn say(&self, text: &str) {
+        self.must(&["say", text]);
+    }
+
+    /// Waits for the interaction's outcome; with `answer_as`, a person who wants that object
+    /// answers meanwhile.
+    pub fn await_pick(&self, answer_as: Option<&str>) -> Value {
+        let mut words = vec!["await", "pick", "--json", "--timeout", "50"];
+        words.extend(answer_as.iter().flat_map(|object| ["--answer-as", object]));
+        self.call(&words).json()
+    }
+
+    /// Asks for "the bowl" (or what `request` says) as somebody who wants `object`, and returns the
+    /// outcome.
+    pub fn fetch(&self, request: &str, object: &str) -> Value {
+        self.say(request);
+        self.await_pick(Some(object))
+    }
+
+    /// As [`Group::fetch`]; `then` is done once the arm has been ordered to pick.
+    pub fn fetch_while(&self, request: &str, object: &str, then: impl FnOnce()) -> Value {
+        self.say(request);
+        std::thread::scope(|scope| {
+            let person = scope.spawn(|| self.await_pick(Some(object)));
+            self.wait_for_decision("pick");
+            then();
+            person.join().expect("the person gets an outcome")
+        })
+    }
+
+    /// What the arm does, as `watch` shows it.
+    pub fn arm(&self) -> Value {
+        self.must(&["watch", "--once", "--json"]).json()["arm"].take()
+    }
+
+    /// What the robot believes and is about to do, as `watch` shows it.
+    pub fn dialogue(&self) -> Value {
+        self.must(&["watch", "--once", "--json"]).json()["dialogue"].take()
+    }
+
+    /// Waits until the standing decision is `kind` (`ask`, `pick`, …) and returns the dialogue.
+    pub fn wait_for_decision(&self, kind: &str) -> Value {
+        wait_for(&format!("the decision to {kind}"), 20.0, || {
+            Some(self.dialogue()).filter(|dialogue| dialogue["decision"] == kind)
+        })
+    }
+
+    /// The operator's status.
+    pub fn status(&self) -> Value {
+        self.call(&["status", "--json"]).json()
+    }
+
+    /// The status of one service.
+    pub fn service(&self, name: &str) -> Value {
+        let status = self.status();
+        let services = status["services"].as_array().unwrap_or_else(|| panic!("{status}"));
+        let service = services.iter().find(|service| service["name"] == name);
+        service.unwrap_or_else(|| panic!("no {name} in {status}")).clone()
+    }
+
+    /// The process of a service that is up.
+    pub fn pid(&self, service: &str) -> Pid {
+        wait_for(&format!("pid of {service}"), 10.0, || {
+            let pid = self.service(service)["pid"].as_i64()?;
+            Pid::from_raw(i32::try_from(pid).ok()?)
+        })
+    }
+
+    /// Sends a signal to a service.
+    pub fn signal(&self, service: &str, signal: Signal) {
+        // A process that has just ended by itself is as dead as it should be.
+        let _ = kill_process(self.pid(service), signal);
+    }
+
+    /// Waits until a service is ready in another incarnation than `before`.
+    pub fn wait_for_restart(&self, service: &str, before: u64) {
+        wait_for(&format!("restart of {service}"), 15.0, || {
+            let now = self.service(service);
+            let incarnation = now["incarnation"].as_u64()?;
+            (incarnation > before && now["actual"] == "ready").then_some(())
+        });
+    }
+
+    /// The number of a service's start.
+    pub fn incarnation(&self, service: &str) -> u64 {
+        self.service(service)["incarnation"].as_u64().expect("a service that was started")
+    }
+
+    /// Checks the journals as an operator would.
+    pub fn verify_journals(&self) {
+        self.must(&["journal", "--verify"]);
+    }
+
+    /// The logs' ends, for a test that failed.
+    pub fn logs(&self) -> String {
+        let Ok(entries) = std::fs::read_dir(self.paths.log()) else { return String::new() };
+        let files = entries.filter_map(Result::ok).map(|entry| entry.path());
+        let tail = |path: PathBuf| {
+            let text = std::fs::read_to_string(&path).unwrap_or_default();
+            let lines: Vec<&str> = text.lines().collect();
+            let end = lines[lines.len().saturating_sub(25)..].join("\n");
+            format!("--- {}\n{end}\n", path.display())
+        };
+        files.map(tail).collect()
+    }
+
+    /// Stops the group and checks that it leaves no process, no shared memory, no socket.
+    pub fn down(mut self) {
+        self.must(&["down"]);
+        self.is_up = false;
+        assert!(!self.paths.run().exists(), "run/ is left: {:?}", self.paths.run());
+        let left = runtime::admin::leftovers(&self.paths);
+        assert!(left.is_empty(), "shared memory is left: {left:?}");
+        let processes = self.processes();
+        assert!(processes.is_empty(), "processes are left: {processes:?}");
+    }
+
+    /// Processes of this group: those with its home in their environment.
+    pub fn processes(&self) -> Vec<String> {
+        let mark = format!("{ENV_HOME}={}", self.home.path().display());
+        let Ok(entries) = std::fs::read_dir("/proc") else { return Vec::new() };
+        let of_group = |path: &PathBuf| {
+            let environment = std::fs::read(path.join("environ")).unwrap_or_default();
+            environment.split(|&b| b == 0).any(|entry| entry == mark.as_bytes())
+        };
+        let named = |path: PathBuf| {
+            let line = std::fs::read(path.join("cmdline")).unwrap_or_default();
+            String::from_utf8_lossy(&line).replace('\0', " ")
+        };
+        let paths = entries.filter_map(Result::ok).map(|entry| entry.path());
+        paths.filter(of_group).map(named).filter(|line| !line.is_empty()).collect()
+    }
+}
+
+impl Default for Group {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Drop for Group {
+    fn drop(&mut self) {
+        if self.is_up {
+            let _ = self.command(&["down"]).output();
+        }
+    }
+}
