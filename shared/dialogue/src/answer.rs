@@ -38,7 +38,8 @@ impl Answer {
     }
 
     /// What somebody answers who wants `wanted` and neither errs nor stays silent, except that
-    /// there is nothing to say about an attribute that the object lacks.
+    /// there is nothing to say about an attribute that the object lacks. Whoever wants what is not
+    /// here says no to everything.
     pub fn truthful(model: &Model, question: Question, wanted: ObjectId) -> Self {
         match question {
             Question::None => Self::Silence,
@@ -57,6 +58,10 @@ impl Answer {
         match (self, question) {
             (Self::Silence, Question::None) => 1.0,
             (Self::Silence, _) => 1.0 - params.p_l,
+            (Self::Yes | Self::No, Question::Attribute(k, _)) if model.absent() == Some(wanted) => {
+                let yes = model.unknown_yes(k);
+                params.p_l * if self == Self::Yes { yes } else { 1.0 - yes }
+            }
             (Self::Yes | Self::No, Question::Point(_) | Question::Attribute(..)) => {
                 let right = self == Self::truthful(model, question, wanted);
                 params.p_l * if right { 1.0 - params.epsilon } else { params.epsilon }
@@ -96,18 +101,19 @@ mod tests {
     use crate::testing::{bowls, everyone, random_scene};
     use crate::{Actions, Belief, Mode, Params, Rng};
 
-    fn scenes() -> Vec<Scene> {
+    fn models() -> Vec<Model> {
         let mut rng = Rng::new(51);
-        vec![bowls(), random_scene(&mut rng, 12, &[4, 1, 2], 3)]
+        let scenes = [bowls(), random_scene(&mut rng, 12, &[4, 1, 2], 3)];
+        let model = |scene| Model::new(scene, Params::default());
+        scenes.iter().flat_map(|scene| [model(scene), model(scene).with_absent()]).collect()
     }
 
     #[test]
     fn answers_are_a_distribution() {
-        for scene in scenes() {
-            let model = Model::new(&scene, Params::default());
+        for model in models() {
             let actions = Actions { mode: Mode::Present, ..Actions::default() };
             for question in actions.questions(&model) {
-                for wanted in everyone(model.objects()) {
+                for wanted in everyone(model.hypotheses()) {
                     let answers = Answer::possible(&model, question);
                     let sum: f64 =
                         answers.iter().map(|a| a.probability(&model, question, wanted)).sum();
@@ -120,18 +126,17 @@ mod tests {
     /// What planners expect is what the belief is updated with.
     #[test]
     fn answers_move_the_belief_by_their_probability() {
-        for scene in scenes() {
-            let model = Model::new(&scene, Params::default());
+        for model in models() {
             let actions = Actions { mode: Mode::Present, ..Actions::default() };
             for question in actions.questions(&model) {
                 for answer in Answer::possible(&model, question) {
-                    let weights: Vec<f64> = everyone(model.objects())
+                    let weights: Vec<f64> = everyone(model.hypotheses())
                         .map(|i| answer.probability(&model, question, i))
                         .collect();
                     let expected = Belief::from_probabilities(&weights).unwrap();
-                    let mut belief = Belief::uniform(model.objects());
+                    let mut belief = Belief::uniform(model.hypotheses());
                     belief.update(&model, question, &answer.reading(&model));
-                    for i in everyone(model.objects()) {
+                    for i in everyone(model.hypotheses()) {
                         let (a, b) = (belief.probability(i), expected.probability(i));
                         assert!((a - b).abs() < 1e-14, "{question:?} {answer:?}: {a} {b}");
                     }

@@ -1,21 +1,27 @@
 //! The belief: how probable it is, for every object, that it is the one that is wanted.
 
+use std::sync::OnceLock;
+
 use scene::{ObjectId, Question, Reading};
 use serde::{Deserialize, Serialize};
 
 use crate::Model;
-use crate::observation::log_likelihood;
+use crate::observation::{log_likelihood, weigh};
 
-/// A distribution over the objects of a scene.
+/// A distribution over the hypotheses of a model: the objects of a scene, and perhaps that the
+/// wanted one is not here.
 ///
-/// It is held as natural logarithms that are normalised after every update, so that neither
-/// thousands of utterances nor hundreds of objects can under- or overflow, and an object that was
-/// all but ruled out can always come back. The logarithms are its whole state: stored and restored
-/// by [`Belief::log_weights`] and [`Belief::from_log`], it goes on bit for bit as before.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// It is held as the natural logarithms of weights, so that neither thousands of utterances nor
+/// hundreds of objects can under- or overflow, and an object that was all but ruled out can always
+/// come back. An update is one pass over them; what they must be divided by to sum to 1 is found
+/// when somebody asks for a probability. The logarithms are the whole state: stored and restored by
+/// [`Belief::log_weights`] and [`Belief::from_log`], it goes on bit for bit as before.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>", into = "Vec<f64>")]
 pub struct Belief {
     log: Vec<f64>,
+    /// Logarithm of the sum of the weights, once it was asked for.
+    log_sum: OnceLock<f64>,
 }
 
 /// Why numbers are not a belief.
@@ -35,12 +41,6 @@ pub enum BeliefError {
     /// Every entry is zero.
     #[error("every entry of the belief is zero")]
     AllZero,
-    /// Stored logarithms that are not those of a distribution.
-    #[error("the stored belief sums to {sum}, not to 1")]
-    NotNormalised {
-        /// Sum of the probabilities.
-        sum: f64,
-    },
 }
 
 impl Belief {
@@ -50,7 +50,7 @@ impl Belief {
     /// If `objects` is 0; a scene has at least one.
     pub fn uniform(objects: usize) -> Self {
         assert!(objects > 0, "a belief needs at least one object");
-        Self { log: vec![-(objects as f64).ln(); objects] }
+        Self::of(vec![-(objects as f64).ln(); objects])
     }
 
     /// The belief with these probabilities, or with weights in these proportions. Zero is allowed
@@ -69,15 +69,20 @@ impl Belief {
         if probabilities.iter().all(|p| *p == 0.0) {
             return Err(BeliefError::AllZero);
         }
-        let mut belief = Self { log: probabilities.iter().map(|p| p.ln()).collect() };
-        belief.normalise();
-        Ok(belief)
+        let mut belief = Self::of(probabilities.iter().map(|p| p.ln()).collect());
+        let log_sum = belief.log_sum();
+        belief.log.iter_mut().for_each(|l| *l -= log_sum);
+        Ok(Self::of(belief.log))
+    }
+
+    fn of(log: Vec<f64>) -> Self {
+        Self { log, log_sum: OnceLock::new() }
     }
 
     /// The belief with exactly these logarithms, as [`Belief::log_weights`] gave them.
     ///
     /// # Errors
-    /// If they are not the logarithms of a distribution.
+    /// If there are none, one is not a number or infinite, or all are −∞.
     pub fn from_log(log: Vec<f64>) -> Result<Self, BeliefError> {
         if log.is_empty() {
             return Err(BeliefError::Empty);
@@ -85,27 +90,27 @@ impl Belief {
         if let Some(index) = log.iter().position(|l| l.is_nan() || *l == f64::INFINITY) {
             return Err(BeliefError::NotAProbability { index, value: log[index] });
         }
-        let sum: f64 = log.iter().map(|l| l.exp()).sum();
-        // Thousands of objects leave rounding errors near 1e-12; anything larger was not ours.
-        if (sum - 1.0).abs() > 1e-6 {
-            return Err(BeliefError::NotNormalised { sum });
+        if log.iter().all(|l| *l == f64::NEG_INFINITY) {
+            return Err(BeliefError::AllZero);
         }
-        Ok(Self { log })
+        Ok(Self::of(log))
     }
 
-    /// Natural logarithm of every object's probability; −∞ where it is zero.
+    /// Natural logarithm of the weight of every hypothesis, −∞ where it is zero. Weights are
+    /// proportional to probabilities; their sum is not 1 in general.
     pub fn log_weights(&self) -> &[f64] {
         &self.log
     }
 
     /// Every object's probability, in the scene's order.
     pub fn probabilities(&self) -> Vec<f64> {
-        self.log.iter().map(|l| l.exp()).collect()
+        let log_sum = self.log_sum();
+        self.log.iter().map(|l| (l - log_sum).exp()).collect()
     }
 
     /// The probability that object `i` is wanted.
     pub fn probability(&self, i: ObjectId) -> f64 {
-        self.log[i.index()].exp()
+        (self.log[i.index()] - self.log_sum()).exp()
     }
 
     /// The most probable object; of several the first.
@@ -118,7 +123,9 @@ impl Belief {
 
     /// Shannon entropy, bits: 0 when certain, `log2 |I|` when every object is alike.
     pub fn entropy_bits(&self) -> f64 {
-        let nats: f64 = (self.log.iter()).filter(|l| l.is_finite()).map(|l| -l.exp() * l).sum();
+        let log_sum = self.log_sum();
+        let present = self.log.iter().map(|l| l - log_sum).filter(|l| l.is_finite());
+        let nats: f64 = present.map(|l| -l.exp() * l).sum();
         (nats / std::f64::consts::LN_2).max(0.0)
     }
 
@@ -136,7 +143,8 @@ impl Belief {
     /// # Panics
     /// If belief, question and reading are not about the model's scene.
     pub fn update(&mut self, model: &Model, question: Question, reading: &Reading) {
-        self.multiply(&log_likelihood(model, question, reading));
+        weigh(model, question, reading, &mut self.log);
+        self.log_sum.take();
     }
 
     /// Bayes' rule where it is uncertain what was heard, or which question it answers:
@@ -151,40 +159,53 @@ impl Belief {
         for (weight, ..) in heard {
             assert!(weight.is_finite() && *weight >= 0.0, "{weight} is not a weight");
         }
-        let mut hypotheses = heard.iter().filter(|(weight, ..)| *weight > 0.0);
-        let Some((weight, question, reading)) = hypotheses.next() else { return };
-        let mut mixture = log_likelihood(model, *question, reading);
-        let mut weighted = false;
-        for (more, question, reading) in hypotheses {
-            if !weighted {
-                mixture.iter_mut().for_each(|log| *log += weight.ln());
-                weighted = true;
-            }
-            for (sum, log) in mixture.iter_mut().zip(log_likelihood(model, *question, reading)) {
-                *sum = log_add(*sum, log + more.ln());
+        let hypotheses: Vec<_> = heard.iter().filter(|(weight, ..)| *weight > 0.0).collect();
+        let (first, more) = match &hypotheses[..] {
+            [] => return,
+            [(_, question, reading)] => return self.update(model, *question, reading),
+            [first, more @ ..] => (first, more),
+        };
+        let weighted = |(weight, question, reading): &(f64, Question, Reading)| {
+            let mut log = log_likelihood(model, *question, reading);
+            log.iter_mut().for_each(|log| *log += weight.ln());
+            log
+        };
+        let mut mixture = weighted(first);
+        for hypothesis in more {
+            for (sum, log) in mixture.iter_mut().zip(weighted(hypothesis)) {
+                *sum = log_add(*sum, log);
             }
         }
         self.multiply(&mixture);
     }
 
+    /// Multiplies every weight by a likelihood, given as logarithm and known up to a constant.
+    /// The greatest is taken as 1, so that weights only fall.
     fn multiply(&mut self, log_likelihood: &[f64]) {
         assert_eq!(self.log.len(), log_likelihood.len(), "belief and model are of one scene");
         if log_likelihood.iter().all(|l| *l == log_likelihood[0]) {
             return;
         }
+        let greatest = log_likelihood.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         for (weight, likelihood) in self.log.iter_mut().zip(log_likelihood) {
-            *weight += likelihood;
+            *weight += likelihood - greatest;
         }
-        self.normalise();
+        self.log_sum.take();
     }
 
-    /// Subtracts the logarithm of the sum. The largest term is taken out first, so that at least
-    /// one exponential is 1 and none overflows.
-    fn normalise(&mut self) {
-        let largest = self.log.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let sum: f64 = self.log.iter().map(|l| (l - largest).exp()).sum();
-        let log_sum = largest + sum.ln();
-        self.log.iter_mut().for_each(|l| *l -= log_sum);
+    /// The largest term is taken out first, so that at least one exponential is 1 and none
+    /// overflows.
+    fn log_sum(&self) -> f64 {
+        *self.log_sum.get_or_init(|| {
+            let largest = self.log.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            largest + self.log.iter().map(|l| (l - largest).exp()).sum::<f64>().ln()
+        })
+    }
+}
+
+impl PartialEq for Belief {
+    fn eq(&self, other: &Self) -> bool {
+        self.log == other.log
     }
 }
 

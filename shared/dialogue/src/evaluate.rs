@@ -120,7 +120,7 @@ impl Walk<'_> {
 
 /// Beliefs that differ by rounding alone are one.
 fn key(belief: &Belief) -> Vec<i64> {
-    belief.log_weights().iter().map(|l| (l.exp() * 1e12).round() as i64).collect()
+    belief.probabilities().iter().map(|p| (p * 1e12).round() as i64).collect()
 }
 
 #[cfg(test)]

@@ -12,22 +12,43 @@ use crate::Params;
 pub struct Model {
     params: Params,
     objects: usize,
+    absent: bool,
     columns: Vec<Column>,
-    words: Vec<Vec<(AttributeId, ValueId)>>,
-    /// `ln(|V_D| + α|V|)` per object: the denominator of eq. (5).
-    log_vocabulary: Vec<f64>,
+    words: Vec<Word>,
+    vocabulary: Vocabulary,
 }
 
-/// One attribute: the value of every object, and the word of every value.
+/// `ln(|V_D| + α|V|)` per hypothesis: the denominator of eq. (5).
+#[derive(Clone, Debug, PartialEq)]
+struct Vocabulary {
+    /// The smallest.
+    least: f64,
+    /// How far each is above the smallest.
+    above: Vec<f64>,
+}
+
+/// One attribute: the value of every hypothesis, and the word of every value.
 #[derive(Clone, Debug, PartialEq)]
 struct Column {
     values: Vec<u16>,
     words: Vec<WordId>,
+    /// Per value: whether some hypotheses have it and others do not.
+    splits: Vec<bool>,
+}
+
+/// What a word stands for, and whether hearing it says anything.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Word {
+    meanings: Vec<(AttributeId, ValueId)>,
+    /// Whether eq. (5) differs between hypotheses.
+    splits: bool,
 }
 
 impl Model {
     /// Stands in a column for an object that lacks the attribute.
     pub const LACKS: u16 = u16::MAX;
+    /// Stands in every column for what is not here: nobody knows what it is like.
+    pub const UNKNOWN: u16 = u16::MAX - 1;
 
     /// The tables of a scene.
     ///
@@ -38,17 +59,62 @@ impl Model {
         let columns: Vec<Column> = (0..scene.attributes().len())
             .map(|k| Column::of(scene, AttributeId::from(k)))
             .collect();
-        let mut words = vec![Vec::new(); scene.words().len()];
+        let mut words = vec![Word::default(); scene.words().len()];
         for (k, column) in columns.iter().enumerate() {
             for (v, word) in column.words.iter().enumerate() {
-                words[word.index()].push((AttributeId::from(k), ValueId::from(v)));
+                words[word.index()].meanings.push((AttributeId::from(k), ValueId::from(v)));
             }
         }
         let smoothing = params.alpha * scene.words().len() as f64;
-        let log_vocabulary = (0..scene.objects().len())
-            .map(|i| (scene.vocabulary_len(ObjectId::from(i)) as f64 + smoothing).ln())
-            .collect();
-        Self { params, objects: scene.objects().len(), columns, words, log_vocabulary }
+        let objects = scene.objects().len();
+        let vocabulary = Vocabulary::new(
+            (0..objects)
+                .map(|i| (scene.vocabulary_len(ObjectId::from(i)) as f64 + smoothing).ln())
+                .collect(),
+        );
+        let mut model = Self { params, objects, absent: false, columns, words, vocabulary };
+        model.find_what_splits();
+        model
+    }
+
+    /// The model with one hypothesis more, after the objects: that the wanted object is not here.
+    ///
+    /// It has no words of the scene, so that eq. (5) makes it speak every word with `1/|V|`. What
+    /// it is like is unknown: "is its k v?" is answered with yes as often as one of `|V_k|` values
+    /// or something else would be, and an open question with any value. Pointing is answered with
+    /// no.
+    #[must_use]
+    pub fn with_absent(mut self) -> Self {
+        if !self.absent {
+            self.absent = true;
+            self.columns.iter_mut().for_each(|column| column.values.push(Self::UNKNOWN));
+            let smoothing = self.params.alpha * self.words.len() as f64;
+            let Vocabulary { least, above } = &self.vocabulary;
+            let objects = above.iter().map(|log| log + least);
+            self.vocabulary = Vocabulary::new(objects.chain([smoothing.ln()]).collect());
+            self.find_what_splits();
+        }
+        self
+    }
+
+    fn find_what_splits(&mut self) {
+        let hypotheses = self.hypotheses();
+        for column in &mut self.columns {
+            let mut count = vec![0; column.words.len()];
+            for &value in column.values.iter().filter(|value| **value < Self::UNKNOWN) {
+                count[usize::from(value)] += 1;
+            }
+            let unsure = self.absent && hypotheses > 1;
+            column.splits = count.iter().map(|&n| unsure || (n > 0 && n < hypotheses)).collect();
+        }
+        let vocabulary = self.vocabulary.above.iter().any(|above| *above > 0.0);
+        for w in 0..self.words.len() {
+            let mut has =
+                (0..hypotheses).map(|i| self.has_word(ObjectId::from(i), WordId::from(w)));
+            let first = has.next();
+            let splits = vocabulary || has.any(|other| Some(other) != first);
+            self.words[w].splits = splits;
+        }
     }
 
     /// `p_l`, `ε` and `α`.
@@ -61,6 +127,17 @@ impl Model {
         self.objects
     }
 
+    /// The hypothesis that the wanted object is not here, where the model has it: one past the
+    /// last object.
+    pub fn absent(&self) -> Option<ObjectId> {
+        self.absent.then(|| ObjectId::from(self.objects))
+    }
+
+    /// Length of a belief: the objects, and one more where the wanted one may not be here.
+    pub fn hypotheses(&self) -> usize {
+        self.objects + usize::from(self.absent)
+    }
+
     /// `|K|`: how many attributes there are.
     pub fn attributes(&self) -> usize {
         self.columns.len()
@@ -71,7 +148,8 @@ impl Model {
         self.columns[k.index()].words.len()
     }
 
-    /// The value index of every object for attribute `k`, or [`Model::LACKS`].
+    /// The value index of every hypothesis for attribute `k`, or [`Model::LACKS`], or
+    /// [`Model::UNKNOWN`].
     pub fn column(&self, k: AttributeId) -> &[u16] {
         &self.columns[k.index()].values
     }
@@ -83,16 +161,27 @@ impl Model {
 
     /// The attributes and values that a word stands for: one, or more where attributes share it.
     pub fn meanings(&self, word: WordId) -> &[(AttributeId, ValueId)] {
-        &self.words[word.index()]
+        &self.words[word.index()].meanings
+    }
+
+    /// Whether "is its k v?" can be answered differently about different hypotheses.
+    pub(crate) fn splits(&self, k: AttributeId, v: ValueId) -> bool {
+        self.columns[k.index()].splits[v.index()]
+    }
+
+    /// Probability that "is its k v?" is answered with yes about something unknown, given an
+    /// answer: it is one of the `|V_k|` values or something else, each as likely.
+    pub(crate) fn unknown_yes(&self, k: AttributeId) -> f64 {
+        1.0 / (self.values(k) as f64 + 1.0)
     }
 
     /// The value of object `i` for attribute `k`, if it has one.
     pub fn value(&self, i: ObjectId, k: AttributeId) -> Option<ValueId> {
         let value = self.column(k)[i.index()];
-        (value != Self::LACKS).then_some(ValueId(value))
+        (value < Self::UNKNOWN).then_some(ValueId(value))
     }
 
-    /// `attr_k,v(i)`: false for an object that lacks the attribute.
+    /// `attr_k,v(i)`: false for an object that lacks the attribute, and for what is not here.
     pub fn has(&self, i: ObjectId, k: AttributeId, v: ValueId) -> bool {
         self.column(k)[i.index()] == v.0
     }
@@ -114,24 +203,39 @@ impl Model {
         }
     }
 
-    /// `ln P(w | D)` of eq. (5), added to the entry of every object.
-    pub(crate) fn add_log_word(&self, word: WordId, out: &mut [f64]) {
+    /// `ln P(w | D)` of eq. (5), but for a constant that is returned, added to every entry. The
+    /// constant is chosen so that entries only fall.
+    pub(crate) fn add_log_word(&self, word: WordId, out: &mut [f64]) -> f64 {
         let own = (1.0 + self.params.alpha).ln();
-        let other = self.params.alpha.ln();
+        let other = self.params.alpha.ln() - own;
+        let constant = own - self.vocabulary.least;
+        if !self.words[word.index()].splits {
+            let has = self.has_word(ObjectId(0), word);
+            return if has { constant } else { constant + other };
+        }
+        let entries = out.iter_mut().zip(&self.vocabulary.above);
         match self.meanings(word) {
             &[(k, v)] => {
-                let objects = out.iter_mut().zip(self.column(k)).zip(&self.log_vocabulary);
-                for ((entry, &value), vocabulary) in objects {
-                    *entry += if value == v.0 { own } else { other } - vocabulary;
+                for ((entry, above), &value) in entries.zip(self.column(k)) {
+                    let factor = if value == v.0 { 0.0 } else { other };
+                    *entry += factor - above;
                 }
             }
             _ => {
-                for (i, entry) in out.iter_mut().enumerate() {
-                    let factor = if self.has_word(ObjectId::from(i), word) { own } else { other };
-                    *entry += factor - self.log_vocabulary[i];
+                for (i, (entry, above)) in entries.enumerate() {
+                    let factor = if self.has_word(ObjectId::from(i), word) { 0.0 } else { other };
+                    *entry += factor - above;
                 }
             }
         }
+        constant
+    }
+}
+
+impl Vocabulary {
+    fn new(log: Vec<f64>) -> Self {
+        let least = log.iter().copied().fold(f64::INFINITY, f64::min);
+        Self { least, above: log.iter().map(|log| log - least).collect() }
     }
 }
 
@@ -141,7 +245,7 @@ impl Column {
             .map(|object| object.values[k.index()].map_or(Model::LACKS, |v| v.0))
             .collect();
         let words = scene.attributes()[k.index()].values.iter().map(|value| value.word).collect();
-        Self { values, words }
+        Self { values, words, splits: Vec::new() }
     }
 }
 
@@ -182,10 +286,10 @@ mod tests {
         let orange = scene.word_named("orange").unwrap();
         assert_eq!(model.meanings(orange).len(), 2);
         let mut log = vec![0.0; 2];
-        model.add_log_word(orange, &mut log);
+        let constant = model.add_log_word(orange, &mut log);
         // |V| = {orange, green, pear}, V_a = {orange}, V_b = {green}.
-        assert!((log[0].exp() - 1.2 / 1.6).abs() < 1e-15);
-        assert!((log[1].exp() - 0.2 / 1.6).abs() < 1e-15);
+        assert!(((log[0] + constant).exp() - 1.2 / 1.6).abs() < 1e-15);
+        assert!(((log[1] + constant).exp() - 0.2 / 1.6).abs() < 1e-15);
     }
 
     #[test]

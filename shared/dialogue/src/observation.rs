@@ -10,11 +10,11 @@
 //! | yes or no, question `which k` | `1/3` each: no answer to it | extension |
 //! | excluded group | `ε` for an object that has all of its words, `1−ε` for others | extension |
 
-use scene::{AttributeId, Question, Reading, Response, ValueId, WordId};
+use scene::{AttributeId, ObjectId, Question, Reading, Response, ValueId, WordId};
 
 use crate::Model;
 
-/// `ln P(l_b, l_r | D, Q_t, Q_v)` of eq. (1) for every object `D`, in the scene's order.
+/// `ln P(l_b, l_r | D, Q_t, Q_v)` of eq. (1) for every hypothesis `D`, in the model's order.
 ///
 /// Equal entries are equal bit for bit, so an observation that says nothing about the objects is
 /// recognised exactly.
@@ -22,21 +22,28 @@ use crate::Model;
 /// # Panics
 /// If the question or the reading is not about the model's scene.
 pub fn log_likelihood(model: &Model, question: Question, reading: &Reading) -> Vec<f64> {
-    assert!(model.contains(question), "{question:?} is not about this scene");
-    let mut log = vec![0.0; model.objects()];
-    add_base(model, question, reading, &mut log);
-    add_response(model, question, reading.response, &mut log);
-    for group in reading.excluded.iter().filter(|group| !group.is_empty()) {
-        add_excluded(model, group, &mut log);
-    }
+    let mut log = vec![0.0; model.hypotheses()];
+    let constant = weigh(model, question, reading, &mut log);
+    log.iter_mut().for_each(|entry| *entry += constant);
     log
+}
+
+/// Adds [`log_likelihood`] to every entry, but for a constant that is returned: one pass for each
+/// thing said that tells hypotheses apart, and none for what says nothing. No entry rises.
+pub(crate) fn weigh(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
+    assert!(model.contains(question), "{question:?} is not about this scene");
+    assert_eq!(log.len(), model.hypotheses(), "belief and model are of one scene");
+    let said = reading.excluded.iter().filter(|group| !group.is_empty());
+    let mut constant = add_base(model, question, reading, log);
+    constant += add_response(model, question, reading.response, log);
+    said.fold(constant, |constant, group| constant + add_excluded(model, group, log))
 }
 
 /// How a person answers "what is its k?": the value that the object has with `1 − ε`, each other
 /// value of `V_k` with `ε/(|V_k| − 1)`; silence is `1 − p_l` as for every question.
 ///
-/// An object that lacks the attribute has no true answer; whoever wants it is taken to name any
-/// value with the same probability. With one value there is nothing to confuse it with, so `ε`
+/// An object that lacks the attribute, or is not here, has no true answer that is known; whoever
+/// wants it is taken to name any value with the same probability. With one value there is nothing to confuse it with, so `ε`
 /// plays no part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenQuestion {
@@ -63,7 +70,7 @@ impl OpenQuestion {
     /// in the model's column.
     pub fn answer(&self, v: ValueId, entry: u16) -> f64 {
         match entry {
-            Model::LACKS => self.lacking,
+            Model::LACKS | Model::UNKNOWN => self.lacking,
             own if own == v.0 => self.own,
             _ => self.other,
         }
@@ -84,67 +91,93 @@ fn open_answer(
 }
 
 /// Eq. (4) and (5), with the answer to an open question in place of its word's own factor.
-fn add_base(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) {
+fn add_base(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
     if reading.base.is_empty() {
-        return add(log, (1.0 - model.params().p_l).ln());
+        return (1.0 - model.params().p_l).ln();
     }
-    add(log, model.params().p_l.ln());
+    let mut constant = model.params().p_l.ln();
     let answer = open_answer(model, question, &reading.base);
     if let Some((k, v)) = answer {
-        let open = OpenQuestion::new(model, k);
-        for (entry, &value) in log.iter_mut().zip(model.column(k)) {
-            *entry += open.answer(v, value).ln();
-        }
+        constant += add_open(model, k, v, log);
     }
     let answering = answer.map(|(k, v)| model.word(k, v));
     for &word in reading.base.iter().filter(|&&word| Some(word) != answering) {
-        model.add_log_word(word, log);
+        constant += model.add_log_word(word, log);
     }
+    constant
+}
+
+fn add_open(model: &Model, k: AttributeId, v: ValueId, log: &mut [f64]) -> f64 {
+    let open = OpenQuestion::new(model, k);
+    let column = model.column(k);
+    if column.iter().all(|entry| *entry == column[0]) {
+        return open.answer(v, column[0]).ln();
+    }
+    let constant = open.own.ln();
+    let others = [open.other, open.lacking].map(|p| p.ln() - constant);
+    for (entry, &value) in log.iter_mut().zip(column) {
+        *entry += match value {
+            Model::LACKS | Model::UNKNOWN => others[1],
+            own if own == v.0 => 0.0,
+            _ => others[0],
+        };
+    }
+    constant
 }
 
 /// Eq. (6) and (7).
-fn add_response(model: &Model, question: Question, response: Response, log: &mut [f64]) {
+fn add_response(model: &Model, question: Question, response: Response, log: &mut [f64]) -> f64 {
     let params = model.params();
-    let asked_yes_no = matches!(question, Question::Point(_) | Question::Attribute(..));
-    if !asked_yes_no {
-        return add(log, (1.0_f64 / 3.0).ln());
-    }
-    let right = (params.p_l * (1.0 - params.epsilon)).ln();
-    let wrong = (params.p_l * params.epsilon).ln();
-    let (if_true, if_false) = match response {
-        Response::None => return add(log, (1.0 - params.p_l).ln()),
-        Response::Yes => (right, wrong),
-        Response::No => (wrong, right),
+    let yes = match (question, response) {
+        (Question::None | Question::Which(_), _) => return (1.0_f64 / 3.0).ln(),
+        (_, Response::None) => return (1.0 - params.p_l).ln(),
+        (_, response) => response == Response::Yes,
     };
+    let right = (params.p_l * (1.0 - params.epsilon)).ln();
+    let odds = (params.epsilon / (1.0 - params.epsilon)).ln();
+    let (if_true, if_false) = if yes { (0.0, odds) } else { (odds, 0.0) };
     match question {
+        Question::Attribute(k, v) if !model.splits(k, v) => {
+            right + if model.has(ObjectId(0), k, v) { if_true } else { if_false }
+        }
         Question::Attribute(k, v) => {
             for (entry, &value) in log.iter_mut().zip(model.column(k)) {
                 *entry += if value == v.0 { if_true } else { if_false };
             }
-        }
-        Question::Point(asked) => {
-            for (i, entry) in log.iter_mut().enumerate() {
-                *entry += if i == asked.index() { if_true } else { if_false };
+            if let Some(absent) = model.absent() {
+                let unknown = model.unknown_yes(k);
+                let told = params.p_l * if yes { unknown } else { 1.0 - unknown };
+                log[absent.index()] += told.ln() - right - if_false;
             }
+            right
         }
-        Question::None | Question::Which(_) => {}
+        Question::Point(_) if log.len() == 1 => right + if_true,
+        Question::Point(asked) => {
+            let own = log[asked.index()];
+            if yes {
+                log.iter_mut().for_each(|entry| *entry += odds);
+            }
+            log[asked.index()] = own + if_true;
+            right
+        }
+        Question::None | Question::Which(_) => 0.0,
     }
 }
 
 /// "Not the small white one": an error of the person's or of the listening is as likely as in an
 /// answer.
-fn add_excluded(model: &Model, group: &[WordId], log: &mut [f64]) {
+fn add_excluded(model: &Model, group: &[WordId], log: &mut [f64]) -> f64 {
+    let ruled_out = |i: usize| group.iter().all(|&word| model.has_word(i.into(), word));
     let epsilon = model.params().epsilon;
+    let constant = (1.0 - epsilon).ln();
+    let factor = epsilon.ln() - constant;
+    if (0..log.len()).all(ruled_out) {
+        return constant + factor;
+    }
     for (i, entry) in log.iter_mut().enumerate() {
-        let ruled_out = group.iter().all(|&word| model.has_word(i.into(), word));
-        *entry += if ruled_out { epsilon } else { 1.0 - epsilon }.ln();
+        *entry += if ruled_out(i) { factor } else { 0.0 };
     }
-}
-
-fn add(log: &mut [f64], constant: f64) {
-    for entry in log {
-        *entry += constant;
-    }
+    constant
 }
 
 #[cfg(test)]

@@ -9,7 +9,8 @@ use super::Outlook;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Entropy;
 
-/// Information below this, in nats, is rounding.
+/// Information below this, in nats, is rounding: of questions that differ by less the first is
+/// asked.
 const NOTHING: f64 = 1e-9;
 
 impl Planner for Entropy {
@@ -24,8 +25,8 @@ impl Planner for Entropy {
         let most = (outlook.glance.choices.iter())
             .filter(|choice| choice.information > NOTHING)
             .reduce(|a, b| {
-                let more = rate(b.query, b.information) > rate(a.query, a.information);
-                if more { b } else { a }
+                let more = rate(b.query, b.information) - rate(a.query, a.information);
+                if more > NOTHING { b } else { a }
             });
         let costs = &problem.costs;
         let at_stake = (1.0 - outlook.glance.peak) * (costs.correct + costs.wrong);

@@ -209,6 +209,32 @@ fn one_object_is_picked_and_hopeless_cases_are_waited_out() {
     assert!((decision.value + 10.0).abs() < 1e-9);
 }
 
+/// Somebody wants what is not here, and says no to everything.
+#[test]
+fn what_is_not_here_is_concluded() {
+    for scene in [bowls(), tools()] {
+        let model = Model::new(&scene, Params::default()).with_absent();
+        let absent = model.absent().unwrap();
+        let mut prior = vec![0.95 / model.objects() as f64; model.objects()];
+        prior.push(0.05);
+        for actions in [YES_NO, PRESENT] {
+            let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+            let mut belief = Belief::from_probabilities(&prior).unwrap();
+            let denied = |step| {
+                let step = Step { interaction: 0, step };
+                let action = Lookahead::default().decide(&problem, &belief, step).action;
+                if let Action::Ask(question) = action {
+                    assert!(!matches!(question, Question::Point(i) if i >= absent));
+                    belief.update(&model, question, &Answer::No.reading(&model));
+                }
+                action
+            };
+            let end = (0..30).map(denied).find(|action| !matches!(action, Action::Ask(_)));
+            assert_eq!(end, Some(Action::Pick(absent)), "{actions:?}");
+        }
+    }
+}
+
 /// What a decision expects against what following the policy comes to.
 #[test]
 fn expected_questions_come_true() {

@@ -61,7 +61,7 @@ fn groups(problem: &DecisionProblem<'_>, kept: &[usize]) -> Vec<usize> {
     let asked = if problem.actions.about_attributes() { model.attributes() } else { 0 };
     let columns: Vec<&[u16]> = (0..asked).map(|k| model.column(AttributeId::from(k))).collect();
     let mut known = HashMap::new();
-    let mut group = vec![0; model.objects()];
+    let mut group = vec![0; model.hypotheses()];
     for &i in kept {
         let values: Vec<u16> = columns.iter().map(|column| column[i]).collect();
         let fresh = known.len();

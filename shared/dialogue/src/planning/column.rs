@@ -11,12 +11,30 @@ pub(crate) struct Column {
     pub(crate) attribute: AttributeId,
     /// The cell of every class.
     pub(crate) cells: Vec<u16>,
-    /// The value of every cell; `None` for the cell of classes that lack the attribute.
+    /// The value of every cell; `None` for the cell of classes that lack the attribute, and for
+    /// that of what is not here.
     pub(crate) values: Vec<Option<ValueId>>,
+    /// The cell of what is not here.
+    pub(crate) unknown: Option<Unknown>,
     /// How "is its k v?" is answered.
     pub(crate) yes_no: Channel,
     /// How "what is its k?" is answered.
     pub(crate) open: Channel,
+}
+
+/// How "is its k v?" is answered about what is not here.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Unknown {
+    pub(crate) cell: u16,
+    /// Probability of yes, given an answer.
+    pub(crate) yes: f64,
+}
+
+impl Unknown {
+    /// Probability of that answer.
+    pub(super) fn told(&self, yes: bool) -> f64 {
+        if yes { self.yes } else { 1.0 - self.yes }
+    }
 }
 
 impl Column {
@@ -28,15 +46,18 @@ impl Column {
         classes: &[ObjectId],
     ) -> Option<Self> {
         let model = problem.model;
-        let mut cell_of = vec![None; model.values(k) + 1];
+        let mut cell_of = vec![None; model.values(k) + 2];
         let mut values = Vec::new();
         let mut cells = Vec::with_capacity(classes.len());
         for object in classes {
             let entry = model.column(k)[object.index()];
-            // Objects that lack the attribute take the place after the last value.
-            let place = usize::from(entry).min(model.values(k));
+            let place = match entry {
+                Model::LACKS => model.values(k),
+                Model::UNKNOWN => model.values(k) + 1,
+                value => usize::from(value),
+            };
             let cell = *cell_of[place].get_or_insert_with(|| {
-                values.push((entry != Model::LACKS).then_some(ValueId(entry)));
+                values.push((entry < Model::UNKNOWN).then_some(ValueId(entry)));
                 (values.len() - 1) as u16
             });
             cells.push(cell);
@@ -45,16 +66,23 @@ impl Column {
             return None;
         }
         let lacking = values.contains(&None);
-        let named = values.len() - usize::from(lacking);
+        let named = values.iter().flatten().count();
         let absent = model.values(k) - named;
+        let unknown = cell_of[model.values(k) + 1];
+        let unknown = unknown.map(|cell| Unknown { cell, yes: model.unknown_yes(k) });
         let open = Channel::open(problem, OpenQuestion::new(model, k), named, absent, lacking);
         let yes_no = Channel::yes_no(model.params(), &problem.costs, problem.costs.attribute_s);
-        Some(Self { attribute: k, cells, values, yes_no, open })
+        Some(Self { attribute: k, cells, values, unknown, yes_no, open })
     }
 
-    /// The cell of classes that lack the attribute.
-    pub(super) fn lacking(&self) -> Option<usize> {
-        self.values.iter().position(Option::is_none)
+    /// Whether classes in that cell have no value to be named.
+    pub(super) fn lacks(&self, cell: u16) -> bool {
+        self.values[usize::from(cell)].is_none()
+    }
+
+    /// The cells that have a value.
+    pub(super) fn named(&self) -> impl Iterator<Item = u16> {
+        (0..self.values.len() as u16).filter(|cell| !self.lacks(*cell))
     }
 
     /// Every value's cell, with the exclusive or of its classes' codes.
@@ -63,8 +91,7 @@ impl Column {
         for (cell, code) in self.cells.iter().zip(codes) {
             sets[usize::from(*cell)] ^= code;
         }
-        let valued = self.values.iter().zip(sets).enumerate().filter(|(_, (v, _))| v.is_some());
-        valued.map(|(cell, (_, set))| (cell as u16, set))
+        self.named().map(move |cell| (cell, sets[usize::from(cell)]))
     }
 
     /// Whether its open question tells anything: not if there is one value to name.
@@ -74,12 +101,12 @@ impl Column {
 
     /// Whether its open question has the same answers as a yes/no question.
     pub(super) fn is_yes_no(&self) -> bool {
-        self.values.len() == 2 && self.lacking().is_none() && self.open.own == self.yes_no.own
+        self.values.len() == 2 && self.named().count() == 2 && self.open.own == self.yes_no.own
     }
 
     /// Equal for columns whose open questions have the same answers for every class.
-    pub(super) fn identity(&self) -> (Vec<u16>, Option<usize>, [u64; 2]) {
-        let answers = [self.open.other.to_bits(), self.open.absent_other.to_bits()];
-        (self.cells.clone(), self.lacking(), answers)
+    pub(super) fn identity(&self) -> (Vec<u16>, Vec<u16>, [u64; 3]) {
+        let answers = [self.open.other, self.open.lacking, self.open.absent_other];
+        (self.cells.clone(), self.named().collect(), answers.map(f64::to_bits))
     }
 }

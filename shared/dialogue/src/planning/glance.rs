@@ -47,6 +47,8 @@ pub(crate) struct Glancer<'a> {
     alike: Option<(f64, f64)>,
     classes: Vec<Cell>,
     all: Cell,
+    /// What is not here; nothing where the model takes everything to be here.
+    absent: Cell,
     entropy: f64,
 }
 
@@ -55,7 +57,8 @@ impl<'a> Glancer<'a> {
         let first = reduced.share[0];
         let alike = reduced.share.iter().all(|share| *share == first);
         let alike = alike.then(|| (first, bound.worth[0]));
-        Self { reduced, bound, alike, classes: Vec::new(), all: Cell::default(), entropy: 0.0 }
+        let (classes, all, absent) = (Vec::new(), Cell::default(), Cell::default());
+        Self { reduced, bound, alike, classes, all, absent, entropy: 0.0 }
     }
 
     /// Looks one step ahead from a belief over the classes.
@@ -64,6 +67,7 @@ impl<'a> Glancer<'a> {
         self.classes.clear();
         self.classes.extend((0..mass.len()).map(|c| Cell::class(mass[c], share[c], worth[c])));
         self.all = self.classes.iter().fold(Cell::default(), |sum, cell| sum.plus(cell));
+        self.absent = self.reduced.absent.map_or(Cell::default(), |class| self.classes[class]);
         let summary = self.all.summary();
         self.entropy = summary.entropy;
         let stop = self.bound.value(&summary);
@@ -78,17 +82,24 @@ impl<'a> Glancer<'a> {
         let mut collected = None;
         let mut cells = Vec::new();
         let mut greatest = TwoGreatest::default();
+        let mut here = Cell::default();
         for &query in &self.reduced.queries {
             let (Query::Is { column, .. } | Query::Which { column }) = query else { continue };
+            let unknown = self.reduced.column(column).unknown;
             if collected != Some(column) {
                 collected = Some(column);
                 self.collect(column, &mut cells);
-                greatest = TwoGreatest::of(cells.iter());
+                let unknown = unknown.map(|unknown| usize::from(unknown.cell));
+                let others = cells.iter().enumerate().filter(|(cell, _)| Some(*cell) != unknown);
+                greatest = TwoGreatest::of(others.map(|(_, sum)| sum));
+                here = self.all.without(&self.absent, greatest.but(&Cell::default()));
             }
             choices.push(match query {
                 Query::Is { cell, .. } => {
                     let yes = &cells[usize::from(cell)];
-                    self.yes_no(query, yes, &self.all.without(yes, greatest.but(yes)))
+                    let no = here.without(yes, greatest.but(yes));
+                    let unknown = unknown.map_or(0.0, |unknown| unknown.yes);
+                    self.yes_no(query, yes, &no, unknown)
                 }
                 _ => self.open(query, column, &cells),
             });
@@ -119,21 +130,26 @@ impl<'a> Glancer<'a> {
         }
     }
 
-    fn yes_no(&self, query: Query, yes: &Cell, no: &Cell) -> Choice {
+    /// A question to which some classes say yes and some no, and what is not here yes with
+    /// probability `unknown`.
+    fn yes_no(&self, query: Query, yes: &Cell, no: &Cell, unknown: f64) -> Choice {
         let channel = self.reduced.channel(query);
         let mut outlook = Outlook::new(self.bound);
-        outlook.add(&yes.weigh(channel.own).plus(&no.weigh(channel.other)));
-        outlook.add(&yes.weigh(channel.other).plus(&no.weigh(channel.own)));
+        for (is, not, unsure) in
+            [(channel.own, channel.other, unknown), (channel.other, channel.own, 1.0 - unknown)]
+        {
+            let heard = yes.weigh(is).plus(&no.weigh(not));
+            outlook.add(&heard.plus(&self.absent.weigh(unsure)));
+        }
         outlook.choice(query, channel, self.entropy)
     }
 
     fn open(&self, query: Query, column: u16, cells: &[Cell]) -> Choice {
         let column = self.reduced.column(column);
         let channel = &column.open;
-        let lacking = column.lacking();
-        let lack = lacking.map_or(Cell::default(), |cell| cells[cell]);
-        let named =
-            || cells.iter().enumerate().filter(|(c, _)| Some(*c) != lacking).map(|(_, s)| s);
+        let named = || column.named().map(|cell| &cells[usize::from(cell)]);
+        let lacking = (0..cells.len()).filter(|cell| column.values[*cell].is_none());
+        let lack = lacking.fold(Cell::default(), |sum, cell| sum.plus(&cells[cell]));
         let greatest = TwoGreatest::of(named());
         // No cell is greater than all of them, so nothing is left out of the maxima here.
         let having = self.all.without(&lack, greatest.but(&Cell::default()));
@@ -163,11 +179,13 @@ impl<'a> Glancer<'a> {
         }
         pointed.sort_unstable_by(rank);
         pointed.dedup_by(|next, kept| self.reduced.interchange(*next, *kept, mass));
-        let greatest = TwoGreatest::of(self.classes.iter());
+        let here = self.classes.iter().enumerate().filter(|(c, _)| Some(*c) != self.reduced.absent);
+        let greatest = TwoGreatest::of(here.map(|(_, class)| class));
+        let here = self.all.without(&self.absent, greatest.but(&Cell::default()));
         for class in pointed {
             let yes = &self.classes[class as usize];
-            let no = self.all.without(yes, greatest.but(yes));
-            choices.push(self.yes_no(Query::Point { class }, yes, &no));
+            let no = here.without(yes, greatest.but(yes));
+            choices.push(self.yes_no(Query::Point { class }, yes, &no, self.reduced.point.other));
         }
         let last = choices.last().filter(|_| more);
         last.map_or(f64::NEG_INFINITY, |last| {

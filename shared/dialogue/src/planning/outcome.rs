@@ -1,6 +1,7 @@
 //! The beliefs after the answers to a question.
 
 use super::channel::Query;
+use super::column::Column;
 use super::reduced::Reduced;
 
 /// Probability of each answer that tells something, and the class probabilities after it.
@@ -14,17 +15,21 @@ pub(crate) fn outcomes(reduced: &Reduced, query: Query, mass: &[f64]) -> Vec<(f6
             answers.push(weigh(mass, |c| if is(c) { channel.other } else { channel.own }));
         }
         Query::Is { column, cell } => {
-            let cells = &reduced.column(column).cells;
-            let is = |c: usize| cells[c] == cell;
-            answers.push(weigh(mass, |c| if is(c) { channel.own } else { channel.other }));
-            answers.push(weigh(mass, |c| if is(c) { channel.other } else { channel.own }));
+            let Column { cells, unknown, .. } = reduced.column(column);
+            for (is, not) in [(channel.own, channel.other), (channel.other, channel.own)] {
+                answers.push(weigh(mass, |c| match (cells[c], unknown) {
+                    (own, _) if own == cell => is,
+                    (none, Some(unknown)) if none == unknown.cell => unknown.told(is > not),
+                    _ => not,
+                }));
+            }
         }
         Query::Which { column } => {
             let column = reduced.column(column);
-            let lacks = |c: usize| column.values[usize::from(column.cells[c])].is_none();
-            for (cell, _) in column.values.iter().enumerate().filter(|(_, v)| v.is_some()) {
+            let lacks = |c: usize| column.lacks(column.cells[c]);
+            for cell in column.named() {
                 answers.push(weigh(mass, |c| match column.cells[c] {
-                    own if usize::from(own) == cell => channel.own,
+                    own if own == cell => channel.own,
                     _ if lacks(c) => channel.lacking,
                     _ => channel.other,
                 }));

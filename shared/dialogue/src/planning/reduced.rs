@@ -28,6 +28,8 @@ pub(crate) struct Reduced {
     /// Yes/no and open questions about attributes, none the double of another; those about one
     /// attribute together.
     pub(crate) queries: Vec<Query>,
+    /// The class of what is not here.
+    pub(crate) absent: Option<usize>,
     /// Classes that are worth pointing at.
     pub(crate) pointed: Vec<u32>,
     /// How a pointing question is answered.
@@ -44,15 +46,16 @@ impl Reduced {
     /// If the belief is not about the problem's scene.
     pub(crate) fn new(problem: &DecisionProblem<'_>, belief: &Belief) -> Self {
         let model = problem.model;
-        assert_eq!(belief.len(), model.objects(), "belief and model are of one scene");
+        assert_eq!(belief.len(), model.hypotheses(), "belief and model are of one scene");
         let Classes { mass, best, share, interchangeable } = Classes::of(problem, belief);
         let asked = if problem.actions.about_attributes() { model.attributes() } else { 0 };
         let columns =
             (0..asked).filter_map(|k| Column::of(problem, AttributeId::from(k), &best)).collect();
         let point = Channel::yes_no(model.params(), &problem.costs, problem.costs.point_s);
+        let absent = best.iter().position(|object| Some(*object) == model.absent());
         let (queries, pointed) = (Vec::new(), Vec::new());
         let mut reduced =
-            Self { mass, best, share, columns, queries, pointed, point, interchangeable };
+            Self { mass, best, share, columns, queries, absent, pointed, point, interchangeable };
         reduced.find_questions(problem);
         reduced
     }
@@ -109,7 +112,8 @@ impl Reduced {
     }
 
     /// Collects the questions. Two yes/no questions are equal if they split the classes alike,
-    /// whichever half says yes. A set of classes is known by the exclusive or of random numbers,
+    /// whichever half says yes; and, where the wanted object may not be here, if nobody knows the
+    /// answer about it equally. A set of classes is known by the exclusive or of random numbers,
     /// one per class.
     fn find_questions(&mut self, problem: &DecisionProblem<'_>) {
         let mut rng = Rng::new(0x5eed);
@@ -128,7 +132,8 @@ impl Reduced {
             }
             if problem.actions.attribute {
                 for (cell, set) in column.sets(&codes) {
-                    if splits.insert(split(set)) {
+                    let split = column.unknown.map_or(split(set), |u| set ^ u.yes.to_bits());
+                    if splits.insert(split) {
                         self.queries.push(Query::Is { column: index, cell });
                     }
                 }
@@ -137,7 +142,8 @@ impl Reduced {
         if problem.actions.point() && self.classes() > 1 {
             let cheaper = problem.costs.attribute_s <= problem.costs.point_s;
             let known = |code: u64| cheaper && splits.contains(&split(code));
-            let pointed = codes.iter().enumerate().filter(|(_, code)| !known(**code));
+            let here = codes.iter().enumerate().filter(|(class, _)| Some(*class) != self.absent);
+            let pointed = here.filter(|(_, code)| !known(**code));
             self.pointed = pointed.map(|(class, _)| class as u32).collect();
         }
     }

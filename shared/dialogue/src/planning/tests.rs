@@ -21,7 +21,8 @@ fn random_belief(rng: &mut Rng, objects: usize) -> Belief {
     Belief::from_probabilities(&weights).unwrap()
 }
 
-/// Problems with identical objects, lacking attributes and values that no object has.
+/// Problems with identical objects, lacking attributes, values that no object has, and where the
+/// wanted object may not be here.
 fn for_many_problems(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Belief, &str)) {
     let mut rng = Rng::new(seed);
     let mut scenes: Vec<Scene> = vec![bowls()];
@@ -30,10 +31,11 @@ fn for_many_problems(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Belief, &s
     }
     for (n, scene) in scenes.iter().enumerate() {
         let model = Model::new(scene, Params { p_l: 0.9, epsilon: 0.05, alpha: 0.2 });
+        let model = if n % 2 == 1 { model.with_absent() } else { model };
         for actions in [REMOTE, Actions { which: false, ..REMOTE }, PRESENT, POINTING] {
             for (name, costs) in Costs::PRESETS {
                 for draw in 0..6 {
-                    let belief = random_belief(&mut rng, model.objects());
+                    let belief = random_belief(&mut rng, model.hypotheses());
                     let label = format!("seed {seed} scene {n} draw {draw} {name} {actions:?}");
                     check(&problem(&model, actions, costs), &belief, &label);
                 }

@@ -165,7 +165,7 @@ mod tests {
     fn a_belief_that_is_none_is_found() {
         let mut record = heard(1);
         record.state.open =
-            Some(policy::state::Interaction { belief: vec![0.0, 0.0], ..Default::default() });
-        assert!(check(&[record]).unwrap_err().contains("sums to 2"));
+            Some(policy::state::Interaction { belief: vec![0.0, f64::NAN], ..Default::default() });
+        assert!(check(&[record]).unwrap_err().contains("not a probability"));
     }
 }
