@@ -6,6 +6,7 @@
 mod batch;
 mod config;
 mod dialogues;
+mod gestures;
 mod isolation;
 mod people;
 mod recovery;

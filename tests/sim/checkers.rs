@@ -3,9 +3,7 @@
 use crate::world::World;
 use policy::state::Cause;
 use protocol::{Outcome, PickOutcome, PickPhase};
-use settings::Settings;
 use speech::record::Record as Spoken;
-use std::path::Path;
 
 type Verdict = Result<(), String>;
 
@@ -76,8 +74,6 @@ fn nothing_premature(world: &World) -> Verdict {
 
 /// The belief and every decision follow from the journal, bit for bit (I8).
 fn belief_refolds(world: &World) -> Verdict {
-    let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"));
-    let settings = Settings::load(config, Some("ci"), &[]).map_err(|e| e.to_string())?;
-    let mut mind = policy::shell::mind(&settings).map_err(|e| e.to_string())?;
+    let mut mind = policy::shell::mind(&world.settings).map_err(|e| e.to_string())?;
     policy::journal_check::refold(&mut mind, world.policy.journal()).map_err(|e| e.to_string())
 }

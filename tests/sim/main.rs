@@ -2,7 +2,8 @@
 //! and faults drawn from a seed: messages lost and doubled, processes killed between any two
 //! effects. Whatever happens, the right object is delivered once and the journals agree.
 //!
-//! A failing seed is printed; `WHICHONE_SEED=N cargo test -p whichone-tests --test sim` repeats it.
+//! A failing seed is printed; `WHICHONE_SEED=N cargo test -p whichone-tests --test sim` repeats it,
+//! and `WHICHONE_SEEDS=N` runs as many instead of the usual number.
 
 mod checkers;
 mod faults;
@@ -11,24 +12,34 @@ mod person;
 mod world;
 
 use faults::Faults;
-use world::World;
+use person::Person;
+use world::{World, settings};
 
 /// Dialogues with faults, each with its own seed.
 const SEEDS: u64 = 120;
 
+fn number(variable: &str) -> Option<u64> {
+    let text = std::env::var(variable).ok()?;
+    Some(text.parse().unwrap_or_else(|_| panic!("{variable} is a number")))
+}
+
 fn seeds(count: u64) -> Vec<u64> {
-    match std::env::var("WHICHONE_SEED") {
-        Ok(seed) => vec![seed.parse().expect("WHICHONE_SEED is a number")],
-        Err(_) => (0..count).collect(),
+    match number("WHICHONE_SEED") {
+        Some(seed) => vec![seed],
+        None => (0..number("WHICHONE_SEEDS").unwrap_or(count)).collect(),
     }
 }
 
 fn run(seed: u64, faults: Faults) {
-    let wanted = (seed % 6) as usize;
-    let mut world = World::new(seed, wanted, faults);
+    let person = Person::new((seed % 6) as usize);
+    run_with(seed, World::new(settings(&[]), person, faults));
+}
+
+fn run_with(seed: u64, mut world: World) {
     world.run();
     if let Err(broken) = checkers::check(&world) {
-        panic!("seed {seed}, wanted object {wanted}: {broken}\n{}", world.story());
+        let wanted = world.person.wanted;
+        panic!("seed {seed}, wanted {wanted:?}: {broken}\n{}", world.story());
     }
 }
 
@@ -55,9 +66,18 @@ fn with_kills_and_losses_together_too() {
 #[test]
 fn the_same_seed_tells_the_same_story() {
     let story = |seed| {
-        let mut world = World::new(seed, 3, Faults::everything(seed));
+        let mut world = World::new(settings(&[]), Person::new(3), Faults::everything(seed));
         world.run();
         world.story()
     };
     assert_eq!(story(42), story(42));
+}
+
+#[test]
+fn whoever_points_gets_the_right_object_once_whatever_is_killed() {
+    for seed in seeds(SEEDS / 2) {
+        let settings = settings(&[("dialogue.gesture.enabled", "true")]);
+        let person = Person::pointing((seed % 6) as usize, &settings.scene);
+        run_with(seed, World::new(settings, person, Faults::everything(seed)));
+    }
 }

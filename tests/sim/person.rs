@@ -28,23 +28,41 @@ struct Saying {
 }
 
 impl Person {
+    /// Somebody who asks for the object vaguely, in words.
     pub(crate) fn new(wanted: usize) -> Self {
-        let mut person = Self {
+        let mut person = Self::silent(wanted);
+        person.say("get me the bowl".to_owned(), Time(0));
+        person
+    }
+
+    /// Somebody who points at the object without a word, and answers in words.
+    pub(crate) fn pointing(wanted: usize, scene: &Scene) -> Self {
+        let mut person = Self::silent(wanted);
+        let place = scene.object(person.wanted).placement.expect("a place to point at");
+        let (target_m, words) = (place.xyz, String::new());
+        person.give(Sound::Point { target_m, words }, Time(0));
+        person
+    }
+
+    fn silent(wanted: usize) -> Self {
+        Self {
             wanted: ObjectId::from(wanted),
             saying: None,
             answered: Vec::new(),
             keys: 0,
             accepted: Vec::new(),
             questions: Vec::new(),
-        };
-        person.say("get me the bowl".to_owned(), Time(0));
-        person
+        }
     }
 
     fn say(&mut self, text: String, at: Time) {
+        self.give(Sound::Text(text), at);
+    }
+
+    fn give(&mut self, sound: Sound, at: Time) {
         self.keys += 1;
         let key = RequestKey([self.keys; 16]);
-        let injection = Injection { key, onset_ns: at.ns().max(1), sound: Sound::Text(text) };
+        let injection = Injection { key, onset_ns: at.ns().max(1), sound };
         self.saying = Some(Saying { injection, next: at });
     }
 

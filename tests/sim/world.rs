@@ -21,6 +21,7 @@ const END: Time = Time(240_000_000_000);
 
 /// The machine and what happened on it.
 pub(crate) struct World {
+    pub(crate) settings: Settings,
     pub(crate) scene: Scene,
     pub(crate) model: Model,
     pub(crate) speech: Host<SpeechNode>,
@@ -49,23 +50,25 @@ struct Inboxes {
     arm: Vec<arm::In>,
 }
 
-fn settings() -> Settings {
+/// The shipped configuration, with these settings over it.
+pub(crate) fn settings(over: &[(&str, &str)]) -> Settings {
     let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"));
-    Settings::load(config, Some("ci"), &[]).unwrap_or_else(|e| panic!("{e}"))
+    let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+    Settings::load(config, Some("ci"), &over).unwrap_or_else(|e| panic!("{e}"))
 }
 
 impl World {
-    pub(crate) fn new(_seed: u64, wanted: usize, faults: Faults) -> Self {
-        let all = settings();
+    pub(crate) fn new(all: Settings, person: Person, faults: Faults) -> Self {
         let (s, g, p, a) = (all.clone(), all.clone(), all.clone(), all.clone());
         Self {
             model: Model::new(&all.scene, all.dialogue.params),
-            scene: all.scene,
+            scene: all.scene.clone(),
+            settings: all,
             speech: Host::new(move || program_config::<speech::shell::SpeechProgram>(&s)),
             grounding: Host::new(move || program_config::<grounding::shell::GroundingProgram>(&g)),
             policy: Host::new(move || program_config::<policy::shell::PolicyProgram>(&p)),
             arm: Host::new(move || program_config::<arm::shell::ArmProgram>(&a)),
-            person: Person::new(wanted),
+            person,
             faults,
             view: PolicyView::default(),
             premature: Vec::new(),

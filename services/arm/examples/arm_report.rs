@@ -40,7 +40,16 @@ fn start(settings: &Settings) -> ArmNode {
 fn fetch(settings: &Settings, object: u32) -> (Vec<(PickPhase, f64)>, f64) {
     let mut node = start(settings);
     let kind = ActKind::Pick.code();
-    let act = RobotAct { act: 1, interaction: 1, attempt: 1, kind, object, ..RobotAct::default() };
+    let scene_key = settings.scene.key();
+    let act = RobotAct {
+        act: 1,
+        interaction: 1,
+        attempt: 1,
+        scene_key,
+        kind,
+        object,
+        ..RobotAct::default()
+    };
     let mut effects = Effects::default();
     node.on(Event::Message(In::Act(Box::new(act))), Time(1), &mut effects);
     let (mut phases, mut longest_ms) = (Vec::new(), 0.0_f64);

@@ -21,7 +21,9 @@ impl ArmNode {
     /// Takes the policy's act, which is sent again and again while it stands.
     pub(crate) fn hear(&mut self, act: &RobotAct, now: Time, fx: &mut Fx) {
         let id = ActId(act.act);
-        if id < self.act.id {
+        // Objects have numbers of their own in each scene. The act comes again, and counts once the
+        // arm has been restarted with that scene.
+        if id < self.act.id || act.scene_key != self.config.scene.key() {
             return;
         }
         let is_new = id != self.act.id;

@@ -8,7 +8,7 @@ pub mod shell;
 use language::Reader;
 use node::{Effects, Event, Never, Node, NodeError, Time};
 use protocol::{Fits, FixedText, Observation, Utterance, WireReading};
-use scene::{Question, Scene};
+use scene::{Question, Reading, Scene};
 
 /// How it reads: the scene and its reader.
 pub struct Config {
@@ -64,12 +64,19 @@ impl GroundingNode {
             heard_prompt: utterance.heard_prompt,
             heard_question: utterance.heard_question,
             scene_key: self.config.scene.key(),
+            gesture: utterance.gesture.target_m()?.into(),
             onset_ns: utterance.onset_ns,
             accepted_ns: utterance.accepted_ns,
             grounded_ns: now.ns(),
             ..Observation::default()
         };
         let hypotheses = utterance.hypotheses()?;
+        if hypotheses.is_empty() && utterance.gesture.target_m()?.is_some() {
+            // Somebody points and says nothing: one reading, without a word.
+            observation.reading_count = 1;
+            observation.readings[0] = WireReading::new(&Reading::default(), 1.0).0;
+            return Ok(observation);
+        }
         observation.reading_count = hypotheses.len() as u8;
         for (i, (text, weight)) in hypotheses.into_iter().enumerate() {
             let understood = self.config.reader.read(text, question);

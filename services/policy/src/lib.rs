@@ -138,8 +138,9 @@ impl PolicyNode {
             }
         }
         let readings = observation.readings(self.mind.scene().words().len());
+        let gesture = observation.gesture.target_m();
         let same_scene = observation.scene_key == self.mind.scene().key();
-        let (Ok(readings), true) = (readings, same_scene) else {
+        let (Ok(readings), Ok(gesture), true) = (readings, gesture, same_scene) else {
             // Not applied, so speech sends the utterance again: a grounding that is mended or
             // swapped meanwhile gets another chance at it, and nothing is lost.
             self.refused += 1;
@@ -154,6 +155,7 @@ impl PolicyNode {
             accepted: Time(observation.accepted_ns),
             readings,
             unknown: observation.unknown.as_str().unwrap_or_default().to_owned(),
+            gesture,
         };
         self.apply(Cause::Utterance(heard), now, fx);
     }

@@ -1,16 +1,20 @@
 //! The transition of the dialogue's state: pure, deterministic, and the same in the service, in a
 //! check of its journal, and in simulation.
 
+mod acts;
+mod inform;
 mod intents;
+mod pointing;
 mod words;
 
-use crate::state::{Act, Cause, Heard, Interaction, Prompt, State};
-use dialogue::{Action, Actions, Belief, Costs, DecisionProblem, Model, Params, Planner, Step};
+use crate::state::{Act, Cause, Interaction, State};
+use acts::{ask, pick, repeat, say, set};
+use dialogue::gesture::Gestures;
+use dialogue::{Action, Actions, Costs, DecisionProblem, Model, Params, Planner, Step};
 use node::Time;
-use protocol::{
-    ActKind, Ended, InteractionId, Outcome, PickId, PickOutcome, PromptId, UtteranceSeq,
-};
-use scene::{ObjectId, Question, Scene};
+use pointing::Pointing;
+use protocol::{Ended, Outcome, PickId, PickOutcome, PromptId, UtteranceSeq};
+use scene::Scene;
 
 /// How turns are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,12 +27,26 @@ pub struct Turns {
     pub questions_max: u32,
 }
 
+/// What is taken to be true of people, and what is wanted of the robot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assumptions {
+    /// How people speak.
+    pub params: Params,
+    /// What actions cost.
+    pub costs: Costs,
+    /// What the robot may do.
+    pub actions: Actions,
+    /// How people point, and from where (metres, frame `base`); none where gestures do not count.
+    pub gestures: Option<(Gestures, [f64; 3])>,
+}
+
 /// What turns causes into states.
 pub struct Mind {
     scene: Scene,
     model: Model,
     costs: Costs,
     actions: Actions,
+    pointing: Option<Pointing>,
     planner: Box<dyn Planner + Send>,
     turns: Turns,
 }
@@ -37,13 +55,14 @@ impl Mind {
     /// A mind for one scene and one decision problem.
     pub fn new(
         scene: Scene,
-        params: Params,
-        (costs, actions): (Costs, Actions),
+        assumptions: Assumptions,
         planner: Box<dyn Planner + Send>,
         turns: Turns,
     ) -> Self {
+        let Assumptions { params, costs, actions, gestures } = assumptions;
         let model = Model::new(&scene, params);
-        Self { scene, model, costs, actions, planner, turns }
+        let pointing = gestures.map(|(model, person)| Pointing::new(model, person, &scene));
+        Self { scene, model, costs, actions, pointing, planner, turns }
     }
 
     /// The scene.
@@ -78,45 +97,6 @@ impl Mind {
         next
     }
 
-    /// Scores what was said against the question that was heard, and decides anew.
-    fn inform(&mut self, state: &mut State, heard: &Heard, at: Time) {
-        if state.open.is_none() {
-            if only_answers(heard) {
-                return;
-            }
-            self.open(state, heard);
-        }
-        let Some(open) = &mut state.open else { return };
-        open.utterances.1 = heard.seq;
-        open.silences = 0;
-        if open.pick.is_some() {
-            return;
-        }
-        // An answer to an earlier question of this interaction still says what it says about that
-        // question; one to another interaction's says nothing.
-        let asked = open.prompts.iter().find(|prompt| prompt.id == heard.prompt);
-        let question = asked.map_or(Question::None, |prompt| prompt.question);
-        let hypotheses: Vec<_> =
-            heard.readings.iter().map(|(w, reading)| (*w, question, reading.clone())).collect();
-        let mut belief = open.belief();
-        belief.update_mixture(&self.model, &hypotheses);
-        open.belief = belief.log_weights().to_vec();
-        let preface = words::unknown(heard);
-        self.decide(state, heard.prompt, &preface, heard.seq, at);
-    }
-
-    fn open(&self, state: &mut State, heard: &Heard) {
-        state.last_interaction = state.last_interaction.next();
-        let prior = Belief::uniform(self.scene.objects().len());
-        state.open = Some(Interaction {
-            id: state.last_interaction,
-            opened: heard.accepted,
-            belief: prior.log_weights().to_vec(),
-            utterances: (heard.seq, heard.seq),
-            ..Interaction::default()
-        });
-    }
-
     /// Lets the planner decide on the belief as it is now.
     fn decide(
         &mut self,
@@ -143,6 +123,7 @@ impl Mind {
             decided: at,
             value: decision.value,
             expected_questions: decision.expected_questions,
+            bounds: decision.bounds,
             alternatives: decision
                 .alternatives
                 .iter()
@@ -196,96 +177,4 @@ impl Mind {
 /// Questions asked, each counted once however often it was repeated.
 pub fn questions(open: &Interaction) -> u32 {
     open.prompts.len() as u32
-}
-
-/// Whether the utterance holds nothing but answers, which mean nothing where nothing was asked.
-fn only_answers(heard: &Heard) -> bool {
-    heard.readings.iter().all(|(_, reading)| {
-        reading.response != scene::Response::None
-            && reading.base.is_empty()
-            && reading.excluded.is_empty()
-    })
-}
-
-/// Makes `act` the standing decision.
-fn set(state: &mut State, act: Act) {
-    state.act = Act { id: state.act.id.next(), ..act };
-}
-
-fn ask(
-    scene: &Scene,
-    state: &mut State,
-    question: Question,
-    heard: PromptId,
-    preface: &str,
-    reasons: Act,
-) {
-    let standing = state.act.clone();
-    let Some(open) = &mut state.open else { return };
-    let stands = standing.kind == ActKind::Ask
-        && standing.question == question
-        && open.prompts.last().is_some_and(|prompt| prompt.id == standing.prompt);
-    if stands && heard != standing.prompt {
-        // It stands already and nobody has heard it to its end yet: saying it again would only
-        // interrupt it.
-        state.act = Act { id: standing.id, ..keep_words(reasons, &standing) };
-        return;
-    }
-    open.presentations += 1;
-    let text = format!("{preface}{}", scene.phrase(question));
-    if stands {
-        let again =
-            Act { presentation: standing.presentation + 1, ..keep_words(reasons, &standing) };
-        set(state, Act { text, ..again });
-        return;
-    }
-    state.last_prompt = state.last_prompt.next();
-    open.prompts.push(Prompt { id: state.last_prompt, question });
-    let prompt = state.last_prompt;
-    let kind = ActKind::Ask;
-    set(state, Act { kind, prompt, presentation: 1, question, text, ..reasons });
-}
-
-/// The new reasons with the standing act's words.
-fn keep_words(reasons: Act, standing: &Act) -> Act {
-    Act {
-        kind: standing.kind,
-        prompt: standing.prompt,
-        presentation: standing.presentation,
-        question: standing.question,
-        pick: standing.pick,
-        text: standing.text.clone(),
-        ..reasons
-    }
-}
-
-fn pick(scene: &Scene, state: &mut State, object: ObjectId, reasons: Act) {
-    let Some(open) = &mut state.open else { return };
-    let id = PickId { interaction: InteractionId(open.id.0), attempt: 1 };
-    open.pick = Some((id, object));
-    state.last_prompt = state.last_prompt.next();
-    let prompt = state.last_prompt;
-    let text = words::fetching(scene, object);
-    let pick = Some((id, object));
-    set(state, Act { kind: ActKind::Pick, prompt, presentation: 1, pick, text, ..reasons });
-}
-
-fn say(state: &mut State, text: &str, at: Time) {
-    state.last_prompt = state.last_prompt.next();
-    let prompt = state.last_prompt;
-    let (text, utterance) = (text.to_owned(), state.applied);
-    let kind = ActKind::Say;
-    set(
-        state,
-        Act { kind, prompt, presentation: 1, text, utterance, decided: at, ..Act::default() },
-    );
-}
-
-/// Says the standing words once more.
-fn repeat(state: &mut State, at: Time) {
-    if let Some(open) = &mut state.open {
-        open.presentations += 1;
-    }
-    let presentation = state.act.presentation + 1;
-    set(state, Act { presentation, decided: at, utterance: state.applied, ..state.act.clone() });
 }

@@ -1,6 +1,6 @@
 //! The policy's topics and configuration.
 
-use crate::mind::Mind;
+use crate::mind::{Assumptions, Mind};
 use crate::{In, Out, PolicyNode, turns};
 use protocol::{
     Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, Service, topics,
@@ -16,7 +16,7 @@ pub struct PolicyProgram;
 
 impl Program for PolicyProgram {
     const SERVICE: Service = Service::Policy;
-    const RECORD: Option<&'static str> = Some("policy/1");
+    const RECORD: Option<&'static str> = Some("policy/2");
     const ABOUT: &'static str = "keeps the belief over the objects and decides what to ask or do";
     type Node = PolicyNode;
     type Shell = PolicyShell;
@@ -34,8 +34,14 @@ pub fn mind(settings: &Settings) -> Result<Mind, Failure> {
     let dialogue = &settings.dialogue;
     let planner = dialogue::registry::planner(&dialogue.planner)
         .map_err(|e| Failure::new(Exit::Config, format!("dialogue.planner: {e}")))?;
-    let decisions = (dialogue.costs, dialogue.actions);
-    Ok(Mind::new(settings.scene.clone(), dialogue.params, decisions, planner, turns(settings)))
+    let gesture = dialogue.gesture;
+    let assumptions = Assumptions {
+        params: dialogue.params,
+        costs: dialogue.costs,
+        actions: dialogue.actions,
+        gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
+    };
+    Ok(Mind::new(settings.scene.clone(), assumptions, planner, turns(settings)))
 }
 
 /// The policy's topics.

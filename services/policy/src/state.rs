@@ -96,6 +96,8 @@ pub struct Act {
     pub alternatives: Vec<(String, f64)>,
     /// Expected number of questions still to ask.
     pub expected_questions: f64,
+    /// Certified lower and upper bound on what the best policy is worth, where the planner has them.
+    pub bounds: Option<(f64, f64)>,
 }
 
 impl Default for Act {
@@ -113,6 +115,7 @@ impl Default for Act {
             value: 0.0,
             alternatives: Vec::new(),
             expected_questions: 0.0,
+            bounds: None,
         }
     }
 }
@@ -150,6 +153,8 @@ pub struct Heard {
     pub readings: Vec<(f64, Reading)>,
     /// A word that the scene does not have; may be empty.
     pub unknown: String,
+    /// The point that the person points at, metres, frame `base`.
+    pub gesture: Option<[f64; 3]>,
 }
 
 /// A journal record: why the state changed, when, and the state after it.

@@ -1,5 +1,7 @@
 //! The policy's rules, on the shipped six bowls.
 
+mod pointing;
+
 use crate::mind::{Mind, questions};
 use crate::shell;
 use crate::state::{Cause, Heard, Record, State};
@@ -15,8 +17,13 @@ use settings::Settings;
 use std::path::Path;
 
 fn settings() -> Settings {
+    settings_with(&[])
+}
+
+fn settings_with(over: &[(&str, &str)]) -> Settings {
     let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
-    Settings::load(config, None, &[]).unwrap_or_else(|e| panic!("{e}"))
+    let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+    Settings::load(config, None, &over).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn mind() -> Mind {
@@ -26,7 +33,14 @@ fn mind() -> Mind {
 fn heard(seq: u64, prompt: PromptId, reading: Reading) -> Cause {
     let readings = vec![(1.0, reading)];
     let (seq, accepted) = (UtteranceSeq(seq), Time(seq * 1_000_000_000));
-    Cause::Utterance(Heard { seq, prompt, accepted, readings, unknown: String::new() })
+    Cause::Utterance(Heard {
+        seq,
+        prompt,
+        accepted,
+        readings,
+        unknown: String::new(),
+        gesture: None,
+    })
 }
 
 fn answer(response: Response) -> Reading {

@@ -10,6 +10,7 @@ pub(crate) fn act(state: &State) -> RobotAct {
     let interaction = act.pick.map_or(state.last_interaction, |(pick, _)| pick.interaction);
     RobotAct {
         act: act.id.0,
+        scene_key: state.scene_key,
         interaction: interaction.0,
         prompt: act.prompt.0,
         presentation: act.presentation,
@@ -44,6 +45,7 @@ pub(crate) fn view(mind: &Mind, state: &State, refused: u64) -> PolicyView {
         value: state.act.value,
         alternatives: state.act.alternatives.clone(),
         expected_questions: state.act.expected_questions,
+        bounds: state.act.bounds,
         questions: open.map_or(0, questions),
         utterances: open.map(utterances).or(state.ended.as_ref().map(latest)).unwrap_or_default(),
         last: state.ended.clone(),

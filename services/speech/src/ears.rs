@@ -2,6 +2,7 @@
 
 use crate::mouth::Mouth;
 use crate::record::{Accepted, Record};
+use crate::said::{Content, in_words};
 use crate::{Config, Fx, Out, Recognised, Segment};
 use node::{Span, Time};
 use protocol::outbox::Outbox;
@@ -62,10 +63,14 @@ impl Ears {
         }
         let onset = Time(injection.onset_ns).min(now);
         let onset = if onset == Time(0) { now } else { onset };
+        let whole = Piece { key: injection.key, segment: (0, 1), span: (onset, now) };
         match injection.sound {
             Sound::Text(text) => {
-                let piece = Piece { key: injection.key, segment: (0, 1), span: (onset, now) };
-                self.accept(piece, vec![(text, 1.0)], Source::Text, mouth, now, fx);
+                let content = Content::words(vec![(text, 1.0)], Source::Text);
+                self.accept(whole, content, mouth, now, fx);
+            }
+            Sound::Point { target_m, words } => {
+                self.accept(whole, Content::pointing(target_m, words), mouth, now, fx);
             }
             Sound::Wav(path) => {
                 self.last_sound += 1;
@@ -97,35 +102,30 @@ impl Ears {
             let span = (at(span_s.0), at(span_s.1));
             let piece = Piece { key, segment: (i as u32, count), span };
             match heard {
-                Ok(hypotheses) => self.accept(piece, hypotheses, Source::Wav, mouth, now, fx),
+                Ok(hypotheses) => {
+                    let content = Content::words(hypotheses, Source::Wav);
+                    self.accept(piece, content, mouth, now, fx);
+                }
                 Err(text) => self.report(piece, ReceiptStatus::NotForMe, 0, &text, fx),
             }
         }
     }
 
-    fn accept(
-        &mut self,
-        piece: Piece,
-        hypotheses: Vec<(String, f64)>,
-        source: Source,
-        mouth: &Mouth,
-        now: Time,
-        fx: &mut Fx,
-    ) {
+    fn accept(&mut self, piece: Piece, content: Content, mouth: &Mouth, now: Time, fx: &mut Fx) {
         // A piece that was accepted before a restart keeps its number.
         let known = |a: &&Accepted| a.key == piece.key && a.segment.0 == piece.segment.0;
         if let Some(accepted) = self.recent.iter().find(known) {
             fx.publish(Out::Receipt(Box::new(receipt(accepted))));
             return;
         }
-        if let Some(reason) = self.unacceptable(&hypotheses) {
+        if let Some(reason) = content.fault(&self.config) {
             return self.refuse(piece.key, piece.segment, &reason, fx);
         }
         let seq = match self.outbox.next() {
             Ok(seq) => seq,
             Err(full) => return self.refuse(piece.key, piece.segment, &full.to_string(), fx),
         };
-        if self.says_stop(&hypotheses) {
+        if self.says_stop(&content.hypotheses) {
             let order = MotionOrder::Stop.code();
             let command = MotionCommand { given_ns: now.ns(), order, ..MotionCommand::default() };
             fx.publish(Out::Motion(command));
@@ -134,8 +134,9 @@ impl Ears {
             seq,
             key: piece.key,
             segment: piece.segment,
-            hypotheses,
-            source: source.code(),
+            hypotheses: content.hypotheses,
+            gesture: content.gesture,
+            source: content.source.code(),
             heard: mouth.heard_at(piece.span.0),
             onset: piece.span.0,
             end: piece.span.1,
@@ -146,22 +147,6 @@ impl Ears {
         fx.publish(Out::Utterance(Box::new(utterance(&accepted))));
         self.remember(accepted);
         fx.publish(Out::Activity(self.activity()));
-    }
-
-    fn unacceptable(&self, hypotheses: &[(String, f64)]) -> Option<String> {
-        let best = hypotheses.first().map_or("", |(text, _)| text.as_str());
-        let bytes = best.len();
-        let max = self.config.utterance_bytes_max;
-        if best.trim().is_empty() {
-            Some("nothing was said".to_owned())
-        } else if bytes > max {
-            Some(format!(
-                "the utterance has {bytes} bytes, {max} at most are heard \
-                 (speech.utterance_bytes_max)"
-            ))
-        } else {
-            None
-        }
     }
 
     fn says_stop(&self, hypotheses: &[(String, f64)]) -> bool {
@@ -269,7 +254,7 @@ fn receipt(accepted: &Accepted) -> Receipt {
         segment: accepted.segment.0,
         segments: accepted.segment.1,
         status: ReceiptStatus::Accepted.code(),
-        note: FixedText::truncated(text),
+        note: FixedText::truncated(&in_words(text, accepted.gesture)),
         ..Receipt::default()
     }
 }
@@ -280,6 +265,7 @@ fn utterance(accepted: &Accepted) -> Utterance {
         seq: accepted.seq.0,
         heard_prompt: heard.map_or(0, |said| said.prompt.0),
         heard_question: heard.map_or(Question::None, |said| said.question).into(),
+        gesture: accepted.gesture.into(),
         onset_ns: accepted.onset.ns(),
         end_ns: accepted.end.ns(),
         accepted_ns: accepted.accepted.ns(),
@@ -288,7 +274,7 @@ fn utterance(accepted: &Accepted) -> Utterance {
     };
     if utterance.set_hypotheses(&accepted.hypotheses).is_err() {
         // The best one fits (it was checked when it was accepted); the others are a refinement.
-        let best = &accepted.hypotheses[..1];
+        let best = accepted.hypotheses.get(..1).unwrap_or_default();
         let fitted = utterance.set_hypotheses(best);
         debug_assert!(fitted.is_ok(), "an accepted utterance fits");
     }

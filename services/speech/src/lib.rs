@@ -8,6 +8,7 @@ pub mod devices;
 mod ears;
 mod mouth;
 pub mod record;
+mod said;
 pub mod shell;
 
 use ears::Ears;
@@ -124,6 +125,8 @@ pub struct Config {
     pub reader: language::Reader,
     /// Longest utterance, bytes.
     pub utterance_bytes_max: usize,
+    /// Whether pointing gestures are taken.
+    pub gestures: bool,
 }
 
 impl Node for SpeechNode {

@@ -23,8 +23,10 @@ pub struct Accepted {
     pub key: RequestKey,
     /// Which piece of the client's sound, and of how many.
     pub segment: (u32, u32),
-    /// What was heard with its weight, most likely first.
+    /// What was heard with its weight, most likely first; nothing for a gesture without words.
     pub hypotheses: Vec<(String, f64)>,
+    /// The point that was pointed at, metres, frame `base`.
+    pub gesture: Option<[f64; 3]>,
     /// [`protocol::Source`] as on the wire.
     pub source: u8,
     /// The last question that had been said to its end when the person began to speak.

@@ -26,7 +26,7 @@ pub struct SpeechProgram;
 
 impl Program for SpeechProgram {
     const SERVICE: Service = Service::Speech;
-    const RECORD: Option<&'static str> = Some("speech/1");
+    const RECORD: Option<&'static str> = Some("speech/2");
     const ABOUT: &'static str = "hears what people say or type, and says the robot's questions";
     type Node = SpeechNode;
     type Shell = SpeechShell;
@@ -35,7 +35,11 @@ impl Program for SpeechProgram {
         // The stop word is found by the careful reading whatever the dialogue is read by: it is a
         // matter of safety and not of the model.
         let reader = TextReader::new(&settings.scene, Language::Careful);
-        Ok(Config { reader, utterance_bytes_max: settings.speech.utterance_bytes_max })
+        Ok(Config {
+            reader,
+            utterance_bytes_max: settings.speech.utterance_bytes_max,
+            gestures: settings.dialogue.gesture.enabled,
+        })
     }
 }
 

@@ -15,7 +15,7 @@ pub use group::{
     UpArgs, WaitFor,
 };
 pub use talk::{AwaitArgs, Awaited, ChatArgs, CompletionsArgs, JournalArgs, ListenArgs};
-pub use talk::{MotionArgs, SayArgs, WatchArgs};
+pub use talk::{MotionArgs, PointArgs, SayArgs, WatchArgs};
 
 /// A robot that asks which one you mean before it fetches it.
 ///
@@ -86,6 +86,11 @@ pub enum Verb {
     Swap(SwapArgs),
     /// Say something to the robot.
     Say(SayArgs),
+    /// Point at a place, as the person whom the robot sees.
+    ///
+    /// Metres in frame `base` of the robot: x forward, y left, z up. Taken where
+    /// `dialogue.gesture.enabled` is set.
+    Point(PointArgs),
     /// Let the robot listen to a WAV file.
     Listen(ListenArgs),
     /// See what the robot believes, asks and does, live.

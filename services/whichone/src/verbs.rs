@@ -47,6 +47,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Check(args) => check::check(&args, out),
         Verb::Swap(args) => operate::swap(&paths()?, args, out),
         Verb::Say(args) => speak::say(&paths()?, &args.text, args.timeout, out),
+        Verb::Point(args) => speak::point(&paths()?, &args, out),
         Verb::Listen(args) => speak::listen(&paths()?, &args.file, args.timeout, out),
         Verb::Watch(args) => watch::watch(&paths()?, &args, out),
         Verb::Chat(args) => chat::chat(&paths()?, &args, out),

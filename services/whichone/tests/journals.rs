@@ -27,7 +27,7 @@ impl Lab {
         let folder = self.0.path().join("lab/journal");
         std::fs::create_dir_all(&folder).expect("a folder");
         let header = Header {
-            record: "policy/1".into(),
+            record: "policy/2".into(),
             schema: 0,
             scene: 0,
             group: "lab".into(),
@@ -75,6 +75,7 @@ fn dialogue() -> Vec<Record> {
             accepted: Time(seq),
             readings: vec![(1.0, reading)],
             unknown: String::new(),
+            gesture: None,
         };
         let (cause, at) = (Cause::Utterance(heard), Time(seq * 1_000_000_000));
         state = mind.step(&state, &cause, at);

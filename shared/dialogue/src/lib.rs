@@ -8,6 +8,7 @@ mod answer;
 mod belief;
 mod costs;
 mod evaluate;
+pub mod gesture;
 mod model;
 mod observation;
 mod params;

@@ -34,7 +34,11 @@ pub struct Injection {
     /// What is to be heard.
     pub sound: Sound,
 }
-encoded!(Injection, "Injection", "key[u8;16] onset_ns:u64 sound{Text(str),Wav(path str)}");
+encoded!(
+    Injection,
+    "Injection",
+    "key[u8;16] onset_ns:u64 sound{Text(str),Wav(path str),Point(target_m[f64;3] words str)}"
+);
 
 /// What a client gives.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -43,6 +47,13 @@ pub enum Sound {
     Text(String),
     /// A WAV file, absolute path.
     Wav(String),
+    /// A pointing gesture, with written words or without.
+    Point {
+        /// The point that is pointed at, metres, frame `base`.
+        target_m: [f64; 3],
+        /// What is said with it; empty for nothing.
+        words: String,
+    },
 }
 
 /// What the policy thinks, for people and their tools. Policy to clients.
@@ -70,6 +81,8 @@ pub struct PolicyView {
     pub alternatives: Vec<(String, f64)>,
     /// Expected number of questions still to ask.
     pub expected_questions: f64,
+    /// Certified lower and upper bound on what the best policy is worth, where the planner has them.
+    pub bounds: Option<(f64, f64)>,
     /// Questions asked in the open interaction.
     pub questions: u32,
     /// First and last utterance of the latest interaction.
@@ -83,7 +96,7 @@ encoded!(
     PolicyView,
     "PolicyView",
     "scene_key:u64 applied:u64 interaction:u64 belief[f64] question prompt:u64 text decision \
-     value:f64 alternatives[(str,f64)] expected_questions:f64 questions:u32 utterances(u64,u64) \
+     value:f64 alternatives[(str,f64)] expected_questions:f64 bounds?(f64,f64) questions:u32 utterances(u64,u64) \
      last?Ended refused:u64; \
      Ended(interaction:u64 object?u16 outcome questions:u32 seconds:f64 utterances(u64,u64))"
 );

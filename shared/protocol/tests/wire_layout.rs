@@ -36,6 +36,7 @@ fn layout() -> String {
     text.push_str("\n# Structs\n\n");
     describe::<protocol::Stamp>(&mut text);
     describe::<protocol::WireQuestion>(&mut text);
+    describe::<protocol::WireGesture>(&mut text);
     describe::<protocol::Hypothesis>(&mut text);
     describe::<protocol::WireReading>(&mut text);
     describe::<protocol::Utterance>(&mut text);
@@ -77,6 +78,7 @@ fn assert_without_padding<T: Schema>() {
 fn no_struct_has_padding() {
     assert_without_padding::<protocol::Stamp>();
     assert_without_padding::<protocol::WireQuestion>();
+    assert_without_padding::<protocol::WireGesture>();
     assert_without_padding::<protocol::Hypothesis>();
     assert_without_padding::<protocol::WireReading>();
     assert_without_padding::<protocol::Utterance>();

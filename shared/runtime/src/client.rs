@@ -88,6 +88,21 @@ impl Client {
         self.inject_with(&writer, &receipts, sound, patience)
     }
 
+    /// Points at a place, metres, frame `base`, as the person whom the robot sees; `words` is what is
+    /// said meanwhile, empty for nothing. Otherwise as [`Client::inject`]: where gestures do not
+    /// count the receipt is a refusal that names the setting.
+    ///
+    /// # Errors
+    /// As [`Client::inject`].
+    pub fn point(
+        &self,
+        target_m: [f64; 3],
+        words: &str,
+        patience: Span,
+    ) -> Result<Vec<Receipt>, ClientError> {
+        self.inject(Sound::Point { target_m, words: words.to_owned() }, patience)
+    }
+
     /// As [`Client::inject`], with topics that are already open.
     ///
     /// # Errors

@@ -4,6 +4,7 @@ use dialogue::{Actions, Costs, Fault, Mode, Params};
 use language::Language;
 
 use crate::fields::Fields;
+use crate::gesture::{self, Gesture};
 
 /// The dialogue.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +21,8 @@ pub struct Dialogue {
     pub costs: Costs,
     /// How turns are taken.
     pub turns: Turns,
+    /// How pointing gestures are understood.
+    pub gesture: Gesture,
 }
 
 /// How turns are taken.
@@ -50,6 +53,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
         },
         costs: f.table("costs", costs),
         turns: f.table("turns", turns),
+        gesture: f.table("gesture", gesture::read),
     }
 }
 

@@ -11,6 +11,7 @@
 mod arm;
 mod dialogue;
 mod fields;
+mod gesture;
 mod group;
 mod layer;
 mod load;
@@ -32,6 +33,7 @@ use scene::Scene;
 
 pub use crate::arm::{Arm, Driver};
 pub use crate::dialogue::{Dialogue, Turns};
+pub use crate::gesture::Gesture;
 pub use crate::group::{Group, Log, RestartLimits};
 pub use crate::problems::Problems;
 pub use crate::resolved::{Origin, Section};

@@ -12,7 +12,7 @@ use crate::layer::{Node, Source, Table};
 use crate::problems::{Problems, Report};
 use crate::resolved::{self, Resolved, Section};
 use crate::scene_file::{self, Named, SceneFile};
-use crate::{Settings, arm, dialogue, group, nearest, reach, services, speech};
+use crate::{Settings, arm, dialogue, gesture, group, nearest, reach, services, speech};
 
 pub(crate) fn load(
     dir: &Path,
@@ -68,6 +68,9 @@ pub(crate) fn check(
     let scene = file.as_ref().and_then(|file| scene_file::read(file, &mut report));
     if let (Some(file), Some(scene), Reach::Check, true) = (&file, &scene, reach, arm_is_sound) {
         reach::check(scene, file, &arm, &tree, &mut report);
+    }
+    if let Some(scene) = &scene {
+        gesture::check(scene, &dialogue.gesture, &tree, &mut report);
     }
     let settings = file.zip(scene).map(|(file, scene)| {
         let resolved = Resolved { tree, scene: file };

@@ -194,8 +194,11 @@ impl Machine {
         }
     }
 
-    /// The policy decides.
+    /// The policy decides; about the arm's own scene, where `act` names none.
     fn act(&mut self, act: RobotAct) {
+        let own = self.config.scene.key();
+        let scene_key = if act.scene_key == 0 { own } else { act.scene_key };
+        let act = RobotAct { scene_key, ..act };
         self.act = Some(act);
         self.waiting.push(In::Act(Box::new(act)));
     }

@@ -129,6 +129,21 @@ fn what_is_not_put_back_is_gone_also_after_a_restart() {
     assert_eq!(machine.node.state().gone, [ObjectId(3), ObjectId(2)]);
 }
 
+/// The policy may be restarted with a changed scene before the arm is.
+#[test]
+fn an_act_about_another_scene_waits_until_the_arm_knows_that_scene() {
+    let mut machine = Machine::new(config());
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
+    let markers = [("group.scene".to_owned(), "markers".to_owned())];
+    let scene = Settings::load(folder, None, &markers).unwrap().scene;
+    machine.act(RobotAct { scene_key: scene.key(), ..pick(1, 1) });
+    machine.run(0.5);
+    assert_eq!(machine.phase(), PickPhase::Idle, "object 1 of the other scene is not a bowl");
+    machine.config.scene = scene;
+    machine.restart_from_journal();
+    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+}
+
 #[test]
 fn an_act_that_makes_no_sense_changes_nothing() {
     let mut machine = Machine::new(config());

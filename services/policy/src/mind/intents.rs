@@ -14,6 +14,8 @@ impl Mind {
         let likeliest = heard.readings.iter().max_by(|a, b| a.0.total_cmp(&b.0));
         match likeliest.map_or(Intent::None, |(_, reading)| reading.intent) {
             Intent::Inform => self.inform(state, heard, at),
+            // "That one over there" holds no word of the scene, but the hand does.
+            Intent::None if self.pointed_at(heard).is_some() => self.inform(state, heard, at),
             Intent::None => {}
             Intent::Stop => self.stopped(state, at),
             Intent::Cancel => self.cancel(state, at),

@@ -58,11 +58,12 @@ fn beside(name: &str) -> String {
     path.unwrap_or(program)
 }
 
-/// Everything that a service reads: its own section, and the scene, which all read. One that is not
+/// Everything that a service reads: its own section, and the scene, which all read. Speech refuses
+/// what the dialogue would not understand, so it reads that section too. One that is not
 /// built in may read all there is.
 fn fingerprint(name: &str, settings: &Settings) -> String {
     let sections: &[Section] = match name {
-        "speech" => &[Section::Speech],
+        "speech" => &[Section::Speech, Section::Dialogue],
         "grounding" | "policy" => &[Section::Dialogue],
         "arm" => &[Section::Arm],
         _ => &[Section::Speech, Section::Dialogue, Section::Arm],

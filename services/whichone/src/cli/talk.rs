@@ -19,6 +19,26 @@ pub struct SayArgs {
     pub timeout: Duration,
 }
 
+/// Arguments of `point`.
+#[derive(Debug, Args)]
+pub struct PointArgs {
+    /// Forward from the robot, metres.
+    #[arg(value_name = "X", allow_negative_numbers = true)]
+    pub x: f64,
+    /// To the robot's left, metres.
+    #[arg(value_name = "Y", allow_negative_numbers = true)]
+    pub y: f64,
+    /// Up from the robot's base, metres.
+    #[arg(value_name = "Z", allow_negative_numbers = true)]
+    pub z: f64,
+    /// What is said meanwhile.
+    #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
+    pub say: String,
+    /// Longest wait until it is accepted, seconds.
+    #[arg(long, value_name = "S", default_value = "10", value_parser = seconds)]
+    pub timeout: Duration,
+}
+
 /// Arguments of `listen`.
 #[derive(Debug, Args)]
 pub struct ListenArgs {

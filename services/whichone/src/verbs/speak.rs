@@ -1,4 +1,4 @@
-//! `say` and `listen`: giving the robot something to hear.
+//! `say`, `point` and `listen`: giving the robot something to hear or see.
 
 use std::path::Path;
 use std::time::Duration;
@@ -10,6 +10,7 @@ use runtime::exit::Exit;
 use runtime::group::GroupPaths;
 use serde_json::json;
 
+use crate::cli::PointArgs;
 use crate::output::{Ink, Output};
 use crate::trouble::{Outcome, Trouble};
 
@@ -21,6 +22,13 @@ pub(super) fn say(
     out: &mut Output<'_>,
 ) -> Outcome {
     give(paths, Sound::Text(words.join(" ")), timeout, out)
+}
+
+/// Points at a place, and tells whether that was accepted.
+pub(super) fn point(paths: &GroupPaths, args: &PointArgs, out: &mut Output<'_>) -> Outcome {
+    let patience = Span::from_s(args.timeout.as_secs_f64());
+    let client = Client::join(paths)?;
+    tell_all(&client.point([args.x, args.y, args.z], &args.say, patience)?, out)
 }
 
 /// Plays a file to the robot, and tells what was heard in it.
@@ -42,7 +50,11 @@ pub(super) fn listen(
 fn give(paths: &GroupPaths, sound: Sound, timeout: Duration, out: &mut Output<'_>) -> Outcome {
     let client = Client::join(paths)?;
     let receipts = client.inject(sound, Span::from_s(timeout.as_secs_f64()))?;
-    for receipt in &receipts {
+    tell_all(&receipts, out)
+}
+
+fn tell_all(receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
+    for receipt in receipts {
         tell(receipt, out)?;
     }
     let accepted = |receipt: &Receipt| receipt.status == ReceiptStatus::Accepted.code();

@@ -24,6 +24,13 @@ pub(super) fn count(number: u64, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
+/// What a decision is worth, and between which bounds the best one is, e.g. `value 33.97, best
+/// 33.97 to 33.98`.
+pub(super) fn value(value: f64, bounds: Option<(f64, f64)>) -> String {
+    let bounds = bounds.map(|(low, high)| format!(", best {low:.2} to {high:.2}"));
+    format!("value {value:.2}{}", bounds.unwrap_or_default())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -43,6 +50,12 @@ mod tests {
         for (seconds, words) in told {
             assert_eq!(time(seconds), words);
         }
+    }
+
+    #[test]
+    fn values_are_told_with_their_bounds() {
+        assert_eq!(value(12.5, None), "value 12.50");
+        assert_eq!(value(-1.0, Some((-1.0, 2.255))), "value -1.00, best -1.00 to 2.25");
     }
 
     #[test]

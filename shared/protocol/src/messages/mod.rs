@@ -6,6 +6,7 @@
 
 mod arm;
 mod common;
+mod gesture;
 mod observation;
 mod policy;
 mod speech;
@@ -13,6 +14,7 @@ mod utterance;
 
 pub use arm::*;
 pub use common::{Stamp, WireQuestion};
+pub use gesture::{POINTED_AT_MAX_M, WireGesture, is_somewhere};
 pub use observation::*;
 pub use policy::*;
 pub use speech::*;

@@ -1,6 +1,7 @@
 //! What an utterance was understood to say.
 
 use crate::messages::common::{WireQuestion, checked_weight};
+use crate::messages::gesture::WireGesture;
 use crate::messages::utterance::HYPOTHESES_MAX;
 use crate::schema::wire_struct;
 use crate::text::FixedText;
@@ -112,13 +113,15 @@ fn checked_words(slots: &[u16], count: u8, known: usize) -> Result<Vec<WordId>, 
 
 wire_struct! {
     /// What an utterance was understood to say. Grounding to policy, one for each utterance.
-    Observation = "Observation" nests [WireReading, WireQuestion] {
+    Observation = "Observation" nests [WireReading, WireQuestion, WireGesture] {
         /// The utterance's [`UtteranceSeq`].
         seq: u64,
         /// Of the utterance.
         heard_prompt: u64,
         /// Of the utterance.
         heard_question: WireQuestion,
+        /// Of the utterance.
+        gesture: WireGesture,
         /// [`scene::Scene::key`] of the scene that it was read with.
         scene_key: u64,
         /// Of the utterance.

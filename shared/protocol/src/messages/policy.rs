@@ -53,6 +53,8 @@ wire_struct! {
         object: u32,
         /// Attempt of a `Pick`.
         attempt: u32,
+        /// [`scene::Scene::key`] of the scene whose objects and attributes are meant.
+        scene_key: u64,
         /// When it was decided.
         decided_ns: u64,
         /// The utterance that it answers, 0 for none.

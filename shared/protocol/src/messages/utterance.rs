@@ -1,6 +1,7 @@
 //! An accepted utterance.
 
 use crate::messages::common::{WireQuestion, checked_weight};
+use crate::messages::gesture::WireGesture;
 use crate::schema::wire_struct;
 use crate::text::{FixedText, TextTooLong};
 use crate::wire::{WireError, wire_enum};
@@ -21,6 +22,8 @@ wire_enum! {
         Microphone = 2,
         /// A browser's own recogniser.
         Browser = 3,
+        /// A pointing gesture, with or without words.
+        Gesture = 4,
     }
 }
 
@@ -38,7 +41,7 @@ wire_struct! {
 
 wire_struct! {
     /// An accepted utterance. Speech to grounding.
-    Utterance = "Utterance" nests [WireQuestion, Hypothesis] {
+    Utterance = "Utterance" nests [WireQuestion, WireGesture, Hypothesis] {
         /// [`UtteranceSeq`].
         seq: u64,
         /// [`PromptId`] of the last question whose presentation had ended when the person began
@@ -46,6 +49,8 @@ wire_struct! {
         heard_prompt: u64,
         /// That question.
         heard_question: WireQuestion,
+        /// Where the person points, if anywhere.
+        gesture: WireGesture,
         /// When the person began to speak or type.
         onset_ns: u64,
         /// When the person had ended.
@@ -54,7 +59,7 @@ wire_struct! {
         accepted_ns: u64,
         /// [`Source`].
         source: u8,
-        /// How many of `hypotheses` are used; the first is the best.
+        /// How many of `hypotheses` are used; the first is the best. 0 for a gesture without words.
         hypothesis_count: u8,
         /// Zero.
         reserved: [u8; 6],

@@ -44,6 +44,20 @@ fn a_scene_without_places_cannot_be_worked_in() {
     );
 }
 
+#[test]
+fn nobody_points_from_where_an_object_stands() {
+    let inside = "[gesture]\nenabled = true\nperson_xyz = [0.7, 0.2, -0.125]";
+    let complaints = Folder::new(&[("dialogue.toml", inside)]).complaints(None, &[]);
+    assert_eq!(
+        complaints,
+        [
+            "dialogue.toml: gesture.person_xyz: the person stands where `red_one` does (use a place from which people see the objects, e.g. [1.6, 0.0, 0.45])"
+        ]
+    );
+    let off = inside.replace("true", "false");
+    assert!(Folder::new(&[("dialogue.toml", &off)]).load(None, &[]).is_ok());
+}
+
 /// `ONE_BOWL` with another line in place of the one that starts with `key`.
 fn bowl_with(key: &str, line: &str) -> String {
     let lines = ONE_BOWL.lines().map(|old| if old.starts_with(key) { line } else { old });

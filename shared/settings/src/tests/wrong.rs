@@ -112,6 +112,16 @@ fn a_number_out_of_range() {
     );
     check(
         "dialogue.toml",
+        "[gesture]\np_g = 0\nstd_theta_rad = 2.0\nstray = 1\nperson_xyz = [0, 50, 0]",
+        &[
+            "dialogue.toml: gesture.p_g: 0 is not a probability (use a number above 0 and below 1, e.g. 0.1)",
+            "dialogue.toml: gesture.std_theta_rad: 2 is not a spread of pointing (use radians above 0 and at most 1, e.g. 0.15)",
+            "dialogue.toml: gesture.stray: 1 is not a share of stray gestures (use a number above 0 and below 1, e.g. 0.05)",
+            "dialogue.toml: gesture.person_xyz: [0.0, 50.0, 0.0] is out of range (use metres from -20 to 20)",
+        ],
+    );
+    check(
+        "dialogue.toml",
         "epsilon = 0.0\np_l = 1",
         &[
             "dialogue.toml: p_l: 1 is not a probability (use a number above 0 and below 1, e.g. 0.95)",

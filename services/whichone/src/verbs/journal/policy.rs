@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 use dialogue::Belief;
 use policy::journal_check::refold;
 use policy::mind::Mind;
-use policy::state::{Cause, Record};
+use policy::state::{Act, Cause, Record};
 use protocol::{ActKind, PickOutcome};
 
 use super::{Broken, Part, at};
+use crate::verbs::words;
 
 /// A record for people.
 pub(super) fn line(record: &Record) -> String {
@@ -30,7 +31,22 @@ pub(super) fn line(record: &Record) -> String {
         let best = open.belief.iter().copied().fold(f64::NEG_INFINITY, f64::max).exp();
         format!("interaction {}, best {:.1} %", open.id, best * 100.0)
     });
-    format!("{}  {why:<16}  {does}  ({})", at(record.at), where_.as_deref().unwrap_or("at rest"))
+    let where_ = where_.as_deref().unwrap_or("at rest");
+    format!("{}  {why:<16}  {does}  ({where_}{})", at(record.at), reasons(&state.act))
+}
+
+/// Why the robot decided so: the value with its bounds, the questions to come, and what else it
+/// weighed. A mere remark has no reasons.
+fn reasons(act: &Act) -> String {
+    if act.value == 0.0 && act.alternatives.is_empty() {
+        return String::new();
+    }
+    let value = words::value(act.value, act.bounds);
+    let others: Vec<String> =
+        act.alternatives.iter().map(|(action, value)| format!("{action} {value:.2}")).collect();
+    let before = if others.is_empty() { "" } else { ", before " };
+    let questions = act.expected_questions;
+    format!("; {value}, {questions:.1} questions to come{before}{}", others.join(", "))
 }
 
 /// Every utterance applied once and in order, every belief a distribution, no interaction with two
@@ -121,6 +137,7 @@ mod tests {
             accepted: Default::default(),
             readings: Vec::new(),
             unknown: String::new(),
+            gesture: None,
         };
         let state = State { applied: UtteranceSeq(seq), ..State::default() };
         Record { cause: Cause::Utterance(heard), at: node::Time(0), state }

@@ -11,7 +11,9 @@ pub(super) fn line(record: &Record) -> String {
     match record {
         Record::Accepted(accepted) => {
             let words = accepted.hypotheses.first().map_or("", |(words, _)| words.as_str());
-            format!("{}  utterance {}: {words}", at(accepted.accepted), accepted.seq)
+            let pointed = accepted.gesture.map(|[x, y, z]| format!(" [points at {x} {y} {z} m]"));
+            let pointed = pointed.unwrap_or_default();
+            format!("{}  utterance {}: {words}{pointed}", at(accepted.accepted), accepted.seq)
         }
         Record::Presented(said) => {
             let times = said.presentation;

@@ -90,7 +90,8 @@ fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> V
     lines.extend(belief(scene, &view.belief, style, columns));
     if view.interaction != 0 {
         let decision = style.paint(Ink::Bold, &view.decision);
-        lines.push(format!("decision: {decision} (value {:.1})", view.value));
+        let value = words::value(view.value, view.bounds);
+        lines.push(format!("decision: {decision} ({value})"));
         let others = view.alternatives.iter().take(3);
         let others: Vec<String> =
             others.map(|(action, value)| format!("{action} {value:.1}")).collect();

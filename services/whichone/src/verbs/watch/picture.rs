@@ -120,6 +120,7 @@ fn dialogue(scene: &Scene, seen: &Seen) -> Option<Json> {
         "question": question,
         "text": view.text,
         "value": view.value,
+        "bounds": view.bounds,
         "alternatives": view.alternatives,
         "questions": view.questions,
         "expected_questions": view.expected_questions,

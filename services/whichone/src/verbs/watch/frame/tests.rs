@@ -37,6 +37,7 @@ fn the_dialogue_is_told_with_its_reasons() {
         belief: vec![0.5, 0.5],
         decision: "ask".into(),
         value: 41.26,
+        bounds: Some((41.2, 41.3)),
         alternatives: vec![("pick o0".into(), -25.0)],
         questions: 1,
         expected_questions: 0.4,
@@ -44,7 +45,10 @@ fn the_dialogue_is_told_with_its_reasons() {
     };
     let lines = dialogue(&scene(2), &view, Style::default(), 80);
     assert_eq!(lines[0], "interaction 4: 1 question asked, 0.4 to come");
-    assert_eq!(lines[3..], ["decision: ask (value 41.3)", "  before pick o0 -25.0"]);
+    assert_eq!(
+        lines[3..],
+        ["decision: ask (value 41.26, best 41.20 to 41.30)", "  before pick o0 -25.0"]
+    );
 }
 
 #[test]

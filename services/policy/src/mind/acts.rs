@@ -1,0 +1,90 @@
+//! How a decision becomes the standing act: what is asked, picked, said, or said again.
+
+use super::words;
+use crate::state::{Act, Prompt, State};
+use node::Time;
+use protocol::{ActKind, InteractionId, PickId, PromptId};
+use scene::{ObjectId, Question, Scene};
+
+/// Makes `act` the standing decision.
+pub(super) fn set(state: &mut State, act: Act) {
+    state.act = Act { id: state.act.id.next(), ..act };
+}
+
+pub(super) fn ask(
+    scene: &Scene,
+    state: &mut State,
+    question: Question,
+    heard: PromptId,
+    preface: &str,
+    reasons: Act,
+) {
+    let standing = state.act.clone();
+    let Some(open) = &mut state.open else { return };
+    let stands = standing.kind == ActKind::Ask
+        && standing.question == question
+        && open.prompts.last().is_some_and(|prompt| prompt.id == standing.prompt);
+    if stands && heard != standing.prompt {
+        // It stands already and nobody has heard it to its end yet: saying it again would only
+        // interrupt it.
+        state.act = Act { id: standing.id, ..keep_words(reasons, &standing) };
+        return;
+    }
+    open.presentations += 1;
+    let text = format!("{preface}{}", scene.phrase(question));
+    if stands {
+        let again =
+            Act { presentation: standing.presentation + 1, ..keep_words(reasons, &standing) };
+        set(state, Act { text, ..again });
+        return;
+    }
+    state.last_prompt = state.last_prompt.next();
+    open.prompts.push(Prompt { id: state.last_prompt, question });
+    let prompt = state.last_prompt;
+    let kind = ActKind::Ask;
+    set(state, Act { kind, prompt, presentation: 1, question, text, ..reasons });
+}
+
+/// The new reasons with the standing act's words.
+fn keep_words(reasons: Act, standing: &Act) -> Act {
+    Act {
+        kind: standing.kind,
+        prompt: standing.prompt,
+        presentation: standing.presentation,
+        question: standing.question,
+        pick: standing.pick,
+        text: standing.text.clone(),
+        ..reasons
+    }
+}
+
+pub(super) fn pick(scene: &Scene, state: &mut State, object: ObjectId, reasons: Act) {
+    let Some(open) = &mut state.open else { return };
+    let id = PickId { interaction: InteractionId(open.id.0), attempt: 1 };
+    open.pick = Some((id, object));
+    state.last_prompt = state.last_prompt.next();
+    let prompt = state.last_prompt;
+    let text = words::fetching(scene, object);
+    let pick = Some((id, object));
+    set(state, Act { kind: ActKind::Pick, prompt, presentation: 1, pick, text, ..reasons });
+}
+
+pub(super) fn say(state: &mut State, text: &str, at: Time) {
+    state.last_prompt = state.last_prompt.next();
+    let prompt = state.last_prompt;
+    let (text, utterance) = (text.to_owned(), state.applied);
+    let kind = ActKind::Say;
+    set(
+        state,
+        Act { kind, prompt, presentation: 1, text, utterance, decided: at, ..Act::default() },
+    );
+}
+
+/// Says the standing words once more.
+pub(super) fn repeat(state: &mut State, at: Time) {
+    if let Some(open) = &mut state.open {
+        open.presentations += 1;
+    }
+    let presentation = state.act.presentation + 1;
+    set(state, Act { presentation, decided: at, utterance: state.applied, ..state.act.clone() });
+}

@@ -1,0 +1,70 @@
+//! What an utterance says about the wanted object.
+
+use super::{Mind, words};
+use crate::state::{Heard, Interaction, State};
+use dialogue::Belief;
+use node::Time;
+use scene::{Question, Reading, Response};
+
+impl Mind {
+    /// Scores what was said against the question that was heard, and decides anew.
+    pub(super) fn inform(&mut self, state: &mut State, heard: &Heard, at: Time) {
+        if state.open.is_none() {
+            if !self.is_request(heard) {
+                return;
+            }
+            self.open(state, heard);
+        }
+        let Some(open) = &mut state.open else { return };
+        open.utterances.1 = heard.seq;
+        open.silences = 0;
+        if open.pick.is_some() {
+            return;
+        }
+        // An answer to an earlier question of this interaction still says what it says about that
+        // question; one to another interaction's says nothing.
+        let asked = open.prompts.iter().find(|prompt| prompt.id == heard.prompt);
+        let question = asked.map_or(Question::None, |prompt| prompt.question);
+        let hypotheses: Vec<_> =
+            heard.readings.iter().map(|(w, reading)| (*w, question, reading.clone())).collect();
+        let mut belief = open.belief();
+        belief.update_mixture(&self.model, &hypotheses);
+        if let (Some(pointing), Some(target_m)) = (&self.pointing, heard.gesture) {
+            pointing.observe(&mut belief, target_m);
+        }
+        open.belief = belief.log_weights().to_vec();
+        let preface = words::unknown(heard);
+        self.decide(state, heard.prompt, &preface, heard.seq, at);
+    }
+
+    fn open(&self, state: &mut State, heard: &Heard) {
+        state.last_interaction = state.last_interaction.next();
+        let prior = Belief::uniform(self.scene.objects().len());
+        state.open = Some(Interaction {
+            id: state.last_interaction,
+            opened: heard.accepted,
+            belief: prior.log_weights().to_vec(),
+            utterances: (heard.seq, heard.seq),
+            ..Interaction::default()
+        });
+    }
+
+    /// Where the person points, if gestures count.
+    pub(super) fn pointed_at(&self, heard: &Heard) -> Option<[f64; 3]> {
+        heard.gesture.filter(|_| self.pointing.is_some())
+    }
+
+    /// Whether the utterance can begin an interaction: nothing but answers means nothing where
+    /// nothing was asked, and neither does a hand that does not count.
+    fn is_request(&self, heard: &Heard) -> bool {
+        let only_answers = heard.readings.iter().all(|(_, reading)| is_answer(reading));
+        let only_gesture = heard.gesture.is_some()
+            && heard.readings.iter().all(|(_, reading)| *reading == Reading::default());
+        self.pointed_at(heard).is_some() || !(only_answers || only_gesture)
+    }
+}
+
+/// Whether the reading is an answer and nothing else.
+fn is_answer(reading: &Reading) -> bool {
+    reading.response != Response::None && reading.base.is_empty() && reading.excluded.is_empty()
+}

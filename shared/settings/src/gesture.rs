@@ -1,0 +1,60 @@
+//! `[gesture]` of `dialogue.toml`: people who point.
+
+use dialogue::gesture::{Direction, Gestures};
+use scene::Scene;
+
+use crate::fields::Fields;
+use crate::layer::Table;
+use crate::problems::Report;
+
+/// How pointing gestures are understood.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gesture {
+    /// Whether they are taken at all.
+    pub enabled: bool,
+    /// Parameters of their observation.
+    pub model: Gestures,
+    /// Where the person's pointing ray starts, metres, frame `base`.
+    pub person_xyz_m: [f64; 3],
+}
+
+/// Farthest coordinate of a person, metres.
+const PERSON_MAX_M: f64 = 20.0;
+
+pub(crate) fn read(f: &mut Fields<'_>) -> Gesture {
+    let enabled = f.flag("enabled");
+    let model = Gestures {
+        p_g: f.any_number("p_g"),
+        std_theta_rad: f.any_number("std_theta_rad"),
+        stray: f.any_number("stray"),
+    };
+    for (key, what, cure) in model.check() {
+        if !f.is_wrong(key) {
+            f.problem(key, what, cure);
+        }
+    }
+    let person_xyz_m = f.triple("person_xyz");
+    if !f.is_wrong("person_xyz") && person_xyz_m.iter().any(|x| x.abs() > PERSON_MAX_M) {
+        let what = format!("{person_xyz_m:?} is out of range");
+        f.problem("person_xyz", what, format!("use metres from -{PERSON_MAX_M} to {PERSON_MAX_M}"));
+    }
+    Gesture { enabled, model, person_xyz_m }
+}
+
+/// Reports an object that stands where the person does: nobody can point at it.
+pub(crate) fn check(scene: &Scene, gesture: &Gesture, tree: &Table, report: &mut Report) {
+    if !gesture.enabled {
+        return;
+    }
+    let directions = Direction::to_objects(gesture.person_xyz_m, scene);
+    let objects = scene.objects().iter().zip(directions);
+    let inside = |(object, direction): &(&scene::Object, Option<Direction>)| {
+        object.placement.is_some() && direction.is_none()
+    };
+    for (object, _) in objects.filter(inside) {
+        let path = ["dialogue", "gesture", "person_xyz"];
+        let what = format!("the person stands where `{}` does", object.name);
+        let cure = "use a place from which people see the objects, e.g. [1.6, 0.0, 0.45]";
+        report.add(tree.source_of(&path).problem(&path.map(str::to_owned), what, cure));
+    }
+}
