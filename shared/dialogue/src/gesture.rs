@@ -127,22 +127,20 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// Bayes' rule with an observation beside the words, given by its log likelihood per hypothesis. One
-/// that is as likely under each leaves the belief unchanged bit for bit.
+/// that is as likely under each leaves the belief unchanged bit for bit. The greatest is taken as 1,
+/// so that weights only fall.
 ///
 /// # Panics
-/// If there are not as many entries as hypotheses, or none of them is finite.
+/// If there are not as many entries as hypotheses, or one is not finite.
 pub fn update(belief: &mut Belief, log_likelihood: &[f64]) {
     assert_eq!(belief.len(), log_likelihood.len(), "belief and observation are of one scene");
     if log_likelihood.iter().all(|l| *l == log_likelihood[0]) {
         return;
     }
+    let greatest = log_likelihood.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let weights = belief.log_weights().iter().zip(log_likelihood);
-    let mut log: Vec<f64> = weights.map(|(weight, likelihood)| weight + likelihood).collect();
-    let largest = log.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let sum: f64 = log.iter().map(|l| (l - largest).exp()).sum();
-    let log_sum = largest + sum.ln();
-    log.iter_mut().for_each(|l| *l -= log_sum);
-    *belief = Belief::from_log(log).expect("normalised");
+    let log = weights.map(|(weight, likelihood)| weight + (likelihood - greatest)).collect();
+    *belief = Belief::from_log(log).expect("finite likelihoods");
 }
 
 #[cfg(test)]
