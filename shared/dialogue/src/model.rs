@@ -203,6 +203,18 @@ impl Model {
         }
     }
 
+    /// Tells everything that answers depend on, as numbers.
+    pub(crate) fn identify(&self, tell: &mut dyn FnMut(u64)) {
+        let Params { p_l, epsilon, alpha } = self.params;
+        [p_l, epsilon, alpha].into_iter().for_each(|parameter| tell(parameter.to_bits()));
+        tell(self.hypotheses() as u64);
+        for column in &self.columns {
+            tell(column.words.len() as u64);
+            column.values.iter().for_each(|value| tell(u64::from(*value)));
+            column.words.iter().for_each(|word| tell(word.index() as u64));
+        }
+    }
+
     /// `ln P(w | D)` of eq. (5), but for a constant that is returned, added to every entry. The
     /// constant is chosen so that entries only fall.
     pub(crate) fn add_log_word(&self, word: WordId, out: &mut [f64]) -> f64 {

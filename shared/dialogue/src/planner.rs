@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Actions, Belief, Costs, Decision, Model};
+use crate::{Actions, Belief, Costs, Decision, Model, PolicyTable};
 
 /// The decision problem `(S, A, T, R, Ω, O)` of section 3, but for the belief.
 ///
@@ -41,4 +41,17 @@ pub trait Planner {
     /// # Panics
     /// If the belief is not about the problem's scene.
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision;
+
+    /// Works ahead from a belief that dialogues are likely to begin with, if that is any use and
+    /// takes well under a second. It changes no decision.
+    fn prepare(&mut self, _problem: &DecisionProblem<'_>, _belief: &Belief) {}
+
+    /// The decisions worked out so far, if it keeps them.
+    fn table(&self) -> Option<&PolicyTable> {
+        None
+    }
+
+    /// Takes decisions that were worked out before; [`PolicyTable::fits`] says whether they are of
+    /// the problem at hand.
+    fn adopt(&mut self, _table: PolicyTable) {}
 }

@@ -5,12 +5,17 @@ mod entropy;
 mod lookahead;
 mod never_ask;
 mod no_attribute;
+mod optimal;
+mod searched;
+mod sparse_sampling;
 
 pub(crate) use always_ask::AlwaysAsk;
 pub(crate) use entropy::Entropy;
 pub use lookahead::Lookahead;
 pub(crate) use never_ask::NeverAsk;
 pub(crate) use no_attribute::NoAttribute;
+pub use optimal::Optimal;
+pub(crate) use sparse_sampling::SparseSampling;
 
 use crate::planning::{Bound, Choice, Glance, Glancer, Reduced};
 use crate::{Action, Belief, Decision, DecisionProblem};

@@ -17,6 +17,8 @@ mod search;
 mod tests;
 
 pub(crate) use bound::Bound;
+pub(crate) use channel::Query;
 pub(crate) use glance::{Choice, Glance, Glancer};
+pub(crate) use outcome::outcomes;
 pub(crate) use reduced::Reduced;
 pub(crate) use search::{Effort, Search};

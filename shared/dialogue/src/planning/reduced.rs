@@ -87,6 +87,12 @@ impl Reduced {
         }
     }
 
+    /// Every question that can tell anything, pointing included.
+    pub(crate) fn all_queries(&self) -> Vec<Query> {
+        let pointed = self.pointed.iter().map(|class| Query::Point { class: *class });
+        self.queries.iter().copied().chain(pointed).collect()
+    }
+
     /// The different channels among the questions.
     pub(crate) fn channels(&self) -> Vec<Channel> {
         let point = (!self.pointed.is_empty()).then_some(Query::Point { class: 0 });

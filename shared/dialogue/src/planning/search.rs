@@ -12,6 +12,7 @@ use super::channel::Query;
 use super::glance::{Choice, Glance, Glancer};
 use super::outcome::outcomes;
 use super::reduced::Reduced;
+use crate::mix::Mix;
 
 /// How long to search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -248,15 +249,8 @@ fn drop_unpromising(choices: &mut Vec<Choice>, stop: f64) -> f64 {
 }
 
 /// Beliefs that agree to about 1e-11 are one, which moves a value by no more than that times what
-/// is at stake in a pick. Others have different keys but for one chance in about 1e30.
+/// is at stake in a pick.
 fn key(mass: &[f64]) -> u128 {
     const STEPS: f64 = (1_u64 << 36) as f64;
-    let mut low = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut high = 0xc2b2_ae3d_27d4_eb4f_u64;
-    for m in mass {
-        let rounded = (m * STEPS).round() as u64;
-        low = (low ^ rounded).wrapping_mul(0xff51_afd7_ed55_8ccd).rotate_left(29);
-        high = high.wrapping_add(rounded).wrapping_mul(0xc4ce_b9fe_1a85_ec53).rotate_left(31);
-    }
-    (u128::from(high) << 64) | u128::from(low)
+    mass.iter().fold(Mix::default(), |mix, m| mix.add((m * STEPS).round() as u64)).wide()
 }

@@ -1,8 +1,6 @@
 use scene::{ObjectId, Question, Scene};
 
 use super::bound::Summary;
-use super::channel::Query;
-use super::outcome::outcomes;
 use super::*;
 use crate::testing::{bowls, random_scene, scene};
 use crate::{Actions, Answer, Belief, Costs, DecisionProblem, Mode, Model, Params, Rng};
@@ -201,8 +199,7 @@ fn no_action_beats_the_upper_bound() {
             let top = mass.iter().zip(&reduced.share).map(|(m, s)| m * s).fold(0.0, f64::max);
             assert!(problem.costs.pick_value(top) <= here + 1e-9, "{label} pick");
             assert!(problem.costs.wait_value() <= here + 1e-9, "{label} wait");
-            let pointed = reduced.pointed.iter().map(|class| Query::Point { class: *class });
-            for query in reduced.queries.iter().copied().chain(pointed) {
+            for query in reduced.all_queries() {
                 let after: f64 = (outcomes(&reduced, query, &mass).iter())
                     .map(|(p, mass)| p * upper(&reduced, &bound, mass))
                     .sum();

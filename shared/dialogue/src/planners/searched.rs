@@ -1,0 +1,57 @@
+//! A decision from searching the beliefs that questions lead to.
+
+use crate::planning::{Bound, Effort, Reduced, Search};
+use crate::{Action, Belief, Decision, DecisionProblem};
+
+use super::{alternatives, stop};
+
+/// Searches from a belief with the effort that the reduced problem deserves, and takes the question
+/// that looks best.
+pub(super) fn searched(
+    problem: &DecisionProblem<'_>,
+    belief: &Belief,
+    effort: impl Fn(&Reduced) -> Effort,
+) -> Decision {
+    let reduced = Reduced::new(problem, belief);
+    let bound = Bound::new(&reduced, &problem.costs);
+    let mut search = Search::new(&reduced, &bound);
+    search.run(effort(&reduced));
+    let root = search.root();
+    let asks = |query| Action::Ask(reduced.question(query));
+    let action = root
+        .best()
+        .map_or_else(|| stop(problem, &reduced, root.class, root.stop), |b| asks(b.query));
+    let value = root.best().map_or(root.stop, |branch| branch.value.estimate);
+    let asked = root.branches.iter().map(|b| (asks(b.query), b.value.estimate)).collect();
+    Decision {
+        action,
+        value,
+        alternatives: alternatives(problem, belief, asked, action),
+        expected_questions: questions_left(&search, &reduced, 0, 1.0),
+        bounds: Some((root.value.lower, root.value.upper)),
+    }
+}
+
+/// Beliefs that are looked at with that much work, counted in classes looked at times attributes.
+pub(super) fn affordable(reduced: &Reduced, work: usize) -> usize {
+    work / (reduced.classes() * (reduced.columns.len() + 2))
+}
+
+/// Dialogues less probable than this do not count towards the expected number of questions.
+const UNLIKELY: f64 = 1e-3;
+
+/// How many questions the plan asks from that belief on, repetitions after silence included. Where
+/// the search has not looked further, every answer is expected to carry all it can.
+fn questions_left(search: &Search<'_>, reduced: &Reduced, node: usize, reached: f64) -> f64 {
+    let node = search.at(node);
+    let Some(branch) = node.best() else { return 0.0 };
+    let channel = reduced.channel(branch.query);
+    if branch.answers.is_empty() {
+        return channel.times_until_spent(node.entropy);
+    }
+    let likely = branch.answers.iter().map(|(p, next)| (p, next, reached * p));
+    let after = likely
+        .filter(|(.., reached)| *reached > UNLIKELY)
+        .map(|(p, next, reached)| p * questions_left(search, reduced, *next, reached));
+    channel.price.times + after.sum::<f64>()
+}

@@ -1,0 +1,105 @@
+//! `sparse-sampling`: the predecessor's planner (Kearns, Mansour and Ng 2002, over beliefs).
+
+use crate::planning::{Bound, Glancer, Query, Reduced, outcomes};
+use crate::{Action, Belief, Decision, DecisionProblem, Planner, Rng, Step};
+
+use super::{alternatives, stop};
+
+/// Looks a fixed number of questions ahead, and for every question draws a few answers instead of
+/// weighing all of them. The predecessor's public configuration has a horizon of 2.
+///
+/// Drawing is what makes it err: with three draws the improbable answer is mostly not seen. The
+/// same interaction and step draw the same answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct SparseSampling {
+    /// How many questions to look ahead, with a pick behind the last.
+    horizon: u32,
+    /// How many answers to draw for a question.
+    width: usize,
+}
+
+impl Default for SparseSampling {
+    fn default() -> Self {
+        Self { horizon: 2, width: 3 }
+    }
+}
+
+/// What a planner of that kind looks ahead in.
+struct Tree<'a> {
+    reduced: &'a Reduced,
+    problem: &'a DecisionProblem<'a>,
+    queries: Vec<Query>,
+    width: usize,
+    rng: Rng,
+}
+
+impl Planner for SparseSampling {
+    fn name(&self) -> &'static str {
+        "sparse-sampling"
+    }
+
+    fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
+        let reduced = Reduced::new(problem, belief);
+        let bound = Bound::new(&reduced, &problem.costs);
+        let glance = Glancer::new(&reduced, &bound).glance(&reduced.mass);
+        let queries = reduced.all_queries();
+        let rng = Rng::new(step.interaction.wrapping_mul(0x1_0000_0001) ^ u64::from(step.step));
+        let mut tree = Tree { reduced: &reduced, problem, queries, width: self.width, rng };
+        let asked = tree.ask(&reduced.mass, self.horizon);
+        let best = asked.iter().copied().reduce(|a, b| if b.1 > a.1 { b } else { a });
+        let best = best.filter(|(_, value)| *value > glance.stop.lower);
+        let asks = |query| Action::Ask(reduced.question(query));
+        let (action, value) = best.map_or_else(
+            || (stop(problem, &reduced, glance.class, glance.stop.lower), glance.stop.lower),
+            |(query, value)| (asks(query), value),
+        );
+        let expected_questions =
+            best.map_or(0.0, |(q, _)| reduced.channel(q).times_until_spent(glance.entropy));
+        let asked = asked.iter().map(|(query, value)| (asks(*query), *value)).collect();
+        let alternatives = alternatives(problem, belief, asked, action);
+        Decision { action, value, alternatives, expected_questions, bounds: None }
+    }
+}
+
+impl Tree<'_> {
+    /// Value of every question at a belief with that many questions to go.
+    fn ask(&mut self, mass: &[f64], horizon: u32) -> Vec<(Query, f64)> {
+        let queries = self.queries.clone();
+        queries.into_iter().map(|query| (query, self.sample(query, mass, horizon))).collect()
+    }
+
+    fn sample(&mut self, query: Query, mass: &[f64], horizon: u32) -> f64 {
+        let answers = outcomes(self.reduced, query, mass);
+        let mut drawn = vec![0_usize; answers.len()];
+        for _ in 0..self.width {
+            drawn[draw(&answers, self.rng.uniform())] += 1;
+        }
+        let mut sum = 0.0;
+        for (times, (_, after)) in drawn.into_iter().zip(&answers).filter(|(times, _)| *times > 0) {
+            sum += times as f64 * self.value(after, horizon - 1);
+        }
+        self.reduced.channel(query).price.pay(sum / self.width as f64)
+    }
+
+    fn value(&mut self, mass: &[f64], horizon: u32) -> f64 {
+        let tops = mass.iter().zip(&self.reduced.share).map(|(mass, share)| mass * share);
+        let pick = self.problem.costs.pick_value(tops.fold(0.0, f64::max));
+        let stop = pick.max(self.problem.costs.wait_value());
+        if horizon == 0 {
+            return stop;
+        }
+        self.ask(mass, horizon).into_iter().fold(stop, |best, (_, value)| best.max(value))
+    }
+}
+
+/// Which answer a uniform number in `[0, 1)` draws.
+fn draw(answers: &[(f64, Vec<f64>)], uniform: f64) -> usize {
+    let mut left = uniform;
+    for (index, (probability, _)) in answers.iter().enumerate() {
+        left -= probability;
+        if left < 0.0 {
+            return index;
+        }
+    }
+    answers.len() - 1
+}

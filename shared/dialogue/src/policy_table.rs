@@ -1,0 +1,110 @@
+//! Decisions that were worked out once and may be kept, in memory and on disk.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::mix::Mix;
+use crate::{Action, Actions, Belief, Decision, DecisionProblem};
+
+/// The decisions of one problem, by belief.
+///
+/// It serves one problem at a time and forgets the others': a robot has one scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PolicyTable {
+    problem: u64,
+    decisions: BTreeMap<u128, Decision>,
+}
+
+/// Most decisions that are kept. A dialogue needs a handful, the whole policy of the six bowls
+/// under a hundred.
+const DECISIONS_MAX: usize = 20_000;
+
+impl PolicyTable {
+    /// How many decisions it holds.
+    pub fn len(&self) -> usize {
+        self.decisions.len()
+    }
+
+    /// Whether it holds none.
+    pub fn is_empty(&self) -> bool {
+        self.decisions.is_empty()
+    }
+
+    /// Whether everything in it could be decided in that problem: a table from elsewhere is used
+    /// only then.
+    pub fn fits(&self, problem: &DecisionProblem<'_>) -> bool {
+        let possible = |decision: &Decision| {
+            let known = match decision.action {
+                Action::Wait => true,
+                Action::Ask(question) => problem.model.contains(question),
+                Action::Pick(object) => object.index() < problem.model.hypotheses(),
+            };
+            known && problem.actions.allow(decision.action)
+        };
+        self.problem == problem.key() && self.decisions.values().all(possible)
+    }
+
+    pub(crate) fn get(&self, problem: u64, belief: &Canonical) -> Option<&Decision> {
+        self.decisions.get(&belief.key).filter(|_| self.problem == problem)
+    }
+
+    pub(crate) fn insert(&mut self, problem: u64, belief: &Canonical, decision: Decision) {
+        if self.problem != problem || self.decisions.len() >= DECISIONS_MAX {
+            self.decisions.clear();
+            self.problem = problem;
+        }
+        self.decisions.insert(belief.key, decision);
+    }
+}
+
+/// A belief rounded to whole steps: the same for all beliefs that differ by rounding alone, but
+/// for those that lie on the edge between two steps.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Canonical {
+    steps: Vec<u64>,
+    key: u128,
+}
+
+/// Steps of probability, `2⁻³⁶`: moves a value by less than 1e-8 of what is at stake in a pick.
+const STEPS: f64 = (1_u64 << 36) as f64;
+
+impl Canonical {
+    pub(crate) fn of(belief: &Belief) -> Self {
+        let steps: Vec<u64> =
+            belief.probabilities().into_iter().map(|p| (p * STEPS).round() as u64).collect();
+        let key = steps.iter().fold(Mix::default(), |mix, step| mix.add(*step)).wide();
+        Self { steps, key }
+    }
+
+    /// The rounded belief. What is less probable than half a step has no part in it.
+    pub(crate) fn belief(&self) -> Belief {
+        let weights: Vec<f64> = self.steps.iter().map(|step| *step as f64).collect();
+        // The most probable of fewer than 2³⁶ hypotheses is at least a step.
+        Belief::from_probabilities(&weights).unwrap_or_else(|_| Belief::uniform(weights.len()))
+    }
+}
+
+impl DecisionProblem<'_> {
+    /// Identifies the problem, and the way in which tables of it are computed, in files that
+    /// outlive the program.
+    pub fn key(&self) -> u64 {
+        /// To be raised with every change of how decisions are found.
+        const EDITION: u64 = 1;
+        let costs = &self.costs;
+        let amounts = [
+            (costs.wait_s, costs.attribute_s),
+            (costs.which_s, costs.point_s),
+            (costs.correct, costs.wrong),
+            (costs.discount, 0.0),
+        ];
+        let mut mix = Mix::default().add(EDITION);
+        for (a, b) in amounts {
+            mix = mix.add(a.to_bits()).add(b.to_bits());
+        }
+        let Actions { mode, attribute, which } = self.actions;
+        mix = mix.add(mode as u64).add(u64::from(attribute)).add(u64::from(which));
+        self.model.identify(&mut |part| mix = mix.add(part));
+        mix.narrow()
+    }
+}
