@@ -5,6 +5,7 @@ use protocol::{ArmStatus, JointStates, MotionCommand, RobotAct, Service, WorldVi
 use runtime::bus::{EncodedWriter, PortError, Reader, Writer};
 use runtime::driver::{Context, Program, Shell};
 use runtime::exit::Failure;
+use runtime::lifecycle::Environment;
 use settings::Settings;
 
 /// The arm as a program.
@@ -18,7 +19,7 @@ impl Program for ArmProgram {
     type Node = ArmNode;
     type Shell = ArmShell;
 
-    fn config(settings: &Settings, _arguments: &[String]) -> Result<Config, Failure> {
+    fn config(_: &Environment, settings: &Settings) -> Result<Config, Failure> {
         Ok(Config { arm: settings.arm.clone(), scene: settings.scene.clone() })
     }
 }

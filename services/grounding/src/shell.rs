@@ -6,6 +6,7 @@ use protocol::{Observation, Service, Utterance, topics};
 use runtime::bus::{PortError, Reader, Writer};
 use runtime::driver::{Context, Program, Shell};
 use runtime::exit::{Exit, Failure};
+use runtime::lifecycle::Environment;
 use settings::Settings;
 
 /// Grounding as a program. `--language paper|careful` overrides the setting, so that a group can
@@ -21,8 +22,8 @@ impl Program for GroundingProgram {
     type Node = GroundingNode;
     type Shell = GroundingShell;
 
-    fn config(settings: &Settings, arguments: &[String]) -> Result<Config, Failure> {
-        let language = language(arguments, settings.dialogue.language)?;
+    fn config(environment: &Environment, settings: &Settings) -> Result<Config, Failure> {
+        let language = language(&environment.arguments, settings.dialogue.language)?;
         let reader = TextReader::new(&settings.scene, language);
         Ok(Config { scene: settings.scene.clone(), reader })
     }

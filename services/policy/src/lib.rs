@@ -5,6 +5,7 @@
 //! that follows from it can be seen.
 
 pub mod journal_check;
+mod kept;
 pub mod mind;
 pub mod shell;
 pub mod state;

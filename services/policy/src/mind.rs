@@ -2,6 +2,7 @@
 //! check of its journal, and in simulation.
 
 mod acts;
+mod ahead;
 mod inform;
 mod intents;
 mod pointing;

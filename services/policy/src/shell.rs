@@ -1,13 +1,14 @@
 //! The policy's topics and configuration.
 
 use crate::mind::{Assumptions, Mind};
-use crate::{In, Out, PolicyNode, turns};
+use crate::{In, Out, PolicyNode, kept, turns};
 use protocol::{
     Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, Service, topics,
 };
 use runtime::bus::{EncodedWriter, PortError, Reader, Writer};
 use runtime::driver::{Context, Program, Shell};
 use runtime::exit::{Exit, Failure};
+use runtime::lifecycle::Environment;
 use settings::Settings;
 
 /// The policy as a program.
@@ -21,8 +22,10 @@ impl Program for PolicyProgram {
     type Node = PolicyNode;
     type Shell = PolicyShell;
 
-    fn config(settings: &Settings, _arguments: &[String]) -> Result<Mind, Failure> {
-        mind(settings)
+    fn config(environment: &Environment, settings: &Settings) -> Result<Mind, Failure> {
+        let mut mind = mind(settings)?;
+        kept::work_ahead(&mut mind, &environment.paths.policies());
+        Ok(mind)
     }
 }
 

@@ -30,6 +30,13 @@ fn mind() -> Mind {
     shell::mind(&settings()).unwrap()
 }
 
+/// The shipped configuration with another planner.
+pub(crate) fn mind_of(planner: &str) -> Mind {
+    let mut settings = settings();
+    settings.dialogue.planner = planner.to_owned();
+    shell::mind(&settings).unwrap()
+}
+
 fn heard(seq: u64, prompt: PromptId, reading: Reading) -> Cause {
     let readings = vec![(1.0, reading)];
     let (seq, accepted) = (UtteranceSeq(seq), Time(seq * 1_000_000_000));

@@ -17,6 +17,7 @@ use runtime::bus::{EncodedReader, PortError, Reader, Writer};
 use runtime::device::DeviceSender;
 use runtime::driver::{Context, Program, Shell};
 use runtime::exit::Failure;
+use runtime::lifecycle::Environment;
 use settings::Settings;
 use std::path::Path;
 
@@ -31,7 +32,7 @@ impl Program for SpeechProgram {
     type Node = SpeechNode;
     type Shell = SpeechShell;
 
-    fn config(settings: &Settings, _arguments: &[String]) -> Result<Config, Failure> {
+    fn config(_: &Environment, settings: &Settings) -> Result<Config, Failure> {
         // The stop word is found by the careful reading whatever the dialogue is read by: it is a
         // matter of safety and not of the model.
         let reader = TextReader::new(&settings.scene, Language::Careful);

@@ -42,13 +42,13 @@ pub trait Program {
     /// Its topics and devices.
     type Shell: Shell<Self::Node>;
 
-    /// The node's configuration. `arguments` are the command line's, for a swapped service.
+    /// The node's configuration.
     ///
     /// # Errors
     /// Arguments that the service does not know.
     fn config(
+        environment: &Environment,
         settings: &Settings,
-        arguments: &[String],
     ) -> Result<<Self::Node as Node>::Config, Failure>;
 }
 
@@ -93,7 +93,7 @@ pub fn run<P: Program>() -> ExitCode {
         return help::<P>();
     }
     logging::init();
-    match serve::<P>(&arguments) {
+    match serve::<P>(arguments) {
         Ok(()) => Exit::Ok.code(),
         Err(failure) => {
             tracing::error!(exit = failure.exit as u8, "{failure}");
@@ -115,12 +115,12 @@ fn help<P: Program>() -> ExitCode {
     Exit::Ok.code()
 }
 
-fn serve<P: Program>(arguments: &[String]) -> Result<(), Failure> {
-    let environment = Environment::read()?;
+fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
+    let environment = Environment::read(arguments)?;
     let lifecycle = Lifecycle::begin(&environment.paths)?;
     let settings = Settings::load_snapshot(&environment.paths.run())
         .map_err(|e| Failure::new(Exit::Config, e.to_string()))?;
-    let config = P::config(&settings, arguments)?;
+    let config = P::config(&environment, &settings)?;
     let (journal, records) = open_journal::<P>(&environment)?;
     let node = P::Node::recover(config, records)?;
     let identity = Identity { epoch: environment.epoch, incarnation: environment.incarnation };

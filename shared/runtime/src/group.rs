@@ -157,6 +157,11 @@ impl GroupPaths {
         self.root.join("journal")
     }
 
+    /// Decisions that the policy has worked out; a cache, which may be deleted.
+    pub fn policies(&self) -> PathBuf {
+        self.root.join("policies")
+    }
+
     /// A service's journal.
     pub fn journal_file(&self, service: &str) -> PathBuf {
         self.journal().join(format!("{service}.journal"))

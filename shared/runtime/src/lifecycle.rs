@@ -30,14 +30,16 @@ pub struct Environment {
     pub epoch: Epoch,
     /// Number of this start.
     pub incarnation: Incarnation,
+    /// What follows the program on its command line; a swapped service may have some.
+    pub arguments: Vec<String>,
 }
 
 impl Environment {
-    /// Reads the environment.
+    /// Reads the environment variables that the supervisor sets.
     ///
     /// # Errors
     /// Not started by a supervisor, or by one of another kind.
-    pub fn read() -> Result<Self, Failure> {
+    pub fn read(arguments: Vec<String>) -> Result<Self, Failure> {
         let name = text(group::ENV_GROUP)?;
         let usage = |e: group::GroupError| Failure::new(Exit::Usage, e.to_string());
         let name = GroupName::new(&name).map_err(usage)?;
@@ -45,6 +47,7 @@ impl Environment {
             paths: GroupPaths::resolve(&name).map_err(usage)?,
             epoch: Epoch(number(group::ENV_EPOCH)?),
             incarnation: Incarnation(number(group::ENV_INCARNATION)?),
+            arguments,
         })
     }
 }

@@ -38,10 +38,18 @@ struct Line {
 /// # Errors
 /// See [`run`].
 pub fn plan(decider: &mut Decider, input: impl Read, out: &mut Output<'_>) -> Outcome {
+    decider.prepare();
     run(input, out, |line| decider.answer(parse(line)?))
 }
 
 impl Decider {
+    /// Lets the planner work ahead, as the policy service does before it is ready.
+    fn prepare(&mut self) {
+        let problem =
+            DecisionProblem { model: &self.model, costs: self.costs, actions: self.actions };
+        self.planner.prepare(&problem, &Belief::uniform(self.model.hypotheses()));
+    }
+
     fn answer(&mut self, line: Line) -> Result<Json, String> {
         let objects = self.scene.objects().len();
         if line.belief.len() != objects {

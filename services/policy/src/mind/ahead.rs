@@ -1,0 +1,35 @@
+//! Working ahead: what a planner can know before anybody has said a word.
+
+use super::Mind;
+use dialogue::{Belief, DecisionProblem, PolicyTable};
+
+impl Mind {
+    /// The decision problem that the planner is asked about.
+    pub fn problem(&self) -> DecisionProblem<'_> {
+        DecisionProblem { model: &self.model, costs: self.costs, actions: self.actions }
+    }
+
+    /// Lets the planner work ahead from the belief that every object is as likely, and tells what
+    /// it knows then, if it is of the kind that keeps something.
+    pub fn prepare(&mut self) -> Option<&PolicyTable> {
+        let Self { model, costs, actions, planner, .. } = self;
+        let problem = DecisionProblem { model, costs: *costs, actions: *actions };
+        planner.table()?;
+        planner.prepare(&problem, &Belief::uniform(model.hypotheses()));
+        planner.table().filter(|table| !table.is_empty())
+    }
+
+    /// Takes what was worked out before, if it is of this problem; says whether it did.
+    pub fn adopt(&mut self, table: PolicyTable) -> bool {
+        let fits = self.planner.table().is_some() && table.fits(&self.problem());
+        if fits {
+            self.planner.adopt(table);
+        }
+        fits
+    }
+
+    /// The decisions that the planner has worked out and keeps.
+    pub fn table(&self) -> Option<&PolicyTable> {
+        self.planner.table()
+    }
+}
