@@ -9,6 +9,7 @@ use grounding::GroundingNode;
 use node::{Event, Node, Span, Time};
 use policy::PolicyNode;
 use protocol::{ActKind, Outcome, PolicyView};
+use runtime::lifecycle::Environment;
 use scene::{Question, Scene};
 use settings::Settings;
 use speech::{SpeechNode, Spoken, VoiceEvent};
@@ -279,7 +280,7 @@ impl World {
 
 /// The configuration that the real program would give its node.
 fn program_config<P: runtime::driver::Program>(settings: &Settings) -> <P::Node as Node>::Config {
-    P::config(settings, &[]).unwrap_or_else(|e| panic!("{e}"))
+    P::config(&Environment::nowhere(), settings).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn pass<N: Node>(

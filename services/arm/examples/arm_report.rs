@@ -8,6 +8,7 @@ use arm::{ArmNode, In};
 use node::{Effects, Event, Node, Span, Time};
 use protocol::{ActKind, PickPhase, RobotAct};
 use runtime::driver::Program;
+use runtime::lifecycle::Environment;
 use settings::Settings;
 use std::path::Path;
 use std::time::Instant;
@@ -29,7 +30,8 @@ fn main() {
 }
 
 fn start(settings: &Settings) -> ArmNode {
-    let config = ArmProgram::config(settings, &[]).unwrap_or_else(|e| panic!("{e}"));
+    let config = ArmProgram::config(&Environment::nowhere(), settings);
+    let config = config.unwrap_or_else(|e| panic!("{e}"));
     let mut node = ArmNode::recover(config, Vec::new()).unwrap_or_else(|e| panic!("{e}"));
     node.on(Event::Started, Time(1), &mut Effects::default());
     node

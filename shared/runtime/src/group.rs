@@ -127,6 +127,14 @@ impl GroupPaths {
         }
     }
 
+    /// Paths below a place that can hold no folder.
+    pub(crate) fn nowhere() -> Self {
+        Self {
+            root: PathBuf::from("/dev/null/whichone"),
+            name: GroupName(GroupName::DEFAULT.to_owned()),
+        }
+    }
+
     /// The group's name.
     pub fn name(&self) -> &GroupName {
         &self.name

@@ -35,6 +35,17 @@ pub struct Environment {
 }
 
 impl Environment {
+    /// For a node without a group around it, in simulations and reports: a home in which nothing
+    /// can be kept.
+    pub fn nowhere() -> Self {
+        Self {
+            paths: GroupPaths::nowhere(),
+            epoch: Epoch(1),
+            incarnation: Incarnation(1),
+            arguments: Vec::new(),
+        }
+    }
+
     /// Reads the environment variables that the supervisor sets.
     ///
     /// # Errors
