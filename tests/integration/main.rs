@@ -6,6 +6,7 @@
 mod batch;
 mod config;
 mod dialogues;
+mod export;
 mod gestures;
 mod isolation;
 mod people;

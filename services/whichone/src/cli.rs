@@ -8,7 +8,8 @@ mod group;
 mod talk;
 
 pub use batch::{
-    BeliefArgs, GroundArgs, InputArgs, LanguageArg, LimbArg, LimbArgs, ModeArg, PlanArgs,
+    BeliefArgs, ExportArgs, Exported, GroundArgs, InputArgs, LanguageArg, LimbArg, LimbArgs,
+    ModeArg, PlanArgs, ProblemArgs,
 };
 pub use group::{
     CheckArgs, ConfigArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, SwapArgs,
@@ -118,6 +119,8 @@ pub enum Verb {
     Ground(GroundArgs),
     /// Read beliefs, one JSON object a line, and print the robot's next action for each.
     Plan(PlanArgs),
+    /// Print a scene's decision problem for other programs.
+    Export(ExportArgs),
     /// Read joint positions, one JSON object a line, and print the pose of every link.
     Fk(LimbArgs),
     /// Read poses of the gripper, one JSON object a line, and print joint positions.

@@ -13,6 +13,7 @@ mod check;
 mod completions;
 mod conversation;
 mod doctor;
+mod export;
 mod interrupt;
 mod journal;
 mod leftovers;
@@ -70,6 +71,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Plan(args) => {
             batch::plan(&mut planning::decider(&args)?, batch::open(&args.input)?, out)
         }
+        Verb::Export(args) => export::export(&args, out),
         Verb::Fk(args) => batch::fk(args.limb.into(), batch::open(&args.input)?, out),
         Verb::Ik(args) => batch::ik(args.limb.into(), batch::open(&args.input)?, out),
     }

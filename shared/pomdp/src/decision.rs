@@ -1,8 +1,9 @@
 //! The dialogue's decision problem as a POMDP in the format's terms.
 //!
-//! The state is the object that is wanted, and one more: a pick ends the interaction, so it leads
-//! to `end`, where nothing is paid or heard any more. Waiting and asking leave the state as it is
-//! (eq. (2), (3)); what is heard depends on it by [`Answer::probability`].
+//! The state is the object that is wanted (or that it is `absent`, where the model holds that
+//! possible), and one more: a pick ends the interaction, so it leads to `end`, where nothing is
+//! paid or heard any more. Waiting and asking leave the state as it is (eq. (2), (3)); what is
+//! heard depends on it by [`Answer::probability`].
 
 use dialogue::{Action, Answer, DecisionProblem};
 use scene::{AttributeId, ObjectId, Question, Scene, ValueId};
@@ -16,7 +17,7 @@ use crate::{Matrix, PAIRS_MAX, Pomdp, Reward, Rewards, Row, Values, escape};
      probabilities for each pair ({PAIRS_MAX} at most); leave objects or kinds of question out"
 )]
 pub struct TooLarge {
-    /// Objects and the end.
+    /// What may be wanted, and the end.
     pub states: usize,
     /// Waiting, questions and picks.
     pub actions: usize,
@@ -38,20 +39,22 @@ pub fn of_dialogue(scene: &Scene, problem: &DecisionProblem<'_>) -> Result<Pomdp
     let asks = questions.iter().map(|question| Action::Ask(*question));
     let actions: Vec<Action> =
         std::iter::once(Action::Wait).chain(asks).chain(objects().map(Action::Pick)).collect();
-    let states = model.objects() + 1;
+    let states = model.hypotheses() + 1;
     if states.saturating_mul(actions.len()) > PAIRS_MAX {
         return Err(TooLarge { states, actions: actions.len() });
     }
     let answers = answers(problem, &questions);
     let wanted = scene.objects().iter().map(|object| escape("wanted", &[&object.name]));
+    let absent = model.absent().map(|_| escape("absent", &[]));
+    let uniform = 1.0 / model.hypotheses() as f64;
     let tables = Tables { problem, states, answers: &answers };
     Ok(Pomdp {
         discount: problem.costs.discount,
         values: Values::Reward,
-        states: wanted.chain([escape("end", &[])]).collect(),
+        states: wanted.chain(absent).chain([escape("end", &[])]).collect(),
         actions: actions.iter().map(|action| action_name(scene, *action)).collect(),
         observations: answers.iter().map(|answer| answer_name(scene, *answer)).collect(),
-        start: objects().map(|_| 1.0 / model.objects() as f64).chain([0.0]).collect(),
+        start: (0..model.hypotheses()).map(|_| uniform).chain([0.0]).collect(),
         transition: actions.iter().map(|action| tables.transition(*action)).collect(),
         observation: actions.iter().map(|action| tables.observation(*action)).collect(),
         reward: tables.rewards(&actions),
@@ -110,7 +113,7 @@ impl Tables<'_> {
             });
             entries.filter(|(_, p)| *p != 0.0).collect()
         };
-        Matrix::of_rows(self.answers.len(), (0..model.objects()).map(row).chain([silence]))
+        Matrix::of_rows(self.answers.len(), (0..model.hypotheses()).map(row).chain([silence]))
     }
 
     fn rewards(&self, actions: &[Action]) -> Rewards {

@@ -40,8 +40,9 @@ fn for_every_problem(check: impl Fn(&Scene, &DecisionProblem<'_>, &Pomdp)) {
     let awkward = Params { p_l: 1.0 / 3.0, epsilon: 1e-17, alpha: 0.2 };
     let huge = Costs { wait_s: 1e-300, correct: 1e300, wrong: 0.1 + 0.2, ..Costs::SECONDS };
     for scene in [bowls(), tools(), odd()] {
-        for params in [Params::default(), awkward] {
-            let model = Model::new(&scene, params);
+        let models = [Params::default(), awkward].map(|params| Model::new(&scene, params));
+        let absent = models[0].clone().with_absent();
+        for model in models.into_iter().chain([absent]) {
             for actions in ACTIONS {
                 for costs in Costs::PRESETS.map(|(_, costs)| costs).into_iter().chain([huge]) {
                     let problem = DecisionProblem { model: &model, costs, actions };
@@ -69,13 +70,14 @@ fn the_pomdp_is_the_problem_that_planners_solve() {
         let model = problem.model;
         let questions = problem.actions.questions(model);
         let objects = model.objects();
-        let end = objects;
-        assert_eq!(pomdp.states.len(), objects + 1);
+        let end = model.hypotheses();
+        assert_eq!(pomdp.states.len(), end + 1);
         assert_eq!(pomdp.actions.len(), 1 + questions.len() + objects);
-        assert_eq!((pomdp.start[0], pomdp.start[end]), (1.0 / objects as f64, 0.0));
-        for state in 0..objects {
-            let (_, texts) = unescape(&pomdp.states[state]).unwrap();
-            assert_eq!(texts, [scene.objects()[state].name.clone()]);
+        assert_eq!((pomdp.start[0], pomdp.start[end]), (1.0 / end as f64, 0.0));
+        for state in 0..end {
+            let (kind, texts) = unescape(&pomdp.states[state]).unwrap();
+            let object = scene.objects().get(state).map(|object| object.name.clone());
+            assert_eq!((&*kind == "absent", texts.first()), (object.is_none(), object.as_ref()));
             assert_eq!(pomdp.transition[0].get(state, state), 1.0);
             assert_eq!(pomdp.expected_reward(0, state), -problem.costs.wait_s);
             for (number, question) in questions.iter().enumerate() {

@@ -40,15 +40,9 @@ pub struct GroundArgs {
     pub input: InputArgs,
 }
 
-/// Arguments of `plan`.
+/// The decision problem: what the robot may do, and what it costs.
 #[derive(Debug, Args)]
-pub struct PlanArgs {
-    /// The scene, TOML or JSON.
-    #[arg(long, value_name = "FILE")]
-    pub scene: PathBuf,
-    /// What decides; the configuration's where nothing is said.
-    #[arg(long, value_name = "NAME", value_parser = planner_names())]
-    pub planner: Option<String>,
+pub struct ProblemArgs {
     /// Whether person and robot share the room; the robot points only then.
     #[arg(long, value_enum, default_value_t = ModeArg::Remote)]
     pub mode: ModeArg,
@@ -64,9 +58,47 @@ pub struct PlanArgs {
     /// The configuration, for what is not said here.
     #[command(flatten)]
     pub config: ConfigArgs,
+}
+
+/// Arguments of `plan`.
+#[derive(Debug, Args)]
+pub struct PlanArgs {
+    /// The scene, TOML or JSON.
+    #[arg(long, value_name = "FILE")]
+    pub scene: PathBuf,
+    /// What decides; the configuration's where nothing is said.
+    #[arg(long, value_name = "NAME", value_parser = planner_names())]
+    pub planner: Option<String>,
+    /// The problem.
+    #[command(flatten)]
+    pub problem: ProblemArgs,
     /// The lines.
     #[command(flatten)]
     pub input: InputArgs,
+}
+
+/// Arguments of `export`.
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// The form.
+    #[arg(value_enum)]
+    pub what: Exported,
+    /// The scene: a file, TOML or JSON, or the name of one of the configuration's.
+    pub scene: PathBuf,
+    /// The problem.
+    #[command(flatten)]
+    pub problem: ProblemArgs,
+    /// Write to this file in place of standard output.
+    #[arg(long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+}
+
+/// What can be exported.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Exported {
+    /// The decision problem that the planners solve, in Cassandra's text form, which public
+    /// solvers read.
+    Pomdp,
 }
 
 /// Arguments of `fk` and `ik`.

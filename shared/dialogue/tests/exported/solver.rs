@@ -95,12 +95,12 @@ impl Solver {
             let next = actions.clone().map(|a| {
                 let mut value = self.reward[a].clone();
                 for steps in &self.steps[a] {
-                    for s in 0..self.start.len() {
+                    for (s, value) in value.iter_mut().enumerate() {
                         let from = steps.iter().filter(|(from, ..)| *from == s);
                         let from: Vec<_> = from.map(|&(_, t, p)| (t, p)).collect();
                         let worth = |v: &Vec<f64>| from.iter().map(|&(t, p)| p * v[t]).sum::<f64>();
                         let most = values.iter().map(worth).fold(f64::NEG_INFINITY, f64::max);
-                        value[s] += self.discount * most;
+                        *value += self.discount * most;
                     }
                 }
                 value

@@ -6,6 +6,9 @@ use super::entries::{Names, index};
 use super::{ParseError, Reader, SUM_TOLERANCE, Token};
 use crate::{Matrix, PAIRS_MAX, Pomdp, Rewards, Start, Values};
 
+/// What the preamble must say.
+const KEYS: [&str; 5] = ["discount", "values", "states", "actions", "observations"];
+
 /// Words of the format itself, which cannot name anything.
 const RESERVED: [&str; 16] = [
     "discount",
@@ -30,13 +33,9 @@ const RESERVED: [&str; 16] = [
 pub(super) fn read(reader: &mut Reader<'_>) -> Result<Pomdp, ParseError> {
     let (mut discount, mut values) = (None, None);
     let (mut states, mut actions, mut observations) = (None, None, None);
-    loop {
-        let key = match reader.peek() {
-            Token::Word(key @ ("discount" | "values" | "states" | "actions" | "observations")) => {
-                key
-            }
-            _ => break,
-        };
+    while let Token::Word(key) = reader.peek()
+        && KEYS.contains(&key)
+    {
         let line = reader.line();
         reader.take();
         reader.colon()?;
