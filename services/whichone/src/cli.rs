@@ -5,6 +5,7 @@ use runtime::group::{ENV_GROUP, GroupName};
 
 mod batch;
 mod group;
+mod study;
 mod talk;
 
 pub use batch::{
@@ -15,6 +16,7 @@ pub use group::{
     CheckArgs, ConfigArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, SwapArgs,
     UpArgs, WaitFor,
 };
+pub use study::{ALL as STUDY_ALL, Preset, StudyArgs};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, CompletionsArgs, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, WatchArgs};
 
@@ -121,6 +123,12 @@ pub enum Verb {
     Plan(PlanArgs),
     /// Print a scene's decision problem for other programs.
     Export(ExportArgs),
+    /// Have simulated people ask for objects, and compare the policies.
+    ///
+    /// It prints, per policy and kind of people, how often the wanted object is brought, with how
+    /// many questions, in how many seconds, and what that is worth, each with its 95 % interval.
+    /// The same seed gives the same table, byte for byte, on any number of threads.
+    Study(StudyArgs),
     /// Read joint positions, one JSON object a line, and print the pose of every link.
     Fk(LimbArgs),
     /// Read poses of the gripper, one JSON object a line, and print joint positions.

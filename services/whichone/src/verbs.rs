@@ -24,6 +24,7 @@ mod place;
 mod planning;
 mod speak;
 mod status;
+mod study;
 mod up;
 mod watch;
 mod words;
@@ -72,6 +73,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
             batch::plan(&mut planning::decider(&args)?, batch::open(&args.input)?, out)
         }
         Verb::Export(args) => export::export(&args, out),
+        Verb::Study(args) => study::study(&args, out),
         Verb::Fk(args) => batch::fk(args.limb.into(), batch::open(&args.input)?, out),
         Verb::Ik(args) => batch::ik(args.limb.into(), batch::open(&args.input)?, out),
     }

@@ -6,7 +6,7 @@ use scene::{ObjectId, Question, Reading};
 use serde::{Deserialize, Serialize};
 
 use crate::Model;
-use crate::observation::{log_mixture, weigh};
+use crate::observation::{log_likelihood, weigh};
 
 /// A distribution over the hypotheses of a model: the objects of a scene, and perhaps that the
 /// wanted one is not here.
@@ -129,6 +129,30 @@ impl Belief {
         (nats / std::f64::consts::LN_2).max(0.0)
     }
 
+    /// The probabilities in units of 10⁻¹², rounded: equal for beliefs that differ by rounding
+    /// errors alone, so that they can be counted, or decided upon, as one.
+    pub fn key(&self) -> Vec<i64> {
+        let mut key = Vec::with_capacity(self.log.len());
+        self.key_into(&mut key);
+        key
+    }
+
+    /// [`Belief::key`] into `key`, whose memory is used again.
+    pub fn key_into(&self, key: &mut Vec<i64>) {
+        key.clear();
+        let log_sum = self.log_sum();
+        key.extend(self.log.iter().map(|l| ((l - log_sum).exp() * KEY_UNITS).round() as i64));
+    }
+
+    /// The belief that stands for all that have this key.
+    ///
+    /// # Errors
+    /// If it is no belief's key.
+    pub fn from_key(key: &[i64]) -> Result<Self, BeliefError> {
+        let weights: Vec<f64> = key.iter().map(|units| *units as f64).collect();
+        Self::from_probabilities(&weights)
+    }
+
     /// How many objects the belief is about.
     #[expect(clippy::len_without_is_empty, reason = "a belief is never empty")]
     pub fn len(&self) -> usize {
@@ -156,21 +180,32 @@ impl Belief {
     /// # Panics
     /// If a weight is negative or not finite, or anything is not about the model's scene.
     pub fn update_mixture(&mut self, model: &Model, heard: &[(f64, Question, Reading)]) {
-        let mut weighty = heard.iter().filter(|(weight, ..)| *weight > 0.0);
-        if let (Some((_, question, reading)), None) = (weighty.next(), weighty.next()) {
-            self.update(model, *question, reading);
-        } else if let Some(mixture) = log_mixture(model, heard) {
-            self.weigh(&mixture);
+        for (weight, ..) in heard {
+            assert!(weight.is_finite() && *weight >= 0.0, "{weight} is not a weight");
         }
+        let hypotheses: Vec<_> = heard.iter().filter(|(weight, ..)| *weight > 0.0).collect();
+        let (first, more) = match &hypotheses[..] {
+            [] => return,
+            [(_, question, reading)] => return self.update(model, *question, reading),
+            [first, more @ ..] => (first, more),
+        };
+        let weighted = |(weight, question, reading): &(f64, Question, Reading)| {
+            let mut log = log_likelihood(model, *question, reading);
+            log.iter_mut().for_each(|log| *log += weight.ln());
+            log
+        };
+        let mut mixture = weighted(first);
+        for hypothesis in more {
+            for (sum, log) in mixture.iter_mut().zip(weighted(hypothesis)) {
+                *sum = log_add(*sum, log);
+            }
+        }
+        self.multiply(&mixture);
     }
 
-    /// Bayes' rule with any other evidence: the logarithm of its likelihood by hypothesis, up to a
-    /// constant. The greatest is taken as 1, so that weights only fall; evidence that is as likely
-    /// whatever is wanted changes no bit.
-    ///
-    /// # Panics
-    /// If there is not one for every hypothesis.
-    pub fn weigh(&mut self, log_likelihood: &[f64]) {
+    /// Multiplies every weight by a likelihood, given as logarithm and known up to a constant.
+    /// The greatest is taken as 1, so that weights only fall.
+    fn multiply(&mut self, log_likelihood: &[f64]) {
         assert_eq!(self.log.len(), log_likelihood.len(), "belief and model are of one scene");
         if log_likelihood.iter().all(|l| *l == log_likelihood[0]) {
             return;
@@ -196,6 +231,15 @@ impl PartialEq for Belief {
     fn eq(&self, other: &Self) -> bool {
         self.log == other.log
     }
+}
+
+/// Units of a belief's key in a probability of 1.
+const KEY_UNITS: f64 = 1e12;
+
+/// `ln(e^a + e^b)` without overflow.
+fn log_add(a: f64, b: f64) -> f64 {
+    let (low, high) = if a < b { (a, b) } else { (b, a) };
+    high + (low - high).exp().ln_1p()
 }
 
 impl TryFrom<Vec<f64>> for Belief {

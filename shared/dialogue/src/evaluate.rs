@@ -36,7 +36,7 @@ pub fn evaluate(
     cut: f64,
 ) -> Evaluation {
     let mut walk = Walk { planner, problem, known: BTreeMap::new(), total: EMPTY };
-    let mut level = BTreeMap::from([(key(belief), (1.0, belief.clone()))]);
+    let mut level = BTreeMap::from([(belief.key(), (1.0, belief.clone()))]);
     let mut step = 0;
     while !level.is_empty() {
         level = walk.follow(level, step, cut);
@@ -111,16 +111,11 @@ impl Walk<'_> {
                         .sum();
                     let mut after = belief.clone();
                     after.update(model, question, &answer.reading(model));
-                    next.entry(key(&after)).or_insert((0.0, after)).0 += reached * heard;
+                    next.entry(after.key()).or_insert((0.0, after)).0 += reached * heard;
                 }
             }
         }
     }
-}
-
-/// Beliefs that differ by rounding alone are one.
-fn key(belief: &Belief) -> Vec<i64> {
-    belief.probabilities().iter().map(|p| (p * 1e12).round() as i64).collect()
 }
 
 #[cfg(test)]

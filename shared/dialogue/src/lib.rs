@@ -4,6 +4,7 @@
 //! alone, so that a replay believes and decides the same, bit for bit on the same build.
 
 mod action;
+mod addressed;
 mod answer;
 mod belief;
 mod costs;
@@ -13,7 +14,6 @@ mod mix;
 mod model;
 mod observation;
 mod params;
-pub mod person;
 mod planner;
 mod planners;
 mod planning;
@@ -26,6 +26,7 @@ mod user;
 mod testing;
 
 pub use action::{Action, Actions, Decision, Mode};
+pub use addressed::{Addressed, Asked, ReactionTime};
 pub use answer::Answer;
 pub use belief::{Belief, BeliefError};
 pub use costs::Costs;

@@ -41,7 +41,7 @@ pub struct GroundArgs {
 }
 
 /// The decision problem: what the robot may do, and what it costs.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct ProblemArgs {
     /// Whether person and robot share the room; the robot points only then.
     #[arg(long, value_enum, default_value_t = ModeArg::Remote)]

@@ -1,11 +1,11 @@
-//! The decision problem that `plan` and `export` are about.
+//! The decision problem that `plan`, `export` and `study` are about.
 
 use std::path::{Path, PathBuf};
 
 use dialogue::{Actions, Costs, Model, Params, registry};
 use runtime::exit::Exit;
 use scene::Scene;
-use settings::Dialogue;
+use settings::Settings;
 
 use super::place;
 use crate::batch::Decider;
@@ -22,6 +22,15 @@ pub(super) struct Problem {
     pub(super) model: Model,
     pub(super) costs: Costs,
     pub(super) actions: Actions,
+    /// The configuration, if there is one.
+    pub(super) settings: Option<Settings>,
+}
+
+impl Problem {
+    /// The name of the planner that is configured.
+    pub(super) fn planner(&self) -> &str {
+        self.settings.as_ref().map_or(PLANNER, |settings| &settings.dialogue.planner)
+    }
 }
 
 /// The planner and its problem.
@@ -30,12 +39,10 @@ pub(super) struct Problem {
 /// A scene or a configuration that is wrong.
 pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Trouble> {
     let scene = scene_file::load(&args.scene)?;
-    let configured = configured(&args.problem.config)?;
-    let Problem { scene, model, costs, actions } =
-        problem(scene, &args.problem, configured.as_ref());
-    let named = configured.as_ref().map(|dialogue| &*dialogue.planner);
-    let planner = registry::planner(args.planner.as_deref().or(named).unwrap_or(PLANNER))
+    let problem = problem(scene, &args.problem)?;
+    let planner = registry::planner(args.planner.as_deref().unwrap_or(problem.planner()))
         .map_err(|error| Trouble::new(Exit::Config, error.to_string()))?;
+    let Problem { scene, model, costs, actions, .. } = problem;
     Ok(Decider { scene, model, costs, actions, planner })
 }
 
@@ -44,28 +51,26 @@ pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Trouble> {
 /// # Errors
 /// A scene or a configuration that is wrong.
 pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, Trouble> {
-    let scene = scene_file::load(&scene_path(scene, &args.config)?)?;
-    Ok(problem(scene, args, configured(&args.config)?.as_ref()))
+    problem(scene_file::load(&scene_path(scene, &args.config)?)?, args)
 }
 
-/// What the command line says, else the configuration, else what is built in.
-fn problem(scene: Scene, args: &ProblemArgs, configured: Option<&Dialogue>) -> Problem {
+/// What the command line says, else the configuration, else, where none is named and none is
+/// found, what is built in.
+fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Trouble> {
+    let config = &args.config;
+    let named = config.config.is_some() || config.profile.is_some() || !config.set.is_empty();
+    let settings = match place::config_folder(config) {
+        Err(_) if !named => None,
+        _ => Some(place::settings(config)?),
+    };
+    let configured = settings.as_ref().map(|settings| &settings.dialogue);
     let params = configured.map_or_else(Params::default, |dialogue| dialogue.params);
     let preset = args.costs.as_deref().and_then(Costs::preset);
     let costs = preset.or(configured.map(|dialogue| dialogue.costs)).unwrap_or_default();
     let actions =
         Actions { mode: args.mode.into(), attribute: !args.no_attr, which: !args.no_which };
     let model = Model::new(&scene, params);
-    Problem { scene, model, costs, actions }
-}
-
-/// The configuration; none where none is named and none is found.
-fn configured(args: &ConfigArgs) -> Result<Option<Dialogue>, Trouble> {
-    let named = args.config.is_some() || args.profile.is_some() || !args.set.is_empty();
-    match place::config_folder(args) {
-        Err(_) if !named => Ok(None),
-        _ => Ok(Some(place::settings(args)?.dialogue)),
-    }
+    Ok(Problem { scene, model, costs, actions, settings })
 }
 
 /// A word that is no file's name is one of the configuration's scenes.

@@ -2,7 +2,7 @@ use scene::{AttributeId, Question, Response, ValueId, WordId};
 
 use super::*;
 use crate::testing::{bowls, heard, random_scene, scene_of};
-use crate::{Params, Rng, log_likelihood};
+use crate::{Params, Rng};
 
 /// A random question and reading of the scene; contradictions welcome.
 fn random_turn(rng: &mut Rng, model: &Model, words: usize) -> (Question, Reading) {
@@ -270,4 +270,16 @@ fn summaries_of_a_belief() {
     let sure = Belief::from_probabilities(&[0.0, 7.0]).unwrap();
     assert_eq!((sure.entropy_bits(), sure.most_likely()), (0.0, ObjectId(1)));
     assert_eq!(sure.probability(ObjectId(1)), 1.0);
+}
+
+#[test]
+fn beliefs_that_differ_by_rounding_have_one_key() {
+    let belief = Belief::from_probabilities(&[0.1, 0.2, 0.7]).unwrap();
+    let other = Belief::from_probabilities(&[0.1 + 1e-15, 0.2, 0.7 - 1e-15]).unwrap();
+    let third = Belief::from_probabilities(&[0.1 + 1e-9, 0.2, 0.7]).unwrap();
+    assert_eq!(belief.key(), other.key());
+    assert_ne!(belief.key(), third.key());
+    let stands_for = Belief::from_key(&belief.key()).unwrap();
+    assert_eq!(stands_for.key(), belief.key());
+    assert_eq!(Belief::from_key(&[0, 0]), Err(BeliefError::AllZero));
 }

@@ -1,0 +1,89 @@
+//! Arguments of `study`.
+
+use std::num::{NonZeroU64, NonZeroUsize};
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, ValueEnum};
+use study::UserKind;
+
+use super::batch::ProblemArgs;
+
+/// Arguments of `study`.
+#[derive(Clone, Debug, Args)]
+pub struct StudyArgs {
+    /// The scene: a file, TOML or JSON, or the name of one of the configuration's. A preset brings
+    /// its own.
+    #[arg(long, value_name = "FILE", required_unless_present = "preset")]
+    pub scene: Option<PathBuf>,
+    /// The policies, by name, or all.
+    #[arg(
+        long, value_name = "NAME,…", value_delimiter = ',', value_parser = policies(),
+        default_value = ALL, default_value_if("preset", "paper-present", "lookahead,no-attribute")
+    )]
+    pub policies: Vec<String>,
+    /// The kinds of people.
+    #[arg(
+        long, value_name = "NAME,…", value_delimiter = ',', value_parser = users(),
+        default_value = "model,noisy,human",
+        default_value_if("preset", "paper-present", "truthful,noisy,human")
+    )]
+    pub users: Vec<String>,
+    /// Interactions per policy and kind of people.
+    #[arg(
+        long, value_name = "N", default_value = "1000",
+        default_value_ifs([("preset", "paper-present", "3"), ("preset", "paper-remote", "45")])
+    )]
+    pub interactions: NonZeroU64,
+    /// What all randomness comes from.
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub seed: u64,
+    /// Also talk in real time, under these rules of turn-taking, or all: naive, onset or mixture,
+    /// joined by + with same, hold, open, fast and wSECONDS.
+    #[arg(
+        long,
+        value_name = "RULES,…",
+        value_delimiter = ',',
+        default_value_if("preset", "paper-remote", ALL)
+    )]
+    pub turns: Vec<String>,
+    /// People do not begin with a request: the robot begins, knowing nothing.
+    #[arg(long, default_value_if("preset", "paper-present", "true"))]
+    pub no_request: bool,
+    /// Write study.csv, study.json and plots into this folder.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// One of the paper's evaluations; what is said besides counts more.
+    #[arg(long, value_enum)]
+    pub preset: Option<Preset>,
+    /// Threads; as many as there are cores where nothing is said.
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Take as costs of the questions the seconds of the robot's own voice and arm.
+    #[arg(long)]
+    pub measured_costs: bool,
+    /// What is decided.
+    #[command(flatten)]
+    pub problem: ProblemArgs,
+}
+
+/// The word for everything in a list of names.
+pub const ALL: &str = "all";
+
+/// The paper's evaluations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Preset {
+    /// Section 5: face to face, from a confused start, with attribute questions and without.
+    PaperPresent,
+    /// Section 6: six bowls in another room, 45 interactions.
+    PaperRemote,
+}
+
+fn policies() -> PossibleValuesParser {
+    let names = dialogue::registry::names();
+    std::iter::once(ALL).chain(names).collect::<Vec<_>>().into()
+}
+
+fn users() -> PossibleValuesParser {
+    UserKind::ALL.map(|(name, _)| name).into()
+}

@@ -1,0 +1,68 @@
+//! `whichone study`: simulated people over policies, in threads, with tables, files and plots.
+
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::time::Instant;
+
+use runtime::exit::Exit;
+use study::Tally;
+
+use crate::cli::StudyArgs;
+use crate::output::{Output, note};
+use crate::trouble::{Outcome, Trouble};
+
+mod design;
+mod house;
+mod progress;
+mod report;
+mod run;
+mod table;
+
+use design::Row;
+use house::House;
+
+/// Conducts the study that is asked for.
+///
+/// # Errors
+/// What is asked for is wrong, or a file cannot be written.
+pub(super) fn study(args: &StudyArgs, out: &mut Output<'_>) -> Outcome {
+    let house = House::new(args)?;
+    let rows = design::rows(args, house.planner())?;
+    if let Some(folder) = &args.out {
+        std::fs::create_dir_all(folder).map_err(|error| Trouble::file(folder, &error))?;
+    }
+    let results: Vec<(&Row, Tally)> = rows.iter().zip(conduct(args, &house, &rows)).collect();
+    if let Some(folder) = &args.out {
+        write(folder, "study.csv", report::to_csv(&results).as_bytes())?;
+        let json = report::to_json(args, &house, &results);
+        write(folder, "study.json", format!("{json:#}\n").as_bytes())?;
+        note(format_args!("written to {}", folder.display()));
+    }
+    if out.is_json() {
+        out.json(&report::to_json(args, &house, &results))?;
+    } else {
+        table::lines(&house, &results).iter().try_for_each(|line| out.line(line))?;
+    }
+    Ok(Exit::Ok)
+}
+
+/// Counts every row, and tells how long that took.
+fn conduct(args: &StudyArgs, house: &House, rows: &[Row]) -> Vec<Tally> {
+    let began = Instant::now();
+    let threads = args.threads.or(std::thread::available_parallelism().ok());
+    let threads = threads.map_or(1, NonZeroUsize::get);
+    let tallies = run::run(house, rows, args.interactions.get(), args.seed, threads);
+    let seconds = began.elapsed().as_secs_f64();
+    let done = args.interactions.get() as f64 * rows.len() as f64;
+    note(format_args!(
+        "{done} interactions in {seconds:.1} s on {threads} threads, {:.0} a second",
+        done / seconds.max(1e-9)
+    ));
+    tallies
+}
+
+/// Writes a file of the study.
+fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Trouble> {
+    let path = folder.join(name);
+    std::fs::write(&path, bytes).map_err(|error| Trouble::file(&path, &error))
+}

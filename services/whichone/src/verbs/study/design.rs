@@ -1,0 +1,146 @@
+//! What is compared: a row per policy and kind of people, and per rules of turn-taking.
+
+use dialogue::registry;
+use runtime::exit::Exit;
+use study::UserKind;
+use study::turns::{Rules, Talker};
+
+use crate::cli::{STUDY_ALL, StudyArgs};
+use crate::trouble::Trouble;
+
+/// One line of the table.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Row {
+    /// The policy's name.
+    pub(super) policy: String,
+    /// With whom.
+    pub(super) people: People,
+}
+
+/// Whom a policy talks with.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum People {
+    /// In turns.
+    InTurns(UserKind),
+    /// In real time.
+    RealTime {
+        /// The rules of turn-taking.
+        rules: Rules,
+        /// What the person is called.
+        name: &'static str,
+        /// How the person answers.
+        talker: Talker,
+    },
+}
+
+impl People {
+    /// Their name.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::InTurns(kind) => kind.name(),
+            Self::RealTime { name, .. } => name,
+        }
+    }
+
+    /// The name of the rules; empty for a dialogue in turns.
+    pub(super) fn rules(&self) -> String {
+        match self {
+            Self::InTurns(_) => String::new(),
+            Self::RealTime { rules, .. } => rules.to_string(),
+        }
+    }
+
+    /// Whether they talk in real time.
+    pub(super) fn in_real_time(&self) -> bool {
+        matches!(self, Self::RealTime { .. })
+    }
+}
+
+/// People in real time: as they usually are, and without fault.
+const TALKERS: [(&str, Talker); 2] = [("usual", Talker::USUAL), ("truthful", Talker::TRUTHFUL)];
+
+/// The rows that are asked for. In real time the policy is `planner` where it is among those asked
+/// for, else the first of them.
+///
+/// # Errors
+/// Rules that are none.
+pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, Trouble> {
+    let policies = listed(&args.policies, &registry::names());
+    let kinds: Vec<UserKind> =
+        listed(&args.users, &[]).iter().filter_map(|name| UserKind::named(name)).collect();
+    let mut rows = Vec::new();
+    for policy in &policies {
+        let row = |kind: &UserKind| Row { policy: policy.clone(), people: People::InTurns(*kind) };
+        rows.extend(kinds.iter().map(row));
+    }
+    let timed = policies.iter().find(|name| *name == planner).or(policies.first());
+    for name in listed(&args.turns, &Rules::ALL) {
+        let rules = Rules::parse(&name)
+            .map_err(|error| Trouble::new(Exit::Usage, format!("--turns: {error}")))?;
+        for (name, talker) in TALKERS {
+            let people = People::RealTime { rules, name, talker };
+            rows.extend(timed.map(|policy| Row { policy: policy.clone(), people }));
+        }
+    }
+    Ok(rows)
+}
+
+/// The names in their order, each once, with `all` written out.
+fn listed(names: &[String], all: &[&str]) -> Vec<String> {
+    let mut list: Vec<String> = Vec::new();
+    for name in names {
+        let meant = if name == STUDY_ALL { all } else { &[name.as_str()][..] };
+        for name in meant {
+            if !list.iter().any(|known| known == name) {
+                list.push((*name).to_owned());
+            }
+        }
+    }
+    list
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    fn args(words: &[&str]) -> StudyArgs {
+        let words = [&["whichone", "study", "--scene", "x.toml"], words].concat();
+        match crate::cli::Cli::try_parse_from(words).unwrap().verb {
+            crate::cli::Verb::Study(args) => args,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn every_policy_meets_every_kind_of_people() {
+        let all = rows(&args(&[]), "lookahead").unwrap();
+        assert_eq!(all.len(), registry::names().len() * 3);
+        let twice = args(&["--policies", "entropy,all,entropy", "--users", "human,human"]);
+        let rows = rows(&twice, "lookahead").unwrap();
+        assert_eq!(rows.len(), registry::names().len());
+        assert_eq!((rows[0].policy.as_str(), rows[0].people.name()), ("entropy", "human"));
+    }
+
+    #[test]
+    fn real_time_comes_in_rules_and_with_the_configured_policy() {
+        let all = args(&["--policies", "entropy,lookahead", "--turns", "all"]);
+        let timed: Vec<Row> = rows(&all, "lookahead").unwrap().split_off(6);
+        assert_eq!(timed.len(), 2 * Rules::ALL.len());
+        assert!(timed.iter().all(|row| row.policy == "lookahead"));
+        assert_eq!(rows(&all, "never-ask").unwrap().pop().unwrap().policy, "entropy");
+        let error = rows(&args(&["--turns", "naive,polite"]), "lookahead").unwrap_err();
+        assert!(error.to_string().contains("polite"), "{error}");
+    }
+
+    #[test]
+    fn a_preset_says_what_the_command_line_does_not() {
+        let words = ["whichone", "study", "--preset", "paper-remote", "--users", "human"];
+        let crate::cli::Verb::Study(args) = crate::cli::Cli::try_parse_from(words).unwrap().verb
+        else {
+            panic!()
+        };
+        assert_eq!((args.interactions.get(), args.users.len(), args.scene), (45, 1, None));
+        assert_eq!(args.turns, [STUDY_ALL]);
+    }
+}

@@ -1,0 +1,116 @@
+//! Where the study takes place: the scene, the problem, and how long everything takes.
+
+use std::path::Path;
+
+use dialogue::{Costs, DecisionProblem, Mode};
+use language::{Language, Reader};
+use runtime::exit::Exit;
+use study::{Motions, Pace, Patience, Room, Voice, measured_costs};
+
+use crate::cli::{ModeArg, Preset, ProblemArgs, StudyArgs};
+use crate::output::note;
+use crate::trouble::Trouble;
+use crate::verbs::planning::{Problem, of_scene};
+
+/// Everything that the interactions of a study share.
+pub(super) struct House {
+    reader: Reader,
+    problem: Problem,
+    patience: Patience,
+    voice: Voice,
+    pace: Pace,
+    motions: Option<Motions>,
+    request: bool,
+}
+
+/// The scene of the paper's evaluations.
+const PAPER_SCENE: &str = "bowls";
+
+impl House {
+    /// Prepares what is asked for: reads the files, and plans every motion of the arm.
+    ///
+    /// # Errors
+    /// A file that is wrong, or an object that the arm cannot reach.
+    pub(super) fn new(args: &StudyArgs) -> Result<Self, Trouble> {
+        let scene = args.scene.as_deref().unwrap_or(Path::new(PAPER_SCENE));
+        let problem = of_scene(scene, &preset(args))?;
+        let settings = problem.settings.as_ref();
+        let patience = settings.map_or_else(Patience::default, |settings| {
+            let turns = settings.dialogue.turns;
+            Patience {
+                response_window_s: turns.response_window_s,
+                repeats_max: turns.repeats_max,
+                questions_max: turns.questions_max,
+            }
+        });
+        let voice = settings.map_or_else(Voice::default, |settings| Voice {
+            words_per_minute: f64::from(settings.speech.voice_words_per_minute),
+        });
+        let language = settings.map_or(Language::default(), |s| s.dialogue.language);
+        let (reader, request) = (Reader::new(&problem.scene, language), !args.no_request);
+        let (motions, pace) = (motions(&problem)?, Pace::default());
+        let mut house = Self { reader, problem, patience, voice, pace, motions, request };
+        if args.measured_costs {
+            house.problem.costs = house.measured_costs();
+        }
+        Ok(house)
+    }
+
+    /// The room that interactions take place in.
+    pub(super) fn room(&self) -> Room<'_> {
+        let Problem { scene, model, costs, actions, .. } = &self.problem;
+        Room {
+            scene,
+            reader: &self.reader,
+            problem: DecisionProblem { model, costs: *costs, actions: *actions },
+            patience: self.patience,
+            voice: self.voice,
+            pace: &self.pace,
+            motions: self.motions.as_ref(),
+            request: self.request,
+        }
+    }
+
+    /// The name of the planner that is configured.
+    pub(super) fn planner(&self) -> &str {
+        self.problem.planner()
+    }
+
+    /// Whether picks take the arm's time.
+    pub(super) fn moves(&self) -> bool {
+        self.motions.is_some()
+    }
+
+    /// Costs in seconds of this robot's own voice and arm.
+    pub(super) fn measured_costs(&self) -> Costs {
+        let Problem { scene, model, costs, .. } = &self.problem;
+        let motions = self.motions.as_ref();
+        measured_costs(scene, model, &self.voice, &self.pace, motions, *costs)
+    }
+}
+
+/// The problem of a preset, where nothing else is said.
+fn preset(args: &StudyArgs) -> ProblemArgs {
+    let mut problem = args.problem.clone();
+    match args.preset {
+        None => {}
+        Some(Preset::PaperPresent) => (problem.mode, problem.no_which) = (ModeArg::Present, true),
+        Some(Preset::PaperRemote) => problem.no_which = true,
+    }
+    problem
+}
+
+/// The arm's motions in a scene with places.
+fn motions(problem: &Problem) -> Result<Option<Motions>, Trouble> {
+    let scene = &problem.scene;
+    if scene.objects().iter().any(|object| object.placement.is_none()) {
+        note("the scene gives no places: the arm is taken to need no time");
+        return Ok(None);
+    }
+    let plan = problem.settings.as_ref().map(|settings| settings.arm.plan).unwrap_or_default();
+    let limb = problem.settings.as_ref().and_then(|settings| settings.arm.limb);
+    let pointing = problem.actions.mode == Mode::Present;
+    Motions::plan(scene, limb, &plan, pointing)
+        .map(Some)
+        .map_err(|error| Trouble::new(Exit::Config, error.to_string()))
+}

@@ -1,0 +1,106 @@
+//! The interactions shared out among threads.
+//!
+//! Invariant: what is counted depends on the seed alone. Interactions are counted in pieces of
+//! [`CHUNK`], whichever thread does them, and the pieces are merged in order.
+
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
+
+use dialogue::registry;
+use study::{CHUNK, Memo, Room, Tally, interactions, turns};
+
+use super::design::{People, Row};
+use super::house::House;
+use super::progress::Progress;
+
+/// A piece of work: a row, and which of its pieces.
+#[derive(Clone, Copy)]
+struct Piece {
+    row: usize,
+    chunk: u64,
+}
+
+/// Counts `count` interactions of every row.
+pub(super) fn run(
+    house: &House,
+    rows: &[Row],
+    count: u64,
+    seed: u64,
+    threads: usize,
+) -> Vec<Tally> {
+    let chunks = count.div_ceil(CHUNK);
+    let pieces: Vec<Piece> = (0..rows.len())
+        .flat_map(|row| (0..chunks).map(move |chunk| Piece { row, chunk }))
+        .collect();
+    let next = AtomicUsize::new(0);
+    let (counted, arrived) = mpsc::channel();
+    let mut done: Vec<Option<Tally>> = vec![None; pieces.len()];
+    thread::scope(|scope| {
+        for _ in 0..threads.min(pieces.len()) {
+            let (counted, next, pieces) = (counted.clone(), &next, &pieces);
+            scope.spawn(move || {
+                let memos = HashMap::new();
+                let mut worker = Worker { room: house.room(), rows, count, seed, memos };
+                while let Some((at, piece)) = take(next, pieces) {
+                    // Nobody to count for any more.
+                    if counted.send((at, worker.count(piece))).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(counted);
+        let mut progress = Progress::new(pieces.len());
+        for (at, tally) in arrived {
+            done[at] = Some(tally);
+            progress.step();
+        }
+    });
+    merge(rows.len(), &pieces, &done)
+}
+
+fn take(next: &AtomicUsize, pieces: &[Piece]) -> Option<(usize, Piece)> {
+    let at = next.fetch_add(1, Ordering::Relaxed);
+    Some((at, *pieces.get(at)?))
+}
+
+fn merge(rows: usize, pieces: &[Piece], done: &[Option<Tally>]) -> Vec<Tally> {
+    let mut tallies = vec![Tally::default(); rows];
+    for (piece, tally) in pieces.iter().zip(done) {
+        if let Some(tally) = tally {
+            tallies[piece.row].merge(tally);
+        }
+    }
+    tallies
+}
+
+/// One thread's side.
+struct Worker<'a> {
+    room: Room<'a>,
+    rows: &'a [Row],
+    count: u64,
+    seed: u64,
+    memos: HashMap<&'a str, Memo>,
+}
+
+impl Worker<'_> {
+    fn count(&mut self, piece: Piece) -> Tally {
+        let Row { policy, people } = &self.rows[piece.row];
+        if !self.memos.contains_key(policy.as_str()) {
+            // The command line has let only known names pass.
+            let Ok(planner) = registry::planner(policy) else { return Tally::default() };
+            self.memos.insert(policy, Memo::new(planner));
+        }
+        let Some(memo) = self.memos.get_mut(policy.as_str()) else { return Tally::default() };
+        let first = piece.chunk * CHUNK;
+        let numbers = first..(first + CHUNK).min(self.count);
+        match people {
+            People::InTurns(kind) => interactions(&self.room, memo, *kind, self.seed, numbers),
+            People::RealTime { rules, talker, .. } => {
+                turns::dialogues(&self.room, memo, rules, talker, self.seed, numbers)
+            }
+        }
+    }
+}

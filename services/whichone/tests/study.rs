@@ -1,0 +1,119 @@
+//! The study as scripts call it: the same seed gives the same bytes, and bad input is named.
+#![allow(clippy::unwrap_used, reason = "this is test code")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+
+fn study(words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_whichone"))
+        .arg("study")
+        .args(words)
+        .env_remove("WHICHONE_CONFIG")
+        .current_dir(ROOT)
+        .output()
+        .unwrap()
+}
+
+const BOWLS: [&str; 2] = ["--scene", "config/scenes/bowls.toml"];
+
+/// Every file in the folder, by name.
+fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| {
+            let path = entry.unwrap().path();
+            let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+            (name, std::fs::read(path).unwrap())
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
+    let run = |threads: &str, seed: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().to_str().unwrap();
+        let words = ["--interactions", "1100", "--users", "model,human", "--turns", "naive"];
+        let more = ["--threads", threads, "--seed", seed, "--out", out];
+        let ended = study(&[&BOWLS[..], &words, &more].concat());
+        assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+        (ended.stdout, files(folder.path()))
+    };
+    let one = run("1", "7");
+    assert_eq!(one, run("3", "7"));
+    assert_ne!(one.0, run("1", "8").0);
+    let names: Vec<&str> = one.1.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, FILES);
+    assert!(one.1.iter().all(|(_, bytes)| !bytes.is_empty()));
+}
+
+const FILES: [&str; 2] = ["study.csv", "study.json"];
+
+#[test]
+fn every_policy_meets_every_kind_of_people() {
+    let words = ["--interactions", "60", "--users", "model,truthful,noisy,human", "--json"];
+    let ended = study(&[&BOWLS[..], &words].concat());
+    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    let json: Value = serde_json::from_slice(&ended.stdout).unwrap();
+    let rows = json["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 4 * dialogue::registry::names().len());
+    for row in rows {
+        let ends = ["right", "wrong", "without_pick"].map(|end| row[end].as_u64().unwrap());
+        assert_eq!(ends.iter().sum::<u64>(), 60, "{row}");
+        let [low, mean, high] =
+            ["success_low", "success", "success_high"].map(|key| row[key].as_f64().unwrap());
+        assert!(low <= mean && mean <= high, "{row}");
+        assert!(row["seconds"].as_f64() > row["talk_s"].as_f64(), "the arm takes time: {row}");
+    }
+}
+
+#[test]
+fn the_paper_s_evaluations_are_presets() {
+    let present = study(&["--preset", "paper-present", "--json"]);
+    let json: Value = serde_json::from_slice(&present.stdout).unwrap();
+    assert_eq!((&json["interactions"], &json["request"]), (&3.into(), &false.into()));
+    assert_eq!(json["actions"]["mode"], "present");
+    assert_eq!(json["actions"]["which"], false);
+    let remote = study(&["--preset", "paper-remote", "--interactions", "20", "--json"]);
+    let json: Value = serde_json::from_slice(&remote.stdout).unwrap();
+    assert_eq!(json["interactions"], 20);
+    let rows = json["rows"].as_array().unwrap();
+    assert!(rows.iter().any(|row| row["turn_taking"] == "naive"));
+}
+
+#[test]
+fn bad_input_is_named_with_its_cure() {
+    let cases: [(&[&str], i32, &str); 8] = [
+        (&[], 64, "--scene"),
+        (&["--scene", "/nowhere.toml"], 74, "/nowhere.toml"),
+        (&["--policies", "oracle"], 64, "oracle"),
+        (&["--users", "robot"], 64, "robot"),
+        (&["--interactions", "0"], 64, "--interactions"),
+        (&["--threads", "0"], 64, "--threads"),
+        (&["--turns", "polite"], 64, "open+mixture"),
+        (&["--preset", "section-7"], 64, "paper-remote"),
+    ];
+    for (words, code, part) in cases {
+        let named = words.first().is_none_or(|word| *word == "--scene");
+        let scene = if named { &[][..] } else { &BOWLS[..] };
+        let ended = study(&[scene, words].concat());
+        let told = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert_eq!(ended.status.code(), Some(code), "{words:?}: {told}");
+        assert!(told.contains(part), "{words:?}: {told}");
+        assert!(ended.stdout.is_empty());
+    }
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_named() {
+    let words = ["--interactions", "1", "--out", "/dev/null/study"];
+    let ended = study(&[&BOWLS[..], &words].concat());
+    assert_eq!(ended.status.code(), Some(74));
+    assert!(String::from_utf8_lossy(&ended.stderr).contains("/dev/null/study"));
+}

@@ -1,0 +1,60 @@
+//! Studies with simulated people: how often, how soon and with how many questions a robot that
+//! decides by a certain policy brings what is wanted.
+//!
+//! This crate is pure: no IO, no clock, no threads. Interaction `n` of a study depends on the seed
+//! and on `n` alone, so that interactions can be shared out among threads as one likes, and every
+//! policy meets the same people. Interactions are counted in [`Tally`]s of a fixed number of them,
+//! merged in their order: sums of floating-point numbers then do not depend on the threads either.
+//!
+//! | what | where |
+//! |---|---|
+//! | one interaction, from the request to the hand-over | `interaction.rs` |
+//! | what the policy decides, remembered by belief | `memo.rs` |
+//! | people, one file each, and how their words are recognised | `users/` |
+//! | how long speech takes | `speech.rs` |
+//! | how long the arm takes, by its own trajectories | `motion.rs` |
+//! | durations as costs of the decision problem | `costs.rs` |
+//! | the same dialogues with people and robot talking in real time | `turns/` |
+//! | means, intervals, histograms | `stats.rs`, `tally.rs` |
+
+mod costs;
+mod draw;
+mod interaction;
+mod memo;
+mod motion;
+mod speech;
+mod stats;
+mod tally;
+#[cfg(test)]
+mod testing;
+pub mod turns;
+pub mod users;
+
+pub use costs::measured_costs;
+pub use interaction::{End, Outcome, Patience, Room, interact};
+pub use memo::{Choice, Memo};
+pub use motion::{MotionError, Motions};
+pub use speech::{Pace, Voice};
+pub use stats::{Interval, Mean, wilson};
+pub use tally::{HISTOGRAM, Tally};
+pub use users::{User, UserKind};
+
+/// Interactions that are counted together.
+pub const CHUNK: u64 = 500;
+
+/// Counts the interactions `numbers` of `kind`'s people with the policy behind `memo`.
+pub fn interactions(
+    room: &Room<'_>,
+    memo: &mut Memo,
+    kind: UserKind,
+    seed: u64,
+    numbers: std::ops::Range<u64>,
+) -> Tally {
+    let mut tally = Tally::default();
+    for number in numbers {
+        let mut user = kind.person(room, seed, number);
+        let mut clock = draw::stream(seed, draw::Stream::Clock, number);
+        tally.add(&interact(room, memo, &mut *user, &mut clock));
+    }
+    tally
+}
