@@ -10,6 +10,7 @@ mod export;
 mod gestures;
 mod isolation;
 mod people;
+mod planners;
 mod recovery;
 mod speech;
 mod supervision;
