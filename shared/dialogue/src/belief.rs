@@ -6,7 +6,7 @@ use scene::{ObjectId, Question, Reading};
 use serde::{Deserialize, Serialize};
 
 use crate::Model;
-use crate::observation::{log_likelihood, weigh};
+use crate::observation::{log_mixture, weigh};
 
 /// A distribution over the hypotheses of a model: the objects of a scene, and perhaps that the
 /// wanted one is not here.
@@ -180,32 +180,21 @@ impl Belief {
     /// # Panics
     /// If a weight is negative or not finite, or anything is not about the model's scene.
     pub fn update_mixture(&mut self, model: &Model, heard: &[(f64, Question, Reading)]) {
-        for (weight, ..) in heard {
-            assert!(weight.is_finite() && *weight >= 0.0, "{weight} is not a weight");
+        let mut weighty = heard.iter().filter(|(weight, ..)| *weight > 0.0);
+        if let (Some((_, question, reading)), None) = (weighty.next(), weighty.next()) {
+            self.update(model, *question, reading);
+        } else if let Some(mixture) = log_mixture(model, heard) {
+            self.weigh(&mixture);
         }
-        let hypotheses: Vec<_> = heard.iter().filter(|(weight, ..)| *weight > 0.0).collect();
-        let (first, more) = match &hypotheses[..] {
-            [] => return,
-            [(_, question, reading)] => return self.update(model, *question, reading),
-            [first, more @ ..] => (first, more),
-        };
-        let weighted = |(weight, question, reading): &(f64, Question, Reading)| {
-            let mut log = log_likelihood(model, *question, reading);
-            log.iter_mut().for_each(|log| *log += weight.ln());
-            log
-        };
-        let mut mixture = weighted(first);
-        for hypothesis in more {
-            for (sum, log) in mixture.iter_mut().zip(weighted(hypothesis)) {
-                *sum = log_add(*sum, log);
-            }
-        }
-        self.multiply(&mixture);
     }
 
-    /// Multiplies every weight by a likelihood, given as logarithm and known up to a constant.
-    /// The greatest is taken as 1, so that weights only fall.
-    fn multiply(&mut self, log_likelihood: &[f64]) {
+    /// Bayes' rule with any other evidence: the logarithm of its likelihood by hypothesis, up to a
+    /// constant. The greatest is taken as 1, so that weights only fall; evidence that is as likely
+    /// whatever is wanted changes no bit.
+    ///
+    /// # Panics
+    /// If there is not one for every hypothesis.
+    pub fn weigh(&mut self, log_likelihood: &[f64]) {
         assert_eq!(self.log.len(), log_likelihood.len(), "belief and model are of one scene");
         if log_likelihood.iter().all(|l| *l == log_likelihood[0]) {
             return;
@@ -235,12 +224,6 @@ impl PartialEq for Belief {
 
 /// Units of a belief's key in a probability of 1.
 const KEY_UNITS: f64 = 1e12;
-
-/// `ln(e^a + e^b)` without overflow.
-fn log_add(a: f64, b: f64) -> f64 {
-    let (low, high) = if a < b { (a, b) } else { (b, a) };
-    high + (low - high).exp().ln_1p()
-}
 
 impl TryFrom<Vec<f64>> for Belief {
     type Error = BeliefError;

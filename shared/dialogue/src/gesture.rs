@@ -17,7 +17,7 @@
 
 use scene::Scene;
 
-use crate::{Belief, Fault};
+use crate::Fault;
 
 /// The parameters of the observation of gestures.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -124,23 +124,6 @@ impl Direction {
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// Bayes' rule with an observation beside the words, given by its log likelihood per hypothesis. One
-/// that is as likely under each leaves the belief unchanged bit for bit. The greatest is taken as 1,
-/// so that weights only fall.
-///
-/// # Panics
-/// If there are not as many entries as hypotheses, or one is not finite.
-pub fn update(belief: &mut Belief, log_likelihood: &[f64]) {
-    assert_eq!(belief.len(), log_likelihood.len(), "belief and observation are of one scene");
-    if log_likelihood.iter().all(|l| *l == log_likelihood[0]) {
-        return;
-    }
-    let greatest = log_likelihood.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let weights = belief.log_weights().iter().zip(log_likelihood);
-    let log = weights.map(|(weight, likelihood)| weight + (likelihood - greatest)).collect();
-    *belief = Belief::from_log(log).expect("finite likelihoods");
 }
 
 #[cfg(test)]

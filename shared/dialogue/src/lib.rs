@@ -14,6 +14,7 @@ mod mix;
 mod model;
 mod observation;
 mod params;
+pub mod person;
 mod planner;
 mod planners;
 mod planning;

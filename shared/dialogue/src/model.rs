@@ -117,6 +117,18 @@ impl Model {
         }
     }
 
+    /// The same scene with other parameters.
+    ///
+    /// # Panics
+    /// If the parameters are out of range, or `α` is not the same: the words' tables are built for
+    /// it.
+    #[must_use]
+    pub fn with_params(&self, params: Params) -> Self {
+        assert!(params.check().is_empty(), "parameters out of range: {params:?}");
+        assert_eq!(params.alpha, self.params.alpha, "α is not a person's");
+        Self { params, ..self.clone() }
+    }
+
     /// `p_l`, `ε` and `α`.
     pub fn params(&self) -> Params {
         self.params

@@ -28,6 +28,33 @@ pub fn log_likelihood(model: &Model, question: Question, reading: &Reading) -> V
     log
 }
 
+/// `ln Σ_j w_j P(o_j | D, Q_j)` for every hypothesis: what was heard, or which question it answers,
+/// is uncertain. None if there is nothing of weight.
+///
+/// # Panics
+/// If a weight is negative or not finite, or anything is not about the model's scene.
+pub(crate) fn log_mixture(model: &Model, heard: &[(f64, Question, Reading)]) -> Option<Vec<f64>> {
+    for (weight, ..) in heard {
+        assert!(weight.is_finite() && *weight >= 0.0, "{weight} is not a weight");
+    }
+    let weighted = heard.iter().filter(|(weight, ..)| *weight > 0.0);
+    let rows = weighted.map(|(weight, question, reading)| {
+        let mut log = log_likelihood(model, *question, reading);
+        log.iter_mut().for_each(|log| *log += weight.ln());
+        log
+    });
+    rows.reduce(|mut mixture, row| {
+        mixture.iter_mut().zip(row).for_each(|(sum, log)| *sum = log_add(*sum, log));
+        mixture
+    })
+}
+
+/// `ln(e^a + e^b)` without overflow.
+fn log_add(a: f64, b: f64) -> f64 {
+    let (low, high) = if a < b { (a, b) } else { (b, a) };
+    high + (low - high).exp().ln_1p()
+}
+
 /// Adds [`log_likelihood`] to every entry, but for a constant that is returned: one pass for each
 /// thing said that tells hypotheses apart, and none for what says nothing. No entry rises.
 pub(crate) fn weigh(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {

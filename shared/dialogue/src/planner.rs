@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::person::Joint;
 use crate::{Actions, Belief, Costs, Decision, Model, PolicyTable};
 
 /// The decision problem `(S, A, T, R, Ω, O)` of section 3, but for the belief.
@@ -41,6 +42,17 @@ pub trait Planner {
     /// # Panics
     /// If the belief is not about the problem's scene.
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision;
+
+    /// What to do, knowing what is believed about the person as well. Planners that take it as
+    /// given how people answer decide by the belief over objects alone.
+    fn decide_with(
+        &mut self,
+        problem: &DecisionProblem<'_>,
+        joint: &Joint,
+        step: Step,
+    ) -> Decision {
+        self.decide(problem, &joint.belief(), step)
+    }
 
     /// Works ahead from a belief that dialogues are likely to begin with, if that is any use and
     /// takes well under a second. It changes no decision.

@@ -2,16 +2,18 @@
 
 use crate::Planner;
 use crate::planners::{
-    AlwaysAsk, Entropy, Lookahead, NeverAsk, NoAttribute, Optimal, SparseSampling,
+    AlwaysAsk, Entropy, InformationSeeking, Lookahead, NeverAsk, NoAttribute, Optimal,
+    SparseSampling,
 };
 
 /// Makes a planner with its default settings.
 type Make = fn() -> Box<dyn Planner + Send>;
 
 /// Every planner, the default first. A new planner is one file in `planners` and one line here.
-const PLANNERS: [(&str, Make); 7] = [
+const PLANNERS: [(&str, Make); 8] = [
     ("lookahead", || Box::new(Lookahead::default())),
     ("optimal", || Box::new(Optimal::default())),
+    ("information-seeking", || Box::new(InformationSeeking)),
     ("entropy", || Box::new(Entropy)),
     ("sparse-sampling", || Box::new(SparseSampling::default())),
     ("no-attribute", || Box::new(NoAttribute::default())),

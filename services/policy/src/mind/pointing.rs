@@ -1,7 +1,7 @@
 //! Pointing gestures against the places of one scene's objects.
 
 use dialogue::Belief;
-use dialogue::gesture::{self, Direction, Gestures};
+use dialogue::gesture::{Direction, Gestures};
 use scene::Scene;
 
 /// Who points from where, and in which direction each object lies from there.
@@ -25,6 +25,6 @@ impl Pointing {
         // Whatever the belief holds beyond the objects stands nowhere.
         let mut directions = self.objects.clone();
         directions.resize(belief.len(), None);
-        gesture::update(belief, &self.model.log_likelihood(Some(ray), &directions));
+        belief.weigh(&self.model.log_likelihood(Some(ray), &directions));
     }
 }

@@ -2,7 +2,7 @@ use scene::{AttributeId, Question, Response, ValueId, WordId};
 
 use super::*;
 use crate::testing::{bowls, heard, random_scene, scene_of};
-use crate::{Params, Rng};
+use crate::{Params, Rng, log_likelihood};
 
 /// A random question and reading of the scene; contradictions welcome.
 fn random_turn(rng: &mut Rng, model: &Model, words: usize) -> (Question, Reading) {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::Belief;
 use crate::Rng;
 use std::f64::consts::PI;
 
@@ -76,9 +77,9 @@ fn no_gesture_and_no_direction_say_nothing() {
         let objects: Vec<_> = (0..5).map(|_| Some(direction(&mut rng))).collect();
         let mut belief = Belief::from_probabilities(&[0.1, 0.2, 0.3, 0.15, 0.25]).unwrap();
         let before = belief.clone();
-        update(&mut belief, &gestures.log_likelihood(None, &objects));
+        belief.weigh(&gestures.log_likelihood(None, &objects));
         assert_eq!(belief, before, "seed {seed}");
-        update(&mut belief, &gestures.log_likelihood(Some(direction(&mut rng)), &[None; 5]));
+        belief.weigh(&gestures.log_likelihood(Some(direction(&mut rng)), &[None; 5]));
         assert_eq!(belief, before, "seed {seed}");
     }
 }
@@ -109,7 +110,7 @@ fn an_update_is_bayes_rule() {
         let prior: Vec<f64> = (0..6).map(|_| 0.01 + rng.uniform()).collect();
         let log: Vec<f64> = (0..6).map(|_| -8.0 * rng.uniform()).collect();
         let mut belief = Belief::from_probabilities(&prior).unwrap();
-        update(&mut belief, &log);
+        belief.weigh(&log);
         let weights: Vec<f64> = prior.iter().zip(&log).map(|(p, l)| p * l.exp()).collect();
         let expected = Belief::from_probabilities(&weights).unwrap();
         for (a, b) in belief.probabilities().iter().zip(expected.probabilities()) {
@@ -127,7 +128,7 @@ fn pointing_at_an_object_finds_it_if_it_stands_apart() {
         let direction = |to| Direction::between(person, to);
         let objects = [direction(here), direction(there)];
         let mut belief = Belief::uniform(2);
-        update(&mut belief, &Gestures::default().log_likelihood(direction(here), &objects));
+        belief.weigh(&Gestures::default().log_likelihood(direction(here), &objects));
         belief.probabilities()[0]
     };
     assert!(posterior([1.6, 0.0, 0.4]) > 0.98);

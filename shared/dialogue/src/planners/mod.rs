@@ -2,6 +2,7 @@
 
 mod always_ask;
 mod entropy;
+mod information_seeking;
 mod lookahead;
 mod never_ask;
 mod no_attribute;
@@ -11,6 +12,7 @@ mod sparse_sampling;
 
 pub(crate) use always_ask::AlwaysAsk;
 pub(crate) use entropy::Entropy;
+pub(crate) use information_seeking::InformationSeeking;
 pub use lookahead::Lookahead;
 pub(crate) use never_ask::NeverAsk;
 pub(crate) use no_attribute::NoAttribute;

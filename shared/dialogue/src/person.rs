@@ -1,0 +1,91 @@
+//! What is known about how one person answers: a posterior that goes on from one interaction to the
+//! next.
+//!
+//! The paper takes `ε` and `p_l` as known. Here they are beliefs (after Abbasnejad et al., who put
+//! questions under uncertainty about the model that they are to inform): `p_l` by counting what was
+//! answered and what was not, `ε` together with the wanted object, because an answer is only known
+//! to be wrong once the object is known ([`Joint`]), and the time to react by the times seen
+//! ([`Reaction`]).
+
+mod joint;
+mod reaction;
+
+pub use joint::Joint;
+pub use reaction::Reaction;
+
+use serde::{Deserialize, Serialize};
+
+use crate::Params;
+
+/// The values of `ε` that a person may have.
+pub const ERROR_RATES: [f64; 10] = [0.003, 0.01, 0.02, 0.04, 0.07, 0.1, 0.14, 0.2, 0.28, 0.38];
+
+/// One person, as far as they are known.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Person {
+    /// Logarithm of the weight of each of [`ERROR_RATES`], up to a constant.
+    log_errors: Vec<f64>,
+    /// Questions that were answered and that were not, with those that the prior is worth.
+    answered: f64,
+    unanswered: f64,
+    reaction: Reaction,
+}
+
+/// How many questions the configured `p_l` is worth.
+const CONFIDENCE: f64 = 20.0;
+/// How fast the prior falls with the distance of an error rate from the configured one, per nat:
+/// at 1.5 somebody who errs ten times as often is thirty times less likely.
+const STEEPNESS: f64 = 1.5;
+
+impl Person {
+    /// Somebody of whom nothing is known but what is configured about people.
+    pub fn new(params: Params) -> Self {
+        let distance = |rate: f64| (rate / params.epsilon).ln().abs();
+        Self {
+            log_errors: ERROR_RATES.iter().map(|rate| -STEEPNESS * distance(*rate)).collect(),
+            answered: CONFIDENCE * params.p_l,
+            unanswered: CONFIDENCE * (1.0 - params.p_l),
+            reaction: Reaction::default(),
+        }
+    }
+
+    /// Probability of each of [`ERROR_RATES`].
+    pub fn error_probabilities(&self) -> Vec<f64> {
+        let greatest = self.log_errors.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let weights: Vec<f64> = self.log_errors.iter().map(|log| (log - greatest).exp()).collect();
+        let sum: f64 = weights.iter().sum();
+        weights.into_iter().map(|weight| weight / sum).collect()
+    }
+
+    /// The expected parameters of this person; `α` is not a person's.
+    pub fn params(&self, configured: Params) -> Params {
+        let rates = self.error_probabilities().into_iter().zip(ERROR_RATES);
+        Params {
+            p_l: self.answered / (self.answered + self.unanswered),
+            epsilon: rates.map(|(probability, rate)| probability * rate).sum(),
+            ..configured
+        }
+    }
+
+    /// Takes in that a question was answered, or was not although there was time.
+    pub fn see_answer(&mut self, answered: bool) {
+        if answered {
+            self.answered += 1.0;
+        } else {
+            self.unanswered += 1.0;
+        }
+    }
+
+    /// How long this person takes to react.
+    pub fn reaction(&self) -> &Reaction {
+        &self.reaction
+    }
+
+    /// Takes in that an answer began so many seconds after the question had ended.
+    pub fn see_reaction(&mut self, seconds: f64) {
+        self.reaction.see(seconds);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,109 @@
+//! `information-seeking`: asks under uncertainty about the person who answers.
+
+use crate::person::{Joint, Person};
+use crate::planning::{Bound, Choice, Effort, Glancer, Reduced};
+use crate::{Action, Answer, Belief, Decision, DecisionProblem, Model, Planner, Step};
+
+use scene::Question;
+
+use super::alternatives;
+use super::searched::{affordable, searched};
+
+/// Weighs every promising question by what its answers would teach about the object and about the
+/// person together (after Abbasnejad et al.).
+///
+/// After each answer the dialogue is valued as it would go on with what is then expected of the
+/// person, so an answer that contradicts the belief is worth a question more to whoever errs, and
+/// a question that tells a careful person from a careless one has a value of its own. Of a person
+/// of whom nothing is known, `ε` and `p_l` are those configured, but uncertain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct InformationSeeking;
+
+/// Most questions that are weighed, the most promising by the first glance.
+const WEIGHED_MAX: usize = 10;
+/// Beliefs that are looked at to value what follows an answer, and with what work at most.
+const FOLLOWED_MAX: usize = 60;
+const WORK_MAX: usize = 20_000;
+
+impl Planner for InformationSeeking {
+    fn name(&self) -> &'static str {
+        "information-seeking"
+    }
+
+    fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
+        let person = Person::new(problem.model.params());
+        self.decide_with(problem, &Joint::new(belief.clone(), person), step)
+    }
+
+    fn decide_with(&mut self, problem: &DecisionProblem<'_>, joint: &Joint, _: Step) -> Decision {
+        let belief = joint.belief();
+        let model = expected(problem.model, joint.person());
+        let expected = DecisionProblem { model: &model, ..*problem };
+        let plain = follow(&expected, &belief);
+        let mut asked: Vec<(Action, f64)> = promising(&expected, &belief)
+            .into_iter()
+            .map(|question| (Action::Ask(question), ask(problem, &model, joint, question)))
+            .collect();
+        asked.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let (stop, stopped) = stopping(&expected, &belief);
+        let best = asked.first().copied().filter(|(_, value)| *value > stopped);
+        let (action, value) = best.unwrap_or((stop, stopped));
+        let alternatives = alternatives(problem, &belief, asked, action);
+        // Expected of the plan that takes the person as known; it may pick where this one asks.
+        let expected_questions = best.map_or(0.0, |_| plain.expected_questions.max(1.0));
+        Decision { action, value, alternatives, expected_questions, bounds: None }
+    }
+}
+
+/// The model of people with what is expected of this one.
+fn expected(model: &Model, person: &Person) -> Model {
+    model.with_params(person.params(model.params()))
+}
+
+/// How the dialogue goes on if the person is taken to be as expected.
+fn follow(problem: &DecisionProblem<'_>, belief: &Belief) -> Decision {
+    let stake = problem.costs.correct + problem.costs.wrong;
+    searched(problem, belief, |reduced| Effort {
+        beliefs_max: affordable(reduced, WORK_MAX).clamp(1, FOLLOWED_MAX),
+        tolerance: 1e-4 * stake,
+    })
+}
+
+/// The better of picking and waiting, and its value.
+fn stopping(problem: &DecisionProblem<'_>, belief: &Belief) -> (Action, f64) {
+    let likeliest = belief.most_likely();
+    let pick = problem.costs.pick_value(belief.probability(likeliest));
+    let wait = problem.costs.wait_value();
+    if pick > wait { (Action::Pick(likeliest), pick) } else { (Action::Wait, wait) }
+}
+
+/// The questions that look best from one step ahead.
+fn promising(problem: &DecisionProblem<'_>, belief: &Belief) -> Vec<Question> {
+    let reduced = Reduced::new(problem, belief);
+    let bound = Bound::new(&reduced, &problem.costs);
+    let mut choices = Glancer::new(&reduced, &bound).glance(&reduced.mass).choices;
+    let by_estimate = |a: &Choice, b: &Choice| b.value.estimate.total_cmp(&a.value.estimate);
+    choices.sort_by(by_estimate);
+    choices.truncate(WEIGHED_MAX);
+    choices.iter().map(|choice| reduced.question(choice.query)).collect()
+}
+
+/// Value of asking until something is heard, and going on with what is known then.
+fn ask(problem: &DecisionProblem<'_>, model: &Model, joint: &Joint, question: Question) -> f64 {
+    let (mut heard, mut after) = (0.0, 0.0);
+    for answer in Answer::possible(model, question) {
+        if answer == Answer::Silence {
+            continue;
+        }
+        let probability = joint.probability(model, question, answer);
+        let mut next = joint.clone();
+        next.update_mixture(model, &[(1.0, question, answer.reading(model))]);
+        let model = expected(model, next.person());
+        let problem = DecisionProblem { model: &model, ..*problem };
+        heard += probability;
+        after += probability * follow(&problem, &next.belief()).value;
+    }
+    let costs = &problem.costs;
+    let again = 1.0 - costs.discount * (1.0 - heard);
+    (costs.discount * after - costs.of(Action::Ask(question))) / again
+}
