@@ -21,7 +21,7 @@ fn copy(from: &Path, to: &Path) {
 }
 
 /// A copy of the shipped configuration in which `file` is changed by `edit`.
-fn edited(file: &str, edit: impl Fn(String) -> String) -> tempfile::TempDir {
+pub(crate) fn edited(file: &str, edit: impl Fn(String) -> String) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     copy(&shipped(), folder.path());
     let path = folder.path().join(file);

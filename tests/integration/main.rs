@@ -3,7 +3,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod absence;
 mod batch;
+mod changes;
 mod config;
 mod dialogues;
 mod export;

@@ -9,6 +9,7 @@ type Verdict = Result<(), String>;
 
 /// Every check, the most telling first.
 pub(crate) fn check(world: &World) -> Verdict {
+    ensure(world.change.is_none(), || "the scene has never changed".to_owned())?;
     delivered_the_right_one(world)?;
     picked_once(world)?;
     numbered_without_gap(world)?;
@@ -72,8 +73,18 @@ fn nothing_premature(world: &World) -> Verdict {
     ensure(world.premature.is_empty(), || world.premature.join("; "))
 }
 
-/// The belief and every decision follow from the journal, bit for bit (I8).
+/// The belief and every decision follow from the journal, bit for bit (I8), those before a change
+/// of the scene under the former settings and the change itself under the new ones.
 fn belief_refolds(world: &World) -> Verdict {
-    let mut mind = policy::shell::mind(&world.settings).map_err(|e| e.to_string())?;
-    policy::journal_check::refold(&mut mind, world.policy.journal()).map_err(|e| e.to_string())
+    let mind = |settings| policy::shell::mind(settings).map_err(|e| e.to_string());
+    let records = world.policy.journal();
+    let mut former = 0;
+    if let Some((settings, count)) = &world.before {
+        let folded = policy::journal_check::refold(&mut mind(settings)?, &records[..*count]);
+        folded.map_err(|e| format!("before the change: {e}"))?;
+        former = *count;
+    }
+    let own = policy::journal_check::refold_own(&mut mind(&world.settings)?, records);
+    let own = own.map_err(|e| e.to_string())?;
+    ensure(own + former == records.len(), || format!("{own} and {former} of {}", records.len()))
 }

@@ -40,6 +40,11 @@ where
         self.pass(vec![Event::Started], now, None)
     }
 
+    /// Ends the process, and has the next one started with another configuration.
+    pub(crate) fn replace(&mut self, config: impl Fn() -> N::Config + 'static) {
+        (self.node, self.config) = (None, Box::new(config));
+    }
+
     pub(crate) fn is_up(&self) -> bool {
         self.node.is_some()
     }

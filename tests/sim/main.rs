@@ -13,6 +13,7 @@ mod world;
 
 use faults::Faults;
 use person::Person;
+use settings::Settings;
 use world::{World, settings};
 
 /// Dialogues with faults, each with its own seed.
@@ -79,5 +80,45 @@ fn whoever_points_gets_the_right_object_once_whatever_is_killed() {
         let settings = settings(&[("dialogue.gesture.enabled", "true")]);
         let person = Person::pointing((seed % 6) as usize, &settings.scene);
         run_with(seed, World::new(settings, person, Faults::everything(seed)));
+    }
+}
+
+/// The shipped bowls without `gone`, and with one more that stands in its place.
+fn changed_bowls(gone: &str) -> Settings {
+    let folder = tempfile::tempdir().expect("a folder");
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/scenes/bowls.toml");
+    let text = std::fs::read_to_string(shipped).expect("the shipped bowls");
+    let renamed = text.replace(&format!("name = \"{gone}\"\n"), "name = \"another\"\n");
+    // The first object becomes the last, so that every number changes.
+    let (head, objects) = text_at(&renamed, "[[objects]]");
+    let (first, others) = text_at(&objects["[[objects]]".len()..], "[[objects]]");
+    let path = folder.path().join("changed.toml");
+    std::fs::write(&path, format!("{head}{others}\n[[objects]]{first}")).expect("a file");
+    settings(&[("group.scene", path.to_str().expect("a path"))])
+}
+
+fn text_at<'a>(text: &'a str, mark: &str) -> (&'a str, &'a str) {
+    text.split_at(text.find(mark).expect("objects"))
+}
+
+#[test]
+fn under_a_changing_scene_the_right_object_is_delivered_once_whatever_is_killed() {
+    let bowls = ["white", "white2", "white3", "metal", "metal2", "clear"];
+    let scenes = bowls.map(changed_bowls);
+    for seed in seeds(SEEDS / 2) {
+        let wanted = (seed % 6) as usize;
+        let gone = (wanted + 1 + (seed / 6 % 5) as usize) % 6;
+        let world = World::new(settings(&[]), Person::new(wanted), Faults::everything(seed));
+        run_with(seed, world.with_change(scenes[gone].clone()));
+    }
+}
+
+/// A robot that considers that the object is not here still fetches what is.
+#[test]
+fn where_it_may_be_absent_the_right_object_is_delivered_all_the_same() {
+    let over = [("dialogue.prior.absent", "0.05"), ("dialogue.prior.objects", "history")];
+    for seed in seeds(SEEDS / 4) {
+        let person = Person::new((seed % 6) as usize);
+        run_with(seed, World::new(settings(&over), person, Faults::everything(seed)));
     }
 }

@@ -18,8 +18,8 @@ pub(crate) struct Person {
     keys: u8,
     /// Everything that was acknowledged as accepted, in order.
     pub(crate) accepted: Vec<RequestKey>,
-    /// The questions by prompt, as they were announced.
-    questions: Vec<(u64, Question)>,
+    /// What to answer, by prompt, as the questions were announced.
+    answers: Vec<(u64, String)>,
 }
 
 struct Saying {
@@ -51,7 +51,7 @@ impl Person {
             answered: Vec::new(),
             keys: 0,
             accepted: Vec::new(),
-            questions: Vec::new(),
+            answers: Vec::new(),
         }
     }
 
@@ -83,22 +83,28 @@ impl Person {
     }
 
     /// The robot announces a question; it is answered once it was presented to its end.
-    pub(crate) fn announce(&mut self, prompt: u64, question: Question) {
-        if question != Question::None && self.questions.iter().all(|(p, _)| *p != prompt) {
-            self.questions.push((prompt, question));
+    pub(crate) fn announce(
+        &mut self,
+        prompt: u64,
+        question: Question,
+        scene: &Scene,
+        model: &Model,
+    ) {
+        if question != Question::None && self.answers.iter().all(|(p, _)| *p != prompt) {
+            let answer = Answer::truthful(model, question, self.wanted);
+            self.answers.push((prompt, answer.text(scene).to_owned()));
         }
     }
 
-    pub(crate) fn hear(&mut self, presented: &Presented, scene: &Scene, model: &Model, now: Time) {
+    pub(crate) fn hear(&mut self, presented: &Presented, now: Time) {
         let heard = (presented.prompt, presented.presentation);
         let ended = presented.state == Presentation::Ended.code();
-        let question = self.questions.iter().find(|(prompt, _)| *prompt == presented.prompt);
-        let Some((_, question)) = question.copied() else { return };
+        let answer = self.answers.iter().find(|(prompt, _)| *prompt == presented.prompt);
+        let Some((_, answer)) = answer.cloned() else { return };
         if !ended || self.saying.is_some() || self.answered.contains(&heard) {
             return;
         }
         self.answered.push(heard);
-        let answer = Answer::truthful(model, question, self.wanted);
-        self.say(answer.text(scene).to_owned(), now + REACTION);
+        self.say(answer, now + REACTION);
     }
 }

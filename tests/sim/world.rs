@@ -23,6 +23,10 @@ const END: Time = Time(240_000_000_000);
 /// The machine and what happened on it.
 pub(crate) struct World {
     pub(crate) settings: Settings,
+    /// The settings before the scene was changed, and how many of the policy's records are theirs.
+    pub(crate) before: Option<(Settings, usize)>,
+    /// The settings that come into force once the first question is decided; none when they have.
+    pub(crate) change: Option<Settings>,
     pub(crate) scene: Scene,
     pub(crate) model: Model,
     pub(crate) speech: Host<SpeechNode>,
@@ -60,15 +64,16 @@ pub(crate) fn settings(over: &[(&str, &str)]) -> Settings {
 
 impl World {
     pub(crate) fn new(all: Settings, person: Person, faults: Faults) -> Self {
-        let (s, g, p, a) = (all.clone(), all.clone(), all.clone(), all.clone());
         Self {
             model: Model::new(&all.scene, all.dialogue.params),
             scene: all.scene.clone(),
+            speech: Host::new(configured::<speech::shell::SpeechProgram>(&all)),
+            grounding: Host::new(configured::<grounding::shell::GroundingProgram>(&all)),
+            policy: Host::new(configured::<policy::shell::PolicyProgram>(&all)),
+            arm: Host::new(configured::<arm::shell::ArmProgram>(&all)),
             settings: all,
-            speech: Host::new(move || program_config::<speech::shell::SpeechProgram>(&s)),
-            grounding: Host::new(move || program_config::<grounding::shell::GroundingProgram>(&g)),
-            policy: Host::new(move || program_config::<policy::shell::PolicyProgram>(&p)),
-            arm: Host::new(move || program_config::<arm::shell::ArmProgram>(&a)),
+            before: None,
+            change: None,
             person,
             faults,
             view: PolicyView::default(),
@@ -81,6 +86,12 @@ impl World {
         }
     }
 
+    /// Has the scene changed under the dialogue, right after the first question was decided.
+    pub(crate) fn with_change(mut self, to: Settings) -> Self {
+        self.change = Some(to);
+        self
+    }
+
     /// What happened, for a person who has to find out why.
     pub(crate) fn story(&self) -> String {
         self.log.join("\n")
@@ -90,6 +101,7 @@ impl World {
     pub(crate) fn run(&mut self) {
         while self.now < END && !self.is_over() {
             self.now = self.now + Span::from_ms(10);
+            self.change_the_scene();
             self.restart_the_dead();
             self.person_speaks();
             self.voice_goes_on();
@@ -112,6 +124,24 @@ impl World {
 
     fn tell(&mut self, what: impl std::fmt::Display) {
         self.log.push(format!("{:9.3} s  {what}", self.now.ns() as f64 / 1e9));
+    }
+
+    /// All services are started anew with the other scene, each after a while of its own: what one
+    /// of them sends may reach another that still knows the former.
+    fn change_the_scene(&mut self) {
+        let is_time = self.view.decision == "ask" && self.policy.is_up();
+        let Some(to) = self.change.take_if(|_| is_time) else { return };
+        self.tell("the scene changes");
+        self.speech.replace(configured::<speech::shell::SpeechProgram>(&to));
+        self.grounding.replace(configured::<grounding::shell::GroundingProgram>(&to));
+        self.policy.replace(configured::<policy::shell::PolicyProgram>(&to));
+        self.arm.replace(configured::<arm::shell::ArmProgram>(&to));
+        self.restarts = std::array::from_fn(|_| Some(self.now + self.faults.downtime()));
+        let wanted = &self.scene.object(self.person.wanted).name;
+        self.person.wanted = to.scene.object_named(wanted).expect("what is wanted stays");
+        (self.scene, self.model) = (to.scene.clone(), Model::new(&to.scene, to.dialogue.params));
+        let records = self.policy.journal().len();
+        self.before = Some((std::mem::replace(&mut self.settings, to), records));
     }
 
     fn restart_the_dead(&mut self) {
@@ -205,7 +235,7 @@ impl World {
                 speech::Out::Receipt(receipt) if copies > 0 => self.person.acknowledge(&receipt),
                 speech::Out::Receipt(_) => {}
                 speech::Out::Presented(presented) => {
-                    self.person.hear(&presented, &self.scene, &self.model, self.now);
+                    self.person.hear(&presented, self.now);
                     let message = policy::In::Presented(presented);
                     self.inboxes.policy.extend(std::iter::repeat_n(message, copies));
                 }
@@ -248,7 +278,7 @@ impl World {
                 policy::Out::Act(act) => {
                     self.check_durable(&act);
                     let question = Question::try_from(act.question).expect("a question");
-                    self.person.announce(act.prompt, question);
+                    self.person.announce(act.prompt, question, &self.scene, &self.model);
                     let (to_speech, to_arm) = (speech::In::Act(act.clone()), arm::In::Act(act));
                     self.inboxes.speech.extend(std::iter::repeat_n(to_speech, copies));
                     self.inboxes.arm.extend(std::iter::repeat_n(to_arm, copies));
@@ -278,9 +308,12 @@ impl World {
     }
 }
 
-/// The configuration that the real program would give its node.
-fn program_config<P: runtime::driver::Program>(settings: &Settings) -> <P::Node as Node>::Config {
-    P::config(&Environment::nowhere(), settings).unwrap_or_else(|e| panic!("{e}"))
+/// Makes the configuration that the real program would give its node.
+fn configured<P: runtime::driver::Program>(
+    settings: &Settings,
+) -> impl Fn() -> <P::Node as Node>::Config + use<P> {
+    let settings = settings.clone();
+    move || P::config(&Environment::nowhere(), &settings).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn pass<N: Node>(

@@ -58,7 +58,10 @@ impl Node for GroundingNode {
 impl GroundingNode {
     fn read(&self, utterance: &Utterance, now: Time) -> Result<Observation, protocol::WireError> {
         let question = Question::try_from(utterance.heard_question)?;
-        let question = if self.config.scene.contains(question) { question } else { Question::None };
+        // In another scene its numbers mean something else.
+        let scene = &self.config.scene;
+        let is_known = utterance.heard_scene == scene.key() && scene.contains(question);
+        let question = if is_known { question } else { Question::None };
         let mut observation = Observation {
             seq: utterance.seq,
             heard_prompt: utterance.heard_prompt,

@@ -33,6 +33,24 @@ pub fn refold(mind: &mut Mind, records: &[Record]) -> Result<(), Mismatch> {
     Ok(())
 }
 
+/// Checks the records since the mind's settings hold, to the last; how many those are. The record before them is taken as it is, and the change of the
+/// settings is checked like every other step: it rests on that record and on what holds now.
+///
+/// # Errors
+/// As [`refold`], with the place in `records`.
+pub fn refold_own(mind: &mut Mind, records: &[Record]) -> Result<usize, Mismatch> {
+    let is_own = |record: &Record| record.state.settings_key == mind.key();
+    let others = records.iter().rposition(|record| !is_own(record));
+    let from = others.map_or(0, |last| last + 1);
+    let start = from.saturating_sub(1);
+    let mut own = records[start..].to_vec();
+    if let (Some(first), true) = (own.first_mut(), from > 0) {
+        first.cause = Cause::Snapshot;
+    }
+    refold(mind, &own).map_err(|m| Mismatch { index: start + m.index, ..m })?;
+    Ok(records.len() - from)
+}
+
 /// What differs, comparing numbers by their bits.
 fn difference(folded: &State, recorded: &State) -> Option<&'static str> {
     let bits = |state: &State| -> Vec<u64> {

@@ -4,6 +4,8 @@
 //! turns each into the next [`State`] through [`Mind`]; and has the state journaled before anything
 //! that follows from it can be seen.
 
+pub mod evidence;
+pub mod history;
 pub mod journal_check;
 mod kept;
 pub mod mind;
@@ -119,12 +121,10 @@ impl PolicyNode {
     }
 
     fn start(&mut self, now: Time, fx: &mut Fx) {
-        let other_scene = self.state.scene_key != self.mind.scene().key();
-        if other_scene && self.state.open.is_some() {
-            self.apply(Cause::SceneChanged, now, fx);
-        } else {
-            self.state.scene_key = self.mind.scene().key();
+        if self.state.settings_key == self.mind.key() {
             self.send(now, fx);
+        } else {
+            self.apply(Cause::Reconfigured, now, fx);
         }
     }
 

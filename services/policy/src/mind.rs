@@ -3,19 +3,22 @@
 
 mod acts;
 mod ahead;
+mod anew;
 mod inform;
 mod intents;
 mod pointing;
+mod prior;
 mod words;
 
 use crate::state::{Act, Cause, Interaction, State};
-use acts::{ask, pick, repeat, say, set};
+use acts::{ask, keep_words, order_again, pick, repeat, say, set};
 use dialogue::gesture::Gestures;
 use dialogue::{Action, Actions, Costs, DecisionProblem, Model, Params, Planner, Step};
 use node::Time;
 use pointing::Pointing;
-use protocol::{Ended, Outcome, PickId, PickOutcome, PromptId, UtteranceSeq};
+use protocol::{ActKind, Ended, Outcome, PickId, PickOutcome, PromptId, UtteranceSeq};
 use scene::Scene;
+use settings::Prior;
 
 /// How turns are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +40,8 @@ pub struct Assumptions {
     pub costs: Costs,
     /// What the robot may do.
     pub actions: Actions,
+    /// What is believed before anything is said.
+    pub prior: Prior,
     /// How people point, and from where (metres, frame `base`); none where gestures do not count.
     pub gestures: Option<(Gestures, [f64; 3])>,
 }
@@ -48,22 +53,26 @@ pub struct Mind {
     costs: Costs,
     actions: Actions,
     pointing: Option<Pointing>,
+    prior: Prior,
     planner: Box<dyn Planner + Send>,
     turns: Turns,
+    key: u64,
 }
 
 impl Mind {
-    /// A mind for one scene and one decision problem.
+    /// A mind for one scene and one decision problem; `key` is the identity of both.
     pub fn new(
         scene: Scene,
         assumptions: Assumptions,
         planner: Box<dyn Planner + Send>,
         turns: Turns,
+        key: u64,
     ) -> Self {
-        let Assumptions { params, costs, actions, gestures } = assumptions;
+        let Assumptions { params, costs, actions, prior, gestures } = assumptions;
         let model = Model::new(&scene, params);
+        let model = if prior.absent > 0.0 { model.with_absent() } else { model };
         let pointing = gestures.map(|(model, person)| Pointing::new(model, person, &scene));
-        Self { scene, model, costs, actions, pointing, planner, turns }
+        Self { scene, model, costs, actions, pointing, prior, planner, turns, key }
     }
 
     /// The scene.
@@ -76,9 +85,15 @@ impl Mind {
         self.turns
     }
 
+    /// Identity of everything that the mind decides by: settings and scene.
+    pub fn key(&self) -> u64 {
+        self.key
+    }
+
     /// The state before anything was said.
     pub fn first(&self) -> State {
-        State { scene_key: self.scene.key(), ..State::default() }
+        let (scene_key, settings_key) = (self.scene.key(), self.key);
+        State { scene_key, settings_key, ..State::default() }
     }
 
     /// The state after `cause`, decided at time `at`.
@@ -89,11 +104,7 @@ impl Mind {
             Cause::Utterance(heard) => self.hear(&mut next, heard, at),
             Cause::Silence => self.bear_silence(&mut next, at),
             Cause::PickEnded { pick, outcome } => self.end_pick(&mut next, *pick, *outcome, at),
-            Cause::SceneChanged => {
-                let text = "The scene has changed; please ask me again.";
-                self.close(&mut next, Outcome::SceneChanged, at, text);
-                next.scene_key = self.scene.key();
-            }
+            Cause::Reconfigured => self.look_anew(&mut next, at),
         }
         next
     }
@@ -136,6 +147,9 @@ impl Mind {
         match action {
             Action::Wait => set(state, reasons),
             Action::Ask(question) => ask(&self.scene, state, question, heard, preface, reasons),
+            Action::Pick(object) if self.model.absent() == Some(object) => {
+                self.conclude_absent(state, reasons, at);
+            }
             Action::Pick(object) => pick(&self.scene, state, object, reasons),
         }
     }
@@ -155,10 +169,28 @@ impl Mind {
         let ordered = state.open.as_ref().and_then(|open| open.pick);
         let Some((id, object)) = ordered else { return };
         let Some(outcome_here) = Outcome::of_pick(outcome) else { return };
-        if id == pick {
-            let text = words::ended(&self.scene, object, outcome);
-            self.close(state, outcome_here, at, &text);
+        if id != pick {
+            return;
         }
+        // Nobody gave the order up: the arm did, before it had grasped, because it was restarted
+        // with another scene.
+        if outcome == PickOutcome::Cancelled && state.act.kind == ActKind::Pick {
+            return order_again(state, at);
+        }
+        if outcome == PickOutcome::Delivered
+            && let Some(open) = &state.open
+        {
+            state.history.count(&open.picked);
+        }
+        let text = words::ended(&self.scene, object, outcome);
+        self.close(state, outcome_here, at, &text);
+    }
+
+    /// Ends the interaction without a pick, and says what there is to choose from.
+    fn conclude_absent(&self, state: &mut State, reasons: Act, at: Time) {
+        self.close(state, Outcome::NotHere, at, &words::not_here(&self.scene));
+        let said = state.act.clone();
+        state.act = Act { id: said.id, ..keep_words(reasons, &said) };
     }
 
     fn close(&self, state: &mut State, outcome: Outcome, at: Time, text: &str) {
@@ -166,6 +198,7 @@ impl Mind {
         state.ended = Some(Ended {
             interaction: open.id.0,
             object: open.pick.map(|(_, object)| object.0),
+            name: open.pick.map(|_| open.picked.clone()),
             outcome,
             questions: questions(&open),
             seconds: at.since(open.opened).s(),

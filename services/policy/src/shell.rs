@@ -9,7 +9,8 @@ use runtime::bus::{EncodedWriter, PortError, Reader, Writer};
 use runtime::driver::{Context, Program, Shell};
 use runtime::exit::{Exit, Failure};
 use runtime::lifecycle::Environment;
-use settings::Settings;
+use scene::Fnv1a;
+use settings::{Section, Settings};
 
 /// The policy as a program.
 #[derive(Debug)]
@@ -42,9 +43,19 @@ pub fn mind(settings: &Settings) -> Result<Mind, Failure> {
         params: dialogue.params,
         costs: dialogue.costs,
         actions: dialogue.actions,
+        prior: dialogue.prior,
         gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
     };
-    Ok(Mind::new(settings.scene.clone(), assumptions, planner, turns(settings)))
+    let (scene, turns) = (settings.scene.clone(), turns(settings));
+    Ok(Mind::new(scene, assumptions, planner, turns, key(settings)))
+}
+
+/// Identity of all that the mind decides by.
+fn key(settings: &Settings) -> u64 {
+    let mut hash = Fnv1a::new();
+    hash.text(&settings.section_text(Section::Dialogue));
+    hash.text(settings.scene_text());
+    hash.value()
 }
 
 /// The policy's topics.

@@ -1,6 +1,8 @@
 //! Everything that the policy must not forget. It is small, so each journal record holds it whole,
 //! and recovery reads one record.
 
+use crate::evidence::{Asked, Evidence};
+use crate::history::History;
 use dialogue::Belief;
 use node::Time;
 use protocol::{ActId, ActKind, Ended, InteractionId, PickId, PickOutcome, PromptId, UtteranceSeq};
@@ -12,6 +14,8 @@ use serde::{Deserialize, Serialize};
 pub struct State {
     /// Key of the scene that the belief is about.
     pub scene_key: u64,
+    /// Key of the settings, scene included, that the state was decided under.
+    pub settings_key: u64,
     /// Highest utterance that the state holds.
     pub applied: UtteranceSeq,
     /// Last interaction number given.
@@ -24,6 +28,8 @@ pub struct State {
     pub act: Act,
     /// The latest interaction that ended.
     pub ended: Option<Ended>,
+    /// How often objects were delivered.
+    pub history: History,
 }
 
 /// One fetch in progress.
@@ -33,8 +39,15 @@ pub struct Interaction {
     pub id: InteractionId,
     /// When its first utterance was accepted.
     pub opened: Time,
-    /// The belief as log weights, in the scene's order.
+    /// The belief as log weights, in the scene's order; one more where the wanted object may not be
+    /// here.
     pub belief: Vec<f64>,
+    /// What was said, so that it can be scored again under another scene.
+    pub evidence: Vec<Evidence>,
+    /// Utterances that did not fit into `evidence` any more.
+    pub forgotten: u32,
+    /// The objects as they were when they were last looked at; empty where they are too many.
+    pub objects: Vec<Known>,
     /// Every question asked, so that an answer can be scored against the one that was heard.
     pub prompts: Vec<Prompt>,
     /// How often the robot asked, repetitions included.
@@ -47,6 +60,17 @@ pub struct Interaction {
     pub utterances: (UtteranceSeq, UtteranceSeq),
     /// The pick that was ordered.
     pub pick: Option<(PickId, ObjectId)>,
+    /// Name of the object that it picks.
+    pub picked: String,
+}
+
+/// An object that a dialogue is about.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Known {
+    /// Its name.
+    pub name: String,
+    /// How it is told from the others, e.g. `small white bowl in the dishwasher`.
+    pub words: String,
 }
 
 impl Interaction {
@@ -61,12 +85,12 @@ impl Interaction {
 }
 
 /// A question that was asked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Prompt {
     /// Its number.
     pub id: PromptId,
     /// What was asked.
-    pub question: Question,
+    pub asked: Asked,
 }
 
 /// A decision with its reasons.
@@ -136,8 +160,8 @@ pub enum Cause {
         /// How.
         outcome: PickOutcome,
     },
-    /// The group was started with another scene in the middle of an interaction.
-    SceneChanged,
+    /// The service was started with other settings, perhaps with another scene.
+    Reconfigured,
 }
 
 /// An utterance as it was understood.

@@ -1,6 +1,8 @@
 //! The policy's rules, on the shipped six bowls.
 
+mod anew;
 mod pointing;
+mod prior;
 
 use crate::mind::{Mind, questions};
 use crate::shell;

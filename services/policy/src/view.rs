@@ -28,9 +28,10 @@ pub(crate) fn act(state: &State) -> RobotAct {
 /// What clients are told.
 pub(crate) fn view(mind: &Mind, state: &State, refused: u64) -> PolicyView {
     let open = state.open.as_ref();
+    let belief = open.map_or_else(|| mind.prior(state), Interaction::belief);
+    let mut belief = belief.probabilities();
     let objects = mind.scene().objects().len();
-    let belief = open
-        .map_or_else(|| vec![1.0 / objects as f64; objects], |open| open.belief().probabilities());
+    let absent = belief.split_off(objects.min(belief.len())).into_iter().next().unwrap_or(0.0);
     let latest = |ended: &protocol::Ended| ended.utterances;
     let utterances = |open: &Interaction| (open.utterances.0.0, open.utterances.1.0);
     PolicyView {
@@ -38,6 +39,7 @@ pub(crate) fn view(mind: &Mind, state: &State, refused: u64) -> PolicyView {
         applied: state.applied.0,
         interaction: open.map_or(0, |open| open.id.0),
         belief,
+        absent,
         question: state.act.question,
         prompt: state.act.prompt.0,
         text: state.act.text.clone(),

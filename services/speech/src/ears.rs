@@ -265,6 +265,7 @@ fn utterance(accepted: &Accepted) -> Utterance {
         seq: accepted.seq.0,
         heard_prompt: heard.map_or(0, |said| said.prompt.0),
         heard_question: heard.map_or(Question::None, |said| said.question).into(),
+        heard_scene: heard.map_or(0, |said| said.scene_key),
         gesture: accepted.gesture.into(),
         onset_ns: accepted.onset.ns(),
         end_ns: accepted.end.ns(),

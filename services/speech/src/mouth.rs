@@ -32,6 +32,7 @@ struct Words {
     prompt: PromptId,
     presentation: u32,
     question: Question,
+    scene_key: u64,
     text: String,
 }
 
@@ -82,7 +83,8 @@ impl Mouth {
             return;
         }
         let question = if kind == ActKind::Ask { question } else { Question::None };
-        let words = Words { prompt, presentation, question, text: text.to_owned() };
+        let scene_key = act.scene_key;
+        let words = Words { prompt, presentation, question, scene_key, text: text.to_owned() };
         self.waiting = None;
         if matches!(question, Question::Point(_)) {
             let until = now + AIM_PATIENCE;
@@ -159,6 +161,7 @@ impl Mouth {
             prompt: words.prompt,
             presentation: words.presentation,
             question: words.question,
+            scene_key: words.scene_key,
             started: started.unwrap_or(now),
             ended: now,
         };

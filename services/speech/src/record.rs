@@ -48,6 +48,8 @@ pub struct Said {
     pub presentation: u32,
     /// What it asked; none for a mere remark.
     pub question: Question,
+    /// Key of the scene that it asked about.
+    pub scene_key: u64,
     /// When its sound began.
     pub started: Time,
     /// When its sound ended.

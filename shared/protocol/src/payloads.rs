@@ -67,6 +67,8 @@ pub struct PolicyView {
     pub interaction: u64,
     /// Probability of each object, in the scene's order.
     pub belief: Vec<f64>,
+    /// Probability that the wanted object is not here; 0 where that is not believed possible.
+    pub absent: f64,
     /// The question that stands.
     pub question: Question,
     /// Its prompt, 0 for none.
@@ -95,10 +97,10 @@ pub struct PolicyView {
 encoded!(
     PolicyView,
     "PolicyView",
-    "scene_key:u64 applied:u64 interaction:u64 belief[f64] question prompt:u64 text decision \
+    "scene_key:u64 applied:u64 interaction:u64 belief[f64] absent:f64 question prompt:u64 text decision \
      value:f64 alternatives[(str,f64)] expected_questions:f64 bounds?(f64,f64) questions:u32 utterances(u64,u64) \
      last?Ended refused:u64; \
-     Ended(interaction:u64 object?u16 outcome questions:u32 seconds:f64 utterances(u64,u64))"
+     Ended(interaction:u64 object?u16 name?str outcome questions:u32 seconds:f64 utterances(u64,u64))"
 );
 
 /// How an interaction ended.
@@ -106,8 +108,10 @@ encoded!(
 pub struct Ended {
     /// [`crate::InteractionId`].
     pub interaction: u64,
-    /// The object that was picked or tried, its place in the scene.
+    /// The object that was picked or tried, its place in the scene as it was then.
     pub object: Option<u16>,
+    /// That object's name.
+    pub name: Option<String>,
     /// How it ended.
     pub outcome: Outcome,
     /// Questions that were asked.
@@ -130,8 +134,10 @@ pub enum Outcome {
     Cancelled,
     /// The person fell silent, or no question helped.
     Abandoned,
-    /// The scene was changed under the dialogue.
+    /// The scene was changed under the dialogue, and nothing of it was left.
     SceneChanged,
+    /// The robot concluded that the wanted object is not here.
+    NotHere,
 }
 
 impl Outcome {

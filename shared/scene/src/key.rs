@@ -24,11 +24,25 @@ pub(crate) fn of(objects: &[Object], attributes: &[Attribute]) -> u64 {
     hash.0
 }
 
-struct Fnv1a(u64);
+/// 64-bit FNV-1a: small, stable, the same on every machine; to tell honest differences apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fnv1a(u64);
+
+impl Default for Fnv1a {
+    fn default() -> Self {
+        Self::new()
+    }
+}
 
 impl Fnv1a {
-    fn new() -> Self {
+    /// Nothing hashed yet.
+    pub fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    /// The hash of everything so far.
+    pub fn value(self) -> u64 {
+        self.0
     }
 
     fn bytes(&mut self, bytes: &[u8]) {
@@ -41,7 +55,8 @@ impl Fnv1a {
         self.bytes(&(count as u64).to_le_bytes());
     }
 
-    fn text(&mut self, text: &str) {
+    /// Takes in a text and its length.
+    pub fn text(&mut self, text: &str) {
         self.count(text.len());
         self.bytes(text.as_bytes());
     }

@@ -25,6 +25,7 @@ mod wording;
 mod tests;
 
 pub use ids::{AttributeId, ObjectId, ValueId, WordId};
+pub use key::Fnv1a;
 pub use model::{Attribute, Object, Placement, Role, Scene, Value};
 pub use problem::Problem;
 pub use question::Question;

@@ -5,6 +5,7 @@ use language::Language;
 
 use crate::fields::Fields;
 use crate::gesture::{self, Gesture};
+use crate::prior::{self, Prior};
 
 /// The dialogue.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +22,8 @@ pub struct Dialogue {
     pub costs: Costs,
     /// How turns are taken.
     pub turns: Turns,
+    /// What is believed before anything is said.
+    pub prior: Prior,
     /// How pointing gestures are understood.
     pub gesture: Gesture,
 }
@@ -53,6 +56,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
         },
         costs: f.table("costs", costs),
         turns: f.table("turns", turns),
+        prior: f.table("prior", prior::read),
         gesture: f.table("gesture", gesture::read),
     }
 }

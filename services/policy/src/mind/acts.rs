@@ -1,6 +1,7 @@
 //! How a decision becomes the standing act: what is asked, picked, said, or said again.
 
 use super::words;
+use crate::evidence::Asked;
 use crate::state::{Act, Prompt, State};
 use node::Time;
 use protocol::{ActKind, InteractionId, PickId, PromptId};
@@ -39,14 +40,14 @@ pub(super) fn ask(
         return;
     }
     state.last_prompt = state.last_prompt.next();
-    open.prompts.push(Prompt { id: state.last_prompt, question });
+    open.prompts.push(Prompt { id: state.last_prompt, asked: Asked::new(scene, question) });
     let prompt = state.last_prompt;
     let kind = ActKind::Ask;
     set(state, Act { kind, prompt, presentation: 1, question, text, ..reasons });
 }
 
 /// The new reasons with the standing act's words.
-fn keep_words(reasons: Act, standing: &Act) -> Act {
+pub(super) fn keep_words(reasons: Act, standing: &Act) -> Act {
     Act {
         kind: standing.kind,
         prompt: standing.prompt,
@@ -62,11 +63,21 @@ pub(super) fn pick(scene: &Scene, state: &mut State, object: ObjectId, reasons: 
     let Some(open) = &mut state.open else { return };
     let id = PickId { interaction: InteractionId(open.id.0), attempt: 1 };
     open.pick = Some((id, object));
+    open.picked = scene.object(object).name.clone();
     state.last_prompt = state.last_prompt.next();
     let prompt = state.last_prompt;
     let text = words::fetching(scene, object);
     let pick = Some((id, object));
     set(state, Act { kind: ActKind::Pick, prompt, presentation: 1, pick, text, ..reasons });
+}
+
+/// Orders the same pick under a new key.
+pub(super) fn order_again(state: &mut State, at: Time) {
+    let Some(open) = &mut state.open else { return };
+    let Some((id, object)) = open.pick else { return };
+    let pick = Some((PickId { attempt: id.attempt + 1, ..id }, object));
+    open.pick = pick;
+    set(state, Act { pick, decided: at, ..state.act.clone() });
 }
 
 pub(super) fn say(state: &mut State, text: &str, at: Time) {

@@ -1,10 +1,10 @@
 //! What an utterance says about the wanted object.
 
 use super::{Mind, words};
+use crate::evidence::{Asked, Evidence};
 use crate::state::{Heard, Interaction, State};
-use dialogue::Belief;
 use node::Time;
-use scene::{Question, Reading, Response};
+use scene::{Reading, Response};
 
 impl Mind {
     /// Scores what was said against the question that was heard, and decides anew.
@@ -24,26 +24,23 @@ impl Mind {
         // An answer to an earlier question of this interaction still says what it says about that
         // question; one to another interaction's says nothing.
         let asked = open.prompts.iter().find(|prompt| prompt.id == heard.prompt);
-        let question = asked.map_or(Question::None, |prompt| prompt.question);
-        let hypotheses: Vec<_> =
-            heard.readings.iter().map(|(w, reading)| (*w, question, reading.clone())).collect();
+        let asked = asked.map_or(Asked::Nothing, |prompt| prompt.asked.clone());
+        let evidence = Evidence::new(&self.scene, asked, heard);
         let mut belief = open.belief();
-        belief.update_mixture(&self.model, &hypotheses);
-        if let (Some(pointing), Some(target_m)) = (&self.pointing, heard.gesture) {
-            pointing.observe(&mut belief, target_m);
-        }
+        self.observe(&mut belief, &evidence);
         open.belief = belief.log_weights().to_vec();
+        open.keep(evidence);
         let preface = words::unknown(heard);
         self.decide(state, heard.prompt, &preface, heard.seq, at);
     }
 
     fn open(&self, state: &mut State, heard: &Heard) {
         state.last_interaction = state.last_interaction.next();
-        let prior = Belief::uniform(self.scene.objects().len());
         state.open = Some(Interaction {
             id: state.last_interaction,
             opened: heard.accepted,
-            belief: prior.log_weights().to_vec(),
+            belief: self.prior(state).log_weights().to_vec(),
+            objects: self.known(),
             utterances: (heard.seq, heard.seq),
             ..Interaction::default()
         });

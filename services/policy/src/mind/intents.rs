@@ -2,7 +2,6 @@
 
 use super::{Mind, repeat, say, set, words};
 use crate::state::{Act, Heard, State};
-use dialogue::Belief;
 use node::Time;
 use protocol::{ActKind, Outcome, UtteranceSeq};
 use scene::Intent;
@@ -59,8 +58,13 @@ impl Mind {
         if open.pick.is_some() {
             return;
         }
-        open.belief = Belief::uniform(self.scene().objects().len()).log_weights().to_vec();
         open.silences = 0;
+        open.evidence.clear();
+        open.forgotten = 0;
+        let prior = self.prior(state);
+        if let Some(open) = &mut state.open {
+            open.belief = prior.log_weights().to_vec();
+        }
         let heard = state.act.prompt;
         self.decide(state, heard, "From the beginning. ", utterance, at);
     }

@@ -43,11 +43,34 @@ pub(super) fn inventory(scene: &Scene) -> String {
     format!("I see {} {}s: {}.", scene.objects().len(), scene.noun(), values.join(", "))
 }
 
+/// What the robot says when it concludes that the wanted object is not here.
+pub(super) fn not_here(scene: &Scene) -> String {
+    format!("What you want does not seem to be here. {}", inventory(scene))
+}
+
+/// What is gone and what is new, each in words, to go before the next question. Short: it must
+/// leave room for that question.
+pub(super) fn changes(noun: &str, gone: &[String], new: &[String]) -> String {
+    let tell = |objects: &[String], what: &str| match objects {
+        [] => String::new(),
+        [one] if one.len() <= WORDS_MAX => format!("The {one} is {what}. "),
+        [_] => format!("One {noun} is {what}. "),
+        more => format!("{} {noun}s are {what}. ", more.len()),
+    };
+    format!("{}{}", tell(gone, "gone"), tell(new, "new"))
+}
+
+/// Longest description that is said before a question, bytes.
+const WORDS_MAX: usize = 60;
+
 /// An action for people to read.
 pub(super) fn action(scene: &Scene, action: Action) -> String {
     match action {
         Action::Wait => "wait".to_owned(),
         Action::Ask(question) => format!("ask: {}", scene.phrase(question)),
-        Action::Pick(object) => format!("pick {}", scene.object(object).name),
+        Action::Pick(object) => match scene.objects().get(object.index()) {
+            Some(object) => format!("pick {}", object.name),
+            None => "conclude that it is not here".to_owned(),
+        },
     }
 }

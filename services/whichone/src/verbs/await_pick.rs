@@ -25,16 +25,21 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
     let started = Instant::now();
     let mut conversation = Conversation::join(paths)?;
     let wanted = args.answer_as.as_deref();
-    let user = wanted.map(|name| TruthfulUser::new(conversation.scene(), name));
+    let may_be_absent = conversation.may_be_absent();
+    let user = wanted.map(|name| TruthfulUser::new(conversation.scene(), name, may_be_absent));
     let mut user = user.transpose().map_err(|what| Trouble::new(Exit::Usage, what))?;
     let mut waiting = Waiting::new(told_before(paths));
     loop {
         conversation.look()?;
         if let Some(ended) = waiting.look(conversation.seen()) {
             remember(paths, ended.interaction)?;
-            return tell(&conversation, &ended, out);
+            return tell(&ended, out);
         }
-        if let Some(answer) = user.as_mut().and_then(|user| user.answer(conversation.seen())) {
+        let answer = |user: &mut TruthfulUser| {
+            user.look(conversation.scene());
+            user.answer(conversation.seen())
+        };
+        if let Some(answer) = user.as_mut().and_then(answer) {
             conversation.say(&answer)?;
         }
         if started.elapsed() >= args.timeout {
@@ -44,11 +49,8 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
     }
 }
 
-fn tell(conversation: &Conversation, ended: &Ended, out: &mut Output<'_>) -> Outcome {
-    let object = ended.object.and_then(|i| {
-        let object = conversation.scene().objects().get(usize::from(i));
-        object.map(|object| object.name.as_str())
-    });
+fn tell(ended: &Ended, out: &mut Output<'_>) -> Outcome {
+    let object = ended.name.as_deref();
     if out.is_json() {
         out.json(&json!({
             "object": object,
@@ -57,22 +59,23 @@ fn tell(conversation: &Conversation, ended: &Ended, out: &mut Output<'_>) -> Out
             "outcome": ended.outcome,
         }))?;
     } else {
-        out.line(sentence(ended, object))?;
+        out.line(sentence(ended))?;
     }
     let delivered = ended.outcome == How::Delivered;
     Ok(if delivered { Exit::Ok } else { Exit::NotReached })
 }
 
 /// The outcome for people, e.g. `delivered clear after 2 questions and 14.2 s`.
-pub(super) fn sentence(ended: &Ended, object: Option<&str>) -> String {
+pub(super) fn sentence(ended: &Ended) -> String {
     let what = match ended.outcome {
         How::Delivered => "delivered",
         How::Failed => "failed to fetch",
         How::Cancelled => "cancelled",
         How::Abandoned => "abandoned: nobody answered",
         How::SceneChanged => "ended: the scene was changed",
+        How::NotHere => "concluded that it is not here",
     };
-    let object = object.map(|name| format!(" {name}")).unwrap_or_default();
+    let object = ended.name.as_ref().map(|name| format!(" {name}")).unwrap_or_default();
     let questions = words::count(ended.questions.into(), "question");
     format!("{what}{object} after {questions} and {}", words::time(ended.seconds))
 }
@@ -116,10 +119,11 @@ mod tests {
     #[test]
     fn outcomes_are_told_in_a_sentence() {
         let ended = example::ended(3).view.and_then(|view| view.last).unwrap();
-        let told = sentence(&ended, Some("clear"));
+        let told = sentence(&ended);
         assert_eq!(told, "delivered clear after 2 questions and 12.5 s");
-        let cancelled = Ended { outcome: How::Cancelled, questions: 1, ..ended };
-        assert_eq!(sentence(&cancelled, None), "cancelled after 1 question and 12.5 s");
+        let cancelled =
+            Ended { outcome: How::Cancelled, questions: 1, object: None, name: None, ..ended };
+        assert_eq!(sentence(&cancelled), "cancelled after 1 question and 12.5 s");
     }
 
     #[test]

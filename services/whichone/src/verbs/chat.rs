@@ -155,16 +155,13 @@ impl<'a, 'b> Chat<'a, 'b> {
         let (Some(last), Some(true)) = (last, before.map(|before| before < id)) else {
             return Ok(());
         };
-        let objects = self.conversation.scene().objects();
-        let object = last.object.and_then(|i| objects.get(usize::from(i)));
-        let object = object.map(|object| object.name.clone());
         if self.out.is_json() {
             return self.out.json(&json!({
-                "object": object, "questions": last.questions, "seconds": last.seconds,
+                "object": last.name, "questions": last.questions, "seconds": last.seconds,
                 "outcome": last.outcome,
             }));
         }
-        let sentence = await_pick::sentence(&last, object.as_deref());
+        let sentence = await_pick::sentence(&last);
         self.out.line(self.out.style().paint(Ink::Dim, format!("({sentence})")))
     }
 

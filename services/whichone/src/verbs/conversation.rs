@@ -52,6 +52,7 @@ pub(super) struct Conversation {
     own: HashSet<RequestKey>,
     seen: Seen,
     scene: Scene,
+    may_be_absent: bool,
     paths: GroupPaths,
     /// The folder of the group's shared memory as it was: another one is another run.
     folder: u64,
@@ -72,6 +73,7 @@ impl Conversation {
     pub(super) fn join(paths: &GroupPaths) -> Result<Self, Trouble> {
         let client = Client::join(paths)?;
         let bus = client.bus();
+        let settings = Settings::load_snapshot(&paths.run())?;
         Ok(Self {
             views: client.views()?,
             presented: bus.reader(&topics::PRESENTED)?,
@@ -82,7 +84,8 @@ impl Conversation {
             saying: VecDeque::new(),
             own: HashSet::new(),
             seen: Seen::default(),
-            scene: Settings::load_snapshot(&paths.run())?.scene,
+            scene: settings.scene,
+            may_be_absent: settings.dialogue.prior.absent > 0.0,
             paths: paths.clone(),
             folder: folder(paths).ok_or_else(|| ended(paths))?,
             checked: Instant::now(),
@@ -98,6 +101,11 @@ impl Conversation {
     /// The scene that the dialogue is about.
     pub(super) fn scene(&self) -> &Scene {
         &self.scene
+    }
+
+    /// Whether the robot considers that the wanted object is not here.
+    pub(super) fn may_be_absent(&self) -> bool {
+        self.may_be_absent
     }
 
     /// The group's folders.
@@ -173,6 +181,7 @@ impl Conversation {
         self.seen.presented = quiet(self.presented.latest()).unwrap_or(self.seen.presented);
         self.seen.arm = quiet(self.statuses.latest()).or(self.seen.arm);
         if let Some(view) = quiet(self.views.latest()) {
+            self.follow_scene(&view);
             self.seen.view = Some(view);
         }
         self.send();
@@ -195,19 +204,23 @@ impl Conversation {
         }
     }
 
-    /// Notices the group's end, and a scene that was changed under way.
+    /// Notices the group's end.
     fn check(&mut self) -> Result<(), Trouble> {
         self.checked = Instant::now();
         if folder(&self.paths) != Some(self.folder) {
             return Err(ended(&self.paths));
         }
-        let changed = |view: &PolicyView| view.scene_key != 0 && view.scene_key != self.scene.key();
-        if self.seen.view.as_ref().is_some_and(changed)
-            && let Ok(settings) = Settings::load_snapshot(&self.paths.run())
-        {
+        Ok(())
+    }
+
+    /// Notices a scene that was changed under way. The snapshot is of the new scene before the
+    /// policy is, so that one look at it for each new key is enough.
+    fn follow_scene(&mut self, view: &PolicyView) {
+        let before = self.seen.view.as_ref().map_or(self.scene.key(), |view| view.scene_key);
+        let is_news = view.scene_key != before && view.scene_key != self.scene.key();
+        if is_news && let Ok(settings) = Settings::load_snapshot(&self.paths.run()) {
             self.scene = settings.scene;
         }
-        Ok(())
     }
 }
 

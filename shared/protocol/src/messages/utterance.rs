@@ -49,6 +49,8 @@ wire_struct! {
         heard_prompt: u64,
         /// That question.
         heard_question: WireQuestion,
+        /// [`scene::Scene::key`] of the scene that it was asked about.
+        heard_scene: u64,
         /// Where the person points, if anywhere.
         gesture: WireGesture,
         /// When the person began to speak or type.

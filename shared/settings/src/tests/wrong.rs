@@ -112,6 +112,15 @@ fn a_number_out_of_range() {
     );
     check(
         "dialogue.toml",
+        "[prior]\nobjects = 'histroy'\nsmoothing = 0\nabsent = 1",
+        &[
+            "dialogue.toml: prior.objects: `histroy` is not one of uniform, history (did you mean `history`?)",
+            "dialogue.toml: prior.smoothing: 0 is out of range (use a number from 0.01 to 1000000)",
+            "dialogue.toml: prior.absent: 1 is out of range (use a number from 0 to 0.9)",
+        ],
+    );
+    check(
+        "dialogue.toml",
         "[gesture]\np_g = 0\nstd_theta_rad = 2.0\nstray = 1\nperson_xyz = [0, 50, 0]",
         &[
             "dialogue.toml: gesture.p_g: 0 is not a probability (use a number above 0 and below 1, e.g. 0.1)",

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use dialogue::{Answer, Model, Params};
-use scene::{ObjectId, Scene};
+use scene::{Question, Scene};
 
 use crate::verbs::conversation::Seen;
 
@@ -11,23 +11,37 @@ use crate::verbs::conversation::Seen;
 pub(super) struct TruthfulUser {
     scene: Scene,
     model: Model,
-    wanted: ObjectId,
+    name: String,
     answered: HashSet<(u64, u32)>,
 }
 
 impl TruthfulUser {
-    /// Somebody who wants the object of that name.
+    /// Somebody who wants the object of that name. Where the robot considers that the wanted object
+    /// is not here (`may_be_absent`), the scene need not have it.
     ///
     /// # Errors
-    /// The scene has none.
-    pub(super) fn new(scene: &Scene, name: &str) -> Result<Self, String> {
-        let wanted = scene.object_named(name).ok_or_else(|| {
+    /// The scene has no such object, and it is not considered.
+    pub(super) fn new(scene: &Scene, name: &str, may_be_absent: bool) -> Result<Self, String> {
+        if scene.object_named(name).is_none() && !may_be_absent {
             let names: Vec<&str> = scene.objects().iter().map(|o| o.name.as_str()).collect();
-            format!("the scene has no object {name}; there are {}", names.join(", "))
-        })?;
+            let names = names.join(", ");
+            return Err(format!(
+                "the scene has no object {name}; there are {names}. Somebody who wants what is not \
+                 here can be played where dialogue.prior.absent is above 0"
+            ));
+        }
         // The truth does not depend on the parameters.
         let model = Model::new(scene, Params::default());
-        Ok(Self { scene: scene.clone(), model, wanted, answered: HashSet::new() })
+        let (scene, name) = (scene.clone(), name.to_owned());
+        Ok(Self { scene, model, name, answered: HashSet::new() })
+    }
+
+    /// Looks at the scene, which may have changed.
+    pub(super) fn look(&mut self, scene: &Scene) {
+        if scene.key() != self.scene.key() {
+            self.model = Model::new(scene, Params::default());
+            self.scene = scene.clone();
+        }
     }
 
     /// What this person says now, if anything: each presentation of a question gets one answer.
@@ -37,10 +51,17 @@ impl TruthfulUser {
     pub(super) fn answer(&mut self, seen: &Seen) -> Option<String> {
         let question = seen.open_question().filter(|_| seen.is_settled())?;
         let view = seen.view.as_ref()?;
-        if !self.scene.contains(view.question) || !self.answered.insert(question) {
+        let is_of_scene = view.scene_key == self.scene.key() && self.scene.contains(view.question);
+        if !is_of_scene || !self.answered.insert(question) {
             return None;
         }
-        let answer = Answer::truthful(&self.model, view.question, self.wanted);
+        let wanted = self.scene.object_named(&self.name);
+        let answer = match (wanted, view.question) {
+            (Some(wanted), question) => Answer::truthful(&self.model, question, wanted),
+            // Nothing that the robot can name is true of what is not here.
+            (None, Question::Which(_) | Question::None) => Answer::Silence,
+            (None, Question::Point(_) | Question::Attribute(..)) => Answer::No,
+        };
         let text = answer.text(&self.scene);
         (!text.is_empty()).then(|| text.to_owned())
     }
@@ -48,7 +69,7 @@ impl TruthfulUser {
 
 #[cfg(test)]
 mod tests {
-    use scene::Question;
+    use scene::ObjectId;
     use serde_json::json;
 
     use super::super::super::conversation::example::{asked, ended, unapplied};
@@ -63,7 +84,9 @@ mod tests {
     }
 
     fn answer(wanted: &str, question: Question) -> Option<String> {
-        TruthfulUser::new(&scene(), wanted).unwrap().answer(&asked(question))
+        let mut seen = asked(question);
+        seen.view.as_mut().unwrap().scene_key = scene().key();
+        TruthfulUser::new(&scene(), wanted, true).unwrap().answer(&seen)
     }
 
     #[test]
@@ -81,8 +104,10 @@ mod tests {
 
     #[test]
     fn each_presentation_is_answered_once_and_only_while_it_stands() {
-        let mut user = TruthfulUser::new(&scene(), "R").unwrap();
+        let mut user = TruthfulUser::new(&scene(), "R", false).unwrap();
         let mut seen = asked(Question::Point(ObjectId(0)));
+        assert_eq!(user.answer(&seen), None, "another scene's question");
+        seen.view.as_mut().unwrap().scene_key = scene().key();
         assert_eq!(user.answer(&unapplied(seen.clone())), None);
         assert!(user.answer(&seen).is_some());
         assert_eq!(user.answer(&seen), None);
@@ -92,8 +117,26 @@ mod tests {
     }
 
     #[test]
-    fn nobody_wants_what_is_not_there() {
-        let told = TruthfulUser::new(&scene(), "G").err().unwrap();
-        assert_eq!(told, "the scene has no object G; there are R, B, none");
+    fn what_is_not_here_is_wanted_only_where_that_is_considered() {
+        let told = TruthfulUser::new(&scene(), "G", false).err().unwrap();
+        assert!(told.starts_with("the scene has no object G; there are R, B, none."), "{told}");
+        let color = scene().attribute_named("color").unwrap();
+        let red = scene().value_named(color, "red").unwrap();
+        assert_eq!(answer("G", Question::Attribute(color, red)).as_deref(), Some("no"));
+        assert_eq!(answer("G", Question::Point(ObjectId(0))).as_deref(), Some("no"));
+        assert_eq!(answer("G", Question::Which(color)), None);
+    }
+
+    #[test]
+    fn a_changed_scene_changes_the_truth() {
+        let mut user = TruthfulUser::new(&scene(), "B", false).unwrap();
+        let object = json!({"name": "B", "attributes": {"color": "red"}});
+        let changed = Scene::from_json("scene", &json!({ "objects": [object] })).unwrap();
+        user.look(&changed);
+        let color = changed.attribute_named("color").unwrap();
+        let red = changed.value_named(color, "red").unwrap();
+        let mut seen = asked(Question::Attribute(color, red));
+        seen.view.as_mut().unwrap().scene_key = changed.key();
+        assert_eq!(user.answer(&seen).as_deref(), Some("yes"));
     }
 }

@@ -86,6 +86,7 @@ pub(in crate::verbs) mod example {
         let last = Ended {
             interaction: id,
             object: Some(1),
+            name: Some("clear".into()),
             outcome: Outcome::Delivered,
             questions: 2,
             seconds: 12.5,

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use dialogue::Belief;
-use policy::journal_check::refold;
+use policy::journal_check::refold_own;
 use policy::mind::Mind;
 use policy::state::{Act, Cause, Record};
 use protocol::{ActKind, PickOutcome};
@@ -21,14 +21,15 @@ pub(super) fn line(record: &Record) -> String {
         Cause::PickEnded { pick, outcome } => {
             format!("pick {}.{} {outcome:?}", pick.interaction, pick.attempt).to_lowercase()
         }
-        Cause::SceneChanged => "another scene".to_owned(),
+        Cause::Reconfigured => "reconfigured".to_owned(),
     };
     let does = match state.act.kind {
         ActKind::Wait => "wait".to_owned(),
         kind => format!("{kind:?}: {}", state.act.text),
     };
     let where_ = state.open.as_ref().map(|open| {
-        let best = open.belief.iter().copied().fold(f64::NEG_INFINITY, f64::max).exp();
+        let belief = Belief::from_log(open.belief.clone());
+        let best = belief.map_or(f64::NAN, |belief| belief.probability(belief.most_likely()));
         format!("interaction {}, best {:.1} %", open.id, best * 100.0)
     });
     let where_ = where_.as_deref().unwrap_or("at rest");
@@ -104,23 +105,13 @@ fn step(
     Ok(())
 }
 
-/// Refolds the records that are about the mind's scene; how many those are. The first of them is
-/// taken as it is where it follows a record about another scene.
+/// Refolds the records that were decided under the settings in force; how many those are.
 fn fold(mind: &mut Mind, part: &Part<Record>) -> Result<usize, Broken> {
-    let records = &part.reading.records;
-    let key = mind.scene().key();
-    let others = records.iter().rposition(|record| record.state.scene_key != key);
-    let from = others.map_or(0, |last| last + 1);
-    let mut same = records[from..].to_vec();
-    if let (Some(first), true) = (same.first_mut(), from > 0) {
-        first.cause = Cause::Snapshot;
-    }
-    refold(mind, &same).map_err(|mismatch| {
-        let seq = part.reading.first_seq + (from + mismatch.index) as u64;
+    refold_own(mind, &part.reading.records).map_err(|mismatch| {
+        let seq = part.reading.first_seq + mismatch.index as u64;
         let what = format!("the state does not follow from the one before it: {}", mismatch.part);
         part.broken(seq, format!("{what} differs (with these settings)"))
-    })?;
-    Ok(same.len())
+    })
 }
 
 #[cfg(test)]

@@ -88,6 +88,9 @@ fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> V
         }
     }];
     lines.extend(belief(scene, &view.belief, style, columns));
+    if view.absent > 0.0 {
+        lines.push(format!("  not here {:.1} %", view.absent * 100.0));
+    }
     if view.interaction != 0 {
         let decision = style.paint(Ink::Bold, &view.decision);
         let value = words::value(view.value, view.bounds);
@@ -101,8 +104,7 @@ fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> V
         }
     }
     if let Some(last) = &view.last {
-        let object = last.object.and_then(|i| object_name(scene, i.into()));
-        let text = await_pick::sentence(last, object);
+        let text = await_pick::sentence(last);
         let text = cut(&format!("interaction {}: {text}", last.interaction), columns);
         lines.push(style.paint(Ink::Dim, text).to_string());
     }

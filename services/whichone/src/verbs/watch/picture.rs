@@ -116,6 +116,7 @@ fn dialogue(scene: &Scene, seen: &Seen) -> Option<Json> {
         "interaction": view.interaction,
         "applied": view.applied,
         "belief": belief,
+        "absent": view.absent,
         "decision": view.decision,
         "question": question,
         "text": view.text,
@@ -126,7 +127,7 @@ fn dialogue(scene: &Scene, seen: &Seen) -> Option<Json> {
         "expected_questions": view.expected_questions,
         "last": view.last.as_ref().map(|last| json!({
             "interaction": last.interaction,
-            "object": last.object.and_then(|i| object_name(scene, i.into())),
+            "object": last.name,
             "outcome": last.outcome,
             "questions": last.questions,
             "seconds": last.seconds,

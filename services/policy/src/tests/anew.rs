@@ -1,0 +1,240 @@
+//! Objects that appear and disappear under a dialogue.
+
+use super::*;
+use crate::evidence::NAMES_MAX;
+use protocol::PickId;
+
+/// The shipped bowls without those in `gone`, and with these TOML lines behind them.
+fn bowls(gone: &[&str], more: &str) -> Settings {
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml");
+    let text = std::fs::read_to_string(shipped).unwrap();
+    let mut parts = text.split("[[objects]]");
+    let head = parts.next().unwrap().to_owned();
+    let is_gone = |part: &&str| gone.iter().any(|name| part.contains(&format!("\"{name}\"\n")));
+    let kept: String =
+        parts.filter(|part| !is_gone(part)).map(|part| format!("[[objects]]{part}")).collect();
+    let path = folder.path().join("edited.toml");
+    std::fs::write(&path, format!("{head}{kept}\n{more}")).unwrap();
+    settings_with(&[("group.scene", path.to_str().unwrap())])
+}
+
+/// A seventh bowl: a small white one in the cabinet, before the others' numbers or behind them.
+const SEVENTH: &str = r#"
+[[objects]]
+name = "white4"
+attributes = { color = "white", material = "plastic", size = "small", shape = "round", location = "cabinet" }
+xyz = [0.60, 0.40, 0.125]
+size = [0.12, 0.12, 0.05]
+grasp_width = 0.006
+"#;
+
+fn mind_of(settings: &Settings) -> Mind {
+    shell::mind(settings).unwrap()
+}
+
+fn word(name: &str) -> scene::WordId {
+    settings().scene.word_named(name).unwrap()
+}
+
+/// After "the white one", with a question standing.
+fn white_asked(mind: &mut Mind) -> State {
+    let base = vec![word("white")];
+    let state = mind.step(
+        &mind.first(),
+        &heard(1, PromptId(0), Reading { base, ..Reading::default() }),
+        at(1),
+    );
+    assert_eq!(state.act.kind, ActKind::Ask);
+    state
+}
+
+/// Enough to order `metal2` at once.
+fn all_about_metal2() -> Reading {
+    let words = ["metallic", "metal", "big", "counter"].map(word);
+    Reading { base: words.into_iter().flat_map(|word| [word; 4]).collect(), ..Reading::default() }
+}
+
+fn probability(settings: &Settings, state: &State, name: &str) -> f64 {
+    belief(state)[settings.scene.object_named(name).unwrap().index()]
+}
+
+#[test]
+fn a_bowl_that_is_gone_drops_out_and_a_new_one_counts_with_what_was_said() {
+    let state = white_asked(&mut mind());
+    let changed = bowls(&["metal2"], SEVENTH);
+    let after = mind_of(&changed).step(&state, &Cause::Reconfigured, at(2));
+    assert_eq!(after.scene_key, changed.scene.key());
+    assert_eq!(after.open.as_ref().unwrap().id, state.open.as_ref().unwrap().id, "it goes on");
+    assert_eq!(belief(&after).len(), 6);
+    let p = |name| probability(&changed, &after, name);
+    assert!((p("white4") - p("white2")).abs() < 1e-12, "white, as was said");
+    assert!(p("white4") > 2.0 * p("metal"), "{:?}", belief(&after));
+    assert_eq!(after.act.kind, ActKind::Ask);
+    assert!(after.act.prompt > state.act.prompt, "asked anew");
+    let said = "The big metallic bowl is gone. ";
+    let new = "The small white bowl in the cabinet is new. ";
+    assert!(after.act.text.starts_with(&format!("{said}{new}")), "{}", after.act.text);
+}
+
+/// What is scored again under the same scene is the very belief that there was.
+#[test]
+fn the_same_scene_gives_the_same_belief_bit_for_bit() {
+    for seed in 0..40 {
+        for record in random_dialogue(seed) {
+            let state = record.state;
+            if state.open.is_none() {
+                continue;
+            }
+            let again = mind().step(&state, &Cause::Reconfigured, at(50));
+            let bits = |state: &State| -> Vec<u64> {
+                let belief = &state.open.as_ref().unwrap().belief;
+                belief.iter().map(|w| w.to_bits()).collect()
+            };
+            assert_eq!(bits(&again), bits(&state), "seed {seed}");
+            assert_eq!(again.act.prompt, state.act.prompt, "seed {seed}: it is not asked anew");
+        }
+    }
+}
+
+#[test]
+fn an_answer_to_a_question_from_before_still_counts() {
+    let state = white_asked(&mut mind());
+    let question = state.act.prompt;
+    let changed = bowls(&["white"], "");
+    let mut mind = mind_of(&changed);
+    let after = mind.step(&state, &Cause::Reconfigured, at(2));
+    let asked = &after.open.as_ref().unwrap().prompts[0].asked;
+    let asked = asked.question(&changed.scene);
+    let late = mind.step(&after, &heard(2, question, answer(Response::Yes)), at(3));
+    let mut expected = after.open.as_ref().unwrap().belief();
+    let model = Model::new(&changed.scene, changed.dialogue.params);
+    expected.update(&model, asked, &answer(Response::Yes));
+    assert_eq!(belief(&late), expected.probabilities());
+}
+
+#[test]
+fn a_change_of_the_scene_folds_again_bit_for_bit_from_the_record_before() {
+    let mut records = random_dialogue(5);
+    records.truncate(6);
+    let before = records.last().unwrap().state.clone();
+    let changed = bowls(&["metal"], SEVENTH);
+    let mut mind = mind_of(&changed);
+    let mut state = before;
+    for (n, cause) in [Cause::Reconfigured, Cause::Silence].into_iter().enumerate() {
+        let when = at(100 + n as u64);
+        state = mind.step(&state, &cause, when);
+        records.push(Record { cause, at: when, state: state.clone() });
+    }
+    assert_eq!(journal_check::refold_own(&mut mind_of(&changed), &records), Ok(2));
+    let open = records[6].state.open.as_mut().expect("an open interaction");
+    open.belief[0] += 1e-12;
+    let told = journal_check::refold_own(&mut mind_of(&changed), &records).unwrap_err();
+    assert_eq!((told.index, told.part), (6, "belief"));
+}
+
+#[test]
+fn a_pick_whose_object_is_gone_ends_the_interaction_and_another_goes_on() {
+    let mut mind = mind();
+    let sure = heard(1, PromptId(0), all_about_metal2());
+    let state = mind.step(&mind.first(), &sure, at(1));
+    let (pick, _) = state.act.pick.expect("sure enough");
+    let gone = mind_of(&bowls(&["metal2"], "")).step(&state, &Cause::Reconfigured, at(2));
+    assert_eq!(gone.ended.map(|ended| ended.outcome), Some(Outcome::SceneChanged));
+
+    let changed = bowls(&["white"], "");
+    let mut mind = mind_of(&changed);
+    let moved = mind.step(&state, &Cause::Reconfigured, at(2));
+    let metal2 = changed.scene.object_named("metal2").unwrap();
+    assert_eq!(moved.act.pick, Some((pick, metal2)), "the same order with the new number");
+    // The arm was restarted too, and has left what it had not yet grasped.
+    let left = Cause::PickEnded { pick, outcome: PickOutcome::Cancelled };
+    let again = mind.step(&moved, &left, at(3));
+    let second = PickId { attempt: pick.attempt + 1, ..pick };
+    assert_eq!(again.act.pick, Some((second, metal2)));
+    assert!(again.act.id > moved.act.id);
+    let done = Cause::PickEnded { pick: second, outcome: PickOutcome::Delivered };
+    let done = mind.step(&again, &done, at(4));
+    assert_eq!(done.ended.and_then(|ended| ended.name).as_deref(), Some("metal2"));
+    assert_eq!(done.history.of("metal2"), 1);
+}
+
+#[test]
+fn a_pick_that_the_person_gave_up_is_not_ordered_again() {
+    let mut mind = mind();
+    let sure = heard(1, PromptId(0), all_about_metal2());
+    let state = mind.step(&mind.first(), &sure, at(1));
+    let (pick, _) = state.act.pick.expect("sure enough");
+    let cancel = Reading { intent: Intent::Cancel, ..Reading::default() };
+    let state = mind.step(&state, &heard(2, PromptId(0), cancel), at(2));
+    let left = Cause::PickEnded { pick, outcome: PickOutcome::Cancelled };
+    let state = mind.step(&state, &left, at(3));
+    assert_eq!(state.ended.map(|ended| ended.outcome), Some(Outcome::Cancelled));
+}
+
+#[test]
+fn where_nothing_is_left_the_interaction_ends() {
+    let state = white_asked(&mut mind());
+    let markers = settings_with(&[("group.scene", "markers")]);
+    let after = mind_of(&markers).step(&state, &Cause::Reconfigured, at(2));
+    assert_eq!(after.ended.map(|ended| ended.outcome), Some(Outcome::SceneChanged));
+    assert_eq!(after.scene_key, markers.scene.key());
+}
+
+#[test]
+fn a_word_that_nothing_had_counts_for_what_has_it_now() {
+    let mut mind = mind();
+    let Cause::Utterance(told) = heard(1, PromptId(0), Reading::default()) else { unreachable!() };
+    let cause = Cause::Utterance(Heard { unknown: "copper".to_owned(), ..told });
+    let state = mind.step(&mind.first(), &cause, at(1));
+    let copper =
+        SEVENTH.replace("white4", "copper1").replace("color = \"white\"", "color = \"copper\"");
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml");
+    let text = std::fs::read_to_string(shipped).unwrap();
+    let text = text.replacen("  \"white\",\n", "  \"white\",\n  \"copper\",\n", 1) + &copper;
+    let path = folder.path().join("copper.toml");
+    std::fs::write(&path, text).unwrap();
+    let changed = settings_with(&[("group.scene", path.to_str().unwrap())]);
+    let after = mind_of(&changed).step(&state, &Cause::Reconfigured, at(2));
+    let p = |name| probability(&changed, &after, name);
+    assert!(p("copper1") > 2.0 * p("white"), "{:?}", belief(&after));
+}
+
+/// An endless talker: memory stays bounded, the belief loses nothing, and only a change of the
+/// scene finds that the beginning is forgotten.
+#[test]
+fn what_is_remembered_is_bounded() {
+    let mut mind =
+        shell::mind(&settings_with(&[("dialogue.turns.questions_max", "1000")])).unwrap();
+    let mut state = asked(&mut mind);
+    for n in 2..600 {
+        let base = vec![word("white"), word("metallic")];
+        let prompt = state.act.prompt;
+        state = mind.step(&state, &heard(n, prompt, Reading { base, ..Reading::default() }), at(n));
+    }
+    let open = state.open.as_ref().expect("nothing was decided by this");
+    assert!(open.forgotten > 0 && open.evidence.len() <= NAMES_MAX / 4, "{}", open.evidence.len());
+    let again = mind.step(&state, &Cause::Reconfigured, at(1000));
+    assert_eq!(again.open.unwrap().forgotten, open.forgotten);
+}
+
+#[test]
+fn settings_that_change_at_rest_are_recorded_and_change_nothing_else() {
+    let mut mind = mind();
+    let before = mind.first();
+    let other = settings_with(&[("dialogue.epsilon", "0.02")]);
+    let mut node = PolicyNode::recover(
+        mind_of(&other),
+        vec![Record { cause: Cause::Snapshot, at: at(1), state: before.clone() }],
+    )
+    .unwrap();
+    let mut effects: Effects<Out, Record> = Effects::default();
+    node.on(Event::Started, at(2), &mut effects);
+    let records = effects.take_records();
+    assert_eq!(records.len(), 1);
+    assert_eq!(records[0].cause, Cause::Reconfigured);
+    let after = &records[0].state;
+    let same = State { settings_key: before.settings_key, ..after.clone() };
+    assert_eq!(same, mind.step(&before, &Cause::Snapshot, at(2)));
+}

@@ -1,0 +1,66 @@
+//! What is wanted may not be here, and some things are wanted more often than others.
+
+use whichone_tests::{Group, wait_for};
+
+const ABSENT: &str = "dialogue.prior.absent=0.1";
+
+#[test]
+fn who_denies_everything_is_told_that_it_is_not_here() {
+    let group = Group::up(&[ABSENT]);
+    group.say("get me the bowl");
+    for _ in 0..40 {
+        if group.dialogue()["interaction"] == 0 {
+            break;
+        }
+        group.say("no");
+    }
+    let dialogue = group.dialogue();
+    assert!(dialogue["text"].as_str().unwrap().contains("does not seem to be here"), "{dialogue}");
+    let outcome = group.await_pick(None);
+    assert_eq!(outcome["outcome"], "not_here", "{outcome}");
+    assert!(outcome["object"].is_null(), "{outcome}");
+    assert_eq!(group.arm()["phase"], "idle", "nothing is fetched");
+    group.verify_journals();
+    group.down();
+}
+
+#[test]
+fn somebody_may_want_what_is_not_here() {
+    let group = Group::up(&[ABSENT]);
+    let outcome = group.fetch("get me the bowl", "teapot");
+    assert_eq!(outcome["outcome"], "not_here", "{outcome}");
+    for bowl in ["white", "metal2", "clear"] {
+        let outcome = group.fetch("get me the bowl", bowl);
+        assert_eq!((&outcome["object"], &outcome["outcome"]), (&bowl.into(), &"delivered".into()));
+    }
+    group.verify_journals();
+    group.down();
+}
+
+#[test]
+fn nobody_wants_what_is_not_here_unless_that_is_considered() {
+    let group = Group::up(&[]);
+    let refused = group.call(&["await", "pick", "--answer-as", "teapot"]);
+    assert_eq!(refused.code, Some(64), "{refused:?}");
+    assert!(refused.stderr.contains("dialogue.prior.absent"), "{refused:?}");
+    assert_eq!(group.dialogue()["absent"], 0.0);
+    group.down();
+}
+
+#[test]
+fn what_is_fetched_often_is_believed_first_after_a_restart_too() {
+    let mut group = Group::up(&["dialogue.prior.objects=history"]);
+    for _ in 0..3 {
+        assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
+    }
+    let belief = |group: &Group| group.dialogue()["belief"].clone();
+    wait_for("the history to count", 10.0, || {
+        let p = belief(&group)["clear"].as_f64()?;
+        ((p - 4.0 / 9.0).abs() < 1e-9).then_some(())
+    });
+    group.must(&["down"]);
+    assert_eq!(group.start(&["dialogue.prior.objects=history"]).code, Some(0));
+    assert!((belief(&group)["clear"].as_f64().unwrap() - 4.0 / 9.0).abs() < 1e-9);
+    group.verify_journals();
+    group.down();
+}
