@@ -1,7 +1,8 @@
 //! Working ahead: what a planner can know before anybody has said a word.
 
 use super::Mind;
-use dialogue::{Belief, DecisionProblem, PolicyTable};
+use crate::state::State;
+use dialogue::{DecisionProblem, PolicyTable};
 
 impl Mind {
     /// The decision problem that the planner is asked about.
@@ -9,13 +10,14 @@ impl Mind {
         DecisionProblem { model: &self.model, costs: self.costs, actions: self.actions }
     }
 
-    /// Lets the planner work ahead from the belief that every object is as likely, and tells what
-    /// it knows then, if it is of the kind that keeps something.
+    /// Lets the planner work ahead from what is believed before anything was ever said or fetched,
+    /// and tells what it knows then, if it is of the kind that keeps something.
     pub fn prepare(&mut self) -> Option<&PolicyTable> {
+        let prior = self.prior(&State::default());
         let Self { model, costs, actions, planner, .. } = self;
         let problem = DecisionProblem { model, costs: *costs, actions: *actions };
         planner.table()?;
-        planner.prepare(&problem, &Belief::uniform(model.hypotheses()));
+        planner.prepare(&problem, &prior);
         planner.table().filter(|table| !table.is_empty())
     }
 

@@ -39,7 +39,8 @@ impl Mind {
         // Where neither belief nor objects have changed, the question that stands still stands; other
         // costs count from the next utterance on.
         let is_ordered = matches!(state.act.kind, ActKind::Pick | ActKind::Cancel);
-        if !is_ordered && !(same_scene && same_belief) {
+        let is_same = same_scene && same_belief;
+        if !is_ordered && !is_same {
             if !changed.is_empty() {
                 // It is said with the next question, which is a new one even if it is the same.
                 state.act.kind = ActKind::Wait;
