@@ -126,7 +126,7 @@ fn clients_see_objects_and_absence_apart() {
 fn absence_may_be_switched_while_a_question_stands() {
     let state = asked(&mut mind());
     let on = mind_with(&ABSENT).step(&state, &Cause::Reconfigured, at(2));
-    assert_eq!((belief(&on).len(), on.act.prompt), (7, state.act.prompt));
+    assert_eq!((belief(&on).len(), on.act.kind), (7, ActKind::Ask));
     let off = mind().step(&on, &Cause::Reconfigured, at(3));
     assert_eq!(belief(&off), belief(&state));
 }
