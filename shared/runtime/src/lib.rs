@@ -11,3 +11,4 @@ pub mod exit;
 pub mod group;
 pub mod lifecycle;
 pub mod logging;
+mod notify;

@@ -6,6 +6,7 @@
 
 use crate::exit::{Exit, Failure};
 use crate::group::{self, GroupName, GroupPaths};
+use crate::notify::Notifier;
 use node::{Span, Time};
 use protocol::{Epoch, Incarnation};
 use rustix::event::{PollFd, PollFlags, poll};
@@ -83,6 +84,7 @@ pub struct Lifecycle {
     _alive: File,
     beat_every: Span,
     last_beat: Option<Time>,
+    notifier: Notifier,
 }
 
 impl Lifecycle {
@@ -111,7 +113,8 @@ impl Lifecycle {
         let watchdog =
             sd_notify::watchdog_enabled().map(|period| Span::from_s(period.as_secs_f64()));
         let beat_every = watchdog.map_or(BEAT_MAX, |period| Span(period.0 / 3).min(BEAT_MAX));
-        Ok(Self { signals, lifeline, _alive: alive, beat_every, last_beat: None })
+        let notifier = Notifier::from_environment().map_err(failed("notification socket"))?;
+        Ok(Self { signals, lifeline, _alive: alive, beat_every, last_beat: None, notifier })
     }
 
     /// Descriptors to be polled: signals, and the lifeline where there is one.
@@ -127,14 +130,14 @@ impl Lifecycle {
     }
 
     /// Tells the supervisor that the service does its work.
-    pub(crate) fn ready(&self) {
+    pub(crate) fn ready(&mut self) {
         let version = concat!("X_VERSION=", env!("CARGO_PKG_VERSION"));
-        send(&[NotifyState::Custom(version), NotifyState::Ready]);
+        self.notifier.say(&[NotifyState::Custom(version), NotifyState::Ready]);
     }
 
     /// Tells the supervisor that the service has begun to end.
-    pub(crate) fn stopping(&self) {
-        send(&[NotifyState::Stopping]);
+    pub(crate) fn stopping(&mut self) {
+        self.notifier.say(&[NotifyState::Stopping]);
     }
 
     /// Beats where a beat is due. Called by the main loop after a full pass and by nobody else, so
@@ -145,18 +148,13 @@ impl Lifecycle {
         }
         self.last_beat = Some(now);
         let age_ms = pending_since.map_or(0, |since| now.since(since).0 / 1_000_000);
-        send(&[NotifyState::Watchdog, NotifyState::Custom(&format!("X_INPUT_AGE_MS={age_ms}"))]);
+        let age = format!("X_INPUT_AGE_MS={age_ms}");
+        self.notifier.beat(&[NotifyState::Watchdog, NotifyState::Custom(&age)]);
     }
 
     /// When the next beat is due.
     pub(crate) fn next_beat(&self, now: Time) -> Time {
         self.last_beat.map_or(now, |last| last + self.beat_every)
-    }
-}
-
-fn send(states: &[NotifyState<'_>]) {
-    if let Err(error) = sd_notify::notify(states) {
-        tracing::debug!(%error, "notification not delivered");
     }
 }
 
