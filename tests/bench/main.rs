@@ -1,8 +1,11 @@
-//! Benchmarks of the running group: how fast it starts and recovers, how long an utterance takes to
-//! become a decision and where the time goes, and what the group costs when nothing happens.
+//! Benchmarks of the decision core and of the running group: what a decision and a belief update
+//! cost and how good decisions are; how fast the group starts and recovers, how long an utterance
+//! takes to become a decision and where the time goes, and what it costs when nothing happens.
 //!
-//! Machines are noisy: each figure stands beside a peer that was measured in the same run.
+//! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
+//! test rests on one.
 
+mod core;
 mod idle;
 mod latency;
 mod peers;
@@ -12,12 +15,33 @@ mod start;
 use report::Report;
 use std::process::ExitCode;
 
+const HELP: &str = "Usage: bench [--quick] [--core]
+
+  --quick  fewer repetitions and smaller series: a minute in place of several
+  --core   only the decision core, without starting a group
+";
+
 fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    if words.iter().any(|word| word == "--help" || word == "-h") {
+        report::print(HELP);
+        return ExitCode::SUCCESS;
+    }
+    if let Some(unknown) = words.iter().find(|word| !["--quick", "--core"].contains(&word.as_str()))
+    {
+        report::print(&format!("{unknown} is no option\n\n{HELP}"));
+        return ExitCode::from(64);
+    }
+    let asked = |word: &str| words.iter().any(|known| known == word);
     let mut report = Report::default();
     peers::measure(&mut report);
-    start::measure(&mut report);
-    latency::measure(&mut report);
-    idle::measure(&mut report);
+    let effort = if asked("--quick") { core::Effort::QUICK } else { core::Effort::FULL };
+    core::measure(&mut report, effort);
+    if !asked("--core") {
+        start::measure(&mut report);
+        latency::measure(&mut report);
+        idle::measure(&mut report);
+    }
     match report.write() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

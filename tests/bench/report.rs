@@ -1,7 +1,10 @@
 //! The table that is printed and written.
 
+use plot::Lines;
+pub(crate) use plot::Series;
 use serde::Serialize;
 use std::io::Write;
+use std::path::{Path, PathBuf};
 
 /// One measured figure.
 #[derive(Debug, Serialize)]
@@ -16,11 +19,36 @@ pub(crate) struct Figure {
     note: String,
 }
 
+/// Figures that belong together in rows and columns.
+#[derive(Debug, Serialize)]
+pub(crate) struct Table {
+    pub(crate) title: String,
+    pub(crate) note: String,
+    pub(crate) heads: Vec<String>,
+    pub(crate) rows: Vec<Vec<String>>,
+}
+
+/// Lines of cost in microseconds over one thing that grows.
+#[derive(Debug)]
+pub(crate) struct Plot {
+    /// Name of its files.
+    pub(crate) file: &'static str,
+    /// What grows.
+    pub(crate) over: &'static str,
+    pub(crate) series: Vec<Series>,
+}
+
 /// All figures of a run.
 #[derive(Debug, Default, Serialize)]
 pub(crate) struct Report {
     figures: Vec<Figure>,
+    pub(crate) tables: Vec<Table>,
+    #[serde(skip)]
+    pub(crate) plots: Vec<Plot>,
 }
+
+/// Pixels of a plot.
+const PLOT_SIZE: (u32, u32) = (960, 600);
 
 pub(crate) fn print(line: &str) {
     // A closed pipe is the reader's choice.
@@ -65,32 +93,76 @@ impl Report {
         }
     }
 
-    fn table(&self) -> String {
-        let mut text = String::from(
-            "| figure | runs | p50 | p99 | unit | ratio of p50 to peer | note |\n|---|---|---|---|---|---|---|\n",
-        );
-        for f in &self.figures {
-            let peer = f
-                .peer
-                .as_ref()
-                .map_or(String::new(), |(name, ratio)| format!("{ratio:.2} × {name}"));
-            let row = format!(
-                "| {} | {} | {:.3} | {:.3} | {} | {peer} | {} |\n",
-                f.what, f.runs, f.p50, f.p99, f.unit, f.note
-            );
-            text.push_str(&row);
+    /// All figures in one table, and the tables of figures below it.
+    fn text(&self) -> String {
+        let heads = ["figure", "runs", "p50", "p99", "unit", "ratio of p50 to peer", "note"];
+        let row = |f: &Figure| {
+            let peer = f.peer.as_ref();
+            let peer = peer.map_or(String::new(), |(name, ratio)| format!("{ratio:.2} × {name}"));
+            let [p50, p99] = [f.p50, f.p99].map(|value| format!("{value:.3}"));
+            let (what, runs) = (f.what.clone(), f.runs.to_string());
+            vec![what, runs, p50, p99, f.unit.to_owned(), peer, f.note.clone()]
+        };
+        let rows: Vec<Vec<String>> = self.figures.iter().map(row).collect();
+        let mut text = markdown(&heads.map(str::to_owned), &rows);
+        for table in &self.tables {
+            let rows = markdown(&table.heads, &table.rows);
+            text += &format!("\n## {}\n\n{}\n\n{rows}", table.title, table.note);
+        }
+        for Plot { file, over, series } in &self.plots {
+            let rows = plotted(series);
+            text += &format!("\n## Cost over {over}\n\nMedian, µs; plots: {file}.svg, {file}.png.");
+            text += &format!("\n\n{rows}");
         }
         text
     }
 
-    /// Prints the table and writes it to `target/bench`.
+    /// Prints the tables and writes them, and the plots, to `target/bench`.
     pub(crate) fn write(&self) -> std::io::Result<()> {
-        let table = self.table();
-        print(&table);
-        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/bench");
+        let text = self.text();
+        print(&text);
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/bench");
         std::fs::create_dir_all(&folder)?;
-        std::fs::write(folder.join("report.md"), table)?;
+        std::fs::write(folder.join("report.md"), text)?;
         let json = serde_json::to_vec_pretty(self).map_err(std::io::Error::other)?;
-        std::fs::write(folder.join("report.json"), json)
+        std::fs::write(folder.join("report.json"), json)?;
+        self.plots.iter().try_for_each(|plot| plot.write(&folder))
     }
+}
+
+impl Plot {
+    fn write(&self, folder: &Path) -> std::io::Result<()> {
+        let chart = Lines {
+            title: format!("Cost over the number of {}", self.over),
+            x: self.over.to_owned(),
+            y: "median, µs".to_owned(),
+            x_scale: plot::Scale::Logarithmic,
+            y_scale: plot::Scale::Logarithmic,
+            series: self.series.clone(),
+        };
+        let file = |ending: &str| -> PathBuf { folder.join(self.file).with_extension(ending) };
+        let svg = plot::svg(&chart, PLOT_SIZE).map_err(std::io::Error::other)?;
+        std::fs::write(file("svg"), svg)?;
+        let png = plot::png(&chart, PLOT_SIZE).map_err(std::io::Error::other)?;
+        std::fs::write(file("png"), png)
+    }
+}
+
+/// The points of a plot as a table.
+fn plotted(series: &[Series]) -> String {
+    let xs = series.first().map(|first| first.points.iter().map(|(x, _)| x.to_string()));
+    let heads: Vec<String> =
+        std::iter::once(String::new()).chain(xs.into_iter().flatten()).collect();
+    let row = |series: &Series| {
+        let ys = series.points.iter().map(|(_, y)| format!("{y:.2}"));
+        std::iter::once(series.name.clone()).chain(ys).collect()
+    };
+    markdown(&heads, &series.iter().map(row).collect::<Vec<_>>())
+}
+
+fn markdown(heads: &[String], rows: &[Vec<String>]) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let rule = format!("|{}\n", "---|".repeat(heads.len()));
+    let rows: String = rows.iter().map(|row| line(row)).collect();
+    line(heads) + &rule + &rows
 }
