@@ -9,7 +9,7 @@ use plotters::prelude::{
     ChartBuilder, Circle, Color, DrawingArea, DrawingBackend, LineSeries, Palette, Palette99,
     PathElement, Ranged, SeriesLabelPosition,
 };
-use plotters::style::{BLACK, WHITE};
+use plotters::style::WHITE;
 
 use crate::{Drawing, PlotError};
 
@@ -100,7 +100,7 @@ impl Lines {
     {
         area.fill(&WHITE).map_err(PlotError::of)?;
         let mut chart = ChartBuilder::on(area)
-            .caption(&self.title, ("sans-serif", 16))
+            .caption(&self.title, ("sans-serif", 15))
             .margin(12)
             .margin_right(40)
             .x_label_area_size(48)
@@ -131,7 +131,6 @@ impl Lines {
             .configure_series_labels()
             .position(SeriesLabelPosition::UpperLeft)
             .background_style(WHITE.mix(0.8))
-            .border_style(BLACK.mix(0.3))
             .label_font(("sans-serif", 12))
             .draw()
             .map_err(PlotError::of)
