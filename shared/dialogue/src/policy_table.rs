@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::mix::Mix;
-use crate::{Action, Actions, Belief, Decision, DecisionProblem};
+use crate::{Action, Actions, Decision, DecisionProblem};
 
 /// The decisions of one problem, by belief.
 ///
@@ -45,44 +45,22 @@ impl PolicyTable {
         self.problem == problem.key() && self.decisions.values().all(possible)
     }
 
-    pub(crate) fn get(&self, problem: u64, belief: &Canonical) -> Option<&Decision> {
-        self.decisions.get(&belief.key).filter(|_| self.problem == problem)
+    /// The decision at the beliefs of that key ([`Belief::key`](crate::Belief::key)).
+    pub(crate) fn get(&self, problem: u64, belief: &[i64]) -> Option<&Decision> {
+        self.decisions.get(&short(belief)).filter(|_| self.problem == problem)
     }
 
-    pub(crate) fn insert(&mut self, problem: u64, belief: &Canonical, decision: Decision) {
+    pub(crate) fn insert(&mut self, problem: u64, belief: &[i64], decision: Decision) {
         if self.problem != problem || self.decisions.len() >= DECISIONS_MAX {
             self.decisions.clear();
             self.problem = problem;
         }
-        self.decisions.insert(belief.key, decision);
+        self.decisions.insert(short(belief), decision);
     }
 }
 
-/// A belief rounded to whole steps: the same for all beliefs that differ by rounding alone, but
-/// for those that lie on the edge between two steps.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Canonical {
-    steps: Vec<u64>,
-    key: u128,
-}
-
-/// Steps of probability, `2⁻³⁶`: moves a value by less than 1e-8 of what is at stake in a pick.
-const STEPS: f64 = (1_u64 << 36) as f64;
-
-impl Canonical {
-    pub(crate) fn of(belief: &Belief) -> Self {
-        let steps: Vec<u64> =
-            belief.probabilities().into_iter().map(|p| (p * STEPS).round() as u64).collect();
-        let key = steps.iter().fold(Mix::default(), |mix, step| mix.add(*step)).wide();
-        Self { steps, key }
-    }
-
-    /// The rounded belief. What is less probable than half a step has no part in it.
-    pub(crate) fn belief(&self) -> Belief {
-        let weights: Vec<f64> = self.steps.iter().map(|step| *step as f64).collect();
-        // The most probable of fewer than 2³⁶ hypotheses is at least a step.
-        Belief::from_probabilities(&weights).unwrap_or_else(|_| Belief::uniform(weights.len()))
-    }
+fn short(belief: &[i64]) -> u128 {
+    belief.iter().fold(Mix::default(), |mix, units| mix.add(units.cast_unsigned())).wide()
 }
 
 impl DecisionProblem<'_> {

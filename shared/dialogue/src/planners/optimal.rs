@@ -1,16 +1,15 @@
 //! `optimal`: the search of `lookahead` run until the value is certified, and remembered.
 
 use crate::planning::{Effort, Reduced};
-use crate::policy_table::{Canonical, PolicyTable};
-use crate::{Belief, Decision, DecisionProblem, Planner, Step, evaluate};
+use crate::{Belief, Decision, DecisionProblem, Planner, PolicyTable, Step, evaluate};
 
 use super::searched::{affordable, searched};
 
 /// Solves the problem from every belief that is decided about, and remembers the decision.
 ///
-/// A belief is rounded before it is looked at, to steps far below what any answer can move it by,
-/// so that what is remembered is what would be found again: decisions do not depend on earlier
-/// ones, nor on a table from disk. Where a scene is too large to be solved, the bounds of the
+/// It looks at the belief that stands for all that differ by rounding alone ([`Belief::key`]), so
+/// that what is remembered is what would be found again: decisions do not depend on earlier ones,
+/// nor on a table from disk. Where a scene is too large to be solved, the bounds of the
 /// decision say how far from optimal it can be.
 #[derive(Debug)]
 pub struct Optimal {
@@ -39,6 +38,11 @@ const SMALL_WORK_MAX: usize = 2_000_000;
 /// Dialogues less probable than this are not solved ahead.
 const UNLIKELY: f64 = 1e-4;
 
+/// The belief that is looked at in place of all with that key.
+fn stands_for(belief: &Belief, key: &[i64]) -> Belief {
+    Belief::from_key(key).unwrap_or_else(|_| belief.clone())
+}
+
 impl Optimal {
     fn solve(&self, problem: &DecisionProblem<'_>, belief: &Belief) -> Decision {
         let stake = problem.costs.correct + problem.costs.wrong;
@@ -55,13 +59,12 @@ impl Planner for Optimal {
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, _: Step) -> Decision {
-        let key = problem.key();
-        let canonical = Canonical::of(belief);
-        if let Some(known) = self.table.get(key, &canonical) {
+        let (problem_key, key) = (problem.key(), belief.key());
+        if let Some(known) = self.table.get(problem_key, &key) {
             return known.clone();
         }
-        let decision = self.solve(problem, &canonical.belief());
-        self.table.insert(key, &canonical, decision.clone());
+        let decision = self.solve(problem, &stands_for(belief, &key));
+        self.table.insert(problem_key, &key, decision.clone());
         decision
     }
 
@@ -74,7 +77,7 @@ impl Planner for Optimal {
             beliefs_max: affordable(reduced, SMALL_WORK_MAX).max(1),
             tolerance,
         };
-        let bounds = searched(problem, &Canonical::of(belief).belief(), quick).bounds;
+        let bounds = searched(problem, &stands_for(belief, &belief.key()), quick).bounds;
         if bounds.is_some_and(|(lower, upper)| upper - lower <= tolerance) {
             evaluate(self, problem, belief, UNLIKELY);
         }
