@@ -53,7 +53,16 @@ fn the_same_seed_gives_the_same_bytes_on_any_number_of_threads() {
     assert!(one.1.iter().all(|(_, bytes)| !bytes.is_empty()));
 }
 
-const FILES: [&str; 2] = ["study.csv", "study.json"];
+const FILES: [&str; 8] = [
+    "questions.png",
+    "questions.svg",
+    "study.csv",
+    "study.json",
+    "success.png",
+    "success.svg",
+    "turn-taking.png",
+    "turn-taking.svg",
+];
 
 #[test]
 fn every_policy_meets_every_kind_of_people() {

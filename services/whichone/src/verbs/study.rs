@@ -13,6 +13,7 @@ use crate::trouble::{Outcome, Trouble};
 
 mod design;
 mod house;
+mod plot;
 mod progress;
 mod report;
 mod run;
@@ -36,6 +37,9 @@ pub(super) fn study(args: &StudyArgs, out: &mut Output<'_>) -> Outcome {
         write(folder, "study.csv", report::to_csv(&results).as_bytes())?;
         let json = report::to_json(args, &house, &results);
         write(folder, "study.json", format!("{json:#}\n").as_bytes())?;
+        for (name, bytes) in plot::pictures(&results)? {
+            write(folder, &name, &bytes)?;
+        }
         note(format_args!("written to {}", folder.display()));
     }
     if out.is_json() {

@@ -1,0 +1,77 @@
+use super::canvas::Canvas;
+use super::*;
+use crate::verbs::study::design::People;
+use study::turns::{Rules, Talker};
+use study::{End, Outcome, UserKind};
+
+fn tally(right: u32, wrong: u32) -> Tally {
+    let mut tally = Tally::default();
+    for n in 0..right + wrong {
+        tally.add(&Outcome {
+            end: if n < right { End::Right } else { End::Wrong },
+            questions: n % 7,
+            talk_s: 10.0 + f64::from(n % 3),
+            seconds: 20.0 + f64::from(n % 5),
+            value: 1.0,
+            answers: 1,
+            misplaced: 0,
+        });
+    }
+    tally
+}
+
+fn rows() -> Vec<Row> {
+    let row = |policy: &str, people| Row { policy: policy.to_owned(), people };
+    let rules = Rules::default();
+    vec![
+        row("a<b", People::InTurns(UserKind::Model)),
+        row("a<b", People::InTurns(UserKind::Human)),
+        row("other", People::InTurns(UserKind::Model)),
+        row("a<b", People::RealTime { rules, name: "usual", talker: Talker::USUAL }),
+    ]
+}
+
+#[test]
+fn every_picture_comes_in_both_forms_and_repeats() {
+    let rows = rows();
+    let results: Vec<(&Row, Tally)> = rows.iter().map(|row| (row, tally(95, 5))).collect();
+    let pictures = super::pictures(&results).unwrap();
+    let names: Vec<&str> = pictures.iter().map(|(name, _)| name.as_str()).collect();
+    let all = ["success", "questions", "turn-taking"];
+    let expected = all.iter().flat_map(|name| [format!("{name}.svg"), format!("{name}.png")]);
+    assert_eq!(names, expected.collect::<Vec<_>>());
+    assert!(pictures == super::pictures(&results).unwrap());
+    for (name, bytes) in &pictures {
+        if name.ends_with(".png") {
+            assert_eq!(&bytes[..8], b"\x89PNG\r\n\x1a\n", "{name}");
+        } else {
+            let text = std::str::from_utf8(bytes).unwrap();
+            assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n"));
+            assert!(text.contains("a&lt;b") || name.starts_with("turn"), "{name}");
+            assert!(!text.contains("NaN") && !text.contains("inf"), "{name}");
+        }
+    }
+}
+
+#[test]
+fn extremes_can_be_drawn() {
+    let rows = rows();
+    for extreme in [tally(0, 1), tally(1, 0), tally(0, 9), Tally::default()] {
+        let results = [(&rows[0], extreme)];
+        for (name, bytes) in super::pictures(&results).unwrap() {
+            assert!(!bytes.is_empty());
+            if name.ends_with(".svg") {
+                let text = String::from_utf8(bytes).unwrap();
+                assert!(!text.contains("NaN") && !text.contains("inf"), "{name}: {text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn words_are_drawn() {
+    let mut canvas = Canvas::new(40.0, 20.0);
+    let blank = png::write(&canvas).unwrap();
+    canvas.words((20.0, 10.0), "ok", canvas::Align::Middle, canvas::Size::Small, canvas::BLACK);
+    assert_ne!(png::write(&canvas).unwrap(), blank);
+}
