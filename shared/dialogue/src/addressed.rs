@@ -64,25 +64,28 @@ impl ReactionTime {
         let z = (t / self.median_s).ln() / self.log_sd;
         (-0.5 * z * z).exp() / (t * self.log_sd * (2.0 * std::f64::consts::PI).sqrt())
     }
+}
 
+impl Addressed {
     /// Divides an utterance that began at `onset_s` among the questions that had begun before it.
     ///
-    /// Weights are in proportion to [`ReactionTime::density`] at the time since each question's end,
+    /// Weights are in proportion to `density`, that of the person's reaction time, at the seconds
+    /// since each question's end ([`ReactionTime::density`], or what is known of the one person),
     /// with a small one for an utterance that answers none, which takes all where no question fits.
-    pub fn addressed(&self, asked: &[Asked], onset_s: f64) -> Addressed {
-        let density = |asked: &Asked| {
+    pub fn of(asked: &[Asked], onset_s: f64, density: impl Fn(f64) -> f64) -> Self {
+        let weight = |asked: &Asked| {
             if onset_s < asked.began_s {
                 0.0
             } else if onset_s < asked.ended_s {
                 EARLY_DENSITY
             } else {
-                self.density(onset_s - asked.ended_s)
+                density(onset_s - asked.ended_s)
             }
         };
-        let mut questions: Vec<f64> = asked.iter().map(density).collect();
+        let mut questions: Vec<f64> = asked.iter().map(weight).collect();
         let sum = questions.iter().sum::<f64>() + NONE_DENSITY;
         questions.iter_mut().for_each(|weight| *weight /= sum);
-        Addressed { questions, none: NONE_DENSITY / sum }
+        Self { questions, none: NONE_DENSITY / sum }
     }
 }
 
@@ -93,6 +96,10 @@ mod tests {
 
     fn asked(n: u16, began_s: f64, ended_s: f64) -> Asked {
         Asked { question: Question::Point(ObjectId(n)), began_s, ended_s }
+    }
+
+    fn addressed(asked: &[Asked], onset_s: f64) -> Addressed {
+        Addressed::of(asked, onset_s, |seconds| ReactionTime::default().density(seconds))
     }
 
     #[test]
@@ -111,7 +118,7 @@ mod tests {
     #[test]
     fn a_prompt_answer_is_meant_for_the_question_before_it() {
         let two = [asked(0, 0.0, 2.0), asked(1, 8.0, 10.0)];
-        let Addressed { questions, none } = ReactionTime::default().addressed(&two, 10.9);
+        let Addressed { questions, none } = addressed(&two, 10.9);
         assert!((questions.iter().sum::<f64>() + none - 1.0).abs() < 1e-12);
         assert!(questions[1] > 0.99 && none < 0.01, "{questions:?} {none}");
     }
@@ -120,17 +127,16 @@ mod tests {
     #[test]
     fn an_answer_into_a_new_question_is_meant_for_the_old_one() {
         let two = [asked(0, 0.0, 2.0), asked(1, 2.8, 4.6)];
-        let addressed = ReactionTime::default().addressed(&two, 3.0);
+        let addressed = addressed(&two, 3.0);
         assert!(addressed.questions[0] > 0.95, "{addressed:?}");
     }
 
     #[test]
     fn what_no_question_fits_answers_none() {
-        let reaction = ReactionTime::default();
-        assert_eq!(reaction.addressed(&[], 3.0), Addressed { questions: vec![], none: 1.0 });
-        let later = reaction.addressed(&[asked(0, 5.0, 6.0)], 3.0);
+        assert_eq!(addressed(&[], 3.0), Addressed { questions: vec![], none: 1.0 });
+        let later = addressed(&[asked(0, 5.0, 6.0)], 3.0);
         assert_eq!((later.questions[0], later.none), (0.0, 1.0));
-        let long_after = reaction.addressed(&[asked(0, 0.0, 1.0)], 600.0);
+        let long_after = addressed(&[asked(0, 0.0, 1.0)], 600.0);
         assert!(long_after.none > 0.99, "{long_after:?}");
     }
 }

@@ -10,7 +10,7 @@ pub enum Attribution {
     /// The latest that had been said when the answer began.
     Onset,
     /// Each by how well the time between its end and the answer's beginning fits people's reaction
-    /// times ([`dialogue::ReactionTime::addressed`]).
+    /// times ([`dialogue::Addressed`]).
     Mixture,
 }
 

@@ -182,7 +182,10 @@ impl Talk<'_> {
         match self.rules.attribution {
             Attribution::Naive => only(asked.len().checked_sub(1)),
             Attribution::Onset => only(asked.iter().rposition(|q| q.ended_s <= utterance.onset_s)),
-            Attribution::Mixture => self.reaction.addressed(asked, utterance.onset_s),
+            Attribution::Mixture => {
+                let density = |seconds| self.reaction.density(seconds);
+                Addressed::of(asked, utterance.onset_s, density)
+            }
         }
     }
 

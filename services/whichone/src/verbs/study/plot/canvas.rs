@@ -101,14 +101,14 @@ impl Canvas {
         /// Corners, and the direction of the first, in turns.
         const FORMS: [(usize, f64); 5] = [(24, 0.0), (4, 0.125), (3, 0.25), (4, 0.0), (3, 0.75)];
         let (corners, first) = FORMS[series % FORMS.len()];
-        let radius = (7.5 - 0.45 * series as f64).max(4.0);
+        let radius = (8.5 - 0.7 * series as f64).max(3.5);
         let outline = |radius: f64| -> Vec<Place> {
             let angle = |k| std::f64::consts::TAU * (first + k as f64 / corners as f64);
             let corner = |k| (x + radius * f64::cos(angle(k)), y + radius * f64::sin(angle(k)));
             (0..corners).map(corner).collect()
         };
         // A white rim keeps marks apart that lie on each other.
-        self.shapes.push(Shape::Mark { outline: outline(radius + 1.5), ink: [0xff; 3] });
+        self.shapes.push(Shape::Mark { outline: outline(radius + 1.2), ink: [0xff; 3] });
         self.shapes.push(Shape::Mark { outline: outline(radius), ink: colour(series) });
     }
 }
