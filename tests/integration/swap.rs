@@ -48,3 +48,48 @@ fn arguments_that_a_service_does_not_know_are_refused() {
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     group.down();
 }
+
+/// A Python that has the iceoryx2 wheel: `$WHICHONE_PYTHON`, else `python3`. Without one the test
+/// says that it is left out; it fails where `WHICHONE_REQUIRE_PYTHON` is set.
+fn python() -> Option<String> {
+    let python = std::env::var("WHICHONE_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let mut command = std::process::Command::new(&python);
+    let there = command.args(["-c", "import iceoryx2, tomllib"]).output();
+    if there.is_ok_and(|ended| ended.status.success()) {
+        return Some(python);
+    }
+    assert!(std::env::var_os("WHICHONE_REQUIRE_PYTHON").is_none(), "Python is required");
+    use std::io::Write;
+    let what = format!("LEFT OUT: {python} lacks iceoryx2: pip install iceoryx2==0.10.0\n");
+    std::io::stderr().write_all(what.as_bytes()).unwrap();
+    None
+}
+
+/// The service in Python that the documentation holds takes grounding's place under traffic.
+#[test]
+fn a_program_in_python_takes_groundings_place() {
+    let Some(python) = python() else { return };
+    let program_text = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/examples/python/grounding.py");
+    let group = Group::up(&[]);
+    for object in ["metal2", "clear", "white3"] {
+        group.say("get me the bowl");
+        let talk = std::thread::scope(|scope| {
+            let talk = scope.spawn(|| group.await_pick(Some(object)));
+            let ended = swap(&group, "grounding", &[&python, program_text]);
+            assert_eq!(ended.code, Some(0), "{ended:?}\n{}", group.logs());
+            talk.join().expect("the dialogue")
+        });
+        assert_eq!(talk["object"], object, "{talk}\n{}", group.logs());
+    }
+    let before = group.incarnation("grounding");
+    assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
+    assert_eq!(group.incarnation("grounding"), before, "it runs on\n{}", group.logs());
+    group.signal("grounding", rustix::process::Signal::KILL);
+    group.wait_for_restart("grounding", before);
+    assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
+    let old = program("whichone-grounding").display().to_string();
+    assert_eq!(swap(&group, "grounding", &[&old]).code, Some(0));
+    assert!(!group.logs().contains("Traceback"), "{}", group.logs());
+    group.verify_journals();
+    group.down();
+}
