@@ -12,6 +12,7 @@ mod export;
 mod gestures;
 mod isolation;
 mod people;
+mod person;
 mod planners;
 mod recovery;
 mod speech;

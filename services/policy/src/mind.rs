@@ -7,6 +7,7 @@ mod anew;
 mod inform;
 mod intents;
 mod pointing;
+mod posterior;
 mod prior;
 mod words;
 
@@ -124,7 +125,10 @@ impl Mind {
         let step = Step { interaction: open.id.0, step: open.step };
         let problem =
             DecisionProblem { model: &self.model, costs: self.costs, actions: self.actions };
-        let decision = self.planner.decide(&problem, &belief, step);
+        let decision = match &open.joint {
+            Some(joint) => self.planner.decide_with(&problem, joint, step),
+            None => self.planner.decide(&problem, &belief, step),
+        };
         let exhausted = open.presentations >= self.turns.questions_max;
         let action = match decision.action {
             Action::Ask(_) if exhausted => Action::Pick(belief.most_likely()),
@@ -155,6 +159,9 @@ impl Mind {
     }
 
     fn bear_silence(&self, state: &mut State, at: Time) {
+        if state.open.is_some() {
+            self.see_answer(state, false);
+        }
         let Some(open) = &mut state.open else { return };
         open.silences += 1;
         let out_of_questions = open.presentations >= self.turns.questions_max;
@@ -195,6 +202,9 @@ impl Mind {
 
     fn close(&self, state: &mut State, outcome: Outcome, at: Time, text: &str) {
         let Some(open) = state.open.take() else { return };
+        if let Some(joint) = &open.joint {
+            state.person = Some(joint.person().clone());
+        }
         state.ended = Some(Ended {
             interaction: open.id.0,
             object: open.pick.map(|(_, object)| object.0),

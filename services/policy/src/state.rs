@@ -4,6 +4,7 @@
 use crate::evidence::{Asked, Evidence};
 use crate::history::History;
 use dialogue::Belief;
+use dialogue::person::{Joint, Person};
 use node::Time;
 use protocol::{ActId, ActKind, Ended, InteractionId, PickId, PickOutcome, PromptId, UtteranceSeq};
 use scene::{ObjectId, Question, Reading};
@@ -30,6 +31,8 @@ pub struct State {
     pub ended: Option<Ended>,
     /// How often objects were delivered.
     pub history: History,
+    /// What earlier interactions have told about the person, where the planner makes use of it.
+    pub person: Option<Person>,
 }
 
 /// One fetch in progress.
@@ -42,6 +45,8 @@ pub struct Interaction {
     /// The belief as log weights, in the scene's order; one more where the wanted object may not be
     /// here.
     pub belief: Vec<f64>,
+    /// The belief together with what is learned about the person, where the planner makes use of it.
+    pub joint: Option<Joint>,
     /// What was said, so that it can be scored again under another scene.
     pub evidence: Vec<Evidence>,
     /// Utterances that did not fit into `evidence` any more.
@@ -91,6 +96,8 @@ pub struct Prompt {
     pub id: PromptId,
     /// What was asked.
     pub asked: Asked,
+    /// Whether something was said to it.
+    pub answered: bool,
 }
 
 /// A decision with its reasons.

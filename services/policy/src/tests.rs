@@ -1,6 +1,7 @@
 //! The policy's rules, on the shipped six bowls.
 
 mod anew;
+mod person;
 mod pointing;
 mod prior;
 

@@ -40,6 +40,7 @@ pub(crate) fn view(mind: &Mind, state: &State, refused: u64) -> PolicyView {
         interaction: open.map_or(0, |open| open.id.0),
         belief,
         absent,
+        person: mind.expects(state),
         question: state.act.question,
         prompt: state.act.prompt.0,
         text: state.act.text.clone(),

@@ -69,6 +69,9 @@ pub struct PolicyView {
     pub belief: Vec<f64>,
     /// Probability that the wanted object is not here; 0 where that is not believed possible.
     pub absent: f64,
+    /// What is expected of the person, where the robot learns that: `p_l`, the probability that a
+    /// question is answered, and `ε`, that an answer is wrong.
+    pub person: Option<(f64, f64)>,
     /// The question that stands.
     pub question: Question,
     /// Its prompt, 0 for none.
@@ -97,7 +100,7 @@ pub struct PolicyView {
 encoded!(
     PolicyView,
     "PolicyView",
-    "scene_key:u64 applied:u64 interaction:u64 belief[f64] absent:f64 question prompt:u64 text decision \
+    "scene_key:u64 applied:u64 interaction:u64 belief[f64] absent:f64 person?(f64,f64) question prompt:u64 text decision \
      value:f64 alternatives[(str,f64)] expected_questions:f64 bounds?(f64,f64) questions:u32 utterances(u64,u64) \
      last?Ended refused:u64; \
      Ended(interaction:u64 object?u16 name?str outcome questions:u32 seconds:f64 utterances(u64,u64))"

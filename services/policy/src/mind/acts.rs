@@ -40,7 +40,8 @@ pub(super) fn ask(
         return;
     }
     state.last_prompt = state.last_prompt.next();
-    open.prompts.push(Prompt { id: state.last_prompt, asked: Asked::new(scene, question) });
+    let asked = Asked::new(scene, question);
+    open.prompts.push(Prompt { id: state.last_prompt, asked, answered: false });
     let prompt = state.last_prompt;
     let kind = ActKind::Ask;
     set(state, Act { kind, prompt, presentation: 1, question, text, ..reasons });

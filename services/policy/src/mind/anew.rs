@@ -31,8 +31,9 @@ impl Mind {
         }
         let known = self.known();
         let Some(mut open) = state.open.take() else { return };
-        let belief = self.fold(state, &open).log_weights().to_vec();
-        let same_belief = std::mem::replace(&mut open.belief, belief) == open.belief;
+        let before = open.belief.clone();
+        self.fold(state, &open).store(&mut open);
+        let same_belief = before == open.belief;
         let changed = if same_scene { String::new() } else { self.what_changed(&open, &known) };
         open.objects = known;
         self.translate(state, open);

@@ -1,5 +1,6 @@
 //! What an utterance says about the wanted object.
 
+use super::posterior::Posterior;
 use super::{Mind, words};
 use crate::evidence::{Asked, Evidence};
 use crate::state::{Heard, Interaction, State};
@@ -26,24 +27,45 @@ impl Mind {
         let asked = open.prompts.iter().find(|prompt| prompt.id == heard.prompt);
         let asked = asked.map_or(Asked::Nothing, |prompt| prompt.asked.clone());
         let evidence = Evidence::new(&self.scene, asked, heard);
-        let mut belief = open.belief();
-        self.observe(&mut belief, &evidence);
-        open.belief = belief.log_weights().to_vec();
+        let mut posterior = Posterior::of(open);
+        self.observe(&mut posterior, &evidence);
+        posterior.store(open);
         open.keep(evidence);
+        self.note_answer(state, heard);
         let preface = words::unknown(heard);
         self.decide(state, heard.prompt, &preface, heard.seq, at);
     }
 
     fn open(&self, state: &mut State, heard: &Heard) {
         state.last_interaction = state.last_interaction.next();
-        state.open = Some(Interaction {
+        let mut open = Interaction {
             id: state.last_interaction,
             opened: heard.accepted,
-            belief: self.prior(state).log_weights().to_vec(),
             objects: self.known(),
             utterances: (heard.seq, heard.seq),
             ..Interaction::default()
-        });
+        };
+        self.beginning(state).store(&mut open);
+        state.open = Some(open);
+    }
+
+    /// A question counts as answered once, however much is said after it.
+    fn note_answer(&self, state: &mut State, heard: &Heard) {
+        let says = |reading: &Reading| {
+            reading.response != Response::None
+                || !reading.base.is_empty()
+                || !reading.excluded.is_empty()
+        };
+        let open = state.open.as_mut();
+        let prompts = open.map_or(&mut [][..], |open| &mut open.prompts[..]);
+        let asked = prompts.iter_mut().find(|prompt| prompt.id == heard.prompt);
+        if let Some(prompt) = asked
+            && !prompt.answered
+            && heard.readings.iter().any(|(_, reading)| says(reading))
+        {
+            prompt.answered = true;
+            self.see_answer(state, true);
+        }
     }
 
     /// Where the person points, if gestures count.

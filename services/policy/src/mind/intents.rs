@@ -61,9 +61,9 @@ impl Mind {
         open.silences = 0;
         open.evidence.clear();
         open.forgotten = 0;
-        let prior = self.prior(state);
+        let beginning = self.beginning(state);
         if let Some(open) = &mut state.open {
-            open.belief = prior.log_weights().to_vec();
+            beginning.store(open);
         }
         let heard = state.act.prompt;
         self.decide(state, heard, "From the beginning. ", utterance, at);

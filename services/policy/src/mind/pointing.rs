@@ -1,6 +1,5 @@
 //! Pointing gestures against the places of one scene's objects.
 
-use dialogue::Belief;
 use dialogue::gesture::{Direction, Gestures};
 use scene::Scene;
 
@@ -18,13 +17,13 @@ impl Pointing {
         Self { model, person_m, objects: Direction::to_objects(person_m, scene) }
     }
 
-    /// Bayes' rule with a gesture at `target_m`. One at the person's own place has no direction and
-    /// says nothing.
-    pub(super) fn observe(&self, belief: &mut Belief, target_m: [f64; 3]) {
-        let Some(ray) = Direction::between(self.person_m, target_m) else { return };
-        // Whatever the belief holds beyond the objects stands nowhere.
+    /// Logarithm of the likelihood of a gesture at `target_m`, for as many hypotheses. One at the
+    /// person's own place has no direction and says nothing.
+    pub(super) fn log_likelihood(&self, target_m: [f64; 3], hypotheses: usize) -> Option<Vec<f64>> {
+        let ray = Direction::between(self.person_m, target_m)?;
+        // Whatever is believed beyond the objects stands nowhere.
         let mut directions = self.objects.clone();
-        directions.resize(belief.len(), None);
-        belief.weigh(&self.model.log_likelihood(Some(ray), &directions));
+        directions.resize(hypotheses, None);
+        Some(self.model.log_likelihood(Some(ray), &directions))
     }
 }

@@ -1,8 +1,7 @@
-//! What is believed before anything is said, and what everything said makes of it.
+//! What is believed before anything is said.
 
 use super::Mind;
-use crate::evidence::Evidence;
-use crate::state::{Interaction, State};
+use crate::state::State;
 use dialogue::Belief;
 use settings::PriorObjects;
 
@@ -25,21 +24,5 @@ impl Mind {
             weights.push(self.prior.absent);
         }
         Belief::from_probabilities(&weights).expect("settings are checked: each weight is positive")
-    }
-
-    /// Bayes' rule with one utterance.
-    pub(super) fn observe(&self, belief: &mut Belief, evidence: &Evidence) {
-        belief.update_mixture(&self.model, &evidence.in_scene(&self.scene));
-        if let (Some(pointing), Some(target_m)) = (&self.pointing, evidence.gesture) {
-            pointing.observe(belief, target_m);
-        }
-    }
-
-    /// The belief after everything that is remembered of the interaction. Nothing in it depends on
-    /// an earlier scene.
-    pub(super) fn fold(&self, state: &State, open: &Interaction) -> Belief {
-        let mut belief = self.prior(state);
-        open.evidence.iter().for_each(|evidence| self.observe(&mut belief, evidence));
-        belief
     }
 }

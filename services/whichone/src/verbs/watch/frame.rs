@@ -91,6 +91,10 @@ fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> V
     if view.absent > 0.0 {
         lines.push(format!("  not here {:.1} %", view.absent * 100.0));
     }
+    if let Some((p_l, epsilon)) = view.person {
+        let (answers, errs) = (p_l * 100.0, epsilon * 100.0);
+        lines.push(format!("the person answers {answers:.0} % and errs in {errs:.1} %"));
+    }
     if view.interaction != 0 {
         let decision = style.paint(Ink::Bold, &view.decision);
         let value = words::value(view.value, view.bounds);

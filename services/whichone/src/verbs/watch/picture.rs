@@ -117,6 +117,7 @@ fn dialogue(scene: &Scene, seen: &Seen) -> Option<Json> {
         "applied": view.applied,
         "belief": belief,
         "absent": view.absent,
+        "person": view.person.map(|(p_l, epsilon)| json!({ "p_l": p_l, "epsilon": epsilon })),
         "decision": view.decision,
         "question": question,
         "text": view.text,

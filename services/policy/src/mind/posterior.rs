@@ -1,0 +1,104 @@
+//! What is believed in an open interaction: about the wanted object alone, as in the paper, or about
+//! the person who answers as well, where the planner makes use of that.
+
+use super::Mind;
+use crate::evidence::Evidence;
+use crate::state::{Interaction, State};
+use dialogue::Belief;
+use dialogue::person::{Joint, Person};
+
+/// The planner that decides by what it knows about the person.
+const LEARNS: &str = "information-seeking";
+
+/// A belief over the hypotheses, perhaps together with the person's error rate.
+pub(super) enum Posterior {
+    Object(Belief),
+    ObjectAndPerson(Joint),
+}
+
+impl Posterior {
+    /// As it stands in an interaction.
+    pub(super) fn of(open: &Interaction) -> Self {
+        match &open.joint {
+            Some(joint) => Self::ObjectAndPerson(joint.clone()),
+            None => Self::Object(open.belief()),
+        }
+    }
+
+    /// Puts it into an interaction.
+    pub(super) fn store(self, open: &mut Interaction) {
+        let (belief, joint) = match self {
+            Self::Object(belief) => (belief, None),
+            Self::ObjectAndPerson(joint) => (joint.belief(), Some(joint)),
+        };
+        open.belief = belief.log_weights().to_vec();
+        open.joint = joint;
+    }
+}
+
+impl Mind {
+    /// Whether the person is learned about.
+    pub(super) fn learns(&self) -> bool {
+        self.planner.name() == LEARNS
+    }
+
+    /// The person as known before the open interaction, but for how often questions were answered:
+    /// that says nothing about the object, so it counts at once.
+    pub(super) fn person(&self, state: &State) -> Option<Person> {
+        let known = || state.person.clone().unwrap_or_else(|| Person::new(self.model.params()));
+        self.learns().then(known)
+    }
+
+    /// What is expected of the person: `p_l` and `ε`.
+    pub(crate) fn expects(&self, state: &State) -> Option<(f64, f64)> {
+        let open = state.open.as_ref().and_then(|open| open.joint.as_ref());
+        let person = open.map(|joint| joint.person().clone()).or_else(|| self.person(state))?;
+        let params = person.params(self.model.params());
+        Some((params.p_l, params.epsilon))
+    }
+
+    /// What is believed before anything is said.
+    pub(super) fn beginning(&self, state: &State) -> Posterior {
+        let prior = self.prior(state);
+        match self.person(state) {
+            Some(person) => Posterior::ObjectAndPerson(Joint::new(prior, person)),
+            None => Posterior::Object(prior),
+        }
+    }
+
+    /// Bayes' rule with one utterance.
+    pub(super) fn observe(&self, posterior: &mut Posterior, evidence: &Evidence) {
+        let heard = evidence.in_scene(&self.scene);
+        let gesture = self.pointing.as_ref().zip(evidence.gesture);
+        let gesture =
+            gesture.and_then(|(pointing, at)| pointing.log_likelihood(at, self.model.hypotheses()));
+        match posterior {
+            Posterior::Object(belief) => {
+                belief.update_mixture(&self.model, &heard);
+                gesture.iter().for_each(|log| belief.weigh(log));
+            }
+            Posterior::ObjectAndPerson(joint) => {
+                joint.update_mixture(&self.model, &heard);
+                gesture.iter().for_each(|log| joint.weigh(log));
+            }
+        }
+    }
+
+    /// What is believed after everything that is remembered of the interaction. Nothing in it
+    /// depends on an earlier scene.
+    pub(super) fn fold(&self, state: &State, open: &Interaction) -> Posterior {
+        let mut posterior = self.beginning(state);
+        open.evidence.iter().for_each(|evidence| self.observe(&mut posterior, evidence));
+        posterior
+    }
+
+    /// Takes note that a question was answered, or was not although there was time.
+    pub(super) fn see_answer(&self, state: &mut State, answered: bool) {
+        let Some(mut person) = self.person(state) else { return };
+        person.see_answer(answered);
+        state.person = Some(person);
+        if let Some(joint) = state.open.as_mut().and_then(|open| open.joint.as_mut()) {
+            joint.person_mut().see_answer(answered);
+        }
+    }
+}
