@@ -47,8 +47,8 @@ pub(crate) struct Report {
     pub(crate) plots: Vec<Plot>,
 }
 
-/// Pixels of a plot.
-const PLOT_SIZE: (u32, u32) = (960, 600);
+/// Width and height of a plot, two pixels a unit.
+const PLOT_SIZE: (f64, f64) = (960.0, 600.0);
 
 pub(crate) fn print(line: &str) {
     // A closed pipe is the reader's choice.
@@ -140,10 +140,11 @@ impl Plot {
             y_scale: plot::Scale::Logarithmic,
             series: self.series.clone(),
         };
+        let chart = chart.draw(PLOT_SIZE).map_err(std::io::Error::other)?;
         let file = |ending: &str| -> PathBuf { folder.join(self.file).with_extension(ending) };
-        let svg = plot::svg(&chart, PLOT_SIZE).map_err(std::io::Error::other)?;
+        let svg = plot::svg(&chart);
         std::fs::write(file("svg"), svg)?;
-        let png = plot::png(&chart, PLOT_SIZE).map_err(std::io::Error::other)?;
+        let png = plot::png(&chart).map_err(std::io::Error::other)?;
         std::fs::write(file("png"), png)
     }
 }

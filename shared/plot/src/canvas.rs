@@ -1,141 +1,159 @@
-//! A picture in memory that plotters paints on, with letters of eight by eight dots.
+//! What a picture is made of: lines, boxes, marks and words, in units of which a screen shows one
+//! or two pixels each.
 
-use std::convert::Infallible;
-
-use font8x8::legacy::{BASIC_LEGACY, LATIN_LEGACY};
-use plotters_backend::text_anchor::{HPos, VPos};
-use plotters_backend::{
-    BackendColor, BackendCoord, BackendTextStyle, DrawingBackend, DrawingErrorKind,
-};
-
-use crate::PlotError;
-
-/// Dots of a letter, each way.
-const DOTS: i32 = 8;
-/// What stands for a letter that there is no picture of.
-const UNKNOWN: [u8; 8] = [0, 0x3c, 0x24, 0x24, 0x24, 0x24, 0x3c, 0];
-
-/// Red, green and blue of every pixel, row by row; white at first.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A picture.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Canvas {
-    size: (u32, u32),
-    pixels: Vec<u8>,
+    /// Width and height.
+    pub size: (f64, f64),
+    /// What is on it, bottom first.
+    pub shapes: Vec<Shape>,
 }
 
-type Drawn = Result<(), DrawingErrorKind<Infallible>>;
+/// A place: to the right, and down.
+pub type Place = (f64, f64);
+
+/// Something on it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// A straight line.
+    Line {
+        /// One end.
+        from: Place,
+        /// The other.
+        to: Place,
+        /// How thick it is.
+        width: f64,
+        /// Its colour.
+        ink: Ink,
+    },
+    /// A filled box.
+    Area {
+        /// Its upper left corner.
+        corner: Place,
+        /// Width and height.
+        size: (f64, f64),
+        /// Its colour.
+        ink: Ink,
+    },
+    /// A filled outline round a place.
+    Mark {
+        /// Its corners.
+        outline: Vec<Place>,
+        /// Its colour.
+        ink: Ink,
+    },
+    /// Words. The place is at half their height.
+    Words {
+        /// Where they are.
+        at: Place,
+        /// The words.
+        text: String,
+        /// Where they are, seen from their place.
+        align: Align,
+        /// How large they are.
+        size: Size,
+        /// Their colour.
+        ink: Ink,
+    },
+}
+
+/// A colour: red, green, blue.
+pub type Ink = [u8; 3];
+
+/// Where words are, seen from their place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Align {
+    /// They begin there.
+    Left,
+    /// It is their middle.
+    Middle,
+    /// They end there.
+    Right,
+}
+
+/// How large words are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// Labels.
+    Small,
+    /// Titles.
+    Large,
+}
+
+/// Words and axes.
+pub const BLACK: Ink = [0x22, 0x22, 0x22];
+/// Less important words.
+pub const GREY: Ink = [0x66, 0x66, 0x66];
+/// Lines behind everything.
+pub const FAINT: Ink = [0xe2, 0xe2, 0xe2];
+
+/// Colours that people with any colour vision tell apart (Okabe and Ito 2008), the yellow darkened
+/// for white ground.
+const COLOURS: [Ink; 8] = [
+    [0x00, 0x72, 0xb2],
+    [0xd5, 0x5e, 0x00],
+    [0x00, 0x9e, 0x73],
+    [0xcc, 0x79, 0xa7],
+    [0x56, 0xb4, 0xe9],
+    [0xe6, 0x9f, 0x00],
+    [0x55, 0x55, 0x55],
+    [0xb8, 0xa8, 0x00],
+];
+
+/// Width of a small letter; all letters are as wide.
+pub const LETTER_WIDTH: f64 = 7.2;
+
+/// The colour of a series.
+pub fn colour(series: usize) -> Ink {
+    COLOURS[series % COLOURS.len()]
+}
 
 impl Canvas {
-    /// A white picture, that many pixels wide and high.
-    pub fn new(size: (u32, u32)) -> Self {
-        Self { size, pixels: vec![255; 3 * size.0 as usize * size.1 as usize] }
+    /// An empty one.
+    pub fn new(width: f64, height: f64) -> Self {
+        Self { size: (width, height), shapes: Vec::new() }
     }
 
-    /// The picture as the bytes of a PNG file.
-    ///
-    /// # Errors
-    /// It has no pixels.
-    pub fn encode(&self) -> Result<Vec<u8>, PlotError> {
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.size.0, self.size.1);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        let mut writer = encoder.write_header().map_err(PlotError::of)?;
-        writer.write_image_data(&self.pixels).map_err(PlotError::of)?;
-        writer.finish().map_err(PlotError::of)?;
-        Ok(bytes)
-    }
-}
-
-/// Width and height of a dot for letters of that size in pixels: whole pixels, so that they stay
-/// sharp, and rather narrow than wide, as other fonts are.
-fn dot(size: f64) -> (i32, i32) {
-    let exact = (size / f64::from(DOTS)).max(1.0);
-    (exact.floor() as i32, exact.round() as i32)
-}
-
-/// Width and height of a text in pixels.
-fn extent(text: &str, size: f64) -> (i32, i32) {
-    let (wide, high) = dot(size);
-    (text.chars().count() as i32 * DOTS * wide, DOTS * high)
-}
-
-fn glyph(letter: char) -> [u8; 8] {
-    let code = letter as usize;
-    match code {
-        0..0x80 => BASIC_LEGACY[code],
-        0xa0..0x100 => LATIN_LEGACY[code - 0xa0],
-        _ => UNKNOWN,
-    }
-}
-
-impl DrawingBackend for &mut Canvas {
-    type ErrorType = Infallible;
-
-    fn get_size(&self) -> (u32, u32) {
-        self.size
+    /// Draws a line.
+    pub fn line(&mut self, from: Place, to: Place, width: f64, ink: Ink) {
+        self.shapes.push(Shape::Line { from, to, width, ink });
     }
 
-    fn ensure_prepared(&mut self) -> Drawn {
-        Ok(())
+    /// Fills a box.
+    pub fn area(&mut self, corner: Place, size: (f64, f64), ink: Ink) {
+        self.shapes.push(Shape::Area { corner, size, ink });
     }
 
-    fn present(&mut self) -> Drawn {
-        Ok(())
+    /// Writes words.
+    pub fn words(&mut self, at: Place, text: &str, align: Align, size: Size, ink: Ink) {
+        self.shapes.push(Shape::Words { at, text: text.to_owned(), align, size, ink });
     }
 
-    fn draw_pixel(&mut self, (x, y): BackendCoord, color: BackendColor) -> Drawn {
-        let (Ok(x), Ok(y)) = (u32::try_from(x), u32::try_from(y)) else { return Ok(()) };
-        if x < self.size.0 && y < self.size.1 {
-            let at = 3 * (y as usize * self.size.0 as usize + x as usize);
-            let (red, green, blue) = color.rgb;
-            for (pixel, new) in self.pixels[at..at + 3].iter_mut().zip([red, green, blue]) {
-                let mixed = f64::from(*pixel) * (1.0 - color.alpha) + f64::from(new) * color.alpha;
-                *pixel = mixed.round() as u8;
-            }
-        }
-        Ok(())
-    }
-
-    fn draw_text<S: BackendTextStyle>(
-        &mut self,
-        text: &str,
-        style: &S,
-        (x, y): BackendCoord,
-    ) -> Drawn {
-        let (wide, high) = dot(style.size());
-        let (width, height) = extent(text, style.size());
-        let anchor = style.anchor();
-        let left = match anchor.h_pos {
-            HPos::Left => 0,
-            HPos::Center => -width / 2,
-            HPos::Right => -width,
+    /// Puts the mark of a series: its colour, a form that goes with every other colour before it
+    /// comes again, and the smaller the later, so that marks on each other are all seen.
+    pub fn mark(&mut self, (x, y): Place, series: usize) {
+        /// Corners, and the direction of the first, in turns.
+        const FORMS: [(usize, f64); 5] = [(24, 0.0), (4, 0.125), (3, 0.25), (4, 0.0), (3, 0.75)];
+        let (corners, first) = FORMS[series % FORMS.len()];
+        let radius = (8.5 - 0.7 * series as f64).max(3.5);
+        let outline = |radius: f64| -> Vec<Place> {
+            let angle = |k| std::f64::consts::TAU * (first + k as f64 / corners as f64);
+            let corner = |k| (x + radius * f64::cos(angle(k)), y + radius * f64::sin(angle(k)));
+            (0..corners).map(corner).collect()
         };
-        let top = match anchor.v_pos {
-            VPos::Top => 0,
-            VPos::Center => -height / 2,
-            VPos::Bottom => -height,
-        };
-        for (number, letter) in text.chars().enumerate() {
-            for (row, bits) in glyph(letter).into_iter().enumerate() {
-                for column in (0..DOTS).filter(|column| bits >> column & 1 == 1) {
-                    let u = left + (number as i32 * DOTS + column) * wide;
-                    let v = top + row as i32 * high;
-                    for (du, dv) in (0..wide * high).map(|i| (i % wide, i / wide)) {
-                        let (dx, dy) = style.transform().transform(u + du, v + dv);
-                        self.draw_pixel((x + dx, y + dy), style.color())?;
-                    }
-                }
-            }
-        }
-        Ok(())
+        // A white rim keeps marks apart that lie on each other.
+        self.shapes.push(Shape::Mark { outline: outline(radius + 1.2), ink: [0xff; 3] });
+        self.shapes.push(Shape::Mark { outline: outline(radius), ink: colour(series) });
     }
+}
 
-    fn estimate_text_size<S: BackendTextStyle>(
-        &self,
-        text: &str,
-        style: &S,
-    ) -> Result<(u32, u32), DrawingErrorKind<Infallible>> {
-        let (width, height) = extent(text, style.size());
-        Ok((width as u32, height as u32))
+impl Size {
+    /// Height of a line of words.
+    pub fn height(self) -> f64 {
+        match self {
+            Self::Small => 12.0,
+            Self::Large => 16.0,
+        }
     }
 }

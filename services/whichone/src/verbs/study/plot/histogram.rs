@@ -1,8 +1,8 @@
 //! How many questions are asked: a small histogram for each policy and kind of people.
 
+use plot::{Align, BLACK, Canvas, FAINT, GREY, LETTER_WIDTH, Place, Size, colour};
 use study::{HISTOGRAM, Tally};
 
-use super::canvas::{Align, BLACK, Canvas, FAINT, GREY, Place, Size, colour};
 use super::distinct;
 use crate::verbs::study::design::Row;
 
@@ -10,8 +10,6 @@ use crate::verbs::study::design::Row;
 const PANEL: (f64, f64, f64) = (250.0, 60.0, 24.0);
 /// Right of the last panel, above the first, and below the last.
 const MARGIN: (f64, f64, f64) = (24.0, 80.0, 56.0);
-/// Width of a letter of the policies' names.
-const LETTER: f64 = 7.2;
 /// Share of its place that a bar fills.
 const BAR: f64 = 0.8;
 
@@ -20,7 +18,7 @@ pub(super) fn draw(results: &[(&Row, Tally)]) -> Canvas {
     let policies = distinct(results.iter().map(|(row, _)| row.policy.clone()));
     let people = distinct(results.iter().map(|(row, _)| row.people.name().to_owned()));
     let longest = policies.iter().map(|name| name.chars().count()).max().unwrap_or(0);
-    let left = 40.0 + LETTER * longest as f64;
+    let left = 40.0 + LETTER_WIDTH * longest as f64;
     let width = left + people.len() as f64 * (PANEL.0 + PANEL.2) + MARGIN.0;
     let bottom = MARGIN.1 + policies.len() as f64 * (PANEL.1 + PANEL.2);
     let mut canvas = Canvas::new(width.max(520.0), bottom + MARGIN.2);

@@ -1,14 +1,9 @@
 //! The study as pictures, each as SVG and as PNG.
-//!
-//! Both are drawn from one list of shapes ([`canvas`]), without any font of the machine's: the
-//! same study gives the same bytes everywhere.
 
-mod axis;
-mod canvas;
 mod histogram;
-mod png;
 mod scatter;
-mod svg;
+
+use runtime::exit::Exit;
 
 use study::Tally;
 
@@ -37,8 +32,10 @@ pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, Troubl
     }
     let mut pictures = Vec::new();
     for (name, canvas) in canvases {
-        pictures.push((format!("{name}.svg"), svg::write(&canvas).into_bytes()));
-        pictures.push((format!("{name}.png"), png::write(&canvas)?));
+        pictures.push((format!("{name}.svg"), plot::svg(&canvas).into_bytes()));
+        let png = plot::png(&canvas)
+            .map_err(|error| Trouble::new(Exit::Storage, format!("{name}.png: {error}")))?;
+        pictures.push((format!("{name}.png"), png));
     }
     Ok(pictures)
 }

@@ -1,9 +1,8 @@
 //! Success against seconds, with the intervals of both; a panel for each kind of people.
 
+use plot::{Align, BLACK, Canvas, FAINT, GREY, LETTER_WIDTH, Linear, Missing, Place, Size, colour};
 use study::{Interval, Mean, Tally};
 
-use super::axis::{Linear, Missing};
-use super::canvas::{Align, BLACK, Canvas, FAINT, GREY, Place, Size, colour};
 use super::distinct;
 use crate::verbs::study::design::Row;
 
@@ -15,8 +14,6 @@ const MARGIN: (f64, f64, f64) = (86.0, 74.0, 84.0);
 const LEGEND_LINE: f64 = 22.0;
 /// What is to be known for reading it.
 const NOTE: &str = "Lines: 95 % intervals. Success lies by the logarithm of the failures.";
-/// Width of a letter of the legend.
-const LETTER: f64 = 7.2;
 
 /// A point of the picture.
 struct Point {
@@ -51,7 +48,7 @@ pub(super) fn draw(
     let longest = names.iter().map(|name| name.chars().count()).max().unwrap_or(0);
     let height = MARGIN.1 + PANEL.1 + MARGIN.2;
     let height = height.max(MARGIN.1 + names.len() as f64 * LEGEND_LINE + MARGIN.2);
-    let mut canvas = Canvas::new(right + 44.0 + LETTER * longest as f64, height);
+    let mut canvas = Canvas::new(right + 44.0 + LETTER_WIDTH * longest as f64, height);
     canvas.words((MARGIN.0, 24.0), title, Align::Left, Size::Large, BLACK);
     let note = (MARGIN.0, height - 12.0);
     canvas.words(note, NOTE, Align::Left, Size::Small, GREY);

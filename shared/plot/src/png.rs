@@ -1,11 +1,10 @@
 //! A canvas as PNG, at two pixels a unit.
 
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
-use runtime::exit::Exit;
 use tiny_skia::{Color, FillRule, Paint, PathBuilder, Pixmap, PixmapMut, Stroke, Transform};
 
-use super::canvas::{Align, Canvas, Ink, Place, Shape, Size};
-use crate::trouble::Trouble;
+use crate::PlotError;
+use crate::canvas::{Align, Canvas, Ink, Place, Shape, Size};
 
 /// Pixels a unit.
 const SCALE: f64 = 2.0;
@@ -14,18 +13,16 @@ const SCALE: f64 = 2.0;
 ///
 /// # Errors
 /// It is too large for an image, or cannot be encoded.
-pub(super) fn write(canvas: &Canvas) -> Result<Vec<u8>, Trouble> {
-    let failed =
-        |why: String| Trouble::new(Exit::Storage, format!("a plot cannot be drawn: {why}"));
+pub fn png(canvas: &Canvas) -> Result<Vec<u8>, PlotError> {
     let (width, height) = canvas.size;
     let pixels = |length: f64| (SCALE * length).ceil() as u32;
     let mut pixmap = Pixmap::new(pixels(width), pixels(height))
-        .ok_or_else(|| failed(format!("{width} by {height} is no size of an image")))?;
+        .ok_or_else(|| PlotError(format!("{width} by {height} is no size of an image")))?;
     pixmap.fill(Color::WHITE);
     for shape in &canvas.shapes {
         draw(shape, &mut pixmap.as_mut());
     }
-    pixmap.encode_png().map_err(|error| failed(error.to_string()))
+    pixmap.encode_png().map_err(|error| PlotError(error.to_string()))
 }
 
 fn draw(shape: &Shape, pixmap: &mut PixmapMut<'_>) {

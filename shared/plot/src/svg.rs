@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use super::canvas::{Align, Canvas, Ink, Place, Shape};
+use crate::canvas::{Align, Canvas, Ink, Place, Shape};
 
 /// Height of the letters' em in that of the line.
 const EM: f64 = 0.92;
 
 /// The picture as SVG text.
-pub(super) fn write(canvas: &Canvas) -> String {
+pub fn svg(canvas: &Canvas) -> String {
     let (width, height) = canvas.size;
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" \
