@@ -30,7 +30,7 @@ pub(crate) struct Effort {
 
 impl Effort {
     pub(crate) const FULL: Self =
-        Self { repetitions: 200, patience_s: 2.0, budget_s: 60.0, cut: 1e-5, quick: false };
+        Self { repetitions: 200, patience_s: 2.0, budget_s: 60.0, cut: 1e-7, quick: false };
     pub(crate) const QUICK: Self =
         Self { repetitions: 20, patience_s: 0.2, budget_s: 2.0, cut: 1e-4, quick: true };
 }

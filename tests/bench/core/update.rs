@@ -8,6 +8,8 @@ use scene::{AttributeId, Question, Reading, Response, ValueId};
 
 /// Objects; the largest is the most that a scene can hold (its indices have 16 bits).
 const OBJECTS: [usize; 4] = [6, 1_000, 10_000, 65_535];
+/// Hypotheses beyond any scene, which evidence of another kind can be about.
+const HYPOTHESES: [usize; 2] = [100_000, 1_000_000];
 /// Passes over small arrays that make one sample, so that the clock's own cost does not count.
 const PASSES_BYTES: usize = 1 << 20;
 
@@ -16,7 +18,7 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
         let model = random(objects, 3);
         let peer = format!("plain pass, {objects} objects");
         let note = "reads the column (2 B), reads and writes the array (8 B)";
-        report.add(&peer, "µs", &plain(&model, effort), note);
+        report.add(&peer, "µs", &plain(model.column(AttributeId(1)), effort), note);
         let samples = answers(&model, effort);
         let bytes = objects as f64 * 18.0;
         let rate = bytes / 1e3 / crate::report::percentile(&samples, 0.5);
@@ -29,6 +31,26 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
             &note,
         );
     }
+    HYPOTHESES.into_iter().for_each(|hypotheses| weighing(report, hypotheses, effort));
+}
+
+/// Evidence given as a likelihood per hypothesis, which has no scene's limits.
+fn weighing(report: &mut Report, hypotheses: usize, effort: Effort) {
+    let likelihood: Vec<f64> = (0..hypotheses).map(|i| -((i % 7) as f64) / 1e3).collect();
+    let mut array = vec![0.0; hypotheses];
+    let peer = format!("plain pass, {hypotheses} hypotheses");
+    let samples = per_pass(hypotheses, effort, |_| {
+        array.iter_mut().zip(&likelihood).for_each(|(entry, more)| *entry += more);
+        std::hint::black_box(&array);
+    });
+    report.add(&peer, "µs", &samples, "reads one array, reads and writes another (8 B each)");
+    let mut belief = Belief::uniform(hypotheses);
+    let samples = per_pass(hypotheses, effort, |_| {
+        belief.weigh(&likelihood);
+        std::hint::black_box(&belief);
+    });
+    let note = "a likelihood for each; one pass more finds the greatest";
+    report.add_beside(&format!("weighing, {hypotheses} hypotheses"), "µs", &samples, &peer, note);
 }
 
 /// Updates with yes and no in turn, µs each.
@@ -44,8 +66,7 @@ pub(super) fn answers(model: &Model, effort: Effort) -> Vec<f64> {
 }
 
 /// The same traffic without the meaning, µs a pass.
-fn plain(model: &Model, effort: Effort) -> Vec<f64> {
-    let column = model.column(AttributeId(1));
+fn plain(column: &[u16], effort: Effort) -> Vec<f64> {
     let mut array = vec![0.0_f64; column.len()];
     per_pass(column.len(), effort, |pass| {
         let step = if pass.is_multiple_of(2) { 1.0 } else { -1.0 };
