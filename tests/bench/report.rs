@@ -29,13 +29,19 @@ pub(crate) struct Table {
 }
 
 /// Lines of cost in microseconds over one thing that grows.
-#[derive(Debug)]
+#[derive(Debug, Serialize)]
 pub(crate) struct Plot {
     /// Name of its files.
     pub(crate) file: &'static str,
     /// What grows.
     pub(crate) over: &'static str,
+    #[serde(serialize_with = "by_name")]
     pub(crate) series: Vec<Series>,
+}
+
+/// The points of each line under its name.
+fn by_name<S: serde::Serializer>(series: &[Series], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(series.iter().map(|line| (&line.name, &line.points)))
 }
 
 /// All figures of a run.
@@ -43,7 +49,6 @@ pub(crate) struct Plot {
 pub(crate) struct Report {
     figures: Vec<Figure>,
     pub(crate) tables: Vec<Table>,
-    #[serde(skip)]
     pub(crate) plots: Vec<Plot>,
 }
 
