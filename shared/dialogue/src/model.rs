@@ -1,5 +1,7 @@
 //! The observation model's tables for one scene.
 
+use std::sync::Arc;
+
 use scene::{AttributeId, ObjectId, Question, Scene, ValueId, WordId};
 
 use crate::Params;
@@ -13,6 +15,12 @@ pub struct Model {
     params: Params,
     objects: usize,
     absent: bool,
+    /// Shared by the models of one scene: only parameters differ from person to person.
+    tables: Arc<Tables>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Tables {
     columns: Vec<Column>,
     words: Vec<Word>,
     vocabulary: Vocabulary,
@@ -72,9 +80,9 @@ impl Model {
                 .map(|i| (scene.vocabulary_len(ObjectId::from(i)) as f64 + smoothing).ln())
                 .collect(),
         );
-        let mut model = Self { params, objects, absent: false, columns, words, vocabulary };
-        model.find_what_splits();
-        model
+        let mut tables = Tables { columns, words, vocabulary };
+        tables.find_what_splits();
+        Self { params, objects, absent: false, tables: Arc::new(tables) }
     }
 
     /// The model with one hypothesis more, after the objects: that the wanted object is not here.
@@ -87,34 +95,10 @@ impl Model {
     pub fn with_absent(mut self) -> Self {
         if !self.absent {
             self.absent = true;
-            self.columns.iter_mut().for_each(|column| column.values.push(Self::UNKNOWN));
-            let smoothing = self.params.alpha * self.words.len() as f64;
-            let Vocabulary { least, above } = &self.vocabulary;
-            let objects = above.iter().map(|log| log + least);
-            self.vocabulary = Vocabulary::new(objects.chain([smoothing.ln()]).collect());
-            self.find_what_splits();
+            let smoothing = self.params.alpha * self.tables.words.len() as f64;
+            Arc::make_mut(&mut self.tables).add_unknown(smoothing.ln());
         }
         self
-    }
-
-    fn find_what_splits(&mut self) {
-        let hypotheses = self.hypotheses();
-        for column in &mut self.columns {
-            let mut count = vec![0; column.words.len()];
-            for &value in column.values.iter().filter(|value| **value < Self::UNKNOWN) {
-                count[usize::from(value)] += 1;
-            }
-            let unsure = self.absent && hypotheses > 1;
-            column.splits = count.iter().map(|&n| unsure || (n > 0 && n < hypotheses)).collect();
-        }
-        let vocabulary = self.vocabulary.above.iter().any(|above| *above > 0.0);
-        for w in 0..self.words.len() {
-            let mut has =
-                (0..hypotheses).map(|i| self.has_word(ObjectId::from(i), WordId::from(w)));
-            let first = has.next();
-            let splits = vocabulary || has.any(|other| Some(other) != first);
-            self.words[w].splits = splits;
-        }
     }
 
     /// The same scene with other parameters.
@@ -152,33 +136,33 @@ impl Model {
 
     /// `|K|`: how many attributes there are.
     pub fn attributes(&self) -> usize {
-        self.columns.len()
+        self.tables.columns.len()
     }
 
     /// `|V_k|`: how many values the attribute can have, whether or not an object has them.
     pub fn values(&self, k: AttributeId) -> usize {
-        self.columns[k.index()].words.len()
+        self.tables.columns[k.index()].words.len()
     }
 
     /// The value index of every hypothesis for attribute `k`, or [`Model::LACKS`], or
     /// [`Model::UNKNOWN`].
     pub fn column(&self, k: AttributeId) -> &[u16] {
-        &self.columns[k.index()].values
+        &self.tables.columns[k.index()].values
     }
 
     /// The word that value `v` of attribute `k` is.
     pub fn word(&self, k: AttributeId, v: ValueId) -> WordId {
-        self.columns[k.index()].words[v.index()]
+        self.tables.columns[k.index()].words[v.index()]
     }
 
     /// The attributes and values that a word stands for: one, or more where attributes share it.
     pub fn meanings(&self, word: WordId) -> &[(AttributeId, ValueId)] {
-        &self.words[word.index()].meanings
+        &self.tables.words[word.index()].meanings
     }
 
     /// Whether "is its k v?" can be answered differently about different hypotheses.
     pub(crate) fn splits(&self, k: AttributeId, v: ValueId) -> bool {
-        self.columns[k.index()].splits[v.index()]
+        self.tables.columns[k.index()].splits[v.index()]
     }
 
     /// Probability that "is its k v?" is answered with yes about something unknown, given an
@@ -208,9 +192,9 @@ impl Model {
         match question {
             Question::None => true,
             Question::Point(i) => i.index() < self.objects,
-            Question::Which(k) => k.index() < self.columns.len(),
+            Question::Which(k) => k.index() < self.tables.columns.len(),
             Question::Attribute(k, v) => {
-                k.index() < self.columns.len() && v.index() < self.values(k)
+                k.index() < self.tables.columns.len() && v.index() < self.values(k)
             }
         }
     }
@@ -220,7 +204,7 @@ impl Model {
         let Params { p_l, epsilon, alpha } = self.params;
         [p_l, epsilon, alpha].into_iter().for_each(|parameter| tell(parameter.to_bits()));
         tell(self.hypotheses() as u64);
-        for column in &self.columns {
+        for column in &self.tables.columns {
             tell(column.words.len() as u64);
             column.values.iter().for_each(|value| tell(u64::from(*value)));
             column.words.iter().for_each(|word| tell(word.index() as u64));
@@ -232,12 +216,12 @@ impl Model {
     pub(crate) fn add_log_word(&self, word: WordId, out: &mut [f64]) -> f64 {
         let own = (1.0 + self.params.alpha).ln();
         let other = self.params.alpha.ln() - own;
-        let constant = own - self.vocabulary.least;
-        if !self.words[word.index()].splits {
+        let constant = own - self.tables.vocabulary.least;
+        if !self.tables.words[word.index()].splits {
             let has = self.has_word(ObjectId(0), word);
             return if has { constant } else { constant + other };
         }
-        let entries = out.iter_mut().zip(&self.vocabulary.above);
+        let entries = out.iter_mut().zip(&self.tables.vocabulary.above);
         match self.meanings(word) {
             &[(k, v)] => {
                 for ((entry, above), &value) in entries.zip(self.column(k)) {
@@ -253,6 +237,37 @@ impl Model {
             }
         }
         constant
+    }
+}
+
+impl Tables {
+    /// Adds a hypothesis that has no words and of which no value is known.
+    fn add_unknown(&mut self, log_vocabulary: f64) {
+        self.columns.iter_mut().for_each(|column| column.values.push(Model::UNKNOWN));
+        let Vocabulary { least, above } = &self.vocabulary;
+        let known = above.iter().map(|log| log + least);
+        self.vocabulary = Vocabulary::new(known.chain([log_vocabulary]).collect());
+        self.find_what_splits();
+    }
+
+    fn find_what_splits(&mut self) {
+        for column in &mut self.columns {
+            let unsure = column.values.len() > 1 && column.values.contains(&Model::UNKNOWN);
+            let mut count = vec![0; column.words.len()];
+            for &value in column.values.iter().filter(|value| **value < Model::UNKNOWN) {
+                count[usize::from(value)] += 1;
+            }
+            let some = |n: usize| n > 0 && n < column.values.len();
+            column.splits = count.into_iter().map(|n| unsure || some(n)).collect();
+        }
+        let hypotheses = self.vocabulary.above.len();
+        let vocabulary = self.vocabulary.above.iter().any(|above| *above > 0.0);
+        for word in &mut self.words {
+            let has = |i: usize| {
+                (word.meanings.iter()).any(|(k, v)| self.columns[k.index()].values[i] == v.0)
+            };
+            word.splits = vocabulary || (1..hypotheses).any(|i| has(i) != has(0));
+        }
     }
 }
 

@@ -54,6 +54,11 @@ pub trait Planner {
         self.decide(problem, &joint.belief(), step)
     }
 
+    /// Whether it makes use of what is believed about the person.
+    fn minds_the_person(&self) -> bool {
+        false
+    }
+
     /// Works ahead from a belief that dialogues are likely to begin with, if that is any use and
     /// takes well under a second. It changes no decision.
     fn prepare(&mut self, _problem: &DecisionProblem<'_>, _belief: &Belief) {}

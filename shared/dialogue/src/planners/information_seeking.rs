@@ -53,6 +53,10 @@ impl Planner for InformationSeeking {
         let expected_questions = best.map_or(0.0, |_| plain.expected_questions.max(1.0));
         Decision { action, value, alternatives, expected_questions, bounds: None }
     }
+
+    fn minds_the_person(&self) -> bool {
+        true
+    }
 }
 
 /// The model of people with what is expected of this one.
