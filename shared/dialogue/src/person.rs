@@ -33,6 +33,8 @@ pub struct Person {
 
 /// How many questions the configured `p_l` is worth.
 const CONFIDENCE: f64 = 20.0;
+/// Units of a key in a probability of 1, and in a question that was answered.
+const KEY_UNITS: f64 = 1e9;
 /// How fast the prior falls with the distance of an error rate from the configured one, per nat:
 /// at 1.5 somebody who errs ten times as often is thirty times less likely.
 const STEEPNESS: f64 = 1.5;
@@ -73,6 +75,22 @@ impl Person {
             self.answered += 1.0;
         } else {
             self.unanswered += 1.0;
+        }
+    }
+
+    /// Error rates and counts in whole units; how fast somebody reacts changes no decision.
+    fn key_into(&self, key: &mut Vec<i64>) {
+        key.clear();
+        key.extend(self.error_probabilities().iter().map(|p| (p * KEY_UNITS).round() as i64));
+        key.extend([self.answered, self.unanswered].map(|count| (count * KEY_UNITS) as i64));
+    }
+
+    /// The person with error rates in whole units.
+    fn rounded(&self) -> Self {
+        let log = |p: f64| ((p * KEY_UNITS).round().max(0.1) / KEY_UNITS).ln();
+        Self {
+            log_errors: self.error_probabilities().into_iter().map(log).collect(),
+            ..self.clone()
         }
     }
 

@@ -1,6 +1,6 @@
 //! One interaction, from the request to the hand-over, as the policy's service conducts it.
 
-use dialogue::{Action, Belief, Costs, DecisionProblem, Rng};
+use dialogue::{Action, Costs, DecisionProblem, Posterior, Rng};
 use language::Reader;
 use scene::{Intent, ObjectId, Question, Reading, Response, Scene};
 
@@ -86,7 +86,7 @@ pub struct Outcome {
 /// Conducts one interaction. `clock` draws durations alone.
 pub fn interact(room: &Room<'_>, memo: &mut Memo, user: &mut dyn User, clock: &mut Rng) -> Outcome {
     let request = user.request();
-    let mut talk = Talk::new(room, clock);
+    let mut talk = Talk::new(room, memo.beginning(&room.problem), clock);
     if room.request && matches!(request.said, Said::Words(_)) {
         talk.hear(&request.said, Question::None);
     }
@@ -95,7 +95,7 @@ pub fn interact(room: &Room<'_>, memo: &mut Memo, user: &mut dyn User, clock: &m
             Action::Pick(object) => return talk.pick(object, user.wanted()),
             Action::Wait => talk.wait(user),
             Action::Ask(_) if talk.questions >= room.patience.questions_max => {
-                let likeliest = talk.belief.most_likely();
+                let likeliest = talk.posterior.belief().most_likely();
                 return talk.pick(likeliest, user.wanted());
             }
             Action::Ask(question) => talk.ask(question, user),
@@ -123,7 +123,8 @@ enum Next {
 struct Talk<'r, 'a> {
     room: &'r Room<'a>,
     clock: &'r mut Rng,
-    belief: Belief,
+    beginning: Posterior,
+    posterior: Posterior,
     aimed: Option<ObjectId>,
     step: u32,
     questions: u32,
@@ -134,12 +135,12 @@ struct Talk<'r, 'a> {
 }
 
 impl<'r, 'a> Talk<'r, 'a> {
-    fn new(room: &'r Room<'a>, clock: &'r mut Rng) -> Self {
-        let belief = Belief::uniform(room.problem.model.objects());
+    fn new(room: &'r Room<'a>, beginning: Posterior, clock: &'r mut Rng) -> Self {
         Self {
             room,
             clock,
-            belief,
+            posterior: beginning.clone(),
+            beginning,
             aimed: None,
             step: 0,
             questions: 0,
@@ -155,7 +156,7 @@ impl<'r, 'a> Talk<'r, 'a> {
     }
 
     fn decide(&mut self, memo: &mut Memo) -> Choice {
-        let choice = memo.choose(&self.room.problem, &self.belief, self.step);
+        let choice = memo.choose(&self.room.problem, &self.posterior, self.step);
         self.step += 1;
         choice
     }
@@ -173,7 +174,9 @@ impl<'r, 'a> Talk<'r, 'a> {
         loop {
             self.present(question);
             let turn = user.answer(question);
-            match self.listen(&turn, question) {
+            let next = self.listen(&turn, question);
+            self.posterior.see_answer(next != Next::Nothing);
+            match next {
                 Next::Decide => return None,
                 Next::Cancel => return Some(End::Cancelled),
                 Next::Repeat => silences = 0,
@@ -239,7 +242,8 @@ impl<'r, 'a> Talk<'r, 'a> {
             Said::Nothing => return Next::Nothing,
             Said::Answer(answer) => {
                 self.answers += 1;
-                self.belief.update(model, question, &answer.reading(model));
+                let heard = [(1.0, question, answer.reading(model))];
+                self.posterior.update_mixture(model, &heard);
                 return Next::Decide;
             }
             Said::Words(words) => words
@@ -253,11 +257,11 @@ impl<'r, 'a> Talk<'r, 'a> {
         match likeliest.map_or(Intent::None, |(.., reading)| reading.intent) {
             Intent::Inform => {
                 self.answers += u32::from(likeliest.is_some_and(|(.., r)| says_something(r)));
-                self.belief.update_mixture(model, &hypotheses);
+                self.posterior.update_mixture(model, &hypotheses);
                 Next::Decide
             }
             Intent::StartOver => {
-                self.belief = Belief::uniform(model.objects());
+                self.posterior = self.beginning.clone();
                 Next::Decide
             }
             Intent::Repeat | Intent::AskBack | Intent::Stop => Next::Repeat,

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use dialogue::{Action, Belief, DecisionProblem, Planner, Step};
+use dialogue::person::Person;
+use dialogue::{Action, Belief, DecisionProblem, Planner, Posterior, Step};
 use scene::Question;
 
 /// What a policy decided, as far as an interaction needs it.
@@ -16,7 +17,7 @@ pub struct Choice {
 
 /// A planner that is asked once per belief.
 ///
-/// The planner decides on the belief that stands for all of one key ([`Belief::from_key`]), so a
+/// The planner decides on the belief that stands for all of one key ([`Posterior::rounded`]), so a
 /// choice is a function of the key, whoever asks first and whatever was forgotten meanwhile. It is
 /// asked once for the first step and once for all later ones, as [`dialogue::evaluate`] does: one
 /// that draws random numbers is studied for these draws.
@@ -48,18 +49,30 @@ impl Memo {
         self.decisions
     }
 
-    /// What the policy does at `belief`; `step` counts its decisions in the interaction from 0. All
-    /// calls must be about one problem.
-    pub fn choose(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: u32) -> Choice {
-        belief.key_into(&mut self.key);
+    /// What is believed before anything is said, by a policy that knows nobody.
+    pub fn beginning(&self, problem: &DecisionProblem<'_>) -> Posterior {
+        let person = || Person::new(problem.model.params());
+        let prior = Belief::uniform(problem.model.hypotheses());
+        Posterior::new(prior, self.planner.minds_the_person().then(person))
+    }
+
+    /// What the policy does about `posterior`; `step` counts its decisions in the interaction from
+    /// 0. All calls must be about one problem.
+    pub fn choose(
+        &mut self,
+        problem: &DecisionProblem<'_>,
+        posterior: &Posterior,
+        step: u32,
+    ) -> Choice {
+        posterior.key_into(&mut self.key);
         let known = if step == 0 { &mut self.first } else { &mut self.later };
         if let Some(choice) = known.get(&self.key) {
             return *choice;
         }
-        let stands_for = Belief::from_key(&self.key);
+        let stands_for = posterior.rounded();
         let step = Step { interaction: 0, step: step.min(1) };
-        let belief = stands_for.as_ref().unwrap_or(belief);
-        let decision = self.planner.decide(problem, belief, step);
+        let posterior = stands_for.as_ref().unwrap_or(posterior);
+        let decision = posterior.decide(&mut *self.planner, problem, step);
         self.decisions += 1;
         let instead = decision.alternatives.iter().find_map(|(action, _)| match action {
             Action::Ask(question) => Some(*question),
@@ -87,17 +100,15 @@ mod tests {
         let problem = yes_no(&model);
         for name in registry::names() {
             let mut memo = Memo::new(registry::planner(name).unwrap());
-            let belief = Belief::uniform(6);
-            let choice = memo.choose(&problem, &belief, 1);
-            assert_eq!(memo.choose(&problem, &belief, 7), choice, "{name}");
+            let beginning = memo.beginning(&problem);
+            let choice = memo.choose(&problem, &beginning, 1);
+            assert_eq!(memo.choose(&problem, &beginning, 7), choice, "{name}");
             assert_eq!(memo.decisions(), 1);
-            let direct = registry::planner(name).unwrap().decide(
-                &problem,
-                &Belief::from_key(&belief.key()).unwrap(),
-                Step { interaction: 0, step: 1 },
-            );
+            let mut planner = registry::planner(name).unwrap();
+            let step = Step { interaction: 0, step: 1 };
+            let direct = beginning.rounded().unwrap().decide(&mut *planner, &problem, step);
             assert_eq!(choice.action, direct.action, "{name}");
-            memo.choose(&problem, &belief, 0);
+            memo.choose(&problem, &beginning, 0);
             assert_eq!(memo.decisions(), 2);
         }
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ERROR_RATES, Person};
 use crate::observation::log_mixture;
-use crate::{Answer, Belief, Model, Params};
+use crate::{Answer, Belief, BeliefError, Model, Params};
 
 /// A belief over objects for every error rate, and how probable each error rate is.
 ///
@@ -87,6 +87,24 @@ impl Joint {
                     .sum::<f64>();
         }
         sum
+    }
+
+    /// Numbers that are equal for what differs by rounding alone, and by nothing that a planner
+    /// minds: the person's error rates and counts, then the belief under each error rate.
+    pub fn key_into(&self, key: &mut Vec<i64>) {
+        self.person.key_into(key);
+        for belief in &self.beliefs {
+            key.extend(belief.key());
+        }
+    }
+
+    /// What stands for all that have this one's key.
+    ///
+    /// # Errors
+    /// Never for a key of its own.
+    pub fn rounded(&self) -> Result<Self, BeliefError> {
+        let beliefs = self.beliefs.iter().map(|belief| Belief::from_key(&belief.key()));
+        Ok(Self { person: self.person.rounded(), beliefs: beliefs.collect::<Result<_, _>>()? })
     }
 
     fn take(&mut self, j: usize, log_likelihood: &[f64]) {

@@ -1,6 +1,6 @@
 //! The robot's side of a dialogue in real time.
 
-use dialogue::{Action, Addressed, Answer, Asked, Belief, ReactionTime, Rng};
+use dialogue::{Action, Addressed, Answer, Asked, Posterior, ReactionTime, Rng};
 use scene::Question;
 
 use super::person::{Person, Talker, Utterance};
@@ -29,7 +29,7 @@ pub(super) fn talk(
         reaction,
         now_s: person.request_s(rng),
         person,
-        belief: Belief::uniform(room.problem.model.objects()),
+        posterior: memo.beginning(&room.problem),
         asked: Vec::new(),
         step: 0,
         heard: 0,
@@ -49,6 +49,7 @@ pub(super) fn talk(
             Action::Ask(question) => {
                 talk.ask(question, rng);
                 answered = talk.listen();
+                talk.posterior.see_answer(answered);
             }
         }
     }
@@ -60,7 +61,7 @@ struct Talk<'a> {
     reaction: ReactionTime,
     person: Person<'a>,
     now_s: f64,
-    belief: Belief,
+    posterior: Posterior,
     asked: Vec<Asked>,
     step: u32,
     heard: u32,
@@ -95,12 +96,12 @@ impl Talk<'_> {
     }
 
     fn decide(&mut self, memo: &mut Memo, answered: bool) -> Action {
-        let choice = memo.choose(&self.room.problem, &self.belief, self.step);
+        let choice = memo.choose(&self.room.problem, &self.posterior, self.step);
         self.step += 1;
         let last = self.asked.last().map(|asked| asked.question);
         match choice.action {
             Action::Ask(_) if self.asked.len() >= self.room.patience.questions_max as usize => {
-                Action::Pick(self.belief.most_likely())
+                Action::Pick(self.posterior.belief().most_likely())
             }
             Action::Ask(question) if !answered && !self.rules.same && last == Some(question) => {
                 Action::Ask(choice.instead.unwrap_or(question))
@@ -164,7 +165,7 @@ impl Talk<'_> {
             questions.zip(&addressed.questions).map(|(q, w)| (*w, q, reading.clone())).collect();
         heard.push((addressed.none, Question::None, reading));
         let likeliest = heard.iter().max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, q, _)| *q);
-        self.belief.update_mixture(model, &heard);
+        self.posterior.update_mixture(model, &heard);
         self.heard += 1;
         let meant = self.asked[utterance.answers].question;
         self.misplaced += u32::from(likeliest != Some(meant));

@@ -1,0 +1,155 @@
+//! What is believed in an interaction: about the wanted object alone, as in the paper, or about the
+//! person who answers as well.
+
+use scene::{Question, Reading};
+
+use crate::person::{Joint, Person};
+use crate::{Belief, BeliefError, Decision, DecisionProblem, Model, Planner, Step};
+
+/// A belief over the hypotheses, perhaps together with the person's error rate.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Posterior {
+    /// People answer as the model's parameters say.
+    Object(Belief),
+    /// How this person answers is learned meanwhile.
+    ObjectAndPerson(Joint),
+}
+
+impl Posterior {
+    /// What is believed before anything is said. The person counts only where the planner makes
+    /// use of it.
+    pub fn new(prior: Belief, person: Option<Person>) -> Self {
+        match person {
+            Some(person) => Self::ObjectAndPerson(Joint::new(prior, person)),
+            None => Self::Object(prior),
+        }
+    }
+
+    /// The belief over the hypotheses.
+    pub fn belief(&self) -> Belief {
+        match self {
+            Self::Object(belief) => belief.clone(),
+            Self::ObjectAndPerson(joint) => joint.belief(),
+        }
+    }
+
+    /// What is known about the person, where that is learned.
+    pub fn person(&self) -> Option<&Person> {
+        match self {
+            Self::Object(_) => None,
+            Self::ObjectAndPerson(joint) => Some(joint.person()),
+        }
+    }
+
+    /// Bayes' rule with what may have been heard; see [`Belief::update_mixture`].
+    ///
+    /// # Panics
+    /// As [`Belief::update_mixture`].
+    pub fn update_mixture(&mut self, model: &Model, heard: &[(f64, Question, Reading)]) {
+        match self {
+            Self::Object(belief) => belief.update_mixture(model, heard),
+            Self::ObjectAndPerson(joint) => joint.update_mixture(model, heard),
+        }
+    }
+
+    /// Bayes' rule with evidence that does not depend on how people answer; see [`Belief::weigh`].
+    ///
+    /// # Panics
+    /// As [`Belief::weigh`].
+    pub fn weigh(&mut self, log_likelihood: &[f64]) {
+        match self {
+            Self::Object(belief) => belief.weigh(log_likelihood),
+            Self::ObjectAndPerson(joint) => joint.weigh(log_likelihood),
+        }
+    }
+
+    /// Takes in that a question was answered, or was not although there was time.
+    pub fn see_answer(&mut self, answered: bool) {
+        if let Self::ObjectAndPerson(joint) = self {
+            joint.person_mut().see_answer(answered);
+        }
+    }
+
+    /// What a planner does about it.
+    ///
+    /// # Panics
+    /// As [`Planner::decide`].
+    pub fn decide(
+        &self,
+        planner: &mut dyn Planner,
+        problem: &DecisionProblem<'_>,
+        step: Step,
+    ) -> Decision {
+        match self {
+            Self::Object(belief) => planner.decide(problem, belief, step),
+            Self::ObjectAndPerson(joint) => planner.decide_with(problem, joint, step),
+        }
+    }
+
+    /// Numbers that are equal for what differs by rounding alone; see [`Belief::key`].
+    pub fn key_into(&self, key: &mut Vec<i64>) {
+        match self {
+            Self::Object(belief) => belief.key_into(key),
+            Self::ObjectAndPerson(joint) => joint.key_into(key),
+        }
+    }
+
+    /// What stands for all that have this one's key.
+    ///
+    /// # Errors
+    /// Never for a key of its own.
+    pub fn rounded(&self) -> Result<Self, BeliefError> {
+        Ok(match self {
+            Self::Object(belief) => Self::Object(Belief::from_key(&belief.key())?),
+            Self::ObjectAndPerson(joint) => Self::ObjectAndPerson(joint.rounded()?),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::bowls;
+    use crate::{Actions, Costs, Params, Rng, registry};
+    use scene::Response;
+
+    /// The same evidence in another order differs by rounding alone, and is decided about alike.
+    #[test]
+    fn what_differs_by_rounding_is_one() {
+        let model = Model::new(&bowls(), Params::default());
+        let (costs, actions) = (Costs::SECONDS, Actions::default());
+        let problem = DecisionProblem { model: &model, costs, actions };
+        let mut rng = Rng::new(31);
+        for person in [None, Some(Person::new(model.params()))] {
+            for _ in 0..10 {
+                let mut evidence: Vec<_> = (0..5)
+                    .map(|_| {
+                        let question = Question::Point(rng.below(6).into());
+                        let response = [Response::Yes, Response::No][rng.below(2)];
+                        (1.0, question, Reading { response, ..Reading::default() })
+                    })
+                    .collect();
+                let fold = |evidence: &[(f64, Question, Reading)]| {
+                    let mut posterior = Posterior::new(Belief::uniform(6), person.clone());
+                    posterior.see_answer(false);
+                    for heard in evidence {
+                        posterior.see_answer(true);
+                        posterior.update_mixture(&model, std::slice::from_ref(heard));
+                    }
+                    let mut key = Vec::new();
+                    posterior.key_into(&mut key);
+                    (key, posterior)
+                };
+                let (key, posterior) = fold(&evidence);
+                evidence.reverse();
+                let (other_key, other) = fold(&evidence);
+                assert_eq!(key, other_key);
+                let rounded = posterior.rounded().unwrap();
+                assert_eq!(rounded, other.rounded().unwrap());
+                let mut planner = registry::planner("information-seeking").unwrap();
+                let action = rounded.decide(&mut *planner, &problem, Step::default()).action;
+                assert!(actions.allow(action));
+            }
+        }
+    }
+}
