@@ -84,7 +84,12 @@ pub struct Outcome {
 }
 
 /// Conducts one interaction. `clock` draws durations alone.
-pub fn interact(room: &Room<'_>, memo: &mut Memo, user: &mut dyn User, clock: &mut Rng) -> Outcome {
+pub fn interact(
+    room: &Room<'_>,
+    memo: &mut Memo<'_>,
+    user: &mut dyn User,
+    clock: &mut Rng,
+) -> Outcome {
     let request = user.request();
     let mut talk = Talk::new(room, memo.beginning(&room.problem), clock);
     if room.request && matches!(request.said, Said::Words(_)) {
@@ -155,7 +160,7 @@ impl<'r, 'a> Talk<'r, 'a> {
         self.room.problem.costs
     }
 
-    fn decide(&mut self, memo: &mut Memo) -> Choice {
+    fn decide(&mut self, memo: &mut Memo<'_>) -> Choice {
         let choice = memo.choose(&self.room.problem, &self.posterior, self.step);
         self.step += 1;
         choice

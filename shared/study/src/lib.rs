@@ -32,7 +32,7 @@ pub mod users;
 
 pub use costs::measured_costs;
 pub use interaction::{End, Outcome, Patience, Room, interact};
-pub use memo::{Choice, Memo};
+pub use memo::{Choice, Memo, Shared, Situation};
 pub use motion::{MotionError, Motions};
 pub use speech::{Pace, Voice};
 pub use stats::{Interval, Mean, wilson};
@@ -45,7 +45,7 @@ pub const CHUNK: u64 = 500;
 /// Counts the interactions `numbers` of `kind`'s people with the policy behind `memo`.
 pub fn interactions(
     room: &Room<'_>,
-    memo: &mut Memo,
+    memo: &mut Memo<'_>,
     kind: UserKind,
     seed: u64,
     numbers: std::ops::Range<u64>,

@@ -11,6 +11,7 @@ use crate::cli::StudyArgs;
 use crate::output::{Output, note};
 use crate::trouble::{Outcome, Trouble};
 
+mod board;
 mod design;
 mod house;
 mod plot;

@@ -26,7 +26,7 @@ use crate::tally::Tally;
 /// Counts the dialogues `numbers` under these rules.
 pub fn dialogues(
     room: &Room<'_>,
-    memo: &mut Memo,
+    memo: &mut Memo<'_>,
     rules: &Rules,
     talker: &Talker,
     seed: u64,

@@ -16,7 +16,7 @@ const QUESTION_S: (f64, f64) = (1.9, 0.12);
 /// Conducts one dialogue.
 pub(super) fn talk(
     room: &Room<'_>,
-    memo: &mut Memo,
+    memo: &mut Memo<'_>,
     rules: &Rules,
     talker: &Talker,
     rng: &mut Rng,
@@ -73,7 +73,7 @@ struct Talk<'a> {
 impl Talk<'_> {
     /// Decides on the belief as it is when planning begins. A robot that holds plans again where
     /// something was said meanwhile; a naive one does not notice.
-    fn plan(&mut self, memo: &mut Memo, answered: bool) -> Action {
+    fn plan(&mut self, memo: &mut Memo<'_>, answered: bool) -> Action {
         loop {
             let action = self.decide(memo, answered);
             let done_s = self.now_s + self.rules.planner_s;
@@ -95,7 +95,7 @@ impl Talk<'_> {
         }
     }
 
-    fn decide(&mut self, memo: &mut Memo, answered: bool) -> Action {
+    fn decide(&mut self, memo: &mut Memo<'_>, answered: bool) -> Action {
         let choice = memo.choose(&self.room.problem, &self.posterior, self.step);
         self.step += 1;
         let last = self.asked.last().map(|asked| asked.question);

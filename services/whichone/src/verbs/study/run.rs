@@ -11,6 +11,7 @@ use std::thread;
 use dialogue::registry;
 use study::{CHUNK, Memo, Room, Tally, interactions, turns};
 
+use super::board::Board;
 use super::design::{People, Row};
 use super::house::House;
 use super::progress::Progress;
@@ -34,15 +35,17 @@ pub(super) fn run(
     let pieces: Vec<Piece> = (0..rows.len())
         .flat_map(|row| (0..chunks).map(move |chunk| Piece { row, chunk }))
         .collect();
+    let boards: HashMap<&str, Board> =
+        rows.iter().map(|row| (row.policy.as_str(), Board::default())).collect();
     let next = AtomicUsize::new(0);
     let (counted, arrived) = mpsc::channel();
     let mut done: Vec<Option<Tally>> = vec![None; pieces.len()];
     thread::scope(|scope| {
         for _ in 0..threads.min(pieces.len()) {
-            let (counted, next, pieces) = (counted.clone(), &next, &pieces);
+            let (counted, next, pieces, boards) = (counted.clone(), &next, &pieces, &boards);
             scope.spawn(move || {
                 let memos = HashMap::new();
-                let mut worker = Worker { room: house.room(), rows, count, seed, memos };
+                let mut worker = Worker { room: house.room(), rows, count, seed, boards, memos };
                 while let Some((at, piece)) = take(next, pieces) {
                     // Nobody to count for any more.
                     if counted.send((at, worker.count(piece))).is_err() {
@@ -82,7 +85,8 @@ struct Worker<'a> {
     rows: &'a [Row],
     count: u64,
     seed: u64,
-    memos: HashMap<&'a str, Memo>,
+    boards: &'a HashMap<&'a str, Board>,
+    memos: HashMap<&'a str, Memo<'a>>,
 }
 
 impl Worker<'_> {
@@ -91,7 +95,11 @@ impl Worker<'_> {
         if !self.memos.contains_key(policy.as_str()) {
             // The command line has let only known names pass.
             let Ok(planner) = registry::planner(policy) else { return Tally::default() };
-            self.memos.insert(policy, Memo::new(planner));
+            let mut memo = Memo::new(planner);
+            if let Some(board) = self.boards.get(policy.as_str()) {
+                memo = memo.sharing(board);
+            }
+            self.memos.insert(policy, memo);
         }
         let Some(memo) = self.memos.get_mut(policy.as_str()) else { return Tally::default() };
         let first = piece.chunk * CHUNK;
