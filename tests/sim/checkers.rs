@@ -84,7 +84,9 @@ fn belief_refolds(world: &World) -> Verdict {
         folded.map_err(|e| format!("before the change: {e}"))?;
         former = *count;
     }
-    let own = policy::journal_check::refold_own(&mut mind(&world.settings)?, records);
+    let settings_key = records.last().map_or(0, |record| record.state.settings_key);
+    let mut now = mind(&world.settings)?;
+    let own = policy::journal_check::refold_since(&mut now, records, settings_key);
     let own = own.map_err(|e| e.to_string())?;
     ensure(own + former == records.len(), || format!("{own} and {former} of {}", records.len()))
 }

@@ -33,14 +33,19 @@ pub fn refold(mind: &mut Mind, records: &[Record]) -> Result<(), Mismatch> {
     Ok(())
 }
 
-/// Checks the records since the mind's settings hold, to the last; how many those are. The record before them is taken as it is, and the change of the
-/// settings is checked like every other step: it rests on that record and on what holds now.
+/// Checks the latest records in a row that were decided under the settings with that key, which are
+/// to be those of `mind`; how many they are. The record before them is taken as it is, and the change
+/// to these settings is checked like every other step: it rests on that record and on what holds
+/// since.
 ///
 /// # Errors
 /// As [`refold`], with the place in `records`.
-pub fn refold_own(mind: &mut Mind, records: &[Record]) -> Result<usize, Mismatch> {
-    let is_own = |record: &Record| record.state.settings_key == mind.key();
-    let others = records.iter().rposition(|record| !is_own(record));
+pub fn refold_since(
+    mind: &mut Mind,
+    records: &[Record],
+    settings_key: u64,
+) -> Result<usize, Mismatch> {
+    let others = records.iter().rposition(|record| record.state.settings_key != settings_key);
     let from = others.map_or(0, |last| last + 1);
     let start = from.saturating_sub(1);
     let mut own = records[start..].to_vec();
@@ -57,6 +62,8 @@ fn difference(folded: &State, recorded: &State) -> Option<&'static str> {
         let belief = state.open.iter().flat_map(|open| open.belief.iter());
         belief.map(|weight| weight.to_bits()).collect()
     };
+    // Whether other settings hold is for the caller to judge: most of them change no state.
+    let folded = &State { settings_key: recorded.settings_key, ..folded.clone() };
     if bits(folded) != bits(recorded) {
         Some("belief")
     } else if folded.act != recorded.act {

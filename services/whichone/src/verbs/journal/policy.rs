@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use dialogue::Belief;
-use policy::journal_check::refold_own;
+use policy::journal_check::refold_since;
 use policy::mind::Mind;
 use policy::state::{Act, Cause, Record};
 use protocol::{ActKind, PickOutcome};
@@ -60,12 +60,22 @@ pub(super) fn verify(mind: &mut Mind, parts: &[Part<Record>]) -> Result<Vec<Stri
             step(record, &mut applied, &mut delivered).map_err(|what| part.broken(seq, what))?;
         }
     }
-    let refolded: usize = parts.iter().map(|part| fold(mind, part)).sum::<Result<_, _>>()?;
-    Ok(vec![
+    let records = parts.iter().flat_map(|part| &part.reading.records);
+    let (total, last) = (records.clone().count(), records.last());
+    // The settings given are taken to be those that hold at the journal's end.
+    let latest = last.map_or(0, |record| record.state.settings_key);
+    let refolded: usize =
+        parts.iter().map(|part| fold(mind, part, latest)).sum::<Result<_, _>>()?;
+    let mut facts = vec![
         format!("{} utterances applied, each once and in order", applied.unwrap_or(0)),
         format!("{} deliveries, at most one in each interaction", delivered.len()),
         format!("{refolded} states follow from those before them, bit for bit"),
-    ])
+    ];
+    if refolded < total {
+        let earlier = total - refolded;
+        facts.push(format!("{earlier} earlier states are of other settings, and not folded again"));
+    }
+    Ok(facts)
 }
 
 fn step(
@@ -105,9 +115,9 @@ fn step(
     Ok(())
 }
 
-/// Refolds the records that were decided under the settings in force; how many those are.
-fn fold(mind: &mut Mind, part: &Part<Record>) -> Result<usize, Broken> {
-    refold_own(mind, &part.reading.records).map_err(|mismatch| {
+/// Refolds the records that were decided under the settings with that key; how many those are.
+fn fold(mind: &mut Mind, part: &Part<Record>, settings_key: u64) -> Result<usize, Broken> {
+    refold_since(mind, &part.reading.records, settings_key).map_err(|mismatch| {
         let seq = part.reading.first_seq + mismatch.index as u64;
         let what = format!("the state does not follow from the one before it: {}", mismatch.part);
         part.broken(seq, format!("{what} differs (with these settings)"))
