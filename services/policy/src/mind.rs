@@ -125,10 +125,7 @@ impl Mind {
         let step = Step { interaction: open.id.0, step: open.step };
         let problem =
             DecisionProblem { model: &self.model, costs: self.costs, actions: self.actions };
-        let decision = match &open.joint {
-            Some(joint) => self.planner.decide_with(&problem, joint, step),
-            None => self.planner.decide(&problem, &belief, step),
-        };
+        let decision = posterior::of(open).decide(&mut *self.planner, &problem, step);
         let exhausted = open.presentations >= self.turns.questions_max;
         let action = match decision.action {
             Action::Ask(_) if exhausted => Action::Pick(belief.most_likely()),

@@ -4,7 +4,7 @@
 //! drop out and new ones count with everything said so far. The transition reads nothing of the
 //! former scene but what the state holds of it in words.
 
-use super::{Mind, words};
+use super::{Mind, posterior, words};
 use crate::evidence::Asked;
 use crate::state::{Interaction, Known, State};
 use node::Time;
@@ -32,7 +32,7 @@ impl Mind {
         let known = self.known();
         let Some(mut open) = state.open.take() else { return };
         let before = open.belief.clone();
-        self.fold(state, &open).store(&mut open);
+        posterior::store(self.fold(state, &open), &mut open);
         let same_belief = before == open.belief;
         let changed = if same_scene { String::new() } else { self.what_changed(&open, &known) };
         open.objects = known;

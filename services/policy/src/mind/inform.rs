@@ -1,7 +1,6 @@
 //! What an utterance says about the wanted object.
 
-use super::posterior::Posterior;
-use super::{Mind, words};
+use super::{Mind, posterior, words};
 use crate::evidence::{Asked, Evidence};
 use crate::state::{Heard, Interaction, State};
 use node::Time;
@@ -27,9 +26,9 @@ impl Mind {
         let asked = open.prompts.iter().find(|prompt| prompt.id == heard.prompt);
         let asked = asked.map_or(Asked::Nothing, |prompt| prompt.asked.clone());
         let evidence = Evidence::new(&self.scene, asked, heard);
-        let mut posterior = Posterior::of(open);
-        self.observe(&mut posterior, &evidence);
-        posterior.store(open);
+        let mut believed = posterior::of(open);
+        self.observe(&mut believed, &evidence);
+        posterior::store(believed, open);
         open.keep(evidence);
         self.note_answer(state, heard);
         let preface = words::unknown(heard);
@@ -45,7 +44,7 @@ impl Mind {
             utterances: (heard.seq, heard.seq),
             ..Interaction::default()
         };
-        self.beginning(state).store(&mut open);
+        posterior::store(self.beginning(state), &mut open);
         state.open = Some(open);
     }
 

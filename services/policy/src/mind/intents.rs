@@ -1,6 +1,6 @@
 //! What an utterance asks of the dialogue itself, before it says anything about an object.
 
-use super::{Mind, repeat, say, set, words};
+use super::{Mind, posterior, repeat, say, set, words};
 use crate::state::{Act, Heard, State};
 use node::Time;
 use protocol::{ActKind, Outcome, UtteranceSeq};
@@ -63,7 +63,7 @@ impl Mind {
         open.forgotten = 0;
         let beginning = self.beginning(state);
         if let Some(open) = &mut state.open {
-            beginning.store(open);
+            posterior::store(beginning, open);
         }
         let heard = state.act.prompt;
         self.decide(state, heard, "From the beginning. ", utterance, at);

@@ -1,45 +1,33 @@
-//! What is believed in an open interaction: about the wanted object alone, as in the paper, or about
-//! the person who answers as well, where the planner makes use of that.
+//! What is believed in an open interaction: about the wanted object alone, or about the person who
+//! answers as well, where the planner makes use of that.
 
 use super::Mind;
 use crate::evidence::Evidence;
 use crate::state::{Interaction, State};
-use dialogue::Belief;
-use dialogue::person::{Joint, Person};
+use dialogue::Posterior;
+use dialogue::person::Person;
 
-/// The planner that decides by what it knows about the person.
-const LEARNS: &str = "information-seeking";
-
-/// A belief over the hypotheses, perhaps together with the person's error rate.
-pub(super) enum Posterior {
-    Object(Belief),
-    ObjectAndPerson(Joint),
+/// As it stands in an interaction.
+pub(super) fn of(open: &Interaction) -> Posterior {
+    match &open.joint {
+        Some(joint) => Posterior::ObjectAndPerson(joint.clone()),
+        None => Posterior::Object(open.belief()),
+    }
 }
 
-impl Posterior {
-    /// As it stands in an interaction.
-    pub(super) fn of(open: &Interaction) -> Self {
-        match &open.joint {
-            Some(joint) => Self::ObjectAndPerson(joint.clone()),
-            None => Self::Object(open.belief()),
-        }
-    }
-
-    /// Puts it into an interaction.
-    pub(super) fn store(self, open: &mut Interaction) {
-        let (belief, joint) = match self {
-            Self::Object(belief) => (belief, None),
-            Self::ObjectAndPerson(joint) => (joint.belief(), Some(joint)),
-        };
-        open.belief = belief.log_weights().to_vec();
-        open.joint = joint;
-    }
+/// Puts it into an interaction.
+pub(super) fn store(posterior: Posterior, open: &mut Interaction) {
+    open.belief = posterior.belief().log_weights().to_vec();
+    open.joint = match posterior {
+        Posterior::Object(_) => None,
+        Posterior::ObjectAndPerson(joint) => Some(joint),
+    };
 }
 
 impl Mind {
     /// Whether the person is learned about.
     pub(super) fn learns(&self) -> bool {
-        self.planner.name() == LEARNS
+        self.planner.minds_the_person()
     }
 
     /// The person as known before the open interaction, but for how often questions were answered:
@@ -59,11 +47,7 @@ impl Mind {
 
     /// What is believed before anything is said.
     pub(super) fn beginning(&self, state: &State) -> Posterior {
-        let prior = self.prior(state);
-        match self.person(state) {
-            Some(person) => Posterior::ObjectAndPerson(Joint::new(prior, person)),
-            None => Posterior::Object(prior),
-        }
+        Posterior::new(self.prior(state), self.person(state))
     }
 
     /// Bayes' rule with one utterance.
@@ -72,16 +56,8 @@ impl Mind {
         let gesture = self.pointing.as_ref().zip(evidence.gesture);
         let gesture =
             gesture.and_then(|(pointing, at)| pointing.log_likelihood(at, self.model.hypotheses()));
-        match posterior {
-            Posterior::Object(belief) => {
-                belief.update_mixture(&self.model, &heard);
-                gesture.iter().for_each(|log| belief.weigh(log));
-            }
-            Posterior::ObjectAndPerson(joint) => {
-                joint.update_mixture(&self.model, &heard);
-                gesture.iter().for_each(|log| joint.weigh(log));
-            }
-        }
+        posterior.update_mixture(&self.model, &heard);
+        gesture.iter().for_each(|log| posterior.weigh(log));
     }
 
     /// What is believed after everything that is remembered of the interaction. Nothing in it
