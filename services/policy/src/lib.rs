@@ -157,8 +157,20 @@ impl PolicyNode {
             readings,
             unknown: observation.unknown.as_str().unwrap_or_default().to_owned(),
             gesture,
+            reaction_s: self.reaction_s(observation),
         };
         self.apply(Cause::Utterance(heard), now, fx);
+    }
+
+    /// Seconds from the end of the question that was heard to the beginning of what was said.
+    fn reaction_s(&self, observation: &Observation) -> Option<f64> {
+        let begun =
+            if observation.onset_ns > 0 { observation.onset_ns } else { observation.accepted_ns };
+        let question_is_known = self.presented.prompt == observation.heard_prompt
+            && self.presented.prompt > 0
+            && self.presented.state == Presentation::Ended.code();
+        let after = begun.checked_sub(self.presented.ended_ns).filter(|_| question_is_known);
+        after.map(|ns| Span(ns).s())
     }
 
     /// Ends the interaction when the arm has ended its pick.
@@ -185,7 +197,7 @@ impl PolicyNode {
         let said = self.presented.prompt == act.prompt.0
             && self.presented.presentation == act.presentation
             && self.presented.state == Presentation::Ended.code();
-        let window = Span::from_s(self.mind.turns().response_window_s);
+        let window = Span::from_s(self.mind.response_window_s(&self.state));
         act.kind == ActKind::Ask
             && said
             && !self.somebody_speaks(now)

@@ -157,7 +157,7 @@ impl Mind {
 
     fn bear_silence(&self, state: &mut State, at: Time) {
         if state.open.is_some() {
-            self.see_answer(state, false);
+            self.see_answer(state, false, None);
         }
         let Some(open) = &mut state.open else { return };
         open.silences += 1;

@@ -186,6 +186,9 @@ pub struct Heard {
     pub unknown: String,
     /// The point that the person points at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
+    /// Seconds from the end of that question to the beginning of the utterance, where both are
+    /// known.
+    pub reaction_s: Option<f64>,
 }
 
 /// A journal record: why the state changed, when, and the state after it.

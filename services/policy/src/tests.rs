@@ -50,6 +50,7 @@ fn heard(seq: u64, prompt: PromptId, reading: Reading) -> Cause {
         readings,
         unknown: String::new(),
         gesture: None,
+        reaction_s: None,
     })
 }
 

@@ -76,6 +76,7 @@ fn dialogue() -> Vec<Record> {
             readings: vec![(1.0, reading)],
             unknown: String::new(),
             gesture: None,
+            reaction_s: None,
         };
         let (cause, at) = (Cause::Utterance(heard), Time(seq * 1_000_000_000));
         state = mind.step(&state, &cause, at);

@@ -63,7 +63,7 @@ impl Mind {
             && heard.readings.iter().any(|(_, reading)| says(reading))
         {
             prompt.answered = true;
-            self.see_answer(state, true);
+            self.see_answer(state, true, heard.reaction_s);
         }
     }
 

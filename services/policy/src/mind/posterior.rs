@@ -7,6 +7,11 @@ use crate::state::{Interaction, State};
 use dialogue::Posterior;
 use dialogue::person::Person;
 
+/// Answers after which a person's reaction time counts as known.
+const ACQUAINTED: u32 = 5;
+/// How far the response window follows a person, as shares of the one configured.
+const WINDOW: (f64, f64) = (0.25, 2.0);
+
 /// As it stands in an interaction.
 pub(super) fn of(open: &Interaction) -> Posterior {
     match &open.joint {
@@ -68,13 +73,26 @@ impl Mind {
         posterior
     }
 
-    /// Takes note that a question was answered, or was not although there was time.
-    pub(super) fn see_answer(&self, state: &mut State, answered: bool) {
-        let Some(mut person) = self.person(state) else { return };
-        person.see_answer(answered);
-        state.person = Some(person);
-        if let Some(joint) = state.open.as_mut().and_then(|open| open.joint.as_mut()) {
-            joint.person_mut().see_answer(answered);
-        }
+    /// Takes note that a question was answered, how soon if that is known, or was not although there
+    /// was time.
+    pub(super) fn see_answer(&self, state: &mut State, answered: bool, reaction_s: Option<f64>) {
+        let Some(person) = self.person(state) else { return };
+        let see = |person: &mut Person| {
+            person.see_answer(answered);
+            reaction_s.into_iter().for_each(|seconds| person.see_reaction(seconds));
+        };
+        let joint = state.open.as_mut().and_then(|open| open.joint.as_mut());
+        joint.into_iter().for_each(|joint| see(joint.person_mut()));
+        see(state.person.insert(person));
+    }
+
+    /// Seconds after a question in which an answer is waited for: those configured, or, of somebody
+    /// who was seen to answer a few times, those in which this person does.
+    pub(crate) fn response_window_s(&self, state: &State) -> f64 {
+        let configured = self.turns.response_window_s;
+        let known = self.person(state).map(|person| *person.reaction());
+        known.filter(|reaction| reaction.seen() >= ACQUAINTED).map_or(configured, |reaction| {
+            reaction.patience_s().clamp(configured * WINDOW.0, configured * WINDOW.1)
+        })
     }
 }

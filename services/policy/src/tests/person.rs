@@ -129,3 +129,32 @@ fn other_planners_learn_nothing() {
     assert_eq!((state.person.clone(), mind.expects(&state)), (None, None));
     assert_eq!(state.open.unwrap().joint, None);
 }
+
+/// Answers come `reaction_s` after each question; whether the window follows.
+#[test]
+fn the_response_window_follows_a_person_whose_answers_were_seen() {
+    let window = |reaction_s: f64, answers: u64| {
+        let mut mind = learning_mind();
+        let mut state = asked(&mut mind);
+        for seq in 2..2 + answers {
+            let Cause::Utterance(said) = heard(seq, state.act.prompt, answer(Response::Yes)) else {
+                unreachable!("it is an utterance")
+            };
+            let said = Heard { reaction_s: Some(reaction_s), ..said };
+            state = mind.step(&state, &Cause::Utterance(said), at(seq));
+            if state.act.kind != ActKind::Ask {
+                let again = heard(seq + 1_000, PromptId(0), Reading::default());
+                let (pick, _) = state.act.pick.expect("it picks");
+                let outcome = PickOutcome::Delivered;
+                state = mind.step(&state, &Cause::PickEnded { pick, outcome }, at(seq));
+                state = mind.step(&state, &again, at(seq));
+            }
+        }
+        mind.response_window_s(&state)
+    };
+    let configured = settings().dialogue.turns.response_window_s;
+    assert_eq!(window(0.5, 3), configured, "not known yet");
+    assert!(window(0.5, 12) < 0.5 * configured, "{}", window(0.5, 12));
+    assert!(window(12.0, 12) > configured, "{}", window(12.0, 12));
+    assert!(window(60.0, 40) <= 2.0 * configured);
+}

@@ -48,6 +48,11 @@ impl Reaction {
         self.shape += 0.5;
     }
 
+    /// How many times were taken in.
+    pub fn seen(&self) -> u32 {
+        (self.count - SHAPE).round() as u32
+    }
+
     /// Median of the time to come, seconds.
     pub fn median_s(&self) -> f64 {
         self.mean.exp()

@@ -139,6 +139,7 @@ mod tests {
             readings: Vec::new(),
             unknown: String::new(),
             gesture: None,
+            reaction_s: None,
         };
         let state = State { applied: UtteranceSeq(seq), ..State::default() };
         Record { cause: Cause::Utterance(heard), at: node::Time(0), state }
