@@ -120,9 +120,9 @@ impl Mind {
         at: Time,
     ) {
         let Some(open) = &mut state.open else { return };
-        open.step += 1;
         let belief = open.belief();
         let step = Step { interaction: open.id.0, step: open.step };
+        open.step += 1;
         let problem =
             DecisionProblem { model: &self.model, costs: self.costs, actions: self.actions };
         let decision = posterior::of(open).decide(&mut *self.planner, &problem, step);
