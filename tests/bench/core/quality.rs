@@ -2,12 +2,13 @@
 //! on the best one.
 
 use super::Effort;
-use super::scenes::{OPEN, POINTING, PRESENT, PRESENT_OPEN, YES_NO, configured};
+use super::scenes::{OPEN, POINTING, PRESENT, PRESENT_OPEN, YES_NO, configured, random};
 use crate::report::{Report, Table};
 use dialogue::{
     Actions, Belief, Costs, DecisionProblem, Model, Optimal, Params, Planner, Step, evaluate,
     registry,
 };
+use std::time::Instant;
 
 const ACTIONS: [(&str, Actions); 5] = [
     ("remote, yes/no", YES_NO),
@@ -17,10 +18,15 @@ const ACTIONS: [(&str, Actions); 5] = [
     ("present, pointing alone", POINTING),
 ];
 
+/// Random scenes, objects and attributes, larger than what is known to the last digit.
+const LARGER: [(usize, usize); 3] = [(12, 4), (20, 5), (50, 5)];
+/// Dialogues on larger scenes that are less probable than this are cut short: their beliefs are
+/// many.
+const CUT_LARGER: f64 = 2e-5;
+/// Decisions that an evaluation of a larger scene takes, for judging whether it can be awaited.
+const DECISIONS_LARGER: f64 = 100.0;
+
 pub(super) fn measure(report: &mut Report, effort: Effort) {
-    let mut heads: Vec<String> =
-        ["scene", "questions", "costs", "best policy"].map(str::to_owned).to_vec();
-    heads.extend(registry::names().map(str::to_owned));
     let mut rows = Vec::new();
     for scene in ["markers", "bowls"] {
         let model = Model::new(&configured(scene), Params::default());
@@ -28,7 +34,8 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
             for (preset, costs) in Costs::PRESETS {
                 let problem = DecisionProblem { model: &model, costs, actions };
                 let mut row = [scene, shown, preset].map(str::to_owned).to_vec();
-                row.extend(values(&problem, effort));
+                row.push(best(&problem));
+                row.extend(registry::names().map(|name| value(&problem, name, effort.cut)));
                 rows.push(row);
             }
         }
@@ -41,19 +48,64 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
              sparse-sampling is followed for one set of draws.",
             effort.cut
         ),
-        heads,
+        heads: heads(["scene", "questions", "costs", "best policy"]),
+        rows,
+    });
+    larger(report, effort);
+}
+
+fn larger(report: &mut Report, effort: Effort) {
+    let mut rows = Vec::new();
+    for (objects, attributes) in LARGER {
+        let model = random(objects, attributes);
+        for (shown, actions) in [("yes/no", YES_NO), ("open too", OPEN)] {
+            let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+            let mut row = vec![format!("{objects} × {attributes}"), shown.to_owned()];
+            row.push(best(&problem));
+            row.extend(registry::names().map(|name| {
+                let awaited = first_s(&problem, name) * DECISIONS_LARGER <= effort.budget_s;
+                if awaited { value(&problem, name, CUT_LARGER) } else { "–".to_owned() }
+            }));
+            rows.push(row);
+        }
+    }
+    report.tables.push(Table {
+        title: "Values on larger scenes".to_owned(),
+        note: format!(
+            "Random scenes in another room, costs in seconds. Dialogues less probable than \
+             {CUT_LARGER:e} end with a pick at once, which takes up to a tenth or so from \
+             every column. A dash: its decisions would take longer than this table is worth.",
+        ),
+        heads: heads(["objects × attributes", "questions", "best policy"]),
         rows,
     });
 }
 
-fn values(problem: &DecisionProblem<'_>, effort: Effort) -> Vec<String> {
+fn heads<const N: usize>(first: [&str; N]) -> Vec<String> {
+    first.into_iter().chain(registry::names()).map(str::to_owned).collect()
+}
+
+/// Certified bounds on the best policy's value.
+fn best(problem: &DecisionProblem<'_>) -> String {
     let belief = Belief::uniform(problem.model.objects());
     let bounds = Optimal::default().decide(problem, &belief, Step::default()).bounds;
     let (lower, upper) = bounds.unwrap_or((f64::NAN, f64::NAN));
-    let value = |name: &&'static str| {
-        let mut planner = registry::planner(name).expect("a planner of the registry");
-        format!("{:.4}", evaluate(&mut *planner, problem, &belief, effort.cut).value)
-    };
-    let bounds = format!("{lower:.4}–{upper:.4}");
-    std::iter::once(bounds).chain(registry::names().iter().map(value)).collect()
+    format!("{lower:.4}–{upper:.4}")
+}
+
+fn value(problem: &DecisionProblem<'_>, name: &str, cut: f64) -> String {
+    let belief = Belief::uniform(problem.model.objects());
+    format!("{:.4}", evaluate(&mut *planner(name), problem, &belief, cut).value)
+}
+
+/// Seconds that a first decision takes.
+fn first_s(problem: &DecisionProblem<'_>, name: &str) -> f64 {
+    let belief = Belief::uniform(problem.model.objects());
+    let begun = Instant::now();
+    planner(name).decide(problem, &belief, Step::default());
+    begun.elapsed().as_secs_f64()
+}
+
+fn planner(name: &str) -> Box<dyn Planner + Send> {
+    registry::planner(name).expect("a planner of the registry")
 }
