@@ -196,10 +196,10 @@ impl Belief {
     /// If there is not one for every hypothesis.
     pub fn weigh(&mut self, log_likelihood: &[f64]) {
         assert_eq!(self.log.len(), log_likelihood.len(), "belief and model are of one scene");
-        if log_likelihood.iter().all(|l| *l == log_likelihood[0]) {
+        let (least, greatest) = extremes(log_likelihood);
+        if least == greatest {
             return;
         }
-        let greatest = log_likelihood.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         for (weight, likelihood) in self.log.iter_mut().zip(log_likelihood) {
             *weight += likelihood - greatest;
         }
@@ -220,6 +220,24 @@ impl PartialEq for Belief {
     fn eq(&self, other: &Self) -> bool {
         self.log == other.log
     }
+}
+
+/// The least and the greatest number, in lanes that need not wait for each other.
+fn extremes(numbers: &[f64]) -> (f64, f64) {
+    const LANES: usize = 8;
+    let mut least = [f64::INFINITY; LANES];
+    let mut greatest = [f64::NEG_INFINITY; LANES];
+    let mut see = |lane: usize, number: f64| {
+        least[lane] = if number < least[lane] { number } else { least[lane] };
+        greatest[lane] = if number > greatest[lane] { number } else { greatest[lane] };
+    };
+    let (whole, rest) = numbers.as_chunks::<LANES>();
+    whole.iter().for_each(|chunk| (0..LANES).for_each(|lane| see(lane, chunk[lane])));
+    rest.iter().for_each(|number| see(0, *number));
+    let of_all = |lanes: [f64; LANES], pick: fn(f64, f64) -> f64| {
+        lanes.into_iter().reduce(pick).unwrap_or(f64::NAN)
+    };
+    (of_all(least, f64::min), of_all(greatest, f64::max))
 }
 
 /// Units of a belief's key in a probability of 1.
