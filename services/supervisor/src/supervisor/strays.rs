@@ -30,6 +30,9 @@ impl Supervisor {
             .filter(|process| !process.is_zombie)
             .collect();
         let name = self.name(service).to_owned();
+        // Told here, and condemned: a killed process may take a while to end, and is not to be
+        // told of again meanwhile.
+        self.condemned.extend(left.iter().map(|process| process.pid));
         self.tell_strays(&left, &name);
     }
 
@@ -65,10 +68,12 @@ impl Supervisor {
             // Its number cannot be anybody else's: it is this process's own child.
             let _ = waitpid(Some(pid), WaitOptions::NOHANG);
             self.condemned.retain(|&condemned| condemned != pid);
-        } else if !self.condemned.contains(&pid) {
+        } else {
             kill(pid);
-            self.condemned.push(pid);
-            self.tell_strays(&[process], of);
+            if !self.condemned.contains(&pid) {
+                self.condemned.push(pid);
+                self.tell_strays(&[process], of);
+            }
         }
     }
 
