@@ -6,7 +6,7 @@ use scene::{ObjectId, Question, Reading};
 use serde::{Deserialize, Serialize};
 
 use crate::Model;
-use crate::observation::{log_mixture, weigh};
+use crate::observation::{log_mixture, weigh, weighty};
 
 /// A distribution over the hypotheses of a model: the objects of a scene, and perhaps that the
 /// wanted one is not here.
@@ -180,8 +180,8 @@ impl Belief {
     /// # Panics
     /// If a weight is negative or not finite, or anything is not about the model's scene.
     pub fn update_mixture(&mut self, model: &Model, heard: &[(f64, Question, Reading)]) {
-        let mut weighty = heard.iter().filter(|(weight, ..)| *weight > 0.0);
-        if let (Some((_, question, reading)), None) = (weighty.next(), weighty.next()) {
+        let mut counting = weighty(heard);
+        if let (Some((_, question, reading)), None) = (counting.next(), counting.next()) {
             self.update(model, *question, reading);
         } else if let Some(mixture) = log_mixture(model, heard) {
             self.weigh(&mixture);

@@ -34,11 +34,7 @@ pub fn log_likelihood(model: &Model, question: Question, reading: &Reading) -> V
 /// # Panics
 /// If a weight is negative or not finite, or anything is not about the model's scene.
 pub(crate) fn log_mixture(model: &Model, heard: &[(f64, Question, Reading)]) -> Option<Vec<f64>> {
-    for (weight, ..) in heard {
-        assert!(weight.is_finite() && *weight >= 0.0, "{weight} is not a weight");
-    }
-    let weighted = heard.iter().filter(|(weight, ..)| *weight > 0.0);
-    let rows = weighted.map(|(weight, question, reading)| {
+    let rows = weighty(heard).map(|(weight, question, reading)| {
         let mut log = log_likelihood(model, *question, reading);
         log.iter_mut().for_each(|log| *log += weight.ln());
         log
@@ -46,6 +42,19 @@ pub(crate) fn log_mixture(model: &Model, heard: &[(f64, Question, Reading)]) -> 
     rows.reduce(|mut mixture, row| {
         mixture.iter_mut().zip(row).for_each(|(sum, log)| *sum = log_add(*sum, log));
         mixture
+    })
+}
+
+/// The hypotheses of a mixture that count.
+///
+/// # Panics
+/// On the way, if a weight is negative or not finite.
+pub(crate) fn weighty(
+    heard: &[(f64, Question, Reading)],
+) -> impl Iterator<Item = &(f64, Question, Reading)> {
+    heard.iter().filter(|(weight, ..)| {
+        assert!(weight.is_finite() && *weight >= 0.0, "{weight} is not a weight");
+        *weight > 0.0
     })
 }
 
@@ -70,8 +79,8 @@ pub(crate) fn weigh(model: &Model, question: Question, reading: &Reading, log: &
 /// value of `V_k` with `ε/(|V_k| − 1)`; silence is `1 − p_l` as for every question.
 ///
 /// An object that lacks the attribute, or is not here, has no true answer that is known; whoever
-/// wants it is taken to name any value with the same probability. With one value there is nothing to confuse it with, so `ε`
-/// plays no part.
+/// wants it is taken to name any value with the same probability. With one value there is nothing
+/// to confuse it with, so `ε` plays no part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OpenQuestion {
     /// Probability of naming the object's own value, given an answer.

@@ -33,14 +33,6 @@ impl Posterior {
         }
     }
 
-    /// What is known about the person, where that is learned.
-    pub fn person(&self) -> Option<&Person> {
-        match self {
-            Self::Object(_) => None,
-            Self::ObjectAndPerson(joint) => Some(joint.person()),
-        }
-    }
-
     /// Bayes' rule with what may have been heard; see [`Belief::update_mixture`].
     ///
     /// # Panics

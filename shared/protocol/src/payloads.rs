@@ -100,8 +100,9 @@ pub struct PolicyView {
 encoded!(
     PolicyView,
     "PolicyView",
-    "scene_key:u64 applied:u64 interaction:u64 belief[f64] absent:f64 person?(f64,f64) question prompt:u64 text decision \
-     value:f64 alternatives[(str,f64)] expected_questions:f64 bounds?(f64,f64) questions:u32 utterances(u64,u64) \
+    "scene_key:u64 applied:u64 interaction:u64 belief[f64] absent:f64 person?(f64,f64) question \
+     prompt:u64 text decision value:f64 alternatives[(str,f64)] expected_questions:f64 \
+     bounds?(f64,f64) questions:u32 utterances(u64,u64) \
      last?Ended refused:u64; \
      Ended(interaction:u64 object?u16 name?str outcome questions:u32 seconds:f64 utterances(u64,u64))"
 );

@@ -232,6 +232,14 @@ fn a_mixture_of_one_is_an_update_and_of_none_is_nothing() {
 }
 
 #[test]
+#[should_panic(expected = "is not a weight")]
+fn a_mixture_with_one_hypothesis_that_counts_has_its_other_weights_checked() {
+    let model = Model::new(&bowls(), Params::default());
+    let yes = |weight| (weight, Question::Point(ObjectId(2)), Reading::default());
+    Belief::uniform(6).update_mixture(&model, &[yes(0.4), yes(-0.1)]);
+}
+
+#[test]
 fn zero_stays_zero_and_the_rest_goes_on() {
     let scene = bowls();
     let model = Model::new(&scene, Params::default());
