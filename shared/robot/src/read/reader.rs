@@ -1,0 +1,225 @@
+//! Attributes with their checks; every fault is noted, and reading goes on with a harmless value.
+
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use roxmltree::{Document as Xml, Node};
+
+use crate::fault::{Document, Fault, Faults};
+
+pub(super) struct Reader<'a> {
+    document: Document,
+    xml: &'a Xml<'a>,
+    faults: Vec<Fault>,
+}
+
+/// The text as XML.
+pub(super) fn document(text: &str, document: Document) -> Result<Xml<'_>, Faults> {
+    Xml::parse(text).map_err(|error| {
+        Faults(vec![Fault {
+            document,
+            line: error.pos().row,
+            element: "document".to_owned(),
+            problem: format!("it is not well-formed XML: {error}"),
+            cure: "correct the markup there".to_owned(),
+        }])
+    })
+}
+
+/// The child elements of that name.
+pub(super) fn children<'a>(
+    node: Node<'a, 'a>,
+    name: &'static str,
+) -> impl Iterator<Item = Node<'a, 'a>> {
+    node.children().filter(move |child| child.has_tag_name(name))
+}
+
+/// The first child element of that name.
+pub(super) fn child<'a>(node: Node<'a, 'a>, name: &'static str) -> Option<Node<'a, 'a>> {
+    children(node, name).next()
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(document: Document, xml: &'a Xml<'a>) -> Self {
+        Self { document, xml, faults: Vec::new() }
+    }
+
+    /// Notes a fault of `element` at the line of `node`.
+    pub(super) fn fault(
+        &mut self,
+        node: Node<'_, '_>,
+        element: &str,
+        problem: impl Into<String>,
+        cure: impl Into<String>,
+    ) {
+        self.faults.push(Fault {
+            document: self.document,
+            line: self.xml.text_pos_at(node.range().start).row,
+            element: element.to_owned(),
+            problem: problem.into(),
+            cure: cure.into(),
+        });
+    }
+
+    /// How many faults there are so far.
+    pub(super) fn count(&self) -> usize {
+        self.faults.len()
+    }
+
+    /// All faults by line.
+    pub(super) fn into_faults(mut self) -> Faults {
+        self.faults.sort_by_key(|fault| fault.line);
+        Faults(self.faults)
+    }
+
+    /// The document's element; anything but `<robot>` is a fault.
+    pub(super) fn root(&mut self) -> Node<'a, 'a> {
+        let root = self.xml.root_element();
+        if !root.has_tag_name("robot") {
+            let found = format!("it begins with <{}>", root.tag_name().name());
+            self.fault(root, "document", found, "its first element must be <robot name=\"…\">");
+        }
+        root
+    }
+
+    /// The element's name, and what to call the element in faults.
+    pub(super) fn named(&mut self, node: Node<'a, 'a>) -> (&'a str, String) {
+        let kind = node.tag_name().name();
+        let name = self.name(node, kind);
+        (name, if name.is_empty() { kind.to_owned() } else { format!("{kind} {name:?}") })
+    }
+
+    /// The attribute `name`; empty, and a fault, if it is missing.
+    pub(super) fn name(&mut self, node: Node<'a, 'a>, element: &str) -> &'a str {
+        let name = node.attribute("name").unwrap_or_default().trim();
+        if name.is_empty() {
+            self.fault(node, element, "it has no name", "write name=\"…\"");
+        }
+        name
+    }
+
+    /// A text that must be there.
+    pub(super) fn text(&mut self, node: Node<'a, 'a>, element: &str, key: &str) -> &'a str {
+        match node.attribute(key).map(str::trim) {
+            Some(text) if !text.is_empty() => text,
+            _ => {
+                self.missing(node, element, key, "…");
+                ""
+            }
+        }
+    }
+
+    /// A number that must be there.
+    pub(super) fn number(&mut self, node: Node<'a, 'a>, element: &str, key: &str) -> f64 {
+        match self.number_if_any(node, element, key) {
+            Some(number) => number,
+            None => {
+                self.missing(node, element, key, "a number");
+                0.0
+            }
+        }
+    }
+
+    /// A number that may be left out.
+    pub(super) fn number_if_any(
+        &mut self,
+        node: Node<'a, 'a>,
+        element: &str,
+        key: &str,
+    ) -> Option<f64> {
+        let text = node.attribute(key)?;
+        Some(finite(text.trim()).unwrap_or_else(|| {
+            self.unreadable(node, element, key, text, "write one finite number");
+            0.0
+        }))
+    }
+
+    /// A number that must be there and be greater than 0 (or 0, where `zero` allows it).
+    pub(super) fn magnitude(
+        &mut self,
+        node: Node<'a, 'a>,
+        element: &str,
+        key: &str,
+        zero: bool,
+    ) -> f64 {
+        let before = self.count();
+        let number = self.number(node, element, key);
+        if self.count() == before && (number < 0.0 || (number == 0.0 && !zero)) {
+            let least = if zero { "0 or more" } else { "more than 0" };
+            self.unreadable(
+                node,
+                element,
+                key,
+                &number.to_string(),
+                &format!("it must be {least}"),
+            );
+        }
+        number
+    }
+
+    /// `N` numbers with white space between them, if the attribute is there.
+    pub(super) fn numbers_if_any<const N: usize>(
+        &mut self,
+        node: Node<'a, 'a>,
+        element: &str,
+        key: &str,
+    ) -> Option<[f64; N]> {
+        let text = node.attribute(key)?;
+        let numbers: Option<Vec<f64>> = text.split_whitespace().map(finite).collect();
+        Some(numbers.and_then(|numbers| numbers.try_into().ok()).unwrap_or_else(|| {
+            let cure = format!("write {N} finite numbers with spaces between them");
+            self.unreadable(node, element, key, text, &cure);
+            [0.0; N]
+        }))
+    }
+
+    /// The `<origin>` of an element; the identity if there is none.
+    pub(super) fn origin(&mut self, node: Node<'a, 'a>, element: &str) -> Isometry3<f64> {
+        let Some(origin) = child(node, "origin") else { return Isometry3::identity() };
+        let [x, y, z] = self.numbers_if_any(origin, element, "xyz").unwrap_or_default();
+        let [roll, pitch, yaw] = self.numbers_if_any(origin, element, "rpy").unwrap_or_default();
+        Isometry3::from_parts(
+            Translation3::new(x, y, z),
+            UnitQuaternion::from_euler_angles(roll, pitch, yaw),
+        )
+    }
+
+    /// A child element that must be there.
+    pub(super) fn part(
+        &mut self,
+        node: Node<'a, 'a>,
+        element: &str,
+        name: &'static str,
+        cure: &str,
+    ) -> Option<Node<'a, 'a>> {
+        let found = child(node, name);
+        if found.is_none() {
+            self.fault(node, element, format!("it has no <{name}>"), cure);
+        }
+        found
+    }
+
+    fn missing(&mut self, node: Node<'_, '_>, element: &str, key: &str, what: &str) {
+        let tag = node.tag_name().name();
+        self.fault(
+            node,
+            element,
+            format!("<{tag}> has no {key}"),
+            format!("write {key}=\"{what}\""),
+        );
+    }
+
+    pub(super) fn unreadable(
+        &mut self,
+        node: Node<'_, '_>,
+        element: &str,
+        key: &str,
+        text: &str,
+        cure: &str,
+    ) {
+        let tag = node.tag_name().name();
+        self.fault(node, element, format!("<{tag}> has {key}={text:?}"), cure);
+    }
+}
+
+fn finite(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|number: &f64| number.is_finite())
+}

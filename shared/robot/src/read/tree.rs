@@ -1,0 +1,232 @@
+//! How links and joints hang together.
+
+use std::collections::HashMap;
+
+use roxmltree::Node;
+
+use crate::model::{Joint, JointKind, Link, Mimic, Robot};
+
+use super::joint::Written;
+use super::reader::Reader;
+
+type Links<'a> = Vec<(Link, Node<'a, 'a>)>;
+type Joints<'a> = Vec<(Written<'a>, Node<'a, 'a>)>;
+
+/// The robot, links parents first; none, and a fault, if it is not one tree.
+pub(super) fn build<'a>(
+    reader: &mut Reader<'a>,
+    name: String,
+    links: Links<'a>,
+    joints: Joints<'a>,
+) -> Option<Robot> {
+    let before = reader.count();
+    let places = indices(reader, links.iter().map(|(link, node)| (link.name.as_str(), *node)));
+    let names = indices(reader, joints.iter().map(|(joint, node)| (joint.name, *node)));
+    let carriers = carriers(reader, &places, links.len(), &joints);
+    let rules = rules(reader, &names, &joints);
+    let named = |(joint, _): &(Written<'_>, _)| {
+        places.contains_key(joint.parent) && places.contains_key(joint.child)
+    };
+    // Wrong and missing names would be told again as loose ends.
+    if reader.count() > before || links.is_empty() || !joints.iter().all(named) {
+        return None;
+    }
+    let order = order(reader, &links, &joints, &carriers, &places)?;
+    Some(assembled(name, links, joints, &order, &rules, &places))
+}
+
+/// The index of every name; a name that is there twice is a fault.
+fn indices<'n, 'a: 'n>(
+    reader: &mut Reader<'a>,
+    all: impl Iterator<Item = (&'n str, Node<'a, 'a>)>,
+) -> HashMap<String, usize> {
+    let mut places = HashMap::new();
+    for (index, (name, node)) in all.enumerate() {
+        if name.is_empty() {
+            continue;
+        }
+        if places.insert(name.to_owned(), index).is_some() {
+            let kind = node.tag_name().name();
+            let problem = "there is another one of this name";
+            reader.fault(node, &format!("{kind} {name:?}"), problem, "rename one of them");
+        }
+    }
+    places
+}
+
+/// The joint that carries each link.
+fn carriers(
+    reader: &mut Reader<'_>,
+    places: &HashMap<String, usize>,
+    links: usize,
+    joints: &Joints<'_>,
+) -> Vec<Option<usize>> {
+    let mut carriers: Vec<Option<usize>> = vec![None; links];
+    for (index, (joint, node)) in joints.iter().enumerate() {
+        for (which, name) in [("parent", joint.parent), ("child", joint.child)] {
+            if !name.is_empty() && !places.contains_key(name) {
+                let problem = format!("its {which} {name:?} is not a link");
+                let cure = format!("describe <link name={name:?}/>, or correct the name");
+                reader.fault(*node, &joint.element, problem, cure);
+            }
+        }
+        let Some(&child) = places.get(joint.child) else { continue };
+        if let Some(other) = carriers[child].replace(index) {
+            let problem =
+                format!("its child {:?} already hangs on {}", joint.child, joints[other].0.element);
+            reader.fault(*node, &joint.element, problem, "a link has one parent: remove one joint");
+        }
+    }
+    carriers
+}
+
+/// What each following joint follows in the end, with the rules on the way put together.
+fn rules(
+    reader: &mut Reader<'_>,
+    names: &HashMap<String, usize>,
+    joints: &Joints<'_>,
+) -> Vec<Option<Mimic>> {
+    let mut rules = Vec::with_capacity(joints.len());
+    for (start, (joint, node)) in joints.iter().enumerate() {
+        let mut rule = Mimic { joint: start, multiplier: 1.0, offset: 0.0 };
+        let mut problem = None;
+        for _ in 0..=joints.len() {
+            let Some(next) = joints[rule.joint].0.mimic else { break };
+            let Some(&followed) = names.get(next.joint) else {
+                // An end that another joint names wrongly is told at that joint.
+                if rule.joint == start && !next.joint.is_empty() {
+                    problem = Some(format!("it mimics {:?}, which is not a joint", next.joint));
+                }
+                break;
+            };
+            rule = Mimic {
+                joint: followed,
+                multiplier: rule.multiplier * next.multiplier,
+                offset: rule.multiplier * next.offset + rule.offset,
+            };
+            if followed == start {
+                problem = Some("the joints that it mimics lead back to it".to_owned());
+                break;
+            }
+        }
+        if rule.joint != start && joints[rule.joint].0.kind == JointKind::Fixed {
+            let followed = joints[rule.joint].0.name;
+            problem = Some(format!("it mimics {followed:?}, which does not move"));
+        }
+        if let Some(problem) = problem {
+            reader.fault(*node, &joint.element, problem, "name a joint that moves by itself");
+        }
+        rules.push(joint.mimic.map(|_| rule));
+    }
+    rules
+}
+
+/// The links from the root outwards, children in the order of the file; none, and a fault, if not
+/// all of them hang on one root.
+fn order(
+    reader: &mut Reader<'_>,
+    links: &Links<'_>,
+    joints: &Joints<'_>,
+    carriers: &[Option<usize>],
+    places: &HashMap<String, usize>,
+) -> Option<Vec<usize>> {
+    let before = reader.count();
+    let roots: Vec<usize> = (0..links.len()).filter(|&link| carriers[link].is_none()).collect();
+    if let [first, _, ..] = roots[..] {
+        for &loose in &roots[1..] {
+            let (link, node) = &links[loose];
+            let problem =
+                format!("nothing carries it, as nothing carries {:?}", links[first].0.name);
+            let cure = "a robot has one root: join this link to another with a <joint>";
+            reader.fault(*node, &format!("link {:?}", link.name), problem, cure);
+        }
+    }
+    let mut children: Vec<Vec<usize>> = vec![Vec::new(); links.len()];
+    for (joint, _) in joints {
+        children[places[joint.parent]].push(places[joint.child]);
+    }
+    let mut order = Vec::with_capacity(links.len());
+    let mut reached = vec![false; links.len()];
+    let mut waiting: Vec<usize> = roots.into_iter().rev().collect();
+    while let Some(link) = waiting.pop() {
+        reached[link] = true;
+        order.push(link);
+        waiting.extend(children[link].iter().rev());
+    }
+    for start in 0..links.len() {
+        if !reached[start] {
+            loop_from(reader, start, joints, carriers, places, &mut reached);
+        }
+    }
+    (reader.count() == before).then_some(order)
+}
+
+/// Notes the loop that a link without a root above it hangs on, once per loop.
+fn loop_from(
+    reader: &mut Reader<'_>,
+    start: usize,
+    joints: &Joints<'_>,
+    carriers: &[Option<usize>],
+    places: &HashMap<String, usize>,
+    seen: &mut [bool],
+) {
+    let mut way = Vec::new();
+    let mut at = start;
+    while !seen[at] {
+        seen[at] = true;
+        let Some(joint) = carriers[at] else { return };
+        way.push(joint);
+        at = places[joints[joint].0.parent];
+    }
+    // Where the way ends in a link that it did not pass, that loop has been told.
+    let Some(first) = way.iter().position(|&joint| places[joints[joint].0.child] == at) else {
+        return;
+    };
+    let members = &way[first..];
+    let (joint, node) = &joints[members[0]];
+    let problem = match members {
+        [_] => format!("it joins {:?} to itself", joint.child),
+        _ => {
+            let names: Vec<&str> = members.iter().rev().map(|&m| joints[m].0.name).collect();
+            format!("the joints {} lead round in a circle", names.join(", "))
+        }
+    };
+    reader.fault(*node, &joint.element, problem, "links form a tree: give it another parent");
+}
+
+fn assembled(
+    name: String,
+    links: Links<'_>,
+    joints: Joints<'_>,
+    order: &[usize],
+    rules: &[Option<Mimic>],
+    places: &HashMap<String, usize>,
+) -> Robot {
+    let mut place = vec![0; links.len()];
+    for (new, &old) in order.iter().enumerate() {
+        place[old] = new;
+    }
+    let new_link = |name: &str| place[places[name]];
+    // A joint's new place is that of its child, less the root.
+    let new_joint = |old: usize| new_link(joints[old].0.child) - 1;
+    let mut ordered: Vec<Joint> = joints
+        .iter()
+        .zip(rules)
+        .map(|((joint, _), rule)| Joint {
+            name: joint.name.to_owned(),
+            kind: joint.kind,
+            parent: new_link(joint.parent),
+            child: new_link(joint.child),
+            origin: joint.origin,
+            axis: joint.axis,
+            limits: joint.limits,
+            mimic: rule.map(|rule| Mimic { joint: new_joint(rule.joint), ..rule }),
+        })
+        .collect();
+    ordered.sort_by_key(|joint| joint.child);
+    let mut links: Vec<(usize, Link)> =
+        links.into_iter().enumerate().map(|(old, (link, _))| (place[old], link)).collect();
+    links.sort_by_key(|(new, _)| *new);
+    let links = links.into_iter().map(|(_, link)| link).collect();
+    Robot { name, links, joints: ordered, postures: Vec::new(), may_touch: Vec::new() }
+}
