@@ -62,7 +62,8 @@ impl ArmNode {
     /// A limb that is not at rest, or on its way there.
     pub(crate) fn limb_away(&self) -> Option<Limb> {
         let posture = self.driver.measured().posture;
-        Limb::BOTH.into_iter().find(|limb| !posture.is_at_rest(*limb))
+        let robot = &self.config.arm.robot;
+        Limb::BOTH.into_iter().find(|limb| !posture.is_at_rest(robot, *limb))
     }
 
     /// What the arm should be doing now; none: stand.
@@ -163,6 +164,7 @@ impl ArmNode {
 
     fn planner_with<R>(&self, plan: impl FnOnce(&Planner<'_>) -> R) -> R {
         plan(&Planner {
+            robot: &self.config.arm.robot,
             settings: &self.config.arm.plan,
             limb: self.config.arm.limb,
             world: &self.world,

@@ -140,7 +140,7 @@ impl ArmNode {
         let settled = recover::other_scene(&state, &config.scene);
         let scene_changed = settled.is_some();
         Self {
-            world: World::new(&config.scene),
+            world: World::new(&config.arm.robot, &config.scene),
             publisher: Publisher::new(config.arm.joint_rate_hz, config.arm.time_scale),
             state: settled.unwrap_or(state),
             driver,

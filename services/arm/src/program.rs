@@ -6,7 +6,7 @@ use crate::state::{ArmState, Held, side};
 use crate::world::{World, from_array};
 use kinematics::{
     ArmShape, Arms, Cuboid, Limb, MotionLimits, PickPhase as PickStage, PlanError, PlanSettings,
-    Stage, Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_return,
+    Robot, Stage, Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_return,
 };
 use nalgebra::{Translation3, Vector3};
 use protocol::pick::Pick;
@@ -16,6 +16,7 @@ use std::collections::VecDeque;
 
 /// Everything that a plan depends on.
 pub(crate) struct Planner<'a> {
+    pub(crate) robot: &'a Robot,
     pub(crate) settings: &'a PlanSettings,
     /// The limb to be used; none: the better one.
     pub(crate) limb: Option<Limb>,
@@ -61,7 +62,8 @@ impl Planner<'_> {
             return Err(Refusal::Gone);
         }
         let start = self.start(Some(pick.object), 0.0);
-        let plan = plan_pick(object, self.limb, &start.arms, &start.obstacles, self.settings)?;
+        let plan =
+            plan_pick(self.robot, object, self.limb, &start.arms, &start.obstacles, self.settings)?;
         self.refuse_other(plan.limb())?;
         let mut steps = start.steps;
         let stages = plan.timeline.stages();
@@ -79,7 +81,15 @@ impl Planner<'_> {
         let in_gripper = from_array(&held.in_gripper);
         let others = self.world.obstacles(self.state, None);
         let arms = self.arms();
-        let plan = plan_delivery(object, &in_gripper, held.limb, &arms, &others, self.settings)?;
+        let plan = plan_delivery(
+            self.robot,
+            object,
+            &in_gripper,
+            held.limb,
+            &arms,
+            &others,
+            self.settings,
+        )?;
         let steps = plan.timeline.stages().iter().map(pick_step).collect();
         Ok(Program { purpose: Purpose::Pick(pick), limb: held.limb, steps })
     }
@@ -98,8 +108,14 @@ impl Planner<'_> {
     pub(crate) fn aim(&self, object: ObjectId) -> Result<Program, Refusal> {
         let place = self.world.place(object).ok_or(Refusal::NoPlace)?;
         let start = self.start(None, 0.0);
-        let plan =
-            plan_point(place.xyz_m, self.limb, &start.arms, &start.obstacles, self.settings)?;
+        let plan = plan_point(
+            self.robot,
+            place.xyz_m,
+            self.limb,
+            &start.arms,
+            &start.obstacles,
+            self.settings,
+        )?;
         self.refuse_other(plan.limb())?;
         let mut steps = start.steps;
         steps.push_back(Step {
@@ -123,8 +139,8 @@ impl Planner<'_> {
         // A motion that was halted between two of the points at which it was checked may stand a
         // hair inside the margin. The way home is worth that.
         let relaxed = PlanSettings { margin_m: 0.0, ..*self.settings };
-        let plan = plan_return(limb, &start.arms, &start.obstacles, self.settings)
-            .or_else(|_| plan_return(limb, &start.arms, &start.obstacles, &relaxed))?;
+        let plan = plan_return(self.robot, limb, &start.arms, &start.obstacles, self.settings)
+            .or_else(|_| plan_return(self.robot, limb, &start.arms, &start.obstacles, &relaxed))?;
         let holds = self.state.held.is_some_and(|held| held.limb == limb);
         let mut steps = start.steps;
         steps.extend(plan.timeline.stages().iter().map(|stage| Step {
@@ -142,8 +158,13 @@ impl Planner<'_> {
     }
 
     fn refuse_other(&self, limb: Limb) -> Result<(), Refusal> {
-        let rests = self.measured.posture.is_at_rest(limb.other());
+        let rests = self.measured.posture.is_at_rest(self.robot, limb.other());
         if rests { Ok(()) } else { Err(Refusal::OtherLimb) }
+    }
+
+    /// What the limb's joints may do at the configured speed.
+    fn limits(&self, limb: Limb) -> MotionLimits {
+        self.robot.arm(limb).limits.at_speed_ratio(self.settings.speed_ratio)
     }
 
     fn arms(&self) -> Arms {
@@ -152,15 +173,17 @@ impl Planner<'_> {
     }
 
     fn tip(&self, limb: Limb) -> Translation3<f64> {
-        limb.forward(&self.measured.posture.joints[side(limb)]).translation
+        self.robot.arm(limb).chain.forward(&self.measured.posture.joints[side(limb)]).translation
     }
 
     /// A pause before an approach in which fingers that start now would not open in time.
     fn open_first(&self, limb: Limb, approach_s: f64) -> Option<Step> {
         let short_s = self.opening_s(limb) + DESCENT_S - approach_s;
         let q = &self.measured.posture.joints[side(limb)];
-        (short_s > 0.0 && self.opening_s(limb) > 0.0)
-            .then(|| Step { motion: Trajectory::hold(q, short_s), ..self.opening(limb) })
+        (short_s > 0.0 && self.opening_s(limb) > 0.0).then(|| Step {
+            motion: Trajectory::hold(q, short_s, &self.limits(limb)),
+            ..self.opening(limb)
+        })
     }
 
     fn opening_s(&self, limb: Limb) -> f64 {
@@ -172,7 +195,8 @@ impl Planner<'_> {
     fn opening(&self, limb: Limb) -> Step {
         let travel_s = self.opening_s(limb);
         let seconds = if travel_s > 0.0 { travel_s + SETTLE_S } else { 0.0 };
-        let motion = Trajectory::hold(&self.measured.posture.joints[side(limb)], seconds);
+        let q = &self.measured.posture.joints[side(limb)];
+        let motion = Trajectory::hold(q, seconds, &self.limits(limb));
         let fingers = Fingers::Open(self.settings.open_width_m);
         Step { kind: StepKind::Clear, phase: None, motion, fingers }
     }
@@ -195,7 +219,9 @@ impl Planner<'_> {
     fn start(&self, fetched: Option<ObjectId>, rise_m: f64) -> Start {
         let mut arms = self.arms();
         let mut steps = VecDeque::new();
-        let away = Limb::BOTH.into_iter().find(|limb| !self.measured.posture.is_at_rest(*limb));
+        let away = Limb::BOTH
+            .into_iter()
+            .find(|limb| !self.measured.posture.is_at_rest(self.robot, *limb));
         let others = self.world.obstacles(self.state, fetched);
         let Some(limb) = away else { return Start { steps, arms, obstacles: others } };
         if let Some(up) = self.up(limb, rise_m) {
@@ -207,7 +233,7 @@ impl Planner<'_> {
             steps.push_back(Step { kind: StepKind::Clear, phase: None, motion: up, fingers });
         }
         // What it touches even so cannot be kept clear of; it is left by the way there is.
-        let shape = ArmShape::at(limb, arms.of(limb));
+        let shape = ArmShape::at(self.robot.arm(limb), arms.of(limb));
         let obstacles = others.into_iter().filter(|cuboid| !touches(&shape, cuboid)).collect();
         Start { steps, arms, obstacles }
     }
@@ -216,8 +242,9 @@ impl Planner<'_> {
     /// limb can.
     fn up(&self, limb: Limb, rise_m: f64) -> Option<Trajectory> {
         let q = &self.measured.posture.joints[side(limb)];
-        let shape = ArmShape::at(limb, q);
-        let (chain, pose) = (limb.chain(), limb.forward(q));
+        let shape = ArmShape::at(self.robot.arm(limb), q);
+        let chain = &self.robot.arm(limb).chain;
+        let pose = chain.forward(q);
         let touched =
             self.world.standing(self.state, None).filter(|o| touches(&shape, &o.cuboid()));
         let up_m = touched
@@ -226,12 +253,11 @@ impl Planner<'_> {
         let line = [1.0, 0.6, 0.3].into_iter().filter(|_| up_m > 0.0).find_map(|share| {
             chain.line(q, &(Translation3::new(0.0, 0.0, share * up_m) * pose)).ok()
         })?;
-        let limits = MotionLimits::at_speed_ratio(self.settings.speed_ratio);
-        Trajectory::through(&line, BLEND_RAD, &limits).ok()
+        Trajectory::through(&line, BLEND_RAD, &self.limits(limb)).ok()
     }
 }
 
-fn touches(shape: &ArmShape, cuboid: &Cuboid) -> bool {
+fn touches(shape: &ArmShape<'_>, cuboid: &Cuboid) -> bool {
     shape.to_cuboid("object", cuboid, 0.0).is_some()
 }
 

@@ -3,8 +3,8 @@
 //! last in memory.
 
 use crate::Config;
-use crate::state::{ArmState, Record};
-use kinematics::limits;
+use crate::state::{ArmState, Record, side};
+use kinematics::Limb;
 use node::NodeError;
 use protocol::pick::Pick;
 use protocol::{PickOutcome, PickPhase};
@@ -42,9 +42,17 @@ pub fn next(phase: PickPhase, holding: Option<bool>, at_hand_over: bool) -> Next
 /// # Errors
 /// The journal's joints are not where joints can be.
 pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, NodeError> {
-    let first = || ArmState::first(config.scene.key(), config.arm.plan.open_width_m);
+    let first =
+        || ArmState::first(&config.arm.robot, config.scene.key(), config.arm.plan.open_width_m);
     let state = records.pop().map_or_else(first, |record| record.state);
-    match state.posture.joints.iter().find(|q| !limits::within(q)) {
+    let within = |limb: &Limb| {
+        config.arm.robot.arm(*limb).chain.limits().within(&state.posture.joints[side(*limb)])
+    };
+    match Limb::BOTH
+        .into_iter()
+        .find(|limb| !within(limb))
+        .map(|limb| state.posture.joints[side(limb)])
+    {
         None => Ok(state),
         Some(q) => Err(NodeError {
             what: format!("the journal has an arm at {q:?} rad, outside its joint limits"),

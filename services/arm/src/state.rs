@@ -1,7 +1,7 @@
 //! Everything that the arm must not forget. It is small, so each journal record holds it whole, and
 //! recovery reads one record.
 
-use kinematics::{Joints, Limb, baxter};
+use kinematics::{Joints, Limb, Robot};
 use node::Time;
 use protocol::pick::Pick;
 use protocol::{MotionOrder, PickPhase};
@@ -91,10 +91,11 @@ const REST_RAD: f64 = 1e-6;
 
 impl ArmState {
     /// The state before anything was ordered: both limbs at rest, fingers `open_width_m` apart.
-    pub fn first(scene_key: u64, open_width_m: f64) -> Self {
+    pub fn first(robot: &Robot, scene_key: u64, open_width_m: f64) -> Self {
+        let joints = Limb::BOTH.map(|limb| robot.arm(limb).neutral);
         Self {
             scene_key,
-            posture: Posture { joints: [baxter::NEUTRAL; 2], width_m: [open_width_m; 2] },
+            posture: Posture { joints, width_m: [open_width_m; 2] },
             pick: None,
             limb: None,
             held: None,
@@ -113,9 +114,9 @@ impl ArmState {
 
 impl Posture {
     /// Whether the limb is in the neutral posture, where it rests.
-    pub fn is_at_rest(&self, limb: Limb) -> bool {
-        let joints = &self.joints[side(limb)];
-        joints.iter().zip(&baxter::NEUTRAL).all(|(q, rest)| (q - rest).abs() < REST_RAD)
+    pub fn is_at_rest(&self, robot: &Robot, limb: Limb) -> bool {
+        let (joints, neutral) = (&self.joints[side(limb)], &robot.arm(limb).neutral);
+        joints.iter().zip(neutral).all(|(q, rest)| (q - rest).abs() < REST_RAD)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::driver::Measured;
 use crate::state::{ArmState, Held, side};
-use kinematics::{Cuboid, Limb, ObjectPose, attached_pose};
+use kinematics::{Cuboid, Limb, ObjectPose, Robot, attached_pose};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use node::Time;
 use protocol::WorldView;
@@ -11,13 +11,14 @@ use scene::{ObjectId, Placement, Scene};
 /// The objects' places in the scene.
 #[derive(Clone, Debug)]
 pub(crate) struct World {
+    robot: Robot,
     places: Vec<Option<ObjectPose>>,
 }
 
 impl World {
-    pub(crate) fn new(scene: &Scene) -> Self {
+    pub(crate) fn new(robot: &Robot, scene: &Scene) -> Self {
         let places = scene.objects().iter().map(|object| object.placement.as_ref().map(place));
-        Self { places: places.collect() }
+        Self { robot: robot.clone(), places: places.collect() }
     }
 
     /// Where the object has its place; none if it has none, or the scene has no such object.
@@ -51,7 +52,7 @@ impl World {
         limb: Limb,
         measured: &Measured,
     ) -> Option<Held> {
-        let gripper = limb.forward(&measured.posture.joints[side(limb)]);
+        let gripper = self.robot.arm(limb).chain.forward(&measured.posture.joints[side(limb)]);
         let in_gripper = gripper.inverse() * self.place(object)?.isometry();
         Some(Held { object, limb, in_gripper: to_array(&in_gripper) })
     }
@@ -59,7 +60,8 @@ impl World {
     /// The world as clients see it.
     pub(crate) fn view(&self, state: &ArmState, measured: &Measured, now: Time) -> WorldView {
         let joints = &measured.posture.joints;
-        let grippers = Limb::BOTH.map(|limb| limb.forward(&joints[side(limb)]));
+        let grippers =
+            Limb::BOTH.map(|limb| self.robot.arm(limb).chain.forward(&joints[side(limb)]));
         let mut objects: Vec<Option<[f64; 7]>> =
             self.places.iter().map(|p| p.as_ref().map(|p| to_array(&p.isometry()))).collect();
         let mut put = |object: ObjectId, pose| {

@@ -4,7 +4,7 @@
 
 use std::time::Instant;
 
-use kinematics::{Joints, Limb, limits};
+use kinematics::{Arm, Joints, Limb, PositionLimits, Robot};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 fn main() {
@@ -13,10 +13,18 @@ fn main() {
     for limb in Limb::BOTH {
         reachable(limb, count, &mut random);
         anywhere(limb, count, &mut random);
-        nearest(limb, count / 10, &mut random, |_| limits::middle(), "the middle of the limits");
+        nearest(limb, count / 10, &mut random, |_| limits().middle(), "the middle of the limits");
         nearest(limb, count / 10, &mut random, Random::posture, "a random posture");
     }
     forward(&mut random);
+}
+
+fn arm(limb: Limb) -> &'static Arm {
+    Robot::baxter().arm(limb)
+}
+
+fn limits() -> PositionLimits {
+    arm(Limb::Left).limits.position
 }
 
 /// Targets that are forward kinematics of random postures: every one has a solution.
@@ -24,9 +32,9 @@ fn reachable(limb: Limb, count: usize, random: &mut Random) {
     let mut micros = Vec::with_capacity(count);
     let mut lost = 0;
     for _ in 0..count {
-        let target = limb.forward(&random.posture());
+        let target = arm(limb).chain.forward(&random.posture());
         let start = Instant::now();
-        let answer = limb.inverse(&target, None);
+        let answer = arm(limb).chain.inverse(&target, None);
         micros.push(start.elapsed().as_secs_f64() * 1e6);
         lost += usize::from(answer.is_err());
     }
@@ -39,7 +47,7 @@ fn anywhere(limb: Limb, count: usize, random: &mut Random) {
     for _ in 0..count {
         let target = random.pose(limb);
         let start = Instant::now();
-        let answer = limb.inverse(&target, None);
+        let answer = arm(limb).chain.inverse(&target, None);
         let micros = start.elapsed().as_secs_f64() * 1e6;
         if answer.is_ok() { solved.push(micros) } else { refused.push(micros) }
     }
@@ -57,9 +65,9 @@ fn nearest(
     let mut micros = Vec::with_capacity(count);
     let mut sum = 0.0;
     for _ in 0..count {
-        let (target, seed) = (limb.forward(&random.posture()), seed(random));
+        let (target, seed) = (arm(limb).chain.forward(&random.posture()), seed(random));
         let start = Instant::now();
-        let answer = limb.inverse(&target, Some(&seed));
+        let answer = arm(limb).chain.inverse(&target, Some(&seed));
         micros.push(start.elapsed().as_secs_f64() * 1e6);
         let q = answer.map_or_else(|missed| missed.nearest, |answer| answer.q);
         sum += q.iter().zip(&seed).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
@@ -69,7 +77,7 @@ fn nearest(
 }
 
 fn forward(random: &mut Random) {
-    let chain = Limb::Left.chain();
+    let chain = &arm(Limb::Left).chain;
     let postures: Vec<Joints> = (0..1000).map(|_| random.posture()).collect();
     best(&postures, "tool frame", |q| chain.tool_frame(q).origin.x);
     best(&postures, "tool frame and Jacobian", |q| {
@@ -113,7 +121,7 @@ impl Random {
     }
 
     fn posture(&mut self) -> Joints {
-        limits::POSITION_LIMITS.map(|(lower, upper)| lower + (upper - lower) * self.unit())
+        limits().0.map(|(lower, upper)| lower + (upper - lower) * self.unit())
     }
 
     /// Uniform in the box that the left tool reaches, mirrored for the right; uniform rotation.

@@ -12,7 +12,15 @@
 
 #![expect(clippy::approx_constant, reason = "the description rounds π/2 and π/4 and is followed")]
 
+use std::sync::LazyLock;
+
+use nalgebra::Vector3;
+
+use crate::chain::{Axis, ZeroPosture};
 use crate::limb::{Joints, Limb};
+use crate::limits::{MotionLimits, PositionLimits};
+use crate::robot::{Body, Parts, Robot};
+use crate::shape::{Capsule, Cuboid};
 
 /// Position of the left arm mount in `base`; the right one is mirrored.
 pub const MOUNT_XYZ_M: [f64; 3] = [0.024645, 0.219645, 0.118588];
@@ -107,6 +115,120 @@ fn mirrored(limb: Limb, left: Joints) -> Joints {
     }
 }
 
+/// A capsule that moves with a link.
+struct Enclosure {
+    /// 0 upper shoulder to 6 wrist; the hand moves with the wrist.
+    link: usize,
+    name: &'static str,
+    radius: f64,
+    /// The ends of the axis in the description's link frame.
+    a: [f64; 3],
+    b: [f64; 3],
+}
+
+#[rustfmt::skip]
+const fn enclosure(
+    link: usize,
+    name: &'static str,
+    radius: f64,
+    a: [f64; 3],
+    b: [f64; 3],
+) -> Enclosure {
+    Enclosure { link, name, radius, a, b }
+}
+
+/// The arm's capsules, shoulder first.
+#[rustfmt::skip]
+const CAPSULES: [Enclosure; 15] = [
+    enclosure(0, "upper_shoulder", 0.1466, [0.0213, -0.0001, 0.1436], [0.0719, 0.0, 0.3118]),
+    enclosure(1, "lower_shoulder", 0.0792, [0.0006, 0.0001, -0.0644], [0.1082, 0.0002, -0.0094]),
+    enclosure(1, "lower_shoulder", 0.0771, [0.1013, 0.0, 0.0307], [-0.0019, 0.0001, 0.0649]),
+    enclosure(2, "upper_elbow", 0.0931, [0.0001, 0.0, 0.0701], [-0.0051, -0.0005, 0.1802]),
+    enclosure(2, "upper_elbow", 0.0880, [-0.0246, 0.0002, 0.2403], [0.0516, 0.0003, 0.2539]),
+    enclosure(3, "lower_elbow", 0.0739, [0.0002, 0.0007, -0.0599], [0.0614, -0.0018, -0.0333]),
+    enclosure(3, "lower_elbow", 0.0733, [0.0, 0.0, 0.0598], [0.0707, 0.0, 0.0007]),
+    enclosure(4, "upper_forearm", 0.0786, [-0.0115, -0.0001, 0.1602], [0.0, -0.0002, 0.023]),
+    enclosure(4, "upper_forearm", 0.0555, [0.0017, -0.0089, 0.2574], [0.011, -0.0072, 0.272]),
+    enclosure(5, "lower_forearm", 0.0752, [0.0035, -0.001, -0.0321], [0.0013, -0.0009, 0.0322]),
+    enclosure(5, "lower_forearm", 0.0841, [0.107, -0.0006, 0.0002], [0.0806, -0.0005, 0.0015]),
+    enclosure(6, "wrist", 0.0579, [-0.0001, 0.0, 0.067], [0.0175, -0.0007, 0.0958]),
+    enclosure(6, "hand", 0.045, [0.0, 0.0, -0.03], [0.0, 0.0, 0.0]),
+    enclosure(6, "hand", 0.060, [0.0, 0.0, 0.015], [0.0, 0.0, 0.075]),
+    enclosure(6, "hand", 0.045, [0.0, 0.0, 0.075], [0.0, 0.0, 0.115]),
+];
+
+/// Torso and pedestal as boxes in `base`.
+const TRUNK: [(&str, Cuboid); 7] = [
+    ("torso", Cuboid::aligned([-0.008, 0.0, -0.0315], [0.38, 0.41, 0.06])),
+    ("torso", Cuboid::aligned([-0.009, 0.0, 0.1185], [0.418, 0.672, 0.24])),
+    ("torso", Cuboid::aligned([-0.0475, 0.0, 0.4185], [0.341, 0.452, 0.36])),
+    ("torso", Cuboid::aligned([-0.1115, 0.0, 0.6285], [0.145, 0.112, 0.06])),
+    ("torso", Cuboid::aligned([-0.006, 0.0, 0.767], [0.296, 0.164, 0.217])),
+    ("pedestal", Cuboid::aligned([-0.0425, 0.0, -0.7672], [0.919, 0.832, 0.314])),
+    ("pedestal", Cuboid::aligned([0.0, 0.0, -0.3359], [0.324, 0.322, 0.5487])),
+];
+
+/// The head, wherever it looks, as two balls in `base`.
+const HEAD: [[f64; 3]; 2] = [[0.04, -0.04, 0.75], [0.04, 0.04, 0.75]];
+const HEAD_RADIUS_M: f64 = 0.22;
+
+/// The built-in robot.
+pub fn robot() -> &'static Robot {
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| {
+        let cuboids = TRUNK.to_vec();
+        let head = HEAD.map(|at| {
+            let at = Vector3::from(at);
+            ("head", Capsule { a: at, b: at, radius: HEAD_RADIUS_M })
+        });
+        Robot::new(parts(Limb::Left), parts(Limb::Right), Body { cuboids, capsules: head.into() })
+    });
+    &ROBOT
+}
+
+pub(crate) fn parts(limb: Limb) -> Parts {
+    let links = crate::links::links(limb, &[0.0; 7], 0.0);
+    let at = |name: &str| {
+        let name = format!("{limb}_{name}");
+        links.iter().find(|(link, _)| *link == name).map(|(_, pose)| *pose).unwrap_or_default()
+    };
+    let moved = MOVED.map(at);
+    let posture = ZeroPosture {
+        axes: moved.map(|pose| Axis {
+            point: pose.translation.vector,
+            direction: pose.rotation * Vector3::z(),
+        }),
+        tool: at("gripper"),
+    };
+    let capsules = CAPSULES.iter().map(|c| {
+        let pose = if c.name == "hand" { at("hand") } else { moved[c.link] };
+        let end = |p: [f64; 3]| (pose * nalgebra::Point3::from(p)).coords;
+        (c.link, c.name, Capsule { a: end(c.a), b: end(c.b), radius: c.radius })
+    });
+    Parts {
+        posture,
+        limits: MotionLimits::new(
+            PositionLimits(POSITION_LIMITS_RAD),
+            VELOCITY_LIMITS_RAD_S,
+            ACCELERATION_LIMITS_RAD_S2,
+            [20.0; 7],
+        ),
+        neutral: NEUTRAL,
+        stations: vec![NEUTRAL, untuck(limb)],
+        capsules: capsules.collect(),
+        may_touch: Vec::new(),
+    }
+}
+
+const MOVED: [&str; 7] = [
+    "upper_shoulder",
+    "lower_shoulder",
+    "upper_elbow",
+    "lower_elbow",
+    "upper_forearm",
+    "lower_forearm",
+    "wrist",
+];
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -171,12 +293,5 @@ mod tests {
         );
         assert_eq!(COMMAND_RATE_HZ, facts["sdk"]["command_rate_hz"].as_float().unwrap());
         assert_eq!(FLOOR_Z_M, facts["workspace"]["floor_z"].as_float().unwrap());
-    }
-
-    #[test]
-    fn a_stop_from_full_speed_takes_a_tenth_of_a_second() {
-        for (v, a) in VELOCITY_LIMITS_RAD_S.iter().zip(STOP_DECELERATION_RAD_S2) {
-            assert!((v / a - 0.1).abs() < 1e-12);
-        }
     }
 }

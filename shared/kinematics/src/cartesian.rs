@@ -79,12 +79,12 @@ mod tests {
     use nalgebra::Translation3;
 
     use crate::limb::Limb;
-    use crate::limits;
+    use crate::samples::{arm, full};
     use crate::{TOLERANCE_M, baxter};
 
     #[test]
     fn a_line_is_straight_and_even() {
-        let chain = Limb::Left.chain();
+        let chain = arm(Limb::Left).chain;
         let start = chain.forward(&baxter::NEUTRAL);
         let target = Translation3::new(0.05, -0.1, 0.12) * start;
         let line = chain.line(&baxter::NEUTRAL, &target).unwrap();
@@ -92,7 +92,7 @@ mod tests {
         assert_eq!(line.len(), 34, "164 mm in steps of at most 5 mm, and the start");
         let way = target.translation.vector - start.translation.vector;
         for (k, q) in line.iter().enumerate() {
-            assert!(limits::within(q));
+            assert!(full().position.within(q));
             let pose = chain.forward(q);
             let share = k as f64 / (line.len() - 1) as f64;
             let off = pose.translation.vector - start.translation.vector - way * share;
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_line_may_turn_in_place() {
-        let chain = Limb::Right.chain();
+        let chain = arm(Limb::Right).chain;
         let start = chain.forward(&baxter::NEUTRAL);
         let target = start * nalgebra::Isometry3::rotation(nalgebra::Vector3::z() * 0.49);
         let line = chain.line(&baxter::NEUTRAL, &target).unwrap();
@@ -114,11 +114,11 @@ mod tests {
 
     #[test]
     fn a_line_out_of_reach_says_how_far_it_goes() {
-        let chain = Limb::Left.chain();
+        let chain = arm(Limb::Left).chain;
         let target = Translation3::new(0.0, 0.0, 2.0) * chain.forward(&baxter::NEUTRAL);
         let error = chain.line(&baxter::NEUTRAL, &target).unwrap_err();
         assert!(error.fraction > 0.02 && error.fraction < 0.8, "{error}");
-        assert!(limits::within(&error.q));
+        assert!(full().position.within(&error.q));
         assert!(error.to_string().contains("straight line ends"));
     }
 }

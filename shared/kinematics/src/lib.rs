@@ -26,6 +26,7 @@ pub mod limits;
 pub mod links;
 mod path;
 mod plan;
+mod robot;
 mod route;
 #[cfg(test)]
 mod samples;
@@ -36,18 +37,19 @@ mod trajectory;
 mod trig;
 
 pub use cartesian::LineError;
-pub use chain::{Chain, Frame, Jacobian};
+pub use chain::{Axis, Chain, Frame, Jacobian, ZeroPosture};
 pub use clearance::{ArmShape, Clearance, Gap};
 pub use grasp::{Grasp, GraspError, ObjectPose};
 pub use gripper::attached_pose;
-pub use inverse::{IkSolution, SAMPLES, TOLERANCE_M, TOLERANCE_RAD, Unreachable};
+pub use inverse::{IkSolution, TOLERANCE_M, TOLERANCE_RAD, Unreachable};
 pub use limb::{JOINTS, Joints, Limb};
-pub use limits::MotionLimits;
+pub use limits::{MotionLimits, PositionLimits};
 pub use path::Path;
 pub use plan::{
     Arms, PickPhase, PickPlan, PlanError, PlanSettings, PointPhase, PointPlan, check_reachable,
     plan_delivery, plan_pick, plan_point, plan_return,
 };
+pub use robot::{Arm, Robot};
 pub use shape::{Capsule, Cuboid};
 pub use timeline::{Moment, Stage, Timeline};
 pub use trajectory::{INTERVALS_MIN, Trajectory, TrajectoryError};

@@ -2,11 +2,7 @@
 
 use std::fmt;
 
-use nalgebra::Isometry3;
 use serde::{Deserialize, Serialize};
-
-use crate::chain::Chain;
-use crate::inverse::{IkSolution, Unreachable};
 
 /// Joint positions of one limb in radians, ordered `s0 s1 e0 e1 w0 w1 w2`.
 pub type Joints = [f64; 7];
@@ -69,35 +65,6 @@ impl Limb {
     /// The seven full joint names in the order of [`Joints`].
     pub fn joint_names(self) -> [String; 7] {
         JOINTS.map(|joint| format!("{self}_{joint}"))
-    }
-
-    /// The chain from `base` to `<limb>_gripper` with the default electric gripper.
-    pub fn chain(self) -> Chain {
-        Chain::new(self)
-    }
-
-    /// Pose of `<limb>_gripper` in frame `base` at joint positions `q`.
-    pub fn forward(self, q: &Joints) -> Isometry3<f64> {
-        self.chain().forward(q)
-    }
-
-    /// Every link of the limb in frame `base` at joint positions `q`, named as in the robot
-    /// description, fingers closed; see [`crate::links::links`].
-    pub fn links(self, q: &Joints) -> Vec<(String, Isometry3<f64>)> {
-        crate::links::links(self, q, 0.0)
-    }
-
-    /// Joint positions that bring `<limb>_gripper` to `target` (frame `base`); see
-    /// [`Chain::inverse`].
-    ///
-    /// # Errors
-    /// [`Unreachable`] with the nearest posture if none does.
-    pub fn inverse(
-        self,
-        target: &Isometry3<f64>,
-        seed: Option<&Joints>,
-    ) -> Result<IkSolution, Unreachable> {
-        self.chain().inverse(target, seed)
     }
 
     /// The posture reflected in the xz plane: what the other limb does when this one does `q`.

@@ -1,67 +1,110 @@
-//! What the joints may do: positions, velocities and accelerations.
+//! What the joints may do: positions, velocities, accelerations and jerks.
 
-use crate::baxter;
 use crate::limb::{JOINTS, Joints};
 
-/// Closed interval of positions per joint, radians.
-pub const POSITION_LIMITS: [(f64, f64); 7] = baxter::POSITION_LIMITS_RAD;
+/// The closed interval of positions of each joint, radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PositionLimits(pub [(f64, f64); 7]);
 
-/// Whether every joint lies within its limits, to the last bit.
-pub fn within(q: &Joints) -> bool {
-    q.iter().zip(&POSITION_LIMITS).all(|(q, &(lower, upper))| lower <= *q && *q <= upper)
+impl PositionLimits {
+    /// Whether every joint lies within its limits, to the last bit.
+    pub fn within(&self, q: &Joints) -> bool {
+        q.iter().zip(&self.0).all(|(q, &(lower, upper))| lower <= *q && *q <= upper)
+    }
+
+    /// `q` with every joint moved to the nearest position within its limits. A position that is not
+    /// a number becomes the lower limit.
+    pub fn clamp(&self, q: &Joints) -> Joints {
+        std::array::from_fn(|i| {
+            let (lower, upper) = self.0[i];
+            q[i].max(lower).min(upper)
+        })
+    }
+
+    /// The middle of every joint's interval, radians.
+    pub fn middle(&self) -> Joints {
+        self.0.map(|(lower, upper)| 0.5 * (lower + upper))
+    }
+
+    /// The posture at `share` (each 0 to 1) of every joint's interval, radians.
+    pub fn at(&self, share: &[f64; 7]) -> Joints {
+        std::array::from_fn(|i| {
+            let (lower, upper) = self.0[i];
+            (lower + (upper - lower) * share[i]).clamp(lower, upper)
+        })
+    }
+
+    /// Distance from `q` to the nearest limit of any joint, radians; negative outside.
+    pub fn margin_rad(&self, q: &Joints) -> f64 {
+        q.iter()
+            .zip(&self.0)
+            .map(|(q, (lower, upper))| (q - lower).min(upper - q))
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Name, position and limits of the first joint of `q` outside its limits.
+    pub fn first_violation(&self, q: &Joints) -> Option<(&'static str, f64, (f64, f64))> {
+        (0..7)
+            .find(|&i| !(self.0[i].0 <= q[i] && q[i] <= self.0[i].1))
+            .map(|i| (JOINTS[i], q[i], self.0[i]))
+    }
+
+    /// How far joint `i` at `q` is outside its limits, radians; 0 within.
+    #[inline(always)]
+    pub(crate) fn outside(&self, i: usize, q: f64) -> f64 {
+        let (lower, upper) = self.0[i];
+        (lower - q).max(q - upper).max(0.0)
+    }
+
+    /// How far the worst joint is outside its limits, radians.
+    #[inline]
+    pub(crate) fn violation(&self, q: &Joints) -> f64 {
+        (0..7).fold(0.0, |worst, i| self.outside(i, q[i]).max(worst))
+    }
 }
 
-/// `q` with every joint moved to the nearest position within its limits. A position that is not a
-/// number becomes the lower limit.
-pub fn clamp(q: &Joints) -> Joints {
-    std::array::from_fn(|i| {
-        let (lower, upper) = POSITION_LIMITS[i];
-        q[i].max(lower).min(upper)
-    })
-}
-
-/// The middle of every joint's interval, radians.
-pub fn middle() -> Joints {
-    POSITION_LIMITS.map(|(lower, upper)| 0.5 * (lower + upper))
-}
-
-/// Distance from `q` to the nearest limit of any joint, radians; negative outside.
-pub fn margin_rad(q: &Joints) -> f64 {
-    q.iter()
-        .zip(&POSITION_LIMITS)
-        .map(|(q, (lower, upper))| (q - lower).min(upper - q))
-        .fold(f64::INFINITY, f64::min)
-}
-
-/// Name, position and limits of the first joint of `q` outside its limits.
-pub fn first_violation(q: &Joints) -> Option<(&'static str, f64, (f64, f64))> {
-    (0..7)
-        .find(|&i| !(POSITION_LIMITS[i].0 <= q[i] && q[i] <= POSITION_LIMITS[i].1))
-        .map(|i| (JOINTS[i], q[i], POSITION_LIMITS[i]))
-}
-
-/// Velocity and acceleration bounds of a motion, per joint.
+/// Bounds of a motion, per joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionLimits {
+    /// Positions, radians.
+    pub position: PositionLimits,
     /// Greatest |velocity|, rad/s.
     pub velocity: Joints,
     /// Greatest |acceleration|, rad/s².
     pub acceleration: Joints,
+    /// Greatest |jerk|, rad/s³.
+    pub jerk: Joints,
+    /// Deceleration of a motion stop, rad/s²: every joint from its greatest velocity to rest in
+    /// 0.1 s.
+    ///
+    /// Above `acceleration` on purpose. Those are a planner's comfortable values; a stop that kept
+    /// them would take Baxter 0.75 s from full speed, and a person who says "stop" is owed better.
+    pub stop: Joints,
 }
 
-impl MotionLimits {
-    /// The robot description's velocities and MoveIt's accelerations: the fastest planned motion.
-    pub const FULL: Self = Self {
-        velocity: baxter::VELOCITY_LIMITS_RAD_S,
-        acceleration: baxter::ACCELERATION_LIMITS_RAD_S2,
-    };
+/// How long a motion stop takes from a joint's greatest velocity, seconds.
+pub const STOP_S: f64 = 0.1;
 
-    /// Both bounds times `ratio`, which is taken into (0, 1]: the SDK's speed ratio.
-    pub fn at_speed_ratio(ratio: f64) -> Self {
+impl MotionLimits {
+    /// The limits of joints with these bounds; the stop follows from the velocities.
+    pub fn new(
+        position: PositionLimits,
+        velocity: Joints,
+        acceleration: Joints,
+        jerk: Joints,
+    ) -> Self {
+        Self { position, velocity, acceleration, jerk, stop: velocity.map(|v| v / STOP_S) }
+    }
+
+    /// Velocity, acceleration and jerk times `ratio`, which is taken into (0, 1]: the SDK's speed
+    /// ratio. Positions and the stop stay.
+    pub fn at_speed_ratio(&self, ratio: f64) -> Self {
         let ratio = if ratio.is_finite() { ratio.clamp(1e-3, 1.0) } else { 1.0 };
         Self {
-            velocity: Self::FULL.velocity.map(|v| v * ratio),
-            acceleration: Self::FULL.acceleration.map(|a| a * ratio),
+            velocity: self.velocity.map(|v| v * ratio),
+            acceleration: self.acceleration.map(|a| a * ratio),
+            jerk: self.jerk.map(|j| j * ratio),
+            ..*self
         }
     }
 }
@@ -69,39 +112,44 @@ impl MotionLimits {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::full;
 
     #[test]
     fn limits_themselves_are_within() {
-        let lower = POSITION_LIMITS.map(|(lower, _)| lower);
-        let upper = POSITION_LIMITS.map(|(_, upper)| upper);
-        assert!(within(&lower) && within(&upper) && within(&middle()));
-        assert_eq!(margin_rad(&lower), 0.0);
+        let limits = full().position;
+        let lower = limits.at(&[0.0; 7]);
+        let upper = limits.at(&[1.0; 7]);
+        assert!(limits.within(&lower) && limits.within(&upper) && limits.within(&limits.middle()));
+        assert_eq!(limits.margin_rad(&lower), 0.0);
         for j in 0..7 {
             let mut q = upper;
             q[j] = q[j].next_up();
-            assert!(!within(&q) && margin_rad(&q) < 0.0);
-            assert_eq!(first_violation(&q).unwrap().0, JOINTS[j]);
-            assert_eq!(clamp(&q), upper);
+            assert!(!limits.within(&q) && limits.margin_rad(&q) < 0.0);
+            assert_eq!(limits.first_violation(&q).unwrap().0, JOINTS[j]);
+            assert_eq!(limits.clamp(&q), upper);
         }
-        assert_eq!(first_violation(&upper), None);
+        assert_eq!(limits.first_violation(&upper), None);
+        assert!(!limits.within(&[f64::NAN; 7]) && limits.within(&limits.clamp(&[f64::NAN; 7])));
     }
 
     #[test]
-    fn not_a_number_is_outside_and_clamped() {
-        let mut q = middle();
-        q[3] = f64::NAN;
-        assert!(!within(&q));
-        assert_eq!(first_violation(&q).unwrap().0, "e1");
-        assert!(within(&clamp(&q)));
+    fn a_ratio_scales_what_moves_and_leaves_the_rest() {
+        let full = full();
+        let half = full.at_speed_ratio(0.5);
+        assert_eq!(half.velocity[0], 0.5 * full.velocity[0]);
+        assert_eq!(half.acceleration[6], 0.5 * full.acceleration[6]);
+        assert_eq!(half.jerk[6], 0.5 * full.jerk[6]);
+        assert_eq!((half.position, half.stop), (full.position, full.stop));
+        assert_eq!(full.at_speed_ratio(f64::NAN), full);
+        assert_eq!(full.at_speed_ratio(7.0), full);
+        assert!(full.at_speed_ratio(-1.0).velocity[0] > 0.0);
     }
 
     #[test]
-    fn speed_ratio_scales_both_bounds() {
-        let half = MotionLimits::at_speed_ratio(0.5);
-        assert_eq!(half.velocity[0], 0.75);
-        assert_eq!(half.acceleration[6], 1.0);
-        assert_eq!(MotionLimits::at_speed_ratio(7.0), MotionLimits::FULL);
-        assert_eq!(MotionLimits::at_speed_ratio(f64::NAN), MotionLimits::FULL);
-        assert!(MotionLimits::at_speed_ratio(-1.0).velocity[0] > 0.0);
+    fn a_stop_from_full_speed_takes_a_tenth_of_a_second() {
+        let full = full();
+        for (v, a) in full.velocity.iter().zip(full.stop) {
+            assert!((v / a - STOP_S).abs() < 1e-12);
+        }
     }
 }

@@ -125,7 +125,7 @@ const LINKS: [Link; 22] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::{Random, difference, fixture, joints, numbers, pose, table};
+    use crate::samples::{Random, arm, difference, fixture, joints, numbers, pose, table};
 
     #[test]
     fn poses_equal_the_reference() {
@@ -189,7 +189,7 @@ mod tests {
             let links = links(limb, &q, 0.0);
             let name = format!("{limb}_gripper");
             let gripper = links.iter().find(|(n, _)| *n == name).unwrap();
-            assert!(difference(&gripper.1, &limb.forward(&q)) < 1e-10);
+            assert!(difference(&gripper.1, &arm(limb).chain.forward(&q)) < 1e-10);
         }
     }
 

@@ -1,7 +1,7 @@
 //! Ways through joint space that touch nothing.
 
 use crate::limb::Joints;
-use crate::limits::POSITION_LIMITS;
+use crate::limits::PositionLimits;
 
 /// Joint distance between two checks along a line, the largest joint's change, radians. The
 /// gripper moves less than 6 cm between them and half of that from the nearer one.
@@ -42,9 +42,10 @@ pub(crate) fn simple(
 pub(crate) fn searched(
     from: &Joints,
     to: &Joints,
+    limits: &PositionLimits,
     clear: &impl Fn(&Joints) -> bool,
 ) -> Option<Vec<Joints>> {
-    if clear(from) && clear(to) { Trees::new(*from, *to).run(clear) } else { None }
+    if clear(from) && clear(to) { Trees::new(*from, *to).run(limits, clear) } else { None }
 }
 
 /// Whether `clear` holds along the straight line, both ends included.
@@ -86,14 +87,18 @@ impl Trees {
     }
 
     /// Grows the trees in turn towards random postures and each other.
-    fn run(mut self, clear: &impl Fn(&Joints) -> bool) -> Option<Vec<Joints>> {
+    fn run(
+        mut self,
+        limits: &PositionLimits,
+        clear: &impl Fn(&Joints) -> bool,
+    ) -> Option<Vec<Joints>> {
         let (mut growing, mut samples) = (0, 0);
         while self.trees[0].len() + self.trees[1].len() < NODES_MAX {
             samples += 1;
             if samples > SAMPLES_MAX {
                 break;
             }
-            let sample = self.random.posture();
+            let sample = self.random.posture(limits);
             if let Some(reached) = extend(&mut self.trees[growing], &sample, clear) {
                 let other = 1 - growing;
                 while let Some(node) = extend(&mut self.trees[other], &reached, clear) {
@@ -169,14 +174,16 @@ impl Random {
         ((self.next() * n as f64) as usize).min(n.saturating_sub(1))
     }
 
-    fn posture(&mut self) -> Joints {
-        POSITION_LIMITS.map(|(lower, upper)| lower + (upper - lower) * self.next())
+    fn posture(&mut self, limits: &PositionLimits) -> Joints {
+        let share = std::array::from_fn(|_| self.next());
+        limits.at(&share)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::samples::full;
 
     /// A wall across the first two joints with a gap at the far end of the second.
     fn walled(q: &Joints) -> bool {
@@ -204,19 +211,19 @@ mod tests {
 
     #[test]
     fn a_search_finds_the_gap_and_is_the_same_every_time() {
-        let way = searched(&FROM, &TO, &walled).expect("there is a gap");
+        let way = searched(&FROM, &TO, &full().position, &walled).expect("there is a gap");
         assert_eq!((way[0], way[way.len() - 1]), (FROM, TO));
         for pair in way.windows(2) {
             for k in 0..=200 {
                 assert!(walled(&mix(&pair[0], &pair[1], f64::from(k) / 200.0)), "{way:?}");
             }
         }
-        assert_eq!(searched(&FROM, &TO, &walled), Some(way));
+        assert_eq!(searched(&FROM, &TO, &full().position, &walled), Some(way));
     }
 
     #[test]
     fn no_way_is_found_where_there_is_none() {
-        assert_eq!(searched(&FROM, &TO, &|q| (q[0] - 0.3).abs() > 0.1), None);
-        assert_eq!(searched(&FROM, &TO, &|q| *q != TO), None);
+        assert_eq!(searched(&FROM, &TO, &full().position, &|q| (q[0] - 0.3).abs() > 0.1), None);
+        assert_eq!(searched(&FROM, &TO, &full().position, &|q| *q != TO), None);
     }
 }

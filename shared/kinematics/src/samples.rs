@@ -2,8 +2,11 @@
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
+use crate::baxter;
+use crate::chain::Chain;
 use crate::limb::{Joints, Limb};
-use crate::limits::POSITION_LIMITS;
+use crate::limits::MotionLimits;
+use crate::robot::{Arm, Robot};
 
 /// A small generator (xorshift); tests name its seed when they fail.
 pub(crate) struct Random(u64);
@@ -31,12 +34,34 @@ impl Random {
 
     /// A posture within the limits; now and then a joint is exactly at one.
     pub(crate) fn posture(&mut self) -> Joints {
-        POSITION_LIMITS.map(|(lower, upper)| match self.unit() {
+        full().position.0.map(|(lower, upper)| match self.unit() {
             x if x < 0.01 => lower,
             x if x > 0.99 => upper,
             _ => self.between(lower, upper),
         })
     }
+}
+
+/// The robot of the tests.
+pub(crate) fn robot() -> &'static Robot {
+    Robot::baxter()
+}
+
+/// One of its limbs.
+pub(crate) fn arm(limb: Limb) -> &'static Arm {
+    robot().arm(limb)
+}
+
+/// What its joints may do at most.
+pub(crate) fn full() -> MotionLimits {
+    arm(Limb::Left).limits
+}
+
+/// The limb with its tool frame at `tool_m` past the hand, metres.
+pub(crate) fn with_tool(limb: Limb, tool_m: f64) -> Chain {
+    let mut posture = baxter::parts(limb).posture;
+    posture.tool *= Translation3::new(0.0, 0.0, tool_m - baxter::tool::ELECTRIC_EXTENDED_M);
+    Chain::new(&posture, full().position)
 }
 
 /// A file of the reference.

@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::baxter::STOP_DECELERATION_RAD_S2;
 use crate::limb::Joints;
-use crate::limits::{self, MotionLimits};
+use crate::limits::{MotionLimits, PositionLimits};
 use crate::path::Path;
 use crate::timing::{self, Knot, motion_at};
 
@@ -16,6 +15,7 @@ mod tests;
 pub struct Trajectory {
     path: Arc<Path>,
     knots: Arc<[Knot]>,
+    limits: Arc<MotionLimits>,
     /// The part of the knots' time that this trajectory covers, seconds.
     begin_s: f64,
     end_s: f64,
@@ -58,7 +58,7 @@ impl Trajectory {
         limits: &MotionLimits,
     ) -> Result<Self, TrajectoryError> {
         for q in waypoints {
-            refuse_outside(q)?;
+            refuse_outside(&limits.position, q)?;
         }
         Ok(Self::along(Path::rounded(waypoints, blend_rad), limits, INTERVALS_MIN))
     }
@@ -67,55 +67,55 @@ impl Trajectory {
     /// `limits`, on a grid of at least `intervals_min` intervals. Positions are the path's.
     pub fn along(path: Path, limits: &MotionLimits, intervals_min: usize) -> Self {
         let knots = timing::fastest(&path, limits, intervals_min);
-        Self::from_knots(Arc::new(path), knots)
+        Self::from_knots(Arc::new(path), knots, Arc::new(*limits))
     }
 
     /// Standing still at `q` for `seconds`.
-    pub fn hold(q: &Joints, seconds: f64) -> Self {
+    pub fn hold(q: &Joints, seconds: f64, limits: &MotionLimits) -> Self {
         let still = Knot { time: 0.0, s: 0.0, speed: 0.0, acceleration: 0.0, piece: 0 };
         let knots = vec![still, Knot { time: seconds.max(0.0), ..still }];
-        Self::from_knots(Arc::new(Path::rounded(&[*q], 0.0)), knots)
+        Self::from_knots(Arc::new(Path::rounded(&[*q], 0.0)), knots, Arc::new(*limits))
     }
 
     /// The motion stop: from `q` at velocity `qd` to rest on a straight line in joint space.
     ///
-    /// Decelerates at [`STOP_DECELERATION_RAD_S2`], so within 0.1 s from any velocity that the
-    /// limits allow. A joint too near to its limit for that brakes harder: the position limit is
+    /// Decelerates at [`MotionLimits::stop`], so within 0.1 s from any velocity that the limits
+    /// allow. A joint too near to its limit for that brakes harder: the position limit is
     /// the one that is kept.
-    pub fn halt(q: &Joints, qd: &Joints) -> Self {
-        let q = limits::clamp(q);
+    pub fn halt(q: &Joints, qd: &Joints, limits: &MotionLimits) -> Self {
+        let q = limits.position.clamp(q);
         let qd: Joints = std::array::from_fn(|j| if qd[j].is_finite() { qd[j] } else { 0.0 });
         let speed = qd.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let seconds = (0..7).map(|j| qd[j].abs() / STOP_DECELERATION_RAD_S2[j]).fold(0.0, f64::max);
-        let room = (0..7).map(|j| seconds_to_limit(j, q[j], qd[j])).fold(f64::INFINITY, f64::min);
+        let seconds = (0..7).map(|j| qd[j].abs() / limits.stop[j]).fold(0.0, f64::max);
+        let room = (0..7)
+            .map(|j| seconds_to_limit(limits.position.0[j], q[j], qd[j]))
+            .fold(f64::INFINITY, f64::min);
         // At a constant deceleration the way is half of speed times time.
         let seconds = seconds.min(2.0 * room);
         if speed < 1e-9 || seconds < 1e-6 {
-            return Self::hold(&q, 0.0);
+            return Self::hold(&q, 0.0, limits);
         }
-        let rest = limits::clamp(&std::array::from_fn(|j| q[j] + 0.5 * qd[j] * seconds));
+        let braked = std::array::from_fn(|j| q[j] + 0.5 * qd[j] * seconds);
+        let rest = limits.position.clamp(&braked);
         let path = Path::rounded(&[q, rest], 0.0);
         let start = Knot { time: 0.0, s: 0.0, speed, acceleration: -speed / seconds, piece: 0 };
         let end = Knot { time: seconds, s: path.length(), speed: 0.0, acceleration: 0.0, piece: 0 };
-        Self::from_knots(Arc::new(path), vec![start, end])
+        Self::from_knots(Arc::new(path), vec![start, end], Arc::new(*limits))
     }
 
     /// The motion stop that keeps to the path: from this trajectory's state at `t_s` to rest as
-    /// soon as [`STOP_DECELERATION_RAD_S2`] allows. Where the path was clear, so is the stop.
+    /// soon as [`MotionLimits::stop`] allows. Where the path was clear, so is the stop.
     pub fn halted_at(&self, t_s: f64) -> Self {
         let (knot, dt) = self.knot_at(t_s);
         let s = knot.s + dt * (knot.speed + 0.5 * knot.acceleration * dt);
         let speed = (knot.speed + knot.acceleration * dt).max(0.0);
         let length = self.path.pieces()[knot.piece].length;
         if speed < 1e-9 || self.path.length() == 0.0 || s >= length && self.is_last(knot.piece) {
-            return Self::hold(&self.sample(t_s).0, 0.0);
+            return Self::hold(&self.sample(t_s).0, 0.0, &self.limits);
         }
-        let limits = MotionLimits {
-            velocity: MotionLimits::FULL.velocity,
-            acceleration: STOP_DECELERATION_RAD_S2,
-        };
+        let limits = MotionLimits { acceleration: self.limits.stop, ..*self.limits };
         let knots = timing::brake(&self.path, &limits, (knot.piece, s.min(length)), speed);
-        Self::from_knots(Arc::clone(&self.path), knots)
+        Self::from_knots(Arc::clone(&self.path), knots, Arc::clone(&self.limits))
     }
 
     /// How long it takes, seconds.
@@ -161,9 +161,9 @@ impl Trajectory {
         nearest.map_or(0.0, |knot| (knot.time - self.begin_s).clamp(0.0, self.duration_s()))
     }
 
-    fn from_knots(path: Arc<Path>, knots: Vec<Knot>) -> Self {
+    fn from_knots(path: Arc<Path>, knots: Vec<Knot>, limits: Arc<MotionLimits>) -> Self {
         let end_s = knots.last().map_or(0.0, |knot| knot.time);
-        Self { path, knots: knots.into(), begin_s: 0.0, end_s }
+        Self { path, knots: knots.into(), limits, begin_s: 0.0, end_s }
     }
 
     fn is_last(&self, piece: usize) -> bool {
@@ -186,13 +186,12 @@ impl Trajectory {
         let speed = (knot.speed + knot.acceleration * dt).max(0.0);
         let [q, qd, qdd] = motion_at(&self.path, (knot.piece, s), speed, knot.acceleration);
         // Rounding may carry a joint that rests on its limit past it by a last bit.
-        [limits::clamp(&q), qd, qdd]
+        [self.limits.position.clamp(&q), qd, qdd]
     }
 }
 
-/// Seconds until joint `j`, at `q` and moving on at `qd`, is at its limit.
-fn seconds_to_limit(j: usize, q: f64, qd: f64) -> f64 {
-    let (lower, upper) = limits::POSITION_LIMITS[j];
+/// Seconds until a joint, at `q` and moving on at `qd`, is at its limit.
+fn seconds_to_limit((lower, upper): (f64, f64), q: f64, qd: f64) -> f64 {
     if qd > 0.0 {
         (upper - q) / qd
     } else if qd < 0.0 {
@@ -202,8 +201,8 @@ fn seconds_to_limit(j: usize, q: f64, qd: f64) -> f64 {
     }
 }
 
-pub(crate) fn refuse_outside(q: &Joints) -> Result<(), TrajectoryError> {
-    match limits::first_violation(q) {
+pub(crate) fn refuse_outside(limits: &PositionLimits, q: &Joints) -> Result<(), TrajectoryError> {
+    match limits.first_violation(q) {
         None => Ok(()),
         Some((joint, position_rad, (lower_rad, upper_rad))) => {
             Err(TrajectoryError::OutsideLimits { joint, position_rad, lower_rad, upper_rad })

@@ -1,24 +1,27 @@
 //! Every object of the scenes that ship can be fetched and pointed at, among the others.
 
-use kinematics::{Arms, Cuboid, ObjectPose, PlanSettings, check_reachable, plan_pick, plan_point};
+use kinematics::{Cuboid, ObjectPose, PlanSettings, Robot, check_reachable, plan_pick, plan_point};
 use toml::{Table, Value};
 
 #[test]
 fn objects_of_the_shipped_scenes_are_in_reach() {
+    let robot = Robot::baxter();
     for scene in ["bowls", "markers", "tools"] {
         let objects = read(scene);
         let poses: Vec<ObjectPose> = objects.iter().map(|(_, pose)| *pose).collect();
         let settings = PlanSettings { speed_ratio: 0.6, ..PlanSettings::default() };
-        for (checked, (name, _)) in check_reachable(&poses, None, &settings).iter().zip(&objects) {
+        for (checked, (name, _)) in
+            check_reachable(robot, &poses, None, &settings).iter().zip(&objects)
+        {
             assert!(checked.is_ok(), "{scene}: {name}: {checked:?}");
         }
         let cuboids: Vec<Cuboid> = poses.iter().map(ObjectPose::cuboid).collect();
         for (i, (name, pose)) in objects.iter().enumerate() {
             let mut others = cuboids.clone();
             others.remove(i);
-            let pick = plan_pick(pose, None, &Arms::NEUTRAL, &others, &settings)
+            let pick = plan_pick(robot, pose, None, &robot.neutral(), &others, &settings)
                 .unwrap_or_else(|error| panic!("{scene}: {name}: {error}"));
-            let point = plan_point(pose.xyz_m, None, &Arms::NEUTRAL, &cuboids, &settings)
+            let point = plan_point(robot, pose.xyz_m, None, &robot.neutral(), &cuboids, &settings)
                 .unwrap_or_else(|error| panic!("{scene}: {name}: {error}"));
             println!(
                 "{scene} {name}: {} arm fetches in {:.2} s, {} arm points in {:.2} s",

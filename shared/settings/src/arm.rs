@@ -1,12 +1,14 @@
 //! `arm.toml`: which arm, how it moves, and where it brings things.
 
-use kinematics::{Limb, PlanSettings, gripper};
+use kinematics::{Limb, PlanSettings, Robot, gripper};
 
 use crate::fields::Fields;
 
 /// The arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
+    /// What it is made of: links, joints, limits, shapes.
+    pub robot: Robot,
     /// What moves.
     pub driver: Driver,
     /// The limb that fetches; `None`: the one that reaches the object better.
@@ -30,6 +32,7 @@ pub enum Driver {
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Arm {
     Arm {
+        robot: Robot::baxter().clone(),
         driver: f.choice("driver", &[("kinematic", Driver::Kinematic)]),
         limb: f.choice(
             "limb",

@@ -12,7 +12,7 @@ use crate::scene_file::SceneFile;
 pub(crate) fn check(scene: &Scene, file: &SceneFile, arm: &Arm, tree: &Table, report: &mut Report) {
     let placed = placed(scene, file, report);
     let poses: Vec<ObjectPose> = placed.iter().map(|(_, pose)| *pose).collect();
-    let found = check_reachable(&poses, arm.limb, &arm.plan);
+    let found = check_reachable(&arm.robot, &poses, arm.limb, &arm.plan);
     if found.iter().all(Result::is_ok) {
         return;
     }
@@ -71,7 +71,7 @@ fn reachable_elsewhere(poses: &[ObjectPose], arm: &Arm) -> Vec<bool> {
         return vec![false; poses.len()];
     }
     let plan = PlanSettings { hand_over_xyz_m, ..arm.plan };
-    check_reachable(poses, arm.limb, &plan).iter().map(Result::is_ok).collect()
+    check_reachable(&arm.robot, poses, arm.limb, &plan).iter().map(Result::is_ok).collect()
 }
 
 fn hand_over_problem(tree: &Table, error: &PlanError) -> Problem {

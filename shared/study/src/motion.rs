@@ -1,8 +1,8 @@
 //! How long the arm takes, by the trajectories that it would move along.
 
 use kinematics::{
-    Arms, Cuboid, Limb, ObjectPose, PickPhase, PlanError, PlanSettings, PointPhase, plan_pick,
-    plan_point, plan_return,
+    Arms, Cuboid, Limb, ObjectPose, PickPhase, PlanError, PlanSettings, PointPhase, Robot,
+    plan_pick, plan_point, plan_return,
 };
 use scene::{ObjectId, Scene};
 
@@ -48,6 +48,7 @@ struct Posture {
 }
 
 struct Planner<'a> {
+    robot: &'a Robot,
     places: Vec<ObjectPose>,
     limb: Option<Limb>,
     settings: &'a PlanSettings,
@@ -60,6 +61,7 @@ impl Motions {
     /// # Errors
     /// The first object that has no place or cannot be reached from rest.
     pub fn plan(
+        robot: &Robot,
         scene: &Scene,
         limb: Option<Limb>,
         settings: &PlanSettings,
@@ -67,12 +69,12 @@ impl Motions {
     ) -> Result<Self, MotionError> {
         let places = places(scene)?;
         let count = places.len();
-        let planner = Planner { places, limb, settings };
+        let planner = Planner { robot, places, limb, settings };
         let failed = |what: &'static str, i: usize| {
             let object = scene.object(i.into()).name.clone();
             move |error| MotionError::Plan { what, object, error }
         };
-        let rest = Posture { arms: Arms::NEUTRAL, away: None };
+        let rest = Posture { arms: robot.neutral(), away: None };
         let from_rest = |i| planner.pick(&rest, i).map_err(failed("fetch", i));
         let picks: Vec<f64> = (0..count).map(from_rest).collect::<Result<_, _>>()?;
         let (mut picks, mut points) = (vec![picks], Vec::new());
@@ -122,7 +124,8 @@ impl Planner<'_> {
     /// Seconds to the end of the release.
     fn pick(&self, from: &Posture, i: usize) -> Result<f64, Refusal> {
         let others = self.others(Some(i));
-        let plan = plan_pick(&self.places[i], self.limb, &from.arms, &others, self.settings)?;
+        let plan =
+            plan_pick(self.robot, &self.places[i], self.limb, &from.arms, &others, self.settings)?;
         from.refuse_other(plan.limb())?;
         let (_, released_s) = plan.timeline.span_s(PickPhase::Release).unwrap_or_default();
         Ok(released_s)
@@ -131,14 +134,16 @@ impl Planner<'_> {
     /// Seconds until the arm aims, and the posture that it has then.
     fn aim(&self, from: &Posture, i: usize) -> Result<(f64, Posture), Refusal> {
         let (others, at) = (self.others(None), self.places[i].xyz_m);
-        let plan = plan_point(at, self.limb, &from.arms, &others, self.settings)?;
+        let plan = plan_point(self.robot, at, self.limb, &from.arms, &others, self.settings)?;
         from.refuse_other(plan.limb())?;
         let (_, aimed_s) = plan.timeline.span_s(PointPhase::Aim).unwrap_or_default();
-        let mut arms = Arms::NEUTRAL;
+        let mut arms = self.robot.neutral();
         *arms.of_mut(plan.limb()) = plan.timeline.at(aimed_s).q;
         let home_s = match from.away {
             Some(_) => 0.0,
-            None => plan_return(plan.limb(), &arms, &others, self.settings)?.duration_s(),
+            None => {
+                plan_return(self.robot, plan.limb(), &arms, &others, self.settings)?.duration_s()
+            }
         };
         Ok((aimed_s, Posture { arms, away: Some((plan.limb(), home_s)) }))
     }
@@ -193,12 +198,20 @@ mod tests {
     fn the_bowls_take_what_their_trajectories_take() {
         let scene = bowls();
         let settings = PlanSettings::default();
-        let motions = Motions::plan(&scene, None, &settings, true).unwrap();
+        let motions = Motions::plan(Robot::baxter(), &scene, None, &settings, true).unwrap();
         let places = places(&scene).unwrap();
         for i in 0..6 {
             let others: Vec<Cuboid> =
                 (0..6).filter(|j| *j != i).map(|j| places[j].cuboid()).collect();
-            let plan = plan_pick(&places[i], None, &Arms::NEUTRAL, &others, &settings).unwrap();
+            let plan = plan_pick(
+                Robot::baxter(),
+                &places[i],
+                None,
+                &Robot::baxter().neutral(),
+                &others,
+                &settings,
+            )
+            .unwrap();
             let (_, released_s) = plan.timeline.span_s(PickPhase::Release).unwrap();
             assert_eq!(motions.pick_s(None, i.into()), released_s);
             assert!(released_s < plan.duration_s(), "going home is not waited for");
@@ -213,7 +226,9 @@ mod tests {
 
     #[test]
     fn pointing_is_planned_where_it_is_asked_for() {
-        let motions = Motions::plan(&bowls(), None, &PlanSettings::default(), false).unwrap();
+        let motions =
+            Motions::plan(Robot::baxter(), &bowls(), None, &PlanSettings::default(), false)
+                .unwrap();
         assert_eq!(motions.point_s(None, ObjectId(0)), None);
         let (rest, aimed) = (None, Some(ObjectId(1)));
         assert_eq!(motions.pick_s(aimed, ObjectId(0)), motions.pick_s(rest, ObjectId(0)));
@@ -223,7 +238,8 @@ mod tests {
     fn an_object_without_a_place_is_named() {
         let json = serde_json::json!({"objects": [{"name": "cup", "attributes": {"a": "b"}}]});
         let scene = Scene::from_json("s", &json).unwrap();
-        let error = Motions::plan(&scene, None, &PlanSettings::default(), true).unwrap_err();
+        let error = Motions::plan(Robot::baxter(), &scene, None, &PlanSettings::default(), true)
+            .unwrap_err();
         assert_eq!(error, MotionError::NoPlace("cup".to_owned()));
     }
 }

@@ -1,7 +1,7 @@
 //! Each of the six bowls is brought, within the limits, and time says how long it takes.
 
 use super::*;
-use kinematics::{MotionLimits, limits};
+use kinematics::{Limb, Robot as Description};
 use protocol::JOINT_STATE_LEN;
 
 #[test]
@@ -26,14 +26,15 @@ fn every_bowl_is_brought_and_put_back() {
 
 /// Joints never leave their limits, nor move faster than theirs from one joint state to the next.
 fn assert_published_within_limits(states: &[JointStates]) {
+    let limits = Description::baxter().arm(Limb::Left).limits;
     for pair in states.windows(2) {
         let seconds = (pair[1].at_ns - pair[0].at_ns) as f64 / 1e9;
         for entry in 0..JOINT_STATE_LEN {
             let Some(j) = joint_of(entry) else { continue };
-            let (lower, upper) = limits::POSITION_LIMITS[j];
+            let (lower, upper) = limits.position.0[j];
             let q = pair[1].position[entry];
             assert!((lower..=upper).contains(&q));
-            let fastest = 0.6 * MotionLimits::FULL.velocity[j] * (1.0 + 1e-6);
+            let fastest = 0.6 * limits.velocity[j] * (1.0 + 1e-6);
             let speed = (q - pair[0].position[entry]).abs() / seconds;
             assert!(speed <= fastest, "joint {j} at {speed} rad/s over {seconds} s");
             assert!(pair[1].velocity[entry].abs() <= fastest);

@@ -9,7 +9,7 @@ mod stop;
 mod telling;
 
 use crate::recover;
-use crate::state::{ArmState, Record, side};
+use crate::state::{Record, side};
 use crate::{ArmNode, Config, In, Out};
 use kinematics::{Joints, Limb};
 use node::{Effects, Event, Node, Span, Time};
@@ -102,8 +102,8 @@ struct Machine {
 
 impl Machine {
     fn new(config: Config) -> Self {
-        let first = ArmState::first(config.scene.key(), config.arm.plan.open_width_m);
-        let robot = Robot::at(&first, &config.scene);
+        let first = recover::state(&config, Vec::new()).unwrap();
+        let robot = Robot::at(&first, &config);
         let node = ArmNode::with_driver(config.clone(), first, Box::new(robot.clone()));
         let mut machine = Self {
             config,
@@ -136,7 +136,7 @@ impl Machine {
     /// The process starts again, on the model of a robot that the journal describes.
     fn restart_from_journal(&mut self) {
         let state = recover::state(&self.config, self.journal.clone()).unwrap();
-        self.robot = Robot::at(&state, &self.config.scene);
+        self.robot = Robot::at(&state, &self.config);
         self.restart();
     }
 
@@ -219,7 +219,11 @@ impl Machine {
 
     fn rests(&self) -> bool {
         let posture = self.robot.posture();
-        Limb::BOTH.into_iter().all(|limb| posture.is_at_rest(limb))
+        Limb::BOTH.into_iter().all(|limb| posture.is_at_rest(&self.config.arm.robot, limb))
+    }
+
+    fn tip(&self, limb: Limb) -> nalgebra::Isometry3<f64> {
+        self.config.arm.robot.arm(limb).chain.forward(&self.joints_of(limb))
     }
 
     fn joints_of(&self, limb: Limb) -> Joints {

@@ -7,7 +7,7 @@ use protocol::ActId;
 fn assert_aims(machine: &Machine, object: u16) {
     let place = machine.config.scene.object(ObjectId(object)).placement.unwrap();
     let misses = Limb::BOTH.map(|limb| {
-        let gripper = limb.forward(&machine.joints_of(limb));
+        let gripper = machine.tip(limb);
         let axis = gripper.rotation * Vector3::z();
         let to = Vector3::from(place.xyz) - gripper.translation.vector;
         if to.dot(&axis) > 0.0 { to.cross(&axis).norm() } else { f64::INFINITY }

@@ -1,11 +1,12 @@
 //! A robot that outlives the process that moves it, and notices whatever it must not be told.
 
+use crate::Config;
 use crate::driver::{ArmDriver, Command, Fingers, KinematicArm, Measured};
 use crate::state::{ArmState, Posture, side};
-use kinematics::{ArmShape, Cuboid, MotionLimits, limits};
+use kinematics::{Arm, ArmShape, Cuboid, Limb};
 use protocol::PickPhase;
 use protocol::pick::Pick;
-use scene::{Placement, Scene};
+use scene::Placement;
 use std::cell::RefCell;
 use std::rc::Rc;
 
@@ -15,6 +16,7 @@ pub(super) struct Robot(Rc<RefCell<Body>>);
 
 struct Body {
     arm: KinematicArm,
+    limbs: [Arm; 2],
     velocity_is_zero: bool,
     /// The objects in their places.
     objects: Vec<Cuboid>,
@@ -31,11 +33,12 @@ struct Body {
 }
 
 impl Robot {
-    pub(super) fn at(state: &ArmState, scene: &Scene) -> Self {
-        let places = scene.objects().iter().filter_map(|object| object.placement);
+    pub(super) fn at(state: &ArmState, config: &Config) -> Self {
+        let places = config.scene.objects().iter().filter_map(|object| object.placement);
         let cuboid = |p: Placement| Cuboid { centre: p.xyz, size: p.size, yaw: p.yaw };
         Self(Rc::new(RefCell::new(Body {
             arm: KinematicArm::at(state),
+            limbs: Limb::BOTH.map(|limb| config.arm.robot.arm(limb).clone()),
             velocity_is_zero: true,
             objects: places.map(cuboid).collect(),
             durable: state.pick,
@@ -114,10 +117,11 @@ impl Body {
     fn check(&mut self, command: &Command, before: &Measured, seconds: f64) {
         let from = &before.posture.joints[side(command.limb)];
         let mut moved = false;
-        if !limits::within(&command.q) {
+        let limits = self.limbs[side(command.limb)].limits;
+        if !limits.position.within(&command.q) {
             self.wrongs.push(format!("outside the limits: {:?}", command.q));
         }
-        for (j, (start, fastest)) in from.iter().zip(MotionLimits::FULL.velocity).enumerate() {
+        for (j, (start, fastest)) in from.iter().zip(limits.velocity).enumerate() {
             let way = command.q[j] - start;
             moved |= way != 0.0;
             if way.abs() > fastest * seconds * (1.0 + 1e-9) + 1e-9 {
@@ -147,7 +151,7 @@ impl Body {
 
     /// The arm touches no object but the one that it fetches.
     fn check_clear(&mut self, command: &Command) {
-        let shape = ArmShape::at(command.limb, &command.q);
+        let shape = ArmShape::at(&self.limbs[side(command.limb)], &command.q);
         let fetched = self.durable.map(|pick| pick.object.index());
         for (i, object) in self.objects.iter().enumerate().filter(|(i, _)| Some(*i) != fetched) {
             let gap = shape.to_cuboid("object", object, -TOUCH_M);

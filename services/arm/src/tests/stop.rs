@@ -35,7 +35,7 @@ fn from_beside_an_object_the_gripper_goes_straight_up_first() {
         machine.motion(MotionOrder::Stop);
         machine.run(0.1);
         let limb = machine.node.state().limb.unwrap();
-        let tip = |m: &Machine| limb.forward(&m.joints_of(limb)).translation.vector;
+        let tip = |m: &Machine| m.tip(limb).translation.vector;
         let place = machine.config.scene.object(ObjectId(object)).placement.unwrap();
         let (at, top_m) = (tip(&machine), place.xyz[2] + 0.5 * place.size[2]);
         machine.motion(MotionOrder::Resume);

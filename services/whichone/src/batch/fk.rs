@@ -29,7 +29,9 @@ pub fn fk(limb: Limb, input: impl Read, out: &mut Output<'_>) -> Outcome {
         if let Some(q) = line.q.iter().find(|q| q.abs() > POSITION_MAX_RAD) {
             return Err(format!("q: {q} rad is no position of a joint"));
         }
-        let links = limb.links(&line.q).into_iter().map(|(name, pose)| (name, pose_to_json(&pose)));
+        let links = kinematics::links::links(limb, &line.q, 0.0)
+            .into_iter()
+            .map(|(name, pose)| (name, pose_to_json(&pose)));
         Ok(json!({ "id": line.id, "links": links.collect::<Map<_, _>>() }))
     })
 }

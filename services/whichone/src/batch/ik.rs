@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::time::Instant;
 
-use kinematics::{Chain, Joints, Limb};
+use kinematics::{Chain, Joints, Limb, Robot};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
@@ -30,8 +30,8 @@ struct Line {
 /// # Errors
 /// See [`run`].
 pub fn ik(limb: Limb, input: impl Read, out: &mut Output<'_>) -> Outcome {
-    let chain = limb.chain();
-    run(input, out, |line| answer(&chain, &parse(line)?))
+    let chain = &Robot::baxter().arm(limb).chain;
+    run(input, out, |line| answer(chain, &parse(line)?))
 }
 
 fn answer(chain: &Chain, line: &Line) -> Result<Json, String> {

@@ -1,6 +1,9 @@
 use super::*;
-use crate::limits;
-use crate::samples::{Random, difference, fixture, joints, numbers, pose, table};
+use crate::baxter::tool;
+use crate::limb::Limb;
+use crate::samples::{
+    Random, arm, difference, fixture, full, joints, numbers, pose, table, with_tool,
+};
 
 #[test]
 fn gripper_poses_equal_the_reference() {
@@ -15,7 +18,7 @@ fn gripper_poses_equal_the_reference() {
             assert_eq!(rows.len(), 100);
             for row in &rows {
                 let row = numbers(row);
-                let found = limb.chain().with_tool(tool_m).forward(&joints(&row[..7]));
+                let found = with_tool(limb, tool_m).forward(&joints(&row[..7]));
                 let worst = difference(&found, &pose(&row[at..at + 7]));
                 assert!(worst < 1e-9, "{limb} {column}: {worst:e}");
             }
@@ -34,7 +37,7 @@ fn jacobians_equal_the_reference() {
         let q: Joints = serde_json::from_value(sample["q"].clone()).unwrap();
         let rows: [[f64; 7]; 6] =
             serde_json::from_value(sample["jacobian_rows_vxyz_wxyz"].clone()).unwrap();
-        let jacobian = limb.chain().jacobian(&q);
+        let jacobian = arm(limb).chain.jacobian(&q);
         for (i, row) in rows.iter().enumerate() {
             for (j, entry) in row.iter().enumerate() {
                 assert!((jacobian[(i, j)] - entry).abs() < 1e-9, "{limb} {q:?} row {i} column {j}");
@@ -48,7 +51,7 @@ fn jacobians_agree_with_finite_differences() {
     let seed = 1;
     let mut random = Random::seeded(seed);
     for _ in 0..500 {
-        let chain = random.limb().chain().with_tool(random.between(0.0, 0.3));
+        let chain = with_tool(random.limb(), random.between(0.0, 0.3));
         let q = random.posture();
         let jacobian = chain.jacobian(&q);
         for j in 0..7 {
@@ -74,27 +77,21 @@ fn right_limb_mirrors_the_left() {
     let mut random = Random::seeded(2);
     for _ in 0..200 {
         let q = random.posture();
-        let left = Limb::Left.chain().tool_frame(&q);
-        let right = Limb::Right.chain().tool_frame(&Limb::mirror(&q));
+        let left = arm(Limb::Left).chain.tool_frame(&q);
+        let right = arm(Limb::Right).chain.tool_frame(&Limb::mirror(&q));
         let mirrored = |v: Vector3<f64>| Vector3::new(v.x, -v.y, v.z);
-        assert!((mirrored(left.origin) - right.origin).amax() < 1e-12);
-        assert!((mirrored(left.z) - right.z).amax() < 1e-12);
+        assert!((mirrored(left.origin) - right.origin).amax() < 1e-10);
+        assert!((mirrored(left.z) - right.z).amax() < 1e-10);
         // A reflection turns a right-handed frame into a left-handed one: one axis flips.
-        assert!((mirrored(left.y) + right.y).amax() < 1e-12);
+        assert!((mirrored(left.y) + right.y).amax() < 1e-10);
     }
-}
-
-#[test]
-fn mount_constants_are_those_of_its_yaw() {
-    assert!((COS_MOUNT_YAW - MOUNT_YAW_RAD.cos()).abs() < 1e-16);
-    assert!((SIN_MOUNT_YAW - MOUNT_YAW_RAD.sin()).abs() < 1e-16);
 }
 
 #[test]
 fn quaternions_have_no_negative_w() {
     let mut random = Random::seeded(3);
     for _ in 0..500 {
-        assert!(random.limb().forward(&random.posture()).rotation.w >= 0.0);
+        assert!(arm(random.limb()).chain.forward(&random.posture()).rotation.w >= 0.0);
     }
 }
 
@@ -102,7 +99,7 @@ fn quaternions_have_no_negative_w() {
 fn a_straight_wrist_and_elbow_lose_a_direction() {
     let stretched = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
     let bent = crate::baxter::NEUTRAL;
-    let chain = Limb::Left.chain();
+    let chain = arm(Limb::Left).chain;
     assert!(chain.manipulability(&stretched) < 0.1 * chain.manipulability(&bent));
-    assert!(limits::within(&stretched));
+    assert!(full().position.within(&stretched));
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::baxter;
-use crate::samples::{Random, joints, numbers, table};
+use crate::samples::{Random, arm, joints, numbers, robot, table};
 
 /// The table of the reference.
 const TABLE: Cuboid = Cuboid::aligned([0.9, 0.0, -0.2], [0.6, 1.4, 0.04]);
@@ -11,7 +11,7 @@ fn clearances_equal_the_reference() {
     assert_eq!(rows.len(), 100);
     for row in rows {
         let n = numbers(&row[..23]);
-        let found = Clearance::of(&joints(&n[..7]), &joints(&n[7..14]), &[TABLE]);
+        let found = Clearance::of(robot(), &joints(&n[..7]), &joints(&n[7..14]), &[TABLE]);
         let groups = [
             found.left_right,
             found.left_body,
@@ -31,16 +31,15 @@ fn clearances_equal_the_reference() {
 }
 
 #[test]
-fn capsules_are_the_facts() {
-    let facts: toml::Table = crate::samples::fixture("baxter_facts.toml").parse().unwrap();
-    let facts = facts["capsule"].as_array().unwrap();
-    assert_eq!(facts.len(), CAPSULES.len());
-    for (fact, own) in facts.iter().zip(&CAPSULES) {
-        let end = |key: &str| -> Vec<f64> { fact[key].clone().try_into().unwrap() };
-        assert_eq!(fact["link"].as_str(), Some(own.name));
-        assert_eq!(fact["radius"].as_float(), Some(own.radius));
-        assert_eq!((end("a"), end("b")), (own.a.to_vec(), own.b.to_vec()));
-    }
+fn only_what_overlaps_by_construction_is_left_out() {
+    let arm = arm(Limb::Left);
+    let count = arm.enclosures.len();
+    let left_out: Vec<(usize, usize)> = (0..count)
+        .flat_map(|i| (i + 1..count).map(move |j| (i, j)))
+        .filter(|(i, j)| arm.enclosures[*j].joint >= arm.enclosures[*i].joint + 2)
+        .filter(|pair| !arm.pairs.contains(pair))
+        .collect();
+    assert_eq!(left_out, [(0, 3), (4, 7)]);
 }
 
 #[test]
@@ -48,8 +47,9 @@ fn a_bound_changes_nothing_below_it_and_hides_what_is_above() {
     let mut random = Random::seeded(41);
     for _ in 0..300 {
         let limb = random.limb();
-        let arm = ArmShape::at(limb, &random.posture());
-        let other = ArmShape::at(limb.other(), &random.posture());
+        let [own, other] = [limb, limb.other()].map(|limb| robot().arm(limb));
+        let arm = ArmShape::at(own, &random.posture());
+        let other = ArmShape::at(other, &random.posture());
         let asks: [&dyn Fn(f64) -> Gap; 4] = [
             &|within| arm.to_itself(within),
             &|within| arm.to_trunk(within),
@@ -73,7 +73,8 @@ fn a_bound_changes_nothing_below_it_and_hides_what_is_above() {
 
 #[test]
 fn named_postures_are_clear_except_the_tuck() {
-    let clear = |left: &Joints, right: &Joints| Clearance::of(left, right, &[]).robot().distance_m;
+    let clear =
+        |left: &Joints, right: &Joints| Clearance::of(robot(), left, right, &[]).robot().distance_m;
     assert!(clear(&baxter::NEUTRAL, &baxter::NEUTRAL) > 0.06);
     let untuck = Limb::BOTH.map(baxter::untuck);
     assert!(clear(&untuck[0], &untuck[1]) > 0.02);

@@ -2,14 +2,12 @@
 //! refinement.
 
 use super::IkSolution;
-use super::goal::Goal;
+use super::goal::Aim;
 use super::golden;
 use super::posture::{Branch, Posture};
 use super::refine::{Refined, refine};
 use super::slice::Slice;
 use super::solve::exact;
-use crate::baxter;
-use crate::limits::POSITION_LIMITS;
 
 /// Closed forms spent between the neighbours of one sample; they narrow s0 to 5e-5 rad.
 const LOOKS: usize = 16;
@@ -42,8 +40,8 @@ struct Seen {
 }
 
 impl Nearly {
-    pub(crate) fn new(cells: u32) -> Self {
-        let (lower, upper) = POSITION_LIMITS[0];
+    pub(crate) fn new(aim: &Aim<'_>, cells: u32) -> Self {
+        let (lower, upper) = aim.limits(0);
         Self { cell_rad: (upper - lower) / f64::from(cells), seen: Vec::with_capacity(32) }
     }
 
@@ -53,23 +51,23 @@ impl Nearly {
     }
 
     /// Follows every local minimum of the violation along s0, then refines what came nearest.
-    pub(crate) fn look_closer(mut self, goal: &Goal) -> Result<IkSolution, Refined> {
+    pub(crate) fn look_closer(mut self, aim: &Aim<'_>) -> Result<IkSolution, Refined> {
         let mut closer = Vec::with_capacity(MINIMA);
         for (branch, posture) in self.minima() {
-            let found = least_violation(goal, self.cell_rad, branch, posture);
+            let found = least_violation(aim, self.cell_rad, branch, posture);
             if found.violation == 0.0 {
-                let settled = Slice::new(goal, found.q[0]).posture(branch).unwrap_or(found);
-                if let Some(answer) = exact(goal, &settled) {
+                let settled = Slice::new(aim, found.q[0]).posture(branch).unwrap_or(found);
+                if let Some(answer) = exact(aim, &settled) {
                     return Ok(answer);
                 }
             }
             closer.push(found);
         }
         closer.sort_by(|a, b| a.violation.total_cmp(&b.violation));
-        let mut best = nearest(goal, closer.first());
+        let mut best = nearest(aim, closer.first());
         for posture in closer.iter().take_while(|p| p.violation < HOPEFUL_RAD) {
-            let refined = refine(goal, &posture.q, STEPS_HOPEFUL);
-            if let Some(answer) = IkSolution::accept(&refined) {
+            let refined = refine(&aim.goal, &posture.q, STEPS_HOPEFUL);
+            if let Some(answer) = IkSolution::accept(&aim.goal, &refined) {
                 return Ok(answer);
             }
             if refined.error() < best.error() {
@@ -103,19 +101,23 @@ impl Nearly {
     }
 }
 
-/// The nearest posture in a few steps: from the best one known, or from the neutral one where the
-/// target lies beyond the arm's reach.
-fn nearest(goal: &Goal, best: Option<&Posture>) -> Refined {
-    refine(goal, &best.map_or(baxter::NEUTRAL, |posture| posture.q), STEPS_NEAREST)
+/// The nearest posture in a few steps: from the best one known, or from the middle of the limits
+/// where the target lies beyond the arm's reach.
+fn nearest(aim: &Aim<'_>, best: Option<&Posture>) -> Refined {
+    refine(
+        &aim.goal,
+        &best.map_or_else(|| aim.goal.chain.limits().middle(), |posture| posture.q),
+        STEPS_NEAREST,
+    )
 }
 
 /// The least violation of a branch within one cell of s0 either side, or the first solution there.
-fn least_violation(goal: &Goal, cell_rad: f64, branch: Branch, from: Posture) -> Posture {
-    let (lower, upper) = POSITION_LIMITS[0];
+fn least_violation(aim: &Aim<'_>, cell_rad: f64, branch: Branch, from: Posture) -> Posture {
+    let (lower, upper) = aim.limits(0);
     let mut best = from;
     let range = ((from.q[0] - cell_rad).max(lower), (from.q[0] + cell_rad).min(upper));
     golden::narrow(range, LOOKS, |s0| {
-        let Some(posture) = Slice::roughly(goal, s0).posture(branch) else { return f64::INFINITY };
+        let Some(posture) = Slice::roughly(aim, s0).posture(branch) else { return f64::INFINITY };
         if posture.violation < best.violation || posture.is_solution() {
             best = posture;
         }

@@ -2,27 +2,33 @@
 
 use nalgebra::{Isometry3, Vector3};
 
-use crate::chain::{Chain, Frame};
+use crate::chain::{Alternating, Chain, Frame};
 use crate::limb::Joints;
 
-/// A target for `<limb>_gripper`, with what does not depend on the joints worked out once.
+/// A target for `<limb>_gripper`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Goal {
-    pub(crate) chain: Chain,
+pub(crate) struct Goal<'a> {
+    pub(crate) chain: &'a Chain,
     /// The target frame in `base`.
     pub(crate) tool: Frame,
-    /// The wrist point that the target fixes, from the foot of the first axis, metres.
-    pub(crate) wrist: Vector3<f64>,
 }
 
-impl Goal {
-    pub(crate) fn new(chain: Chain, target: &Isometry3<f64>) -> Self {
-        let rotation = target.rotation.to_rotation_matrix();
-        let column = |i: usize| rotation.matrix().column(i).into_owned();
-        let origin = target.translation.vector;
-        let tool = Frame { x: column(0), y: column(1), z: column(2), origin };
-        let wrist = origin - tool.z * chain.wrist_to_tool_m() - chain.origin();
-        Self { chain, tool, wrist }
+/// The same for a chain of Baxter's family, with what does not depend on the joints worked out
+/// once, in the axes of the chain's mount.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Aim<'a> {
+    pub(crate) goal: Goal<'a>,
+    pub(crate) arm: &'a Alternating,
+    /// The wrist point that the target fixes, from the foot of the first axis, metres.
+    pub(crate) wrist: Vector3<f64>,
+    /// The z and x axes that the target asks of the last frame.
+    pub(crate) z: Vector3<f64>,
+    pub(crate) x: Vector3<f64>,
+}
+
+impl<'a> Goal<'a> {
+    pub(crate) fn new(chain: &'a Chain, target: &Isometry3<f64>) -> Self {
+        Self { chain, tool: Frame::from(target) }
     }
 
     /// Whether every number of the target is finite.
@@ -38,6 +44,25 @@ impl Goal {
         let reached = self.chain.tool_frame(q);
         let turn = turn_between(&reached, &self.tool);
         ((self.tool.origin - reached.origin).norm(), turn.norm())
+    }
+}
+
+impl<'a> Aim<'a> {
+    pub(crate) fn new(goal: Goal<'a>, arm: &'a Alternating) -> Self {
+        let tool = &goal.tool;
+        // The last frame is the target with the tool taken off.
+        let seen = Frame { origin: Vector3::zeros(), ..arm.tool };
+        let axis = |e: Vector3<f64>| tool.direction(&seen.seen(&e));
+        let (x, y, z) = (axis(Vector3::x()), axis(Vector3::y()), axis(Vector3::z()));
+        let last = Frame { x, y, z, origin: Vector3::zeros() };
+        let wrist = tool.origin - last.direction(&arm.tool.origin) - arm.mount.origin;
+        let mount = &arm.mount;
+        Self { goal, arm, wrist: mount.seen(&wrist), z: mount.seen(&z), x: mount.seen(&x) }
+    }
+
+    /// Position limits of a joint, radians.
+    pub(crate) fn limits(&self, i: usize) -> (f64, f64) {
+        self.goal.chain.limits().0[i]
     }
 }
 

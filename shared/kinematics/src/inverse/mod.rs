@@ -1,4 +1,5 @@
-//! Inverse kinematics: a semi-analytic sweep over s0, then refinement within the limits.
+//! Inverse kinematics: a semi-analytic sweep over s0, then refinement within the limits. Limbs that
+//! are not of Baxter's family are refined from many postures instead.
 //!
 //! What is returned has been put through the forward kinematics and the limits: an answer is
 //! within [`TOLERANCE_M`] and [`TOLERANCE_RAD`] of the target and inside every joint limit to the
@@ -10,6 +11,7 @@ mod golden;
 mod nearest;
 mod posture;
 mod refine;
+mod restarts;
 mod secant;
 mod slice;
 mod solve;
@@ -18,9 +20,9 @@ mod tests;
 
 use nalgebra::Isometry3;
 
-use crate::chain::Chain;
+use crate::chain::{Chain, Geometry};
 use crate::limb::Joints;
-use goal::Goal;
+use goal::{Aim, Goal};
 use refine::Refined;
 
 /// Greatest distance of an answer from the target position, metres.
@@ -71,12 +73,19 @@ impl Chain {
     ) -> Result<IkSolution, Unreachable> {
         match seed {
             Some(seed) => self.nearest(target, seed),
-            None => solve::first(&Goal::new(*self, target)).map_err(Unreachable::from),
+            None => {
+                let goal = Goal::new(self, target);
+                match self.geometry() {
+                    Geometry::Alternating(arm) => solve::first(&Aim::new(goal, arm)),
+                    Geometry::General(_) => restarts::first(&goal),
+                }
+                .map_err(Unreachable::from)
+            }
         }
     }
 
     /// The posture that reaches `target` at the least Euclidean joint distance from `seed`: every
-    /// branch at [`SAMPLES`] positions of s0, the best of them followed along s0.
+    /// branch at samples of s0, the best of them followed along s0.
     ///
     /// # Errors
     /// [`Unreachable`] with the nearest pose's posture.
@@ -85,7 +94,11 @@ impl Chain {
         target: &Isometry3<f64>,
         seed: &Joints,
     ) -> Result<IkSolution, Unreachable> {
-        nearest::nearest(&Goal::new(*self, target), seed)
+        let goal = Goal::new(self, target);
+        match self.geometry() {
+            Geometry::Alternating(arm) => nearest::nearest(&Aim::new(goal, arm), seed),
+            Geometry::General(_) => restarts::nearest(&goal, seed),
+        }
     }
 
     /// The posture that reaches `target` with the shortest steps from `q`: the same branch, as long
@@ -94,30 +107,32 @@ impl Chain {
     /// # Errors
     /// [`Unreachable`] if the steps end at the limits or at a singularity short of the target.
     pub fn track(&self, target: &Isometry3<f64>, q: &Joints) -> Result<IkSolution, Unreachable> {
-        let refined = refine::refine(&Goal::new(*self, target), q, TRACK_STEPS);
-        IkSolution::accept(&refined).ok_or_else(|| refined.into())
+        let goal = Goal::new(self, target);
+        let refined = refine::refine(&goal, q, TRACK_STEPS);
+        IkSolution::accept(&goal, &refined).ok_or_else(|| refined.into())
     }
 
-    /// Postures that reach `target`, of every branch at [`SAMPLES`] positions of s0 (the arm has
-    /// one joint more than a pose has dimensions, so each branch is a curve). Empty if there is
+    /// Postures that reach `target`, of every branch at samples of s0 (the arm has one joint
+    /// more than a pose has dimensions, so each branch is a curve). Empty if there is
     /// none.
     pub fn solutions(&self, target: &Isometry3<f64>) -> Vec<Joints> {
-        solve::all(&Goal::new(*self, target))
+        let goal = Goal::new(self, target);
+        match self.geometry() {
+            Geometry::Alternating(arm) => solve::all(&Aim::new(goal, arm)),
+            Geometry::General(_) => restarts::all(&goal),
+        }
     }
 }
 
 /// Refinement steps of [`Chain::track`].
 const TRACK_STEPS: usize = 20;
 
-/// Positions of s0 at which [`Chain::solutions`] and [`Chain::nearest`] look.
-pub const SAMPLES: usize = 40;
-
 impl IkSolution {
     /// The answer if `refined` is one.
-    fn accept(refined: &Refined) -> Option<Self> {
+    fn accept(goal: &Goal<'_>, refined: &Refined) -> Option<Self> {
         let exact = refined.position_error_m <= TOLERANCE_M
             && refined.rotation_error_rad <= TOLERANCE_RAD
-            && crate::limits::within(&refined.q);
+            && goal.chain.limits().within(&refined.q);
         exact.then_some(Self {
             q: refined.q,
             position_error_m: refined.position_error_m,

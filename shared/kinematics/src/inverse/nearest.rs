@@ -1,14 +1,13 @@
 //! The solution nearest to a given posture.
 
-use super::goal::Goal;
+use super::goal::Aim;
 use super::golden;
 use super::posture::{Branch, Posture};
 use super::refine::{Refined, distance, drift, refine};
 use super::slice::{NARROW_RAD, Slice};
-use super::solve::{exact, first, sample};
-use super::{IkSolution, SAMPLES, Unreachable};
+use super::solve::{SAMPLE_RAD, exact, first, samples};
+use super::{IkSolution, Unreachable};
 use crate::limb::Joints;
-use crate::limits::POSITION_LIMITS;
 
 /// Curves of solutions that are followed to their nearest point.
 const FOLLOWED: usize = 4;
@@ -23,31 +22,31 @@ const BESIDE: usize = 12;
 const DRIFTS: usize = 4;
 
 /// See [`crate::Chain::nearest`].
-pub(crate) fn nearest(goal: &Goal, seed: &Joints) -> Result<IkSolution, Unreachable> {
-    if !goal.is_finite() || seed.iter().any(|q| !q.is_finite()) {
-        return first(goal).map_err(Unreachable::from);
+pub(crate) fn nearest(aim: &Aim<'_>, seed: &Joints) -> Result<IkSolution, Unreachable> {
+    if !aim.goal.is_finite() || seed.iter().any(|q| !q.is_finite()) {
+        return first(aim).map_err(Unreachable::from);
     }
-    let mut found = samples_from(goal, seed);
+    let mut found = samples_from(aim, seed);
     found.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     // From the seed itself, for a target that is only a small motion away.
-    let beside = refine(goal, seed, BESIDE);
+    let beside = refine(&aim.goal, seed, BESIDE);
     let best = first_of_each_curve(&found)
         .filter_map(|near| {
-            let followed = follow(goal, seed, &near);
-            exact(goal, &followed.posture).or_else(|| exact(goal, &near.posture))
+            let followed = follow(aim, seed, &near);
+            exact(aim, &followed.posture).or_else(|| exact(aim, &near.posture))
         })
-        .chain(IkSolution::accept(&beside))
+        .chain(IkSolution::accept(&aim.goal, &beside))
         .min_by(|a, b| distance(&a.q, seed).total_cmp(&distance(&b.q, seed)));
     match best {
-        Some(answer) => Ok(drifted(goal, answer, seed)),
-        None => first(goal).map(|answer| drifted(goal, answer, seed)).map_err(Unreachable::from),
+        Some(answer) => Ok(drifted(aim, answer, seed)),
+        None => first(aim).map(|answer| drifted(aim, answer, seed)).map_err(Unreachable::from),
     }
 }
 
 /// The answer moved along its own curve to the point nearest to the seed.
-fn drifted(goal: &Goal, answer: IkSolution, seed: &Joints) -> IkSolution {
-    let from = Refined::at(goal, answer.q);
-    IkSolution::accept(&drift(goal, from, seed, DRIFTS)).unwrap_or(answer)
+fn drifted(aim: &Aim<'_>, answer: IkSolution, seed: &Joints) -> IkSolution {
+    let from = Refined::at(&aim.goal, answer.q);
+    IkSolution::accept(&aim.goal, &drift(&aim.goal, from, seed, DRIFTS)).unwrap_or(answer)
 }
 
 /// A solution and how far from the seed it is.
@@ -60,16 +59,16 @@ struct Near {
 
 /// Solutions at the samples of s0, nearest to the seed's s0 first, until no further sample can
 /// hold a nearer one.
-fn samples_from(goal: &Goal, seed: &Joints) -> Vec<Near> {
-    let mut order: Vec<f64> = (0..SAMPLES).map(sample).collect();
+fn samples_from(aim: &Aim<'_>, seed: &Joints) -> Vec<Near> {
+    let mut order: Vec<f64> = samples(aim).collect();
     order.sort_by(|a, b| (a - seed[0]).abs().total_cmp(&(b - seed[0]).abs()));
     let mut found = Vec::with_capacity(64);
     let mut best = f64::INFINITY;
     for s0 in order {
-        if (s0 - seed[0]).abs() > best + spacing() {
+        if (s0 - seed[0]).abs() > best + SAMPLE_RAD {
             break;
         }
-        Slice::roughly(goal, s0).postures(NARROW_RAD, |branch, posture| {
+        Slice::roughly(aim, s0).postures(NARROW_RAD, |branch, posture| {
             if posture.violation == 0.0 {
                 let distance = distance(&posture.q, seed);
                 best = best.min(distance);
@@ -81,18 +80,13 @@ fn samples_from(goal: &Goal, seed: &Joints) -> Vec<Near> {
     found
 }
 
-/// Distance between two samples of s0, radians.
-fn spacing() -> f64 {
-    (POSITION_LIMITS[0].1 - POSITION_LIMITS[0].0) / (SAMPLES - 1) as f64
-}
-
 /// The nearest samples, without those that lie beside a nearer one on the same curve.
 fn first_of_each_curve(sorted: &[Near]) -> impl Iterator<Item = Near> {
     let mut chosen: Vec<Near> = Vec::with_capacity(FOLLOWED);
     for near in sorted {
         let beside = |other: &Near| {
             other.branch == near.branch
-                && (other.posture.q[0] - near.posture.q[0]).abs() < 1.5 * spacing()
+                && (other.posture.q[0] - near.posture.q[0]).abs() < 1.5 * SAMPLE_RAD
         };
         if chosen.len() < FOLLOWED && !chosen.iter().any(beside) {
             chosen.push(*near);
@@ -102,12 +96,12 @@ fn first_of_each_curve(sorted: &[Near]) -> impl Iterator<Item = Near> {
 }
 
 /// The nearest point of the sample's curve, between its neighbours.
-fn follow(goal: &Goal, seed: &Joints, from: &Near) -> Near {
-    let (lower, upper) = POSITION_LIMITS[0];
+fn follow(aim: &Aim<'_>, seed: &Joints, from: &Near) -> Near {
+    let (lower, upper) = aim.limits(0);
     let s0 = from.posture.q[0];
     // The sample was only roughly settled: its distance does not count until it is looked at again.
     let mut best = Near { distance: f64::INFINITY, ..*from };
-    let mut look = |at: f64| match Slice::new(goal, at).posture(from.branch) {
+    let mut look = |at: f64| match Slice::new(aim, at).posture(from.branch) {
         Some(posture) if posture.violation == 0.0 => {
             let distance = distance(&posture.q, seed);
             if distance < best.distance {
@@ -119,6 +113,6 @@ fn follow(goal: &Goal, seed: &Joints, from: &Near) -> Near {
         _ => 1e3 + (at - s0).abs(),
     };
     look(s0);
-    golden::narrow(((s0 - spacing()).max(lower), (s0 + spacing()).min(upper)), LOOKS, look);
+    golden::narrow(((s0 - SAMPLE_RAD).max(lower), (s0 + SAMPLE_RAD).min(upper)), LOOKS, look);
     best
 }

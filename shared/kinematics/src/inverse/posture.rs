@@ -1,7 +1,6 @@
 //! Branches of the closed form, and how nearly a posture fits the limits.
 
 use crate::limb::Joints;
-use crate::limits::POSITION_LIMITS;
 
 /// One of the eight families of solutions: the sign of each square root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,17 +45,4 @@ impl Posture {
     pub(crate) fn is_solution(&self) -> bool {
         self.settled && self.violation == 0.0
     }
-}
-
-/// How far joint `i` at `q` is outside its limits, radians.
-#[inline(always)]
-pub(crate) fn outside(i: usize, q: f64) -> f64 {
-    let (lower, upper) = POSITION_LIMITS[i];
-    (lower - q).max(q - upper).max(0.0)
-}
-
-/// How far the worst joint is outside its limits, radians.
-#[inline]
-pub(crate) fn violation(q: &Joints) -> f64 {
-    (0..7).fold(0.0, |worst, i| outside(i, q[i]).max(worst))
 }

@@ -6,7 +6,7 @@ use nalgebra::{Matrix6, SVector, Vector6};
 use super::goal::{Goal, turn_between};
 use crate::chain::{Frame, Jacobian};
 use crate::limb::Joints;
-use crate::limits::{self, POSITION_LIMITS};
+use crate::limits::PositionLimits;
 
 /// A posture within the limits and how far from the target it is.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +17,7 @@ pub(crate) struct Refined {
 }
 
 impl Refined {
-    pub(crate) fn at(goal: &Goal, q: Joints) -> Self {
+    pub(crate) fn at(goal: &Goal<'_>, q: Joints) -> Self {
         let (position_error_m, rotation_error_rad) = goal.errors(&q);
         Self { q, position_error_m, rotation_error_rad }
     }
@@ -36,8 +36,9 @@ const EXACT: f64 = 1e-10;
 ///
 /// Each step is the shortest one, `Δq = Jᵀ (J Jᵀ + λ)⁻¹ e`, over the joints that are free: a joint
 /// at a limit that the step would push beyond it is left out and the step taken again.
-pub(crate) fn refine(goal: &Goal, q: &Joints, steps_max: usize) -> Refined {
-    let mut q = limits::clamp(q);
+pub(crate) fn refine(goal: &Goal<'_>, q: &Joints, steps_max: usize) -> Refined {
+    let limits = goal.chain.limits();
+    let mut q = limits.clamp(q);
     let (mut twist, mut jacobian) = linearise(goal, &q);
     let mut damping = 1e-3;
     for _ in 0..steps_max {
@@ -45,8 +46,10 @@ pub(crate) fn refine(goal: &Goal, q: &Joints, steps_max: usize) -> Refined {
         if error < EXACT {
             break;
         }
-        let Some(step) = free_step(&q, &jacobian, &twist, damping * error.min(1.0)) else { break };
-        let next = limits::clamp(&std::array::from_fn(|i| q[i] + step[i]));
+        let Some(step) = free_step(limits, &q, &jacobian, &twist, damping * error.min(1.0)) else {
+            break;
+        };
+        let next = limits.clamp(&std::array::from_fn(|i| q[i] + step[i]));
         let (next_twist, next_jacobian) = linearise(goal, &next);
         if next_twist.norm() < error {
             (q, twist, jacobian) = (next, next_twist, next_jacobian);
@@ -63,7 +66,7 @@ pub(crate) fn refine(goal: &Goal, q: &Joints, steps_max: usize) -> Refined {
 /// From a posture that reaches the goal to one that still does and is nearer to `seed`: along the
 /// joint motion that leaves the gripper where it is, then back onto the goal. The distance only
 /// ever falls.
-pub(crate) fn drift(goal: &Goal, from: Refined, seed: &Joints, rounds: usize) -> Refined {
+pub(crate) fn drift(goal: &Goal<'_>, from: Refined, seed: &Joints, rounds: usize) -> Refined {
     let mut best = from;
     for _ in 0..rounds {
         let (_, jacobian) = linearise(goal, &best.q);
@@ -92,7 +95,7 @@ pub(crate) fn distance(a: &Joints, b: &Joints) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
-fn linearise(goal: &Goal, q: &Joints) -> (Vector6<f64>, Jacobian) {
+fn linearise(goal: &Goal<'_>, q: &Joints) -> (Vector6<f64>, Jacobian) {
     let (tool, jacobian) = goal.chain.tool_and_jacobian(q);
     (error_twist(&tool, &goal.tool), jacobian)
 }
@@ -106,6 +109,7 @@ fn error_twist(from: &Frame, to: &Frame) -> Vector6<f64> {
 /// The damped step over the joints that may move; none where the normal equations cannot be
 /// solved.
 fn free_step(
+    limits: &PositionLimits,
     q: &Joints,
     jacobian: &Jacobian,
     twist: &Vector6<f64>,
@@ -117,7 +121,7 @@ fn free_step(
         let step = free.transpose() * normal.cholesky()?.solve(twist);
         let mut blocked = false;
         for i in 0..7 {
-            let (lower, upper) = POSITION_LIMITS[i];
+            let (lower, upper) = limits.0[i];
             if (q[i] <= lower && step[i] < 0.0) || (q[i] >= upper && step[i] > 0.0) {
                 free.column_mut(i).fill(0.0);
                 blocked = true;

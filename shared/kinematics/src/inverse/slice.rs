@@ -3,22 +3,20 @@
 //! The target fixes the wrist point W. The first joint fixes the shoulder point S. Then |W − S|
 //! gives e1 (two roots), the direction from S to W gives e0 (two roots) and s1 (one), and what is
 //! left of the rotation is z-y-z in w0, w1, w2 (two roots): at most eight branches per s0. The
-//! 10 mm by which the w0 axis misses W enters only as `(.010 cos w0, .010 sin w0)` in the forearm,
-//! so w0 is found as a fixed point, a contraction of about 0.03 a round.
+//! offset by which the w0 axis misses W (10 mm on Baxter) enters only as `(x cos w0, x sin w0)` in
+//! the forearm, so w0 is found as a fixed point, a contraction of about 0.03 a round.
+//!
+//! Angles are those between the frames of [`Alternating`]; joint positions are less by its zeros.
+
+use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
-use super::goal::Goal;
-use super::posture::{Branch, Posture, outside, violation};
+use super::goal::Aim;
+use super::posture::{Branch, Posture};
 use super::secant::Secant;
-use crate::baxter::{ELBOW_TO_WRIST_M, S0_TO_S1_M, SHOULDER_TO_ELBOW_M};
-
-const UPPER_X: f64 = SHOULDER_TO_ELBOW_M[0];
-const UPPER_Z: f64 = SHOULDER_TO_ELBOW_M[1];
-const FORE_X: f64 = ELBOW_TO_WRIST_M[0];
-const FORE_Z: f64 = ELBOW_TO_WRIST_M[1];
-const UPPER_SQUARED: f64 = UPPER_X * UPPER_X + UPPER_Z * UPPER_Z;
-const FORE_SQUARED: f64 = FORE_X * FORE_X + FORE_Z * FORE_Z;
+use crate::chain::Alternating;
+use crate::limits::PositionLimits;
 
 /// How far outside its limits a joint may be before a branch is dropped while looking for
 /// solutions, radians: above what the rounds after the first still change.
@@ -49,13 +47,16 @@ const ROUNDS: usize = 20;
 const PLAIN: usize = 6;
 
 /// The goal seen from the shoulder turned to one s0.
-pub(crate) struct Slice {
+pub(crate) struct Slice<'a> {
+    arm: &'a Alternating,
+    limits: &'a PositionLimits,
     s0: f64,
     /// When a wrist offset has settled, metres.
     settled_m: f64,
     /// Shoulder point to wrist point.
     v: Vector3<f64>,
-    v_squared: f64,
+    /// What |W − S| leaves for the elbow: `A cos e1 + B sin e1 = K`.
+    k: f64,
     /// The target's z axis, and its x axis.
     z: Vector3<f64>,
     x: Vector3<f64>,
@@ -78,30 +79,33 @@ struct ArmAngles {
     lack: f64,
 }
 
-impl Slice {
+impl<'a> Slice<'a> {
     #[inline]
-    pub(crate) fn new(goal: &Goal, s0: f64) -> Self {
-        let (s, c) = (s0 + goal.chain.mount_yaw()).sin_cos();
+    pub(crate) fn new(aim: &'a Aim<'a>, s0: f64) -> Self {
+        let arm = aim.arm;
+        let (s, c) = s0.sin_cos();
         let turned = |p: &Vector3<f64>| Vector3::new(c * p.x + s * p.y, c * p.y - s * p.x, p.z);
-        let v = turned(&goal.wrist) - Vector3::new(S0_TO_S1_M[0], 0.0, S0_TO_S1_M[1]);
+        let v = turned(&aim.wrist) - Vector3::new(arm.shoulder[0], 0.0, arm.shoulder[1]);
         Self {
+            arm,
+            limits: aim.goal.chain.limits(),
             s0,
             settled_m: SETTLED_M,
             v,
-            v_squared: v.norm_squared(),
-            z: turned(&goal.tool.z),
-            x: turned(&goal.tool.x),
+            k: 0.5 * (v.norm_squared() - squared(arm.upper) - squared(arm.fore)),
+            z: turned(&aim.z),
+            x: turned(&aim.x),
         }
     }
 
     /// The same slice for comparing postures; they miss the goal by up to 1e-6 m.
-    pub(crate) fn roughly(goal: &Goal, s0: f64) -> Self {
-        Self { settled_m: ROUGHLY_M, ..Self::new(goal, s0) }
+    pub(crate) fn roughly(aim: &'a Aim<'a>, s0: f64) -> Self {
+        Self { settled_m: ROUGHLY_M, ..Self::new(aim, s0) }
     }
 
     /// The same slice for telling how nearly postures fit, to a hundredth of a radian.
-    pub(crate) fn glimpse(goal: &Goal, s0: f64) -> Self {
-        Self { settled_m: GLIMPSE_M, ..Self::new(goal, s0) }
+    pub(crate) fn glimpse(aim: &'a Aim<'a>, s0: f64) -> Self {
+        Self { settled_m: GLIMPSE_M, ..Self::new(aim, s0) }
     }
 
     /// Calls `found` with every posture whose joints lie within `margin_rad` of their limits,
@@ -115,19 +119,19 @@ impl Slice {
         for elbow_up in [true, false] {
             let Some(e1) = self.elbow((0.0, 0.0), elbow_up) else { return false };
             // Without a root both signs are one posture.
-            if outside(3, angle(e1.e1)) > margin_rad || (e1.lack > 0.0 && !elbow_up) {
+            if self.outside(3, e1.e1) > margin_rad || (e1.lack > 0.0 && !elbow_up) {
                 continue;
             }
             for roll_up in [true, false] {
                 let Some(arm) = self.shoulder((0.0, 0.0), e1, roll_up) else { continue };
                 let same = arm.lack > e1.lack && !roll_up;
-                if outside(1, shoulder_angle(arm.a)) > margin_rad || same {
+                if self.outside(1, arm.a) > margin_rad || same {
                     continue;
                 }
                 for wrist_up in [true, false] {
                     let branch = Branch { elbow_up, roll_up, wrist_up };
                     let Some(posture) =
-                        self.settle(branch, self.offset(&arm, wrist_up), margin_rad)
+                        self.settle(branch, self.forearm(&arm, wrist_up), margin_rad)
                     else {
                         continue;
                     };
@@ -144,25 +148,26 @@ impl Slice {
     pub(crate) fn posture(&self, branch: Branch) -> Option<Posture> {
         let e1 = self.elbow((0.0, 0.0), branch.elbow_up)?;
         let arm = self.shoulder((0.0, 0.0), e1, branch.roll_up)?;
-        self.settle(branch, self.offset(&arm, branch.wrist_up), WIDE_RAD)
+        self.settle(branch, self.forearm(&arm, branch.wrist_up), WIDE_RAD)
     }
 
     /// The same with the wrist's fixed point sought from `w0`: a nearly straight wrist has several.
     pub(crate) fn posture_from(&self, branch: Branch, w0: f64) -> Option<Posture> {
-        let (s, c) = w0.sin_cos();
-        self.settle(branch, (FORE_X * c, FORE_X * s), WIDE_RAD)
+        let (s, c) = (w0 + self.arm.zero[4]).sin_cos();
+        self.settle(branch, (c, s), WIDE_RAD)
     }
 
-    /// Repeats the closed form until the wrist offset agrees with the w0 that it leads to.
+    /// Repeats the closed form until the direction of the wrist offset (cosine and sine of w0's
+    /// angle) agrees with the w0 that it leads to.
     #[inline]
-    fn settle(&self, branch: Branch, mut offset: (f64, f64), margin_rad: f64) -> Option<Posture> {
+    fn settle(&self, branch: Branch, mut w0: (f64, f64), margin_rad: f64) -> Option<Posture> {
         let mut secant = Secant::default();
         for round in 0..ROUNDS {
-            let e1 = self.elbow(offset, branch.elbow_up)?;
-            let arm = self.shoulder(offset, e1, branch.roll_up)?;
-            let next = self.offset(&arm, branch.wrist_up);
-            let change = (next.0 - offset.0).abs() + (next.1 - offset.1).abs();
-            if change < self.settled_m {
+            let e1 = self.elbow(w0, branch.elbow_up)?;
+            let arm = self.shoulder(w0, e1, branch.roll_up)?;
+            let next = self.forearm(&arm, branch.wrist_up);
+            let change = (next.0 - w0.0).abs() + (next.1 - w0.1).abs();
+            if change * self.arm.fore[0].abs() < self.settled_m {
                 return Some(self.finish(&arm, next, branch, true));
             }
             if round == 1 {
@@ -171,19 +176,20 @@ impl Slice {
                     return Some(rough);
                 }
             }
-            offset = if round < PLAIN { next } else { secant.improve(offset, next) };
+            w0 = if round < PLAIN { next } else { secant.improve(w0, next) };
         }
-        let e1 = self.elbow(offset, branch.elbow_up)?;
-        let arm = self.shoulder(offset, e1, branch.roll_up)?;
-        Some(self.finish(&arm, offset, branch, false))
+        let e1 = self.elbow(w0, branch.elbow_up)?;
+        let arm = self.shoulder(w0, e1, branch.roll_up)?;
+        Some(self.finish(&arm, w0, branch, false))
     }
 
     /// Sine and cosine of e1 from |W − S|: `A cos e1 + B sin e1 = K`.
     #[inline(always)]
-    fn elbow(&self, (x, _): (f64, f64), up: bool) -> Option<Elbow> {
-        let a = UPPER_X * x + UPPER_Z * FORE_Z;
-        let b = UPPER_X * FORE_Z - UPPER_Z * x;
-        let k = 0.5 * (self.v_squared - UPPER_SQUARED - FORE_SQUARED);
+    fn elbow(&self, (cosine, _): (f64, f64), up: bool) -> Option<Elbow> {
+        let ([upper_x, upper_z], [fore_x, fore_z]) = (self.arm.upper, self.arm.fore);
+        let (x, k) = (fore_x * cosine, self.k);
+        let a = upper_x * x + upper_z * fore_z;
+        let b = upper_x * fore_z - upper_z * x;
         let n = a * a + b * b;
         let (root, lack) = root((n - k * k) / n)?;
         // Beyond the stretched or folded arm the cosine stops at ±1.
@@ -192,11 +198,13 @@ impl Slice {
         Some(Elbow { e1: ((b * k + a * d) / n, (a * k - b * d) / n), lack })
     }
 
-    /// Sines and cosines of e0 and s1 + π/2 from the direction of W − S.
+    /// Sines and cosines of e0's and s1's angles from the direction of W − S.
     #[inline(always)]
-    fn shoulder(&self, (x, y): (f64, f64), elbow: Elbow, up: bool) -> Option<ArmAngles> {
+    fn shoulder(&self, w0: (f64, f64), elbow: Elbow, up: bool) -> Option<ArmAngles> {
+        let ([upper_x, upper_z], [fore_x, fore_z]) = (self.arm.upper, self.arm.fore);
+        let (x, y) = (fore_x * w0.0, fore_x * w0.1);
         let (s, c) = elbow.e1;
-        let g = [UPPER_X + c * x + s * FORE_Z, y, UPPER_Z - s * x + c * FORE_Z];
+        let g = [upper_x + c * x + s * fore_z, y, upper_z - s * x + c * fore_z];
         let rho = g[0] * g[0] + g[1] * g[1];
         let m = self.v.x * self.v.x + self.v.z * self.v.z;
         if rho < 1e-12 || m < 1e-12 {
@@ -211,16 +219,38 @@ impl Slice {
         Some(ArmAngles { e1: elbow.e1, e0, a, lack: elbow.lack + lack })
     }
 
-    /// The wrist offset `.010 (cos w0, sin w0)` that the target's z axis asks for.
+    /// Cosine and sine of w0's angle, as the target's z axis asks for them.
     #[inline(always)]
-    fn offset(&self, arm: &ArmAngles, wrist_up: bool) -> (f64, f64) {
+    fn forearm(&self, arm: &ArmAngles, wrist_up: bool) -> (f64, f64) {
         let n = arm.unturned(&self.z);
         let sine = (n.x * n.x + n.y * n.y).sqrt();
         if sine < 1e-12 {
-            return (FORE_X, 0.0);
+            return (1.0, 0.0);
         }
-        let scale = if wrist_up { FORE_X / sine } else { -FORE_X / sine };
+        let scale = if wrist_up { 1.0 / sine } else { -1.0 / sine };
         (n.x * scale, n.y * scale)
+    }
+
+    /// How far outside its limits joint `i` is whose angle has this sine and cosine, radians.
+    #[inline(always)]
+    fn outside(&self, i: usize, turn: (f64, f64)) -> f64 {
+        self.limits.outside(i, self.position(i, turn))
+    }
+
+    /// The position of joint `i` whose angle has this sine and cosine, radians: of those a whole
+    /// turn apart the one nearest to the middle of its limits.
+    #[inline(always)]
+    fn position(&self, i: usize, (s, c): (f64, f64)) -> f64 {
+        let (lower, upper) = self.limits.0[i];
+        let q = s.atan2(c) - self.arm.zero[i];
+        let off = q - 0.5 * (lower + upper);
+        if off > PI {
+            q - TAU
+        } else if off < -PI {
+            q + TAU
+        } else {
+            q
+        }
     }
 
     /// All seven angles of a branch.
@@ -228,13 +258,12 @@ impl Slice {
     fn finish(
         &self,
         arm: &ArmAngles,
-        offset: (f64, f64),
+        (c, s): (f64, f64),
         branch: Branch,
         settled: bool,
     ) -> Posture {
         let z = arm.unturned(&self.z);
         let x = arm.unturned(&self.x);
-        let (s, c) = (offset.1 / FORE_X, offset.0 / FORE_X);
         let sine = (z.x * z.x + z.y * z.y).sqrt();
         let w1 = (if branch.wrist_up { sine } else { -sine }, z.z);
         // Against the axes of the frame before w2, not by the third row of z-y-z: this way w2 is
@@ -242,14 +271,14 @@ impl Slice {
         let w2 = (c * x.y - s * x.x, w1.1 * (c * x.x + s * x.y) - w1.0 * x.z);
         let q = [
             self.s0,
-            shoulder_angle(arm.a),
-            angle(arm.e0),
-            angle(arm.e1),
-            angle((s, c)),
-            angle(w1),
-            angle(w2),
+            self.position(1, arm.a),
+            self.position(2, arm.e0),
+            self.position(3, arm.e1),
+            self.position(4, (s, c)),
+            self.position(5, w1),
+            self.position(6, w2),
         ];
-        Posture { q, violation: violation(&q) + arm.lack, settled }
+        Posture { q, violation: self.limits.violation(&q) + arm.lack, settled }
     }
 }
 
@@ -267,14 +296,8 @@ impl ArmAngles {
 }
 
 #[inline(always)]
-fn angle((s, c): (f64, f64)) -> f64 {
-    s.atan2(c)
-}
-
-/// s1 from the sine and cosine of s1 + π/2.
-#[inline(always)]
-fn shoulder_angle((s, c): (f64, f64)) -> f64 {
-    (-c).atan2(s)
+fn squared([x, z]: [f64; 2]) -> f64 {
+    x * x + z * z
 }
 
 /// The square root of a number in units of the arm, and how much the number lacks where it has

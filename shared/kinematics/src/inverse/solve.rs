@@ -2,20 +2,23 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::IkSolution;
 use super::closer::Nearly;
-use super::goal::Goal;
+use super::goal::Aim;
 use super::posture::{Branch, Posture};
 use super::refine::{Refined, distance, refine};
 use super::slice::{NARROW_RAD, Slice, WIDE_RAD};
-use super::{IkSolution, SAMPLES};
 use crate::limb::Joints;
-use crate::limits::{self, POSITION_LIMITS};
 
-/// Intervals into which the sweep divides s0: 0.053 rad each.
-const CELLS: u32 = 64;
+/// The sweep divides s0 into intervals of at most this, radians: 64 on Baxter.
+const CELL_RAD: f64 = 0.0535;
 
 /// Intervals of the second sweep, for targets that the first nearly reached.
 const FINE: usize = 60;
+
+/// Greatest distance of the positions of s0 at which all solutions are looked for, radians: 40 on
+/// Baxter.
+pub(crate) const SAMPLE_RAD: f64 = 0.0875;
 
 /// How far the second sweep looks either side of where the first came nearest, radians of s0.
 const WINDOW_RAD: f64 = 0.15;
@@ -41,26 +44,27 @@ const APART_RAD: f64 = 0.02;
 const POLISH: usize = 4;
 
 /// The first posture that reaches the goal, or the nearest that was found.
-pub(crate) fn first(goal: &Goal) -> Result<IkSolution, Refined> {
-    if !goal.is_finite() {
-        return Err(Refined::at(goal, limits::middle()));
+pub(crate) fn first(aim: &Aim<'_>) -> Result<IkSolution, Refined> {
+    if !aim.goal.is_finite() {
+        return Err(Refined::at(&aim.goal, aim.goal.chain.limits().middle()));
     }
-    if let Some(answer) = sweep(goal) {
+    if let Some(answer) = sweep(aim) {
         return Ok(answer);
     }
-    between(goal).or_else(|nearest| {
-        let straight = nearest.q[5].abs() < STRAIGHT_RAD;
+    between(aim).or_else(|nearest| {
+        let straight = (nearest.q[5] + aim.arm.zero[5]).abs() < STRAIGHT_RAD;
         let near_miss = if straight { NEAR_MISS_STRAIGHT } else { NEAR_MISS };
-        if nearest.error() < near_miss { patiently(goal, nearest) } else { Err(nearest) }
+        if nearest.error() < near_miss { patiently(aim, nearest) } else { Err(nearest) }
     })
 }
 
 /// A solution at one of the sweep's samples of s0.
-fn sweep(goal: &Goal) -> Option<IkSolution> {
+fn sweep(aim: &Aim<'_>) -> Option<IkSolution> {
+    let cells = cells(aim);
     let mut answer = None;
-    for cell in bit_reversed(CELLS) {
-        Slice::new(goal, s0_of(cell, CELLS)).postures(NARROW_RAD, |_, posture| {
-            answer = exact(goal, &posture);
+    for cell in bit_reversed(cells) {
+        Slice::new(aim, s0_of(aim, cell, cells)).postures(NARROW_RAD, |_, posture| {
+            answer = exact(aim, &posture);
             answer.is_some()
         });
         if answer.is_some() {
@@ -71,26 +75,27 @@ fn sweep(goal: &Goal) -> Option<IkSolution> {
 }
 
 /// A solution between two samples of s0, found from what nearly fits at them.
-fn between(goal: &Goal) -> Result<IkSolution, Refined> {
-    let mut nearly = Nearly::new(CELLS);
-    for cell in 0..=CELLS {
-        Slice::glimpse(goal, s0_of(cell, CELLS)).postures(WIDE_RAD, |branch, posture| {
+fn between(aim: &Aim<'_>) -> Result<IkSolution, Refined> {
+    let cells = cells(aim);
+    let mut nearly = Nearly::new(aim, cells);
+    for cell in 0..=cells {
+        Slice::glimpse(aim, s0_of(aim, cell, cells)).postures(WIDE_RAD, |branch, posture| {
             nearly.add(cell, branch, posture);
             false
         });
     }
-    nearly.look_closer(goal)
+    nearly.look_closer(aim)
 }
 
 /// The last resort, for one target in a million: the arm is at a limit, its wrist nearly straight
 /// or its elbow at the end of its travel, and what is feasible is narrower than a cell or on
 /// another of the wrist's fixed points.
-fn patiently(goal: &Goal, nearest: Refined) -> Result<IkSolution, Refined> {
+fn patiently(aim: &Aim<'_>, nearest: Refined) -> Result<IkSolution, Refined> {
     let mut starts = vec![(0.0, nearest.q)];
-    let (lower, upper) = POSITION_LIMITS[0];
+    let (lower, upper) = aim.limits(0);
     for k in 0..=FINE {
         let aside = WINDOW_RAD * (2.0 * k as f64 / FINE as f64 - 1.0);
-        let slice = Slice::roughly(goal, (nearest.q[0] + aside).clamp(lower, upper));
+        let slice = Slice::roughly(aim, (nearest.q[0] + aside).clamp(lower, upper));
         for (branch, quarter) in Branch::all().flat_map(|b| (0..4).map(move |q| (b, q))) {
             let posture = slice.posture_from(branch, f64::from(quarter) * FRAC_PI_2);
             let near = posture.filter(|posture| posture.violation < NARROW_RAD);
@@ -105,7 +110,9 @@ fn patiently(goal: &Goal, nearest: Refined) -> Result<IkSolution, Refined> {
         }
         if tried.iter().all(|other| distance(other, &q) > APART_RAD) {
             tried.push(q);
-            if let Some(answer) = IkSolution::accept(&refine(goal, &q, STEPS_PATIENT)) {
+            if let Some(answer) =
+                IkSolution::accept(&aim.goal, &refine(&aim.goal, &q, STEPS_PATIENT))
+            {
                 return Ok(answer);
             }
         }
@@ -113,49 +120,58 @@ fn patiently(goal: &Goal, nearest: Refined) -> Result<IkSolution, Refined> {
     Err(nearest)
 }
 
-/// Every posture at [`SAMPLES`] positions of s0.
-pub(crate) fn all(goal: &Goal) -> Vec<Joints> {
+/// Every posture at samples of s0.
+pub(crate) fn all(aim: &Aim<'_>) -> Vec<Joints> {
     let mut found = Vec::new();
-    if !goal.is_finite() {
+    if !aim.goal.is_finite() {
         return found;
     }
-    for k in 0..SAMPLES {
-        Slice::new(goal, sample(k)).postures(NARROW_RAD, |_, posture| {
-            found.extend(exact(goal, &posture).map(|solution| solution.q));
+    for s0 in samples(aim) {
+        Slice::new(aim, s0).postures(NARROW_RAD, |_, posture| {
+            found.extend(exact(aim, &posture).map(|solution| solution.q));
             false
         });
     }
     if found.is_empty() {
-        found.extend(first(goal).ok().map(|solution| solution.q));
+        found.extend(first(aim).ok().map(|solution| solution.q));
     }
     found
 }
 
 /// The posture as an answer, if forward kinematics agrees that it is one.
-pub(crate) fn exact(goal: &Goal, posture: &Posture) -> Option<IkSolution> {
+pub(crate) fn exact(aim: &Aim<'_>, posture: &Posture) -> Option<IkSolution> {
     if posture.violation > 0.0 {
         return None;
     }
     if posture.settled {
-        return IkSolution::accept(&Refined::at(goal, posture.q));
+        return IkSolution::accept(&aim.goal, &Refined::at(&aim.goal, posture.q));
     }
     // The wrist is nearly straight and its fixed point slow; Newton finishes in a step or two.
-    IkSolution::accept(&refine(goal, &posture.q, POLISH))
+    IkSolution::accept(&aim.goal, &refine(&aim.goal, &posture.q, POLISH))
 }
 
-/// The `k`th of [`SAMPLES`] positions of s0, spread evenly over its limits.
-pub(crate) fn sample(k: usize) -> f64 {
-    s0_at(k as f64 / (SAMPLES - 1) as f64)
+/// Positions of s0 at which all solutions and the nearest one are looked for, spread evenly over its
+/// limits.
+pub(crate) fn samples(aim: &Aim<'_>) -> impl Iterator<Item = f64> {
+    let (lower, upper) = aim.limits(0);
+    let count = ((upper - lower) / SAMPLE_RAD).ceil().clamp(1.0, 1024.0);
+    (0..=count as usize).map(move |k| s0_at(aim, k as f64 / count))
+}
+
+/// How many intervals the sweep has: a power of two.
+fn cells(aim: &Aim<'_>) -> u32 {
+    let (lower, upper) = aim.limits(0);
+    (((upper - lower) / CELL_RAD).ceil().clamp(2.0, 1024.0) as u32).next_power_of_two()
 }
 
 /// s0 at the lower bound of a cell.
-fn s0_of(cell: u32, cells: u32) -> f64 {
-    s0_at(f64::from(cell) / f64::from(cells))
+fn s0_of(aim: &Aim<'_>, cell: u32, cells: u32) -> f64 {
+    s0_at(aim, f64::from(cell) / f64::from(cells))
 }
 
 /// s0 at a fraction of its range; 0 and 1 are the limits themselves.
-fn s0_at(fraction: f64) -> f64 {
-    let (lower, upper) = POSITION_LIMITS[0];
+fn s0_at(aim: &Aim<'_>, fraction: f64) -> f64 {
+    let (lower, upper) = aim.limits(0);
     (lower + (upper - lower) * fraction).clamp(lower, upper)
 }
 

@@ -2,15 +2,14 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use super::*;
 use crate::limb::Limb;
-use crate::limits;
-use crate::samples::{Random, joints, numbers, pose, table};
+use crate::samples::{Random, arm, full, joints, numbers, pose, table, with_tool};
 
 /// Asserts that an answer is what it claims to be, by forward kinematics.
 fn verify(limb: Limb, target: &Isometry3<f64>, answer: &IkSolution) {
-    let reached = limb.forward(&answer.q);
+    let reached = arm(limb).chain.forward(&answer.q);
     let distance = (reached.translation.vector - target.translation.vector).norm();
     let angle = reached.rotation.angle_to(&target.rotation);
-    assert!(limits::within(&answer.q), "{limb} {answer:?}");
+    assert!(full().position.within(&answer.q), "{limb} {answer:?}");
     assert!(distance <= TOLERANCE_M, "{limb} {answer:?} misses by {distance:e}");
     // The angle of two nearly equal quaternions is only known to the root of the precision.
     assert!(angle <= TOLERANCE_RAD + 3e-8, "{limb} {answer:?} turns by {angle:e}");
@@ -30,8 +29,8 @@ fn every_solvable_row_of_the_reference_is_solved_and_no_other() {
             let n = numbers(&row[1..]);
             let target = pose(&n[..7]);
             let solvable = n[7] == 1.0;
-            let plain = limb.inverse(&target, None);
-            let near = limb.inverse(&target, Some(&joints(&n[8..15])));
+            let plain = arm(limb).chain.inverse(&target, None);
+            let near = arm(limb).chain.inverse(&target, Some(&joints(&n[8..15])));
             for answer in [plain, near] {
                 assert_eq!(answer.is_ok(), solvable, "{limb} {row:?}: {answer:?}");
                 if let Ok(answer) = answer {
@@ -48,8 +47,8 @@ fn random_postures_are_found_again() {
     let mut random = Random::seeded(seed);
     for _ in 0..1500 {
         let (limb, q) = (random.limb(), random.posture());
-        let target = limb.forward(&q);
-        let answer = limb.inverse(&target, None);
+        let target = arm(limb).chain.forward(&q);
+        let answer = arm(limb).chain.inverse(&target, None);
         verify(limb, &target, &answer.unwrap_or_else(|e| panic!("seed {seed}: {q:?}: {e}")));
     }
 }
@@ -58,8 +57,8 @@ fn random_postures_are_found_again() {
 /// wrist, joints at their limits, and the rare ones that a coarse sweep over s0 steps across.
 #[test]
 fn hard_postures_are_found_again() {
-    let lower = limits::POSITION_LIMITS.map(|(lower, _)| lower);
-    let upper = limits::POSITION_LIMITS.map(|(_, upper)| upper);
+    let lower = full().position.at(&[0.0; 7]);
+    let upper = full().position.at(&[1.0; 7]);
     let hard = [
         [0.0; 7],
         lower,
@@ -178,8 +177,8 @@ fn hard_postures_are_found_again() {
     ];
     for limb in Limb::BOTH {
         for q in hard {
-            let target = limb.forward(&q);
-            let answer = limb.inverse(&target, None);
+            let target = arm(limb).chain.forward(&q);
+            let answer = arm(limb).chain.inverse(&target, None);
             verify(limb, &target, &answer.unwrap_or_else(|e| panic!("{limb} {q:?}: {e}")));
         }
     }
@@ -189,7 +188,7 @@ fn hard_postures_are_found_again() {
 fn other_tool_lengths_are_solved_as_well() {
     let mut random = Random::seeded(12);
     for _ in 0..100 {
-        let chain = random.limb().chain().with_tool(random.between(0.0, 0.4));
+        let chain = with_tool(random.limb(), random.between(0.0, 0.4));
         let target = chain.forward(&random.posture());
         let answer = chain.inverse(&target, None).unwrap();
         let reached = chain.forward(&answer.q);
@@ -199,22 +198,22 @@ fn other_tool_lengths_are_solved_as_well() {
 
 #[test]
 fn answers_do_not_depend_on_what_was_asked_before() {
-    let target = Limb::Left.forward(&[0.3, -0.4, 0.2, 1.0, -0.5, 0.8, 0.1]);
-    let first = Limb::Left.inverse(&target, None).unwrap();
+    let target = arm(Limb::Left).chain.forward(&[0.3, -0.4, 0.2, 1.0, -0.5, 0.8, 0.1]);
+    let first = arm(Limb::Left).chain.inverse(&target, None).unwrap();
     let far = Isometry3::translation(9.0, 0.0, 0.0);
-    assert!(Limb::Left.inverse(&far, None).is_err());
-    assert_eq!(Limb::Left.inverse(&target, None).unwrap(), first);
+    assert!(arm(Limb::Left).chain.inverse(&far, None).is_err());
+    assert_eq!(arm(Limb::Left).chain.inverse(&target, None).unwrap(), first);
 }
 
 #[test]
 fn what_is_out_of_reach_is_refused_with_the_nearest_posture() {
-    let chain = Limb::Left.chain();
+    let chain = &arm(Limb::Left).chain;
     // 2 m along +x of the shoulder: the best that the arm can do is to stretch towards it.
-    let shoulder = chain.origin();
+    let shoulder = chain.shoulder();
     let down = UnitQuaternion::from_axis_angle(&Vector3::y_axis(), 1.3);
     let target = Isometry3::from_parts(Translation3::from(shoulder + Vector3::x() * 2.0), down);
     let missed = chain.inverse(&target, None).unwrap_err();
-    assert!(limits::within(&missed.nearest));
+    assert!(full().position.within(&missed.nearest));
     let reached = chain.forward(&missed.nearest);
     let gap = (reached.translation.vector - target.translation.vector).norm();
     assert!((gap - missed.position_error_m).abs() < 1e-12);
@@ -228,13 +227,13 @@ fn what_is_out_of_reach_is_refused_with_the_nearest_posture() {
 fn what_is_not_a_pose_is_refused() {
     for x in [f64::NAN, f64::INFINITY, 1e200] {
         let target = Isometry3::translation(x, 0.0, 0.0);
-        let missed = Limb::Left.inverse(&target, None).unwrap_err();
-        assert!(limits::within(&missed.nearest));
-        assert!(Limb::Left.chain().solutions(&target).is_empty());
+        let missed = arm(Limb::Left).chain.inverse(&target, None).unwrap_err();
+        assert!(full().position.within(&missed.nearest));
+        assert!(arm(Limb::Left).chain.solutions(&target).is_empty());
     }
-    let target = Limb::Left.forward(&[0.0; 7]);
+    let target = arm(Limb::Left).chain.forward(&[0.0; 7]);
     let seed = [f64::NAN; 7];
-    verify(Limb::Left, &target, &Limb::Left.inverse(&target, Some(&seed)).unwrap());
+    verify(Limb::Left, &target, &arm(Limb::Left).chain.inverse(&target, Some(&seed)).unwrap());
 }
 
 #[test]
@@ -244,11 +243,11 @@ fn nearest_is_no_further_than_any_branch_at_any_sample() {
     for _ in 0..60 {
         let limb = random.limb();
         let (q, present) = (random.posture(), random.posture());
-        let target = limb.forward(&q);
-        let answer = limb.inverse(&target, Some(&present)).unwrap();
+        let target = arm(limb).chain.forward(&q);
+        let answer = arm(limb).chain.inverse(&target, Some(&present)).unwrap();
         verify(limb, &target, &answer);
         let found = distance(&answer.q, &present);
-        for other in limb.chain().solutions(&target) {
+        for other in arm(limb).chain.solutions(&target) {
             assert!(found <= distance(&other, &present) + 1e-9, "seed {seed}: {q:?} {present:?}");
         }
     }
@@ -259,19 +258,19 @@ fn nearest_to_a_solution_is_that_solution() {
     let mut random = Random::seeded(14);
     for _ in 0..60 {
         let (limb, q) = (random.limb(), random.posture());
-        let answer = limb.inverse(&limb.forward(&q), Some(&q)).unwrap();
+        let answer = arm(limb).chain.inverse(&arm(limb).chain.forward(&q), Some(&q)).unwrap();
         assert!(distance(&answer.q, &q) < 1e-3, "{q:?} {:?}", answer.q);
     }
 }
 
 #[test]
 fn all_solutions_are_solutions_and_differ() {
-    let chain = Limb::Left.chain();
+    let chain = &arm(Limb::Left).chain;
     let target = chain.forward(&[0.2, -0.6, 0.1, 1.1, 0.3, 1.0, 0.4]);
     let all = chain.solutions(&target);
     assert!(all.len() > 20, "{}", all.len());
     for (i, q) in all.iter().enumerate() {
-        assert!(limits::within(q));
+        assert!(full().position.within(q));
         let reached = chain.forward(q);
         assert!((reached.translation.vector - target.translation.vector).norm() < TOLERANCE_M);
         assert!(all[..i].iter().all(|other| distance(other, q) > 1e-6));
@@ -280,7 +279,7 @@ fn all_solutions_are_solutions_and_differ() {
 
 #[test]
 fn tracking_stays_on_the_branch() {
-    let chain = Limb::Right.chain();
+    let chain = &arm(Limb::Right).chain;
     let mut q = [0.2, -0.6, 0.1, 1.1, 0.3, 1.0, 0.4];
     for _ in 0..100 {
         let target = Translation3::new(0.0, 0.001, -0.001) * chain.forward(&q);

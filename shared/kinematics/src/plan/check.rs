@@ -2,14 +2,16 @@
 
 use super::error::{Furthest, PlanError};
 use super::pick::{Choice, situations};
-use super::situation::{Arms, PlanSettings, Search};
+use super::situation::{PlanSettings, Search};
 use crate::grasp::ObjectPose;
 use crate::limb::Limb;
+use crate::robot::Robot;
 use crate::shape::Cuboid;
 
 /// For each object, the limb that can fetch it from the neutral posture among the others, or why
 /// none can: what a scene is checked for before anything moves. Ways between are not searched.
 pub fn check_reachable(
+    robot: &Robot,
     objects: &[ObjectPose],
     limb: Option<Limb>,
     settings: &PlanSettings,
@@ -18,7 +20,7 @@ pub fn check_reachable(
     let check = |i: usize| {
         let mut others = cuboids.clone();
         others.remove(i);
-        let situations = situations(&objects[i], limb, &Arms::NEUTRAL, &others, settings)?;
+        let situations = situations(robot, &objects[i], limb, &robot.neutral(), &others, settings)?;
         let mut furthest = Furthest::default();
         for situation in &situations {
             for grasp in objects[i].grasps()? {

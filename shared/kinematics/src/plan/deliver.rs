@@ -6,10 +6,10 @@ use super::error::PlanError;
 use super::fetch::{ABOVE, Carry, HAND_OVER, HOME};
 use super::pick::{PickPhase, PickPlan, situation};
 use super::situation::{Arms, PlanSettings, Search, Situation};
-use crate::baxter::NEUTRAL;
 use crate::grasp::ObjectPose;
 use crate::gripper;
 use crate::limb::{Joints, Limb};
+use crate::robot::Robot;
 use crate::shape::Cuboid;
 use crate::timeline::{Stage, Timeline};
 use crate::trajectory::{Trajectory, refuse_outside};
@@ -29,6 +29,7 @@ const BELOW_TIP_M: f64 = 0.005;
 /// # Errors
 /// [`PlanError`] if the hand over cannot be reached from here.
 pub fn plan_delivery(
+    robot: &Robot,
     object: &ObjectPose,
     object_in_gripper: &Isometry3<f64>,
     limb: Limb,
@@ -36,7 +37,7 @@ pub fn plan_delivery(
     others: &[Cuboid],
     settings: &PlanSettings,
 ) -> Result<PickPlan, PlanError> {
-    let situation = situation(object, limb, arms, others, settings)?;
+    let situation = situation(robot, object, limb, arms, others, settings)?;
     let held = situation.chain.forward(&situation.q);
     let above = Translation3::new(0.0, 0.0, still_to_lift_m(object, &held, settings)) * held;
     let lift = situation.chain.line(&situation.q, &above).map_err(|line| PlanError::Line {
@@ -70,17 +71,18 @@ pub(crate) fn still_to_lift_m(
 /// # Errors
 /// [`PlanError`] if every way is blocked.
 pub fn plan_return(
+    robot: &Robot,
     limb: Limb,
     arms: &Arms,
     others: &[Cuboid],
     settings: &PlanSettings,
 ) -> Result<PickPlan, PlanError> {
-    refuse_outside(arms.of(limb))?;
-    let chain = limb.chain();
+    let chain = &robot.arm(limb).chain;
+    refuse_outside(chain.limits(), arms.of(limb))?;
     let at = chain.forward(arms.of(limb)).translation;
     // Whatever the arm is over now it has reached down to without touching.
     let place = ([at.x, at.y, at.z], at.z - BELOW_TIP_M);
-    let situation = Situation::new(limb, arms, others, place, settings);
+    let situation = Situation::new(robot, limb, arms, others, place, settings);
     let way = home(&situation, &situation.q, Search::Yes)?;
     let stage = Stage {
         phase: PickPhase::Return,
@@ -112,7 +114,7 @@ pub(crate) fn deliver(
     Ok(vec![
         Stage { phase: PickPhase::Lift, motion: lift, width_m: closed },
         Stage { phase: PickPhase::HandOver, motion: hand_over, width_m: closed },
-        fingers(PickPhase::Release, carry.end(), width_m, open_m),
+        fingers(situation, PickPhase::Release, carry.end(), (width_m, open_m)),
         Stage { phase: PickPhase::Return, motion: home, width_m: (open_m, open_m) },
     ])
 }
@@ -123,19 +125,28 @@ fn home(
     from: &Joints,
     search: Search,
 ) -> Result<Vec<Joints>, PlanError> {
-    if let Some(way) = situation.way(from, &NEUTRAL, Search::No) {
+    if let Some(way) = situation.way(from, &situation.arm.neutral, Search::No) {
         return Ok(way);
     }
     let pose = situation.chain.forward(from);
     let raised = Translation3::new(0.0, 0.0, situation.settings.hover_m) * pose;
     let mut up = situation.chain.line(from, &raised).unwrap_or_else(|_| vec![*from]);
-    let rest = situation.way(&up[up.len() - 1], &NEUTRAL, search);
+    let rest = situation.way(&up[up.len() - 1], &situation.arm.neutral, search);
     let rest = rest.ok_or_else(|| situation.no_way(HOME))?;
     up.extend(rest.into_iter().skip(1));
     Ok(up)
 }
 
-pub(crate) fn fingers(phase: PickPhase, q: &Joints, from_m: f64, to_m: f64) -> Stage<PickPhase> {
+pub(crate) fn fingers(
+    situation: &Situation<'_>,
+    phase: PickPhase,
+    q: &Joints,
+    (from_m, to_m): (f64, f64),
+) -> Stage<PickPhase> {
     let seconds = gripper::seconds_between(from_m, to_m) + SETTLE_S;
-    Stage { phase, motion: Trajectory::hold(q, seconds), width_m: (from_m, to_m) }
+    Stage {
+        phase,
+        motion: Trajectory::hold(q, seconds, &situation.limits),
+        width_m: (from_m, to_m),
+    }
 }

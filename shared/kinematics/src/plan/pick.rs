@@ -11,6 +11,7 @@ use crate::grasp::{Grasp, ObjectPose};
 use crate::gripper;
 use crate::inverse::IkSolution;
 use crate::limb::{Joints, Limb};
+use crate::robot::Robot;
 use crate::shape::Cuboid;
 use crate::timeline::{Moment, Stage, Timeline};
 use crate::trajectory::{Trajectory, refuse_outside};
@@ -78,13 +79,14 @@ const COMPARED: usize = 5;
 /// # Errors
 /// [`PlanError`] of the attempt that came furthest.
 pub fn plan_pick(
+    robot: &Robot,
     object: &ObjectPose,
     limb: Option<Limb>,
     arms: &Arms,
     others: &[Cuboid],
     settings: &PlanSettings,
 ) -> Result<PickPlan, PlanError> {
-    let situations = situations(object, limb, arms, others, settings)?;
+    let situations = situations(robot, object, limb, arms, others, settings)?;
     let mut furthest = Furthest::default();
     let choices = choices(object, &situations, &mut furthest)?;
     for search in [Search::No, Search::Yes] {
@@ -103,6 +105,7 @@ pub fn plan_pick(
 }
 
 pub(crate) fn situations<'a>(
+    robot: &'a Robot,
     object: &ObjectPose,
     limb: Option<Limb>,
     arms: &Arms,
@@ -113,19 +116,20 @@ pub(crate) fn situations<'a>(
         Limb::BOTH.into_iter().filter(|side| limb.is_none_or(|limb| limb == *side)).collect();
     // The arm on the object's own side first.
     limbs.sort_by(|a, b| (b.side() * object.xyz_m[1]).total_cmp(&(a.side() * object.xyz_m[1])));
-    limbs.into_iter().map(|limb| situation(object, limb, arms, others, settings)).collect()
+    limbs.into_iter().map(|limb| situation(robot, object, limb, arms, others, settings)).collect()
 }
 
 pub(crate) fn situation<'a>(
+    robot: &'a Robot,
     object: &ObjectPose,
     limb: Limb,
     arms: &Arms,
     others: &[Cuboid],
     settings: &'a PlanSettings,
 ) -> Result<Situation<'a>, PlanError> {
-    refuse_outside(arms.of(limb))?;
+    refuse_outside(robot.arm(limb).chain.limits(), arms.of(limb))?;
     let bottom = object.bottom_z_m();
-    let situation = Situation::new(limb, arms, others, (object.xyz_m, bottom), settings);
+    let situation = Situation::new(robot, limb, arms, others, (object.xyz_m, bottom), settings);
     Ok(situation.with_board_under(&object.cuboid()))
 }
 
@@ -198,7 +202,7 @@ impl<'a> Choice<'a> {
         let open_m = situation.settings.open_width_m;
         let mut stages = vec![
             Stage { phase: PickPhase::Approach, motion: approach, width_m: (open_m, open_m) },
-            fingers(PickPhase::Close, hold.grasp(), open_m, width_m),
+            fingers(situation, PickPhase::Close, hold.grasp(), (open_m, width_m)),
         ];
         stages.extend(delivery);
         Ok(PickPlan {

@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 use super::error::{Furthest, PlanError};
 use super::fetch::HOME;
 use super::situation::{Arms, PlanSettings, Search, Situation};
-use crate::baxter::NEUTRAL;
 use crate::chain::positive;
 use crate::limb::{Joints, Limb};
+use crate::robot::Robot;
 use crate::shape::Cuboid;
 use crate::timeline::{Stage, Timeline};
 use crate::trajectory::{Trajectory, refuse_outside};
@@ -75,6 +75,7 @@ const AIM: &str = "the place to point from";
 /// # Errors
 /// [`PlanError`] of the attempt that came furthest.
 pub fn plan_point(
+    robot: &Robot,
     target_m: [f64; 3],
     limb: Option<Limb>,
     arms: &Arms,
@@ -86,9 +87,9 @@ pub fn plan_point(
     let sides = Limb::BOTH.into_iter().filter(|side| limb.is_none_or(|limb| limb == *side));
     let situations: Vec<_> = sides
         .map(|side| {
-            refuse_outside(arms.of(side))?;
+            refuse_outside(robot.arm(side).chain.limits(), arms.of(side))?;
             let place = (target_m, target_m[2] - LOWER_M);
-            Ok(Situation::new(side, arms, others, place, settings))
+            Ok(Situation::new(robot, side, arms, others, place, settings))
         })
         .collect::<Result<_, PlanError>>()?;
     for situation in &situations {
@@ -133,10 +134,12 @@ fn point_from(
         return Err((1, PlanError::Blocked { at: AIM, limb, gap }));
     }
     let way = situation.way(&situation.q, q, search).ok_or_else(|| (2, situation.no_way(AIM)))?;
-    let back = situation.way(q, &NEUTRAL, search).ok_or_else(|| (3, situation.no_way(HOME)))?;
+    let back = situation
+        .way(q, &situation.arm.neutral, search)
+        .ok_or_else(|| (3, situation.no_way(HOME)))?;
     let aim = situation.motion(AIM, &way).map_err(|error| (4, error))?;
     let home = situation.motion(HOME, &back).map_err(|error| (4, error))?;
-    let still = Trajectory::hold(q, situation.settings.point_s);
+    let still = Trajectory::hold(q, situation.settings.point_s, &situation.limits);
     let stage = |phase, motion| Stage { phase, motion, width_m: (0.0, 0.0) };
     let stages = vec![
         stage(PointPhase::Aim, aim),
@@ -148,7 +151,7 @@ fn point_from(
 
 /// Poses of the gripper that look at `target`, each with how little it is preferred.
 fn looks(situation: &Situation<'_>, target: &Vector3<f64>) -> Vec<(f64, Isometry3<f64>)> {
-    let shoulder = situation.chain.origin();
+    let shoulder = situation.chain.shoulder();
     let towards = (target.y - shoulder.y).atan2(target.x - shoulder.x);
     let mut looks = Vec::new();
     for (i, elevation) in ELEVATIONS.into_iter().enumerate() {

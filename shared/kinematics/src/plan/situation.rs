@@ -2,11 +2,12 @@
 
 use super::error::PlanError;
 use super::furniture::{self, Obstacle};
-use crate::baxter::{self, DEFAULT_SPEED_RATIO};
+use crate::baxter::DEFAULT_SPEED_RATIO;
 use crate::chain::Chain;
 use crate::clearance::{ArmShape, Gap};
 use crate::limb::{Joints, Limb};
 use crate::limits::MotionLimits;
+use crate::robot::{Arm, Robot};
 use crate::route::{searched, simple};
 use crate::shape::Cuboid;
 use crate::trajectory::Trajectory;
@@ -21,9 +22,6 @@ pub struct Arms {
 }
 
 impl Arms {
-    /// Both arms in the neutral posture.
-    pub const NEUTRAL: Self = Self { left: baxter::NEUTRAL, right: baxter::NEUTRAL };
-
     /// One arm's joint positions.
     pub fn of(&self, limb: Limb) -> &Joints {
         match limb {
@@ -79,10 +77,6 @@ impl Default for PlanSettings {
 }
 
 impl PlanSettings {
-    pub(crate) fn limits(&self) -> MotionLimits {
-        MotionLimits::at_speed_ratio(self.speed_ratio)
-    }
-
     /// Where `limb` hands over.
     pub(crate) fn hand_over_m(&self, limb: Limb) -> [f64; 3] {
         let [x, y, z] = self.hand_over_xyz_m;
@@ -93,17 +87,21 @@ impl PlanSettings {
 /// One limb among everything that it must not touch.
 pub(crate) struct Situation<'a> {
     pub(crate) limb: Limb,
-    pub(crate) chain: Chain,
+    pub(crate) arm: &'a Arm,
+    pub(crate) chain: &'a Chain,
+    /// What its joints may do at the settings' speed.
+    pub(crate) limits: MotionLimits,
     /// Where the limb is now.
     pub(crate) q: Joints,
     pub(crate) settings: &'a PlanSettings,
-    other: ArmShape,
+    other: ArmShape<'a>,
     surroundings: Vec<Obstacle>,
 }
 
 impl<'a> Situation<'a> {
     /// `place_m` is where the arm is to work, and `lowest_z_m` how far down it reaches there.
     pub(crate) fn new(
+        robot: &'a Robot,
         limb: Limb,
         arms: &Arms,
         others: &[Cuboid],
@@ -112,12 +110,15 @@ impl<'a> Situation<'a> {
     ) -> Self {
         let mut surroundings = furniture::table(settings.table_z_m, place_m, lowest_z_m);
         surroundings.extend(furniture::objects(others, settings.table_z_m));
+        let arm = robot.arm(limb);
         Self {
             limb,
-            chain: limb.chain(),
+            arm,
+            chain: &arm.chain,
+            limits: arm.limits.at_speed_ratio(settings.speed_ratio),
             q: *arms.of(limb),
             settings,
-            other: ArmShape::at(limb.other(), arms.of(limb.other())),
+            other: ArmShape::at(robot.arm(limb.other()), arms.of(limb.other())),
             surroundings,
         }
     }
@@ -139,7 +140,7 @@ impl<'a> Situation<'a> {
 
     /// What the arm at `q` would come too near to.
     pub(crate) fn blocked(&self, q: &Joints) -> Option<Gap> {
-        let arm = ArmShape::at(self.limb, q);
+        let arm = ArmShape::at(self.arm, q);
         let margin_m = self.settings.margin_m;
         let around =
             self.surroundings.iter().map(|(name, cuboid)| arm.to_cuboid(name, cuboid, 0.0));
@@ -163,11 +164,10 @@ impl<'a> Situation<'a> {
     /// A way through joint space that touches nothing: the direct line, or over the neutral or the
     /// untucked posture; with `search` also whatever random trees find.
     pub(crate) fn way(&self, from: &Joints, to: &Joints, search: Search) -> Option<Vec<Joints>> {
-        let stations = [baxter::NEUTRAL, baxter::untuck(self.limb)];
         let clear = |q: &Joints| self.clear(q);
-        simple(from, to, &stations, &clear).or_else(|| match search {
+        simple(from, to, &self.arm.stations, &clear).or_else(|| match search {
             Search::No => None,
-            Search::Yes => searched(from, to, &clear),
+            Search::Yes => searched(from, to, self.chain.limits(), &clear),
         })
     }
 
@@ -181,7 +181,7 @@ impl<'a> Situation<'a> {
         let limb = self.limb;
         let mut gap = None;
         for blend_rad in [BLEND_RAD, SHARP_RAD] {
-            let motion = Trajectory::through(waypoints, blend_rad, &self.settings.limits())?;
+            let motion = Trajectory::through(waypoints, blend_rad, &self.limits)?;
             gap = self.blocked_during(&motion);
             if gap.is_none() {
                 return Ok(motion);
@@ -197,7 +197,7 @@ impl<'a> Situation<'a> {
 
     /// Least seconds from one posture to another at the settings' speed: a bound, for choosing.
     pub(crate) fn seconds_between(&self, from: &Joints, to: &Joints) -> f64 {
-        let limits = self.settings.limits();
+        let limits = &self.limits;
         (0..7)
             .map(|j| {
                 let (v, a) = (limits.velocity[j], limits.acceleration[j]);

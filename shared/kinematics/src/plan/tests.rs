@@ -6,8 +6,7 @@ use crate::clearance::Clearance;
 use crate::grasp::ObjectPose;
 use crate::gripper::{STROKE_M, attached_pose};
 use crate::limb::{Joints, Limb};
-use crate::limits::{self, MotionLimits};
-use crate::samples::Random;
+use crate::samples::{Random, arm, full, robot};
 use crate::shape::Cuboid;
 use crate::timeline::Timeline;
 
@@ -58,13 +57,13 @@ fn all_but(objects: &[ObjectPose], i: usize) -> Vec<Cuboid> {
 /// Every limit at every 5 ms, continuity across stages, and clearance by the two-arm check that
 /// planning does not use.
 fn assert_sound<P: Copy + PartialEq + std::fmt::Debug>(timeline: &Timeline<P>, others: &[Cuboid]) {
-    let limits = MotionLimits::at_speed_ratio(SETTINGS.speed_ratio);
+    let limits = full().at_speed_ratio(SETTINGS.speed_ratio);
     let limb = timeline.limb();
     let steps = (timeline.duration_s() / 0.005).ceil() as usize;
     let mut before = timeline.at(0.0);
     for k in 0..=steps {
         let now = timeline.at(k as f64 * 0.005);
-        assert!(limits::within(&now.q));
+        assert!(full().position.within(&now.q));
         for j in 0..7 {
             assert!(now.qd[j].abs() <= limits.velocity[j] * (1.0 + 1e-9), "{now:?}");
             let change = (now.qd[j] - before.qd[j]).abs();
@@ -73,9 +72,9 @@ fn assert_sound<P: Copy + PartialEq + std::fmt::Debug>(timeline: &Timeline<P>, o
         }
         assert!((0.0..=STROKE_M).contains(&now.width_m));
         if k % 4 == 0 {
-            let mut arms = Arms::NEUTRAL;
+            let mut arms = robot().neutral();
             *arms.of_mut(limb) = now.q;
-            let clearance = Clearance::of(&arms.left, &arms.right, others);
+            let clearance = Clearance::of(robot(), &arms.left, &arms.right, others);
             assert!(clearance.robot().distance_m > 0.008, "{now:?} {clearance:?}");
             let around = match limb {
                 Limb::Left => clearance.left_surroundings,
@@ -95,7 +94,7 @@ fn every_bowl_is_fetched() {
     let bowls = bowls();
     for (i, bowl) in bowls.iter().enumerate() {
         let others = all_but(&bowls, i);
-        let plan = plan_pick(bowl, None, &Arms::NEUTRAL, &others, &SETTINGS).unwrap();
+        let plan = plan_pick(robot(), bowl, None, &robot().neutral(), &others, &SETTINGS).unwrap();
         assert_sound(&plan.timeline, &others);
         assert_fetches(&plan, bowl);
         assert!(plan.duration_s() < 16.0, "bowl {i} takes {}", plan.duration_s());
@@ -112,7 +111,7 @@ fn assert_fetches(plan: &PickPlan, object: &ObjectPose) {
     assert_eq!(approach, PickPhase::Approach);
     assert_eq!(home, PickPhase::Return);
     let limb = plan.limb();
-    let gripper = |t: f64| limb.forward(&plan.at(t).q);
+    let gripper = |t: f64| arm(limb).chain.forward(&plan.at(t).q);
     let span = |phase| plan.timeline.span_s(phase).unwrap();
     let grasp = plan.grasp.unwrap();
 
@@ -154,7 +153,7 @@ fn assert_fetches(plan: &PickPlan, object: &ObjectPose) {
 
 #[test]
 fn lifting_flows_into_the_hand_over() {
-    let plan = plan_pick(&marker(), None, &Arms::NEUTRAL, &[], &SETTINGS).unwrap();
+    let plan = plan_pick(robot(), &marker(), None, &robot().neutral(), &[], &SETTINGS).unwrap();
     let (_, end) = plan.timeline.span_s(PickPhase::Lift).unwrap();
     assert!(plan.at(end).qd.iter().any(|v| v.abs() > 0.02), "no stop where none is needed");
     assert_fetches(&plan, &marker());
@@ -163,9 +162,11 @@ fn lifting_flows_into_the_hand_over() {
 #[test]
 fn the_forced_limb_is_used_and_the_plan_repeats() {
     for limb in Limb::BOTH {
-        let plan = plan_pick(&marker(), Some(limb), &Arms::NEUTRAL, &[], &SETTINGS).unwrap();
+        let plan =
+            plan_pick(robot(), &marker(), Some(limb), &robot().neutral(), &[], &SETTINGS).unwrap();
         assert_eq!(plan.limb(), limb);
-        let again = plan_pick(&marker(), Some(limb), &Arms::NEUTRAL, &[], &SETTINGS).unwrap();
+        let again =
+            plan_pick(robot(), &marker(), Some(limb), &robot().neutral(), &[], &SETTINGS).unwrap();
         assert_eq!(plan, again);
     }
 }
@@ -176,9 +177,10 @@ fn a_pick_may_start_anywhere() {
     let mut random = Random::seeded(seed);
     let mut planned = 0;
     while planned < 3 {
-        let mut arms = Arms::NEUTRAL;
+        let mut arms = robot().neutral();
         *arms.of_mut(Limb::Right) = random.posture();
         let clear = Clearance::of(
+            robot(),
             &arms.left,
             &arms.right,
             &[Cuboid::aligned([0.95, 0.0, -0.4], [1.1, 2.4, 0.5])],
@@ -186,7 +188,7 @@ fn a_pick_may_start_anywhere() {
         if clear.robot().distance_m < 0.03 || clear.right_surroundings.distance_m < 0.01 {
             continue;
         }
-        let plan = plan_pick(&marker(), Some(Limb::Right), &arms, &[], &SETTINGS)
+        let plan = plan_pick(robot(), &marker(), Some(Limb::Right), &arms, &[], &SETTINGS)
             .unwrap_or_else(|error| panic!("seed {seed}: {arms:?}: {error}"));
         assert_eq!(plan.at(0.0).q, arms.right);
         assert_sound(&plan.timeline, &[]);
@@ -197,20 +199,21 @@ fn a_pick_may_start_anywhere() {
 #[test]
 fn a_delivery_goes_on_from_the_grasp_and_from_the_way() {
     let object = marker();
-    let whole = plan_pick(&object, None, &Arms::NEUTRAL, &[], &SETTINGS).unwrap();
+    let whole = plan_pick(robot(), &object, None, &robot().neutral(), &[], &SETTINGS).unwrap();
     let (closed, lifted) = whole.timeline.span_s(PickPhase::Lift).unwrap();
     let (_, carried) = whole.timeline.span_s(PickPhase::HandOver).unwrap();
     for t in [closed, 0.5 * (closed + lifted), 0.5 * (lifted + carried), carried] {
-        let mut arms = Arms::NEUTRAL;
+        let mut arms = robot().neutral();
         *arms.of_mut(whole.limb()) = whole.at(t).q;
         let offset = whole.object_in_gripper;
-        let rest = plan_delivery(&object, &offset, whole.limb(), &arms, &[], &SETTINGS).unwrap();
+        let rest =
+            plan_delivery(robot(), &object, &offset, whole.limb(), &arms, &[], &SETTINGS).unwrap();
         assert_eq!(rest.at(0.0).q, whole.at(t).q);
         assert_eq!(rest.object_in_gripper, offset);
         assert_eq!(rest.timeline.stages()[0].phase, PickPhase::Lift);
         assert_sound(&rest.timeline, &[]);
         let (release, _) = rest.timeline.span_s(PickPhase::Release).unwrap();
-        let there = whole.limb().forward(&rest.at(release).q).translation.vector;
+        let there = arm(whole.limb()).chain.forward(&rest.at(release).q).translation.vector;
         let place = SETTINGS.hand_over_m(whole.limb());
         assert!((there - Vector3::from(place)).norm() < 1e-5);
     }
@@ -220,12 +223,13 @@ fn a_delivery_goes_on_from_the_grasp_and_from_the_way() {
 fn the_arm_comes_home_from_every_moment_of_a_pick() {
     let bowls = bowls();
     let others = all_but(&bowls, 1);
-    let whole = plan_pick(&bowls[1], None, &Arms::NEUTRAL, &others, &SETTINGS).unwrap();
+    let whole =
+        plan_pick(robot(), &bowls[1], None, &robot().neutral(), &others, &SETTINGS).unwrap();
     for k in 0..8 {
         let t = whole.duration_s() * f64::from(k) / 7.0;
-        let mut arms = Arms::NEUTRAL;
+        let mut arms = robot().neutral();
         *arms.of_mut(whole.limb()) = whole.timeline.halted_at(t).end();
-        let home = plan_return(whole.limb(), &arms, &others, &SETTINGS)
+        let home = plan_return(robot(), whole.limb(), &arms, &others, &SETTINGS)
             .unwrap_or_else(|error| panic!("at {t}: {error}"));
         assert_sound(&home.timeline, &others);
         assert_eq!(home.at(1e9).q, baxter::NEUTRAL);
@@ -238,11 +242,12 @@ fn pointing_aims_the_gripper_at_the_object() {
     let bowls = bowls();
     let all: Vec<Cuboid> = bowls.iter().map(ObjectPose::cuboid).collect();
     for bowl in &bowls {
-        let plan = plan_point(bowl.xyz_m, None, &Arms::NEUTRAL, &all, &SETTINGS).unwrap();
+        let plan =
+            plan_point(robot(), bowl.xyz_m, None, &robot().neutral(), &all, &SETTINGS).unwrap();
         assert_sound(&plan.timeline, &all);
         let (hold, end) = plan.timeline.span_s(PointPhase::Hold).unwrap();
         assert!((end - hold - SETTINGS.point_s).abs() < 1e-12);
-        let gripper = plan.limb().forward(&plan.timeline.at(hold).q);
+        let gripper = arm(plan.limb()).chain.forward(&plan.timeline.at(hold).q);
         let to_object = Vector3::from(bowl.xyz_m) - gripper.translation.vector;
         let axis = gripper.rotation * Vector3::z();
         assert!((to_object.norm() - SETTINGS.standoff_m).abs() < 1e-5);
@@ -259,7 +264,7 @@ fn a_scene_is_checked_object_by_object() {
     let mut objects = bowls();
     objects.push(ObjectPose { xyz_m: [1.6, 0.0, -0.13], ..objects[1] });
     objects.push(ObjectPose { grasp_width_m: 0.06, ..marker() });
-    let checked = check_reachable(&objects, None, &SETTINGS);
+    let checked = check_reachable(robot(), &objects, None, &SETTINGS);
     assert_eq!(checked.len(), 8);
     assert!(checked[..6].iter().all(Result::is_ok), "{checked:?}");
     assert_eq!(checked[0], Ok(Limb::Right));
@@ -271,39 +276,41 @@ fn a_scene_is_checked_object_by_object() {
 #[test]
 fn refusals_say_why() {
     let far = ObjectPose { xyz_m: [1.7, 0.0, -0.13], ..bowls()[1] };
-    let error = plan_pick(&far, None, &Arms::NEUTRAL, &[], &SETTINGS).unwrap_err();
+    let error = plan_pick(robot(), &far, None, &robot().neutral(), &[], &SETTINGS).unwrap_err();
     let PlanError::Unreachable { distance_m, .. } = error else { panic!("{error:?}") };
     assert!(distance_m > 0.3 && distance_m < 1.0, "{error}");
     assert!(error.to_string().contains("out of the"), "{error}");
 
-    let mut arms = Arms::NEUTRAL;
+    let mut arms = robot().neutral();
     arms.left[1] = 2.0;
-    let error = plan_pick(&marker(), Some(Limb::Left), &arms, &[], &SETTINGS).unwrap_err();
+    let error = plan_pick(robot(), &marker(), Some(Limb::Left), &arms, &[], &SETTINGS).unwrap_err();
     assert!(matches!(error, PlanError::Start(_)), "{error}");
-    assert!(plan_return(Limb::Left, &arms, &[], &SETTINGS).is_err());
-    assert!(plan_point([0.7, 0.0, 0.0], Some(Limb::Left), &arms, &[], &SETTINGS).is_err());
+    assert!(plan_return(robot(), Limb::Left, &arms, &[], &SETTINGS).is_err());
+    assert!(plan_point(robot(), [0.7, 0.0, 0.0], Some(Limb::Left), &arms, &[], &SETTINGS).is_err());
 
     let lid = Cuboid::aligned([0.68, -0.15, -0.05], [0.4, 0.4, 0.02]);
-    let error = plan_pick(&marker(), None, &Arms::NEUTRAL, &[lid], &SETTINGS).unwrap_err();
+    let error =
+        plan_pick(robot(), &marker(), None, &robot().neutral(), &[lid], &SETTINGS).unwrap_err();
     assert!(matches!(error, PlanError::Blocked { .. }), "{error}");
     assert!(error.to_string().contains("other object"), "{error}");
 
-    let tucked = Arms { right: baxter::tuck(Limb::Right), ..Arms::NEUTRAL };
-    let error = plan_return(Limb::Right, &tucked, &[], &SETTINGS).unwrap_err();
+    let tucked = Arms { right: baxter::tuck(Limb::Right), ..robot().neutral() };
+    let error = plan_return(robot(), Limb::Right, &tucked, &[], &SETTINGS).unwrap_err();
     assert!(error.to_string().contains("present posture"), "{error}");
 }
 
 #[test]
 fn a_hand_over_out_of_reach_is_refused() {
     let settings = PlanSettings { hand_over_xyz_m: [1.5, 0.3, 0.2], ..SETTINGS };
-    let error = plan_pick(&marker(), None, &Arms::NEUTRAL, &[], &settings).unwrap_err();
+    let error =
+        plan_pick(robot(), &marker(), None, &robot().neutral(), &[], &settings).unwrap_err();
     assert!(error.to_string().contains("hand over"), "{error}");
-    assert!(check_reachable(&[marker()], None, &settings)[0].is_err());
+    assert!(check_reachable(robot(), &[marker()], None, &settings)[0].is_err());
 }
 
 #[test]
 fn a_plan_is_halted_on_its_path() {
-    let plan = plan_pick(&marker(), None, &Arms::NEUTRAL, &[], &SETTINGS).unwrap();
+    let plan = plan_pick(robot(), &marker(), None, &robot().neutral(), &[], &SETTINGS).unwrap();
     for k in 0..20 {
         let t = plan.duration_s() * f64::from(k) / 19.0;
         let halt = plan.timeline.halted_at(t);
@@ -323,14 +330,14 @@ fn random_tables_are_served_or_refused_but_never_touched() {
         let objects = random_table(&mut random);
         for (i, object) in objects.iter().enumerate().take(2) {
             let others = all_but(&objects, i);
-            match plan_pick(object, None, &Arms::NEUTRAL, &others, &SETTINGS) {
+            match plan_pick(robot(), object, None, &robot().neutral(), &others, &SETTINGS) {
                 Ok(plan) => {
                     assert_sound(&plan.timeline, &others);
                     assert_fetches(&plan, object);
                     fetched += 1;
                 }
                 Err(error) => {
-                    let known = check_reachable(&objects, None, &SETTINGS);
+                    let known = check_reachable(robot(), &objects, None, &SETTINGS);
                     assert!(
                         known[i].is_err()
                             || matches!(error, PlanError::NoWay { .. } | PlanError::Blocked { .. }),

@@ -1,6 +1,6 @@
 use super::*;
 use crate::baxter;
-use crate::samples::{Random, fixture};
+use crate::samples::{Random, fixture, full};
 
 /// Samples at 1 kHz: limits kept, velocity the derivative of position, ends at rest.
 fn assert_keeps(trajectory: &Trajectory, limits: &MotionLimits, what: &str) {
@@ -10,7 +10,7 @@ fn assert_keeps(trajectory: &Trajectory, limits: &MotionLimits, what: &str) {
         let t = k as f64 * 1e-3;
         let (q, qd) = trajectory.sample(t);
         let qdd = trajectory.acceleration(t);
-        assert!(limits::within(&q), "{what} at {t}: {q:?}");
+        assert!(full().position.within(&q), "{what} at {t}: {q:?}");
         for j in 0..7 {
             assert!(qd[j].abs() <= limits.velocity[j] * (1.0 + 1e-9), "{what} at {t}: {qd:?}");
             let bound = limits.acceleration[j] * (1.0 + 1e-9);
@@ -34,7 +34,7 @@ fn random_ways_keep_every_limit_and_pass_no_corner_at_rest() {
     for round in 0..25 {
         let count = 2 + (random.unit() * 4.0) as usize;
         let waypoints: Vec<Joints> = (0..count).map(|_| random.posture()).collect();
-        let limits = MotionLimits::at_speed_ratio(random.between(0.1, 1.0));
+        let limits = full().at_speed_ratio(random.between(0.1, 1.0));
         let blend = random.between(0.02, 0.5);
         let trajectory = Trajectory::through(&waypoints, blend, &limits).unwrap();
         let what = format!("seed {seed} round {round}");
@@ -52,7 +52,7 @@ fn random_ways_keep_every_limit_and_pass_no_corner_at_rest() {
 fn one_joint_alone_takes_the_trapezoids_time() {
     let mut far = [0.0; 7];
     far[0] = 1.5;
-    let trajectory = Trajectory::through(&[[0.0; 7], far], 0.1, &MotionLimits::FULL).unwrap();
+    let trajectory = Trajectory::through(&[[0.0; 7], far], 0.1, &full()).unwrap();
     // 0.75 s up to 1.5 rad/s over 0.5625 rad, the same down, the rest at full speed.
     let expected = 1.5 + (1.5 - 1.125) / 1.5;
     assert!((trajectory.duration_s() - expected).abs() < 1e-6, "{}", trajectory.duration_s());
@@ -69,11 +69,11 @@ fn spline_timing_is_as_short_as_the_reference() {
     for (i, path) in paths.iter().enumerate() {
         let waypoints: Vec<Joints> = serde_json::from_value(path["waypoints"].clone()).unwrap();
         let fine = path["duration_grid_1000"].as_f64().unwrap();
-        let coarse = Trajectory::along(Path::spline(&waypoints), &MotionLimits::FULL, 200);
+        let coarse = Trajectory::along(Path::spline(&waypoints), &full(), 200);
         assert!(coarse.duration_s() < 1.015 * fine, "path {i}: {}", coarse.duration_s() / fine);
         // One path in six on the fine grid: the rest would only take time.
         if i % 6 == 0 {
-            let timed = Trajectory::along(Path::spline(&waypoints), &MotionLimits::FULL, 4000);
+            let timed = Trajectory::along(Path::spline(&waypoints), &full(), 4000);
             assert!(timed.duration_s() <= 1.001 * fine, "path {i}: {}", timed.duration_s() / fine);
             assert!(timed.duration_s() > 0.998 * fine, "path {i} is too good to be true");
         }
@@ -84,7 +84,7 @@ fn spline_timing_is_as_short_as_the_reference() {
 fn waypoints_outside_the_limits_are_refused() {
     let mut q = [0.0; 7];
     q[3] = 2.7;
-    let error = Trajectory::through(&[[0.0; 7], q], 0.1, &MotionLimits::FULL).unwrap_err();
+    let error = Trajectory::through(&[[0.0; 7], q], 0.1, &full()).unwrap_err();
     assert!(matches!(error, TrajectoryError::OutsideLimits { joint: "e1", .. }));
     assert!(error.to_string().contains("e1") && error.to_string().contains("2.618"));
 }
@@ -92,16 +92,16 @@ fn waypoints_outside_the_limits_are_refused() {
 #[test]
 fn going_nowhere_takes_no_time() {
     let q = baxter::NEUTRAL;
-    let still = Trajectory::through(&[q, q], 0.1, &MotionLimits::FULL).unwrap();
+    let still = Trajectory::through(&[q, q], 0.1, &full()).unwrap();
     assert_eq!((still.duration_s(), still.sample(1.0)), (0.0, (q, [0.0; 7])));
-    let held = Trajectory::hold(&q, 2.0);
+    let held = Trajectory::hold(&q, 2.0, &full());
     assert_eq!((held.duration_s(), held.sample(1.0)), (2.0, (q, [0.0; 7])));
 }
 
 #[test]
 fn sampling_beyond_the_ends_gives_the_ends() {
     let waypoints = [[0.0; 7], baxter::NEUTRAL];
-    let trajectory = Trajectory::through(&waypoints, 0.1, &MotionLimits::FULL).unwrap();
+    let trajectory = Trajectory::through(&waypoints, 0.1, &full()).unwrap();
     assert_eq!(trajectory.sample(-1.0), trajectory.sample(0.0));
     assert_eq!(trajectory.sample(1e9), trajectory.sample(trajectory.duration_s()));
     assert_eq!(trajectory.sample(f64::NAN), trajectory.sample(0.0));
@@ -110,7 +110,7 @@ fn sampling_beyond_the_ends_gives_the_ends() {
 #[test]
 fn a_split_motion_is_the_whole() {
     let waypoints = [[0.0; 7], baxter::NEUTRAL, baxter::untuck(crate::Limb::Left)];
-    let whole = Trajectory::through(&waypoints, 0.2, &MotionLimits::FULL).unwrap();
+    let whole = Trajectory::through(&waypoints, 0.2, &full()).unwrap();
     let cut = whole.time_nearest(&waypoints[1]);
     let (first, second) = whole.split(cut);
     assert!((first.duration_s() + second.duration_s() - whole.duration_s()).abs() < 1e-12);
@@ -131,8 +131,8 @@ fn a_halt_stops_within_a_tenth_of_a_second_and_the_limits() {
     let mut random = Random::seeded(seed);
     for round in 0..300 {
         let q = random.posture();
-        let qd: Joints = baxter::VELOCITY_LIMITS_RAD_S.map(|v| random.between(-v, v));
-        let halt = Trajectory::halt(&q, &qd);
+        let qd: Joints = full().velocity.map(|v| random.between(-v, v));
+        let halt = Trajectory::halt(&q, &qd, &full());
         let what = format!("seed {seed} round {round}");
         assert!(halt.duration_s() <= 0.1 + 1e-12, "{what}");
         let (start, speed) = halt.sample(0.0);
@@ -142,18 +142,15 @@ fn a_halt_stops_within_a_tenth_of_a_second_and_the_limits() {
         }
         for k in 0..=50 {
             let (q, qd) = halt.sample(halt.duration_s() * f64::from(k) / 50.0);
-            assert!(limits::within(&q), "{what}");
+            assert!(full().position.within(&q), "{what}");
             assert!(k < 50 || qd.iter().all(|v| v.abs() < 1e-9), "{what}");
         }
         let room = (0..7).all(|j| {
             let way = 0.5 * qd[j].abs() * 0.1;
-            let (lower, upper) = limits::POSITION_LIMITS[j];
+            let (lower, upper) = full().position.0[j];
             q[j] - way > lower && q[j] + way < upper
         });
-        let full = MotionLimits {
-            velocity: baxter::VELOCITY_LIMITS_RAD_S,
-            acceleration: STOP_DECELERATION_RAD_S2,
-        };
+        let full = MotionLimits { acceleration: full().stop, ..full() };
         if room {
             assert_keeps(&halt, &full, &what);
         }
@@ -166,7 +163,7 @@ fn a_halt_on_the_path_stays_on_it() {
     let mut random = Random::seeded(seed);
     for round in 0..20 {
         let waypoints: Vec<Joints> = (0..4).map(|_| random.posture()).collect();
-        let whole = Trajectory::through(&waypoints, 0.2, &MotionLimits::FULL).unwrap();
+        let whole = Trajectory::through(&waypoints, 0.2, &full()).unwrap();
         for _ in 0..5 {
             let t = random.between(0.0, whole.duration_s());
             let halt = whole.halted_at(t);
@@ -178,10 +175,7 @@ fn a_halt_on_the_path_stays_on_it() {
                 assert!((q[j] - there[j]).abs() < 1e-9, "{what}");
                 assert!((qd[j] - speed[j]).abs() < 1e-6, "{what}");
             }
-            let full = MotionLimits {
-                velocity: baxter::VELOCITY_LIMITS_RAD_S,
-                acceleration: STOP_DECELERATION_RAD_S2,
-            };
+            let full = MotionLimits { acceleration: full().stop, ..full() };
             assert_keeps(&halt, &full, &what);
             // Every point of the halt lies on the whole's path.
             for k in 0..=10 {
@@ -199,12 +193,11 @@ fn a_halt_on_the_path_stays_on_it() {
 
 #[test]
 fn a_halt_at_rest_stays_there() {
-    let still = Trajectory::hold(&baxter::NEUTRAL, 1.0);
+    let still = Trajectory::hold(&baxter::NEUTRAL, 1.0, &full());
     assert_eq!(still.halted_at(0.5).sample(0.0).0, baxter::NEUTRAL);
     assert_eq!(still.halted_at(0.5).duration_s(), 0.0);
-    let moved =
-        Trajectory::through(&[[0.0; 7], baxter::NEUTRAL], 0.1, &MotionLimits::FULL).unwrap();
+    let moved = Trajectory::through(&[[0.0; 7], baxter::NEUTRAL], 0.1, &full()).unwrap();
     assert_eq!(moved.halted_at(99.0).sample(9.0).0, moved.end());
-    assert_eq!(Trajectory::halt(&baxter::NEUTRAL, &[0.0; 7]).duration_s(), 0.0);
-    assert_eq!(Trajectory::halt(&baxter::NEUTRAL, &[f64::NAN; 7]).end(), baxter::NEUTRAL);
+    assert_eq!(Trajectory::halt(&baxter::NEUTRAL, &[0.0; 7], &full()).duration_s(), 0.0);
+    assert_eq!(Trajectory::halt(&baxter::NEUTRAL, &[f64::NAN; 7], &full()).end(), baxter::NEUTRAL);
 }

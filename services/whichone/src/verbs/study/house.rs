@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use dialogue::{Costs, DecisionProblem, Mode};
+use kinematics::Robot;
 use language::{Language, Reader};
 use runtime::exit::Exit;
 use study::{Motions, Pace, Patience, Room, Voice, measured_costs};
@@ -109,8 +110,9 @@ fn motions(problem: &Problem) -> Result<Option<Motions>, Trouble> {
     }
     let plan = problem.settings.as_ref().map(|settings| settings.arm.plan).unwrap_or_default();
     let limb = problem.settings.as_ref().and_then(|settings| settings.arm.limb);
+    let robot = problem.settings.as_ref().map_or(Robot::baxter(), |settings| &settings.arm.robot);
     let pointing = problem.actions.mode == Mode::Present;
-    Motions::plan(scene, limb, &plan, pointing)
+    Motions::plan(robot, scene, limb, &plan, pointing)
         .map(Some)
         .map_err(|error| Trouble::new(Exit::Config, error.to_string()))
 }

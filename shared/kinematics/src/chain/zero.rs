@@ -1,0 +1,38 @@
+//! A limb in its zero posture: all that its kinematics depend on.
+
+use nalgebra::{Isometry3, Vector3};
+
+/// Where the seven joint axes and the tool are while every joint is at zero, in `base`. Any limb
+/// of seven turning joints is described by this, whatever frames its description gives its links
+/// (the product of exponentials, Brockett 1984).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ZeroPosture {
+    /// The axes, from the shoulder to the wrist.
+    pub axes: [Axis; 7],
+    /// Pose of the tool frame, `<limb>_gripper`.
+    pub tool: Isometry3<f64>,
+}
+
+/// The axis of a turning joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Axis {
+    /// Any point on it, metres.
+    pub point: Vector3<f64>,
+    /// Its direction, of unit length: the joint turns about it by the right hand's rule.
+    pub direction: Vector3<f64>,
+}
+
+impl Axis {
+    /// The point of the axis that is nearest to `p`.
+    pub(crate) fn foot(&self, p: &Vector3<f64>) -> Vector3<f64> {
+        self.point + self.direction * self.direction.dot(&(p - self.point))
+    }
+
+    /// The point where two axes at right angles meet, if they do so to within `within_m`.
+    pub(crate) fn meets(&self, other: &Self, within_m: f64) -> Option<Vector3<f64>> {
+        // At right angles the other's foot on this one is found along this direction alone.
+        let here = self.foot(&other.point);
+        let there = other.foot(&here);
+        ((here - there).norm() < within_m).then_some((here + there) * 0.5)
+    }
+}

@@ -1,0 +1,166 @@
+//! The robot: two limbs and the body that they hang on.
+
+use std::sync::Arc;
+
+use nalgebra::Vector3;
+
+use crate::baxter;
+use crate::chain::{Chain, ZeroPosture};
+use crate::limb::{Joints, Limb};
+use crate::limits::MotionLimits;
+use crate::plan::Arms;
+use crate::shape::{Capsule, Cuboid};
+
+/// A robot of two limbs with seven turning joints each. Copies share what it holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    limbs: Arc<[Arm; 2]>,
+}
+
+/// One limb: how it moves, and the room that it takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arm {
+    /// Which one.
+    pub limb: Limb,
+    /// Its kinematics.
+    pub chain: Chain,
+    /// What its joints may do at most.
+    pub limits: MotionLimits,
+    /// Where it rests.
+    pub neutral: Joints,
+    /// Other postures over which it may find its way, radians.
+    pub stations: Vec<Joints>,
+    /// The shapes that enclose its links, shoulder first.
+    pub(crate) enclosures: Vec<Enclosure>,
+    /// Pairs of enclosures that must not touch.
+    pub(crate) pairs: Vec<(usize, usize)>,
+    /// What the limb hangs on.
+    pub(crate) body: Arc<Body>,
+}
+
+/// A capsule that moves with a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Enclosure {
+    /// 0 shoulder to 6 wrist.
+    pub(crate) joint: usize,
+    /// The link that it encloses, without the limb's name.
+    pub(crate) link: &'static str,
+    /// In the joint's frame, see [`Chain::frames`].
+    pub(crate) capsule: Capsule,
+}
+
+/// Torso, pedestal and head, in `base`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Body {
+    pub(crate) cuboids: Vec<(&'static str, Cuboid)>,
+    pub(crate) capsules: Vec<(&'static str, Capsule)>,
+}
+
+/// What a limb is made from.
+pub(crate) struct Parts {
+    pub(crate) posture: ZeroPosture,
+    pub(crate) limits: MotionLimits,
+    pub(crate) neutral: Joints,
+    pub(crate) stations: Vec<Joints>,
+    /// Capsules with the joint that moves them and their link's name, in `base` at zero.
+    pub(crate) capsules: Vec<(usize, &'static str, Capsule)>,
+    /// Pairs of links that may touch.
+    pub(crate) may_touch: Vec<(String, String)>,
+}
+
+impl Robot {
+    /// The robot that whichone ships: Baxter with its electric grippers.
+    pub fn baxter() -> &'static Self {
+        baxter::robot()
+    }
+
+    pub(crate) fn new(left: Parts, right: Parts, body: Body) -> Self {
+        let body = Arc::new(body);
+        let arms = [(Limb::Left, left), (Limb::Right, right)];
+        Self { limbs: Arc::new(arms.map(|(limb, parts)| Arm::new(limb, parts, &body))) }
+    }
+
+    /// One of its limbs.
+    pub fn arm(&self, limb: Limb) -> &Arm {
+        match limb {
+            Limb::Left => &self.limbs[0],
+            Limb::Right => &self.limbs[1],
+        }
+    }
+
+    /// Both limbs at rest.
+    pub fn neutral(&self) -> Arms {
+        let [left, right] = Limb::BOTH.map(|limb| self.arm(limb).neutral);
+        Arms { left, right }
+    }
+}
+
+impl Arm {
+    fn new(limb: Limb, parts: Parts, body: &Arc<Body>) -> Self {
+        let chain = Chain::new(&parts.posture, parts.limits.position);
+        let frames = chain.frames(&[0.0; 7]);
+        let enclosures = parts.capsules.into_iter().map(|(joint, link, capsule)| {
+            let local = |p: &Vector3<f64>| frames[joint].seen(&(p - frames[joint].origin));
+            let capsule = Capsule { a: local(&capsule.a), b: local(&capsule.b), ..capsule };
+            Enclosure { joint, link, capsule }
+        });
+        let enclosures: Vec<Enclosure> = enclosures.collect();
+        let pairs = pairs(&chain, &enclosures, &parts.may_touch);
+        Self {
+            limb,
+            chain,
+            limits: parts.limits,
+            neutral: parts.neutral,
+            stations: parts.stations,
+            enclosures,
+            pairs,
+            body: Arc::clone(body),
+        }
+    }
+
+    /// The enclosing capsules at `q`, in `base`.
+    pub(crate) fn capsules(&self, q: &Joints) -> Vec<Capsule> {
+        placed(&self.chain, &self.enclosures, q)
+    }
+}
+
+fn placed(chain: &Chain, enclosures: &[Enclosure], q: &Joints) -> Vec<Capsule> {
+    let frames = chain.frames(q);
+    let place = |Enclosure { joint, capsule, .. }: &Enclosure| {
+        let frame = &frames[*joint];
+        Capsule { a: frame.point(&capsule.a), b: frame.point(&capsule.b), ..*capsule }
+    };
+    enclosures.iter().map(place).collect()
+}
+
+/// Postures at which capsules are looked at to tell which always overlap.
+const POSTURES: u32 = 60;
+
+/// The pairs of enclosures that must not touch: of links at least two joints apart, unless the
+/// description lets them, or they overlap wherever the arm is: enclosures are wider than what they
+/// enclose.
+fn pairs(
+    chain: &Chain,
+    enclosures: &[Enclosure],
+    may_touch: &[(String, String)],
+) -> Vec<(usize, usize)> {
+    let excused =
+        |a: &str, b: &str| may_touch.iter().any(|(c, d)| (a == c && b == d) || (a == d && b == c));
+    let apart = |(i, j): &(usize, usize)| {
+        let (a, b) = (&enclosures[*i], &enclosures[*j]);
+        b.joint >= a.joint + 2 && !excused(a.link, b.link)
+    };
+    let count = enclosures.len();
+    let all = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
+    let mut wanted: Vec<_> = all.filter(apart).map(|pair| (pair, true)).collect();
+    for k in 0..POSTURES {
+        // Strides without a common period: each joint goes through its whole range.
+        let share =
+            std::array::from_fn(|i| (f64::from(k) * 0.618 * (1.0 + 0.37 * i as f64)).fract());
+        let capsules = placed(chain, enclosures, &chain.limits().at(&share));
+        for ((i, j), always) in &mut wanted {
+            *always &= capsules[*i].to_capsule(&capsules[*j]) < 0.0;
+        }
+    }
+    wanted.into_iter().filter(|(_, always)| !always).map(|(pair, _)| pair).collect()
+}
