@@ -78,17 +78,17 @@ fn between(from: &Isometry3<f64>, to: &Isometry3<f64>, share: f64) -> Isometry3<
 mod tests {
     use nalgebra::Translation3;
 
+    use crate::TOLERANCE_M;
     use crate::limb::Limb;
-    use crate::samples::{arm, full};
-    use crate::{TOLERANCE_M, baxter};
+    use crate::samples::{arm, full, neutral};
 
     #[test]
     fn a_line_is_straight_and_even() {
         let chain = arm(Limb::Left).chain;
-        let start = chain.forward(&baxter::NEUTRAL);
+        let start = chain.forward(&neutral());
         let target = Translation3::new(0.05, -0.1, 0.12) * start;
-        let line = chain.line(&baxter::NEUTRAL, &target).unwrap();
-        assert_eq!(line[0], baxter::NEUTRAL);
+        let line = chain.line(&neutral(), &target).unwrap();
+        assert_eq!(line[0], neutral());
         assert_eq!(line.len(), 34, "164 mm in steps of at most 5 mm, and the start");
         let way = target.translation.vector - start.translation.vector;
         for (k, q) in line.iter().enumerate() {
@@ -104,9 +104,9 @@ mod tests {
     #[test]
     fn a_line_may_turn_in_place() {
         let chain = arm(Limb::Right).chain;
-        let start = chain.forward(&baxter::NEUTRAL);
+        let start = chain.forward(&neutral());
         let target = start * nalgebra::Isometry3::rotation(nalgebra::Vector3::z() * 0.49);
-        let line = chain.line(&baxter::NEUTRAL, &target).unwrap();
+        let line = chain.line(&neutral(), &target).unwrap();
         assert_eq!(line.len(), 26);
         let end = chain.forward(&line[25]);
         assert!(end.rotation.angle_to(&target.rotation) < 1e-6);
@@ -115,8 +115,8 @@ mod tests {
     #[test]
     fn a_line_out_of_reach_says_how_far_it_goes() {
         let chain = arm(Limb::Left).chain;
-        let target = Translation3::new(0.0, 0.0, 2.0) * chain.forward(&baxter::NEUTRAL);
-        let error = chain.line(&baxter::NEUTRAL, &target).unwrap_err();
+        let target = Translation3::new(0.0, 0.0, 2.0) * chain.forward(&neutral());
+        let error = chain.line(&neutral(), &target).unwrap_err();
         assert!(error.fraction > 0.02 && error.fraction < 0.8, "{error}");
         assert!(full().position.within(&error.q));
         assert!(error.to_string().contains("straight line ends"));

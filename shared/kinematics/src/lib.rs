@@ -36,6 +36,7 @@ mod timing;
 mod trajectory;
 mod trig;
 
+pub use crate::robot::{Arm, Robot, Unsuitable};
 pub use cartesian::LineError;
 pub use chain::{Axis, Chain, Frame, Jacobian, ZeroPosture};
 pub use clearance::{ArmShape, Clearance, Gap};
@@ -49,7 +50,6 @@ pub use plan::{
     Arms, PickPhase, PickPlan, PlanError, PlanSettings, PointPhase, PointPlan, check_reachable,
     plan_delivery, plan_pick, plan_point, plan_return,
 };
-pub use robot::{Arm, Robot};
 pub use shape::{Capsule, Cuboid};
 pub use timeline::{Moment, Stage, Timeline};
 pub use trajectory::{INTERVALS_MIN, Trajectory, TrajectoryError};

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
-use crate::baxter;
+use crate::baxter::tool;
 use crate::chain::Chain;
 use crate::limb::{Joints, Limb};
 use crate::limits::MotionLimits;
@@ -57,11 +57,26 @@ pub(crate) fn full() -> MotionLimits {
     arm(Limb::Left).limits
 }
 
+/// The limb at rest.
+pub(crate) fn neutral() -> Joints {
+    arm(Limb::Left).neutral
+}
+
+/// A posture by its name in the description.
+pub(crate) fn named(limb: Limb, name: &str) -> Joints {
+    let description = robot().description();
+    let posture = description.posture(&format!("{limb}_arm"), name).expect("a described posture");
+    let names = &arm(limb).joint_names;
+    std::array::from_fn(|i| {
+        let joint = description.joint(&names[i]).expect("a joint");
+        posture.position(joint.child - 1).expect("its position")
+    })
+}
+
 /// The limb with its tool frame at `tool_m` past the hand, metres.
 pub(crate) fn with_tool(limb: Limb, tool_m: f64) -> Chain {
-    let mut posture = baxter::parts(limb).posture;
-    posture.tool *= Translation3::new(0.0, 0.0, tool_m - baxter::tool::ELECTRIC_EXTENDED_M);
-    Chain::new(&posture, full().position)
+    let chain = &arm(limb).chain;
+    chain.with_tool(&Translation3::new(0.0, 0.0, tool_m - tool::ELECTRIC_EXTENDED_M).into())
 }
 
 /// A file of the reference.

@@ -50,6 +50,24 @@ impl Chain {
         Self { geometry, limits }
     }
 
+    /// The same limb with its tool frame moved by `tool`, a pose in the present tool frame.
+    pub fn with_tool(&self, tool: &Isometry3<f64>) -> Self {
+        let tool = self.forward(&[0.0; 7]) * tool;
+        let axes = match &self.geometry {
+            Geometry::Alternating(chain) => {
+                let frames = chain.frames(&[0.0; 7]);
+                std::array::from_fn(|i| Axis {
+                    point: frames[i].origin,
+                    direction: Alternating::axis(i, &frames[i]),
+                })
+            }
+            Geometry::General(chain) => chain
+                .frames(&[0.0; 7])
+                .map(|frame| Axis { point: frame.origin, direction: frame.z }),
+        };
+        Self::new(&ZeroPosture { axes, tool }, self.limits)
+    }
+
     /// Position limits of the joints.
     pub fn limits(&self) -> &PositionLimits {
         &self.limits

@@ -2,7 +2,7 @@ use super::*;
 use crate::baxter::tool;
 use crate::limb::Limb;
 use crate::samples::{
-    Random, arm, difference, fixture, full, joints, numbers, pose, table, with_tool,
+    Random, arm, difference, fixture, full, joints, neutral, numbers, pose, table, with_tool,
 };
 
 #[test]
@@ -98,7 +98,7 @@ fn quaternions_have_no_negative_w() {
 #[test]
 fn a_straight_wrist_and_elbow_lose_a_direction() {
     let stretched = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let bent = crate::baxter::NEUTRAL;
+    let bent = neutral();
     let chain = arm(Limb::Left).chain;
     assert!(chain.manipulability(&stretched) < 0.1 * chain.manipulability(&bent));
     assert!(full().position.within(&stretched));

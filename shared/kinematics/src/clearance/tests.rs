@@ -1,6 +1,5 @@
 use super::*;
-use crate::baxter;
-use crate::samples::{Random, arm, joints, numbers, robot, table};
+use crate::samples::{Random, arm, joints, named, neutral, numbers, robot, table};
 
 /// The table of the reference.
 const TABLE: Cuboid = Cuboid::aligned([0.9, 0.0, -0.2], [0.6, 1.4, 0.04]);
@@ -75,9 +74,9 @@ fn a_bound_changes_nothing_below_it_and_hides_what_is_above() {
 fn named_postures_are_clear_except_the_tuck() {
     let clear =
         |left: &Joints, right: &Joints| Clearance::of(robot(), left, right, &[]).robot().distance_m;
-    assert!(clear(&baxter::NEUTRAL, &baxter::NEUTRAL) > 0.06);
-    let untuck = Limb::BOTH.map(baxter::untuck);
+    assert!(clear(&neutral(), &neutral()) > 0.06);
+    let untuck = Limb::BOTH.map(|limb| named(limb, "untuck"));
     assert!(clear(&untuck[0], &untuck[1]) > 0.02);
-    let tuck = Limb::BOTH.map(baxter::tuck);
+    let tuck = Limb::BOTH.map(|limb| named(limb, "tuck"));
     assert!(clear(&tuck[0], &tuck[1]) < -0.07);
 }

@@ -1,12 +1,11 @@
 use nalgebra::{Isometry3, Translation3, Vector3};
 
 use super::*;
-use crate::baxter;
 use crate::clearance::Clearance;
 use crate::grasp::ObjectPose;
 use crate::gripper::{STROKE_M, attached_pose};
 use crate::limb::{Joints, Limb};
-use crate::samples::{Random, arm, full, robot};
+use crate::samples::{Random, arm, full, named, neutral, robot};
 use crate::shape::Cuboid;
 use crate::timeline::Timeline;
 
@@ -145,7 +144,7 @@ fn assert_fetches(plan: &PickPlan, object: &ObjectPose) {
     let tilt = gripper(span(release).0).rotation * Vector3::z() + Vector3::z();
     assert!(tilt.norm() < 1e-5, "the bowl is handed over upright");
     assert!(span(hand_over).1 == span(release).0);
-    assert_eq!(plan.at(1e9).q, baxter::NEUTRAL);
+    assert_eq!(plan.at(1e9).q, neutral());
     assert!((plan.at(1e9).width_m - STROKE_M).abs() < 1e-12);
     assert!(PickPlan::carries(lift) && PickPlan::carries(hand_over));
     assert!(!PickPlan::carries(approach) && !PickPlan::carries(home));
@@ -232,7 +231,7 @@ fn the_arm_comes_home_from_every_moment_of_a_pick() {
         let home = plan_return(robot(), whole.limb(), &arms, &others, &SETTINGS)
             .unwrap_or_else(|error| panic!("at {t}: {error}"));
         assert_sound(&home.timeline, &others);
-        assert_eq!(home.at(1e9).q, baxter::NEUTRAL);
+        assert_eq!(home.at(1e9).q, neutral());
         assert_eq!(home.timeline.stages().len(), 1);
     }
 }
@@ -253,7 +252,7 @@ fn pointing_aims_the_gripper_at_the_object() {
         assert!((to_object.norm() - SETTINGS.standoff_m).abs() < 1e-5);
         assert!(axis.cross(&to_object).norm() < 1e-5, "the axis passes through the centre");
         assert!(axis.dot(&to_object) > 0.0, "and points at it");
-        assert_eq!(plan.timeline.at(1e9).q, baxter::NEUTRAL);
+        assert_eq!(plan.timeline.at(1e9).q, neutral());
         let same = (gripper.inverse() * plan.gripper).translation.vector.norm();
         assert!(same < 1e-5);
     }
@@ -294,7 +293,7 @@ fn refusals_say_why() {
     assert!(matches!(error, PlanError::Blocked { .. }), "{error}");
     assert!(error.to_string().contains("other object"), "{error}");
 
-    let tucked = Arms { right: baxter::tuck(Limb::Right), ..robot().neutral() };
+    let tucked = Arms { right: named(Limb::Right, "tuck"), ..robot().neutral() };
     let error = plan_return(robot(), Limb::Right, &tucked, &[], &SETTINGS).unwrap_err();
     assert!(error.to_string().contains("present posture"), "{error}");
 }

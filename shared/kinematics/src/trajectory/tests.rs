@@ -1,6 +1,5 @@
 use super::*;
-use crate::baxter;
-use crate::samples::{Random, fixture, full};
+use crate::samples::{Random, fixture, full, named, neutral};
 
 /// Samples at 1 kHz: limits kept, velocity the derivative of position, ends at rest.
 fn assert_keeps(trajectory: &Trajectory, limits: &MotionLimits, what: &str) {
@@ -91,7 +90,7 @@ fn waypoints_outside_the_limits_are_refused() {
 
 #[test]
 fn going_nowhere_takes_no_time() {
-    let q = baxter::NEUTRAL;
+    let q = neutral();
     let still = Trajectory::through(&[q, q], 0.1, &full()).unwrap();
     assert_eq!((still.duration_s(), still.sample(1.0)), (0.0, (q, [0.0; 7])));
     let held = Trajectory::hold(&q, 2.0, &full());
@@ -100,7 +99,7 @@ fn going_nowhere_takes_no_time() {
 
 #[test]
 fn sampling_beyond_the_ends_gives_the_ends() {
-    let waypoints = [[0.0; 7], baxter::NEUTRAL];
+    let waypoints = [[0.0; 7], neutral()];
     let trajectory = Trajectory::through(&waypoints, 0.1, &full()).unwrap();
     assert_eq!(trajectory.sample(-1.0), trajectory.sample(0.0));
     assert_eq!(trajectory.sample(1e9), trajectory.sample(trajectory.duration_s()));
@@ -109,7 +108,7 @@ fn sampling_beyond_the_ends_gives_the_ends() {
 
 #[test]
 fn a_split_motion_is_the_whole() {
-    let waypoints = [[0.0; 7], baxter::NEUTRAL, baxter::untuck(crate::Limb::Left)];
+    let waypoints = [[0.0; 7], neutral(), named(crate::Limb::Left, "untuck")];
     let whole = Trajectory::through(&waypoints, 0.2, &full()).unwrap();
     let cut = whole.time_nearest(&waypoints[1]);
     let (first, second) = whole.split(cut);
@@ -193,11 +192,11 @@ fn a_halt_on_the_path_stays_on_it() {
 
 #[test]
 fn a_halt_at_rest_stays_there() {
-    let still = Trajectory::hold(&baxter::NEUTRAL, 1.0, &full());
-    assert_eq!(still.halted_at(0.5).sample(0.0).0, baxter::NEUTRAL);
+    let still = Trajectory::hold(&neutral(), 1.0, &full());
+    assert_eq!(still.halted_at(0.5).sample(0.0).0, neutral());
     assert_eq!(still.halted_at(0.5).duration_s(), 0.0);
-    let moved = Trajectory::through(&[[0.0; 7], baxter::NEUTRAL], 0.1, &full()).unwrap();
+    let moved = Trajectory::through(&[[0.0; 7], neutral()], 0.1, &full()).unwrap();
     assert_eq!(moved.halted_at(99.0).sample(9.0).0, moved.end());
-    assert_eq!(Trajectory::halt(&baxter::NEUTRAL, &[0.0; 7], &full()).duration_s(), 0.0);
-    assert_eq!(Trajectory::halt(&baxter::NEUTRAL, &[f64::NAN; 7], &full()).end(), baxter::NEUTRAL);
+    assert_eq!(Trajectory::halt(&neutral(), &[0.0; 7], &full()).duration_s(), 0.0);
+    assert_eq!(Trajectory::halt(&neutral(), &[f64::NAN; 7], &full()).end(), neutral());
 }

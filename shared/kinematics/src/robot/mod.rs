@@ -1,19 +1,28 @@
 //! The robot: two limbs and the body that they hang on.
 
-use std::sync::Arc;
+mod describe;
+#[cfg(test)]
+mod tests;
+
+use std::sync::{Arc, LazyLock};
 
 use nalgebra::Vector3;
 
-use crate::baxter;
+use robot::Robot as Description;
+
 use crate::chain::{Chain, ZeroPosture};
+use crate::clearance::ArmShape;
 use crate::limb::{Joints, Limb};
 use crate::limits::MotionLimits;
 use crate::plan::Arms;
 use crate::shape::{Capsule, Cuboid};
 
+pub use describe::Unsuitable;
+
 /// A robot of two limbs with seven turning joints each. Copies share what it holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
+    description: Arc<Description>,
     limbs: Arc<[Arm; 2]>,
 }
 
@@ -22,13 +31,16 @@ pub struct Robot {
 pub struct Arm {
     /// Which one.
     pub limb: Limb,
+    /// Its joints' names in the description, shoulder first.
+    pub joint_names: [String; 7],
     /// Its kinematics.
     pub chain: Chain,
     /// What its joints may do at most.
     pub limits: MotionLimits,
     /// Where it rests.
     pub neutral: Joints,
-    /// Other postures over which it may find its way, radians.
+    /// Postures over which it may find its way, radians: the one at rest, and others in which it is
+    /// clear of itself and of the body.
     pub stations: Vec<Joints>,
     /// The shapes that enclose its links, shoulder first.
     pub(crate) enclosures: Vec<Enclosure>,
@@ -57,27 +69,37 @@ pub(crate) struct Body {
 }
 
 /// What a limb is made from.
-pub(crate) struct Parts {
-    pub(crate) posture: ZeroPosture,
-    pub(crate) limits: MotionLimits,
-    pub(crate) neutral: Joints,
-    pub(crate) stations: Vec<Joints>,
+struct Parts {
+    posture: ZeroPosture,
+    limits: MotionLimits,
+    names: [String; 7],
+    neutral: Joints,
+    stations: Vec<Joints>,
     /// Capsules with the joint that moves them and their link's name, in `base` at zero.
-    pub(crate) capsules: Vec<(usize, &'static str, Capsule)>,
+    capsules: Vec<(usize, &'static str, Capsule)>,
     /// Pairs of links that may touch.
-    pub(crate) may_touch: Vec<(String, String)>,
+    may_touch: Vec<(String, String)>,
 }
 
 impl Robot {
-    /// The robot that whichone ships: Baxter with its electric grippers.
+    /// The robot that whichone ships: Baxter with its electric grippers and extended fingers.
     pub fn baxter() -> &'static Self {
-        baxter::robot()
+        static BAXTER: LazyLock<Robot> = LazyLock::new(|| {
+            Robot::from_description(Description::baxter()).expect("the tests build this very robot")
+        });
+        &BAXTER
     }
 
-    pub(crate) fn new(left: Parts, right: Parts, body: Body) -> Self {
+    fn new(description: Description, left: Parts, right: Parts, body: Body) -> Self {
         let body = Arc::new(body);
         let arms = [(Limb::Left, left), (Limb::Right, right)];
-        Self { limbs: Arc::new(arms.map(|(limb, parts)| Arm::new(limb, parts, &body))) }
+        let limbs = Arc::new(arms.map(|(limb, parts)| Arm::new(limb, parts, &body)));
+        Self { description: Arc::new(description), limbs }
+    }
+
+    /// Where every link is, and what it looks like.
+    pub fn description(&self) -> &Description {
+        &self.description
     }
 
     /// One of its limbs.
@@ -106,8 +128,9 @@ impl Arm {
         });
         let enclosures: Vec<Enclosure> = enclosures.collect();
         let pairs = pairs(&chain, &enclosures, &parts.may_touch);
-        Self {
+        let mut arm = Self {
             limb,
+            joint_names: parts.names,
             chain,
             limits: parts.limits,
             neutral: parts.neutral,
@@ -115,7 +138,14 @@ impl Arm {
             enclosures,
             pairs,
             body: Arc::clone(body),
-        }
+        };
+        let clear = |q: &Joints| {
+            let shape = ArmShape::at(&arm, q);
+            !shape.to_itself(0.0).is_some() && !shape.to_trunk(0.0).is_some()
+        };
+        let stations = arm.stations.iter().copied().filter(clear).collect();
+        arm.stations = stations;
+        arm
     }
 
     /// The enclosing capsules at `q`, in `base`.
