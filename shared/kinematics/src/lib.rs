@@ -2,9 +2,9 @@
 //! to move there and fetch an object.
 //!
 //! This crate is pure: no IO, no clock, no threads, and the same question has the same answer
-//! every time. What it returns keeps the joint limits to the last bit, the velocity and
-//! acceleration limits at every instant, and touches nothing that it was told of; what it cannot
-//! do is a typed error, never a motion.
+//! every time. What it returns keeps the joint limits to the last bit, the velocity, acceleration
+//! and jerk limits at every instant, and touches nothing that it was told of; what it cannot do is
+//! a typed error, never a motion.
 //!
 //! Units are metres, radians and seconds throughout; poses are in frame `base` of the robot
 //! description unless said otherwise. `<limb>_gripper` is the tip of the electric gripper with
@@ -18,6 +18,8 @@ pub mod baxter;
 mod cartesian;
 mod chain;
 mod clearance;
+mod clock;
+mod course;
 mod grasp;
 pub mod gripper;
 mod inverse;
@@ -26,6 +28,7 @@ pub mod limits;
 pub mod links;
 mod path;
 mod plan;
+mod profile;
 mod robot;
 mod route;
 #[cfg(test)]
@@ -50,6 +53,7 @@ pub use plan::{
     Arms, PickPhase, PickPlan, PlanError, PlanSettings, PointPhase, PointPlan, check_reachable,
     plan_delivery, plan_pick, plan_point, plan_return,
 };
+pub use profile::State;
 pub use shape::{Capsule, Cuboid};
 pub use timeline::{Moment, Stage, Timeline};
 pub use trajectory::{INTERVALS_MIN, Trajectory, TrajectoryError};

@@ -52,7 +52,7 @@ impl Path {
             }
             entered = corner;
         }
-        let end = points.last().copied().unwrap_or([0.0; 7]);
+        let end = waypoints.last().copied().unwrap_or([0.0; 7]);
         if pieces.0.is_empty() {
             pieces.rest(end);
         }
@@ -80,6 +80,31 @@ impl Path {
             pieces.0.push(Piece { start: i as f64 * h, length: h, coefficients });
         }
         Self { pieces: pieces.0, end }
+    }
+
+    /// The path that `pieces`, each beginning where the one before ends, make up to `end`.
+    ///
+    /// # Panics
+    /// Without a piece.
+    pub(crate) fn of_pieces(pieces: Vec<Piece>, end: Joints) -> Self {
+        assert!(!pieces.is_empty(), "a path has at least one piece");
+        Self { pieces, end }
+    }
+
+    /// Whether it is one line, and longer than nothing.
+    pub(crate) fn is_straight(&self) -> bool {
+        let [piece] = &self.pieces[..] else { return false };
+        piece.length > 0.0 && piece.coefficients[2..].iter().flatten().all(|c| *c == 0.0)
+    }
+
+    /// Its first point.
+    pub(crate) fn start(&self) -> Joints {
+        self.pieces[0].coefficients[0]
+    }
+
+    /// Its last point.
+    pub(crate) fn end(&self) -> Joints {
+        self.end
     }
 
     /// Length of the path parameter; 0 for a path that goes nowhere.

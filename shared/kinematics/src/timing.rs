@@ -31,45 +31,8 @@ pub(crate) struct Knot {
 pub(crate) fn fastest(path: &Path, limits: &MotionLimits, intervals_min: usize) -> Vec<Knot> {
     let intervals = intervals(path, limits, intervals_min);
     let reachable = backward(&intervals);
-    let mut squared = 0.0;
-    forward(path, &intervals, 0.0, |i| {
-        let interval = &intervals[i];
-        let (_, upper) = interval.bounds(squared);
-        let room = (reachable[i + 1] - squared) / (2.0 * interval.length);
-        let acceleration = upper.min(room);
-        squared = (squared + 2.0 * interval.length * acceleration).max(0.0);
-        acceleration
-    })
+    forward(path, &intervals, &reachable)
 }
-
-/// Brings a motion along `path` to rest as soon as `limits` allow, from `s` past the start of
-/// `piece` at `speed`. The knots begin there, at time 0.
-pub(crate) fn brake(
-    path: &Path,
-    limits: &MotionLimits,
-    (piece, s): (usize, f64),
-    speed: f64,
-) -> Vec<Knot> {
-    let mut rest = path.pieces()[piece..].to_vec();
-    rest[0].length -= s;
-    let grid: Vec<Interval> = rest
-        .iter()
-        .enumerate()
-        .flat_map(|(k, p)| {
-            let skipped = if k == 0 { s } else { 0.0 };
-            divided(p, piece + k, skipped, BRAKE_INTERVALS, limits)
-        })
-        .collect();
-    let mut squared = speed * speed;
-    forward(path, &grid, speed, |i| {
-        let acceleration = grid[i].bounds(squared).0.min(0.0);
-        squared = (squared + 2.0 * grid[i].length * acceleration).max(0.0);
-        acceleration
-    })
-}
-
-/// Intervals per piece while braking.
-const BRAKE_INTERVALS: usize = 64;
 
 /// One grid interval: `|slopeₖ u + bendₖ x| ≤ limit` for its Bernstein coefficients, with `x` the
 /// squared speed at its start and `u` its path acceleration.
@@ -96,24 +59,13 @@ fn intervals(path: &Path, limits: &MotionLimits, intervals_min: usize) -> Vec<In
     for (k, piece) in path.pieces().iter().enumerate() {
         if piece.length > 0.0 {
             let share = (intervals_min as f64 * piece.length / total).ceil();
-            grid.extend(divided(piece, k, 0.0, (share as usize).max(2), limits));
+            let count = (share as usize).max(2);
+            let length = piece.length / count as f64;
+            let at = |i: usize| Interval::new(piece, k, i as f64 * length, length, limits);
+            grid.extend((0..count).map(at));
         }
     }
     grid
-}
-
-/// A piece, from `skipped` past its start, in `count` equal intervals.
-fn divided<'a>(
-    piece: &'a Piece,
-    index: usize,
-    skipped: f64,
-    count: usize,
-    limits: &'a MotionLimits,
-) -> impl Iterator<Item = Interval> + 'a {
-    let length = piece.length / count as f64;
-    (0..count)
-        .filter(move |_| length > 0.0)
-        .map(move |i| Interval::new(piece, index, skipped + i as f64 * length, length, limits))
 }
 
 impl Interval {
@@ -144,10 +96,10 @@ impl Interval {
         Self { piece: index, s, length, squared_max: squared_max.min(1e12), rows }
     }
 
-    /// Least and greatest path acceleration at squared speed `x`.
-    fn bounds(&self, x: f64) -> (f64, f64) {
-        let (lower, upper) = self.tightest(x);
-        (lower.slope * x - lower.half, upper.slope * x + upper.half)
+    /// Greatest path acceleration at squared speed `x`.
+    fn upper(&self, x: f64) -> f64 {
+        let (_, upper) = self.tightest(x);
+        upper.slope * x + upper.half
     }
 
     /// The rows that give the lower and the upper bound at `x`.
@@ -204,32 +156,16 @@ fn backward(intervals: &[Interval]) -> Vec<f64> {
     reachable
 }
 
-/// Turns the acceleration chosen for each interval into knots, until the path ends or rests.
-fn forward(
-    path: &Path,
-    intervals: &[Interval],
-    speed: f64,
-    mut choose: impl FnMut(usize) -> f64,
-) -> Vec<Knot> {
+/// Takes the greatest acceleration that stays below what is reachable, interval by interval.
+fn forward(path: &Path, intervals: &[Interval], reachable: &[f64]) -> Vec<Knot> {
     let mut knots = Vec::with_capacity(intervals.len() + 1);
-    let (mut time, mut speed) = (0.0, speed);
+    let (mut time, mut speed) = (0.0, 0.0);
     for (i, interval) in intervals.iter().enumerate() {
-        let acceleration = choose(i);
-        let knot = Knot { time, s: interval.s, speed, acceleration, piece: interval.piece };
-        knots.push(knot);
-        let squared = speed * speed + 2.0 * interval.length * acceleration;
-        if squared <= 0.0 && i + 1 < intervals.len() {
-            let seconds = speed / -acceleration;
-            knots.push(Knot {
-                time: time + seconds,
-                s: interval.s + 0.5 * speed * seconds,
-                speed: 0.0,
-                acceleration: 0.0,
-                ..knot
-            });
-            return knots;
-        }
-        let next = squared.max(0.0).sqrt();
+        let squared = speed * speed;
+        let room = (reachable[i + 1] - squared) / (2.0 * interval.length);
+        let acceleration = interval.upper(squared).min(room);
+        knots.push(Knot { time, s: interval.s, speed, acceleration, piece: interval.piece });
+        let next = (squared + 2.0 * interval.length * acceleration).max(0.0).sqrt();
         time += 2.0 * interval.length / (speed + next);
         speed = next;
     }

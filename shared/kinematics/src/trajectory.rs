@@ -1,22 +1,26 @@
-//! Time-parameterised joint motion: a path and when each of its points is passed.
+//! Time-parameterised joint motion: where a limb is at every instant, smooth in acceleration.
 
 use std::sync::Arc;
 
+use crate::clock::Clock;
+use crate::course::Course;
 use crate::limb::Joints;
 use crate::limits::{MotionLimits, PositionLimits};
 use crate::path::Path;
-use crate::timing::{self, Knot, motion_at};
+use crate::profile::{self, State};
+use crate::timing::{self, Knot};
 
 #[cfg(test)]
 mod tests;
 
-/// A motion of one limb in time, continuous in position and velocity. Copies share their points.
+/// A motion of one limb in time, continuous in position, velocity and (but for a motion stop)
+/// acceleration. Copies share their points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
-    path: Arc<Path>,
-    knots: Arc<[Knot]>,
-    limits: Arc<MotionLimits>,
-    /// The part of the knots' time that this trajectory covers, seconds.
+    course: Arc<Course>,
+    /// How the course's time passes, where it is being stopped; otherwise as time does.
+    clock: Option<Arc<Clock>>,
+    /// The part of the time that this trajectory covers, seconds.
     begin_s: f64,
     end_s: f64,
 }
@@ -24,7 +28,7 @@ pub struct Trajectory {
 /// Why no trajectory was made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TrajectoryError {
-    /// A waypoint, or the spline between two, leaves a joint's limits.
+    /// A posture leaves a joint's limits.
     #[error(
         "joint {joint} would be at {position_rad:.4} rad, outside its limits {lower_rad:.4} to \
          {upper_rad:.4} rad"
@@ -39,6 +43,21 @@ pub enum TrajectoryError {
         /// Its upper limit, radians.
         upper_rad: f64,
     },
+    /// A state to begin or end with moves faster than allowed.
+    #[error("joint {joint} would have {what} {value:.3}, and its limit is {limit:.3}")]
+    TooFast {
+        /// The joint without its limb.
+        joint: &'static str,
+        /// `velocity` (rad/s) or `acceleration` (rad/s²).
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its limit.
+        limit: f64,
+    },
+    /// No motion within the limits leads from one state to the other.
+    #[error("no motion within the joint limits leads there")]
+    NoMotion,
 }
 
 /// Fewest grid intervals of a timed path. The limits hold with any number; more come nearer to
@@ -46,12 +65,15 @@ pub enum TrajectoryError {
 pub const INTERVALS_MIN: usize = 200;
 
 impl Trajectory {
-    /// From rest to rest through `waypoints` in the shortest time within `limits`: straight in
-    /// joint space, corners rounded from `blend_rad` before a waypoint to `blend_rad` after it,
-    /// with no stop between. Joint positions stay in the waypoints' convex hull.
+    /// From rest to rest through `waypoints` as fast as `limits` allow: straight in joint space,
+    /// corners rounded from `blend_rad` before a waypoint to `blend_rad` after it, with no stop
+    /// between. Joint positions stay in the waypoints' convex hull.
+    ///
+    /// A single line has the shortest duration there is; see [`Trajectory::along`] for others.
     ///
     /// # Errors
-    /// [`TrajectoryError::OutsideLimits`] for a waypoint outside the joint limits.
+    /// [`TrajectoryError::OutsideLimits`] for a waypoint outside the joint limits, or
+    /// [`TrajectoryError::NoMotion`] if the limits allow no motion at all.
     pub fn through(
         waypoints: &[Joints],
         blend_rad: f64,
@@ -60,21 +82,46 @@ impl Trajectory {
         for q in waypoints {
             refuse_outside(&limits.position, q)?;
         }
-        Ok(Self::along(Path::rounded(waypoints, blend_rad), limits, INTERVALS_MIN))
+        let path = Path::rounded(waypoints, blend_rad);
+        if path.is_straight() {
+            let (path, knots) = profile::straight(&path.start(), &path.end(), limits)?;
+            return Ok(Self::of(Course::exact(path, knots, limits)));
+        }
+        Ok(Self::along(path, limits, INTERVALS_MIN))
     }
 
-    /// From rest to rest along `path` in the shortest time within velocity and acceleration
-    /// `limits`, on a grid of at least `intervals_min` intervals. Positions are the path's.
+    /// From rest to rest along `path` within `limits`, on a grid of at least `intervals_min`
+    /// intervals.
+    ///
+    /// The path is timed in the shortest time within the velocity and acceleration limits (with
+    /// jerk limits that are infinite, that is the motion), and then averaged over a window of
+    /// `a/j` to `2 a/j` seconds, as the path asks for: so much longer it takes, and by about
+    /// `a (a/j)²/6` at most it leaves the path between its ends.
     pub fn along(path: Path, limits: &MotionLimits, intervals_min: usize) -> Self {
         let knots = timing::fastest(&path, limits, intervals_min);
-        Self::from_knots(Arc::new(path), knots, Arc::new(*limits))
+        Self::of(Course::smoothed(path, knots, limits))
+    }
+
+    /// From one state to another in the shortest time within the velocity, acceleration, jerk and
+    /// position `limits`. Every joint has a profile of its own, all as long as the slowest's.
+    ///
+    /// # Errors
+    /// [`TrajectoryError`] for a state outside the limits, or a moving one that no motion within
+    /// the position limits leads from or to.
+    pub fn between(
+        from: &State,
+        to: &State,
+        limits: &MotionLimits,
+    ) -> Result<Self, TrajectoryError> {
+        let (path, knots) = profile::between(from, to, limits)?;
+        Ok(Self::of(Course::exact(path, knots, limits)))
     }
 
     /// Standing still at `q` for `seconds`.
     pub fn hold(q: &Joints, seconds: f64, limits: &MotionLimits) -> Self {
         let still = Knot { time: 0.0, s: 0.0, speed: 0.0, acceleration: 0.0, piece: 0 };
         let knots = vec![still, Knot { time: seconds.max(0.0), ..still }];
-        Self::from_knots(Arc::new(Path::rounded(&[*q], 0.0)), knots, Arc::new(*limits))
+        Self::of(Course::exact(Path::rounded(&[*q], 0.0), knots, limits))
     }
 
     /// The motion stop: from `q` at velocity `qd` to rest on a straight line in joint space.
@@ -95,27 +142,31 @@ impl Trajectory {
         if speed < 1e-9 || seconds < 1e-6 {
             return Self::hold(&q, 0.0, limits);
         }
-        let braked = std::array::from_fn(|j| q[j] + 0.5 * qd[j] * seconds);
-        let rest = limits.position.clamp(&braked);
-        let path = Path::rounded(&[q, rest], 0.0);
+        let rest: Joints = std::array::from_fn(|j| q[j] + 0.5 * qd[j] * seconds);
+        let path = Path::rounded(&[q, limits.position.clamp(&rest)], 0.0);
         let start = Knot { time: 0.0, s: 0.0, speed, acceleration: -speed / seconds, piece: 0 };
         let end = Knot { time: seconds, s: path.length(), speed: 0.0, acceleration: 0.0, piece: 0 };
-        Self::from_knots(Arc::new(path), vec![start, end], Arc::new(*limits))
+        Self::of(Course::exact(path, vec![start, end], limits))
     }
 
-    /// The motion stop that keeps to the path: from this trajectory's state at `t_s` to rest as
-    /// soon as [`MotionLimits::stop`] allows. Where the path was clear, so is the stop.
+    /// The motion stop that keeps to the curve: from this trajectory's state at `t_s` to rest as
+    /// soon as [`MotionLimits::stop`] allows. Where the motion was clear, so is the stop.
     pub fn halted_at(&self, t_s: f64) -> Self {
-        let (knot, dt) = self.knot_at(t_s);
-        let s = knot.s + dt * (knot.speed + 0.5 * knot.acceleration * dt);
-        let speed = (knot.speed + knot.acceleration * dt).max(0.0);
-        let length = self.path.pieces()[knot.piece].length;
-        if speed < 1e-9 || self.path.length() == 0.0 || s >= length && self.is_last(knot.piece) {
-            return Self::hold(&self.sample(t_s).0, 0.0, &self.limits);
+        let at_s = self.time(t_s);
+        if self.clock.is_some() {
+            // It stops as soon as it can already.
+            return Self { begin_s: at_s, ..self.clone() };
         }
-        let limits = MotionLimits { acceleration: self.limits.stop, ..*self.limits };
-        let knots = timing::brake(&self.path, &limits, (knot.piece, s.min(length)), speed);
-        Self::from_knots(Arc::clone(&self.path), knots, Arc::clone(&self.limits))
+        let clock = if at_s < self.end_s { Clock::stopping(&self.course, at_s) } else { None };
+        match clock {
+            None => Self::hold(&self.sample(t_s).0, 0.0, self.course.limits()),
+            Some(clock) => Self {
+                course: Arc::clone(&self.course),
+                begin_s: 0.0,
+                end_s: clock.duration_s(),
+                clock: Some(Arc::new(clock)),
+            },
+        }
     }
 
     /// How long it takes, seconds.
@@ -126,13 +177,23 @@ impl Trajectory {
     /// Positions (rad) and velocities (rad/s) at `t_s` seconds from the start; before it and after
     /// the end, those of the start and the end.
     pub fn sample(&self, t_s: f64) -> (Joints, Joints) {
-        let [q, qd, _] = self.motion(t_s);
+        let State { q, qd, .. } = self.state(t_s);
         (q, qd)
     }
 
-    /// Accelerations at `t_s`, rad/s². They jump between the grid's intervals.
+    /// Accelerations at `t_s`, rad/s². Those of a motion stop jump.
     pub fn acceleration(&self, t_s: f64) -> Joints {
-        self.motion(t_s)[2]
+        self.state(t_s).qdd
+    }
+
+    /// Positions, velocities and accelerations at `t_s`.
+    pub fn state(&self, t_s: f64) -> State {
+        let time = self.time(t_s);
+        let [q, qd, qdd] = match &self.clock {
+            None => self.course.at(time),
+            Some(clock) => clock.at(&self.course, time),
+        };
+        State { q, qd, qdd }
     }
 
     /// Where it begins.
@@ -147,50 +208,35 @@ impl Trajectory {
 
     /// The two parts before and after `t_s`. The velocity at the cut is that of the whole.
     pub fn split(&self, t_s: f64) -> (Self, Self) {
-        let cut = (self.begin_s + t_s).clamp(self.begin_s, self.end_s);
+        let cut = self.time(t_s);
         (Self { end_s: cut, ..self.clone() }, Self { begin_s: cut, ..self.clone() })
     }
 
     /// When the motion passes nearest to `q`, to one grid interval, seconds from the start.
     pub fn time_nearest(&self, q: &Joints) -> f64 {
-        let distance = |knot: &Knot| {
-            let at = self.path.pieces()[knot.piece].position(knot.s);
+        let distance = |time: &f64| {
+            let at = self.state(*time).q;
             at.iter().zip(q).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
         };
-        let nearest = self.knots.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        nearest.map_or(0.0, |knot| (knot.time - self.begin_s).clamp(0.0, self.duration_s()))
+        let passed = self.course.times().map(|time| time - self.begin_s);
+        let times = passed.chain([0.0, self.duration_s()]);
+        let within = times.filter(|time| (0.0..=self.duration_s()).contains(time));
+        within.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0.0)
     }
 
-    fn from_knots(path: Arc<Path>, knots: Vec<Knot>, limits: Arc<MotionLimits>) -> Self {
-        let end_s = knots.last().map_or(0.0, |knot| knot.time);
-        Self { path, knots: knots.into(), limits, begin_s: 0.0, end_s }
+    fn of(course: Course) -> Self {
+        let end_s = course.duration_s();
+        Self { course: Arc::new(course), clock: None, begin_s: 0.0, end_s }
     }
 
-    fn is_last(&self, piece: usize) -> bool {
-        piece + 1 == self.path.pieces().len()
-    }
-
-    /// The knot at or before `t_s`, and the seconds since.
-    fn knot_at(&self, t_s: f64) -> (Knot, f64) {
+    /// The course's or the clock's time at `t_s` from the start, within what is covered.
+    fn time(&self, t_s: f64) -> f64 {
         let t_s = if t_s.is_nan() { 0.0 } else { t_s };
-        let time = (self.begin_s + t_s).clamp(self.begin_s, self.end_s);
-        let after = self.knots.partition_point(|knot| knot.time <= time);
-        let knot = self.knots[after.saturating_sub(1)];
-        (knot, time - knot.time)
-    }
-
-    fn motion(&self, t_s: f64) -> [Joints; 3] {
-        let (knot, dt) = self.knot_at(t_s);
-        let length = self.path.pieces()[knot.piece].length;
-        let s = (knot.s + dt * (knot.speed + 0.5 * knot.acceleration * dt)).min(length);
-        let speed = (knot.speed + knot.acceleration * dt).max(0.0);
-        let [q, qd, qdd] = motion_at(&self.path, (knot.piece, s), speed, knot.acceleration);
-        // Rounding may carry a joint that rests on its limit past it by a last bit.
-        [self.limits.position.clamp(&q), qd, qdd]
+        (self.begin_s + t_s).clamp(self.begin_s, self.end_s)
     }
 }
 
-/// Seconds until a joint, at `q` and moving on at `qd`, is at its limit.
+/// Seconds until a joint with these limits, at `q` and moving on at `qd`, is at one.
 fn seconds_to_limit((lower, upper): (f64, f64), q: f64, qd: f64) -> f64 {
     if qd > 0.0 {
         (upper - q) / qd
@@ -201,6 +247,7 @@ fn seconds_to_limit((lower, upper): (f64, f64), q: f64, qd: f64) -> f64 {
     }
 }
 
+/// Refuses a posture outside the position limits.
 pub(crate) fn refuse_outside(limits: &PositionLimits, q: &Joints) -> Result<(), TrajectoryError> {
     match limits.first_violation(q) {
         None => Ok(()),
