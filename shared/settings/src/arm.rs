@@ -30,7 +30,9 @@ pub enum Driver {
     Kinematic,
 }
 
+/// Reads the section; the robot that it names is put in once its files have been read.
 pub(crate) fn read(f: &mut Fields<'_>) -> Arm {
+    f.text("robot");
     Arm {
         robot: Robot::baxter().clone(),
         driver: f.choice("driver", &[("kinematic", Driver::Kinematic)]),

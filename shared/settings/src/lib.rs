@@ -15,15 +15,18 @@ mod gesture;
 mod group;
 mod layer;
 mod load;
+mod named;
 mod nearest;
 mod prior;
 mod problems;
 mod reach;
 mod resolved;
+mod robot_files;
 mod scene_file;
 mod services;
 mod snapshot;
 mod speech;
+mod text_file;
 
 #[cfg(test)]
 mod tests;

@@ -9,9 +9,12 @@ use toml::Value;
 
 use crate::fields::Fields;
 use crate::layer::{Node, Source, Table};
+use crate::named::Named;
 use crate::problems::{Problems, Report};
 use crate::resolved::{self, Resolved, Section};
-use crate::scene_file::{self, Named, SceneFile};
+use crate::robot_files::{self, RobotFiles};
+use crate::scene_file;
+use crate::text_file::TextFile;
 use crate::{Settings, arm, dialogue, gesture, group, nearest, reach, services, speech};
 
 pub(crate) fn load(
@@ -37,8 +40,24 @@ pub(crate) fn load(
     for layer in layers {
         tree.merge(layer, &mut Vec::new(), &mut report);
     }
-    let find_scene = |named: &Named<'_>, report: &mut Report| scene_file::find(dir, named, report);
-    check(tree, report, find_scene, Reach::Check)
+    let files = find_files(dir, &tree, &mut report);
+    check(tree, report, files, Reach::Check)
+}
+
+/// The files that the settings name; none where there was a problem with one.
+#[derive(Clone, Debug)]
+pub(crate) struct Files {
+    pub(crate) scene: Option<TextFile>,
+    pub(crate) robot: Option<RobotFiles>,
+}
+
+fn find_files(dir: &Path, tree: &Table, report: &mut Report) -> Files {
+    let scene = Named::find(tree, ["group", "scene"]);
+    let robot = Named::find(tree, ["arm", "robot"]);
+    Files {
+        scene: scene.and_then(|named| scene_file::find(dir, &named, report)),
+        robot: robot.and_then(|named| robot_files::find(dir, &named, report)),
+    }
 }
 
 /// Whether it is still to be found out that the arm can fetch every object.
@@ -49,11 +68,11 @@ pub(crate) enum Reach {
     Known,
 }
 
-/// Checks the merged layers. `find_scene` reads the scene that the group names.
+/// Checks the merged layers and the files that they name.
 pub(crate) fn check(
     mut tree: Table,
     mut report: Report,
-    find_scene: impl FnOnce(&Named<'_>, &mut Report) -> Option<SceneFile>,
+    files: Files,
     reach: Reach,
 ) -> Result<Settings, Problems> {
     services::complete(tree.table_at("group"), &mut report);
@@ -61,19 +80,25 @@ pub(crate) fn check(
     let group = fields.table("group", group::read);
     let dialogue = fields.table("dialogue", dialogue::read);
     let speech = fields.table("speech", speech::read);
-    let (arm, arm_is_sound) = fields.table("arm", |f| (arm::read(f), f.is_sound()));
+    let (mut arm, arm_is_sound) = fields.table("arm", |f| (arm::read(f), f.is_sound()));
     fields.finish();
-    let named = Named::in_group(&tree, &group.scene);
-    let file = named.and_then(|named| find_scene(&named, &mut report));
+    let Files { scene: file, robot: robot_files } = files;
+    let robot = robot_files.as_ref().and_then(|files| robot_files::read(files, &mut report));
+    let robot_is_sound = robot.is_some();
+    if let Some(robot) = robot {
+        arm.robot = robot;
+    }
     let scene = file.as_ref().and_then(|file| scene_file::read(file, &mut report));
-    if let (Some(file), Some(scene), Reach::Check, true) = (&file, &scene, reach, arm_is_sound) {
+    if let (Some(file), Some(scene), Reach::Check, true) =
+        (&file, &scene, reach, arm_is_sound && robot_is_sound)
+    {
         reach::check(scene, file, &arm, &tree, &mut report);
     }
     if let Some(scene) = &scene {
         gesture::check(scene, &dialogue.gesture, &tree, &mut report);
     }
-    let settings = file.zip(scene).map(|(file, scene)| {
-        let resolved = Resolved { tree, scene: file };
+    let settings = file.zip(scene).zip(robot_files).map(|((file, scene), robot)| {
+        let resolved = Resolved { tree, scene: file, robot };
         Settings { group, dialogue, speech, arm, scene, resolved }
     });
     report.verdict(settings)
@@ -92,11 +117,11 @@ pub(crate) fn read_text(path: &Path, report: &mut Report) -> Option<String> {
     }
 }
 
-/// Names of the TOML files in a folder, sorted, without their endings.
-pub(crate) fn toml_names(folder: &Path) -> Vec<String> {
+/// Names of the files in a folder with an ending, sorted, without it.
+pub(crate) fn names(folder: &Path, ending: &str) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names: Vec<String> = entries
-        .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(".toml")?.to_owned()))
+        .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(ending)?.to_owned()))
         .collect();
     names.sort();
     names
@@ -112,7 +137,7 @@ fn section_file(dir: &Path, section: Section, report: &mut Report) -> Option<Tab
 
 fn profile_file(dir: &Path, name: &str, report: &mut Report) -> Option<Table> {
     let folder = dir.join("profiles");
-    let names = toml_names(&folder);
+    let names = names(&folder, ".toml");
     if !names.iter().any(|known| known == name) {
         let known: Vec<&str> = names.iter().map(String::as_str).collect();
         let what = format!("there is no profile `{name}`");

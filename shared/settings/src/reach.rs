@@ -6,10 +6,10 @@ use scene::{Placement, Problem, Scene};
 use crate::Arm;
 use crate::layer::Table;
 use crate::problems::Report;
-use crate::scene_file::SceneFile;
+use crate::text_file::TextFile;
 
 /// Reports every object without a place, and every one that the arm cannot bring.
-pub(crate) fn check(scene: &Scene, file: &SceneFile, arm: &Arm, tree: &Table, report: &mut Report) {
+pub(crate) fn check(scene: &Scene, file: &TextFile, arm: &Arm, tree: &Table, report: &mut Report) {
     let placed = placed(scene, file, report);
     let poses: Vec<ObjectPose> = placed.iter().map(|(_, pose)| *pose).collect();
     let found = check_reachable(&arm.robot, &poses, arm.limb, &arm.plan);
@@ -36,7 +36,7 @@ pub(crate) fn check(scene: &Scene, file: &SceneFile, arm: &Arm, tree: &Table, re
 }
 
 /// The objects that have a place, with their positions in the scene.
-fn placed(scene: &Scene, file: &SceneFile, report: &mut Report) -> Vec<(usize, ObjectPose)> {
+fn placed(scene: &Scene, file: &TextFile, report: &mut Report) -> Vec<(usize, ObjectPose)> {
     let mut placed = Vec::new();
     for (n, object) in scene.objects().iter().enumerate() {
         match object.placement {

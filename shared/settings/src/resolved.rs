@@ -2,7 +2,8 @@
 
 use crate::layer::{Node, Source, Table};
 use crate::problems::Report;
-use crate::scene_file::SceneFile;
+use crate::robot_files::RobotFiles;
+use crate::text_file::TextFile;
 
 /// A part of the settings with a file of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -63,15 +64,21 @@ pub struct Origin {
 pub(crate) struct Resolved {
     /// One table per section, complete.
     pub(crate) tree: Table,
-    pub(crate) scene: SceneFile,
+    pub(crate) scene: TextFile,
+    pub(crate) robot: RobotFiles,
 }
 
 impl Resolved {
     pub(crate) fn section_text(&self, section: Section) -> String {
-        match self.tree.get(section.name()) {
+        let mut text = match self.tree.get(section.name()) {
             Some(Node::Table(table)) => to_toml(table),
             _ => String::new(),
+        };
+        if section == Section::Arm {
+            text.push_str(&self.robot.urdf.text);
+            text.push_str(self.robot.srdf.as_ref().map_or("", |file| &file.text));
         }
+        text
     }
 
     pub(crate) fn origins(&self) -> Vec<Origin> {

@@ -1,5 +1,5 @@
 //! The settings in force, as the supervisor hands them to the services: one file, so that a
-//! service never sees the scene of one version with the values of another.
+//! service never sees the scene or the robot of one version with the values of another.
 
 use std::fs;
 use std::io::{self, Write};
@@ -10,29 +10,31 @@ use toml::Value;
 
 use crate::Settings;
 use crate::layer::{Node, Source, Table};
-use crate::load::{self, Reach};
+use crate::load::{self, Files, Reach};
 use crate::problems::{Problems, Report};
-use crate::resolved::{self, to_toml};
-use crate::scene_file::SceneFile;
+use crate::resolved::{self, Resolved, to_toml};
+use crate::robot_files::RobotFiles;
+use crate::text_file::TextFile;
 
 /// Name of the snapshot in a group's run folder.
 pub const SNAPSHOT_FILE: &str = "settings.toml";
 
-/// The table that holds the scene's text in a snapshot.
+/// The tables that hold the texts of the named files in a snapshot.
 const SCENE: &str = "scene";
+const URDF: &str = "robot_urdf";
+const SRDF: &str = "robot_srdf";
 
 impl Settings {
-    /// The snapshot's text: every value of every section, and the scene file as it was read.
+    /// The snapshot's text: every value of every section, and the scene's and the robot's files
+    /// as they were read.
     pub fn snapshot(&self) -> String {
-        let source = &self.resolved.tree.source;
-        let mut scene = Table::empty(source.clone());
-        let SceneFile { label, text } = &self.resolved.scene;
-        for (key, text) in [("file", label), ("text", text)] {
-            let leaf = Node::Leaf(Value::String(text.clone()), source.clone());
-            scene.entries.push((key.to_owned(), leaf));
+        let Resolved { tree, scene, robot } = &self.resolved;
+        let mut tree = tree.clone();
+        put_file(&mut tree, SCENE, scene);
+        put_file(&mut tree, URDF, &robot.urdf);
+        if let Some(srdf) = &robot.srdf {
+            put_file(&mut tree, SRDF, srdf);
         }
-        let mut tree = self.resolved.tree.clone();
-        tree.entries.push((SCENE.to_owned(), Node::Table(scene)));
         to_toml(&tree)
     }
 
@@ -69,23 +71,37 @@ impl Settings {
         let Some(mut layer) = Table::parse(&text, &source, &mut report) else {
             return report.verdict(None);
         };
-        let scene = take_scene(&mut layer);
-        if scene.is_none() {
-            let cure = "stop the group and start it again";
-            report.add(Problem::new(label, SCENE, "the scene is missing", cure));
+        let scene = take_file(&mut layer, SCENE);
+        let urdf = take_file(&mut layer, URDF);
+        let srdf = take_file(&mut layer, SRDF);
+        for (key, what, file) in [(SCENE, "the scene", &scene), (URDF, "the robot", &urdf)] {
+            if file.is_none() {
+                let cure = "stop the group and start it again";
+                report.add(Problem::new(&*label, key, format!("{what} is missing"), cure));
+            }
         }
+        let files = Files { scene, robot: urdf.map(|urdf| RobotFiles { urdf, srdf }) };
         let mut tree = resolved::defaults();
         tree.merge(layer, &mut Vec::new(), &mut report);
-        load::check(tree, report, |_, _| scene, Reach::Known)
+        load::check(tree, report, files, Reach::Known)
     }
 }
 
-fn take_scene(layer: &mut Table) -> Option<SceneFile> {
-    let at = layer.entries.iter().position(|(key, _)| key == SCENE)?;
+fn put_file(tree: &mut Table, key: &str, file: &TextFile) {
+    let mut table = Table::empty(tree.source.clone());
+    for (key, text) in [("file", &file.label), ("text", &file.text)] {
+        let leaf = Node::Leaf(Value::String(text.clone()), tree.source.clone());
+        table.entries.push((key.to_owned(), leaf));
+    }
+    tree.entries.push((key.to_owned(), Node::Table(table)));
+}
+
+fn take_file(layer: &mut Table, key: &str) -> Option<TextFile> {
+    let at = layer.entries.iter().position(|(found, _)| found == key)?;
     let (_, node) = layer.entries.remove(at);
     let text = |key| match node.as_table()?.get(key)? {
         Node::Leaf(Value::String(text), _) => Some(text.clone()),
         _ => None,
     };
-    Some(SceneFile { label: text("file")?, text: text("text")? })
+    Some(TextFile { label: text("file")?, text: text("text")? })
 }

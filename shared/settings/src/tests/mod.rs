@@ -2,6 +2,7 @@
 
 mod layering;
 mod reach;
+mod robots;
 mod snapshot;
 mod wrong;
 
