@@ -88,3 +88,23 @@ fn kinematics_there_and_back() {
     assert!(output["position_error_m"].as_f64().unwrap() <= 1e-6);
     assert!(output["rotation_error_rad"].as_f64().unwrap() <= 1e-6);
 }
+
+#[test]
+fn links_of_another_robot() {
+    let robot = "tests/fixtures/robots/seven_joints.urdf";
+    let line = json!({"id": "up", "q": [0, 0, 0, 0, 0, 0, 0]});
+    let ended = batch(&["fk", "--robot", robot, "--tip", "flange"], std::slice::from_ref(&line));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let links = outputs(&ended)[0]["links"].clone();
+    let height = links["flange"]["xyz"][2].as_f64().unwrap();
+    assert!((height - 1.306).abs() < 1e-12, "{links}");
+    assert_eq!(links["flange"]["xyzw"], json!([0.0, 0.0, 0.0, 1.0]));
+    assert_eq!(links.as_object().unwrap().keys().next().unwrap(), "world");
+    // The built-in robot is the file that users edit.
+    let built_in = batch(&["fk", "--limb", "right"], std::slice::from_ref(&line));
+    let file = ["fk", "--robot", "config/robots/baxter.urdf", "--limb", "right"];
+    assert_eq!(outputs(&built_in), outputs(&batch(&file, std::slice::from_ref(&line))));
+    let ended = batch(&["fk", "--robot", robot, "--tip", "link_3"], &[line]);
+    assert_eq!(ended.code, Some(64), "{}", ended.stderr);
+    assert!(ended.stderr.contains("3 of robot \"seven_joints\"'s joints"), "{}", ended.stderr);
+}

@@ -9,8 +9,8 @@ mod study;
 mod talk;
 
 pub use batch::{
-    BeliefArgs, ExportArgs, Exported, GroundArgs, InputArgs, LanguageArg, LimbArg, LimbArgs,
-    ModeArg, PlanArgs, ProblemArgs,
+    ArmArgs, BeliefArgs, ExportArgs, Exported, GroundArgs, InputArgs, LanguageArg, LimbArg,
+    LimbArgs, ModeArg, PlanArgs, ProblemArgs, WhichArm,
 };
 pub use group::{
     CheckArgs, ConfigArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, SwapArgs,
@@ -130,7 +130,7 @@ pub enum Verb {
     /// The same seed gives the same table, byte for byte, on any number of threads.
     Study(StudyArgs),
     /// Read joint positions, one JSON object a line, and print the pose of every link.
-    Fk(LimbArgs),
+    Fk(ArmArgs),
     /// Read poses of the gripper, one JSON object a line, and print joint positions.
     Ik(LimbArgs),
 }

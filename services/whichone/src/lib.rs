@@ -16,6 +16,7 @@ use crate::trouble::Trouble;
 
 pub mod batch;
 pub mod cli;
+pub mod described_arm;
 pub mod output;
 pub mod scene_file;
 pub mod trouble;

@@ -3,6 +3,7 @@
 use protocol::MotionOrder;
 
 use crate::cli::{Awaited, Cli, Verb};
+use crate::described_arm::DescribedArm;
 use crate::output::Output;
 use crate::trouble::Outcome;
 use crate::{batch, scene_file};
@@ -74,7 +75,8 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         }
         Verb::Export(args) => export::export(&args, out),
         Verb::Study(args) => study::study(&args, out),
-        Verb::Fk(args) => batch::fk(args.limb.into(), batch::open(&args.input)?, out),
+        Verb::Fk(args) => let arm = DescribedArm::load(args.robot.as_deref(), &args.which)?;
+            batch::fk(&arm, batch::open(&args.input)?, out),
         Verb::Ik(args) => batch::ik(args.limb.into(), batch::open(&args.input)?, out),
     }
 }

@@ -9,12 +9,23 @@ use language::Language;
 use runtime::exit::Exit;
 use serde_json::{Value as Json, json};
 use whichone::batch::{self, Decider, Grounder};
+use whichone::cli::{LimbArg, WhichArm};
+use whichone::described_arm::DescribedArm;
 use whichone::output::Output;
 use whichone::scene_file;
 use whichone::trouble::Outcome;
 
 fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
+}
+
+/// The built-in robot's arm.
+fn arm(limb: Limb) -> DescribedArm {
+    let limb = match limb {
+        Limb::Left => LimbArg::Left,
+        Limb::Right => LimbArg::Right,
+    };
+    DescribedArm::load(None, &WhichArm { limb: Some(limb), tip: None }).unwrap()
 }
 
 fn fixture(path: &str) -> String {
@@ -225,7 +236,7 @@ fn links_are_where_the_reference_has_them() {
         let rows: Vec<Vec<f64>> = rows.iter().map(|row| numbers(row)).collect();
         let input: Vec<Json> =
             rows.iter().enumerate().map(|(n, row)| json!({"id": n, "q": row[..7]})).collect();
-        let (found, exit) = answers(|out| batch::fk(limb, lines(&input).as_bytes(), out));
+        let (found, exit) = answers(|out| batch::fk(&arm(limb), lines(&input).as_bytes(), out));
         assert_eq!((found.len(), exit), (rows.len(), Exit::Ok));
         let links = ["arm_mount", "upper_shoulder", "lower_forearm", "hand", "hand_camera"];
         let links = links.map(|name| (name, name)).into_iter();
@@ -265,7 +276,7 @@ fn poses_become_joint_positions_that_reach_them() {
             assert_near(&found["position_error_m"], 0.0, 1e-6);
             assert_near(&found["rotation_error_rad"], 0.0, 1e-6);
             let q = json!({"q": found["q"]});
-            let (again, _) = answers(|out| batch::fk(Limb::Left, lines(&[q]).as_bytes(), out));
+            let (again, _) = answers(|out| batch::fk(&arm(Limb::Left), lines(&[q]).as_bytes(), out));
             for i in 0..3 {
                 assert_near(&again[0]["links"]["left_gripper"]["xyz"][i], row[i], 1e-6);
             }
@@ -287,7 +298,7 @@ fn what_the_arm_cannot_do_is_answered_and_what_makes_no_sense_refused() {
     assert!(found[3]["error"].as_str().unwrap().contains("length 2"));
     assert_eq!(exit, Exit::NotReached);
     let postures = "{\"q\":[1,2,3]}\n{\"q\":[0,0,0,0,0,0,1e300]}\n{\"q\":[0,0,0,0,0,0,1e999]}\n";
-    let (found, _) = answers(|out| batch::fk(Limb::Right, postures.as_bytes(), out));
+    let (found, _) = answers(|out| batch::fk(&arm(Limb::Right), postures.as_bytes(), out));
     assert!(found[0]["error"].as_str().unwrap().contains("length 3"));
     assert!(found[1]["error"].as_str().unwrap().contains("no position of a joint"));
     assert!(found[2]["error"].as_str().unwrap().contains("out of range"));

@@ -2,12 +2,13 @@
 
 use std::io::Read;
 
-use kinematics::{Joints, Limb};
+use kinematics::Joints;
 use nalgebra::Isometry3;
 use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 
 use super::{parse, run};
+use crate::described_arm::DescribedArm;
 use crate::output::Output;
 use crate::trouble::Outcome;
 
@@ -18,26 +19,26 @@ struct Line {
     q: Joints,
 }
 
-/// Answers each posture with `{"id","links":{name:{"xyz","xyzw"}}}`: metres in frame `base`, and
-/// unit quaternions with w ≥ 0. Postures beyond the joint limits are answered, too.
+/// Answers each posture with `{"id","links":{name:{"xyz","xyzw"}}}`: metres in the frame of the
+/// robot's root, and unit quaternions with w ≥ 0. Postures beyond the joint limits are answered,
+/// too.
 ///
 /// # Errors
 /// See [`run`].
-pub fn fk(limb: Limb, input: impl Read, out: &mut Output<'_>) -> Outcome {
+pub fn fk(arm: &DescribedArm, input: impl Read, out: &mut Output<'_>) -> Outcome {
     run(input, out, |line| {
         let line: Line = parse(line)?;
-        if let Some(q) = line.q.iter().find(|q| q.abs() > POSITION_MAX_RAD) {
+        if let Some(q) = line.q.iter().find(|q| q.abs() > POSITION_MAX) {
             return Err(format!("q: {q} rad is no position of a joint"));
         }
-        let links = kinematics::links::links(limb, &line.q, 0.0)
-            .into_iter()
-            .map(|(name, pose)| (name, pose_to_json(&pose)));
-        Ok(json!({ "id": line.id, "links": links.collect::<Map<_, _>>() }))
+        let links: Map<_, _> =
+            arm.links(&line.q).map(|(name, pose)| (name.to_owned(), pose_to_json(&pose))).collect();
+        Ok(json!({ "id": line.id, "links": links }))
     })
 }
 
 /// Beyond this an angle says nothing about a direction any more.
-const POSITION_MAX_RAD: f64 = 1e6;
+const POSITION_MAX: f64 = 1e6;
 
 fn pose_to_json(pose: &Isometry3<f64>) -> Json {
     let (xyz, xyzw): ([f64; 3], [f64; 4]) =

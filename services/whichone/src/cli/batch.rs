@@ -101,7 +101,33 @@ pub enum Exported {
     Pomdp,
 }
 
-/// Arguments of `fk` and `ik`.
+/// Arguments of `fk`.
+#[derive(Debug, Args)]
+pub struct ArmArgs {
+    /// A robot's description (URDF); that of Baxter, which is built in, where nothing is said.
+    #[arg(long, value_name = "FILE")]
+    pub robot: Option<PathBuf>,
+    /// Which of its arms.
+    #[command(flatten)]
+    pub which: WhichArm,
+    /// The lines.
+    #[command(flatten)]
+    pub input: InputArgs,
+}
+
+/// An arm of a robot: one of Baxter's two, or whatever ends in a link.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+pub struct WhichArm {
+    /// The arm of a robot with Baxter's names.
+    #[arg(long, value_enum)]
+    pub limb: Option<LimbArg>,
+    /// The last link of the arm of any robot; seven joints move it.
+    #[arg(long, value_name = "LINK")]
+    pub tip: Option<String>,
+}
+
+/// Arguments of `ik`.
 #[derive(Debug, Args)]
 pub struct LimbArgs {
     /// The arm.

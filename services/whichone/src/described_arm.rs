@@ -1,0 +1,159 @@
+//! The arm that the command line names: one of a robot's, from its description.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use kinematics::{JOINTS, Joints, Limb};
+use nalgebra::Isometry3;
+use robot::{Joint, Robot};
+use runtime::exit::Exit;
+
+use crate::cli::WhichArm;
+use crate::trouble::Trouble;
+
+/// An arm of seven joints, and which of the robot's links it is about.
+#[derive(Debug)]
+pub struct DescribedArm {
+    robot: Cow<'static, Robot>,
+    /// The place in the posture of each of the robot's joints, for those that move the arm.
+    places: Vec<Option<usize>>,
+    /// The links, by their indices, parents first.
+    links: Vec<usize>,
+}
+
+impl DescribedArm {
+    /// An arm of the robot that a file describes, or of Baxter, which is built in.
+    ///
+    /// # Errors
+    /// The file cannot be read, everything that is wrong with it, or why it has no such arm.
+    pub fn load(robot: Option<&Path>, which: &WhichArm) -> Result<Self, Trouble> {
+        let robot = match robot {
+            None => Cow::Borrowed(Robot::baxter()),
+            Some(path) => Cow::Owned(read(path)?),
+        };
+        Self::of(robot, which).map_err(|reason| Trouble::new(Exit::Usage, reason))
+    }
+
+    /// Name, and pose in the root's frame, of each of its links at a posture (radians, or metres
+    /// where a joint slides); quaternions have w ≥ 0.
+    ///
+    /// With `--limb` these are the links from the arm's mount on with all that hangs off them,
+    /// fingers closed; with `--tip` those from the root to the tip.
+    pub fn links(&self, q: &Joints) -> impl Iterator<Item = (&str, Isometry3<f64>)> {
+        let position = |joint: &Joint| self.places[joint.child - 1].map_or(0.0, |place| q[place]);
+        let poses = self.robot.poses(position);
+        self.links.iter().map(move |&link| (self.robot.links()[link].name.as_str(), poses[link]))
+    }
+
+    fn of(robot: Cow<'static, Robot>, which: &WhichArm) -> Result<Self, String> {
+        let limb = which.limb.map(Limb::from);
+        let tip = match (&which.tip, limb) {
+            (Some(tip), _) => tip.clone(),
+            (None, Some(limb)) => format!("{limb}_gripper"),
+            (None, None) => return Err("say --limb or --tip".to_owned()),
+        };
+        let chain = robot.chain(&tip).map_err(|error| {
+            let names: Vec<&str> = robot.links().iter().map(|link| link.name.as_str()).collect();
+            format!("{error}; it has {}", names.join(", "))
+        })?;
+        let movable: Vec<&Joint> = chain.movable().collect();
+        if movable.len() != JOINTS.len() {
+            let names: Vec<&str> = movable.iter().map(|joint| joint.name.as_str()).collect();
+            return Err(format!(
+                "{} of robot {:?}'s joints move link {tip:?} ({}); an arm has {}",
+                movable.len(),
+                robot.name(),
+                if names.is_empty() { "none".to_owned() } else { names.join(", ") },
+                JOINTS.len(),
+            ));
+        }
+        let mut places = vec![None; robot.joints().len()];
+        for (place, joint) in movable.iter().enumerate() {
+            places[joint.child - 1] = Some(place);
+        }
+        let links = match limb {
+            Some(_) => subtree(&robot, movable[0].parent),
+            None => std::iter::once(0).chain(chain.joints().map(|joint| joint.child)).collect(),
+        };
+        Ok(Self { places, links, robot })
+    }
+}
+
+/// The link and all that hangs off it, parents first.
+fn subtree(robot: &Robot, first: usize) -> Vec<usize> {
+    let mut links = vec![first];
+    for joint in robot.joints() {
+        if links.contains(&joint.parent) {
+            links.push(joint.child);
+        }
+    }
+    links
+}
+
+fn read(path: &Path) -> Result<Robot, Trouble> {
+    let text = std::fs::read_to_string(path).map_err(|error| Trouble::file(path, &error))?;
+    Robot::parse(&text, None).map_err(|faults| {
+        Trouble::new(Exit::Config, faults.in_files(&path.display().to_string(), ""))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::LimbArg;
+
+    fn arm(
+        robot: Option<&Path>,
+        limb: Option<LimbArg>,
+        tip: Option<&str>,
+    ) -> Result<DescribedArm, Trouble> {
+        DescribedArm::load(robot, &WhichArm { limb, tip: tip.map(str::to_owned) })
+    }
+
+    fn fixture(name: &str) -> std::path::PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fixtures/robots").join(name)
+    }
+
+    #[test]
+    fn a_limb_is_its_mount_and_all_that_hangs_off_it() {
+        let q = [0.3, -0.5, 0.2, 0.8, -0.1, 1.0, 0.4];
+        for (arg, limb) in [(LimbArg::Left, Limb::Left), (LimbArg::Right, Limb::Right)] {
+            let arm = arm(None, Some(arg), None).unwrap();
+            let found: Vec<_> = arm.links(&q).collect();
+            assert_eq!((found.len(), found[0].0), (22, format!("{limb}_arm_mount").as_str()));
+            let gripper =
+                found.iter().find(|(name, _)| *name == format!("{limb}_gripper")).unwrap();
+            let tip = arm.robot.chain(gripper.0).unwrap().forward(&q);
+            assert!((gripper.1.translation.vector - tip.translation.vector).amax() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn another_robots_arm_runs_from_its_root_to_the_tip() {
+        let arm = arm(Some(&fixture("seven_joints.urdf")), None, Some("flange")).unwrap();
+        let links: Vec<_> = arm.links(&[0.0; 7]).collect();
+        assert_eq!((links.len(), links[0].0, links[9].0), (10, "world", "flange"));
+        assert!((links[9].1.translation.z - 1.306).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_arm_is_told_why() {
+        let seven = fixture("seven_joints.urdf");
+        let told = |robot, limb, tip| arm(robot, limb, tip).unwrap_err().to_string();
+        assert_eq!(
+            told(Some(&seven), None, Some("link_3")),
+            "3 of robot \"seven_joints\"'s joints move link \"link_3\" (a1, a2, a3); an arm has 7"
+        );
+        assert!(told(None, None, Some("pedestal")).contains("0 of robot \"baxter\"'s joints"));
+        let unknown = told(Some(&seven), Some(LimbArg::Left), None);
+        assert!(
+            unknown.contains("has no link \"left_gripper\"; it has world, link_0"),
+            "{unknown}"
+        );
+        let nowhere = told(Some(Path::new("/nowhere.urdf")), None, Some("x"));
+        assert!(nowhere.starts_with("/nowhere.urdf: "), "{nowhere}");
+        let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml");
+        let no_xml = told(Some(&manifest), None, Some("x"));
+        assert!(no_xml.contains("Cargo.toml:1: document: it is not well-formed XML"), "{no_xml}");
+    }
+}
