@@ -104,6 +104,15 @@ fn links_of_another_robot() {
     let built_in = batch(&["fk", "--limb", "right"], std::slice::from_ref(&line));
     let file = ["fk", "--robot", "config/robots/baxter.urdf", "--limb", "right"];
     assert_eq!(outputs(&built_in), outputs(&batch(&file, std::slice::from_ref(&line))));
+    let line = json!({"id": 1, "xyz": [0.3, 0.2, 0.8], "xyzw": [0, 1, 0, 0]});
+    let ended = batch(&["ik", "--robot", robot, "--tip", "flange"], std::slice::from_ref(&line));
+    let solved = outputs(&ended)[0].clone();
+    assert_eq!((ended.code, &solved["ok"]), (Some(0), &json!(true)), "{solved}");
+    let back = batch(&["fk", "--robot", robot, "--tip", "flange"], &[json!({"q": solved["q"]})]);
+    for i in 0..3 {
+        let found = outputs(&back)[0]["links"]["flange"]["xyz"][i].as_f64().unwrap();
+        assert!((found - line["xyz"][i].as_f64().unwrap()).abs() <= 1e-6);
+    }
     let ended = batch(&["fk", "--robot", robot, "--tip", "link_3"], &[line]);
     assert_eq!(ended.code, Some(64), "{}", ended.stderr);
     assert!(ended.stderr.contains("3 of robot \"seven_joints\"'s joints"), "{}", ended.stderr);

@@ -10,7 +10,7 @@ mod talk;
 
 pub use batch::{
     ArmArgs, BeliefArgs, ExportArgs, Exported, GroundArgs, InputArgs, LanguageArg, LimbArg,
-    LimbArgs, ModeArg, PlanArgs, ProblemArgs, WhichArm,
+    ModeArg, PlanArgs, ProblemArgs, WhichArm,
 };
 pub use group::{
     CheckArgs, ConfigArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, SwapArgs,
@@ -131,6 +131,6 @@ pub enum Verb {
     Study(StudyArgs),
     /// Read joint positions, one JSON object a line, and print the pose of every link.
     Fk(ArmArgs),
-    /// Read poses of the gripper, one JSON object a line, and print joint positions.
-    Ik(LimbArgs),
+    /// Read poses of an arm's last link, one JSON object a line, and print joint positions.
+    Ik(ArmArgs),
 }

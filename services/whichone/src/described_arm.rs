@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use kinematics::{JOINTS, Joints, Limb};
+use kinematics::{Chain, JOINTS, Joints, Limb};
 use nalgebra::Isometry3;
 use robot::{Joint, Robot};
 use runtime::exit::Exit;
@@ -15,6 +15,7 @@ use crate::trouble::Trouble;
 #[derive(Debug)]
 pub struct DescribedArm {
     robot: Cow<'static, Robot>,
+    tip: String,
     /// The place in the posture of each of the robot's joints, for those that move the arm.
     places: Vec<Option<usize>>,
     /// The links, by their indices, parents first.
@@ -43,6 +44,15 @@ impl DescribedArm {
         let position = |joint: &Joint| self.places[joint.child - 1].map_or(0.0, |place| q[place]);
         let poses = self.robot.poses(position);
         self.links.iter().map(move |&link| (self.robot.links()[link].name.as_str(), poses[link]))
+    }
+
+    /// The chain from the robot's root to its last link.
+    ///
+    /// # Errors
+    /// Why it cannot be solved for a pose: some joint does not turn between limits.
+    pub fn chain(&self) -> Result<Chain, Trouble> {
+        Chain::from_description(&self.robot, &self.tip)
+            .map_err(|reason| Trouble::new(Exit::Usage, reason.to_string()))
     }
 
     fn of(robot: Cow<'static, Robot>, which: &WhichArm) -> Result<Self, String> {
@@ -75,7 +85,7 @@ impl DescribedArm {
             Some(_) => subtree(&robot, movable[0].parent),
             None => std::iter::once(0).chain(chain.joints().map(|joint| joint.child)).collect(),
         };
-        Ok(Self { places, links, robot })
+        Ok(Self { places, links, tip, robot })
     }
 }
 

@@ -2,10 +2,10 @@
 
 use protocol::MotionOrder;
 
-use crate::cli::{Awaited, Cli, Verb};
+use crate::cli::{ArmArgs, Awaited, Cli, Verb};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
-use crate::trouble::Outcome;
+use crate::trouble::{Outcome, Trouble};
 use crate::{batch, scene_file};
 
 mod await_pick;
@@ -75,8 +75,14 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         }
         Verb::Export(args) => export::export(&args, out),
         Verb::Study(args) => study::study(&args, out),
-        Verb::Fk(args) => let arm = DescribedArm::load(args.robot.as_deref(), &args.which)?;
-            batch::fk(&arm, batch::open(&args.input)?, out),
-        Verb::Ik(args) => batch::ik(args.limb.into(), batch::open(&args.input)?, out),
+        Verb::Fk(args) => batch::fk(&described_arm(&args)?, batch::open(&args.input)?, out),
+        Verb::Ik(args) => {
+            let chain = described_arm(&args)?.chain()?;
+            batch::ik(&chain, batch::open(&args.input)?, out)
+        }
     }
+}
+
+fn described_arm(args: &ArmArgs) -> Result<DescribedArm, Trouble> {
+    DescribedArm::load(args.robot.as_deref(), &args.which)
 }

@@ -267,7 +267,8 @@ fn poses_become_joint_positions_that_reach_them() {
                                   "q_seed": row[8..15]})
         })
         .collect();
-    let (found, exit) = answers(|out| batch::ik(Limb::Left, lines(&input).as_bytes(), out));
+    let (found, exit) =
+        answers(|out| batch::ik(&arm(Limb::Left).chain().unwrap(), lines(&input).as_bytes(), out));
     assert_eq!((found.len(), exit), (rows.len(), Exit::Ok));
     for ((kind, row), found) in rows.iter().zip(&found) {
         assert!(found["ok"] == true || row[7] < 0.5, "{kind} {row:?}");
@@ -276,7 +277,8 @@ fn poses_become_joint_positions_that_reach_them() {
             assert_near(&found["position_error_m"], 0.0, 1e-6);
             assert_near(&found["rotation_error_rad"], 0.0, 1e-6);
             let q = json!({"q": found["q"]});
-            let (again, _) = answers(|out| batch::fk(&arm(Limb::Left), lines(&[q]).as_bytes(), out));
+            let (again, _) =
+                answers(|out| batch::fk(&arm(Limb::Left), lines(&[q]).as_bytes(), out));
             for i in 0..3 {
                 assert_near(&again[0]["links"]["left_gripper"]["xyz"][i], row[i], 1e-6);
             }
@@ -291,7 +293,8 @@ fn what_the_arm_cannot_do_is_answered_and_what_makes_no_sense_refused() {
     let wrong = json!({"id": "wrong", "xyz": [0, 0, 0], "xyzw": [0, 0, 0, 0]});
     let short = json!({"id": "short", "xyz": [0, 0], "xyzw": [0, 0, 0, 1]});
     let input = lines(&[far, huge, wrong, short]);
-    let (found, exit) = answers(|out| batch::ik(Limb::Right, input.as_bytes(), out));
+    let (found, exit) =
+        answers(|out| batch::ik(&arm(Limb::Right).chain().unwrap(), input.as_bytes(), out));
     assert_eq!((&found[0]["ok"], &found[1]["ok"]), (&json!(false), &json!(false)));
     assert!(found[0]["position_error_m"].as_f64().unwrap() > 7.0);
     assert_eq!(found[2]["error"], "xyzw: is not a rotation");

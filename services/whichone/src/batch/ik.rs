@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::time::Instant;
 
-use kinematics::{Chain, Joints, Limb, Robot};
+use kinematics::{Chain, Joints};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
@@ -22,15 +22,14 @@ struct Line {
     q_seed: Option<Joints>,
 }
 
-/// Answers each pose of `<limb>_gripper` with
+/// Answers each pose of the chain's tip with
 /// `{"id","ok","q","position_error_m","rotation_error_rad","micros"}`: the posture nearest to
 /// `q_seed` where there is one, else the first found; where there is none, the one that comes
 /// nearest to the pose.
 ///
 /// # Errors
 /// See [`run`].
-pub fn ik(limb: Limb, input: impl Read, out: &mut Output<'_>) -> Outcome {
-    let chain = &Robot::baxter().arm(limb).chain;
+pub fn ik(chain: &Chain, input: impl Read, out: &mut Output<'_>) -> Outcome {
     run(input, out, |line| answer(chain, &parse(line)?))
 }
 

@@ -101,7 +101,7 @@ pub enum Exported {
     Pomdp,
 }
 
-/// Arguments of `fk`.
+/// Arguments of `fk` and `ik`.
 #[derive(Debug, Args)]
 pub struct ArmArgs {
     /// A robot's description (URDF); that of Baxter, which is built in, where nothing is said.
@@ -125,17 +125,6 @@ pub struct WhichArm {
     /// The last link of the arm of any robot; seven joints move it.
     #[arg(long, value_name = "LINK")]
     pub tip: Option<String>,
-}
-
-/// Arguments of `ik`.
-#[derive(Debug, Args)]
-pub struct LimbArgs {
-    /// The arm.
-    #[arg(long, value_enum)]
-    pub limb: LimbArg,
-    /// The lines.
-    #[command(flatten)]
-    pub input: InputArgs,
 }
 
 /// [`Language`] on the command line.
