@@ -15,7 +15,8 @@ import time
 import iceoryx2 as iox2
 
 INTEGERS = {"u8": ctypes.c_uint8, "u16": ctypes.c_uint16, "u32": ctypes.c_uint32,
-            "u64": ctypes.c_uint64, "f64": ctypes.c_double}
+            "u64": ctypes.c_uint64, "i32": ctypes.c_int32, "f32": ctypes.c_float,
+            "f64": ctypes.c_double}
 BEAT_S = 0.2
 
 
@@ -61,7 +62,8 @@ class Layout:
     def _type(self, kind, length):
         array = re.fullmatch(r"\[+([\w<>]+);.*\]", kind)
         if array:
-            element = self._type(array[1], 0)
+            text = re.fullmatch(r"FixedText<(\d+)>", array[1])
+            element = self._type(array[1], 4 + int(text[1]) if text else 0)
             return element * (length // ctypes.sizeof(element))
         if kind.startswith("FixedText"):
             text = {"_fields_": [("len", ctypes.c_uint32), ("bytes", ctypes.c_uint8 * (length - 4))]}

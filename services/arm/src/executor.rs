@@ -1,10 +1,13 @@
 //! Carries programs out: which step the arm is in and how far, one program at a time.
 
-use crate::driver::{ArmDriver, Command, Fingers};
+use crate::driver::{ArmDriver, Command, Fault, Fingers};
 use kinematics::{Limb, Trajectory};
-use protocol::{PickId, PickPhase};
+use protocol::{Hindrance, PickId, PickPhase};
 use scene::ObjectId;
 use std::collections::VecDeque;
+
+/// A motion that ends faster than this goes on in the next step, rad/s.
+const FLOWS_RAD_S: f64 = 1e-6;
 
 /// What a program is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,10 +65,10 @@ pub(crate) enum Executor {
     /// Nothing.
     #[default]
     Standing,
-    /// A program, `t_s` seconds into its first step.
-    Running { program: Program, t_s: f64 },
+    /// A program, `t_s` seconds into its first step, whose motion ended `late_s` seconds ago.
+    Running { program: Program, t_s: f64, late_s: f64 },
     /// It comes to rest, on the path that it was on.
-    Halting { limb: Limb, motion: Trajectory, t_s: f64 },
+    Halting { limb: Limb, motion: Trajectory, t_s: f64, late_s: f64 },
 }
 
 /// What came of a stretch of time.
@@ -77,11 +80,13 @@ pub(crate) enum Progress {
     Ended(StepKind, f64),
     /// A halt ended.
     Halted,
+    /// A motion did not end as it should have; nothing is being done any more.
+    Failed(Fault),
 }
 
 impl Executor {
     pub(crate) fn start(&mut self, program: Program) {
-        *self = Self::Running { program, t_s: 0.0 };
+        *self = Self::Running { program, t_s: 0.0, late_s: 0.0 };
     }
 
     /// What the running program is for.
@@ -109,41 +114,54 @@ impl Executor {
 
     /// Gives the program up and brings the arm to rest as soon as its limits allow.
     pub(crate) fn halt(&mut self) {
-        let Self::Running { program, t_s } = self else { return };
+        let Self::Running { program, t_s, .. } = self else { return };
         *self = match program.steps.front() {
             None => Self::Standing,
             Some(step) => {
                 let motion = step.motion.halted_at(*t_s);
-                Self::Halting { limb: program.limb, motion, t_s: 0.0 }
+                Self::Halting { limb: program.limb, motion, t_s: 0.0, late_s: 0.0 }
             }
         };
+    }
+
+    /// Gives up what is being done, at once.
+    pub(crate) fn stand(&mut self) {
+        *self = Self::Standing;
     }
 
     /// Goes on for `seconds`, at most to the end of the step.
     pub(crate) fn advance(&mut self, seconds: f64, driver: &mut dyn ArmDriver) -> Progress {
         match self {
             Self::Standing => Progress::Under,
-            Self::Halting { limb, motion, t_s } => {
-                let (ended, _) = follow(motion, t_s, seconds, (*limb, Fingers::Stay), driver);
-                if ended {
-                    *self = Self::Standing;
-                    return Progress::Halted;
+            Self::Halting { limb, motion, t_s, late_s } => {
+                let how = (*limb, Fingers::Stay);
+                let ended = follow(motion, (t_s, late_s), seconds, how, driver);
+                let deaf = driver.hindrance() != Hindrance::None && *late_s > 0.0;
+                // An arm that was told to stop and hangs on is an arm that stands, and so is one
+                // that cannot be felt.
+                if let (Ok(None), false) = (ended, deaf) {
+                    return Progress::Under;
                 }
-                Progress::Under
+                *self = Self::Standing;
+                Progress::Halted
             }
-            Self::Running { program, t_s } => {
+            Self::Running { program, t_s, late_s } => {
                 let Some(step) = program.steps.front() else {
                     *self = Self::Standing;
                     return Progress::Under;
                 };
                 let how = (program.limb, step.fingers);
-                let (ended, left_s) = follow(&step.motion, t_s, seconds, how, driver);
-                if !ended {
-                    return Progress::Under;
-                }
+                let left_s = match follow(&step.motion, (t_s, late_s), seconds, how, driver) {
+                    Ok(None) => return Progress::Under,
+                    Ok(Some(left_s)) => left_s,
+                    Err(fault) => {
+                        *self = Self::Standing;
+                        return Progress::Failed(fault);
+                    }
+                };
                 let kind = step.kind;
                 program.steps.pop_front();
-                *t_s = 0.0;
+                (*t_s, *late_s) = (0.0, 0.0);
                 if program.steps.is_empty() {
                     *self = Self::Standing;
                 }
@@ -154,26 +172,36 @@ impl Executor {
 
     /// Simulated seconds until the object is handed over.
     pub(crate) fn seconds_to_hand_over(&self) -> f64 {
-        let Self::Running { program, t_s } = self else { return 0.0 };
+        let Self::Running { program, t_s, .. } = self else { return 0.0 };
         let before = program.steps.iter().take_while(|step| step.kind != StepKind::Return);
         let total: f64 = before.map(|step| step.motion.duration_s()).sum();
         (total - t_s).max(0.0)
     }
 }
 
-/// Follows a motion for `seconds`. Whether it ended, and how many seconds were left then.
+/// Follows a motion for `seconds`; it has been followed for `t_s` and should have ended `late_s` ago.
+/// How many seconds were left when it ended, none while it has not.
 fn follow(
     motion: &Trajectory,
-    t_s: &mut f64,
+    (t_s, late_s): (&mut f64, &mut f64),
     seconds: f64,
     (limb, fingers): (Limb, Fingers),
     driver: &mut dyn ArmDriver,
-) -> (bool, f64) {
+) -> Result<Option<f64>, Fault> {
     let remaining_s = motion.duration_s() - *t_s;
     let passed_s = seconds.min(remaining_s).max(0.0);
-    let ended = seconds >= remaining_s;
     *t_s += passed_s;
     let (q, qd) = motion.sample(*t_s);
-    driver.command(&Command { limb, q, qd, fingers }, passed_s);
-    (ended, seconds - passed_s)
+    let qdd = motion.acceleration(*t_s);
+    let command = Command { limb, q, qd, qdd, t_s: *t_s, fingers };
+    driver.command(&command, passed_s);
+    if seconds < remaining_s {
+        return Ok(None);
+    }
+    // Where one motion was cut in two the arm does not come to rest between them.
+    if qd.iter().any(|v| v.abs() > FLOWS_RAD_S) {
+        return Ok(Some(seconds - passed_s));
+    }
+    *late_s += seconds - passed_s;
+    Ok(driver.has_arrived(&command, *late_s)?.then_some(seconds - passed_s))
 }

@@ -4,11 +4,10 @@
 use crate::executor::{Executor, Program, Purpose};
 use crate::program::{Planner, Refusal};
 use crate::recover::{Next, next};
-use crate::state::side;
 use crate::{ArmNode, Fx};
 use kinematics::Limb;
 use node::{Span, Time};
-use protocol::{PickOutcome, PickPhase};
+use protocol::{Hindrance, PickOutcome, PickPhase};
 use scene::ObjectId;
 
 /// How long the arm stands where it finds no way to rest, before it looks for one again.
@@ -47,6 +46,8 @@ impl ArmNode {
                 self.executor.halt();
             }
             Executor::Running { .. } | Executor::Halting { .. } => {}
+            // Plans begin where the joints are, so they have to be somewhere.
+            Executor::Standing if !self.can_set_out() => {}
             Executor::Standing => {
                 let restocks = self.config.arm.restock && !self.state.gone.is_empty();
                 if restocks && self.limb_away().is_none() {
@@ -61,14 +62,18 @@ impl ArmNode {
 
     /// A limb that is not at rest, or on its way there.
     pub(crate) fn limb_away(&self) -> Option<Limb> {
-        let posture = self.driver.measured().posture;
+        let measured = self.driver.measured();
         let robot = &self.config.arm.robot;
-        Limb::BOTH.into_iter().find(|limb| !posture.is_at_rest(robot, *limb))
+        Limb::BOTH.into_iter().find(|limb| !measured.is_at_rest(robot, *limb))
+    }
+
+    fn can_set_out(&self) -> bool {
+        self.driver.hindrance() == Hindrance::None && self.driver.is_still()
     }
 
     /// What the arm should be doing now; none: stand.
     fn wanted(&self, now: Time) -> Option<Purpose> {
-        if self.state.stopped || self.ending {
+        if self.state.stopped || self.ending || self.driver.hindrance() != Hindrance::None {
             return None;
         }
         let returning = self.executor.purpose() == Some(Purpose::Return);
@@ -140,7 +145,7 @@ impl ArmNode {
     fn plan_pick(&mut self, now: Time, fx: &mut Fx) -> Option<Result<Program, Refusal>> {
         let pick = *self.state.open_pick()?;
         let (limb, held) = (self.state.limb, self.state.held);
-        let holding = limb.and_then(|limb| self.driver.measured().holding[side(limb)]);
+        let holding = limb.and_then(|limb| self.driver.measured().holds(limb));
         let at_hand_over =
             limb.is_some_and(|limb| self.planner_with(|planner| planner.is_at_hand_over(limb)));
         match (next(pick.phase, holding, at_hand_over), held, limb) {
@@ -166,6 +171,7 @@ impl ArmNode {
         plan(&Planner {
             robot: &self.config.arm.robot,
             settings: &self.config.arm.plan,
+            grasps: &self.config.arm.grasp,
             limb: self.config.arm.limb,
             world: &self.world,
             state: &self.state,

@@ -9,6 +9,7 @@
 mod driver;
 mod executor;
 mod goal;
+mod hindered;
 mod motion;
 mod orders;
 mod program;
@@ -21,13 +22,16 @@ mod world;
 #[cfg(test)]
 mod tests;
 
-pub use driver::{ArmDriver, Command, Fingers, KinematicArm, Measured};
+pub use driver::{
+    ArmDriver, BaxterDriver, Command, Fault, Fingers, Grip, KinematicArm, Measured, Order, Source,
+    Told,
+};
 
 use executor::Executor;
 use goal::Setbacks;
 use node::{Effects, Event, Node, NodeError, Span, Time};
 use orders::StandingAct;
-use protocol::{ArmStatus, JointStates, MotionCommand, RobotAct, WorldView};
+use protocol::{ArmStatus, Hindrance, JointStates, MotionCommand, RobotAct, WorldView};
 use publish::{Facts, Publisher};
 use scene::{ObjectId, Scene};
 use state::{ArmState, Cause, Record};
@@ -40,6 +44,8 @@ pub enum In {
     Act(Box<RobotAct>),
     /// From speech and clients: stop, or go on.
     Motion(MotionCommand),
+    /// From the robot, where there is one: what it measures.
+    Robot(Told),
 }
 
 /// What is published.
@@ -51,6 +57,8 @@ pub enum Out {
     Joints(Box<JointStates>),
     /// To clients: where the objects are.
     World(Box<WorldView>),
+    /// To the robot, where there is one: what it is to do.
+    Robot(Order),
 }
 
 type Fx = Effects<Out, Record>;
@@ -82,6 +90,8 @@ pub struct ArmNode {
     /// Something is to be done in the next pass, or by the end of this one.
     urgent: bool,
     scene_changed: bool,
+    /// What kept the robot from moving in the pass before.
+    hindrance: Hindrance,
     ending: bool,
 }
 
@@ -97,7 +107,8 @@ impl Node for ArmNode {
     fn recover(config: Config, records: Vec<Record>) -> Result<Self, NodeError> {
         let state = recover::state(&config, records)?;
         let driver = match config.arm.driver {
-            settings::Driver::Kinematic => Box::new(KinematicArm::at(&state)),
+            settings::Driver::Kinematic => Box::new(KinematicArm::at(&state)) as Box<dyn ArmDriver>,
+            settings::Driver::Baxter => Box::new(BaxterDriver::new(&config.arm, &state)),
         };
         Ok(Self::with_driver(config, state, driver))
     }
@@ -107,6 +118,7 @@ impl Node for ArmNode {
             Event::Started => self.begin(now, fx),
             Event::Message(In::Motion(command)) => self.obey(&command, now, fx),
             Event::Message(In::Act(act)) => self.hear(&act, now, fx),
+            Event::Message(In::Robot(told)) => self.driver.hear(&told, now),
             Event::Tick => self.tick(now, fx),
             Event::Shutdown => {
                 self.ending = true;
@@ -118,11 +130,12 @@ impl Node for ArmNode {
 
     fn deadline(&self) -> Option<Time> {
         let due = self.publisher.deadline();
-        Some(match (self.urgent, self.executor.is_standing()) {
-            (true, _) => Time(0),
-            (false, true) => due,
-            (false, false) => due.min(self.stepped + STEP_EVERY),
-        })
+        if self.urgent || self.driver.is_fresh() {
+            return Some(Time(0));
+        }
+        let moving = (!self.executor.is_standing()).then_some(STEP_EVERY);
+        let beat = self.driver.beat().or(moving);
+        Some(beat.map_or(due, |beat| due.min(self.stepped + beat)))
     }
 
     fn snapshot(&self) -> Option<Vec<Record>> {
@@ -141,7 +154,7 @@ impl ArmNode {
         let scene_changed = settled.is_some();
         Self {
             world: World::new(&config.arm.robot, &config.scene),
-            publisher: Publisher::new(config.arm.joint_rate_hz, config.arm.time_scale),
+            publisher: Publisher::new(&config.arm),
             state: settled.unwrap_or(state),
             driver,
             executor: Executor::default(),
@@ -152,6 +165,7 @@ impl ArmNode {
             recorded: Time(0),
             urgent: false,
             scene_changed,
+            hindrance: Hindrance::None,
             ending: false,
             config,
         }
@@ -182,6 +196,7 @@ impl ArmNode {
     fn tick(&mut self, now: Time, fx: &mut Fx) {
         self.urgent = false;
         let seconds = self.passed_s(now);
+        self.feel(now, fx);
         self.decide(now, fx);
         self.step(seconds, now, fx);
         self.hint(now, fx);
@@ -189,6 +204,7 @@ impl ArmNode {
             self.record(Cause::Shutdown, now, fx);
             fx.exit();
         }
+        self.driver.end_pass(now).into_iter().for_each(|order| fx.publish(Out::Robot(order)));
         self.publish(now, fx);
     }
 
@@ -201,6 +217,7 @@ impl ArmNode {
             executor: &self.executor,
             world: &self.world,
             aimed: aims.then_some(self.act.id),
+            hindrance: self.driver.hindrance(),
         };
         self.publisher.tick(&facts, now, fx);
     }

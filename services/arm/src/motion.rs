@@ -1,7 +1,8 @@
 //! Time passes: the program goes on, and the pick with it from phase to phase.
 
+use crate::driver::Fault;
 use crate::executor::{Progress, Purpose, StepKind};
-use crate::state::{Cause, side};
+use crate::state::Cause;
 use crate::{ArmNode, Fx};
 use kinematics::Limb;
 use node::{Span, Time};
@@ -32,6 +33,7 @@ impl ArmNode {
             match self.executor.advance(seconds, self.driver.as_mut()) {
                 Progress::Under => return,
                 Progress::Halted => return self.record(Cause::Moved, now, fx),
+                Progress::Failed(fault) => return self.block(&fault, now, fx),
                 Progress::Ended(kind, left_s) => {
                     self.ended(kind, purpose, now, fx);
                     seconds = left_s;
@@ -70,12 +72,42 @@ impl ArmNode {
         let measured = self.driver.measured();
         let Some(object) = self.state.open_pick().map(|pick| pick.object) else { return };
         // A gripper that cannot tell is trusted as long as nothing has interrupted it.
-        if measured.holding[side(limb)] == Some(false) {
-            tracing::error!("the fingers have closed on nothing");
-            return self.end(PickOutcome::Interrupted, now, fx);
+        if measured.holds(limb) == Some(false) {
+            return self.miss(now, fx);
         }
         self.state.held = self.world.grasped(object, limb, &measured);
         self.enter(PickPhase::Holding, limb, now, fx);
+    }
+
+    /// The fingers have closed on nothing. The gripper goes up and comes down once more, as often
+    /// as is tried; then the pick is over, with nothing in the gripper.
+    fn miss(&mut self, now: Time, fx: &mut Fx) {
+        self.state.misses += 1;
+        let (misses, attempts) = (self.state.misses, self.config.arm.grasp.attempts);
+        self.executor.stand();
+        if misses < attempts {
+            tracing::warn!(misses, attempts, "the fingers have closed on nothing; once more");
+            self.urgent = true;
+            return self.record(Cause::Missed, now, fx);
+        }
+        tracing::error!(misses, "the fingers have closed on nothing; the grasp is given up");
+        self.end(PickOutcome::Missed, now, fx);
+    }
+
+    /// The robot does not do what it is commanded: it is held where it is until a person has looked.
+    pub(crate) fn block(&mut self, fault: &Fault, now: Time, fx: &mut Fx) {
+        tracing::error!(
+            %fault,
+            "the arm halts; look what is in its way, then: whichone resume-motion"
+        );
+        self.executor.stand();
+        self.driver.hold_here();
+        if self.state.open_pick().is_some() {
+            self.end(PickOutcome::Blocked, now, fx);
+        } else {
+            self.state.waits_for_person = true;
+            self.record(Cause::Blocked, now, fx);
+        }
     }
 
     fn enter(&mut self, phase: PickPhase, limb: Limb, now: Time, fx: &mut Fx) {
@@ -94,7 +126,8 @@ impl ArmNode {
         let Some(pick) = &mut self.state.pick else { return };
         (pick.phase, pick.outcome) = (PickPhase::Done, outcome);
         tracing::info!(id = ?pick.id, object = pick.object.0, ?outcome, "pick is over");
-        self.state.waits_for_person = outcome == PickOutcome::Interrupted;
+        let asks_for_person = [PickOutcome::Interrupted, PickOutcome::Blocked];
+        self.state.waits_for_person = asks_for_person.contains(&outcome);
         self.urgent = true;
         self.record(Cause::Ended, now, fx);
     }

@@ -91,7 +91,7 @@ impl ArmNode {
     ) {
         self.person_has_looked();
         self.state.pick = Some(Pick { id, object, phase, outcome });
-        self.state.limb = None;
+        (self.state.limb, self.state.misses) = (None, 0);
         self.urgent = true;
     }
 

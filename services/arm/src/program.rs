@@ -1,9 +1,10 @@
 //! Turns what is to be done into programs, from wherever the arm stands.
 
-use crate::driver::{Fingers, Measured};
+use crate::driver::{Fingers, Grip, Measured};
 use crate::executor::{Program, Purpose, Step, StepKind};
 use crate::state::{ArmState, Held, side};
 use crate::world::{World, from_array};
+use dialogue::Rng;
 use kinematics::{
     ArmShape, Arms, Cuboid, Limb, MotionLimits, PickPhase as PickStage, PlanError, PlanSettings,
     Robot, Stage, Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_return,
@@ -12,12 +13,15 @@ use nalgebra::{Translation3, Vector3};
 use protocol::pick::Pick;
 use protocol::{PickId, PickPhase};
 use scene::ObjectId;
+use settings::Grasps;
 use std::collections::VecDeque;
 
 /// Everything that a plan depends on.
 pub(crate) struct Planner<'a> {
     pub(crate) robot: &'a Robot,
     pub(crate) settings: &'a PlanSettings,
+    /// How grasps are tried.
+    pub(crate) grasps: &'a Grasps,
     /// The limb to be used; none: the better one.
     pub(crate) limb: Option<Limb>,
     pub(crate) world: &'a World,
@@ -48,6 +52,8 @@ const DESCENT_S: f64 = 1.0;
 const SETTLE_S: f64 = 0.2;
 /// The gripper is at the hand over when it is this near, metres.
 const HAND_OVER_M: f64 = 0.005;
+/// How far the gripper moves with a joint at most, metres per radian.
+const REACH_M: f64 = 1.2;
 /// How far the gripper goes up before it goes to rest, where there is no way from lower, metres.
 const RISES_M: [f64; 2] = [0.05, 0.15];
 /// How far before and after a waypoint a corner is rounded, radians of joint distance.
@@ -71,7 +77,7 @@ impl Planner<'_> {
             steps.extend(self.open_first(plan.limb(), stages[0].motion.duration_s()));
         }
         steps.iter_mut().for_each(|step| step.phase = Some(PickPhase::Moving));
-        steps.extend(stages.iter().map(pick_step));
+        steps.extend(stages.iter().map(|stage| self.pick_step(stage)));
         Ok(Program { purpose: Purpose::Pick(pick.id), limb: plan.limb(), steps })
     }
 
@@ -90,7 +96,7 @@ impl Planner<'_> {
             &others,
             self.settings,
         )?;
-        let steps = plan.timeline.stages().iter().map(pick_step).collect();
+        let steps = plan.timeline.stages().iter().map(|stage| self.pick_step(stage)).collect();
         Ok(Program { purpose: Purpose::Pick(pick), limb: held.limb, steps })
     }
 
@@ -145,7 +151,7 @@ impl Planner<'_> {
         let mut steps = start.steps;
         steps.extend(plan.timeline.stages().iter().map(|stage| Step {
             fingers: if holds { Fingers::Stay } else { Fingers::Open(stage.width_m.1) },
-            ..pick_step(stage)
+            ..self.pick_step(stage)
         }));
         Ok(Program { purpose: Purpose::Return, limb, steps })
     }
@@ -154,11 +160,12 @@ impl Planner<'_> {
     pub(crate) fn is_at_hand_over(&self, limb: Limb) -> bool {
         let [x, y, z] = self.settings.hand_over_xyz_m;
         let place = Vector3::new(x, limb.side() * y, z);
-        (self.tip(limb).vector - place).norm() < HAND_OVER_M
+        let tolerance_m = HAND_OVER_M + REACH_M * self.measured.accuracy_rad;
+        (self.tip(limb).vector - place).norm() < tolerance_m
     }
 
     fn refuse_other(&self, limb: Limb) -> Result<(), Refusal> {
-        let rests = self.measured.posture.is_at_rest(self.robot, limb.other());
+        let rests = self.measured.is_at_rest(self.robot, limb.other());
         if rests { Ok(()) } else { Err(Refusal::OtherLimb) }
     }
 
@@ -219,9 +226,7 @@ impl Planner<'_> {
     fn start(&self, fetched: Option<ObjectId>, rise_m: f64) -> Start {
         let mut arms = self.arms();
         let mut steps = VecDeque::new();
-        let away = Limb::BOTH
-            .into_iter()
-            .find(|limb| !self.measured.posture.is_at_rest(self.robot, *limb));
+        let away = Limb::BOTH.into_iter().find(|limb| !self.measured.is_at_rest(self.robot, *limb));
         let others = self.world.obstacles(self.state, fetched);
         let Some(limb) = away else { return Start { steps, arms, obstacles: others } };
         if let Some(up) = self.up(limb, rise_m) {
@@ -261,16 +266,31 @@ fn touches(shape: &ArmShape<'_>, cuboid: &Cuboid) -> bool {
     shape.to_cuboid("object", cuboid, 0.0).is_some()
 }
 
-fn pick_step(stage: &Stage<PickStage>) -> Step {
-    let (_, width_m) = stage.width_m;
-    let (kind, phase, fingers) = match stage.phase {
-        PickStage::Approach => (StepKind::Approach, PickPhase::Moving, Fingers::Open(width_m)),
-        PickStage::Close => (StepKind::Close, PickPhase::Closing, Fingers::Grip(width_m)),
-        PickStage::Lift => (StepKind::Lift, PickPhase::Holding, Fingers::Grip(width_m)),
-        PickStage::HandOver => (StepKind::HandOver, PickPhase::Holding, Fingers::Grip(width_m)),
-        PickStage::Release => (StepKind::Release, PickPhase::Holding, Fingers::Open(width_m)),
-        PickStage::Return => (StepKind::Return, PickPhase::Done, Fingers::Open(width_m)),
-    };
-    let phase = Some(phase).filter(|phase| *phase != PickPhase::Done);
-    Step { kind, phase, motion: stage.motion.clone(), fingers }
+impl Planner<'_> {
+    fn pick_step(&self, stage: &Stage<PickStage>) -> Step {
+        let (_, width_m) = stage.width_m;
+        let (grip, open) = (Fingers::Grip(self.grip(width_m)), Fingers::Open(width_m));
+        let (kind, phase, fingers) = match stage.phase {
+            PickStage::Approach => (StepKind::Approach, PickPhase::Moving, open),
+            PickStage::Close => (StepKind::Close, PickPhase::Closing, grip),
+            PickStage::Lift => (StepKind::Lift, PickPhase::Holding, grip),
+            PickStage::HandOver => (StepKind::HandOver, PickPhase::Holding, grip),
+            PickStage::Release => (StepKind::Release, PickPhase::Holding, open),
+            PickStage::Return => (StepKind::Return, PickPhase::Done, open),
+        };
+        let phase = Some(phase).filter(|phase| *phase != PickPhase::Done);
+        Step { kind, phase, motion: stage.motion.clone(), fingers }
+    }
+
+    /// What the fingers close on. Where the object stands is drawn from the pick and the attempt
+    /// at it, so that an arm that was killed meets it where it was.
+    fn grip(&self, object_m: f64) -> Grip {
+        let key = self
+            .state
+            .pick
+            .map_or(0, |pick| (pick.id.interaction.0 << 16) ^ (u64::from(pick.id.attempt) << 8));
+        let mut random = Rng::new(key ^ u64::from(self.state.misses));
+        let uniform = [random.uniform(), random.uniform()];
+        Grip { object_m, offset_m: gripper::placement_error_m(self.grasps.error_m, uniform) }
+    }
 }

@@ -1,13 +1,13 @@
 //! What the arm tells the others, and how often.
 
-use crate::driver::Measured;
+use crate::driver::{Measured, Source};
 use crate::executor::{Executor, Purpose};
 use crate::state::{ArmState, side};
 use crate::world::World;
 use crate::{Fx, Out};
 use kinematics::{JOINTS, Limb, gripper};
 use node::{Span, Time};
-use protocol::{ActId, ArmStatus, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates};
+use protocol::{ActId, ArmStatus, Hindrance, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates};
 
 /// How often the status is sent again while nothing changes.
 const STATUS_EVERY: Span = Span::from_ms(250);
@@ -20,7 +20,10 @@ pub(crate) struct Publisher {
     sources: [Option<(usize, usize)>; JOINT_STATE_LEN],
     /// Simulated seconds per second.
     time_scale: f64,
+    /// The beat of a model's joint states; sensors have their own.
     joints: Every,
+    /// When the sensors' joints were so that were published last.
+    joints_at: Time,
     world_sent: Option<Time>,
     status_due: Time,
     status: ArmStatus,
@@ -33,14 +36,16 @@ pub(crate) struct Facts<'a> {
     pub(crate) executor: &'a Executor,
     pub(crate) world: &'a World,
     pub(crate) aimed: Option<ActId>,
+    pub(crate) hindrance: Hindrance,
 }
 
 impl Publisher {
-    pub(crate) fn new(joint_rate_hz: f64, time_scale: f64) -> Self {
+    pub(crate) fn new(arm: &settings::Arm) -> Self {
         Self {
             sources: JOINT_STATE_NAMES.map(source),
-            time_scale,
-            joints: Every { period: Span::from_s(1.0 / joint_rate_hz), next: Time(0) },
+            time_scale: arm.time_scale,
+            joints: Every { period: Span::from_s(1.0 / arm.joint_rate_hz), next: Time(0) },
+            joints_at: Time(0),
             world_sent: None,
             status_due: Time(0),
             status: ArmStatus::default(),
@@ -56,8 +61,15 @@ impl Publisher {
 
     /// Publishes what is due.
     pub(crate) fn tick(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
-        if self.joints.is_due(now) {
-            fx.publish(Out::Joints(Box::new(self.joint_states(facts.measured, now))));
+        let is_due = self.joints.is_due(now);
+        let at = match facts.measured.at {
+            Source::Model => is_due.then_some(now),
+            Source::Sensors(at) => (at > self.joints_at).then_some(at),
+            Source::Memory => None,
+        };
+        if let Some(at) = at {
+            self.joints_at = at;
+            fx.publish(Out::Joints(Box::new(self.joint_states(facts.measured, at))));
         }
         let (moving, standing) = WORLD_EVERY;
         let world_every = if facts.executor.is_standing() { standing } else { moving };
@@ -95,6 +107,7 @@ impl Publisher {
             aimed_act: facts.aimed.map_or(0, |act| act.0),
             stopped: state.stopped.into(),
             moving: (!executor.is_standing()).into(),
+            hindrance: facts.hindrance.code(),
             remaining_s: seconds / self.time_scale,
             ..ArmStatus::default()
         };
@@ -109,12 +122,13 @@ impl Publisher {
         }
     }
 
-    fn joint_states(&self, measured: &Measured, now: Time) -> JointStates {
-        let mut states = JointStates { at_ns: now.ns(), ..JointStates::default() };
+    fn joint_states(&self, measured: &Measured, at: Time) -> JointStates {
+        let mut states = JointStates { at_ns: at.ns(), ..JointStates::default() };
         for (entry, source) in self.sources.iter().enumerate() {
             let Some((limb, joint)) = *source else { continue };
             states.position[entry] = measured.posture.joints[limb][joint];
             states.velocity[entry] = measured.velocity[limb][joint] * self.time_scale;
+            states.effort[entry] = measured.effort[limb][joint];
         }
         states.gripper_percent = measured.posture.width_m.map(gripper::percent);
         states

@@ -2,11 +2,14 @@
 
 use crate::{ArmNode, Config, In, Out};
 use protocol::{ArmStatus, JointStates, MotionCommand, RobotAct, Service, WorldView, topics};
+use robot::RobotTopics;
 use runtime::bus::{EncodedWriter, PortError, Reader, Writer};
 use runtime::driver::{Context, Program, Shell};
 use runtime::exit::Failure;
 use runtime::lifecycle::Environment;
-use settings::Settings;
+use settings::{Driver, Settings};
+
+mod robot;
 
 /// The arm as a program.
 #[derive(Debug)]
@@ -14,7 +17,7 @@ pub struct ArmProgram;
 
 impl Program for ArmProgram {
     const SERVICE: Service = Service::Arm;
-    const RECORD: Option<&'static str> = Some("arm/1");
+    const RECORD: Option<&'static str> = Some("arm/2");
     const ABOUT: &'static str = "fetches objects and points at them, and stops when told";
     type Node = ArmNode;
     type Shell = ArmShell;
@@ -32,23 +35,28 @@ pub struct ArmShell {
     status: Writer<ArmStatus>,
     joints: Writer<JointStates>,
     world: EncodedWriter<WorldView>,
+    /// The robot's own topics, where there is a robot.
+    robot: Option<RobotTopics>,
 }
 
 impl Shell<ArmNode> for ArmShell {
     fn open(context: &Context<'_, In>) -> Result<Self, Failure> {
         let bus = context.bus;
+        let robot = (context.settings.arm.driver == Driver::Baxter).then(|| RobotTopics::open(bus));
         Ok(Self {
             motion: bus.reader(&topics::MOTION)?,
             acts: bus.reader(&topics::ACT)?,
             status: bus.writer(&topics::STATUS)?,
             joints: bus.writer(&topics::JOINTS)?,
             world: bus.encoded_writer(&topics::WORLD)?,
+            robot: robot.transpose()?,
         })
     }
 
     fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
         self.motion.drain(|message| take(In::Motion(*message)))?;
-        self.acts.drain(|message| take(In::Act(Box::new(*message))))
+        self.acts.drain(|message| take(In::Act(Box::new(*message))))?;
+        self.robot.iter().try_for_each(|robot| robot.drain(|told| take(In::Robot(told))))
     }
 
     fn publish(&mut self, output: Out) -> Result<(), PortError> {
@@ -56,6 +64,7 @@ impl Shell<ArmNode> for ArmShell {
             Out::Status(status) => self.status.send(&status),
             Out::Joints(joints) => self.joints.send(&joints),
             Out::World(world) => self.world.send(&world),
+            Out::Robot(order) => self.robot.iter().try_for_each(|robot| robot.send(&order)),
         }
     }
 }

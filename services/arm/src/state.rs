@@ -19,6 +19,8 @@ pub struct ArmState {
     pub pick: Option<Pick>,
     /// The limb that the latest pick moves; none before it moves.
     pub limb: Option<Limb>,
+    /// How often the fingers have closed on nothing in the latest pick.
+    pub misses: u32,
     /// What the gripper holds. Only while the pick is `Holding`, or was interrupted then.
     pub held: Option<Held>,
     /// Objects that a person has taken and nobody has put back, in order.
@@ -63,14 +65,19 @@ pub enum Cause {
     Ordered,
     /// The pick has come to its next phase; the motion of that phase follows.
     Phase,
+    /// The fingers have closed on nothing, and the grasp is tried again.
+    Missed,
     /// The pick is over.
     Ended,
-    /// The motion stop was latched or released.
+    /// The motion stop was latched or released, by order or because the robot's own emergency stop
+    /// holds.
     Motion(MotionOrder),
     /// A hint: how far a motion has come.
     Moved,
     /// Both limbs are at rest, and people have put back what they put back.
     Rested,
+    /// The robot did not move as it was commanded to; a person must look.
+    Blocked,
     /// The service was told to end.
     Shutdown,
 }
@@ -86,9 +93,6 @@ pub struct Record {
     pub state: ArmState,
 }
 
-/// Joint difference from the neutral posture that still counts as rest, radians.
-const REST_RAD: f64 = 1e-6;
-
 impl ArmState {
     /// The state before anything was ordered: both limbs at rest, fingers `open_width_m` apart.
     pub fn first(robot: &Robot, scene_key: u64, open_width_m: f64) -> Self {
@@ -98,6 +102,7 @@ impl ArmState {
             posture: Posture { joints, width_m: [open_width_m; 2] },
             pick: None,
             limb: None,
+            misses: 0,
             held: None,
             gone: Vec::new(),
             stopped: false,
@@ -113,10 +118,10 @@ impl ArmState {
 }
 
 impl Posture {
-    /// Whether the limb is in the neutral posture, where it rests.
-    pub fn is_at_rest(&self, robot: &Robot, limb: Limb) -> bool {
+    /// Whether the limb is in the neutral posture, where it rests, each joint to `accuracy_rad`.
+    pub fn is_at_rest(&self, robot: &Robot, limb: Limb, accuracy_rad: f64) -> bool {
         let (joints, neutral) = (&self.joints[side(limb)], &robot.arm(limb).neutral);
-        joints.iter().zip(neutral).all(|(q, rest)| (q - rest).abs() < REST_RAD)
+        joints.iter().zip(neutral).all(|(q, rest)| (q - rest).abs() < accuracy_rad)
     }
 }
 

@@ -1,5 +1,9 @@
 //! The electric gripper: how wide it is, how long it takes, and what it holds.
 
+mod success;
+
+pub use success::{catches, is_felt, placement_error_m, success_probability, tolerance_m};
+
 use nalgebra::Isometry3;
 
 use crate::baxter::FINGER_TRAVEL_M;

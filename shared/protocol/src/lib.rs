@@ -11,6 +11,7 @@ pub mod messages;
 pub mod outbox;
 pub mod payloads;
 pub mod pick;
+pub mod robot;
 pub mod schema;
 pub mod text;
 pub mod topics;

@@ -150,7 +150,10 @@ impl Outcome {
         match outcome {
             PickOutcome::Pending => None,
             PickOutcome::Delivered => Some(Self::Delivered),
-            PickOutcome::Unreachable | PickOutcome::Interrupted => Some(Self::Failed),
+            PickOutcome::Unreachable
+            | PickOutcome::Interrupted
+            | PickOutcome::Missed
+            | PickOutcome::Blocked => Some(Self::Failed),
             PickOutcome::Cancelled => Some(Self::Cancelled),
         }
     }

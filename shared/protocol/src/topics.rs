@@ -18,11 +18,14 @@ pub enum Service {
     Policy,
     /// Moves.
     Arm,
+    /// The robot's side of its own topics, where there is one: a bridge to it, or its simulation.
+    Robot,
 }
 
 impl Service {
     /// Every service, in start order.
-    pub const ALL: [Self; 4] = [Self::Arm, Self::Policy, Self::Grounding, Self::Speech];
+    pub const ALL: [Self; 5] =
+        [Self::Robot, Self::Arm, Self::Policy, Self::Grounding, Self::Speech];
 
     /// Its name in configuration, journals and status.
     pub const fn name(self) -> &'static str {
@@ -31,6 +34,7 @@ impl Service {
             Self::Grounding => "grounding",
             Self::Policy => "policy",
             Self::Arm => "arm",
+            Self::Robot => "baxter",
         }
     }
 }
@@ -150,7 +154,95 @@ pub const MOTION: Topic = Topic {
     ..topic::<MotionCommand>("arm/motion", None)
 };
 
-/// Every topic of the group.
+/// The topics between the arm and a Baxter, or its simulation.
+pub mod robot {
+    use super::*;
+    use crate::robot::*;
+
+    const fn told<T: Schema>(name: &'static str) -> Topic {
+        Topic { buffer: 4, history: 0, ..topic::<T>(name, Some(Service::Arm)) }
+    }
+
+    const fn measured<T: Schema>(name: &'static str) -> Topic {
+        topic::<T>(name, Some(Service::Robot))
+    }
+
+    /// Robot to arm, 100 Hz; each finger's joint in a message of its own.
+    pub const JOINT_STATES: Topic = Topic {
+        readers: &[Service::Arm],
+        buffer: WINDOW,
+        ..measured::<JointState>("robot/joint_states")
+    };
+    /// Robot to arm.
+    pub const STATE: Topic = measured::<AssemblyState>("robot/state");
+    /// Arm to robot, 100 Hz, left and right.
+    pub const JOINT_COMMAND: [Topic; 2] = [
+        told::<JointCommand>("robot/limb/left/joint_command"),
+        told::<JointCommand>("robot/limb/right/joint_command"),
+    ];
+    /// Arm to robot while a limb moves, left and right.
+    pub const INVERSE_DYNAMICS_COMMAND: [Topic; 2] = [
+        told::<JointTrajectoryPoint>("robot/limb/left/inverse_dynamics_command"),
+        told::<JointTrajectoryPoint>("robot/limb/right/inverse_dynamics_command"),
+    ];
+    /// Arm to robot, left and right.
+    pub const SET_SPEED_RATIO: [Topic; 2] = [
+        told::<SpeedRatio>("robot/limb/left/set_speed_ratio"),
+        told::<SpeedRatio>("robot/limb/right/set_speed_ratio"),
+    ];
+    /// Robot to clients, 100 Hz, left and right.
+    pub const ENDPOINT_STATE: [Topic; 2] = [
+        measured::<EndpointState>("robot/limb/left/endpoint_state"),
+        measured::<EndpointState>("robot/limb/right/endpoint_state"),
+    ];
+    /// Arm to robot, left and right.
+    pub const GRIPPER_COMMAND: [Topic; 2] = [
+        told::<EndEffectorCommand>("robot/end_effector/left_gripper/command"),
+        told::<EndEffectorCommand>("robot/end_effector/right_gripper/command"),
+    ];
+    /// Robot to arm, left and right.
+    pub const GRIPPER_STATE: [Topic; 2] = [
+        measured::<EndEffectorState>("robot/end_effector/left_gripper/state"),
+        measured::<EndEffectorState>("robot/end_effector/right_gripper/state"),
+    ];
+    /// Robot to arm, left and right.
+    pub const GRIPPER_PROPERTIES: [Topic; 2] = [
+        measured::<EndEffectorProperties>("robot/end_effector/left_gripper/properties"),
+        measured::<EndEffectorProperties>("robot/end_effector/right_gripper/properties"),
+    ];
+    /// Clients to the simulated robot: what people do to it, and faults.
+    pub const DRILL: Topic = Topic {
+        readers: &[Service::Robot],
+        writers_max: CLIENTS_MAX,
+        buffer: WINDOW,
+        history: 0,
+        ..topic::<Drill>("robot/drill", None)
+    };
+
+    /// Every one of them.
+    pub const ALL: [Topic; 17] = [
+        JOINT_STATES,
+        STATE,
+        JOINT_COMMAND[0],
+        JOINT_COMMAND[1],
+        INVERSE_DYNAMICS_COMMAND[0],
+        INVERSE_DYNAMICS_COMMAND[1],
+        SET_SPEED_RATIO[0],
+        SET_SPEED_RATIO[1],
+        ENDPOINT_STATE[0],
+        ENDPOINT_STATE[1],
+        GRIPPER_COMMAND[0],
+        GRIPPER_COMMAND[1],
+        GRIPPER_STATE[0],
+        GRIPPER_STATE[1],
+        GRIPPER_PROPERTIES[0],
+        GRIPPER_PROPERTIES[1],
+        DRILL,
+    ];
+}
+
+/// Every topic that the group's services and clients share; those of [`robot`] are only used with a
+/// robot behind them.
 pub const ALL: [Topic; 13] = [
     INJECTION,
     RECEIPT,

@@ -1,6 +1,7 @@
 //! The wire layout is a contract with programs of other languages and builds: any change of it must
 //! be seen. `WHICHONE_BLESS=1 cargo test -p protocol` writes the golden file anew.
 
+use protocol::robot;
 use protocol::schema::{Field, Schema};
 use protocol::topics::{self, Topic};
 use std::fmt::Write;
@@ -33,6 +34,7 @@ fn describe_topic(topic: &Topic, text: &mut String) {
 fn layout() -> String {
     let mut text = String::from("# Topics\n\n");
     topics::ALL.iter().for_each(|topic| describe_topic(topic, &mut text));
+    topics::robot::ALL.iter().for_each(|topic| describe_topic(topic, &mut text));
     text.push_str("\n# Structs\n\n");
     describe::<protocol::Stamp>(&mut text);
     describe::<protocol::WireQuestion>(&mut text);
@@ -49,6 +51,16 @@ fn layout() -> String {
     describe::<protocol::ArmStatus>(&mut text);
     describe::<protocol::JointStates>(&mut text);
     describe::<protocol::MotionCommand>(&mut text);
+    describe::<robot::JointCommand>(&mut text);
+    describe::<robot::JointState>(&mut text);
+    describe::<robot::JointTrajectoryPoint>(&mut text);
+    describe::<robot::SpeedRatio>(&mut text);
+    describe::<robot::EndpointState>(&mut text);
+    describe::<robot::EndEffectorCommand>(&mut text);
+    describe::<robot::EndEffectorState>(&mut text);
+    describe::<robot::EndEffectorProperties>(&mut text);
+    describe::<robot::AssemblyState>(&mut text);
+    describe::<robot::Drill>(&mut text);
     text.push_str("# Encoded payloads\n\n");
     describe::<protocol::Injection>(&mut text);
     describe::<protocol::PolicyView>(&mut text);
@@ -91,12 +103,23 @@ fn no_struct_has_padding() {
     assert_without_padding::<protocol::ArmStatus>();
     assert_without_padding::<protocol::JointStates>();
     assert_without_padding::<protocol::MotionCommand>();
+    assert_without_padding::<robot::JointCommand>();
+    assert_without_padding::<robot::JointState>();
+    assert_without_padding::<robot::JointTrajectoryPoint>();
+    assert_without_padding::<robot::SpeedRatio>();
+    assert_without_padding::<robot::EndpointState>();
+    assert_without_padding::<robot::EndEffectorCommand>();
+    assert_without_padding::<robot::EndEffectorState>();
+    assert_without_padding::<robot::EndEffectorProperties>();
+    assert_without_padding::<robot::AssemblyState>();
+    assert_without_padding::<robot::Drill>();
 }
 
 #[test]
 fn topics_have_names_of_their_own_and_bounds_that_hold() {
-    for (i, topic) in topics::ALL.iter().enumerate() {
-        assert!(topics::ALL[i + 1..].iter().all(|other| other.name != topic.name));
+    let all: Vec<&Topic> = topics::ALL.iter().chain(&topics::robot::ALL).collect();
+    for (i, topic) in all.iter().enumerate() {
+        assert!(all[i + 1..].iter().all(|other| other.name != topic.name));
         assert!(topic.history <= topic.buffer, "{}: history would not fit", topic.name);
         assert_eq!(topic.writer.is_none(), topic.writers_max > 1, "{}: one writer", topic.name);
     }

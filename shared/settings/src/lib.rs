@@ -35,14 +35,14 @@ use std::path::Path;
 
 use scene::Scene;
 
-pub use crate::arm::{Arm, Driver};
+pub use crate::arm::{Arm, Baxter, Driver, Grasps, Simulated};
 pub use crate::dialogue::{Dialogue, Turns};
 pub use crate::gesture::Gesture;
 pub use crate::group::{Group, Log, RestartLimits};
 pub use crate::prior::{Prior, PriorObjects};
 pub use crate::problems::Problems;
 pub use crate::resolved::{Origin, Section};
-pub use crate::services::{BUILT_IN, Restart, Service};
+pub use crate::services::{BUILT_IN, OPTIONAL, Restart, Service};
 pub use crate::snapshot::SNAPSHOT_FILE;
 pub use crate::speech::{Recogniser, Speech, Voice};
 

@@ -10,6 +10,10 @@ use crate::problems::Report;
 /// The services that every group has, in the order in which they are listed.
 pub const BUILT_IN: [&str; 4] = ["speech", "grounding", "policy", "arm"];
 
+/// The services that a group may have beside those and whose programs come with them: the simulated
+/// Baxter.
+pub const OPTIONAL: [&str; 1] = ["baxter"];
+
 /// What a service is where nothing else is said.
 const EACH: &str = r#"
 after = []
@@ -29,8 +33,8 @@ const NAME_LEN_MAX: usize = 19;
 pub struct Service {
     /// Unique name: 1 to 19 of `a–z 0–9 -`.
     pub name: String,
-    /// Program and arguments. `None`, for built-in services only: the program `whichone-NAME`
-    /// beside this one.
+    /// Program and arguments. `None`, for built-in and optional services only: the program
+    /// `whichone-NAME` beside this one.
     pub command: Option<Vec<String>>,
     /// Services that must be ready before this one is started for the first time.
     pub after: Vec<String>,
@@ -84,7 +88,8 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Vec<Service> {
 
 fn one(name: &str, f: &mut Fields<'_>) -> Service {
     let command = f.optional_command("command");
-    if command.is_none() && !f.is_wrong("command") && !BUILT_IN.contains(&name) {
+    let knows_its_program = BUILT_IN.contains(&name) || OPTIONAL.contains(&name);
+    if command.is_none() && !f.is_wrong("command") && !knows_its_program {
         let cure = "write `command = [\"program\", \"argument\"]`";
         f.problem("command", "missing: only built-in services know their program", cure);
     }

@@ -110,14 +110,17 @@ fn without_a_sensor_an_uninterrupted_grasp_is_trusted() {
 #[test]
 fn fingers_that_close_on_nothing_are_no_grasp() {
     let mut machine = Machine::new(config_at(20.0));
-    machine.robot.miss();
+    machine.robot.miss(u32::MAX);
     machine.act(pick(1, 3));
     machine.run_until("over", |m| m.phase() == PickPhase::Done);
-    assert_eq!(machine.outcome(), PickOutcome::Interrupted);
-    assert_eq!(machine.node.state().held, None);
-    assert!(!machine.rests());
-    machine.motion(MotionOrder::Resume);
-    machine.run_until("a person has looked, so it goes to rest", Machine::rests);
+    assert_eq!(machine.outcome(), PickOutcome::Missed);
+    assert_eq!(machine.node.state().misses, machine.config.arm.grasp.attempts);
+    assert_eq!((machine.node.state().held, machine.robot.grasps()), (None, 0));
+    machine.run_until("it goes to rest by itself, with nothing to lose", Machine::rests);
+    machine.robot.miss(0);
+    machine.act(pick(2, 3));
+    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+    machine.assert_delivered(2, 3);
 }
 
 #[test]

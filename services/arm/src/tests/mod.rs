@@ -1,6 +1,7 @@
 //! The arm in a simulated process on a robot that outlives it.
 
 mod fetch;
+mod grasp;
 mod kills;
 mod orders;
 mod point;
@@ -8,6 +9,7 @@ mod robot;
 mod stop;
 mod telling;
 
+use crate::driver::ArmDriver;
 use crate::recover;
 use crate::state::{Record, side};
 use crate::{ArmNode, Config, In, Out};
@@ -163,6 +165,7 @@ impl Machine {
                 Out::Status(status) => self.statuses.push(status),
                 Out::Joints(joints) => self.joints.push(*joints),
                 Out::World(world) => self.worlds.push(*world),
+                Out::Robot(order) => panic!("a model is told nothing: {order:?}"),
             }
         }
     }
@@ -218,8 +221,8 @@ impl Machine {
     }
 
     fn rests(&self) -> bool {
-        let posture = self.robot.posture();
-        Limb::BOTH.into_iter().all(|limb| posture.is_at_rest(&self.config.arm.robot, limb))
+        let measured = self.robot.measured();
+        Limb::BOTH.into_iter().all(|limb| measured.is_at_rest(&self.config.arm.robot, limb))
     }
 
     fn tip(&self, limb: Limb) -> nalgebra::Isometry3<f64> {

@@ -26,8 +26,10 @@ struct Body {
     only_picks: bool,
     /// Whether the gripper can feel.
     feels: bool,
-    /// Whether there is anything to close on.
-    finds: bool,
+    /// How often the fingers will find nothing to close on.
+    misses: u32,
+    /// Whether the fingers were told to close.
+    closing: bool,
     grasps: u32,
     wrongs: Vec<String>,
 }
@@ -44,7 +46,8 @@ impl Robot {
             durable: state.pick,
             only_picks: false,
             feels: true,
-            finds: true,
+            misses: 0,
+            closing: false,
             grasps: 0,
             wrongs: Vec::new(),
         })))
@@ -63,8 +66,9 @@ impl Robot {
         self.0.borrow_mut().feels = false;
     }
 
-    pub(super) fn miss(&self) {
-        self.0.borrow_mut().finds = false;
+    /// The next grasps find nothing.
+    pub(super) fn miss(&self, times: u32) {
+        self.0.borrow_mut().misses = times;
     }
 
     /// The robot's own controller halts it when its commander falls silent.
@@ -95,7 +99,7 @@ impl ArmDriver for Robot {
             measured.velocity = [[0.0; 7]; 2];
         }
         for holding in &mut measured.holding {
-            *holding = holding.map(|holding| holding && body.finds).filter(|_| body.feels);
+            *holding = holding.filter(|_| body.feels);
         }
         measured
     }
@@ -105,7 +109,17 @@ impl ArmDriver for Robot {
         let i = side(command.limb);
         let before = body.arm.measured();
         body.check(command, &before, seconds);
-        body.arm.command(command, seconds);
+        let closes = matches!(command.fingers, Fingers::Grip(_));
+        let mut command = *command;
+        if let Fingers::Grip(grip) = &mut command.fingers
+            && body.misses > 0
+        {
+            grip.offset_m = 1.0;
+        }
+        let opens = body.closing && !closes;
+        body.misses = body.misses.saturating_sub(opens.into());
+        body.closing = closes;
+        body.arm.command(&command, seconds);
         body.velocity_is_zero = false;
         let after = body.arm.measured();
         body.grasps += u32::from(after.holding[i] == Some(true) && before.holding[i] != Some(true));

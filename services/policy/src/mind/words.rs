@@ -28,6 +28,12 @@ pub(super) fn ended(scene: &Scene, object: ObjectId, outcome: PickOutcome) -> St
         PickOutcome::Interrupted => {
             format!("I was interrupted while grasping the {it}. Please look before you ask again.")
         }
+        PickOutcome::Missed => {
+            format!("I could not get hold of the {it}. It may have moved a little.")
+        }
+        PickOutcome::Blocked => {
+            "My arm did not move as it should. Please look before you ask again.".to_owned()
+        }
         PickOutcome::Cancelled => "I have left it where it was.".to_owned(),
         PickOutcome::Pending => String::new(),
     }

@@ -1,4 +1,6 @@
-//! Amounts in words.
+//! Amounts and conditions in words.
+
+use protocol::Hindrance;
 
 /// A length of time, e.g. `340 ms`, `12.3 s`, `4 min`, `3 h 20 min`, `2 d 5 h`.
 pub(super) fn time(seconds: f64) -> String {
@@ -17,6 +19,20 @@ pub(super) fn time(seconds: f64) -> String {
 pub(super) fn memory(kib: u64) -> String {
     let mib = kib as f64 / 1024.0;
     if mib < 1024.0 { format!("{mib:.1} MiB") } else { format!("{:.1} GiB", mib / 1024.0) }
+}
+
+/// What keeps the robot from moving, where something does.
+pub(super) fn hindrance(hindrance: Hindrance) -> Option<&'static str> {
+    match hindrance {
+        Hindrance::None => None,
+        Hindrance::Stopped => Some("the robot's emergency stop holds"),
+        Hindrance::Error => Some("the robot has a fault"),
+        Hindrance::Disabled => Some("the robot is disabled"),
+        Hindrance::Unheard => Some("the robot is not heard"),
+        Hindrance::Stale => Some("the robot's joint states are too old"),
+        Hindrance::Gripper => Some("a gripper has a fault"),
+        Hindrance::Calibrating => Some("a gripper is being calibrated"),
+    }
 }
 
 /// A count with its noun, e.g. `1 question`, `2 questions`.

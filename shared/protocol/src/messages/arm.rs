@@ -46,6 +46,32 @@ wire_enum! {
         Interrupted = 3,
         /// Given up on the policy's or the operator's word, object put back or never touched.
         Cancelled = 4,
+        /// The fingers closed on nothing as often as is tried; nothing is held.
+        Missed = 5,
+        /// The robot did not follow its motion, or did not arrive; a person must look.
+        Blocked = 6,
+    }
+}
+
+wire_enum! {
+    /// What keeps the robot from moving at all, the gravest where there are several.
+    Hindrance {
+        /// Nothing.
+        None = 0,
+        /// An emergency stop holds.
+        Stopped = 1,
+        /// A part of the robot has a fault.
+        Error = 2,
+        /// The motors are off.
+        Disabled = 3,
+        /// The robot has not been heard yet, or not all of it.
+        Unheard = 4,
+        /// What was measured is too old to be relied on.
+        Stale = 5,
+        /// A gripper has a fault, or is not the electric one.
+        Gripper = 6,
+        /// A gripper is being calibrated.
+        Calibrating = 7,
     }
 }
 
@@ -68,8 +94,10 @@ wire_struct! {
         stopped: u8,
         /// 1 while any joint moves.
         moving: u8,
+        /// [`Hindrance`].
+        hindrance: u8,
         /// Zero.
-        reserved: [u8; 4],
+        reserved: [u8; 3],
         /// Expected seconds until the pick is done, 0 where none runs.
         remaining_s: f64,
     }

@@ -1,6 +1,6 @@
 //! The picture as lines of text.
 
-use protocol::{ArmStatus, PickOutcome, PickPhase, PolicyView};
+use protocol::{ArmStatus, Hindrance, PickOutcome, PickPhase, PolicyView};
 use scene::Scene;
 use supervisor::group::GroupState;
 use supervisor::machine::{Actual, Wanted};
@@ -172,6 +172,8 @@ fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
             Ok(PickOutcome::Unreachable) => format!("cannot reach {object}"),
             Ok(PickOutcome::Interrupted) => format!("was interrupted at {object}"),
             Ok(PickOutcome::Cancelled) => format!("has left {object} where it was"),
+            Ok(PickOutcome::Missed) => format!("could not get hold of {object}"),
+            Ok(PickOutcome::Blocked) => format!("was kept from moving to {object}"),
             _ => "is done".to_owned(),
         },
         Err(_) => "does what this program does not know".to_owned(),
@@ -179,6 +181,9 @@ fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
     if arm.stopped != 0 {
         let stop = style.paint(Ink::Red, "STOPPED (whichone resume-motion)");
         return format!("arm {does} {stop}");
+    }
+    if let Some(why) = Hindrance::from_code(arm.hindrance).ok().and_then(words::hindrance) {
+        return format!("arm {does} {}", style.paint(Ink::Red, why));
     }
     let moves = if arm.moving != 0 { ", moving" } else { "" };
     format!("arm {does}{moves}")

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use protocol::{ArmStatus, PickOutcome, PickPhase, Receipt, ReceiptStatus};
+use protocol::{ArmStatus, Hindrance, PickOutcome, PickPhase, Receipt, ReceiptStatus};
 use runtime::group::GroupPaths;
 use scene::{Scene, question_to_json};
 use serde_json::{Map, Value as Json, json};
@@ -144,6 +144,7 @@ fn arm_to_json(scene: &Scene, arm: &ArmStatus) -> Json {
         "outcome": PickOutcome::from_code(arm.outcome).ok(),
         "moving": arm.moving != 0,
         "stopped": arm.stopped != 0,
+        "hindrance": Hindrance::from_code(arm.hindrance).ok(),
         "remaining_s": arm.remaining_s,
     })
 }

@@ -1,0 +1,358 @@
+//! A Baxter behind its own topics.
+//!
+//! The driver holds the newest of what the robot told, and leaves what it is to be told. It is as
+//! pure as the arm itself: time comes with each call, messages go out with the pass.
+//!
+//! Joints are commanded in position mode, which keeps the robot's own collision avoidance; raw
+//! position mode is never used. Each limb gets a command in every pass, also while it stands: a
+//! limb that hears none for 0.2 s takes over the position that it happens to have.
+
+mod gripper;
+
+use super::{ArmDriver, Command, Fault, Fingers, Measured, Order, Source, Told};
+use crate::state::{ArmState, side};
+use gripper::{Condition, Gripper};
+use kinematics::{JOINTS, Joints, Limb, PositionLimits, Robot};
+use node::{Span, Time};
+use protocol::Hindrance;
+use protocol::robot::{
+    AssemblyState, JointCommand, JointMode, JointState, JointTrajectoryPoint, SpeedRatio,
+};
+use settings::Baxter;
+
+/// Longest time between two passes: a little more than between two joint states, which begin a pass
+/// themselves.
+const BEAT: Span = Span::from_ms(15);
+/// Shortest time between two commands to a limb.
+const COMMAND_EVERY: Span = Span::from_ms(5);
+/// Age beyond which the robot's own state says nothing.
+const STALE: Span = Span::from_ms(1_000);
+/// How often the robot is told the speed ratio; one that was restarted has forgotten it.
+const RATIO_EVERY: Span = Span::from_ms(1_000);
+/// How long fingers may take for what they were told, seconds: the SDK's own patience.
+const FINGERS_MAX_S: f64 = 5.0;
+/// A joint that is measured this far outside its limits stands on them, radians.
+const LIMIT_SLACK_RAD: f64 = 0.03;
+/// A joint state from further in the future than this has the stamp of another clock.
+const CLOCK_SLACK: Span = Span::from_ms(100);
+
+/// The driver.
+#[derive(Clone, Debug)]
+pub struct BaxterDriver {
+    settings: Baxter,
+    robot: Robot,
+    /// The limbs whose grippers are used, left first.
+    used: [bool; 2],
+    measured: Measured,
+    /// When the newest joint state was, and when that of another clock was complained about.
+    joints_at: Option<Time>,
+    assembly: Option<(AssemblyState, Time)>,
+    grippers: [Gripper; 2],
+    limbs: [Set; 2],
+    now: Time,
+    hindrance: Hindrance,
+    ratio_told: Option<Time>,
+    fresh: bool,
+}
+
+/// What a limb is commanded.
+#[derive(Clone, Copy, Debug, Default)]
+struct Set {
+    /// Where it is to be; none before it was heard, or since it could not be commanded.
+    q: Option<Joints>,
+    /// The command of this pass.
+    command: Option<Command>,
+    /// Whether it was moving in the pass before.
+    moved: bool,
+    sent: Option<Time>,
+    /// The goal at which it has arrived.
+    arrived: Option<Joints>,
+}
+
+impl BaxterDriver {
+    /// A driver that has heard nothing yet: until it does, the posture is the one that the journal
+    /// remembers.
+    pub fn new(arm: &settings::Arm, state: &ArmState) -> Self {
+        let settings = arm.baxter;
+        let still = [[0.0; 7]; 2];
+        let measured = Measured {
+            posture: state.posture,
+            velocity: still,
+            effort: still,
+            holding: [None; 2],
+            at: Source::Memory,
+            accuracy_rad: 2.0 * settings.goal_tolerance_rad,
+        };
+        Self {
+            settings,
+            robot: arm.robot.clone(),
+            used: Limb::BOTH.map(|own| arm.limb.is_none_or(|limb| limb == own)),
+            measured,
+            joints_at: None,
+            assembly: None,
+            grippers: Default::default(),
+            limbs: [Set::default(); 2],
+            now: Time(0),
+            hindrance: Hindrance::Unheard,
+            ratio_told: None,
+            fresh: false,
+        }
+    }
+
+    fn hear_joints(&mut self, state: &JointState, now: Time) {
+        let joints = match state.joints() {
+            Ok(joints) => joints,
+            Err(error) => return tracing::warn!(%error, "a joint state that makes no sense"),
+        };
+        let mut posture = self.measured.posture.joints;
+        let (mut velocity, mut effort) = (self.measured.velocity, self.measured.effort);
+        let mut found = 0;
+        for (name, [q, qd, torque]) in joints {
+            let Some((limb, joint)) = self.place(name) else { continue };
+            (posture[limb][joint], velocity[limb][joint]) = (q, qd);
+            effort[limb][joint] = torque;
+            found += 1;
+        }
+        // Messages of fingers, and of parts of the robot, say nothing about the arms as a whole.
+        if found < 2 * JOINTS.len() {
+            return;
+        }
+        let stamp = Time(state.stamp_ns);
+        if stamp > now + CLOCK_SLACK && self.joints_at.is_none() {
+            tracing::warn!("joint states are stamped by another clock; their arrival counts");
+        }
+        for limb in Limb::BOTH {
+            let limits = &self.robot.arm(limb).limits.position;
+            self.measured.posture.joints[side(limb)] = on_limits(&posture[side(limb)], limits);
+        }
+        (self.measured.velocity, self.measured.effort) = (velocity, effort);
+        let at = stamp.min(now);
+        self.measured.at = Source::Sensors(at);
+        self.joints_at = Some(at);
+        self.fresh = true;
+    }
+
+    /// Limb and joint of a joint's name.
+    fn place(&self, name: &str) -> Option<(usize, usize)> {
+        Limb::BOTH.into_iter().find_map(|limb| {
+            let names = &self.robot.arm(limb).joint_names;
+            Some((side(limb), names.iter().position(|own| own == name)?))
+        })
+    }
+
+    fn find_hindrance(&self, now: Time) -> Hindrance {
+        let Some((assembly, heard)) = &self.assembly else { return Hindrance::Unheard };
+        let Some(joints_at) = self.joints_at else { return Hindrance::Unheard };
+        if assembly.stopped != 0 {
+            return Hindrance::Stopped;
+        }
+        if assembly.error != 0 {
+            return Hindrance::Error;
+        }
+        if assembly.enabled == 0 {
+            return Hindrance::Disabled;
+        }
+        let stale = now.since(joints_at) > Span::from_s(self.settings.stale_s);
+        if stale || now.since(*heard) > STALE {
+            return Hindrance::Stale;
+        }
+        let conditions = self.used_grippers().map(|gripper| gripper.condition(now));
+        let worst = conditions.map(|condition| match condition {
+            Condition::Ready => (0, Hindrance::None),
+            Condition::Uncalibrated => (1, Hindrance::Calibrating),
+            Condition::Faulty => (2, Hindrance::Gripper),
+            Condition::Stale => (3, Hindrance::Stale),
+            Condition::Unheard => (4, Hindrance::Unheard),
+        });
+        worst.max_by_key(|(rank, _)| *rank).map_or(Hindrance::None, |(_, hindrance)| hindrance)
+    }
+
+    fn used_grippers(&self) -> impl Iterator<Item = &Gripper> {
+        self.grippers.iter().zip(self.used).filter_map(|(gripper, used)| used.then_some(gripper))
+    }
+
+    /// Whether the robot obeys commands at all.
+    fn obeys(&self) -> bool {
+        use Hindrance::{Calibrating, Gripper, None, Stale};
+        matches!(self.hindrance, None | Stale | Gripper | Calibrating)
+    }
+
+    fn measured_of(&self, limb: usize) -> Joints {
+        self.measured.posture.joints[limb]
+    }
+
+    /// The commands to one limb in this pass.
+    fn command_limb(&mut self, limb: Limb, now: Time, orders: &mut Vec<Order>) {
+        let i = side(limb);
+        let q = self.measured_of(i);
+        let (path, moving) = (self.settings.path_tolerance_rad, self.limbs[i].command.is_some());
+        let set = &mut self.limbs[i];
+        set.moved = moving;
+        let hold = set.q.unwrap_or(q);
+        // Somebody has taken a standing limb by its cuff and put it elsewhere: there it stays.
+        let hold = if !moving && furthest(&hold, &q).1 > path { q } else { hold };
+        set.q = Some(hold);
+        if set.sent.is_some_and(|sent| now.since(sent) < COMMAND_EVERY) {
+            return;
+        }
+        set.sent = Some(now);
+        let command = set.command.take();
+        if let Some(command) = command.filter(|_| self.settings.feed_forward) {
+            let point = JointTrajectoryPoint {
+                positions: command.q,
+                velocities: command.qd,
+                accelerations: command.qdd,
+                time_from_start_s: command.t_s,
+            };
+            orders.push(Order::FeedForward(limb, Box::new(point)));
+        }
+        let names = &self.robot.arm(limb).joint_names;
+        let joints: Vec<(&str, f64)> = names.iter().map(String::as_str).zip(hold).collect();
+        match JointCommand::new(JointMode::Position, &joints) {
+            Ok(message) => orders.push(Order::Joints(limb, Box::new(message))),
+            Err(error) => tracing::error!(%error, "a limb cannot be commanded"),
+        }
+    }
+
+    fn tell_ratio(&mut self, now: Time, orders: &mut Vec<Order>) {
+        if self.ratio_told.is_some_and(|told| now.since(told) < RATIO_EVERY) {
+            return;
+        }
+        self.ratio_told = Some(now);
+        let ratio = SpeedRatio { data: self.settings.speed_ratio };
+        orders.extend(Limb::BOTH.map(|limb| Order::SpeedRatio(limb, ratio)));
+    }
+}
+
+impl ArmDriver for BaxterDriver {
+    fn measured(&self) -> Measured {
+        self.measured
+    }
+
+    fn command(&mut self, command: &Command, _: f64) {
+        if !self.obeys() {
+            return;
+        }
+        let i = side(command.limb);
+        self.limbs[i].q = Some(command.q);
+        self.limbs[i].command = Some(*command);
+        self.grippers[i].want(command.fingers, self.now);
+    }
+
+    fn hear(&mut self, told: &Told, now: Time) {
+        match told {
+            Told::Joints(state) => self.hear_joints(state, now),
+            Told::Assembly(state) => self.assembly = Some((*state, now)),
+            Told::Gripper(limb, state) => {
+                let gripper = &mut self.grippers[side(*limb)];
+                gripper.hear_state(state, now);
+                if let Some(width_m) = gripper.width_m() {
+                    self.measured.posture.width_m[side(*limb)] = width_m;
+                }
+            }
+            Told::Properties(limb, properties) => {
+                self.grippers[side(*limb)].hear_properties(properties);
+            }
+        }
+    }
+
+    fn begin_pass(&mut self, now: Time, may_calibrate: [bool; 2]) {
+        (self.now, self.fresh) = (now, false);
+        self.hindrance = self.find_hindrance(now);
+        self.measured.holding = std::array::from_fn(|i| self.grippers[i].holding(now));
+        if !self.obeys() {
+            self.hold_here();
+            self.grippers.iter_mut().for_each(Gripper::forget);
+            return;
+        }
+        for (i, gripper) in self.grippers.iter_mut().enumerate() {
+            let uncalibrated = gripper.condition(now) == Condition::Uncalibrated;
+            if self.used[i] && may_calibrate[i] && uncalibrated {
+                gripper.calibrate(now);
+            }
+        }
+    }
+
+    fn end_pass(&mut self, now: Time) -> Vec<Order> {
+        let mut orders = Vec::new();
+        if !self.obeys() {
+            return orders;
+        }
+        self.tell_ratio(now, &mut orders);
+        Limb::BOTH.into_iter().for_each(|limb| self.command_limb(limb, now, &mut orders));
+        for limb in Limb::BOTH {
+            let due = self.grippers[side(limb)].due(now);
+            orders.extend(due.map(|message| Order::Gripper(limb, Box::new(message))));
+        }
+        orders
+    }
+
+    fn hindrance(&self) -> Hindrance {
+        self.hindrance
+    }
+
+    fn fault(&self) -> Option<Fault> {
+        Limb::BOTH.into_iter().find_map(|limb| {
+            let set = &self.limbs[side(limb)];
+            let (joint, error_rad) = furthest(&set.q?, &self.measured_of(side(limb)));
+            let tolerance_rad = self.settings.path_tolerance_rad;
+            let left = set.moved && error_rad > tolerance_rad;
+            left.then_some(Fault::Path { limb, joint, error_rad, tolerance_rad })
+        })
+    }
+
+    fn has_arrived(&mut self, command: &Command, late_s: f64) -> Result<bool, Fault> {
+        let (limb, i) = (command.limb, side(command.limb));
+        let (joint, error_rad) = furthest(&command.q, &self.measured_of(i));
+        let tolerance_rad = self.settings.goal_tolerance_rad;
+        let velocity = &self.measured.velocity[i];
+        let still = velocity.iter().all(|v| v.abs() < self.settings.still_rad_s);
+        // Once it has arrived only the fingers are waited for: noise takes nothing back.
+        let there = error_rad <= tolerance_rad && still || self.limbs[i].arrived == Some(command.q);
+        self.limbs[i].arrived = there.then_some(command.q);
+        if !there && late_s > self.settings.goal_time_s {
+            return Err(Fault::Goal { limb, joint, error_rad, tolerance_rad, late_s });
+        }
+        let gripper = &self.grippers[i];
+        let done = command.fingers == Fingers::Stay || gripper.has_settled(self.now);
+        if there && !done && late_s > FINGERS_MAX_S {
+            return Err(Fault::Fingers { limb, late_s });
+        }
+        Ok(there && done)
+    }
+
+    fn is_still(&self) -> bool {
+        let joints = self.measured.velocity.iter().flatten();
+        let fingers = self.grippers.iter().any(Gripper::is_moving);
+        joints.into_iter().all(|v| v.abs() < self.settings.still_rad_s) && !fingers
+    }
+
+    fn hold_here(&mut self) {
+        for set in &mut self.limbs {
+            (set.q, set.command, set.moved) = (None, None, false);
+        }
+    }
+
+    fn is_fresh(&self) -> bool {
+        self.fresh
+    }
+
+    fn beat(&self) -> Option<Span> {
+        Some(BEAT)
+    }
+}
+
+/// The joint at which two postures differ most, and by how much, radians.
+fn furthest(a: &Joints, b: &Joints) -> (&'static str, f64) {
+    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    let named = JOINTS.into_iter().zip(differences);
+    named.max_by(|(_, x), (_, y)| x.total_cmp(y)).unwrap_or(("", 0.0))
+}
+
+/// The posture with joints on their limits that are measured a little beyond them.
+fn on_limits(q: &Joints, limits: &PositionLimits) -> Joints {
+    let clamped = limits.clamp(q);
+    std::array::from_fn(|j| {
+        if (clamped[j] - q[j]).abs() <= LIMIT_SLACK_RAD { clamped[j] } else { q[j] }
+    })
+}

@@ -1,0 +1,69 @@
+//! The kinematic model of a robot in a simulated world.
+
+use super::{ArmDriver, Command, Fingers, Measured, Source};
+use crate::state::{ArmState, side};
+use kinematics::gripper;
+
+/// Distance of a joint from the neutral posture that still counts as rest, radians.
+const ACCURACY_RAD: f64 = 1e-6;
+
+/// The kinematic model: the joints are where they were commanded to be, the fingers move at their
+/// speed, and a grip takes hold where [`gripper::catches`] says so.
+#[derive(Clone, Debug)]
+pub struct KinematicArm {
+    measured: Measured,
+    /// Width at which each limb's closed fingers stop; none for open ones.
+    grip: [Option<f64>; 2],
+}
+
+impl KinematicArm {
+    /// The arm as the journal left it.
+    pub fn at(state: &ArmState) -> Self {
+        let posture = state.posture;
+        let mut grip = [None; 2];
+        if let Some(held) = &state.held {
+            grip[side(held.limb)] = Some(posture.width_m[side(held.limb)]);
+        }
+        let holding = grip.map(|grip| Some(grip.is_some()));
+        let still = [[0.0; 7]; 2];
+        let measured = Measured {
+            posture,
+            velocity: still,
+            effort: still,
+            holding,
+            at: Source::Model,
+            accuracy_rad: ACCURACY_RAD,
+        };
+        Self { measured, grip }
+    }
+}
+
+impl ArmDriver for KinematicArm {
+    fn measured(&self) -> Measured {
+        self.measured
+    }
+
+    fn command(&mut self, command: &Command, seconds: f64) {
+        let Self { measured, grip } = self;
+        let i = side(command.limb);
+        measured.posture.joints[i] = command.q;
+        measured.velocity[i] = command.qd;
+        let width_m = &mut measured.posture.width_m[i];
+        let target_m = match command.fingers {
+            Fingers::Stay => *width_m,
+            Fingers::Open(target_m) => {
+                grip[i] = None;
+                target_m
+            }
+            // What is between the fingers is decided as they begin to close.
+            Fingers::Grip(on) => *grip[i].get_or_insert_with(|| {
+                let caught = gripper::catches(*width_m, on.object_m, on.offset_m);
+                if caught { gripper::closed_on(on.object_m) } else { 0.0 }
+            }),
+        };
+        let travel_m = gripper::STROKE_M / gripper::STROKE_S * seconds;
+        *width_m += (target_m - *width_m).clamp(-travel_m, travel_m);
+        let closed = grip[i].is_some_and(|stop_m| *width_m <= stop_m + 1e-9);
+        measured.holding[i] = Some(closed && gripper::holds(*width_m));
+    }
+}

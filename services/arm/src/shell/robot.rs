@@ -1,0 +1,69 @@
+//! The arm's side of the robot's own topics.
+
+use crate::driver::{Order, Told};
+use crate::state::side;
+use kinematics::Limb;
+use protocol::robot::{
+    AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, JointCommand,
+    JointState, JointTrajectoryPoint, SpeedRatio,
+};
+use protocol::topics::robot;
+use runtime::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
+
+/// The robot's topics as the arm uses them; pairs are left and right.
+#[derive(Debug)]
+pub(super) struct RobotTopics {
+    joints: Reader<JointState>,
+    assembly: Reader<AssemblyState>,
+    grippers: [Reader<EndEffectorState>; 2],
+    properties: [Reader<EndEffectorProperties>; 2],
+    commands: [Writer<JointCommand>; 2],
+    feed_forward: [Writer<JointTrajectoryPoint>; 2],
+    ratios: [Writer<SpeedRatio>; 2],
+    fingers: [Writer<EndEffectorCommand>; 2],
+}
+
+impl RobotTopics {
+    pub(super) fn open(bus: &Bus) -> Result<Self, BusError> {
+        Ok(Self {
+            joints: bus.reader(&robot::JOINT_STATES)?,
+            assembly: bus.reader(&robot::STATE)?,
+            grippers: readers(bus, &robot::GRIPPER_STATE)?,
+            properties: readers(bus, &robot::GRIPPER_PROPERTIES)?,
+            commands: writers(bus, &robot::JOINT_COMMAND)?,
+            feed_forward: writers(bus, &robot::INVERSE_DYNAMICS_COMMAND)?,
+            ratios: writers(bus, &robot::SET_SPEED_RATIO)?,
+            fingers: writers(bus, &robot::GRIPPER_COMMAND)?,
+        })
+    }
+
+    pub(super) fn drain(&self, mut take: impl FnMut(Told)) -> Result<(), PortError> {
+        // The robot as a whole first: joints mean nothing on one that has been switched off.
+        self.assembly.drain(|state| take(Told::Assembly(*state)))?;
+        for limb in Limb::BOTH {
+            let i = side(limb);
+            self.properties[i].drain(|own| take(Told::Properties(limb, Box::new(*own))))?;
+            self.grippers[i].drain(|state| take(Told::Gripper(limb, Box::new(*state))))?;
+        }
+        self.joints.drain(|state| take(Told::Joints(Box::new(*state))))
+    }
+
+    pub(super) fn send(&self, order: &Order) -> Result<(), PortError> {
+        match order {
+            Order::Joints(limb, command) => self.commands[side(*limb)].send(command),
+            Order::FeedForward(limb, point) => self.feed_forward[side(*limb)].send(point),
+            Order::SpeedRatio(limb, ratio) => self.ratios[side(*limb)].send(ratio),
+            Order::Gripper(limb, command) => self.fingers[side(*limb)].send(command),
+        }
+    }
+}
+
+type Pair = [protocol::Topic; 2];
+
+fn readers<T: WireMessage>(bus: &Bus, [left, right]: &Pair) -> Result<[Reader<T>; 2], BusError> {
+    Ok([bus.reader(left)?, bus.reader(right)?])
+}
+
+fn writers<T: WireMessage>(bus: &Bus, [left, right]: &Pair) -> Result<[Writer<T>; 2], BusError> {
+    Ok([bus.writer(left)?, bus.writer(right)?])
+}

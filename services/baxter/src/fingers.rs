@@ -1,0 +1,225 @@
+//! One electric gripper.
+
+use kinematics::gripper::{self, DEAD_ZONE, STROKE_M, STROKE_S};
+use protocol::robot::{Command, EndEffectorCommand, EndEffectorState, Tristate};
+use serde::{Deserialize, Serialize};
+
+/// Force of fingers that hold something, percent: the SDK's holding force.
+const HOLDING_FORCE: f32 = 30.0;
+
+/// One gripper: fingers that move at their speed and stop at what they meet.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fingers {
+    /// Width between the fingers, metres.
+    pub width_m: f64,
+    /// Widths to go to, the next one first; none where nothing moves.
+    goals: Vec<f64>,
+    calibrated: bool,
+    calibrating: bool,
+    /// Width of what is between the fingers, where there is something.
+    object_m: Option<f64>,
+    gripping: bool,
+    missed: bool,
+    /// The last command that was handled: word, sender, number.
+    handled: (String, String, u32),
+}
+
+/// What the fingers have come to do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// They begin to close: what is between them is to be found out.
+    Closes,
+    /// They have stopped at what is between them.
+    Holds,
+    /// They have let go of it.
+    LetsGo,
+}
+
+impl Fingers {
+    /// Open fingers that nobody has calibrated.
+    pub fn new() -> Self {
+        Self {
+            width_m: STROKE_M,
+            goals: Vec::new(),
+            calibrated: false,
+            calibrating: false,
+            object_m: None,
+            gripping: false,
+            missed: false,
+            handled: Default::default(),
+        }
+    }
+
+    /// Whether they hold something.
+    pub fn is_gripping(&self) -> bool {
+        self.gripping
+    }
+
+    /// Takes a command. One that comes again, or that a gripper without calibration cannot obey,
+    /// changes nothing.
+    pub fn command(&mut self, message: &EndEffectorCommand) -> Option<Event> {
+        let command = match message.read() {
+            Ok(command) => command,
+            Err(error) => {
+                tracing::warn!(%error, "a gripper command that makes no sense is ignored");
+                return None;
+            }
+        };
+        let text = |text: &str| text.to_owned();
+        let sender = text(message.sender.as_str().unwrap_or_default());
+        let handled = (text(command.word()), sender, message.sequence);
+        if handled == self.handled {
+            return None;
+        }
+        if !self.calibrated && command != Command::Calibrate {
+            tracing::warn!(command = command.word(), "not calibrated; the command is ignored");
+            return None;
+        }
+        self.handled = handled;
+        match command {
+            Command::Calibrate => {
+                self.calibrated = false;
+                self.calibrating = true;
+                self.go(vec![STROKE_M, 0.0, STROKE_M])
+            }
+            Command::Go(percent) => self.go(vec![gripper::width_m(percent)]),
+            Command::Grip => self.go(vec![0.0]),
+            Command::Release => self.go(vec![STROKE_M]),
+            Command::Stop => {
+                self.goals.clear();
+                None
+            }
+        }
+    }
+
+    /// What is between the fingers as they begin to close: an object's width, or nothing.
+    pub fn meet(&mut self, object_m: Option<f64>) {
+        self.object_m = object_m;
+    }
+
+    /// Lets time pass.
+    pub fn advance(&mut self, seconds: f64) -> Option<Event> {
+        let goal_m = *self.goals.first()?;
+        let travel_m = STROKE_M / STROKE_S * seconds;
+        let stop_m = self.object_m.filter(|object_m| goal_m < *object_m);
+        let end_m = stop_m.unwrap_or(goal_m);
+        self.width_m += (end_m - self.width_m).clamp(-travel_m, travel_m);
+        if (self.width_m - end_m).abs() > 1e-9 {
+            return None;
+        }
+        self.goals.remove(0);
+        if !self.goals.is_empty() {
+            return None;
+        }
+        if std::mem::take(&mut self.calibrating) {
+            self.calibrated = true;
+            return None;
+        }
+        self.gripping = stop_m.is_some() && gripper::holds(self.width_m);
+        self.missed = !self.gripping;
+        self.gripping.then_some(Event::Holds)
+    }
+
+    /// What the gripper says of itself.
+    pub fn state(&self, timestamp_ns: u64, enabled: bool) -> EndEffectorState {
+        let is = |fact: bool| if fact { Tristate::True } else { Tristate::False }.code();
+        let moving = !self.goals.is_empty();
+        let (command, sender, sequence) = &self.handled;
+        EndEffectorState {
+            timestamp_ns,
+            id: 65_664,
+            enabled: is(enabled),
+            calibrated: is(self.calibrated),
+            ready: is(self.calibrated && !moving),
+            moving: is(moving),
+            gripping: is(self.gripping),
+            missed: is(self.missed),
+            error: is(false),
+            reverse: is(false),
+            position: gripper::percent(self.width_m) as f32,
+            force: if self.gripping { HOLDING_FORCE } else { 0.0 },
+            command_sequence: *sequence,
+            command: protocol::FixedText::truncated(command),
+            command_sender: protocol::FixedText::truncated(sender),
+        }
+    }
+
+    fn go(&mut self, goals: Vec<f64>) -> Option<Event> {
+        let goal_m = goals[0];
+        self.goals = goals;
+        let held = self.gripping;
+        if held && goal_m < self.width_m {
+            return None;
+        }
+        (self.gripping, self.missed) = (false, false);
+        if goal_m < self.width_m - DEAD_ZONE * STROKE_M {
+            return Some(Event::Closes);
+        }
+        self.object_m = None;
+        held.then_some(Event::LetsGo)
+    }
+}
+
+impl Default for Fingers {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn say(fingers: &mut Fingers, command: Command, sequence: u32) -> Option<Event> {
+        fingers.command(&EndEffectorCommand::new(0, command, "test", sequence))
+    }
+
+    fn calibrated() -> Fingers {
+        let mut fingers = Fingers::new();
+        assert_eq!(say(&mut fingers, Command::Go(50.0), 1), None);
+        assert_eq!(fingers.state(0, true).moving, 0, "nothing before it is calibrated");
+        say(&mut fingers, Command::Calibrate, 2);
+        (0..300).for_each(|_| assert_eq!(fingers.advance(0.01), None));
+        let state = fingers.state(0, true);
+        assert_eq!((state.calibrated, state.ready, state.command_sequence), (1, 1, 2));
+        fingers
+    }
+
+    #[test]
+    fn what_is_met_is_gripped_and_let_go_again() {
+        let mut fingers = calibrated();
+        assert_eq!(say(&mut fingers, Command::Grip, 3), Some(Event::Closes));
+        fingers.meet(Some(0.01));
+        let events: Vec<Event> = (0..100).filter_map(|_| fingers.advance(0.01)).collect();
+        let state = fingers.state(0, true);
+        assert_eq!((events, state.gripping, state.missed), (vec![Event::Holds], 1, 0));
+        assert!((state.position - 24.0).abs() < 0.1);
+        assert_eq!(say(&mut fingers, Command::Grip, 4), None, "it grips already");
+        assert_eq!(say(&mut fingers, Command::Go(100.0), 5), Some(Event::LetsGo));
+        assert_eq!(say(&mut fingers, Command::Go(100.0), 5), None, "it came twice");
+    }
+
+    #[test]
+    fn nothing_and_what_is_too_thin_are_missed() {
+        for object_m in [None, Some(0.001)] {
+            let mut fingers = calibrated();
+            say(&mut fingers, Command::Go(0.0), 3);
+            fingers.meet(object_m);
+            (0..110).for_each(|_| assert_eq!(fingers.advance(0.01), None));
+            let state = fingers.state(0, true);
+            assert_eq!((state.gripping, state.missed, state.moving), (0, 1, 0));
+        }
+    }
+
+    #[test]
+    fn stopped_fingers_stay_where_they_are() {
+        let mut fingers = calibrated();
+        say(&mut fingers, Command::Grip, 3);
+        fingers.advance(0.3);
+        say(&mut fingers, Command::Stop, 4);
+        let width_m = fingers.width_m;
+        fingers.advance(0.3);
+        assert_eq!(fingers.width_m, width_m);
+        assert!((width_m - 0.7 * STROKE_M).abs() < 1e-9);
+    }
+}

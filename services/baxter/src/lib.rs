@@ -1,0 +1,154 @@
+//! A simulated Baxter behind the robot's own topics, for those who have no other, and for tests of
+//! what happens when a real one fails.
+//!
+//! [`robot::Robot`] is the robot, pure and driven by time; [`BaxterNode`] makes a service of it. Its
+//! journal is no memory of the robot's computer but the world: joints, fingers and objects stay
+//! where they are while the process is dead.
+
+pub mod assembly;
+pub mod drill;
+pub mod fingers;
+pub mod robot;
+pub mod servo;
+pub mod shell;
+pub mod table;
+mod tell;
+
+use kinematics::Limb;
+use node::{Effects, Event, Node, NodeError, Span, Time};
+use protocol::robot::{
+    AssemblyState, Drill, EndEffectorCommand, EndEffectorProperties, EndEffectorState,
+    EndpointState, JointCommand, JointState, JointTrajectoryPoint, SpeedRatio,
+};
+use robot::{Body, Robot};
+use scene::Scene;
+
+/// What the robot is told.
+#[derive(Clone, Debug, PartialEq)]
+pub enum In {
+    /// `joint_command`.
+    Joints(Limb, Box<JointCommand>),
+    /// `inverse_dynamics_command`.
+    FeedForward(Limb, Box<JointTrajectoryPoint>),
+    /// `set_speed_ratio`.
+    SpeedRatio(Limb, SpeedRatio),
+    /// `end_effector/<limb>_gripper/command`.
+    Gripper(Limb, Box<EndEffectorCommand>),
+    /// What people do to it, and faults.
+    Drill(Drill),
+}
+
+/// What the robot tells.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Out {
+    /// `joint_states`.
+    Joints(Box<JointState>),
+    /// `state`.
+    Assembly(AssemblyState),
+    /// `endpoint_state`.
+    Endpoint(Limb, Box<EndpointState>),
+    /// `end_effector/<limb>_gripper/state`.
+    Gripper(Limb, Box<EndEffectorState>),
+    /// `end_effector/<limb>_gripper/properties`.
+    Properties(Limb, Box<EndEffectorProperties>),
+}
+
+/// What the robot is like.
+#[derive(Clone, Debug)]
+pub struct Config {
+    /// Its limbs.
+    pub robot: kinematics::Robot,
+    /// How its joints follow, and how it measures them.
+    pub simulated: settings::Simulated,
+    /// How far objects stand from their places across the fingers, metres, standard deviation.
+    pub grasp_error_m: f64,
+    /// Whether people put back what they were given once the robot rests.
+    pub restock: bool,
+    /// What stands round it.
+    pub scene: Scene,
+}
+
+/// Time between two beats.
+const BEAT: Span = Span::from_ms(10);
+/// How often the joints are remembered while they move.
+const REMEMBER_EVERY: Span = Span::from_ms(200);
+/// A joint that moved less than this has not moved, radians.
+const MOVED_RAD: f64 = 1e-3;
+
+/// The robot as a reducer.
+#[derive(Debug)]
+pub struct BaxterNode {
+    robot: Robot,
+    beat: u64,
+    next: Time,
+    remembered: (Body, Time),
+}
+
+impl Node for BaxterNode {
+    type Config = Config;
+    type In = In;
+    type Out = Out;
+    type Record = Body;
+
+    fn recover(config: Config, mut records: Vec<Body>) -> Result<Self, NodeError> {
+        let robot = Robot::new(config, records.pop());
+        let remembered = (robot.body(), Time(0));
+        Ok(Self { robot, beat: 0, next: Time(0), remembered })
+    }
+
+    fn on(&mut self, event: Event<In>, now: Time, fx: &mut Effects<Out, Body>) {
+        match event {
+            Event::Started => self.next = now,
+            Event::Message(message) => self.robot.hear(&message, now),
+            Event::Tick => self.tick(now, fx),
+            Event::Shutdown => {
+                fx.append(self.robot.body());
+                fx.exit();
+            }
+        }
+    }
+
+    fn deadline(&self) -> Option<Time> {
+        Some(self.next)
+    }
+
+    fn snapshot(&self) -> Option<Vec<Body>> {
+        Some(vec![self.robot.body()])
+    }
+}
+
+impl BaxterNode {
+    /// The robot, for tests.
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    fn tick(&mut self, now: Time, fx: &mut Effects<Out, Body>) {
+        self.robot.advance(now);
+        self.robot.tell(self.beat, now).into_iter().for_each(|told| fx.publish(told));
+        self.beat += 1;
+        self.next = self.next + BEAT;
+        if self.next <= now {
+            self.next = now + BEAT;
+        }
+        self.remember(now, fx);
+    }
+
+    /// Remembers what has changed: the joints now and then, everything else at once.
+    fn remember(&mut self, now: Time, fx: &mut Effects<Out, Body>) {
+        let body = self.robot.body();
+        let (last, at) = &self.remembered;
+        let other = body.assembly != last.assembly
+            || body.objects != last.objects
+            || body.closings != last.closings;
+        let moved = body != *last && {
+            let joints = body.joints.iter().flatten().zip(last.joints.iter().flatten());
+            let fingers = body.fingers != last.fingers;
+            fingers || joints.into_iter().any(|(a, b)| (a - b).abs() > MOVED_RAD)
+        };
+        if other || moved && now.since(*at) >= REMEMBER_EVERY {
+            fx.append(body.clone());
+            self.remembered = (body, now);
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! The simulated Baxter: as a service of a group, or, with the name of a drill, what happens to one
+//! that runs.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    match words.first().and_then(|word| baxter::drill::kind(word)) {
+        Some(kind) => baxter::drill::run(kind, &words[1..]),
+        None => runtime::driver::run::<baxter::shell::BaxterProgram>(),
+    }
+}

@@ -1,0 +1,249 @@
+//! The robot as it behaves on its topics: pure, so that an arm can be tried on it without processes.
+
+use crate::assembly::Assembly;
+use crate::fingers::{Event, Fingers};
+use crate::servo::{Servo, Target};
+use crate::table::{Table, Whereabouts};
+use crate::{Config, In, Out, tell};
+use dialogue::Rng;
+use kinematics::{Joints, Limb, gripper};
+use node::{Span, Time};
+use protocol::robot::{Drill, DrillKind, JointCommand, JointMode, JointTrajectoryPoint};
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+
+/// Longest stretch of time that is made up for at once.
+const STRETCH_MAX: Span = Span::from_ms(100);
+/// Drills that are remembered, so that one that comes twice happens once.
+const DRILLS_MAX: usize = 32;
+/// Joint distance from the neutral posture within which people put back what they took, radians.
+const AT_REST_RAD: f64 = 0.05;
+
+/// Everything that outlives the robot's computer: where its parts are, and the objects.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Body {
+    /// Key of the scene that the objects belong to.
+    pub scene_key: u64,
+    /// Joint positions, left and right, radians.
+    pub joints: [Joints; 2],
+    /// Its grippers, left and right.
+    pub fingers: [Fingers; 2],
+    /// Motors, faults and the red button.
+    pub assembly: Assembly,
+    /// Where the objects are, in the scene's order.
+    pub objects: Vec<Whereabouts>,
+    /// How often fingers have closed.
+    pub closings: u64,
+}
+
+/// The robot and what stands round it.
+#[derive(Clone, Debug)]
+pub struct Robot {
+    pub(crate) config: Config,
+    pub(crate) servos: [Servo; 2],
+    pub(crate) fingers: [Fingers; 2],
+    pub(crate) assembly: Assembly,
+    pub(crate) random: Rng,
+    /// No joint states before.
+    pub(crate) silent_until: Time,
+    table: Table,
+    closings: u64,
+    /// Closings that will find nothing.
+    misses: u64,
+    obstructed_until: Time,
+    drilled: VecDeque<u64>,
+    now: Option<Time>,
+}
+
+impl Robot {
+    /// A robot in the neutral posture, or as `body` says.
+    pub fn new(config: Config, body: Option<Body>) -> Self {
+        let scene_key = config.scene.key();
+        let body = body.unwrap_or_else(|| Body {
+            scene_key,
+            joints: Limb::BOTH.map(|limb| config.robot.arm(limb).neutral),
+            fingers: Default::default(),
+            assembly: Assembly::new(config.simulated.enabled),
+            objects: Table::new(&config.scene).now,
+            closings: 0,
+        });
+        let mut table = Table::new(&config.scene);
+        if body.scene_key == scene_key && body.objects.len() == table.now.len() {
+            table.now = body.objects;
+        }
+        Self {
+            servos: Limb::BOTH.map(|limb| {
+                let limits = &config.robot.arm(limb).limits;
+                Servo::at(body.joints[side(limb)], limits, config.simulated.lag_s)
+            }),
+            fingers: body.fingers,
+            assembly: body.assembly,
+            random: Rng::new(config.simulated.seed),
+            silent_until: Time(0),
+            table,
+            closings: body.closings,
+            misses: 0,
+            obstructed_until: Time(0),
+            drilled: VecDeque::new(),
+            now: None,
+            config,
+        }
+    }
+
+    /// What outlives it.
+    pub fn body(&self) -> Body {
+        Body {
+            scene_key: self.config.scene.key(),
+            joints: [self.servos[0].q, self.servos[1].q],
+            fingers: self.fingers.clone(),
+            assembly: self.assembly,
+            objects: self.table.now.clone(),
+            closings: self.closings,
+        }
+    }
+
+    /// How often fingers have closed on an object that they then held.
+    pub fn table(&self) -> &Table {
+        &self.table
+    }
+
+    /// Takes a message.
+    pub fn hear(&mut self, message: &In, now: Time) {
+        self.advance(now);
+        match message {
+            In::Drill(drill) => self.drill(drill, now),
+            // What is switched off obeys nothing, and hears nothing either.
+            _ if !self.assembly.is_enabled() => {}
+            In::Joints(limb, command) => self.command(*limb, command),
+            In::FeedForward(limb, point) => self.feed_forward(*limb, point),
+            In::SpeedRatio(limb, ratio) => self.servos[side(*limb)].set_speed_ratio(ratio.data),
+            In::Gripper(limb, command) => {
+                let event = self.fingers[side(*limb)].command(command);
+                event.into_iter().for_each(|event| self.react(*limb, event));
+            }
+        }
+    }
+
+    /// Lets time pass until `now`.
+    pub fn advance(&mut self, now: Time) {
+        let before = self.now.replace(now).unwrap_or(now);
+        let seconds = now.since(before).min(STRETCH_MAX).s();
+        if seconds <= 0.0 {
+            return;
+        }
+        let moves = self.assembly.is_enabled();
+        for limb in Limb::BOTH {
+            let servo = &mut self.servos[side(limb)];
+            if moves && now >= self.obstructed_until {
+                servo.advance(seconds);
+            } else {
+                servo.brake();
+            }
+            if moves && let Some(event) = self.fingers[side(limb)].advance(seconds) {
+                self.react(limb, event);
+            }
+        }
+        if self.config.restock && Limb::BOTH.into_iter().all(|limb| self.rests(limb)) {
+            self.table.restock();
+        }
+    }
+
+    /// What it tells in the beat number `beat`, a hundred of them a second.
+    pub fn tell(&mut self, beat: u64, now: Time) -> Vec<Out> {
+        tell::all(self, beat, now)
+    }
+
+    fn command(&mut self, limb: Limb, command: &JointCommand) {
+        let target = JointMode::from_code(command.mode).and_then(|mode| {
+            let joints = &self.config.robot.arm(limb).joint_names;
+            let mut values = match mode {
+                JointMode::Position => self.servos[side(limb)].q,
+                JointMode::Velocity => [0.0; 7],
+            };
+            for (name, value) in command.joints()? {
+                let joint = joints.iter().position(|own| own == name).filter(|_| value.is_finite());
+                if let Some(joint) = joint {
+                    values[joint] = value;
+                }
+            }
+            Ok(match mode {
+                JointMode::Position => Target::Position(values),
+                JointMode::Velocity => Target::Velocity(values),
+            })
+        });
+        match target {
+            Ok(target) => self.servos[side(limb)].command(target),
+            Err(error) => tracing::warn!(%error, "a joint command that makes no sense is ignored"),
+        }
+    }
+
+    fn feed_forward(&mut self, limb: Limb, point: &JointTrajectoryPoint) {
+        if point.velocities.iter().all(|v| v.is_finite()) {
+            self.servos[side(limb)].feed_forward(&point.velocities);
+        }
+    }
+
+    fn react(&mut self, limb: Limb, event: Event) {
+        let i = side(limb);
+        let tip = self.config.robot.arm(limb).chain.forward(&self.servos[i].q);
+        match event {
+            Event::Closes => {
+                self.closings += 1;
+                let missed = self.misses > 0;
+                self.misses = self.misses.saturating_sub(1);
+                let offset_m = self.placement_error_m();
+                let opening_m = self.fingers[i].width_m;
+                let found = self.table.between(&tip, opening_m, offset_m).filter(|_| !missed);
+                self.fingers[i].meet(found.map(|(_, width_m)| width_m));
+            }
+            Event::Holds => {
+                let wide_m = gripper::STROKE_M;
+                if let Some((object, _)) = self.table.between(&tip, wide_m, 0.0) {
+                    self.table.take(object, limb);
+                }
+            }
+            Event::LetsGo => self.table.let_go(limb, &tip),
+        }
+    }
+
+    /// How far beside its place the object stands at this closing.
+    fn placement_error_m(&self) -> f64 {
+        let mut random = Rng::new(self.config.simulated.seed ^ (self.closings << 32));
+        let uniform = [random.uniform(), random.uniform()];
+        gripper::placement_error_m(self.config.grasp_error_m, uniform)
+    }
+
+    fn drill(&mut self, drill: &Drill, now: Time) {
+        let Ok(kind) = DrillKind::from_code(drill.kind) else { return };
+        if self.drilled.contains(&drill.key) {
+            return;
+        }
+        if self.drilled.len() == DRILLS_MAX {
+            self.drilled.pop_front();
+        }
+        self.drilled.push_back(drill.key);
+        tracing::info!(?kind, amount = drill.amount, "drill");
+        let until = now + Span::from_s(drill.amount);
+        match kind {
+            DrillKind::Silence => self.silent_until = until,
+            DrillKind::Obstruct => self.obstructed_until = until,
+            DrillKind::Miss => self.misses = drill.amount.max(0.0) as u64,
+            _ => self.assembly.drill(kind),
+        }
+    }
+
+    fn rests(&self, limb: Limb) -> bool {
+        let q = &self.servos[side(limb)].q;
+        q.iter()
+            .zip(&self.config.robot.arm(limb).neutral)
+            .all(|(q, rest)| (q - rest).abs() < AT_REST_RAD)
+    }
+}
+
+/// Index of a limb where both are listed.
+pub fn side(limb: Limb) -> usize {
+    match limb {
+        Limb::Left => 0,
+        Limb::Right => 1,
+    }
+}

@@ -1,0 +1,121 @@
+//! The objects round the robot: where they stand, and what the fingers find.
+
+use kinematics::gripper;
+use kinematics::{Limb, ObjectPose};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use scene::Scene;
+use serde::{Deserialize, Serialize};
+
+/// How far the fingertips may be from where they should be along the fingers' width and length,
+/// metres, and still be at the object.
+const BESIDE_M: [f64; 2] = [0.012, 0.02];
+/// What is let go of higher than this above where it stood is taken by a person, metres.
+const HANDED_OVER_M: f64 = 0.05;
+
+/// Where one object is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Whereabouts {
+    /// It stands: centre in `base`, metres.
+    Stands([f64; 3]),
+    /// In a gripper, left 0 or right 1.
+    Held(u8),
+    /// A person has it.
+    Gone,
+}
+
+/// The objects.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// As they stand at first; none for one that has no place.
+    places: Vec<Option<ObjectPose>>,
+    /// Where they are.
+    pub now: Vec<Whereabouts>,
+}
+
+impl Table {
+    /// The scene's objects in their places.
+    pub fn new(scene: &Scene) -> Self {
+        let pose = |p: &scene::Placement| ObjectPose {
+            xyz_m: p.xyz,
+            yaw_rad: p.yaw,
+            size_m: p.size,
+            grasp_width_m: p.grasp_width,
+        };
+        let places: Vec<_> =
+            scene.objects().iter().map(|o| o.placement.as_ref().map(pose)).collect();
+        let stands = |place: &Option<ObjectPose>| match place {
+            Some(place) => Whereabouts::Stands(place.xyz_m),
+            None => Whereabouts::Gone,
+        };
+        Self { now: places.iter().map(stands).collect(), places }
+    }
+
+    /// The object between fingers that are `opening_m` apart at `tip`, with its width: one that
+    /// stands `offset_m` beside its place across the fingers.
+    pub fn between(
+        &self,
+        tip: &Isometry3<f64>,
+        opening_m: f64,
+        offset_m: f64,
+    ) -> Option<(usize, f64)> {
+        let standing = self.places.iter().zip(&self.now).enumerate();
+        standing.into_iter().find_map(|(i, (place, now))| {
+            let Whereabouts::Stands(xyz_m) = *now else { return None };
+            let object = ObjectPose { xyz_m, ..(*place)? };
+            let at = object.grasps().ok()?.into_iter().any(|grasp| {
+                let beside = (grasp.gripper.inverse() * tip).translation.vector;
+                let along = beside.x.abs() < BESIDE_M[0] && beside.z.abs() < BESIDE_M[1];
+                along && gripper::catches(opening_m, object.grasp_width_m, beside.y + offset_m)
+            });
+            at.then_some((i, object.grasp_width_m))
+        })
+    }
+
+    /// A limb has taken hold of the object.
+    pub fn take(&mut self, object: usize, limb: Limb) {
+        self.now[object] = Whereabouts::Held(number(limb));
+    }
+
+    /// A limb with its gripper at `tip` lets go: a person takes what is held up, and what is not
+    /// stands below the gripper.
+    pub fn let_go(&mut self, limb: Limb, tip: &Isometry3<f64>) {
+        for (now, place) in self.now.iter_mut().zip(&self.places) {
+            let Some(place) = place.filter(|_| *now == Whereabouts::Held(number(limb))) else {
+                continue;
+            };
+            let top_m = place.top_z_m() + HANDED_OVER_M;
+            *now = if tip.translation.z > top_m {
+                Whereabouts::Gone
+            } else {
+                Whereabouts::Stands(place.xyz_m)
+            };
+        }
+    }
+
+    /// People put back what they were given.
+    pub fn restock(&mut self) {
+        for (now, place) in self.now.iter_mut().zip(&self.places) {
+            if let (Whereabouts::Gone, Some(place)) = (*now, place) {
+                *now = Whereabouts::Stands(place.xyz_m);
+            }
+        }
+    }
+
+    /// The object that a limb holds.
+    pub fn held(&self, limb: Limb) -> Option<usize> {
+        self.now.iter().position(|now| *now == Whereabouts::Held(number(limb)))
+    }
+}
+
+/// Position and quaternion of a pose: x, y, z, x, y, z, w.
+pub fn to_array(pose: &Isometry3<f64>) -> [f64; 7] {
+    let (Translation3 { vector: p }, r) = (pose.translation, UnitQuaternion::from(pose.rotation));
+    [p.x, p.y, p.z, r.i, r.j, r.k, r.w]
+}
+
+fn number(limb: Limb) -> u8 {
+    match limb {
+        Limb::Left => 0,
+        Limb::Right => 1,
+    }
+}

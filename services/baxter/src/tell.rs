@@ -1,0 +1,102 @@
+//! What the robot tells, as often and in such an order as the real one does.
+
+use crate::Out;
+use crate::robot::{Robot, side};
+use crate::table::to_array;
+use kinematics::{Limb, gripper};
+use nalgebra::SVector;
+use node::Time;
+use protocol::FixedText;
+use protocol::robot::{EndEffectorProperties, EndpointState, JointState, Measurement, UiType};
+use protocol::{JOINT_STATE_NAMES, WireError};
+
+/// Beats between two states of a gripper, and between two of its properties.
+const GRIPPER_BEATS: u64 = 2;
+const PROPERTIES_BEATS: u64 = 100;
+/// Deviation of measured velocities over that of positions, 1/s: they come from differences.
+const VELOCITY_NOISE: f64 = 25.0;
+
+/// Everything that is due in beat number `beat`.
+pub(crate) fn all(robot: &mut Robot, beat: u64, now: Time) -> Vec<Out> {
+    let mut told = vec![Out::Assembly(robot.assembly.state())];
+    let lost = robot.random.uniform() < robot.config.simulated.loss || now < robot.silent_until;
+    let joints = joint_states(robot, now);
+    if !lost {
+        told.extend(joints.into_iter().flatten().map(|state| Out::Joints(Box::new(state))));
+    }
+    for limb in Limb::BOTH {
+        told.push(Out::Endpoint(limb, Box::new(endpoint(robot, limb, now))));
+        if beat.is_multiple_of(GRIPPER_BEATS) {
+            let enabled = robot.assembly.is_enabled();
+            let state = robot.fingers[side(limb)].state(now.ns(), enabled);
+            told.push(Out::Gripper(limb, Box::new(state)));
+        }
+        if beat.is_multiple_of(PROPERTIES_BEATS) {
+            told.push(Out::Properties(limb, Box::new(properties(limb))));
+        }
+    }
+    told
+}
+
+/// The 17 joints, and the joint of one finger of each gripper in a message of its own.
+fn joint_states(robot: &mut Robot, now: Time) -> Vec<Result<JointState, WireError>> {
+    let noise_rad = robot.config.simulated.noise_rad;
+    let mut measured: Vec<(String, Measurement)> = Vec::new();
+    for limb in Limb::BOTH {
+        let names = robot.config.robot.arm(limb).joint_names.clone();
+        for (j, name) in names.into_iter().enumerate() {
+            let servo = &robot.servos[side(limb)];
+            let (q, qd) = (servo.q[j], servo.qd[j]);
+            let q = q + noise_rad * normal(&mut robot.random);
+            let qd = qd + VELOCITY_NOISE * noise_rad * normal(&mut robot.random);
+            measured.push((name, [q, qd, 0.0]));
+        }
+    }
+    let of = |name: &'static str| {
+        let found = measured.iter().find(|(own, _)| own == name);
+        (name, found.map_or([0.0; 3], |(_, measured)| *measured))
+    };
+    let body = JointState::new(now.ns(), &JOINT_STATE_NAMES.map(of));
+    let fingers = [("l", 0), ("r", 1)].map(|(letter, i)| {
+        let name = format!("{letter}_gripper_l_finger_joint");
+        let travel_m = 0.5 * robot.fingers[i].width_m;
+        JointState::new(now.ns(), &[(&name, [travel_m, 0.0, 0.0])])
+    });
+    std::iter::once(body).chain(fingers).collect()
+}
+
+/// Pose and velocity of the gripper's tip; the model feels no forces.
+fn endpoint(robot: &Robot, limb: Limb, now: Time) -> EndpointState {
+    let servo = &robot.servos[side(limb)];
+    let (frame, jacobian) = robot.config.robot.arm(limb).chain.tool_and_jacobian(&servo.q);
+    let twist = jacobian * SVector::<f64, 7>::from(servo.qd);
+    EndpointState {
+        stamp_ns: now.ns(),
+        pose: to_array(&frame.isometry()),
+        twist: twist.into(),
+        ..EndpointState::default()
+    }
+}
+
+fn properties(limb: Limb) -> EndEffectorProperties {
+    EndEffectorProperties {
+        id: 65_664,
+        ui_type: UiType::Electric.code(),
+        has_calibration: 1,
+        controls_grip: 1,
+        senses_grip: 1,
+        controls_force: 1,
+        senses_force: 1,
+        controls_position: 1,
+        senses_position: 1,
+        manufacturer: FixedText::truncated("whichone"),
+        product: FixedText::truncated("simulated electric gripper"),
+        serial_number: FixedText::truncated(limb.name()),
+        ..EndEffectorProperties::default()
+    }
+}
+
+/// A standard normal number.
+fn normal(random: &mut dialogue::Rng) -> f64 {
+    gripper::placement_error_m(1.0, [random.uniform(), random.uniform()])
+}

@@ -1,0 +1,245 @@
+//! The grippers.
+
+use crate::schema::wire_struct;
+use crate::text::FixedText;
+use crate::wire::{WireError, wire_enum};
+use iceoryx2::prelude::ZeroCopySend;
+
+wire_enum! {
+    /// The three values of a gripper's state fields.
+    Tristate {
+        /// `STATE_FALSE`.
+        False = 0,
+        /// `STATE_TRUE`.
+        True = 1,
+        /// `STATE_UNKNOWN`: unknown, or not known to this gripper.
+        Unknown = 2,
+    }
+}
+
+wire_enum! {
+    /// What is mounted: [`EndEffectorProperties::ui_type`].
+    UiType {
+        /// Nothing.
+        NoGripper = 0,
+        /// A vacuum gripper.
+        SuctionCup = 1,
+        /// The electric parallel gripper.
+        Electric = 2,
+        /// Something without a motor, or a gripper of one's own.
+        Passive = 3,
+    }
+}
+
+/// [`EndEffectorState::command_sequence`] of a gripper that does not count commands.
+pub const NO_SEQUENCE: u32 = 0;
+
+/// What a gripper is told: the words of [`EndEffectorCommand::command`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// `calibrate`: finds both ends of the fingers' travel; before it none but this is obeyed.
+    Calibrate,
+    /// `go` to a position in percent: 0 closed, 100 open. Fingers that meet something on the way
+    /// stop and hold it.
+    Go(f64),
+    /// `grip`: closes until something is held.
+    Grip,
+    /// `release`: opens.
+    Release,
+    /// `stop`: stays where it is.
+    Stop,
+}
+
+wire_struct! {
+    /// `baxter_core_msgs/EndEffectorCommand`.
+    EndEffectorCommand = "EndEffectorCommand" {
+        /// The gripper's own number, from its state.
+        id: u32,
+        /// Comes back in the state once the command is handled.
+        sequence: u32,
+        /// `calibrate`, `go`, `grip`, `release` or `stop`.
+        command: FixedText<28>,
+        /// JSON; for `go` as `{"position": 50.0}`.
+        args: FixedText<60>,
+        /// Comes back in the state once the command is handled.
+        sender: FixedText<28>,
+    }
+}
+
+wire_struct! {
+    /// `baxter_core_msgs/EndEffectorState`. The bytes are [`Tristate`]s.
+    EndEffectorState = "EndEffectorState" {
+        /// When the state was so, monotonic clock.
+        timestamp_ns: u64,
+        /// The gripper's own number.
+        id: u32,
+        /// Whether it is switched on.
+        enabled: u8,
+        /// Whether it has been calibrated.
+        calibrated: u8,
+        /// Whether it takes commands.
+        ready: u8,
+        /// Whether the fingers move.
+        moving: u8,
+        /// Whether the fingers stopped at something: the force threshold was met on the way.
+        gripping: u8,
+        /// Whether the fingers came to the end of a command without meeting anything.
+        missed: u8,
+        /// Whether it has a fault; it has to be reset then.
+        error: u8,
+        /// Whether it grips by opening.
+        reverse: u8,
+        /// Percent: 0 closed, 100 open.
+        position: f32,
+        /// Percent of the greatest force.
+        force: f32,
+        /// Sequence number of the last command that was handled, or [`NO_SEQUENCE`].
+        command_sequence: u32,
+        /// The last command.
+        command: FixedText<28>,
+        /// Who sent it.
+        command_sender: FixedText<28>,
+    }
+}
+
+wire_struct! {
+    /// `baxter_core_msgs/EndEffectorProperties`: what is mounted. Text fields beyond product and
+    /// serial number stay behind: nothing here depends on them.
+    EndEffectorProperties = "EndEffectorProperties" {
+        /// The gripper's own number.
+        id: u32,
+        /// [`UiType`].
+        ui_type: u8,
+        /// 1 if it has to be calibrated.
+        has_calibration: u8,
+        /// 1 if it obeys `grip` and `release`.
+        controls_grip: u8,
+        /// 1 if it feels what it grips.
+        senses_grip: u8,
+        /// 1 if it can grip by opening.
+        reverses_grip: u8,
+        /// 1 if its force can be set.
+        controls_force: u8,
+        /// 1 if it measures its force.
+        senses_force: u8,
+        /// 1 if it obeys `go`.
+        controls_position: u8,
+        /// 1 if it measures its position.
+        senses_position: u8,
+        /// Zero.
+        reserved: [u8; 3],
+        /// Who made it.
+        manufacturer: FixedText<60>,
+        /// What it is.
+        product: FixedText<60>,
+        /// Its serial number.
+        serial_number: FixedText<28>,
+    }
+}
+
+impl Command {
+    /// The word for it.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Calibrate => "calibrate",
+            Self::Go(_) => "go",
+            Self::Grip => "grip",
+            Self::Release => "release",
+            Self::Stop => "stop",
+        }
+    }
+}
+
+impl EndEffectorCommand {
+    /// The message that says `command`.
+    pub fn new(id: u32, command: Command, sender: &str, sequence: u32) -> Self {
+        let args = match command {
+            Command::Go(position) => format!("{{\"position\": {position:.3}}}"),
+            _ => String::new(),
+        };
+        Self {
+            id,
+            sequence,
+            command: FixedText::truncated(command.word()),
+            args: FixedText::truncated(&args),
+            sender: FixedText::truncated(sender),
+        }
+    }
+
+    /// What it says.
+    ///
+    /// # Errors
+    /// A word that no gripper knows, or a `go` without a position.
+    pub fn read(&self) -> Result<Command, WireError> {
+        match self.command.as_str()? {
+            "calibrate" => Ok(Command::Calibrate),
+            "go" => Ok(Command::Go(self.position()?)),
+            "grip" => Ok(Command::Grip),
+            "release" => Ok(Command::Release),
+            "stop" => Ok(Command::Stop),
+            other => Err(WireError::new("gripper command of length", other.len() as u32)),
+        }
+    }
+
+    /// The position in its arguments, percent.
+    fn position(&self) -> Result<f64, WireError> {
+        let args = self.args.as_str()?;
+        let bad = || WireError::new("arguments of `go` of length", args.len() as u32);
+        let (_, after) = args.split_once("\"position\"").ok_or_else(bad)?;
+        let number: String = after
+            .trim_start_matches([':', ' '])
+            .chars()
+            .take_while(|c| c.is_ascii_digit() || "+-.eE".contains(*c))
+            .collect();
+        let position: f64 = number.parse().map_err(|_| bad())?;
+        if position.is_finite() { Ok(position.clamp(0.0, 100.0)) } else { Err(bad()) }
+    }
+}
+
+impl EndEffectorState {
+    /// Whether this state is of a gripper that has handled `command`.
+    pub fn has_handled(&self, command: &EndEffectorCommand) -> bool {
+        let numbered = [command.sequence, NO_SEQUENCE].contains(&self.command_sequence);
+        numbered && self.command_sender == command.sender
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_come_back_as_they_were_said() {
+        use Command::{Calibrate, Go, Grip, Release, Stop};
+        for command in [Calibrate, Go(12.5), Go(100.0), Grip, Release, Stop] {
+            let message = EndEffectorCommand::new(3, command, "whichone", 7);
+            assert_eq!(message.read(), Ok(command));
+        }
+    }
+
+    #[test]
+    fn positions_are_read_as_other_programs_write_them() {
+        let say = |args: &str| {
+            let args = FixedText::truncated(args);
+            let go = EndEffectorCommand::new(0, Command::Go(0.0), "", 0);
+            EndEffectorCommand { args, ..go }.read()
+        };
+        assert_eq!(say("{\"position\":2.5e1}"), Ok(Command::Go(25.0)));
+        assert_eq!(say("{\"velocity\": 3, \"position\" : 300}"), Ok(Command::Go(100.0)));
+        assert!(say("{\"position\": fast}").is_err() && say("").is_err());
+    }
+
+    #[test]
+    fn a_command_is_handled_once_its_sender_and_number_are_told() {
+        let command = EndEffectorCommand::new(3, Command::Grip, "whichone", 7);
+        let state = EndEffectorState {
+            command_sender: command.sender,
+            command_sequence: 7,
+            ..EndEffectorState::default()
+        };
+        assert!(state.has_handled(&command));
+        assert!(EndEffectorState { command_sequence: 0, ..state }.has_handled(&command));
+        assert!(!EndEffectorState { command_sequence: 6, ..state }.has_handled(&command));
+        assert!(!EndEffectorState::default().has_handled(&command));
+    }
+}

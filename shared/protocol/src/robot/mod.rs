@@ -1,0 +1,24 @@
+//! The robot's own topics: what a Baxter is told and what it tells, in the words of its interface.
+//!
+//! Messages have the names, fields and meanings of `baxter_core_msgs`, `sensor_msgs` and
+//! `trajectory_msgs`, so that a bridge to ROS copies fields and decides nothing. What differs: a
+//! message has a fixed layout, so lists have a length and a bound; header stamps are nanoseconds of
+//! this machine's monotonic clock; booleans are bytes.
+//!
+//! Message facts from baxter_common 1.2.0, BSD-3-Clause, Copyright (c) 2013-2015 Rethink Robotics.
+
+mod assembly;
+mod drill;
+mod end_effector;
+mod joints;
+
+pub use assembly::{AssemblyState, EstopButton};
+pub use drill::{Drill, DrillKind};
+pub use end_effector::{
+    Command, EndEffectorCommand, EndEffectorProperties, EndEffectorState, NO_SEQUENCE, Tristate,
+    UiType,
+};
+pub use joints::{
+    EndpointState, JOINTS_MAX, JointCommand, JointMode, JointState, JointTrajectoryPoint,
+    LIMB_JOINTS, Measurement, SpeedRatio,
+};

@@ -1,0 +1,121 @@
+//! What goes wrong with a robot, its bridge, and the arm itself.
+
+use crate::world::World;
+use dialogue::Rng;
+use protocol::robot::DrillKind;
+use protocol::{Hindrance, MotionOrder, PickOutcome, PickPhase};
+
+#[test]
+fn joint_states_that_stay_away_halt_the_arm_until_they_are_back() {
+    for phase in [PickPhase::Moving, PickPhase::Closing, PickPhase::Holding] {
+        let mut world = World::new(&[]);
+        world.pick(1, 0);
+        world.run_until("under way", |w| w.phase() == phase);
+        world.run(0.3);
+        world.drill(DrillKind::Silence, 1.0);
+        world.run(0.9);
+        assert_eq!((world.hindrance(), world.status().moving), (Hindrance::Stale, 0));
+        world.run_until("over", |w| w.phase() == PickPhase::Done);
+        world.assert_delivered_once();
+    }
+}
+
+#[test]
+fn a_third_of_the_joint_states_may_get_lost() {
+    for seed in ["1", "2", "3"] {
+        let loss = ("arm.simulated.loss", "0.33");
+        let mut world = World::new(&[loss, ("arm.simulated.seed", seed)]);
+        world.pick(1, 2);
+        world.run_until("over", |w| w.phase() == PickPhase::Done);
+        world.assert_delivered_once();
+    }
+}
+
+#[test]
+fn an_arm_that_cannot_follow_halts_and_asks_for_a_person() {
+    let mut world = World::new(&[]);
+    world.pick(1, 3);
+    world.run_until("moving", |w| w.phase() == PickPhase::Moving);
+    world.run(1.0);
+    world.drill(DrillKind::Obstruct, 3.0);
+    world.run_until("over", |w| w.phase() == PickPhase::Done);
+    assert_eq!(world.outcome(), PickOutcome::Blocked);
+    world.run(4.0);
+    assert_eq!(world.status().moving, 0, "it waits for a person");
+    world.motion(MotionOrder::Resume);
+    world.run(0.1);
+    world.pick(2, 3);
+    world.run_until("delivered", |w| w.outcome() == PickOutcome::Delivered);
+    assert_eq!(world.grasps, 1);
+}
+
+#[test]
+fn a_goal_that_is_not_reached_in_time_ends_the_pick() {
+    let over = [("arm.baxter.path_tolerance_rad", "1.0"), ("arm.baxter.goal_time_s", "0.3")];
+    let mut world = World::new(&over);
+    world.pick(1, 3);
+    world.run_until("moving", |w| w.phase() == PickPhase::Moving);
+    world.run_until("nearly there", |w| w.status().remaining_s < 4.6);
+    world.drill(DrillKind::Obstruct, 30.0);
+    world.run_until("over", |w| w.phase() == PickPhase::Done);
+    assert_eq!(world.outcome(), PickOutcome::Blocked);
+    assert_eq!(world.grasps, 0);
+}
+
+#[test]
+fn the_arm_is_killed_anywhere_and_goes_on_from_what_is_measured() {
+    for seed in 0..30 {
+        let mut random = Rng::new(seed);
+        let mut world = World::new(&[]);
+        world.pick(1, (seed % 6) as u16);
+        let mut kills = 0;
+        while !(world.phase() == PickPhase::Done && world.status().moving == 0) {
+            world.run(0.05 + 3.0 * random.uniform());
+            if kills < 6 && world.phase() != PickPhase::Done {
+                kills += 1;
+                world.kill_arm();
+                world.run(0.05 + 0.5 * random.uniform());
+                world.start_arm();
+            }
+            assert!(world.now.ns() < 120_000_000_000, "seed {seed}: {:?}", world.arm_state());
+        }
+        assert_eq!(world.outcome(), PickOutcome::Delivered, "seed {seed}");
+        world.assert_delivered_once();
+    }
+}
+
+#[test]
+fn the_robots_computer_dies_and_comes_back() {
+    for seed in 0..12 {
+        let mut random = Rng::new(seed);
+        let mut world = World::new(&[]);
+        world.pick(1, (seed % 6) as u16);
+        for _ in 0..3 {
+            world.run(3.0 * random.uniform());
+            world.kill_robot();
+            world.run(0.2 + 1.5 * random.uniform());
+            world.start_robot();
+        }
+        world.run_until("over", |w| w.phase() == PickPhase::Done);
+        world.assert_delivered_once();
+    }
+}
+
+#[test]
+fn a_robot_that_comes_late_is_waited_for() {
+    let mut world = World::new(&[("arm.simulated.enabled", "false")]);
+    world.kill_robot();
+    world.pick(1, 1);
+    world.run(1.0);
+    assert_eq!(world.phase(), PickPhase::Accepted);
+    world.kill_arm();
+    world.start_arm();
+    world.run(0.5);
+    assert_eq!(world.hindrance(), Hindrance::Unheard);
+    world.start_robot();
+    world.run(0.5);
+    assert_eq!(world.hindrance(), Hindrance::Disabled);
+    world.drill(DrillKind::Enable, 0.0);
+    world.run_until("over", |w| w.phase() == PickPhase::Done);
+    world.assert_delivered_once();
+}

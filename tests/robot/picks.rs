@@ -1,0 +1,108 @@
+//! The robot fetches, and is told what a Baxter has to be told.
+
+use crate::world::World;
+use arm::Order;
+use node::Span;
+use protocol::robot::{Command, DrillKind};
+use protocol::{Hindrance, PickOutcome, PickPhase};
+
+#[test]
+fn six_bowls_are_brought_one_after_another() {
+    let mut world = World::new(&[]);
+    for object in 0..6 {
+        world.grasps = 0;
+        world.pick(u64::from(object) + 1, object);
+        world.run_until("taken on", |w| w.phase() != PickPhase::Done);
+        world.run_until("over", |w| w.phase() == PickPhase::Done);
+        assert_eq!(world.outcome(), PickOutcome::Delivered, "object {object}");
+        assert_eq!(world.grasps, 1, "object {object}");
+    }
+    world.run_until("at rest", |w| w.status().moving == 0);
+    assert_eq!(world.hindrance(), Hindrance::None);
+}
+
+#[test]
+fn every_scene_and_a_slow_and_noisy_robot_are_no_trouble() {
+    for scene in ["markers", "tools"] {
+        let slow = ("arm.simulated.lag_s", "0.08");
+        let mut world =
+            World::new(&[("group.scene", scene), slow, ("arm.simulated.noise_rad", "0.0006")]);
+        world.pick(1, 1);
+        world.run_until("over", |w| w.phase() == PickPhase::Done);
+        world.assert_delivered_once();
+    }
+}
+
+#[test]
+fn grippers_are_calibrated_before_anything_moves() {
+    let mut world = World::new(&[]);
+    world.pick(1, 2);
+    world.run_until("calibrating", |w| w.hindrance() == Hindrance::Calibrating);
+    world.run_until("moving", |w| w.phase() == PickPhase::Moving);
+    let words: Vec<Command> = gripper_commands(&world);
+    assert!(words.len() >= 2 && words.iter().all(|word| *word == Command::Calibrate), "{words:?}");
+    world.run_until("over", |w| w.phase() == PickPhase::Done);
+    world.assert_delivered_once();
+}
+
+fn gripper_commands(world: &World) -> Vec<Command> {
+    let read = |(_, order): &(_, Order)| match order {
+        Order::Gripper(_, message) => message.read().ok(),
+        _ => None,
+    };
+    world.orders.iter().filter_map(read).collect()
+}
+
+#[test]
+fn limbs_are_commanded_in_position_mode_a_hundred_times_a_second_moving_and_standing() {
+    let mut world = World::new(&[]);
+    world.pick(1, 0);
+    world.run_until("over", |w| w.phase() == PickPhase::Done);
+    world.run(3.0);
+    for times in &world.commanded {
+        let gaps: Vec<Span> = times.windows(2).map(|w| w[1].since(w[0])).collect();
+        assert!(gaps.iter().all(|gap| *gap <= Span::from_ms(20)), "{:?}", gaps.iter().max());
+        let rate = gaps.len() as f64 / times.last().unwrap().since(times[0]).s();
+        assert!((90.0..115.0).contains(&rate), "{rate} Hz");
+    }
+    for (_, order) in &world.orders {
+        if let Order::Joints(limb, command) = order {
+            assert_eq!(command.mode, 1, "position mode, never raw");
+            let names = command.joints().unwrap();
+            let own = limb.joint_names();
+            assert!(names.iter().map(|(name, _)| *name).eq(own.iter().map(String::as_str)));
+        }
+    }
+}
+
+#[test]
+fn without_feed_forward_the_robot_lags_and_arrives_all_the_same() {
+    let mut world = World::new(&[("arm.baxter.feed_forward", "false")]);
+    world.pick(1, 3);
+    world.run_until("over", |w| w.phase() == PickPhase::Done);
+    world.assert_delivered_once();
+    let fed = |order: &Order| matches!(order, Order::FeedForward(..));
+    assert!(!world.orders.iter().any(|(_, order)| fed(order)));
+}
+
+#[test]
+fn a_robot_that_is_allowed_too_little_speed_is_noticed() {
+    let mut world = World::new(&[("arm.baxter.speed_ratio", "0.1")]);
+    world.pick(1, 0);
+    world.run_until("over", |w| w.phase() == PickPhase::Done);
+    assert_eq!(world.outcome(), PickOutcome::Blocked);
+    assert_eq!(world.grasps, 0);
+}
+
+#[test]
+fn one_missed_grasp_is_tried_again_and_two_are_told() {
+    for (misses, outcome) in [(1.0, PickOutcome::Delivered), (2.0, PickOutcome::Missed)] {
+        let mut world = World::new(&[]);
+        world.drill(DrillKind::Miss, misses);
+        world.pick(1, 4);
+        world.run_until("over", |w| w.phase() == PickPhase::Done);
+        assert_eq!(world.outcome(), outcome);
+        assert_eq!(world.grasps, u32::from(outcome == PickOutcome::Delivered));
+        world.run_until("at rest", |w| w.status().moving == 0);
+    }
+}

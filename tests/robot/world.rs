@@ -1,0 +1,239 @@
+//! The arm's process, the robot's, what each remembers, and what passes between them.
+
+use arm::state::ArmState;
+use arm::{ArmNode, In, Order, Out, Told};
+use baxter::BaxterNode;
+use baxter::robot::Robot;
+use node::{Effects, Event, Node, Span, Time};
+use protocol::robot::{Drill, DrillKind, JointState};
+use protocol::{
+    ActKind, ArmStatus, Hindrance, MotionCommand, MotionOrder, PickOutcome, PickPhase, RobotAct,
+};
+use runtime::driver::Program;
+use runtime::lifecycle::Environment;
+use settings::Settings;
+use std::path::Path;
+
+/// How often the world looks: finer than any deadline in it.
+const LOOK_EVERY: Span = Span::from_ms(2);
+
+pub(crate) struct World {
+    settings: Settings,
+    pub(crate) now: Time,
+    arm: Option<ArmNode>,
+    robot: Option<BaxterNode>,
+    pub(crate) arm_journal: Vec<arm::state::Record>,
+    robot_journal: Vec<baxter::robot::Body>,
+    to_arm: Vec<In>,
+    act: Option<RobotAct>,
+    drills: u64,
+    pub(crate) statuses: Vec<ArmStatus>,
+    pub(crate) joint_states: Vec<JointState>,
+    /// When each limb was commanded its joints, left first.
+    pub(crate) commanded: [Vec<Time>; 2],
+    pub(crate) orders: Vec<(Time, Order)>,
+    /// How often fingers have come to hold something.
+    pub(crate) grasps: u32,
+}
+
+impl World {
+    pub(crate) fn new(over: &[(&str, &str)]) -> Self {
+        let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"));
+        let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+        let settings = Settings::load(config, Some("baxter"), &over).unwrap();
+        let mut world = Self {
+            settings,
+            now: Time(1_000_000_000),
+            arm: None,
+            robot: None,
+            arm_journal: Vec::new(),
+            robot_journal: Vec::new(),
+            to_arm: Vec::new(),
+            act: None,
+            drills: 0,
+            statuses: Vec::new(),
+            joint_states: Vec::new(),
+            commanded: [Vec::new(), Vec::new()],
+            orders: Vec::new(),
+            grasps: 0,
+        };
+        world.start_robot();
+        world.start_arm();
+        world
+    }
+
+    pub(crate) fn start_arm(&mut self) {
+        let config = arm::shell::ArmProgram::config(&Environment::nowhere(), &self.settings);
+        let node = ArmNode::recover(config.unwrap(), self.arm_journal.clone()).unwrap();
+        self.arm = Some(node);
+        self.pass_arm(vec![Event::Started]);
+    }
+
+    pub(crate) fn kill_arm(&mut self) {
+        (self.arm, self.to_arm) = (None, Vec::new());
+    }
+
+    pub(crate) fn start_robot(&mut self) {
+        let config = baxter::shell::BaxterProgram::config(&Environment::nowhere(), &self.settings);
+        let node = BaxterNode::recover(config.unwrap(), self.robot_journal.clone()).unwrap();
+        self.robot = Some(node);
+        self.pass_robot(vec![Event::Started]);
+    }
+
+    pub(crate) fn kill_robot(&mut self) {
+        self.robot = None;
+    }
+
+    pub(crate) fn go(&mut self) {
+        self.now = self.now + LOOK_EVERY;
+        self.pass_robot(Vec::new());
+        let again = self.now.ns() % 250_000_000 < LOOK_EVERY.0;
+        self.to_arm.extend(self.act.filter(|_| again).map(|act| In::Act(Box::new(act))));
+        let events = self.to_arm.drain(..).map(Event::Message).collect();
+        self.pass_arm(events);
+    }
+
+    pub(crate) fn run(&mut self, seconds: f64) {
+        let until = self.now + Span::from_s(seconds);
+        while self.now < until {
+            self.go();
+        }
+    }
+
+    pub(crate) fn run_until(&mut self, what: &str, mut holds: impl FnMut(&Self) -> bool) {
+        let until = self.now + Span::from_s(90.0);
+        while !holds(self) {
+            let status = self.statuses.last();
+            assert!(self.now < until, "never: {what}; {:?} {status:?}", self.arm_state());
+            self.go();
+        }
+    }
+
+    /// The policy orders a pick.
+    pub(crate) fn pick(&mut self, interaction: u64, object: u16) {
+        let act = RobotAct {
+            act: interaction * 10,
+            interaction,
+            attempt: 1,
+            kind: ActKind::Pick.code(),
+            object: object.into(),
+            scene_key: self.settings.scene.key(),
+            ..RobotAct::default()
+        };
+        self.act = Some(act);
+        self.to_arm.push(In::Act(Box::new(act)));
+    }
+
+    pub(crate) fn motion(&mut self, order: MotionOrder) {
+        let given_ns = self.now.ns();
+        let command = MotionCommand { given_ns, order: order.code(), ..MotionCommand::default() };
+        self.to_arm.push(In::Motion(command));
+    }
+
+    /// Something happens to the robot.
+    pub(crate) fn drill(&mut self, kind: DrillKind, amount: f64) {
+        self.drills += 1;
+        let drill = Drill { key: self.drills, amount, kind: kind.code(), ..Drill::default() };
+        self.pass_robot(vec![Event::Message(baxter::In::Drill(drill))]);
+    }
+
+    pub(crate) fn arm_state(&self) -> Option<&ArmState> {
+        self.arm.as_ref().map(ArmNode::state)
+    }
+
+    pub(crate) fn phase(&self) -> PickPhase {
+        let pick = self.arm_state().and_then(|state| state.pick);
+        pick.map_or(PickPhase::Idle, |pick| pick.phase)
+    }
+
+    pub(crate) fn outcome(&self) -> PickOutcome {
+        let pick = self.arm_state().and_then(|state| state.pick);
+        pick.map_or(PickOutcome::Pending, |pick| pick.outcome)
+    }
+
+    pub(crate) fn status(&self) -> ArmStatus {
+        *self.statuses.last().unwrap()
+    }
+
+    pub(crate) fn hindrance(&self) -> Hindrance {
+        Hindrance::from_code(self.status().hindrance).unwrap()
+    }
+
+    /// The pick's object was brought, after one grasp that held.
+    pub(crate) fn assert_delivered_once(&self) {
+        assert_eq!(self.outcome(), PickOutcome::Delivered);
+        assert_eq!(self.grasps, 1, "one grasp that holds");
+        let picks = self.arm_journal.iter().filter_map(|record| record.state.pick);
+        let phases: Vec<u8> = picks.map(|pick| pick.phase.code()).collect();
+        assert!(phases.is_sorted(), "a phase was taken back");
+    }
+
+    fn pass_arm(&mut self, events: Vec<Event<In>>) {
+        let Some(node) = &mut self.arm else { return };
+        let mut effects = Effects::default();
+        events.into_iter().for_each(|event| node.on(event, self.now, &mut effects));
+        if node.deadline().is_some_and(|deadline| deadline <= self.now) {
+            node.on(Event::Tick, self.now, &mut effects);
+        }
+        self.arm_journal.extend(effects.take_records());
+        let mut to_robot = Vec::new();
+        for output in effects.take_outputs() {
+            match output {
+                Out::Status(status) => self.statuses.push(status),
+                Out::Robot(order) => {
+                    if let Order::Joints(limb, _) = &order {
+                        self.commanded[baxter::robot::side(*limb)].push(self.now);
+                    }
+                    self.orders.push((self.now, order.clone()));
+                    to_robot.push(Event::Message(hears(order)));
+                }
+                Out::Joints(_) | Out::World(_) => {}
+            }
+        }
+        self.pass_robot(to_robot);
+    }
+
+    fn pass_robot(&mut self, events: Vec<Event<baxter::In>>) {
+        let Some(node) = &mut self.robot else { return };
+        let held = |robot: &Robot| kinematics::Limb::BOTH.map(|l| robot.table().held(l).is_some());
+        let before = held(node.robot());
+        let mut effects = Effects::default();
+        events.into_iter().for_each(|event| node.on(event, self.now, &mut effects));
+        if node.deadline().is_some_and(|deadline| deadline <= self.now) {
+            node.on(Event::Tick, self.now, &mut effects);
+        }
+        let taken =
+            held(node.robot()).into_iter().zip(before).filter(|(now, before)| *now && !before);
+        self.grasps += taken.count() as u32;
+        self.robot_journal.extend(effects.take_records());
+        for told in effects.take_outputs() {
+            if let baxter::Out::Joints(state) = &told
+                && state.len > 1
+            {
+                self.joint_states.push(**state);
+            }
+            if self.arm.is_some() {
+                self.to_arm.extend(tells(told).map(In::Robot));
+            }
+        }
+    }
+}
+
+fn hears(order: Order) -> baxter::In {
+    match order {
+        Order::Joints(limb, command) => baxter::In::Joints(limb, command),
+        Order::FeedForward(limb, point) => baxter::In::FeedForward(limb, point),
+        Order::SpeedRatio(limb, ratio) => baxter::In::SpeedRatio(limb, ratio),
+        Order::Gripper(limb, command) => baxter::In::Gripper(limb, command),
+    }
+}
+
+fn tells(out: baxter::Out) -> Option<Told> {
+    match out {
+        baxter::Out::Joints(state) => Some(Told::Joints(state)),
+        baxter::Out::Assembly(state) => Some(Told::Assembly(state)),
+        baxter::Out::Gripper(limb, state) => Some(Told::Gripper(limb, state)),
+        baxter::Out::Properties(limb, own) => Some(Told::Properties(limb, own)),
+        baxter::Out::Endpoint(..) => None,
+    }
+}
