@@ -121,9 +121,9 @@ impl Servo {
             self.q[j] += self.qd[j] * dt;
         }
         let within = self.limits.position.clamp(&self.q);
-        for j in 0..7 {
-            if within[j] != self.q[j] {
-                (self.q[j], self.qd[j]) = (within[j], 0.0);
+        for (j, limit) in within.into_iter().enumerate() {
+            if limit != self.q[j] {
+                (self.q[j], self.qd[j]) = (limit, 0.0);
             }
         }
     }

@@ -8,6 +8,8 @@
 //! limb that hears none for 0.2 s takes over the position that it happens to have.
 
 mod gripper;
+#[cfg(test)]
+mod tests;
 
 use super::{ArmDriver, Command, Fault, Fingers, Measured, Order, Source, Told};
 use crate::state::{ArmState, side};
