@@ -68,8 +68,9 @@ impl Planner<'_> {
             return Err(Refusal::Gone);
         }
         let start = self.start(Some(pick.object), 0.0);
-        let plan =
-            plan_pick(self.robot, object, self.limb, &start.arms, &start.obstacles, self.settings)?;
+        let plan = self.narrowly(|settings| {
+            plan_pick(self.robot, object, self.limb, &start.arms, &start.obstacles, settings)
+        })?;
         self.refuse_other(plan.limb())?;
         let mut steps = start.steps;
         let stages = plan.timeline.stages();
@@ -87,15 +88,9 @@ impl Planner<'_> {
         let in_gripper = from_array(&held.in_gripper);
         let others = self.world.obstacles(self.state, None);
         let arms = self.arms();
-        let plan = plan_delivery(
-            self.robot,
-            object,
-            &in_gripper,
-            held.limb,
-            &arms,
-            &others,
-            self.settings,
-        )?;
+        let plan = self.narrowly(|settings| {
+            plan_delivery(self.robot, object, &in_gripper, held.limb, &arms, &others, settings)
+        })?;
         let steps = plan.timeline.stages().iter().map(|stage| self.pick_step(stage)).collect();
         Ok(Program { purpose: Purpose::Pick(pick), limb: held.limb, steps })
     }
@@ -114,14 +109,9 @@ impl Planner<'_> {
     pub(crate) fn aim(&self, object: ObjectId) -> Result<Program, Refusal> {
         let place = self.world.place(object).ok_or(Refusal::NoPlace)?;
         let start = self.start(None, 0.0);
-        let plan = plan_point(
-            self.robot,
-            place.xyz_m,
-            self.limb,
-            &start.arms,
-            &start.obstacles,
-            self.settings,
-        )?;
+        let plan = self.narrowly(|settings| {
+            plan_point(self.robot, place.xyz_m, self.limb, &start.arms, &start.obstacles, settings)
+        })?;
         self.refuse_other(plan.limb())?;
         let mut steps = start.steps;
         steps.push_back(Step {
@@ -142,11 +132,9 @@ impl Planner<'_> {
 
     fn rest_from(&self, limb: Limb, rise_m: f64) -> Result<Program, Refusal> {
         let start = self.start(None, rise_m);
-        // A motion that was halted between two of the points at which it was checked may stand a
-        // hair inside the margin. The way home is worth that.
-        let relaxed = PlanSettings { margin_m: 0.0, ..*self.settings };
-        let plan = plan_return(self.robot, limb, &start.arms, &start.obstacles, self.settings)
-            .or_else(|_| plan_return(self.robot, limb, &start.arms, &start.obstacles, &relaxed))?;
+        let plan = self.narrowly(|settings| {
+            plan_return(self.robot, limb, &start.arms, &start.obstacles, settings)
+        })?;
         let holds = self.state.held.is_some_and(|held| held.limb == limb);
         let mut steps = start.steps;
         steps.extend(plan.timeline.stages().iter().map(|stage| Step {
@@ -162,6 +150,22 @@ impl Planner<'_> {
         let place = Vector3::new(x, limb.side() * y, z);
         let tolerance_m = HAND_OVER_M + REACH_M * self.measured.accuracy_rad;
         (self.tip(limb).vector - place).norm() < tolerance_m
+    }
+
+    /// Plans with the configured margin or, where something is in the way of a limb that is away
+    /// from rest, without one: an arm that was halted between two of the points at which its motion
+    /// was checked, or that is measured a little beside them, may stand a hair inside the margin.
+    fn narrowly<T>(
+        &self,
+        plan: impl Fn(&PlanSettings) -> Result<T, PlanError>,
+    ) -> Result<T, PlanError> {
+        let rests = |limb| self.measured.is_at_rest(self.robot, limb);
+        match plan(self.settings) {
+            Err(PlanError::Blocked { .. }) if !Limb::BOTH.into_iter().all(rests) => {
+                plan(&PlanSettings { margin_m: 0.0, ..*self.settings })
+            }
+            plan => plan,
+        }
     }
 
     fn refuse_other(&self, limb: Limb) -> Result<(), Refusal> {
