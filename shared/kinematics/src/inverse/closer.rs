@@ -2,6 +2,7 @@
 //! refinement.
 
 use super::IkSolution;
+use super::crossing;
 use super::goal::Aim;
 use super::golden;
 use super::posture::{Branch, Posture};
@@ -11,6 +12,9 @@ use super::solve::exact;
 
 /// Closed forms spent between the neighbours of one sample; they narrow s0 to 5e-5 rad.
 const LOOKS: usize = 16;
+
+/// The most that the violation falls per radian of s0: what [`super::slice::WIDE_RAD`] rests on.
+pub(crate) const STEEPEST: f64 = 17.0;
 
 /// Local minima looked at between their neighbours. In two million random postures the tenth was
 /// never the one.
@@ -50,18 +54,25 @@ impl Nearly {
         self.seen.push(Seen { cell, branch, posture });
     }
 
-    /// Follows every local minimum of the violation along s0, then refines what came nearest.
+    /// Follows every local minimum of the violation along s0, looks where two joints' violations
+    /// cross, then refines what came nearest.
     pub(crate) fn look_closer(mut self, aim: &Aim<'_>) -> Result<IkSolution, Refined> {
         let mut closer = Vec::with_capacity(MINIMA);
         for (branch, posture) in self.minima() {
             let found = least_violation(aim, self.cell_rad, branch, posture);
-            if found.violation == 0.0 {
-                let settled = Slice::new(aim, found.q[0]).posture(branch).unwrap_or(found);
-                if let Some(answer) = exact(aim, &settled) {
+            if let Some(answer) = settled(aim, branch, &found) {
+                return Ok(answer);
+            }
+            closer.push(found);
+        }
+        for pair in self.seen.windows(2) {
+            let [left, right] = pair else { continue };
+            if left.branch == right.branch && right.cell == left.cell + 1 {
+                let found = crossing::between(aim, left.branch, &left.posture, &right.posture);
+                if let Some(answer) = found.and_then(|found| settled(aim, left.branch, &found)) {
                     return Ok(answer);
                 }
             }
-            closer.push(found);
         }
         closer.sort_by(|a, b| a.violation.total_cmp(&b.violation));
         let mut best = nearest(aim, closer.first());
@@ -101,6 +112,14 @@ impl Nearly {
     }
 }
 
+/// A roughly settled posture as an answer, if it is one.
+fn settled(aim: &Aim<'_>, branch: Branch, found: &Posture) -> Option<IkSolution> {
+    if found.violation > 0.0 {
+        return None;
+    }
+    exact(aim, &Slice::new(aim, found.q[0]).posture(branch).unwrap_or(*found))
+}
+
 /// The nearest posture in a few steps: from the best one known, or from the middle of the limits
 /// where the target lies beyond the arm's reach.
 fn nearest(aim: &Aim<'_>, best: Option<&Posture>) -> Refined {
@@ -116,7 +135,7 @@ fn least_violation(aim: &Aim<'_>, cell_rad: f64, branch: Branch, from: Posture) 
     let (lower, upper) = aim.limits(0);
     let mut best = from;
     let range = ((from.q[0] - cell_rad).max(lower), (from.q[0] + cell_rad).min(upper));
-    golden::narrow(range, LOOKS, |s0| {
+    golden::narrow(range, LOOKS, STEEPEST, |s0| {
         let Some(posture) = Slice::roughly(aim, s0).posture(branch) else { return f64::INFINITY };
         if posture.violation < best.violation || posture.is_solution() {
             best = posture;

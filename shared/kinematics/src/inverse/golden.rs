@@ -1,13 +1,20 @@
 //! Golden-section search.
 
 /// Narrows `(a, b)` towards the least value of `f` with `looks` evaluations; ends early where it
-/// is 0. The caller keeps what `f` saw.
-pub(crate) fn narrow((mut a, mut b): (f64, f64), looks: usize, mut f: impl FnMut(f64) -> f64) {
+/// is 0, or where it cannot become 0 any more because it falls by at most `steepest` per unit. The
+/// caller keeps what `f` saw.
+pub(crate) fn narrow(
+    (mut a, mut b): (f64, f64),
+    looks: usize,
+    steepest: f64,
+    mut f: impl FnMut(f64) -> f64,
+) {
     const SHARE: f64 = 0.618_033_988_749_894_8;
     let (mut c, mut d) = (b - SHARE * (b - a), a + SHARE * (b - a));
     let (mut at_c, mut at_d) = (f(c), f(d));
     for _ in 2..looks {
-        if at_c == 0.0 || at_d == 0.0 {
+        let least = at_c.min(at_d);
+        if least == 0.0 || least.is_finite() && least > steepest * (b - a) {
             break;
         }
         if at_c < at_d {
@@ -30,7 +37,7 @@ mod tests {
     fn a_minimum_is_closed_in_on() {
         let mut best = (f64::INFINITY, 0.0);
         let mut looks = 0;
-        narrow((-1.0, 3.0), 30, |x| {
+        narrow((-1.0, 3.0), 30, f64::INFINITY, |x| {
             looks += 1;
             let y = (x - 0.7).abs() + 0.5;
             if y < best.0 {
@@ -45,10 +52,20 @@ mod tests {
     #[test]
     fn a_zero_ends_the_search() {
         let mut looks = 0;
-        narrow((0.0, 1.0), 30, |_| {
+        narrow((0.0, 1.0), 30, f64::INFINITY, |_| {
             looks += 1;
             0.0
         });
         assert_eq!(looks, 2);
+    }
+
+    #[test]
+    fn a_search_without_hope_ends() {
+        let mut looks = 0;
+        narrow((0.0, 1.0), 30, 1.0, |x| {
+            looks += 1;
+            0.5 + x
+        });
+        assert!(looks < 6, "{looks}");
     }
 }

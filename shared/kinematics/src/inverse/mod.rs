@@ -6,6 +6,7 @@
 //! last bit, or it is an [`Unreachable`].
 
 mod closer;
+mod crossing;
 mod goal;
 mod golden;
 mod nearest;

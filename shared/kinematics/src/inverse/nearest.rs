@@ -10,10 +10,10 @@ use super::{IkSolution, Unreachable};
 use crate::limb::Joints;
 
 /// Curves of solutions that are followed to their nearest point.
-const FOLLOWED: usize = 4;
+const FOLLOWED: usize = 3;
 
 /// Closed forms spent on each; they narrow s0 to 2e-3 rad, and drifting does the rest.
-const LOOKS: usize = 10;
+const LOOKS: usize = 8;
 
 /// Refinement steps from the seed itself.
 const BESIDE: usize = 12;
@@ -113,6 +113,11 @@ fn follow(aim: &Aim<'_>, seed: &Joints, from: &Near) -> Near {
         _ => 1e3 + (at - s0).abs(),
     };
     look(s0);
-    golden::narrow(((s0 - SAMPLE_RAD).max(lower), (s0 + SAMPLE_RAD).min(upper)), LOOKS, look);
+    golden::narrow(
+        ((s0 - SAMPLE_RAD).max(lower), (s0 + SAMPLE_RAD).min(upper)),
+        LOOKS,
+        f64::INFINITY,
+        look,
+    );
     best
 }

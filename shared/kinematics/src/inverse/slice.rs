@@ -171,6 +171,9 @@ impl<'a> Slice<'a> {
                 return Some(self.finish(&arm, next, branch, true));
             }
             if round == 1 {
+                if let Some(far) = self.beyond(&arm, branch, margin_rad) {
+                    return Some(far);
+                }
                 let rough = self.finish(&arm, next, branch, false);
                 if rough.violation > margin_rad {
                     return Some(rough);
@@ -253,6 +256,23 @@ impl<'a> Slice<'a> {
         }
     }
 
+    /// A branch that can be dropped by w1 alone, the joint that most often forbids it: the other
+    /// angles need not be worked out. Its violation is then a lower bound.
+    #[inline]
+    fn beyond(&self, arm: &ArmAngles, branch: Branch, margin_rad: f64) -> Option<Posture> {
+        let w1 = self.position(5, Self::wrist(&arm.unturned(&self.z), branch));
+        let violation = self.limits.outside(5, w1) + arm.lack;
+        let q = [self.s0, 0.0, 0.0, 0.0, 0.0, w1, 0.0];
+        (violation > margin_rad).then_some(Posture { q, violation, settled: false })
+    }
+
+    /// Sine and cosine of w1's angle, given the target's z axis before w0.
+    #[inline(always)]
+    fn wrist(z: &Vector3<f64>, branch: Branch) -> (f64, f64) {
+        let sine = (z.x * z.x + z.y * z.y).sqrt();
+        (if branch.wrist_up { sine } else { -sine }, z.z)
+    }
+
     /// All seven angles of a branch.
     #[inline]
     fn finish(
@@ -264,8 +284,7 @@ impl<'a> Slice<'a> {
     ) -> Posture {
         let z = arm.unturned(&self.z);
         let x = arm.unturned(&self.x);
-        let sine = (z.x * z.x + z.y * z.y).sqrt();
-        let w1 = (if branch.wrist_up { sine } else { -sine }, z.z);
+        let w1 = Self::wrist(&z, branch);
         // Against the axes of the frame before w2, not by the third row of z-y-z: this way w2 is
         // right even where w1 is 0 and the row vanishes.
         let w2 = (c * x.y - s * x.x, w1.1 * (c * x.x + s * x.y) - w1.0 * x.z);
