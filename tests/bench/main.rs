@@ -1,10 +1,12 @@
-//! Benchmarks of the decision core and of the running group: what a decision and a belief update
-//! cost and how good decisions are; how fast the group starts and recovers, how long an utterance
+//! Benchmarks of the decision core, of the arm and of the running group: what a decision and a
+//! belief update cost and how good decisions are; how often and how fast poses are reached, beside
+//! other solvers; how fast the group starts and recovers, how long an utterance
 //! takes to become a decision and where the time goes, and what it costs when nothing happens.
 //!
 //! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
 //! test rests on one.
 
+mod arm;
 mod core;
 mod idle;
 mod latency;
@@ -15,11 +17,14 @@ mod start;
 use report::Report;
 use std::process::ExitCode;
 
-const HELP: &str = "Usage: bench [--quick] [--core]
+const HELP: &str = "Usage: bench [--quick] [--core] [--kinematics]
 
-  --quick  fewer repetitions and smaller series: a minute in place of several
-  --core   only the decision core, without starting a group
+  --quick       fewer repetitions and smaller series: a minute in place of several
+  --core        only the decision core, without starting a group
+  --kinematics  only the arm: inverse kinematics, motions and clearances beside other solvers
 ";
+
+const OPTIONS: [&str; 3] = ["--quick", "--core", "--kinematics"];
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -27,17 +32,23 @@ fn main() -> ExitCode {
         report::print(HELP);
         return ExitCode::SUCCESS;
     }
-    if let Some(unknown) = words.iter().find(|word| !["--quick", "--core"].contains(&word.as_str()))
-    {
+    if let Some(unknown) = words.iter().find(|word| !OPTIONS.contains(&word.as_str())) {
         report::print(&format!("{unknown} is no option\n\n{HELP}"));
         return ExitCode::from(64);
     }
     let asked = |word: &str| words.iter().any(|known| known == word);
     let mut report = Report::default();
-    peers::measure(&mut report);
-    let effort = if asked("--quick") { core::Effort::QUICK } else { core::Effort::FULL };
-    core::measure(&mut report, effort);
-    if !asked("--core") {
+    let [core_only, arm_only] = ["--core", "--kinematics"].map(asked);
+    let all = !core_only && !arm_only;
+    if all || core_only {
+        peers::measure(&mut report);
+        let effort = if asked("--quick") { core::Effort::QUICK } else { core::Effort::FULL };
+        core::measure(&mut report, effort);
+    }
+    if all || arm_only {
+        arm::measure(&mut report, asked("--quick"));
+    }
+    if all {
         start::measure(&mut report);
         latency::measure(&mut report);
         idle::measure(&mut report);

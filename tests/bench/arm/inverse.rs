@@ -1,0 +1,163 @@
+//! Any posture that reaches a pose: how often, how fast, and how far from where it began.
+
+use super::damped::Damped;
+use super::judge::{Judge, Rule, apart};
+use super::targets::{Target, middle};
+use super::{Effort, arm, mean, timed};
+use crate::report::{Report, Table, percentile};
+use kinematics::{Joints, Limb};
+use nalgebra::Isometry3;
+
+/// Something that looks for a posture from a seed.
+pub(super) trait Solver {
+    /// Its name, and what it may take per call.
+    fn name(&self) -> String;
+    fn solve(&mut self, limb: Limb, pose: &Isometry3<f64>, seed: &Joints) -> Option<Joints>;
+}
+
+/// From which posture solvers begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Seed {
+    Middle,
+    Random,
+}
+
+impl Seed {
+    pub(super) fn of(self, target: &Target) -> Joints {
+        match self {
+            Self::Middle => middle(target.limb),
+            Self::Random => target.seed,
+        }
+    }
+}
+
+/// What a solver made of the targets.
+#[derive(Debug)]
+pub(super) struct Outcome {
+    pub(super) name: String,
+    pub(super) targets: usize,
+    /// Share of the targets.
+    pub(super) solved: f64,
+    /// Of every call, failed ones too.
+    pub(super) micros: Vec<f64>,
+    /// Mean over the solved, radians.
+    pub(super) distance: f64,
+}
+
+impl Outcome {
+    /// Judges answers, each with its microseconds.
+    pub(super) fn of(
+        name: String,
+        targets: &[Target],
+        seed: Seed,
+        answers: impl Iterator<Item = (Option<Joints>, f64)>,
+        rule: Rule,
+    ) -> Self {
+        let judge = Judge::new();
+        let (mut micros, mut distances) = (Vec::new(), Vec::new());
+        for (target, (answer, time)) in targets.iter().zip(answers) {
+            micros.push(time);
+            let accepted = answer.filter(|q| judge.accepts(target.limb, &target.pose, q, rule));
+            distances.extend(accepted.map(|q| apart(&q, &seed.of(target))));
+        }
+        let solved = distances.len() as f64 / micros.len().max(1) as f64;
+        Self { name, targets: micros.len(), solved, micros, distance: mean(&distances) }
+    }
+
+    pub(super) fn mean(&self) -> f64 {
+        mean(&self.micros)
+    }
+
+    /// Cells of a table's row; `ours` is the mean that the last cell compares with.
+    pub(super) fn cells(&self, ours: f64) -> Vec<String> {
+        let micros = |value: f64| format!("{value:.1}");
+        vec![
+            self.name.clone(),
+            self.targets.to_string(),
+            format!("{:.2} %", self.solved * 100.0),
+            micros(self.mean()),
+            micros(percentile(&self.micros, 0.5)),
+            micros(percentile(&self.micros, 0.99)),
+            format!("{:.3}", self.distance),
+            format!("{:.1}", self.mean() / ours),
+        ]
+    }
+}
+
+/// The heads of [`Outcome::cells`].
+pub(super) fn heads() -> Vec<String> {
+    ["solver", "targets", "solved", "mean µs", "median", "p99", "distance to seed, rad", "× ours"]
+        .map(str::to_owned)
+        .to_vec()
+}
+
+/// Has a solver answer the targets.
+pub(super) fn run(solver: &mut dyn Solver, targets: &[Target], seed: Seed, rule: Rule) -> Outcome {
+    let name = solver.name();
+    let answers = targets.iter().map(|target| {
+        let from = seed.of(target);
+        timed(|| solver.solve(target.limb, &target.pose, &from))
+    });
+    Outcome::of(name, targets, seed, answers, rule)
+}
+
+/// This project's solver, any answer.
+struct Own;
+
+impl Solver for Own {
+    fn name(&self) -> String {
+        "**whichone**, one thread, to 1e-6".to_owned()
+    }
+
+    fn solve(&mut self, limb: Limb, pose: &Isometry3<f64>, _: &Joints) -> Option<Joints> {
+        arm(limb).chain.inverse(pose, None).ok().map(|answer| answer.q)
+    }
+}
+
+pub(super) fn measure(
+    report: &mut Report,
+    targets: &[Target],
+    python: &super::python::Measured,
+    effort: Effort,
+) {
+    let few = &targets[..effort.peers];
+    let own = run(&mut Own, targets, Seed::Middle, Rule::OWN);
+    let mut peers = vec![run(&mut Damped::new(), few, Seed::Middle, Rule::PEER)];
+    #[cfg(feature = "peers")]
+    for solver in super::k_crate::solvers() {
+        let mut solver = solver;
+        peers.push(run(&mut solver, few, Seed::Middle, Rule::PEER));
+    }
+    peers.extend(python.outcomes(targets, false, Seed::Middle));
+    let best = peers
+        .iter()
+        .filter(|peer| peer.solved >= 0.99)
+        .min_by(|a, b| a.mean().total_cmp(&b.mean()))
+        .map_or("No peer solves 99 %.".to_owned(), |best| {
+            let (ours, theirs) = (own.mean(), best.mean());
+            let ratio = theirs / ours;
+            format!("Best peer that solves 99 %: {}, {ratio:.1} times our mean.", best.name)
+        });
+    let mut note = format!(
+        "Poses of both limbs that are forward kinematics of random postures; seed: the middle of \
+         the limits. Times are of every call, failed ones too: processor time for one thread, \
+         elapsed time for two, with the way from Python and back where a package of it is named. \
+         Ours must come within 1e-6 m and rad and keep the limits to the last bit; peers stop at \
+         1e-5 and are accepted at 2e-5. On a busy machine those that look at the clock solve \
+         less. {best}"
+    );
+    for line in &python.left_out {
+        note += &format!(" {line}");
+    }
+    if !cfg!(feature = "peers") {
+        note += " Built without the feature `peers`: the crate k is left out.";
+    }
+    let ours = own.mean();
+    let rows = std::iter::once(&own).chain(&peers).map(|outcome| outcome.cells(ours)).collect();
+    report.tables.push(Table {
+        title: "Inverse kinematics".to_owned(),
+        note,
+        heads: heads(),
+        rows,
+    });
+}

@@ -1,0 +1,95 @@
+//! The crate `k`, which is on an older version of our linear algebra.
+
+use super::inverse::Solver;
+use super::targets::Random;
+use super::{BUDGET_S, thread_s};
+use k::prelude::*;
+use kinematics::{Joints, Limb};
+use nalgebra::Isometry3;
+
+type Serial = k::SerialChain<f64>;
+
+/// Distance and angle at which it stops.
+const TOLERANCE: f64 = 1e-5;
+/// Share of the Newton step that is taken, and steps: what does best here.
+const MULTIPLIER: f64 = 0.5;
+const STEPS: usize = 100;
+
+/// One call, and calls from random postures until time is up.
+pub(super) fn solvers() -> [Peer; 2] {
+    [Peer::new(false), Peer::new(true)]
+}
+
+pub(super) struct Peer {
+    arms: [Serial; 2],
+    solver: k::JacobianIkSolver<f64>,
+    restarts: Option<Random>,
+}
+
+/// A limb's chain from `base` to `<limb>_gripper`, and the chains that it borrows from.
+pub(super) fn chain(limb: Limb) -> Serial {
+    let path = format!("{}/fixtures/baxter/baxter.urdf", env!("CARGO_MANIFEST_DIR"));
+    let robot = k::Chain::<f64>::from_urdf_file(path).expect("a description that k reads");
+    let tip = robot.find_link(&format!("{limb}_gripper")).expect("a gripper");
+    k::SerialChain::from_end(tip)
+}
+
+impl Peer {
+    fn new(restarting: bool) -> Self {
+        Self {
+            arms: Limb::BOTH.map(chain),
+            solver: k::JacobianIkSolver::new(TOLERANCE, TOLERANCE, MULTIPLIER, STEPS),
+            restarts: restarting.then(|| Random::new(13)),
+        }
+    }
+}
+
+impl Solver for Peer {
+    fn name(&self) -> String {
+        match self.restarts {
+            None => "k 0.32, one call".to_owned(),
+            Some(_) => "k 0.32 with restarts, 5 ms".to_owned(),
+        }
+    }
+
+    fn solve(&mut self, limb: Limb, pose: &Isometry3<f64>, seed: &Joints) -> Option<Joints> {
+        let arm = &self.arms[usize::from(limb == Limb::Right)];
+        let pose = theirs(pose);
+        let started = thread_s();
+        let mut from = *seed;
+        loop {
+            arm.set_joint_positions_clamped(&from);
+            if self.solver.solve(arm, &pose).is_ok() {
+                return arm.joint_positions().try_into().ok();
+            }
+            let random = self.restarts.as_mut()?;
+            if thread_s() - started > BUDGET_S {
+                return None;
+            }
+            from = random.posture(limb);
+        }
+    }
+}
+
+fn theirs(pose: &Isometry3<f64>) -> k::Isometry3<f64> {
+    let (p, r) = (pose.translation, pose.rotation);
+    let rotation = k::nalgebra::Quaternion::new(r.w, r.i, r.j, r.k);
+    k::Isometry3::from_parts(
+        k::Translation3::new(p.x, p.y, p.z),
+        k::UnitQuaternion::new_normalize(rotation),
+    )
+}
+
+/// Forward kinematics: the tip's x.
+pub(super) fn forward(arm: &Serial, q: &Joints) -> f64 {
+    arm.set_joint_positions_unchecked(q);
+    arm.update_transforms();
+    arm.end_transform().translation.x
+}
+
+/// Forward kinematics and Jacobian: one of its numbers.
+pub(super) fn jacobian(arm: &Serial, q: &Joints) -> f64 {
+    arm.set_joint_positions_unchecked(q);
+    arm.update_transforms();
+    k::jacobian(arm)[(0, 0)]
+}
