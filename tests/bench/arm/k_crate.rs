@@ -6,6 +6,8 @@ use super::{BUDGET_S, thread_s};
 use k::prelude::*;
 use kinematics::{Joints, Limb};
 use nalgebra::Isometry3;
+use robot::Robot;
+use std::io::Write;
 
 type Serial = k::SerialChain<f64>;
 
@@ -26,12 +28,50 @@ pub(super) struct Peer {
     restarts: Option<Random>,
 }
 
-/// A limb's chain from `base` to `<limb>_gripper`, and the chains that it borrows from.
+/// A limb's chain from `base` to `<limb>_gripper`. It gets a robot of this limb alone: in a larger
+/// one each joint that moves costs it a walk over all that hangs on it.
 pub(super) fn chain(limb: Limb) -> Serial {
-    let path = format!("{}/fixtures/baxter/baxter.urdf", env!("CARGO_MANIFEST_DIR"));
-    let robot = k::Chain::<f64>::from_urdf_file(path).expect("a description that k reads");
+    let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
+    file.write_all(description(limb).as_bytes()).expect("room for a description");
+    let robot = k::Chain::<f64>::from_urdf_file(file.path()).expect("a description that k reads");
     let tip = robot.find_link(&format!("{limb}_gripper")).expect("a gripper");
     k::SerialChain::from_end(tip)
+}
+
+/// The links and joints from `base` to `<limb>_gripper`.
+fn description(limb: Limb) -> String {
+    let robot = Robot::baxter();
+    let chain = robot.chain(&format!("{limb}_gripper")).expect("a gripper");
+    let mut text = String::from("<robot name=\"arm\">");
+    for link in chain.links() {
+        text += &format!("<link name=\"{}\"/>", link.name);
+    }
+    for joint in chain.joints() {
+        let [parent, child] = [joint.parent, joint.child].map(|link| &robot.links()[link].name);
+        let (p, a) = (joint.origin.translation, joint.axis);
+        let (roll, pitch, yaw) = joint.origin.rotation.euler_angles();
+        text += &format!(
+            "<joint name=\"{}\" type=\"{}\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+             <origin xyz=\"{} {} {}\" rpy=\"{roll} {pitch} {yaw}\"/>\
+             <axis xyz=\"{} {} {}\"/>",
+            joint.name,
+            joint.kind.name(),
+            p.x,
+            p.y,
+            p.z,
+            a.x,
+            a.y,
+            a.z,
+        );
+        if let Some(limits) = joint.limits {
+            text += &format!(
+                "<limit lower=\"{}\" upper=\"{}\" velocity=\"{}\" effort=\"{}\"/>",
+                limits.lower, limits.upper, limits.velocity, limits.effort,
+            );
+        }
+        text += "</joint>";
+    }
+    text + "</robot>"
 }
 
 impl Peer {
