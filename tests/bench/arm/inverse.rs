@@ -133,10 +133,10 @@ pub(super) fn measure(
         .iter()
         .filter(|peer| peer.solved >= 0.99)
         .min_by(|a, b| a.mean().total_cmp(&b.mean()))
-        .map_or("No peer solves 99 %.".to_owned(), |best| {
+        .map_or("No other solves 99 %.".to_owned(), |best| {
             let (ours, theirs) = (own.mean(), best.mean());
             let ratio = theirs / ours;
-            format!("Best peer that solves 99 %: {}, {ratio:.1} times our mean.", best.name)
+            format!("Fastest other that solves 99 %: {}, {ratio:.1} times our mean.", best.name)
         });
     let mut note = format!(
         "Poses of both limbs that are forward kinematics of random postures; seed: the middle of \

@@ -31,7 +31,8 @@ pub(super) struct Peer {
 /// A limb's chain from `base` to `<limb>_gripper`. It gets a robot of this limb alone: in a larger
 /// one each joint that moves costs it a walk over all that hangs on it.
 pub(super) fn chain(limb: Limb) -> Serial {
-    let mut file = tempfile::NamedTempFile::new().expect("a temporary file");
+    let file = tempfile::Builder::new().suffix(".urdf").tempfile();
+    let mut file = file.expect("a temporary file");
     file.write_all(description(limb).as_bytes()).expect("room for a description");
     let robot = k::Chain::<f64>::from_urdf_file(file.path()).expect("a description that k reads");
     let tip = robot.find_link(&format!("{limb}_gripper")).expect("a gripper");
@@ -123,13 +124,11 @@ fn theirs(pose: &Isometry3<f64>) -> k::Isometry3<f64> {
 /// Forward kinematics: the tip's x.
 pub(super) fn forward(arm: &Serial, q: &Joints) -> f64 {
     arm.set_joint_positions_unchecked(q);
-    arm.update_transforms();
     arm.end_transform().translation.x
 }
 
 /// Forward kinematics and Jacobian: one of its numbers.
 pub(super) fn jacobian(arm: &Serial, q: &Joints) -> f64 {
     arm.set_joint_positions_unchecked(q);
-    arm.update_transforms();
     k::jacobian(arm)[(0, 0)]
 }
