@@ -15,6 +15,7 @@
 //! Start at [`Limb`], then [`plan_pick`].
 
 pub mod baxter;
+mod block;
 mod cartesian;
 mod chain;
 mod clearance;
@@ -22,6 +23,7 @@ mod clock;
 mod course;
 mod grasp;
 pub mod gripper;
+mod held;
 mod inverse;
 mod limb;
 pub mod limits;

@@ -48,6 +48,16 @@ pub(crate) fn searched(
     if clear(from) && clear(to) { Trees::new(*from, *to).run(limits, clear) } else { None }
 }
 
+/// The first thing that `blocked` finds along the straight line.
+pub(crate) fn blocking<G>(
+    from: &Joints,
+    to: &Joints,
+    blocked: &impl Fn(&Joints) -> Option<G>,
+) -> Option<G> {
+    let steps = (largest_change(from, to) / CHECK_RAD).ceil().max(1.0) as usize;
+    (0..=steps).find_map(|k| blocked(&mix(from, to, k as f64 / steps as f64)))
+}
+
 /// Whether `clear` holds along the straight line, both ends included.
 fn line_clear(from: &Joints, to: &Joints, clear: &impl Fn(&Joints) -> bool) -> bool {
     let steps = (largest_change(from, to) / CHECK_RAD).ceil().max(1.0) as usize;

@@ -94,7 +94,7 @@ fn segment_to_segment(p: &Capsule, q: &Capsule) -> f64 {
 /// The squared distance along the segment is convex, and a parabola between the up to six points
 /// where the segment crosses a face's plane. Its derivative is found zero by bisecting at those.
 #[inline]
-fn segment_to_box(a: &Vector3<f64>, b: &Vector3<f64>, half: &Vector3<f64>) -> f64 {
+pub(crate) fn segment_to_box(a: &Vector3<f64>, b: &Vector3<f64>, half: &Vector3<f64>) -> f64 {
     let d = b - a;
     let beyond = |t: f64| {
         let p = a + d * t;

@@ -1,7 +1,9 @@
 //! Whether a scene's objects can be fetched at all.
 
+use super::choices::Choices;
 use super::error::{Furthest, PlanError};
-use super::pick::{Choice, situations};
+use super::fetch::Carry;
+use super::pick::situations;
 use super::situation::{PlanSettings, Search};
 use crate::grasp::ObjectPose;
 use crate::limb::Limb;
@@ -23,13 +25,18 @@ pub fn check_reachable(
         let situations = situations(robot, &objects[i], limb, &robot.neutral(), &others, settings)?;
         let mut furthest = Furthest::default();
         for situation in &situations {
-            for grasp in objects[i].grasps()? {
-                let fetched = Choice::new(situation, grasp)
-                    .and_then(|choice| choice.carry(&choice.hold()?, Search::No));
+            let mut choices =
+                Choices::new(&objects[i], std::slice::from_ref(situation), &mut furthest)?;
+            while let Some(choice) = choices.next(&mut furthest) {
+                let carrying = choice.carrying(&objects[i]);
+                let fetched = choice.hold(&carrying).and_then(|hold| {
+                    Carry::find(&carrying, hold.above(), Search::No).map_err(|error| (5, error))
+                });
                 match fetched {
                     Ok(_) => return Ok(situation.limb),
                     Err((progress, error)) => furthest.add(progress, error),
                 }
+                choices.failed(&choice);
             }
         }
         Err(furthest.report())

@@ -38,6 +38,7 @@ pub fn plan_delivery(
     settings: &PlanSettings,
 ) -> Result<PickPlan, PlanError> {
     let situation = situation(robot, object, limb, arms, others, settings)?;
+    let carrying = situation.carrying(object, object_in_gripper);
     let held = situation.chain.forward(&situation.q);
     let above = Translation3::new(0.0, 0.0, still_to_lift_m(object, &held, settings)) * held;
     let lift = situation.chain.line(&situation.q, &above).map_err(|line| PlanError::Line {
@@ -46,7 +47,7 @@ pub fn plan_delivery(
         line,
     })?;
     let width_m = gripper::closed_on(object.grasp_width_m);
-    let stages = deliver(&situation, lift, width_m, Search::Yes)?;
+    let stages = deliver(&situation, &carrying, lift, width_m, Search::Yes)?;
     let timeline = Timeline::new(limb, stages);
     Ok(PickPlan { timeline, grasp: None, object_in_gripper: *object_in_gripper })
 }
@@ -93,20 +94,22 @@ pub fn plan_return(
     Ok(PickPlan { timeline, grasp: None, object_in_gripper: Isometry3::identity() })
 }
 
-/// Lift, hand over, release and return, from the low end of `lift`.
+/// Lift, hand over, release and return, from the low end of `lift`: `carrying` the object, and
+/// without it from the hand over on.
 pub(crate) fn deliver(
     situation: &Situation<'_>,
+    carrying: &Situation<'_>,
     lift: Vec<Joints>,
     width_m: f64,
     search: Search,
 ) -> Result<Vec<Stage<PickPhase>>, PlanError> {
     let above = lift[lift.len() - 1];
-    let carry = Carry::find(situation, &above, search)?;
+    let carry = Carry::find(carrying, &above, search)?;
     let mut waypoints = lift[..lift.len().saturating_sub(CORNER).max(1)].to_vec();
     waypoints.push(above);
     waypoints.extend(carry.waypoints.iter().skip(if carry.straight { CORNER } else { 1 }));
     waypoints.push(*carry.end());
-    let whole = situation.motion(HAND_OVER, &waypoints)?;
+    let whole = carrying.motion(HAND_OVER, &waypoints)?;
     let (lift, hand_over) = whole.split(whole.time_nearest(&above));
     let open_m = situation.settings.open_width_m;
     let home = situation.motion(HOME, &home(situation, carry.end(), search)?)?;
@@ -131,8 +134,9 @@ fn home(
     let pose = situation.chain.forward(from);
     let raised = Translation3::new(0.0, 0.0, situation.settings.hover_m) * pose;
     let mut up = situation.chain.line(from, &raised).unwrap_or_else(|_| vec![*from]);
-    let rest = situation.way(&up[up.len() - 1], &situation.arm.neutral, search);
-    let rest = rest.ok_or_else(|| situation.no_way(HOME))?;
+    let (top, neutral) = (up[up.len() - 1], &situation.arm.neutral);
+    let rest = situation.way(&top, neutral, search);
+    let rest = rest.ok_or_else(|| situation.no_way(HOME, &top, neutral))?;
     up.extend(rest.into_iter().skip(1));
     Ok(up)
 }

@@ -49,13 +49,21 @@ pub enum PlanError {
         gap: Gap,
     },
     /// Both ends are clear, but no way between them was found.
-    #[error("no way for the {limb} arm to {at} was found that touches nothing")]
+    #[error("no way for the {limb} arm to {at} was found that touches nothing{}", in_way(gap))]
     NoWay {
         /// Where the way was to lead.
         at: &'static str,
         /// The arm.
         limb: Limb,
+        /// What is in the way of the straight one.
+        gap: Option<Gap>,
     },
+}
+
+fn in_way(gap: &Option<Gap>) -> String {
+    gap.map_or_else(String::new, |gap| {
+        format!("; straight there its {} would meet the {}", gap.link, gap.other)
+    })
 }
 
 /// Keeps the error of the attempt that came furthest.

@@ -1,6 +1,8 @@
 //! One grasp tried with one limb: where the arm would be above it, on the way down and at the
 //! hand over.
 
+use std::f64::consts::PI;
+
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::error::PlanError;
@@ -23,39 +25,24 @@ pub(crate) struct Carry {
     pub(crate) straight: bool,
 }
 
-/// Postures tried for one pose of the gripper when the nearest is not clear.
-const ALTERNATIVES: usize = 12;
+/// Postures tried at the hand over for one turn.
+const ENDS: usize = 3;
 
-/// Turns about the vertical tried for the hand over, radians, the unturned first.
-const TURNS: [f64; 8] = [0.0, 0.5, -0.5, 1.0, -1.0, 2.0, -2.0, 3.0];
+/// Turns about the vertical at the hand over: every 10°, the smallest first.
+const TURNS: usize = 36;
+
+/// Turns tried at which what is held is clear of everything.
+const TURNS_TRIED: usize = 10;
 
 pub(crate) const ABOVE: &str = "the place above the object";
 pub(crate) const GRASP: &str = "the grasp";
+pub(crate) const LIFT: &str = "the lift";
 pub(crate) const HAND_OVER: &str = "the hand over";
 pub(crate) const HOME: &str = "the neutral posture";
 
 impl Hold {
-    /// Holds `grasp` coming down from `above`, the posture nearest to the present one, or from one
-    /// of the alternatives to it. Errors with how far the best attempt came.
-    pub(crate) fn try_from_above(
-        situation: &Situation<'_>,
-        grasp: &Grasp,
-        above: &Joints,
-    ) -> Result<Self, (usize, PlanError)> {
-        let nearest = Self::down(situation, grasp, above);
-        let Err(mut furthest) = nearest else { return nearest };
-        let target = grasp.raised(situation.settings.hover_m);
-        for q in alternatives(situation, &target) {
-            match Self::down(situation, grasp, &q) {
-                Ok(hold) => return Ok(hold),
-                Err(error) if error.0 > furthest.0 => furthest = error,
-                Err(_) => {}
-            }
-        }
-        Err(furthest)
-    }
-
-    fn down(
+    /// Holds `grasp` coming straight down from `above`. Errors with how far the attempt came.
+    pub(crate) fn down(
         situation: &Situation<'_>,
         grasp: &Grasp,
         above: &Joints,
@@ -104,28 +91,48 @@ impl Carry {
             return Ok(Self { waypoints, straight: true });
         }
         let mut error = None;
-        for turn in TURNS {
-            match situation.chain.nearest(&target(turn), from) {
+        let mut tried = 0;
+        for turn in (0..TURNS).map(turn_of) {
+            let target = target(turn);
+            if let Some(gap) = situation.held_blocked(&target) {
+                error.get_or_insert(PlanError::Blocked { at: HAND_OVER, limb, gap });
+                continue;
+            }
+            let ends = match situation.postures(&target, from) {
+                Ok(ends) => ends,
                 Err(missed) => {
                     let distance_m = missed.position_error_m;
                     error.get_or_insert(PlanError::Unreachable { at: HAND_OVER, limb, distance_m });
+                    continue;
                 }
-                Ok(end) => match situation.blocked(&end.q) {
+            };
+            for (_, end) in ends.into_iter().take(ENDS) {
+                match situation.blocked(&end) {
                     Some(gap) => error = Some(PlanError::Blocked { at: HAND_OVER, limb, gap }),
-                    None => match situation.way(from, &end.q, search) {
+                    None => match situation.way(from, &end, search) {
                         Some(waypoints) => return Ok(Self { waypoints, straight: false }),
-                        None => error = Some(PlanError::NoWay { at: HAND_OVER, limb }),
+                        None => error = Some(situation.no_way(HAND_OVER, from, &end)),
                     },
-                },
+                }
+            }
+            tried += 1;
+            if tried >= TURNS_TRIED {
+                break;
             }
         }
-        Err(error.unwrap_or(PlanError::NoWay { at: HAND_OVER, limb }))
+        Err(error.unwrap_or(PlanError::NoWay { at: HAND_OVER, limb, gap: None }))
     }
 
     /// The posture at the hand over.
     pub(crate) fn end(&self) -> &Joints {
         &self.waypoints[self.waypoints.len() - 1]
     }
+}
+
+/// 0, then to either side further and further, radians.
+fn turn_of(k: usize) -> f64 {
+    let side = if k % 2 == 1 { 1.0 } else { -1.0 };
+    side * k.div_ceil(2) as f64 * 2.0 * PI / TURNS as f64
 }
 
 fn straight(
@@ -135,13 +142,4 @@ fn straight(
 ) -> Option<Vec<Joints>> {
     let waypoints = situation.chain.line(from, target).ok()?;
     situation.blocked_along(&waypoints).is_none().then_some(waypoints)
-}
-
-/// Clear postures for a pose, nearest to the present one first.
-pub(crate) fn alternatives(situation: &Situation<'_>, target: &Isometry3<f64>) -> Vec<Joints> {
-    let mut all = situation.chain.solutions(target);
-    let seconds = |q: &Joints| situation.seconds_between(&situation.q, q);
-    all.sort_by(|a, b| seconds(a).total_cmp(&seconds(b)));
-    // Neighbours on one branch fare alike: every third keeps the choice wide.
-    all.into_iter().step_by(3).filter(|q| situation.clear(q)).take(ALTERNATIVES).collect()
 }

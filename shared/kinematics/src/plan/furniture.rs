@@ -65,7 +65,7 @@ const OPENING_M: f64 = 0.2;
 const THICKNESS_M: f64 = 0.02;
 
 /// How far the boards of other objects reach beyond them, metres: no more than is surely there.
-const NEIGHBOUR_M: f64 = 0.02;
+pub(crate) const NEIGHBOUR_M: f64 = 0.02;
 
 #[cfg(test)]
 mod tests {

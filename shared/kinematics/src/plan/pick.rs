@@ -3,13 +3,13 @@
 use nalgebra::Isometry3;
 use serde::{Deserialize, Serialize};
 
+use super::choices::{Choice, Choices};
 use super::deliver::{CORNER, deliver, fingers};
 use super::error::{Furthest, PlanError};
-use super::fetch::{ABOVE, Carry, GRASP, Hold};
+use super::fetch::{ABOVE, GRASP, Hold};
 use super::situation::{Arms, PlanSettings, Search, Situation};
 use crate::grasp::{Grasp, ObjectPose};
 use crate::gripper;
-use crate::inverse::IkSolution;
 use crate::limb::{Joints, Limb};
 use crate::robot::Robot;
 use crate::shape::Cuboid;
@@ -67,14 +67,23 @@ impl PickPlan {
     }
 }
 
-/// Choices tried to the end; they are ranked by how soon the arm could be there.
-const TRIES: usize = 16;
+/// Choices that are tried.
+const TRIES: usize = 64;
 
-/// Complete plans among which the shortest is taken.
+/// Complete plans among which the best is taken, and how many there may be while all of them
+/// carry the elbow low over the table.
 const COMPARED: usize = 5;
+const COMPARED_LOW: usize = 10;
 
-/// Plans to fetch `object` with the arms at `arms`: with `limb`, or with the one that is there
-/// sooner. `others` is everything else that stands around; none of it is touched.
+/// Choices for which ways are searched for at length.
+const SEARCHED: usize = 8;
+
+/// Plans to fetch `object` with the arms at `arms`: with `limb`, or with the better one. `others` is
+/// everything else that stands around; neither the arm nor what it holds touches any of it.
+///
+/// Limbs, grasps and postures are tried in the order of their cost (seconds, closeness to joint
+/// limits, to everything around, and of the elbow to the table). Of the first complete plans the
+/// shortest is taken, one with a high elbow before any with a low one.
 ///
 /// # Errors
 /// [`PlanError`] of the attempt that came furthest.
@@ -88,21 +97,46 @@ pub fn plan_pick(
 ) -> Result<PickPlan, PlanError> {
     let situations = situations(robot, object, limb, arms, others, settings)?;
     let mut furthest = Furthest::default();
-    let choices = choices(object, &situations, &mut furthest)?;
-    for search in [Search::No, Search::Yes] {
-        let plans = choices.iter().filter_map(|choice| {
-            let tried = choice.plan(object, search);
-            tried.map_err(|(progress, error)| furthest.add(progress, error)).ok()
-        });
-        let compared = if search == Search::No { COMPARED } else { 1 };
-        let shortest =
-            plans.take(compared).min_by(|a, b| a.duration_s().total_cmp(&b.duration_s()));
-        if let Some(plan) = shortest {
-            return Ok(plan);
+    let mut choices = Choices::new(object, &situations, &mut furthest)?;
+    let (mut best, mut found, mut lost) = (None::<(f64, PickPlan)>, 0, Vec::new());
+    for _ in 0..TRIES {
+        let Some(choice) = choices.next(&mut furthest) else { break };
+        match choice.plan(object, Search::No) {
+            Ok(plan) => {
+                let low_s = choice.situation.plan_lowness_s(&plan.timeline);
+                let cost_s = plan.duration_s() + low_s;
+                if best.as_ref().is_none_or(|(least_s, _)| cost_s < *least_s) {
+                    best = Some((cost_s, plan));
+                }
+                found += 1;
+                let high = best.as_ref().is_some_and(|(s, plan)| *s <= plan.duration_s());
+                if found >= COMPARED && high || found >= COMPARED_LOW {
+                    break;
+                }
+            }
+            Err((progress, error)) => {
+                furthest.add(progress, error);
+                choices.failed(&choice);
+                if progress >= BEYOND_HOLD && lost.len() < SEARCHED {
+                    lost.push(choice);
+                }
+            }
+        }
+    }
+    if let Some((_, plan)) = best {
+        return Ok(plan);
+    }
+    for choice in lost {
+        match choice.plan(object, Search::Yes) {
+            Ok(plan) => return Ok(plan),
+            Err((progress, error)) => furthest.add(progress, error),
         }
     }
     Err(furthest.report())
 }
+
+/// Progress from which on a longer search may help: the grasp itself and its lift are possible.
+const BEYOND_HOLD: usize = 5;
 
 pub(crate) fn situations<'a>(
     robot: &'a Robot,
@@ -133,72 +167,20 @@ pub(crate) fn situation<'a>(
     Ok(situation.with_board_under(&object.cuboid()))
 }
 
-/// A grasp, the limb for it, and the posture above it that is nearest to the present one.
-pub(crate) struct Choice<'a> {
-    pub(crate) situation: &'a Situation<'a>,
-    grasp: Grasp,
-    above: Joints,
-    seconds: f64,
-}
-
-/// The reachable choices, soonest first.
-fn choices<'a>(
-    object: &ObjectPose,
-    situations: &'a [Situation<'a>],
-    furthest: &mut Furthest,
-) -> Result<Vec<Choice<'a>>, PlanError> {
-    let grasps = object.grasps()?;
-    let mut choices = Vec::new();
-    for situation in situations {
-        for grasp in &grasps {
-            match Choice::new(situation, *grasp) {
-                Ok(choice) => choices.push(choice),
-                Err((progress, error)) => furthest.add(progress, error),
-            }
-        }
-    }
-    choices.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
-    choices.truncate(TRIES);
-    Ok(choices)
-}
-
-impl<'a> Choice<'a> {
-    pub(crate) fn new(
-        situation: &'a Situation<'a>,
-        grasp: Grasp,
-    ) -> Result<Self, (usize, PlanError)> {
-        let above = grasp.raised(situation.settings.hover_m);
-        match situation.chain.nearest(&above, &situation.q) {
-            Ok(IkSolution { q, .. }) => {
-                let seconds = situation.seconds_between(&situation.q, &q);
-                Ok(Self { situation, grasp, above: q, seconds })
-            }
-            Err(missed) => {
-                let (limb, distance_m) = (situation.limb, missed.position_error_m);
-                Err((0, PlanError::Unreachable { at: ABOVE, limb, distance_m }))
-            }
-        }
-    }
-
-    pub(crate) fn hold(&self) -> Result<Hold, (usize, PlanError)> {
-        Hold::try_from_above(self.situation, &self.grasp, &self.above)
-    }
-
-    pub(crate) fn carry(&self, hold: &Hold, search: Search) -> Result<Carry, (usize, PlanError)> {
-        Carry::find(self.situation, hold.above(), search).map_err(|error| (4, error))
-    }
-
+impl Choice<'_> {
     fn plan(&self, object: &ObjectPose, search: Search) -> Result<PickPlan, (usize, PlanError)> {
         let situation = self.situation;
-        let hold = self.hold()?;
+        let carrying = self.carrying(object);
+        let hold = self.hold(&carrying)?;
         let limb = situation.limb;
         let way = situation
             .way(&situation.q, hold.above(), search)
-            .ok_or_else(|| (5, situation.no_way(ABOVE)))?;
+            .ok_or_else(|| (6, situation.no_way(ABOVE, &situation.q, hold.above())))?;
         let width_m = gripper::closed_on(self.grasp.width_m);
         let lift: Vec<Joints> = hold.descent.iter().rev().copied().collect();
-        let delivery = deliver(situation, lift, width_m, search).map_err(|error| (4, error))?;
-        let approach = approach(situation, &way, &hold).map_err(|error| (6, error))?;
+        let delivery = deliver(situation, &carrying, lift, width_m, search);
+        let delivery = delivery.map_err(|error| (5, error))?;
+        let approach = approach(situation, &way, &hold).map_err(|error| (7, error))?;
         let open_m = situation.settings.open_width_m;
         let mut stages = vec![
             Stage { phase: PickPhase::Approach, motion: approach, width_m: (open_m, open_m) },

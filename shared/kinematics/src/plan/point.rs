@@ -96,8 +96,8 @@ pub fn plan_point(
         for (rank, gripper) in looks(situation, &Vector3::from(target_m)) {
             match situation.chain.nearest(&gripper, &situation.q) {
                 Ok(solution) => {
-                    let seconds = situation.seconds_between(&situation.q, &solution.q);
-                    choices.push((seconds + 0.3 * rank, situation, gripper, solution.q));
+                    let cost_s = situation.cost_s(&situation.q, &solution.q);
+                    choices.push((cost_s + 0.3 * rank, situation, gripper, solution.q));
                 }
                 Err(missed) => {
                     let (limb, distance_m) = (situation.limb, missed.position_error_m);
@@ -108,15 +108,20 @@ pub fn plan_point(
     }
     choices.sort_by(|a, b| a.0.total_cmp(&b.0));
     choices.truncate(TRIES);
+    for (cost_s, situation, _, q) in &mut choices {
+        // What is blocked is refused, with its reason, when it is tried.
+        *cost_s += situation.crowding_s(q).unwrap_or(0.0);
+    }
+    choices.sort_by(|a, b| a.0.total_cmp(&b.0));
     for search in [Search::No, Search::Yes] {
         let plans = choices.iter().filter_map(|(_, situation, gripper, q)| {
-            let tried = point_from(situation, *gripper, q, search);
+            let tried = point_from(situation, *gripper, q, search)
+                .map(|plan| (plan.duration_s() + situation.plan_lowness_s(&plan.timeline), plan));
             tried.map_err(|(progress, error)| furthest.add(progress, error)).ok()
         });
         let compared = if search == Search::No { COMPARED } else { 1 };
-        let shortest =
-            plans.take(compared).min_by(|a, b| a.duration_s().total_cmp(&b.duration_s()));
-        if let Some(plan) = shortest {
+        let best = plans.take(compared).min_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((_, plan)) = best {
             return Ok(plan);
         }
     }
@@ -133,10 +138,12 @@ fn point_from(
     if let Some(gap) = situation.blocked(q) {
         return Err((1, PlanError::Blocked { at: AIM, limb, gap }));
     }
-    let way = situation.way(&situation.q, q, search).ok_or_else(|| (2, situation.no_way(AIM)))?;
+    let way = situation
+        .way(&situation.q, q, search)
+        .ok_or_else(|| (2, situation.no_way(AIM, &situation.q, q)))?;
     let back = situation
         .way(q, &situation.arm.neutral, search)
-        .ok_or_else(|| (3, situation.no_way(HOME)))?;
+        .ok_or_else(|| (3, situation.no_way(HOME, q, &situation.arm.neutral)))?;
     let aim = situation.motion(AIM, &way).map_err(|error| (4, error))?;
     let home = situation.motion(HOME, &back).map_err(|error| (4, error))?;
     let still = Trajectory::hold(q, situation.settings.point_s, &situation.limits);

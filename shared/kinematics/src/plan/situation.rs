@@ -1,14 +1,19 @@
 //! What a plan starts from: where both arms are, and what stands around.
 
+use nalgebra::Isometry3;
+
 use super::error::PlanError;
 use super::furniture::{self, Obstacle};
 use crate::baxter::DEFAULT_SPEED_RATIO;
+use crate::block::Block;
 use crate::chain::Chain;
 use crate::clearance::{ArmShape, Gap};
+use crate::grasp::ObjectPose;
+use crate::held::Held;
 use crate::limb::{Joints, Limb};
 use crate::limits::MotionLimits;
 use crate::robot::{Arm, Robot};
-use crate::route::{searched, simple};
+use crate::route::{blocking, searched, simple};
 use crate::shape::Cuboid;
 use crate::trajectory::Trajectory;
 
@@ -84,7 +89,8 @@ impl PlanSettings {
     }
 }
 
-/// One limb among everything that it must not touch.
+/// One limb among everything that it must not touch, and what it holds.
+#[derive(Clone)]
 pub(crate) struct Situation<'a> {
     pub(crate) limb: Limb,
     pub(crate) arm: &'a Arm,
@@ -94,8 +100,12 @@ pub(crate) struct Situation<'a> {
     /// Where the limb is now.
     pub(crate) q: Joints,
     pub(crate) settings: &'a PlanSettings,
+    other_arm: &'a Arm,
     other: ArmShape<'a>,
     surroundings: Vec<Obstacle>,
+    /// Which of them is the board under the object that is to be fetched.
+    board: Option<usize>,
+    held: Option<Held>,
 }
 
 impl<'a> Situation<'a> {
@@ -118,41 +128,110 @@ impl<'a> Situation<'a> {
             limits: arm.limits.at_speed_ratio(settings.speed_ratio),
             q: *arms.of(limb),
             settings,
+            other_arm: robot.arm(limb.other()),
             other: ArmShape::at(robot.arm(limb.other()), arms.of(limb.other())),
             surroundings,
+            board: None,
+            held: None,
         }
     }
 
     /// Adds the board that the object to be fetched stands on, as wide as the hand.
     pub(crate) fn with_board_under(mut self, object: &Cuboid) -> Self {
+        self.board = Some(self.surroundings.len());
         self.surroundings.push(furniture::board(object, HAND_M));
         self
     }
 
-    /// Why there is no way to `at`: the arm is in something's way where it stands, or it is lost.
-    pub(crate) fn no_way(&self, at: &'static str) -> PlanError {
+    /// The same with `object`, given as it stood, in the gripper at `in_gripper`.
+    pub(crate) fn carrying(&self, object: &ObjectPose, in_gripper: &Isometry3<f64>) -> Self {
+        let mut around = self.surroundings.clone();
+        // The hand keeps off a board that may be there; what it holds, off what surely is.
+        if let Some(board) = self.board {
+            around[board] = furniture::board(&object.cuboid(), furniture::NEIGHBOUR_M);
+        }
+        Self { held: Some(Held::new(object, in_gripper, around)), ..self.clone() }
+    }
+
+    /// Why there is no way to `at`: the arm is in something's way where it stands, or what is in
+    /// the way of the straight line to `to`.
+    pub(crate) fn no_way(&self, at: &'static str, from: &Joints, to: &Joints) -> PlanError {
         let limb = self.limb;
         match self.blocked(&self.q) {
             Some(gap) => PlanError::Blocked { at: "its present posture", limb, gap },
-            None => PlanError::NoWay { at, limb },
+            None => PlanError::NoWay { at, limb, gap: blocking(from, to, &|q| self.blocked(q)) },
         }
     }
 
-    /// What the arm at `q` would come too near to.
+    /// What the arm at `q`, or what it holds, would come too near to.
     pub(crate) fn blocked(&self, q: &Joints) -> Option<Gap> {
-        let arm = ArmShape::at(self.arm, q);
-        let margin_m = self.settings.margin_m;
-        let around =
-            self.surroundings.iter().map(|(name, cuboid)| arm.to_cuboid(name, cuboid, 0.0));
-        around
-            .chain([arm.to_itself(margin_m)])
-            .chain(std::iter::once_with(|| arm.to_trunk(margin_m)))
-            .chain(std::iter::once_with(|| arm.to_arm(&self.other, margin_m)))
-            .find(Gap::is_some)
+        self.blocked_at(&self.look(q), 0.0)
     }
 
     pub(crate) fn clear(&self, q: &Joints) -> bool {
         self.blocked(q).is_none()
+    }
+
+    /// What the object held would come too near to, besides the robot, with the gripper at `pose`.
+    pub(crate) fn held_blocked(&self, pose: &Isometry3<f64>) -> Option<Gap> {
+        let held = self.held.as_ref()?;
+        held.near_surroundings(&held.block(pose), 0.0)
+    }
+
+    /// The arm and what it holds at one posture.
+    fn look(&self, q: &Joints) -> Look<'a> {
+        let block = self.held.as_ref().map(|held| held.block(&self.chain.forward(q)));
+        Look { arm: ArmShape::at(self.arm, q), block }
+    }
+
+    /// What comes too near where nothing is looked at again before it has moved by `moved_m`.
+    fn blocked_at(&self, Look { arm, block }: &Look<'_>, moved_m: f64) -> Option<Gap> {
+        let near_m = 0.5 * moved_m;
+        let margin_m = self.settings.margin_m.max(near_m);
+        let held = || {
+            let (held, block) = (self.held.as_ref()?, block.as_ref()?);
+            held.near_surroundings(block, moved_m).or_else(|| {
+                let (own, other) = ((self.arm, arm), (self.other_arm, &self.other));
+                held.near_robot(block, own, other, margin_m)
+            })
+        };
+        let around = self.surroundings.iter();
+        around
+            .map(|(name, cuboid)| arm.to_cuboid(name, cuboid, near_m))
+            .chain([arm.to_itself(margin_m)])
+            .chain(std::iter::once_with(|| arm.to_trunk(margin_m)))
+            .chain(std::iter::once_with(|| arm.to_arm(&self.other, margin_m)))
+            .find(Gap::is_some)
+            .or_else(held)
+    }
+
+    /// How much nearer than [`ROOMY_M`] the arm at `q` is to anything, as a share of it; or what it
+    /// would touch.
+    pub(crate) fn crowding(&self, q: &Joints) -> Result<f64, Gap> {
+        let look = self.look(q);
+        if let Some(gap) = self.blocked_at(&look, 0.0) {
+            return Err(gap);
+        }
+        let arm = &look.arm;
+        let around = self.surroundings.iter();
+        let gap = around
+            .map(|(name, cuboid)| arm.to_cuboid(name, cuboid, ROOMY_M))
+            .chain([arm.to_itself(ROOMY_M), arm.to_trunk(ROOMY_M)])
+            .fold(arm.to_arm(&self.other, ROOMY_M), Gap::min);
+        Ok((ROOMY_M - gap.distance_m) / ROOMY_M)
+    }
+
+    /// Height of the elbow's lowest point above the table's top, metres.
+    pub(crate) fn elbow_m(&self, q: &Joints) -> f64 {
+        let frames = self.chain.frames(q);
+        let elbow = self.arm.enclosures.iter().filter(|e| ELBOW.contains(&e.joint));
+        let lowest = elbow
+            .map(|e| {
+                let z = |end| frames[e.joint].point(end).z;
+                z(&e.capsule.a).min(z(&e.capsule.b)) - e.capsule.radius
+            })
+            .fold(f64::INFINITY, f64::min);
+        lowest - self.settings.table_z_m
     }
 
     /// The first of `waypoints` that would touch something.
@@ -187,12 +266,28 @@ impl<'a> Situation<'a> {
                 return Ok(motion);
             }
         }
-        Err(gap.map_or(PlanError::NoWay { at, limb }, |gap| PlanError::Blocked { at, limb, gap }))
+        Err(gap.map_or(PlanError::NoWay { at, limb, gap }, |gap| PlanError::Blocked {
+            at,
+            limb,
+            gap,
+        }))
     }
 
+    /// What comes too near during a motion. It is looked at [`CHECK_S`] apart; whatever moves
+    /// between two looks is never further from one of them than half of its way.
     fn blocked_during(&self, motion: &Trajectory) -> Option<Gap> {
         let checks = (motion.duration_s() / CHECK_S).ceil() as usize;
-        (0..=checks).find_map(|k| self.blocked(&motion.sample(k as f64 * CHECK_S).0))
+        let at = |k: usize| self.look(&motion.sample(k as f64 * CHECK_S).0);
+        let (mut now, mut before_m) = (at(0), 0.0);
+        for k in 1..=checks + 1 {
+            let next = at(k);
+            let moved_m = now.moved_m(&next);
+            if let Some(gap) = self.blocked_at(&now, f64::max(before_m, moved_m)) {
+                return Some(gap);
+            }
+            (now, before_m) = (next, moved_m);
+        }
+        None
     }
 
     /// Least seconds from one posture to another at the settings' speed: a bound, for choosing.
@@ -208,6 +303,29 @@ impl<'a> Situation<'a> {
             .fold(0.0, f64::max)
     }
 }
+
+/// The arm and what it holds at one posture.
+struct Look<'a> {
+    arm: ArmShape<'a>,
+    block: Option<Block>,
+}
+
+impl Look<'_> {
+    /// The furthest that any point is from where it is in another look, metres.
+    fn moved_m(&self, other: &Self) -> f64 {
+        let arm = self.arm.capsules().iter().zip(other.arm.capsules());
+        let arm = arm.map(|(a, b)| (a.a - b.a).norm().max((a.b - b.b).norm()));
+        let corners = |look: &Self| look.block.into_iter().flat_map(Block::corners);
+        let held = corners(self).zip(corners(other)).map(|(a, b)| (a - b).norm());
+        arm.chain(held).fold(0.0, f64::max)
+    }
+}
+
+/// Clearance beyond which more of it is worth nothing, metres.
+const ROOMY_M: f64 = 0.05;
+
+/// The joints whose links are the elbow: the upper arm's turn and the elbow's own.
+const ELBOW: std::ops::RangeInclusive<usize> = 2..=3;
 
 /// Corners between motions begin this far before and end this far after a waypoint, radians of
 /// joint distance: enough to pass without a stop.
