@@ -1,6 +1,6 @@
 //! What the gripper carries, as something that must not touch anything either.
 
-use nalgebra::{Isometry3, Vector3};
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use crate::block::Block;
 use crate::clearance::{ArmShape, Gap};
@@ -51,6 +51,13 @@ impl Held {
     /// The box with the gripper at `gripper`.
     pub(crate) fn block(&self, gripper: &Isometry3<f64>) -> Block {
         Block { pose: gripper * self.in_gripper, half: self.half }
+    }
+
+    /// The gripper's rotation at which the box stands upright, turned as with the gripper at `pose`.
+    pub(crate) fn upright(&self, pose: &Isometry3<f64>) -> UnitQuaternion<f64> {
+        let along = pose.rotation * self.in_gripper.rotation * Vector3::x();
+        let yaw = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), along.y.atan2(along.x));
+        yaw * self.in_gripper.rotation.inverse()
     }
 
     /// The first of the surroundings that the box comes too near to; `moved_m` is how far it moves

@@ -64,7 +64,8 @@ fn line_clear(from: &Joints, to: &Joints, clear: &impl Fn(&Joints) -> bool) -> b
     (0..=steps).all(|k| clear(&mix(from, to, k as f64 / steps as f64)))
 }
 
-fn largest_change(a: &Joints, b: &Joints) -> f64 {
+/// The largest change of any joint, radians.
+pub(crate) fn largest_change(a: &Joints, b: &Joints) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 

@@ -28,11 +28,13 @@ pub(crate) struct Carry {
 /// Postures tried at the hand over for one turn.
 const ENDS: usize = 3;
 
-/// Turns about the vertical at the hand over: every 10°, the smallest first.
-const TURNS: usize = 36;
+/// Turns about the vertical at the hand over: every 2°, the smallest first. Beside other objects a
+/// wide one may have no more room than that.
+const TURNS: usize = 180;
 
-/// Turns tried at which what is held is clear of everything.
+/// Turns tried at which what is held is clear of everything, and how far apart they are, radians.
 const TURNS_TRIED: usize = 10;
+const TURNS_APART_RAD: f64 = 0.3;
 
 pub(crate) const ABOVE: &str = "the place above the object";
 pub(crate) const GRASP: &str = "the grasp";
@@ -73,27 +75,30 @@ impl Hold {
 }
 
 impl Carry {
-    /// From `from` to the hand over: straight with the gripper's orientation kept, else turned
-    /// about the vertical and through joint space.
+    /// From `from` to the hand over, where what is held is upright: straight, else turned about the
+    /// vertical and through joint space.
     pub(crate) fn find(
         situation: &Situation<'_>,
         from: &Joints,
         search: Search,
     ) -> Result<Self, PlanError> {
         let limb = situation.limb;
-        let held = situation.chain.forward(from);
+        let upright = situation.upright(&situation.chain.forward(from));
         let target = |turn: f64| {
             let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn);
             let place = Vector3::from(situation.settings.hand_over_m(limb));
-            Isometry3::from_parts(place.into(), turn * held.rotation)
+            Isometry3::from_parts(place.into(), turn * upright)
         };
         if let Some(waypoints) = straight(situation, from, &target(0.0)) {
             return Ok(Self { waypoints, straight: true });
         }
         let mut error = None;
-        let mut tried = 0;
+        let mut tried = Vec::with_capacity(TURNS_TRIED);
         for turn in (0..TURNS).map(turn_of) {
             let target = target(turn);
+            if tried.iter().any(|other: &f64| (other - turn).abs() < TURNS_APART_RAD) {
+                continue;
+            }
             if let Some(gap) = situation.held_blocked(&target) {
                 error.get_or_insert(PlanError::Blocked { at: HAND_OVER, limb, gap });
                 continue;
@@ -115,8 +120,8 @@ impl Carry {
                     },
                 }
             }
-            tried += 1;
-            if tried >= TURNS_TRIED {
+            tried.push(turn);
+            if tried.len() >= TURNS_TRIED {
                 break;
             }
         }

@@ -1,6 +1,6 @@
 //! What a plan starts from: where both arms are, and what stands around.
 
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, UnitQuaternion};
 
 use super::error::PlanError;
 use super::furniture::{self, Obstacle};
@@ -13,7 +13,7 @@ use crate::held::Held;
 use crate::limb::{Joints, Limb};
 use crate::limits::MotionLimits;
 use crate::robot::{Arm, Robot};
-use crate::route::{blocking, searched, simple};
+use crate::route::{blocking, largest_change, searched, simple};
 use crate::shape::Cuboid;
 use crate::trajectory::Trajectory;
 
@@ -172,6 +172,11 @@ impl<'a> Situation<'a> {
         self.blocked(q).is_none()
     }
 
+    /// The gripper's rotation at which what it holds stands upright, turned as it is at `pose`.
+    pub(crate) fn upright(&self, pose: &Isometry3<f64>) -> UnitQuaternion<f64> {
+        self.held.as_ref().map_or(pose.rotation, |held| held.upright(pose))
+    }
+
     /// What the object held would come too near to, besides the robot, with the gripper at `pose`.
     pub(crate) fn held_blocked(&self, pose: &Isometry3<f64>) -> Option<Gap> {
         let held = self.held.as_ref()?;
@@ -240,18 +245,29 @@ impl<'a> Situation<'a> {
         waypoints.iter().rev().step_by(2).find_map(|q| self.blocked(q))
     }
 
-    /// A way through joint space that touches nothing: the direct line, or over the neutral or the
-    /// untucked posture; with `search` also whatever random trees find.
+    /// A way through joint space that touches nothing: the direct line, or over one of the arm's
+    /// stations; with `search` also whatever random trees find. One with room for a fast motion
+    /// before any other.
     pub(crate) fn way(&self, from: &Joints, to: &Joints, search: Search) -> Option<Vec<Joints>> {
+        let roomy = |q: &Joints| {
+            let at_end = [from, to].iter().any(|end| largest_change(q, end) < END_RAD);
+            self.blocked_at(&self.look(q), if at_end { 0.0 } else { ROUTE_M }).is_none()
+        };
         let clear = |q: &Joints| self.clear(q);
-        simple(from, to, &self.arm.stations, &clear).or_else(|| match search {
+        let (stations, limits) = (&self.arm.stations, self.chain.limits());
+        let known =
+            simple(from, to, stations, &roomy).or_else(|| simple(from, to, stations, &clear));
+        known.or_else(|| match search {
             Search::No => None,
-            Search::Yes => searched(from, to, self.chain.limits(), &clear),
+            Search::Yes => {
+                searched(from, to, limits, &roomy).or_else(|| searched(from, to, limits, &clear))
+            }
         })
     }
 
-    /// The motion through `waypoints`, its whole length checked; with stops at the corners if a
-    /// rounded one would touch something.
+    /// The motion through `waypoints`, its whole length checked. Where a fast one with wide corners
+    /// would come too near to something, one with stops at its corners, and then a slow one, which
+    /// needs less room.
     pub(crate) fn motion(
         &self,
         at: &'static str,
@@ -259,8 +275,9 @@ impl<'a> Situation<'a> {
     ) -> Result<Trajectory, PlanError> {
         let limb = self.limb;
         let mut gap = None;
-        for blend_rad in [BLEND_RAD, SHARP_RAD] {
-            let motion = Trajectory::through(waypoints, blend_rad, &self.limits)?;
+        for (blend_rad, speed_ratio) in MANNERS {
+            let limits = self.limits.at_speed_ratio(speed_ratio);
+            let motion = Trajectory::through(waypoints, blend_rad, &limits)?;
             gap = self.blocked_during(&motion);
             if gap.is_none() {
                 return Ok(motion);
@@ -327,12 +344,16 @@ const ROOMY_M: f64 = 0.05;
 /// The joints whose links are the elbow: the upper arm's turn and the elbow's own.
 const ELBOW: std::ops::RangeInclusive<usize> = 2..=3;
 
-/// Corners between motions begin this far before and end this far after a waypoint, radians of
-/// joint distance: enough to pass without a stop.
-const BLEND_RAD: f64 = 0.15;
+/// How a motion is tried: corners begin so far before and end so far after a waypoint, radians of
+/// joint distance, at so large a share of the speed. Wide ones are passed without a stop; at sharp
+/// ones the arm all but stops.
+const MANNERS: [(f64, f64); 3] = [(0.15, 1.0), (0.005, 1.0), (0.005, 0.35)];
 
-/// The same where a wide corner would touch something: the arm all but stops there.
-const SHARP_RAD: f64 = 0.005;
+/// Room that a fast motion needs around it, twice over, metres.
+const ROUTE_M: f64 = 0.03;
+
+/// So near to its ends a way needs none: the largest joint's change, radians.
+const END_RAD: f64 = 0.25;
 
 /// How far the hand reaches round the gripper's axis, and some, metres.
 const HAND_M: f64 = 0.1;

@@ -219,6 +219,27 @@ fn a_delivery_goes_on_from_the_grasp_and_from_the_way() {
 }
 
 #[test]
+fn what_is_held_is_delivered_from_every_moment_of_its_way() {
+    let bowls = bowls();
+    for (i, bowl) in bowls.iter().enumerate().skip(1).take(3) {
+        let others = all_but(&bowls, i);
+        let whole = plan_pick(robot(), bowl, None, &robot().neutral(), &others, &SETTINGS).unwrap();
+        let from = whole.timeline.span_s(PickPhase::Lift).unwrap().0;
+        let to = whole.timeline.span_s(PickPhase::HandOver).unwrap().1;
+        for k in 0..=24 {
+            let t = from + (to - from) * f64::from(k) / 24.0;
+            let mut arms = robot().neutral();
+            *arms.of_mut(whole.limb()) = whole.timeline.halted_at(t).end();
+            let offset = &whole.object_in_gripper;
+            let rest =
+                plan_delivery(robot(), bowl, offset, whole.limb(), &arms, &others, &SETTINGS)
+                    .unwrap_or_else(|error| panic!("bowl {i} at {t}: {error}"));
+            assert_sound(&rest.timeline, &others);
+        }
+    }
+}
+
+#[test]
 fn the_arm_comes_home_from_every_moment_of_a_pick() {
     let bowls = bowls();
     let others = all_but(&bowls, 1);
