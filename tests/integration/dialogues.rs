@@ -33,6 +33,25 @@ fn every_bowl_by_pointing_alone_in_present_mode() {
     group.down();
 }
 
+/// Questions cost the seconds of this robot's voice and arm: the promises are the same, and a policy
+/// that is started anew goes on with the costs it had.
+#[test]
+fn every_bowl_with_the_robots_own_seconds() {
+    let own = "dialogue.costs.from=robot";
+    let group = Group::up(&[own, "dialogue.mode=present", "dialogue.planner=optimal"]);
+    fetch_all(&group, 3, 3);
+    let before = group.incarnation("policy");
+    group.must(&["restart", "policy"]);
+    group.wait_for_restart("policy", before);
+    fetch_all(&group, 6, 3);
+    group.verify_journals();
+    group.down();
+    let group = Group::up(&[own, "dialogue.mode=present", "dialogue.planner=no-attribute"]);
+    fetch_all(&group, 6, 5);
+    group.verify_journals();
+    group.down();
+}
+
 #[test]
 fn open_questions_need_no_more() {
     let group = Group::up(&["dialogue.open_questions=true"]);

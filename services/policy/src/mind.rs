@@ -14,7 +14,7 @@ mod words;
 use crate::state::{Act, Cause, Interaction, State};
 use acts::{ask, keep_words, order_again, pick, repeat, say, set};
 use dialogue::gesture::Gestures;
-use dialogue::{Action, Actions, Costs, DecisionProblem, Model, Params, Planner, Step};
+use dialogue::{Action, Actions, Costs, DecisionProblem, Durations, Model, Params, Planner, Step};
 use node::Time;
 use pointing::Pointing;
 use protocol::{ActKind, Ended, Outcome, PickId, PickOutcome, PromptId, UtteranceSeq};
@@ -33,12 +33,14 @@ pub struct Turns {
 }
 
 /// What is taken to be true of people, and what is wanted of the robot.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Assumptions {
     /// How people speak.
     pub params: Params,
     /// What actions cost.
     pub costs: Costs,
+    /// What each question costs, where that was measured.
+    pub durations: Option<Durations>,
     /// What the robot may do.
     pub actions: Actions,
     /// What is believed before anything is said.
@@ -52,6 +54,7 @@ pub struct Mind {
     scene: Scene,
     model: Model,
     costs: Costs,
+    durations: Option<Durations>,
     actions: Actions,
     pointing: Option<Pointing>,
     prior: Prior,
@@ -69,11 +72,11 @@ impl Mind {
         turns: Turns,
         key: u64,
     ) -> Self {
-        let Assumptions { params, costs, actions, prior, gestures } = assumptions;
+        let Assumptions { params, costs, durations, actions, prior, gestures } = assumptions;
         let model = Model::new(&scene, params);
         let model = if prior.absent > 0.0 { model.with_absent() } else { model };
         let pointing = gestures.map(|(model, person)| Pointing::new(model, person, &scene));
-        Self { scene, model, costs, actions, pointing, prior, planner, turns, key }
+        Self { scene, model, costs, durations, actions, pointing, prior, planner, turns, key }
     }
 
     /// The scene.
@@ -123,9 +126,10 @@ impl Mind {
         let belief = open.belief();
         let step = Step { interaction: open.id.0, step: open.step };
         open.step += 1;
-        let problem =
-            DecisionProblem { model: &self.model, costs: self.costs, actions: self.actions };
-        let decision = posterior::of(open).decide(&mut *self.planner, &problem, step);
+        let Self { model, costs, durations, actions, planner, .. } = self;
+        let durations = durations.as_ref();
+        let problem = DecisionProblem { model, costs: *costs, actions: *actions, durations };
+        let decision = posterior::of(open).decide(&mut **planner, &problem, step);
         let exhausted = open.presentations >= self.turns.questions_max;
         let action = match decision.action {
             Action::Ask(_) if exhausted => Action::Pick(belief.most_likely()),

@@ -42,6 +42,7 @@ pub fn mind(settings: &Settings) -> Result<Mind, Failure> {
     let assumptions = Assumptions {
         params: dialogue.params,
         costs: dialogue.costs,
+        durations: settings.durations.clone(),
         actions: dialogue.actions,
         prior: dialogue.prior,
         gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
@@ -55,6 +56,9 @@ fn key(settings: &Settings) -> u64 {
     let mut hash = Fnv1a::new();
     hash.text(&settings.section_text(Section::Dialogue));
     hash.text(settings.scene_text());
+    if settings.durations.is_some() {
+        hash.text(&settings.durations_text());
+    }
     hash.value()
 }
 

@@ -4,6 +4,7 @@ mod anew;
 mod person;
 mod pointing;
 mod prior;
+mod seconds;
 
 use crate::mind::{Mind, questions};
 use crate::shell;

@@ -202,7 +202,8 @@ fn beliefs_become_actions() {
     let model = Model::new(&scene, Params::default());
     let planner = dialogue::registry::planner("lookahead").unwrap();
     let actions = Actions { mode: Mode::Remote, attribute: true, which: false };
-    let mut decider = Decider { scene, model, costs: Costs::default(), actions, planner };
+    let costs = Costs::default();
+    let mut decider = Decider { scene, model, costs, durations: None, actions, planner };
     let input = "{\"id\":1,\"belief\":[1,0,0,0,0,0]}\n{\"id\":2,\"belief\":[0.2,0.8]}\n\
                  {\"id\":3,\"belief\":[0,0,0,0,0,0]}\n{\"id\":4,\"belief\":[1,2,3,4,5,\"6\"]}\n\
                  {\"id\":5,\"belief\":[1,1,1,1,1,1]}\n";

@@ -82,6 +82,35 @@ fn every_policy_meets_every_kind_of_people() {
     }
 }
 
+/// The table of seconds is the measured costs, and measured costs are those of the configuration's
+/// own key.
+#[test]
+fn durations_are_told_and_can_be_the_costs() {
+    let run = |more: &[&str]| -> Value {
+        let words = ["--interactions", "40", "--mode", "present", "--users", "model", "--json"];
+        let ended = study(&[&BOWLS[..], &words, more].concat());
+        assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+        serde_json::from_slice(&ended.stdout).unwrap()
+    };
+    let (plain, measured) = (run(&[]), run(&["--measured-costs"]));
+    let robot = run(&["--set", "dialogue.costs.from=robot"]);
+    assert_eq!([&plain["costs_measured"], &measured["costs_measured"]], [false, true]);
+    assert_eq!(measured["durations"], plain["durations"]);
+    assert_eq!(measured, robot, "the same numbers by either way");
+    assert_ne!(measured["rows"], plain["rows"]);
+    let objects = plain["durations"]["objects"].as_array().unwrap();
+    assert_eq!(objects.len(), 6);
+    for object in objects {
+        let [aim, point, pick] =
+            ["aim_s", "point_s", "pick_s"].map(|key| object[key].as_f64().unwrap());
+        assert!(0.5 < aim && aim + 2.0 < point && point < pick, "{object}");
+    }
+    let words = ["--interactions", "40", "--users", "model"];
+    let text = String::from_utf8(study(&[&BOWLS[..], &words].concat()).stdout).unwrap();
+    assert!(text.contains("Questions cost what is configured"), "{text}");
+    assert!(text.contains("Is it in the dishwasher?"), "{text}");
+}
+
 #[test]
 fn the_paper_s_evaluations_are_presets() {
     let present = study(&["--preset", "paper-present", "--json"]);

@@ -3,7 +3,7 @@
 use scene::{AttributeId, ObjectId, Question, ValueId};
 use serde::{Deserialize, Serialize};
 
-use crate::{Costs, Model};
+use crate::Model;
 
 /// Whether person and robot share the room.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -107,19 +107,6 @@ impl Actions {
             Action::Ask(Question::Point(_)) => self.point(),
             Action::Ask(Question::Attribute(..)) => self.attribute,
             Action::Ask(Question::Which(_)) => self.which,
-        }
-    }
-}
-
-impl Costs {
-    /// Cost of an action itself (a positive number); a pick is paid by its outcome.
-    pub fn of(&self, action: Action) -> f64 {
-        match action {
-            Action::Wait | Action::Ask(Question::None) => self.wait_s,
-            Action::Ask(Question::Attribute(..)) => self.attribute_s,
-            Action::Ask(Question::Which(_)) => self.which_s,
-            Action::Ask(Question::Point(_)) => self.point_s,
-            Action::Pick(_) => 0.0,
         }
     }
 }

@@ -102,7 +102,7 @@ impl Walk<'_> {
                 self.total.waiting += reached;
             }
             Action::Ask(question) => {
-                self.total.value -= discount * reached * costs.of(action);
+                self.total.value -= discount * reached * self.problem.cost(action);
                 self.total.questions += reached;
                 let model = self.problem.model;
                 for answer in Answer::possible(model, question) {

@@ -1,9 +1,10 @@
 //! What every planner is: a function from a belief to a decision.
 
+use scene::Question;
 use serde::{Deserialize, Serialize};
 
 use crate::person::Joint;
-use crate::{Actions, Belief, Costs, Decision, Model, PolicyTable};
+use crate::{Action, Actions, Belief, Costs, Decision, Durations, Model, PolicyTable};
 
 /// The decision problem `(S, A, T, R, Ω, O)` of section 3, but for the belief.
 ///
@@ -17,6 +18,30 @@ pub struct DecisionProblem<'a> {
     pub costs: Costs,
     /// What the robot can do.
     pub actions: Actions,
+    /// What single questions cost, where that was measured; `costs` says it of the others.
+    pub durations: Option<&'a Durations>,
+}
+
+impl<'a> DecisionProblem<'a> {
+    /// The problem in which all questions of a kind cost the same.
+    pub fn new(model: &'a Model, costs: Costs, actions: Actions) -> Self {
+        Self { model, costs, actions, durations: None }
+    }
+}
+
+impl DecisionProblem<'_> {
+    /// Cost of an action itself (a positive number); a pick is paid by its outcome.
+    pub fn cost(&self, action: Action) -> f64 {
+        let costs = &self.costs;
+        let alike = match action {
+            Action::Wait | Action::Ask(Question::None) => costs.wait_s,
+            Action::Ask(Question::Attribute(..)) => costs.attribute_s,
+            Action::Ask(Question::Which(_)) => costs.which_s,
+            Action::Ask(Question::Point(_)) => costs.point_s,
+            Action::Pick(_) => 0.0,
+        };
+        self.durations.and_then(|durations| durations.of(action)).unwrap_or(alike)
+    }
 }
 
 /// Which decision of which interaction: all the randomness that a planner may use, so that a

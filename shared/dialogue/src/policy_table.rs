@@ -83,6 +83,9 @@ impl DecisionProblem<'_> {
         let Actions { mode, attribute, which } = self.actions;
         mix = mix.add(mode as u64).add(u64::from(attribute)).add(u64::from(which));
         self.model.identify(&mut |part| mix = mix.add(part));
+        if let Some(durations) = self.durations {
+            durations.identify(&mut |part| mix = mix.add(part));
+        }
         mix.narrow()
     }
 }

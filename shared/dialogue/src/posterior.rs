@@ -110,7 +110,7 @@ mod tests {
     fn what_differs_by_rounding_is_one() {
         let model = Model::new(&bowls(), Params::default());
         let (costs, actions) = (Costs::SECONDS, Actions::default());
-        let problem = DecisionProblem { model: &model, costs, actions };
+        let problem = DecisionProblem::new(&model, costs, actions);
         let mut rng = Rng::new(31);
         for person in [None, Some(Person::new(model.params()))] {
             for _ in 0..10 {

@@ -3,7 +3,7 @@
 use scene::{ObjectId, Reading, Response, Scene};
 use serde_json::{Value as Json, json};
 
-use crate::Rng;
+use crate::{Costs, Durations, Model, Rng};
 
 pub(crate) fn scene(text: &str) -> Scene {
     let json: Json = serde_json::from_str(text).unwrap();
@@ -65,4 +65,24 @@ pub(crate) fn heard(scene: &Scene, words: &[&str], response: Response) -> Readin
 
 pub(crate) fn everyone(count: usize) -> impl Iterator<Item = ObjectId> {
     (0..count).map(ObjectId::from)
+}
+
+/// Every question at its uniform cost, as if that had been measured.
+pub(crate) fn uniform(model: &Model, costs: Costs) -> Durations {
+    let attributes = 0..model.attributes();
+    let values = |k: usize| vec![costs.attribute_s; model.values(k.into())];
+    Durations {
+        attribute: attributes.clone().map(values).collect(),
+        which: attributes.map(|_| costs.which_s).collect(),
+        point: vec![costs.point_s; model.objects()],
+        pick: Vec::new(),
+    }
+}
+
+/// Every question at a cost of its own between half and twice the uniform one.
+pub(crate) fn random_durations(rng: &mut Rng, model: &Model, costs: Costs) -> Durations {
+    let mut own = uniform(model, costs);
+    let lists = own.attribute.iter_mut().chain([&mut own.which, &mut own.point]);
+    lists.flatten().for_each(|seconds| *seconds *= 0.5 + 1.5 * rng.uniform());
+    own
 }

@@ -128,7 +128,7 @@ impl Tables<'_> {
                     let wanted = Some(u32::from(object.0));
                     lines.push(Reward { start: wanted, value: costs.correct, ..line });
                 }
-                asking => lines.push(Reward { value: -costs.of(*asking), ..line }),
+                asking => lines.push(Reward { value: -self.problem.cost(*asking), ..line }),
             }
         }
         lines.push(Reward { start: Some(self.end()), ..any });

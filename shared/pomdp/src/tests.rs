@@ -45,7 +45,7 @@ fn for_every_problem(check: impl Fn(&Scene, &DecisionProblem<'_>, &Pomdp)) {
         for model in models.into_iter().chain([absent]) {
             for actions in ACTIONS {
                 for costs in Costs::PRESETS.map(|(_, costs)| costs).into_iter().chain([huge]) {
-                    let problem = DecisionProblem { model: &model, costs, actions };
+                    let problem = DecisionProblem::new(&model, costs, actions);
                     check(&scene, &problem, &of_dialogue(&scene, &problem).unwrap());
                 }
             }
@@ -84,7 +84,7 @@ fn the_pomdp_is_the_problem_that_planners_solve() {
                 let action = 1 + number;
                 assert_eq!(pomdp.transition[action].get(state, state), 1.0);
                 check_answers(model, *question, state, &pomdp.observation[action]);
-                let cost = problem.costs.of(dialogue::Action::Ask(*question));
+                let cost = problem.cost(dialogue::Action::Ask(*question));
                 let paid = pomdp.expected_reward(action, state);
                 assert!((paid + cost).abs() < 1e-12 * cost, "{paid} {cost}");
             }
@@ -127,7 +127,7 @@ fn names_are_told_apart_and_say_what_they_are() {
     let scene = bowls();
     let model = Model::new(&scene, Params::default());
     let actions = ACTIONS[2];
-    let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+    let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
     let pomdp = of_dialogue(&scene, &problem).unwrap();
     for name in ["wait", "is__color__white", "which__size", "point__clear", "pick__metal2"] {
         assert!(pomdp.actions.iter().any(|known| known == name), "{:?}", pomdp.actions);
@@ -143,7 +143,7 @@ fn a_problem_beyond_the_format_is_refused() {
     let text = json!({"objects": objects, "values": {"color": ["red"]}}).to_string();
     let scene = scene(&text);
     let model = Model::new(&scene, Params::default());
-    let problem = |actions| DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+    let problem = |actions| DecisionProblem::new(&model, Costs::SECONDS, actions);
     let error = of_dialogue(&scene, &problem(ACTIONS[2])).unwrap_err();
     assert_eq!(error.states, 3_001);
     assert!(error.to_string().contains("too large"), "{error}");
@@ -248,7 +248,7 @@ fn what_is_wrong_is_told_with_its_line_and_cure() {
 fn damaged_texts_are_refused_or_read_as_problems() {
     let scene = odd();
     let model = Model::new(&scene, Params::default());
-    let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions: ACTIONS[2] };
+    let problem = DecisionProblem::new(&model, Costs::SECONDS, ACTIONS[2]);
     let text = of_dialogue(&scene, &problem).unwrap().write("");
     let mut rng = Rng::new(17);
     for seed in 0..400 {

@@ -20,12 +20,24 @@ pub struct Dialogue {
     pub actions: Actions,
     /// What its actions cost.
     pub costs: Costs,
+    /// Where the costs of its questions come from.
+    pub costs_from: CostsFrom,
     /// How turns are taken.
     pub turns: Turns,
     /// What is believed before anything is said.
     pub prior: Prior,
     /// How pointing gestures are understood.
     pub gesture: Gesture,
+}
+
+/// Where the costs of questions come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CostsFrom {
+    /// The numbers that are written down, one for each kind of question.
+    #[default]
+    Config,
+    /// The robot's own voice and arm in the scene at hand, for each question alone.
+    Robot,
 }
 
 /// How turns are taken.
@@ -44,6 +56,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
     if !f.is_wrong("planner") && !dialogue::registry::names().contains(&planner.as_str()) {
         f.not_one_of("planner", &planner, &dialogue::registry::names());
     }
+    let (costs, costs_from) = f.table("costs", costs);
     Dialogue {
         language: f
             .choice("language", &[("careful", Language::Careful), ("paper", Language::Paper)]),
@@ -54,7 +67,8 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
             attribute: f.flag("attribute_questions"),
             which: f.flag("open_questions"),
         },
-        costs: f.table("costs", costs),
+        costs,
+        costs_from,
         turns: f.table("turns", turns),
         prior: f.table("prior", prior::read),
         gesture: f.table("gesture", gesture::read),
@@ -71,7 +85,7 @@ fn params(f: &mut Fields<'_>) -> Params {
     params
 }
 
-fn costs(f: &mut Fields<'_>) -> Costs {
+fn costs(f: &mut Fields<'_>) -> (Costs, CostsFrom) {
     let costs = Costs {
         wait_s: f.any_number("wait_s"),
         attribute_s: f.any_number("attribute_s"),
@@ -82,7 +96,7 @@ fn costs(f: &mut Fields<'_>) -> Costs {
         discount: f.any_number("discount"),
     };
     tell(costs.check(), f);
-    costs
+    (costs, f.choice("from", &[("config", CostsFrom::Config), ("robot", CostsFrom::Robot)]))
 }
 
 fn turns(f: &mut Fields<'_>) -> Turns {

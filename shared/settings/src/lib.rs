@@ -10,6 +10,7 @@
 
 mod arm;
 mod dialogue;
+mod durations;
 mod fields;
 mod gesture;
 mod group;
@@ -33,10 +34,11 @@ mod tests;
 
 use std::path::Path;
 
+use ::dialogue::Durations;
 use scene::Scene;
 
 pub use crate::arm::{Arm, Baxter, Driver, Grasps, Simulated};
-pub use crate::dialogue::{Dialogue, Turns};
+pub use crate::dialogue::{CostsFrom, Dialogue, Turns};
 pub use crate::gesture::Gesture;
 pub use crate::group::{Group, Log, RestartLimits};
 pub use crate::prior::{Prior, PriorObjects};
@@ -61,6 +63,9 @@ pub struct Settings {
     pub arm: Arm,
     /// The objects and the words for them. Every object has a place that the arm can reach.
     pub scene: Scene,
+    /// Seconds of every question and pick, where the robot's own are what its questions cost
+    /// ([`CostsFrom::Robot`]).
+    pub durations: Option<Durations>,
     resolved: Resolved,
 }
 

@@ -15,7 +15,7 @@ use crate::resolved::{self, Resolved, Section};
 use crate::robot_files::{self, RobotFiles};
 use crate::scene_file;
 use crate::text_file::TextFile;
-use crate::{Settings, arm, dialogue, gesture, group, nearest, reach, services, speech};
+use crate::{Settings, arm, dialogue, durations, gesture, group, nearest, reach, services, speech};
 
 pub(crate) fn load(
     dir: &Path,
@@ -41,7 +41,7 @@ pub(crate) fn load(
         tree.merge(layer, &mut Vec::new(), &mut report);
     }
     let files = find_files(dir, &tree, &mut report);
-    check(tree, report, files, Reach::Check)
+    check(tree, report, files, Basis::Files)
 }
 
 /// The files that the settings name; none where there was a problem with one.
@@ -60,12 +60,13 @@ fn find_files(dir: &Path, tree: &Table, report: &mut Report) -> Files {
     }
 }
 
-/// Whether it is still to be found out that the arm can fetch every object.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Reach {
-    Check,
-    /// Known, and too slow to find out again whenever a service starts.
-    Known,
+/// What is known of the arm in the scene.
+#[derive(Clone, Debug)]
+pub(crate) enum Basis {
+    /// Nothing: whether it can fetch every object, and how long it takes, is to be found out.
+    Files,
+    /// All, and too slow to find out again whenever a service starts; with the durations.
+    Snapshot(Option<Node>, Source),
 }
 
 /// Checks the merged layers and the files that they name.
@@ -73,7 +74,7 @@ pub(crate) fn check(
     mut tree: Table,
     mut report: Report,
     files: Files,
-    reach: Reach,
+    basis: Basis,
 ) -> Result<Settings, Problems> {
     services::complete(tree.table_at("group"), &mut report);
     let mut fields = Fields::new(&tree, Vec::new(), &mut report);
@@ -89,8 +90,8 @@ pub(crate) fn check(
         arm.robot = robot;
     }
     let scene = file.as_ref().and_then(|file| scene_file::read(file, &mut report));
-    if let (Some(file), Some(scene), Reach::Check, true) =
-        (&file, &scene, reach, arm_is_sound && robot_is_sound)
+    if let (Some(file), Some(scene), Basis::Files, true) =
+        (&file, &scene, &basis, arm_is_sound && robot_is_sound)
     {
         reach::check(scene, file, &arm, &tree, &mut report);
     }
@@ -98,8 +99,14 @@ pub(crate) fn check(
         gesture::check(scene, &dialogue.gesture, &tree, &mut report);
     }
     let settings = file.zip(scene).zip(robot_files).map(|((file, scene), robot)| {
+        let durations = match basis {
+            // What is wrong already would be told again in other words.
+            _ if !report.is_empty() => None,
+            Basis::Snapshot(node, at) => durations::read(node, &dialogue, &scene, &at, &mut report),
+            Basis::Files => durations::find(&scene, &file, (&dialogue, &speech, &arm), &mut report),
+        };
         let resolved = Resolved { tree, scene: file, robot };
-        Settings { group, dialogue, speech, arm, scene, resolved }
+        Settings { group, dialogue, speech, arm, scene, durations, resolved }
     });
     report.verdict(settings)
 }

@@ -47,6 +47,10 @@ impl Report {
         self.0.push(problem);
     }
 
+    pub(crate) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     pub(crate) fn extend(&mut self, problems: Vec<Problem>) {
         self.0.extend(problems);
     }

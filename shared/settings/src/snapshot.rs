@@ -8,13 +8,13 @@ use std::path::Path;
 use scene::Problem;
 use toml::Value;
 
-use crate::Settings;
 use crate::layer::{Node, Source, Table};
-use crate::load::{self, Files, Reach};
+use crate::load::{self, Basis, Files};
 use crate::problems::{Problems, Report};
 use crate::resolved::{self, Resolved, to_toml};
 use crate::robot_files::RobotFiles;
 use crate::text_file::TextFile;
+use crate::{Settings, durations};
 
 /// Name of the snapshot in a group's run folder.
 pub const SNAPSHOT_FILE: &str = "settings.toml";
@@ -25,8 +25,8 @@ const URDF: &str = "robot_urdf";
 const SRDF: &str = "robot_srdf";
 
 impl Settings {
-    /// The snapshot's text: every value of every section, and the scene's and the robot's files
-    /// as they were read.
+    /// The snapshot's text: every value of every section, the scene's and the robot's files as
+    /// they were read, and how long the robot takes for what it does.
     pub fn snapshot(&self) -> String {
         let Resolved { tree, scene, robot } = &self.resolved;
         let mut tree = tree.clone();
@@ -35,6 +35,7 @@ impl Settings {
         if let Some(srdf) = &robot.srdf {
             put_file(&mut tree, SRDF, srdf);
         }
+        self.durations.iter().for_each(|durations| durations::write(durations, &mut tree));
         to_toml(&tree)
     }
 
@@ -55,7 +56,8 @@ impl Settings {
     }
 
     /// Reads the snapshot in a group's run folder, checked as the files were but for the arm's
-    /// reach: that was found out before it was written, and a service must be quick to start.
+    /// reach and durations: these were found out before it was written, and a service must be quick
+    /// to start.
     ///
     /// # Errors
     /// Every problem at once; there are none in a snapshot of the same version.
@@ -71,6 +73,7 @@ impl Settings {
         let Some(mut layer) = Table::parse(&text, &source, &mut report) else {
             return report.verdict(None);
         };
+        let measured = take(&mut layer, durations::TABLE);
         let scene = take_file(&mut layer, SCENE);
         let urdf = take_file(&mut layer, URDF);
         let srdf = take_file(&mut layer, SRDF);
@@ -83,7 +86,7 @@ impl Settings {
         let files = Files { scene, robot: urdf.map(|urdf| RobotFiles { urdf, srdf }) };
         let mut tree = resolved::defaults();
         tree.merge(layer, &mut Vec::new(), &mut report);
-        load::check(tree, report, files, Reach::Known)
+        load::check(tree, report, files, Basis::Snapshot(measured, source))
     }
 }
 
@@ -96,9 +99,13 @@ fn put_file(tree: &mut Table, key: &str, file: &TextFile) {
     tree.entries.push((key.to_owned(), Node::Table(table)));
 }
 
-fn take_file(layer: &mut Table, key: &str) -> Option<TextFile> {
+fn take(layer: &mut Table, key: &str) -> Option<Node> {
     let at = layer.entries.iter().position(|(found, _)| found == key)?;
-    let (_, node) = layer.entries.remove(at);
+    Some(layer.entries.remove(at).1)
+}
+
+fn take_file(layer: &mut Table, key: &str) -> Option<TextFile> {
+    let node = take(layer, key)?;
     let text = |key| match node.as_table()?.get(key)? {
         Node::Leaf(Value::String(text), _) => Some(text.clone()),
         _ => None,

@@ -1,6 +1,7 @@
 //! Random draws, and how the randomness of a study is divided.
 
 use dialogue::Rng;
+pub(crate) use durations::{between, log_normal};
 
 /// What a stream of random numbers is for. Each has its own, so that a person who says one thing
 /// more does not change how long anything takes.
@@ -27,38 +28,14 @@ pub(crate) fn chance(rng: &mut Rng, probability: f64) -> bool {
     rng.uniform() < probability
 }
 
-/// Uniform between two numbers.
-pub(crate) fn between(rng: &mut Rng, (low, high): (f64, f64)) -> f64 {
-    low + (high - low) * rng.uniform()
-}
-
 /// One of several, each as likely; `None` of nothing.
 pub(crate) fn one_of<'a, T>(rng: &mut Rng, list: &'a [T]) -> Option<&'a T> {
     if list.is_empty() { None } else { list.get(rng.below(list.len())) }
 }
 
-/// Log-normal with that median and standard deviation of the logarithm (Box and Muller 1958).
-pub(crate) fn log_normal(rng: &mut Rng, median: f64, log_sd: f64) -> f64 {
-    // In (0, 1], so that the logarithm is finite.
-    let radius = (-2.0 * (1.0 - rng.uniform()).ln()).sqrt();
-    let normal = radius * (std::f64::consts::TAU * rng.uniform()).cos();
-    median * (log_sd * normal).exp()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn log_normal_numbers_have_their_moments() {
-        let seed = 11;
-        let mut rng = Rng::new(seed);
-        let logs: Vec<f64> = (0..20_000).map(|_| log_normal(&mut rng, 0.9, 0.55).ln()).collect();
-        let mean = logs.iter().sum::<f64>() / 20_000.0;
-        let variance = logs.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 20_000.0;
-        assert!((mean - 0.9_f64.ln()).abs() < 0.02, "seed {seed}: {mean}");
-        assert!((variance.sqrt() - 0.55).abs() < 0.02, "seed {seed}: {variance}");
-    }
 
     #[test]
     fn streams_differ_and_repeat() {

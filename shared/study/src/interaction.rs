@@ -1,11 +1,10 @@
 //! One interaction, from the request to the hand-over, as the policy's service conducts it.
 
 use dialogue::{Action, Costs, DecisionProblem, Posterior, Rng};
+use durations::{Motions, Pace, Voice};
 use language::Reader;
 use scene::{Intent, ObjectId, Question, Reading, Response, Scene};
 
-use crate::motion::Motions;
-use crate::speech::{Pace, Voice};
 use crate::users::{Said, Turn, User};
 use crate::{Choice, Memo};
 
@@ -168,7 +167,7 @@ impl<'r, 'a> Talk<'r, 'a> {
 
     /// Pays for an action.
     fn pay(&mut self, action: Action) {
-        self.value -= self.discount * self.costs().of(action);
+        self.value -= self.discount * self.room.problem.cost(action);
         self.discount *= self.costs().discount;
     }
 

@@ -5,24 +5,19 @@
 //! and on `n` alone, so that interactions can be shared out among threads as one likes, and every
 //! policy meets the same people. Interactions are counted in [`Tally`]s of a fixed number of them,
 //! merged in their order: sums of floating-point numbers then do not depend on the threads either.
+//! How long everything takes is what the crate `durations` says.
 //!
 //! | what | where |
 //! |---|---|
 //! | one interaction, from the request to the hand-over | `interaction.rs` |
 //! | what the policy decides, remembered by belief | `memo.rs` |
 //! | people, one file each, and how their words are recognised | `users/` |
-//! | how long speech takes | `speech.rs` |
-//! | how long the arm takes, by its own trajectories | `motion.rs` |
-//! | durations as costs of the decision problem | `costs.rs` |
 //! | the same dialogues with people and robot talking in real time | `turns/` |
 //! | means, intervals, histograms | `stats.rs`, `tally.rs` |
 
-mod costs;
 mod draw;
 mod interaction;
 mod memo;
-mod motion;
-mod speech;
 mod stats;
 mod tally;
 #[cfg(test)]
@@ -30,11 +25,8 @@ mod testing;
 pub mod turns;
 pub mod users;
 
-pub use costs::measured_costs;
 pub use interaction::{End, Outcome, Patience, Room, interact};
 pub use memo::{Choice, Memo, Shared, Situation};
-pub use motion::{MotionError, Motions};
-pub use speech::{Pace, Voice};
 pub use stats::{Interval, Mean, wilson};
 pub use tally::{HISTOGRAM, Tally};
 pub use users::{User, UserKind};

@@ -11,5 +11,5 @@ pub(crate) fn bowls() -> Scene {
 
 pub(crate) fn yes_no(model: &Model) -> DecisionProblem<'_> {
     let actions = Actions { mode: Mode::Remote, attribute: true, which: false };
-    DecisionProblem { model, costs: Costs::SECONDS, actions }
+    DecisionProblem::new(model, Costs::SECONDS, actions)
 }

@@ -70,7 +70,7 @@ fn row(name: &str, places: &[Place], effort: Effort, report: &mut Report) -> Vec
 /// The time at the uniform belief, best of a few, and the times at others.
 fn samples(name: &str, place: &Place, effort: Effort) -> (f64, Vec<f64>) {
     let (model, actions) = (&place.model, place.actions);
-    let problem = DecisionProblem { model, costs: Costs::SECONDS, actions };
+    let problem = DecisionProblem::new(model, Costs::SECONDS, actions);
     let beliefs = beliefs(&problem, if place.size > 1_000 { 3 } else { 20 });
     let planner = || registry::planner(name).expect("a planner of the registry");
     let decide = |mut planner: Box<dyn dialogue::Planner + Send>, belief| {

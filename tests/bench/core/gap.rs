@@ -24,7 +24,7 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
     heads.extend(beliefs.iter().map(usize::to_string));
     let rows = (places.iter())
         .map(|(name, model, actions)| {
-            let problem = DecisionProblem { model, costs: Costs::SECONDS, actions: *actions };
+            let problem = DecisionProblem::new(model, Costs::SECONDS, *actions);
             let cells = beliefs.iter().map(|count| cell(&problem, *count, effort));
             std::iter::once((*name).to_owned()).chain(cells).collect()
         })

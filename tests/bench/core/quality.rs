@@ -32,7 +32,7 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
         let model = Model::new(&configured(scene), Params::default());
         for (shown, actions) in ACTIONS {
             for (preset, costs) in Costs::PRESETS {
-                let problem = DecisionProblem { model: &model, costs, actions };
+                let problem = DecisionProblem::new(&model, costs, actions);
                 let mut row = [scene, shown, preset].map(str::to_owned).to_vec();
                 row.push(best(&problem));
                 row.extend(registry::names().map(|name| value(&problem, name, effort.cut)));
@@ -59,7 +59,7 @@ fn larger(report: &mut Report, effort: Effort) {
     for (objects, attributes) in LARGER {
         let model = random(objects, attributes);
         for (shown, actions) in [("yes/no", YES_NO), ("open too", OPEN)] {
-            let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+            let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
             let mut row = vec![format!("{objects} × {attributes}"), shown.to_owned()];
             row.push(best(&problem));
             row.extend(registry::names().map(|name| {

@@ -50,7 +50,7 @@ fn series(models: &[(usize, Model)], effort: Effort) -> Vec<Series> {
 
 /// Microseconds of deciding at the uniform belief.
 fn first_decision(name: &str, model: &Model, effort: Effort) -> Vec<f64> {
-    let problem = DecisionProblem { model, costs: Costs::SECONDS, actions: OPEN };
+    let problem = DecisionProblem::new(model, Costs::SECONDS, OPEN);
     let belief = Belief::uniform(model.objects());
     let planner = || registry::planner(name).expect("a planner of the registry");
     micros(effort, planner, |mut planner| {

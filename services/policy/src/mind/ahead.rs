@@ -7,15 +7,18 @@ use dialogue::{DecisionProblem, PolicyTable};
 impl Mind {
     /// The decision problem that the planner is asked about.
     pub fn problem(&self) -> DecisionProblem<'_> {
-        DecisionProblem { model: &self.model, costs: self.costs, actions: self.actions }
+        let Self { model, costs, durations, actions, .. } = self;
+        let durations = durations.as_ref();
+        DecisionProblem { model, costs: *costs, actions: *actions, durations }
     }
 
     /// Lets the planner work ahead from what is believed before anything was ever said or fetched,
     /// and tells what it knows then, if it is of the kind that keeps something.
     pub fn prepare(&mut self) -> Option<&PolicyTable> {
         let prior = self.prior(&State::default());
-        let Self { model, costs, actions, planner, .. } = self;
-        let problem = DecisionProblem { model, costs: *costs, actions: *actions };
+        let Self { model, costs, durations, actions, planner, .. } = self;
+        let durations = durations.as_ref();
+        let problem = DecisionProblem { model, costs: *costs, actions: *actions, durations };
         planner.table()?;
         planner.prepare(&problem, &prior);
         planner.table().filter(|table| !table.is_empty())

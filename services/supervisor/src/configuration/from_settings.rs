@@ -60,7 +60,7 @@ fn beside(name: &str) -> String {
 
 /// Everything that a service reads: its own section, and the scene, which all read. Speech refuses
 /// what the dialogue would not understand, so it reads that section too. One that is not
-/// built in may read all there is.
+/// built in may read all there is. Whoever decides does so by how long the robot takes.
 fn fingerprint(name: &str, settings: &Settings) -> String {
     let sections: &[Section] = match name {
         "speech" => &[Section::Speech, Section::Dialogue],
@@ -69,5 +69,7 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
         _ => &[Section::Speech, Section::Dialogue, Section::Arm],
     };
     let texts = sections.iter().map(|&section| settings.section_text(section));
-    texts.chain([settings.scene_text().to_owned()]).collect()
+    let decides = !matches!(name, "speech" | "grounding" | "arm");
+    let durations = decides.then(|| settings.durations_text());
+    texts.chain([settings.scene_text().to_owned()]).chain(durations).collect()
 }

@@ -20,6 +20,8 @@ pub struct Decider {
     pub model: Model,
     /// What actions cost.
     pub costs: dialogue::Costs,
+    /// What each question costs, where that was measured.
+    pub durations: Option<dialogue::Durations>,
     /// What the robot may do.
     pub actions: dialogue::Actions,
     /// What decides.
@@ -45,9 +47,10 @@ pub fn plan(decider: &mut Decider, input: impl Read, out: &mut Output<'_>) -> Ou
 impl Decider {
     /// Lets the planner work ahead, as the policy service does before it is ready.
     fn prepare(&mut self) {
-        let problem =
-            DecisionProblem { model: &self.model, costs: self.costs, actions: self.actions };
-        self.planner.prepare(&problem, &Belief::uniform(self.model.hypotheses()));
+        let Self { model, costs, durations, actions, planner, .. } = self;
+        let durations = durations.as_ref();
+        let problem = DecisionProblem { model, costs: *costs, actions: *actions, durations };
+        planner.prepare(&problem, &Belief::uniform(problem.model.hypotheses()));
     }
 
     fn answer(&mut self, line: Line) -> Result<Json, String> {
@@ -57,10 +60,11 @@ impl Decider {
             return Err(format!("belief: {given} probabilities for {objects} objects"));
         }
         let belief = Belief::from_probabilities(&line.belief).map_err(|e| e.to_string())?;
-        let problem =
-            DecisionProblem { model: &self.model, costs: self.costs, actions: self.actions };
+        let Self { model, costs, durations, actions, planner, .. } = self;
+        let durations = durations.as_ref();
+        let problem = DecisionProblem { model, costs: *costs, actions: *actions, durations };
         let started = Instant::now();
-        let decision = self.planner.decide(&problem, &belief, Step::default());
+        let decision = planner.decide(&problem, &belief, Step::default());
         let micros = started.elapsed().as_secs_f64() * 1e6;
         let action = action_to_json(&self.scene, decision.action);
         Ok(json!({ "id": line.id, "action": action, "value": decision.value, "micros": micros }))

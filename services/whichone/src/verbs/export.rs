@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use dialogue::DecisionProblem;
 use runtime::exit::Exit;
 use serde_json::json;
 
@@ -15,9 +14,7 @@ use crate::trouble::{Outcome, Trouble};
 pub(super) fn export(args: &ExportArgs, out: &mut Output<'_>) -> Outcome {
     let Exported::Pomdp = args.what;
     let found = planning::of_scene(&args.scene, &args.problem)?;
-    let problem =
-        DecisionProblem { model: &found.model, costs: found.costs, actions: found.actions };
-    let exported = pomdp::of_dialogue(&found.scene, &problem).map_err(|error| {
+    let exported = pomdp::of_dialogue(&found.scene, &found.decision()).map_err(|error| {
         Trouble::new(Exit::Config, format!("{}: {error}", args.scene.display()))
     })?;
     let text = exported.write(&comment(found.scene.name()));

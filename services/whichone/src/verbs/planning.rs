@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use dialogue::{Actions, Costs, Model, Params, registry};
+use dialogue::{Actions, Costs, DecisionProblem, Durations, Model, Params, registry};
 use runtime::exit::Exit;
 use scene::Scene;
-use settings::Settings;
+use settings::{CostsFrom, Settings};
 
 use super::place;
 use crate::batch::Decider;
@@ -21,12 +21,21 @@ pub(super) struct Problem {
     pub(super) scene: Scene,
     pub(super) model: Model,
     pub(super) costs: Costs,
+    /// What each question costs, where the robot's own seconds are to be taken.
+    pub(super) durations: Option<Durations>,
     pub(super) actions: Actions,
     /// The configuration, if there is one.
     pub(super) settings: Option<Settings>,
 }
 
 impl Problem {
+    /// What planners are asked about.
+    pub(super) fn decision(&self) -> DecisionProblem<'_> {
+        let Self { model, costs, durations, actions, .. } = self;
+        let durations = durations.as_ref();
+        DecisionProblem { model, costs: *costs, actions: *actions, durations }
+    }
+
     /// The name of the planner that is configured.
     pub(super) fn planner(&self) -> &str {
         self.settings.as_ref().map_or(PLANNER, |settings| &settings.dialogue.planner)
@@ -42,8 +51,8 @@ pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Trouble> {
     let problem = problem(scene, &args.problem)?;
     let planner = registry::planner(args.planner.as_deref().unwrap_or(problem.planner()))
         .map_err(|error| Trouble::new(Exit::Config, error.to_string()))?;
-    let Problem { scene, model, costs, actions, .. } = problem;
-    Ok(Decider { scene, model, costs, actions, planner })
+    let Problem { scene, model, costs, durations, actions, .. } = problem;
+    Ok(Decider { scene, model, costs, durations, actions, planner })
 }
 
 /// The problem of a scene given by its file or by its name in the configuration.
@@ -70,7 +79,15 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Trouble> {
     let actions =
         Actions { mode: args.mode.into(), attribute: !args.no_attr, which: !args.no_which };
     let model = Model::new(&scene, params);
-    Ok(Problem { scene, model, costs, actions, settings })
+    // A preset counts in units of its own.
+    let of_robot = settings
+        .as_ref()
+        .filter(|settings| preset.is_none() && settings.dialogue.costs_from == CostsFrom::Robot);
+    let durations = of_robot
+        .map(|settings| settings.measure(&scene, actions.point()))
+        .transpose()
+        .map_err(|error| Trouble::new(Exit::Config, error.to_string()))?;
+    Ok(Problem { scene, model, costs, durations, actions, settings })
 }
 
 /// A word that is no file's name is one of the configuration's scenes.

@@ -18,6 +18,7 @@ mod plot;
 mod progress;
 mod report;
 mod run;
+mod seconds;
 mod table;
 
 use design::Row;
@@ -46,7 +47,8 @@ pub(super) fn study(args: &StudyArgs, out: &mut Output<'_>) -> Outcome {
     if out.is_json() {
         out.json(&report::to_json(args, &house, &results))?;
     } else {
-        table::lines(&house, &results).iter().try_for_each(|line| out.line(line))?;
+        let lines = table::lines(&house, &results).into_iter().chain(seconds::lines(&house));
+        lines.into_iter().try_for_each(|line| out.line(line))?;
     }
     Ok(Exit::Ok)
 }

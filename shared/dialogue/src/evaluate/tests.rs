@@ -5,7 +5,7 @@ use crate::{Actions, Costs, Lookahead, Mode, Model, Params, Rng, SimulatedUser, 
 const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
 
 fn problem(model: &Model) -> DecisionProblem<'_> {
-    DecisionProblem { model, costs: Costs::SECONDS, actions: YES_NO }
+    DecisionProblem::new(model, Costs::SECONDS, YES_NO)
 }
 
 /// Asking until answered, then picking: `V = −4 + 0.99 (0.95 (0.99·50 − 0.01·100) + 0.05 V)`.
@@ -77,7 +77,7 @@ fn dialogue(
                 return (value + discount * reward, right, step);
             }
             Action::Ask(question) => {
-                value -= discount * problem.costs.of(action);
+                value -= discount * problem.cost(action);
                 discount *= problem.costs.discount;
                 let answer = user.answer(problem.model, question);
                 belief.update(problem.model, question, &answer.reading(problem.model));

@@ -92,7 +92,7 @@ fn success(planner: &str, seed: u64) -> f64 {
     let model = Model::new(&bowls(), Params::default());
     let truth = model.with_params(Params { epsilon: 0.2, ..model.params() });
     let actions = Actions { which: false, ..Actions::default() };
-    let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+    let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
     let mut planner = registry::planner(planner).unwrap();
     let mut person = Person::new(model.params());
     let mut right = 0;

@@ -109,5 +109,5 @@ fn ask(problem: &DecisionProblem<'_>, model: &Model, joint: &Joint, question: Qu
     }
     let costs = &problem.costs;
     let again = 1.0 - costs.discount * (1.0 - heard);
-    (costs.discount * after - costs.of(Action::Ask(question))) / again
+    (costs.discount * after - problem.cost(Action::Ask(question))) / again
 }

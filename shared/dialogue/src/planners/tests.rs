@@ -1,7 +1,11 @@
 use scene::{ObjectId, Question, Response, Scene};
+use serde_json::json;
 
 use super::*;
-use crate::testing::{bowls, everyone, heard, markers, random_scene, scene, tools};
+use crate::testing::{
+    bowls, everyone, heard, markers, random_durations, random_scene, scene, scene_of, tools,
+    uniform,
+};
 use crate::{
     Actions, Answer, Costs, Mode, Model, Params, Planner, Rng, SimulatedUser, Step, evaluate,
     registry,
@@ -17,7 +21,7 @@ fn assert_values(scene: &Scene, table: &[(Actions, [f64; 3])]) {
     let model = Model::new(scene, Params::default());
     for (actions, optima) in table {
         for ((name, costs), optimum) in Costs::PRESETS.into_iter().zip(optima) {
-            let problem = DecisionProblem { model: &model, costs, actions: *actions };
+            let problem = DecisionProblem::new(&model, costs, *actions);
             for planner in ["lookahead", "optimal"] {
                 let label = format!("{planner} {name} {actions:?}");
                 assert_value(&mut *registry::planner(planner).unwrap(), &problem, *optimum, &label);
@@ -67,7 +71,7 @@ fn the_bowls_are_solved() {
 #[test]
 fn a_kept_policy_is_the_policy() {
     let model = Model::new(&bowls(), Params::default());
-    let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions: YES_NO };
+    let problem = DecisionProblem::new(&model, Costs::SECONDS, YES_NO);
     let uniform = Belief::uniform(6);
     let mut first = Optimal::default();
     first.prepare(&problem, &uniform);
@@ -96,7 +100,7 @@ fn twenty_objects_are_solved() {
     let scene = random_scene(&mut rng, 20, &[4, 3, 3, 2], 0);
     let model = Model::new(&scene, Params::default());
     for actions in [YES_NO, OPEN] {
-        let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+        let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
         let decision = Optimal::default().decide(&problem, &Belief::uniform(20), Step::default());
         let (lower, upper) = decision.bounds.unwrap();
         assert!(upper - lower <= 1e-3, "{actions:?}: {lower} {upper}");
@@ -107,7 +111,7 @@ fn twenty_objects_are_solved() {
 fn baselines_are_where_they_were_measured() {
     let model = Model::new(&bowls(), Params::default());
     let value = |name: &str, actions| {
-        let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+        let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
         let mut planner = registry::planner(name).unwrap();
         evaluate(&mut *planner, &problem, &Belief::uniform(6), 1e-5).value
     };
@@ -154,7 +158,7 @@ fn truthful_dialogue(
 fn a_truthful_person_is_asked_at_most_as_often_as_the_paper_says() {
     let model = Model::new(&bowls(), Params::default());
     let most = |name: &str, actions| {
-        let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+        let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
         let mut planner = registry::planner(name).unwrap();
         let asked = everyone(6).map(|wanted| {
             let (questions, picked) = truthful_dialogue(&mut *planner, &problem, wanted);
@@ -182,7 +186,7 @@ fn every_planner_ends_every_dialogue_within_the_action_space() {
     for scene in [twins, tools(), random_scene(&mut rng, 9, &[3, 2, 2], 4)] {
         let model = Model::new(&scene, Params::default());
         for actions in [YES_NO, OPEN, PRESENT, POINTING] {
-            let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+            let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
             for name in registry::names() {
                 let mut planner = registry::planner(name).unwrap();
                 for seed in 0..3 {
@@ -229,7 +233,7 @@ fn assert_sound(decision: &Decision, problem: &DecisionProblem<'_>, label: &str)
 #[test]
 fn a_decision_does_not_depend_on_earlier_ones() {
     let model = Model::new(&tools(), Params::default());
-    let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions: YES_NO };
+    let problem = DecisionProblem::new(&model, Costs::SECONDS, YES_NO);
     let mut rng = Rng::new(82);
     let beliefs: Vec<Belief> = (0..4)
         .map(|_| {
@@ -250,7 +254,7 @@ fn a_decision_does_not_depend_on_earlier_ones() {
 fn one_object_is_picked_and_hopeless_cases_are_waited_out() {
     let one = scene(r#"{"objects":[{"name":"only","attributes":{"color":"red"}}]}"#);
     let model = Model::new(&one, Params::default());
-    let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions: PRESENT };
+    let problem = DecisionProblem::new(&model, Costs::SECONDS, PRESENT);
     for name in registry::names() {
         let mut planner = registry::planner(name).unwrap();
         let decision = planner.decide(&problem, &Belief::uniform(1), Step::default());
@@ -259,7 +263,7 @@ fn one_object_is_picked_and_hopeless_cases_are_waited_out() {
     // With the predecessor's costs, pointing at one of six does not pay, and neither does
     // guessing.
     let model = Model::new(&bowls(), Params::default());
-    let problem = DecisionProblem { model: &model, costs: Costs::PREDECESSOR, actions: POINTING };
+    let problem = DecisionProblem::new(&model, Costs::PREDECESSOR, POINTING);
     let decision = Lookahead::default().decide(&problem, &Belief::uniform(6), Step::default());
     assert_eq!(decision.action, Action::Wait);
     assert!((decision.value + 10.0).abs() < 1e-9);
@@ -274,7 +278,7 @@ fn what_is_not_here_is_concluded() {
         let mut prior = vec![0.95 / model.objects() as f64; model.objects()];
         prior.push(0.05);
         for actions in [YES_NO, PRESENT] {
-            let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+            let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
             let mut belief = Belief::from_probabilities(&prior).unwrap();
             let denied = |step| {
                 let step = Step { interaction: 0, step };
@@ -298,7 +302,7 @@ fn expected_questions_come_true() {
     let model = Model::new(&scene, Params::default());
     let said = [vec![], vec!["white"], vec!["big", "metal"], vec!["small", "clear"]];
     for actions in [YES_NO, OPEN, POINTING] {
-        let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions };
+        let problem = DecisionProblem::new(&model, Costs::SECONDS, actions);
         for words in &said {
             let mut belief = Belief::uniform(6);
             let reading = heard(&scene, words, Response::None);
@@ -320,7 +324,7 @@ fn many_objects_are_found_in_few_questions() {
     let mut rng = Rng::new(83);
     let scene = random_scene(&mut rng, 400, &[5, 5, 5, 5, 4, 4], 0);
     let model = Model::new(&scene, Params::default());
-    let problem = DecisionProblem { model: &model, costs: Costs::SECONDS, actions: OPEN };
+    let problem = DecisionProblem::new(&model, Costs::SECONDS, OPEN);
     let mut planner = Lookahead { beliefs_max: 40, ..Lookahead::default() };
     for wanted in [ObjectId(3), ObjectId(250)] {
         let (questions, picked) = truthful_dialogue(&mut planner, &problem, wanted);
@@ -328,5 +332,79 @@ fn many_objects_are_found_in_few_questions() {
         assert_eq!(attributes(picked), attributes(wanted));
         // log5(400) is 3.7: no plan can be sure of asking less than four.
         assert!((4..=6).contains(&questions), "{questions}");
+    }
+}
+
+/// Costs that happen to be alike decide as uniform costs do, to the last bit.
+#[test]
+fn uniform_costs_are_the_special_case() {
+    let mut rng = Rng::new(87);
+    for scene in [bowls(), tools(), random_scene(&mut rng, 40, &[4, 3, 2], 4)] {
+        let model = Model::new(&scene, Params::default());
+        for actions in [YES_NO, OPEN, PRESENT, POINTING] {
+            let plain = DecisionProblem::new(&model, Costs::SECONDS, actions);
+            let own = uniform(&model, Costs::SECONDS);
+            let same = DecisionProblem { durations: Some(&own), ..plain };
+            let belief = Belief::uniform(model.objects());
+            for name in registry::names() {
+                let decide = |problem| {
+                    let mut planner = registry::planner(name).unwrap();
+                    planner.decide(problem, &belief, Step { interaction: 3, step: 1 })
+                };
+                assert_eq!(decide(&plain), decide(&same), "{name} {actions:?}");
+            }
+        }
+    }
+}
+
+/// Objects stand ever farther away; nothing but pointing tells them apart.
+#[test]
+fn what_is_far_is_pointed_at_later() {
+    let object = |i: usize| json!({"name": format!("o{i}"), "attributes": {"shape": "round"}});
+    let scene = scene_of(&json!({"objects": (0..5).map(object).collect::<Vec<_>>()}));
+    let model = Model::new(&scene, Params::default());
+    let mut own = uniform(&model, Costs::SECONDS);
+    own.point = vec![6.4, 6.2, 5.6, 5.4, 6.0];
+    let plain = DecisionProblem::new(&model, Costs::SECONDS, POINTING);
+    let problem = DecisionProblem { durations: Some(&own), ..plain };
+    for name in ["lookahead", "optimal", "entropy", "information-seeking", "no-attribute"] {
+        let mut planner = registry::planner(name).unwrap();
+        let mut belief = Belief::uniform(5);
+        let mut asked = Vec::new();
+        for step in (0..9).map(|step| Step { interaction: 0, step }) {
+            let decision = planner.decide(&problem, &belief, step);
+            let Action::Ask(Question::Point(object)) = decision.action else { break };
+            asked.push(object.index());
+            belief.update(&model, Question::Point(object), &Answer::No.reading(&model));
+        }
+        // Once all but the last are ruled out, it is known to be that one.
+        assert_eq!(asked[..4], [3, 2, 4, 1], "{name}: {asked:?}");
+    }
+}
+
+/// With costs of their own the best questions are found all the same: the certified value is that
+/// of the policy, and no other planner beats it.
+#[test]
+fn the_best_policy_is_found_where_every_question_has_its_own_cost() {
+    let seed = 88;
+    let mut rng = Rng::new(seed);
+    let model = Model::new(&bowls(), Params::default());
+    let belief = Belief::uniform(6);
+    for actions in [YES_NO, PRESENT, POINTING, OPEN] {
+        let own = random_durations(&mut rng, &model, Costs::SECONDS);
+        let plain = DecisionProblem::new(&model, Costs::SECONDS, actions);
+        let problem = DecisionProblem { durations: Some(&own), ..plain };
+        let bounds = Optimal::default().decide(&problem, &belief, Step::default()).bounds;
+        let (lower, upper) = bounds.unwrap();
+        assert!(upper - lower <= 1e-3, "seed {seed} {actions:?}: {lower} {upper}");
+        for name in registry::names() {
+            let mut planner = registry::planner(name).unwrap();
+            let found = evaluate(&mut *planner, &problem, &belief, 1e-5);
+            let slack = found.cut * 150.0 + 1e-3;
+            assert!(found.value <= upper + slack, "seed {seed} {name}: {found:?} {upper}");
+            if ["optimal", "lookahead"].contains(&name) {
+                assert!(found.value >= lower - slack, "seed {seed} {name}: {found:?} {lower}");
+            }
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! Questions as noisy channels: what they cost and how their answers depend on the class.
 
-use crate::{Costs, DecisionProblem, OpenQuestion, Params};
+use scene::{AttributeId, Question};
+
+use crate::{Action, Costs, DecisionProblem, OpenQuestion, Params};
 
 /// A question about classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +71,45 @@ impl Price {
     }
 }
 
+/// The channels of questions that differ in their price alone.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Channels {
+    /// Of a question of uniform cost.
+    alike: Channel,
+    /// Of every question, where they have costs of their own.
+    own: Vec<Channel>,
+}
+
+impl Channels {
+    /// The channels of yes/no questions, given those that can be asked.
+    pub(crate) fn yes_no(
+        problem: &DecisionProblem<'_>,
+        alike: f64,
+        questions: impl Iterator<Item = Question>,
+    ) -> Self {
+        let (costs, params) = (&problem.costs, problem.model.params());
+        let alike = Channel::yes_no(params, costs, alike);
+        let unheard = 1.0 - params.p_l;
+        let own = |question| {
+            let cost = problem.cost(Action::Ask(question));
+            Channel { cost, price: Price::new(costs, cost, unheard), ..alike }
+        };
+        let own = problem.durations.map_or(Vec::new(), |_| questions.map(own).collect());
+        Self { alike, own }
+    }
+
+    /// That of one question.
+    pub(crate) fn of(&self, index: usize) -> &Channel {
+        self.own.get(index).unwrap_or(&self.alike)
+    }
+
+    /// The cheapest of some questions.
+    pub(crate) fn cheapest(&self, of: impl Iterator<Item = usize>) -> &Channel {
+        let own = of.filter_map(|index| self.own.get(index));
+        own.min_by(|a, b| a.cost.total_cmp(&b.cost)).unwrap_or(&self.alike)
+    }
+}
+
 impl Channel {
     /// A yes/no question, eq. (6) and (7).
     pub(crate) fn yes_no(params: Params, costs: &Costs, cost: f64) -> Self {
@@ -92,11 +133,13 @@ impl Channel {
     /// attribute.
     pub(crate) fn open(
         problem: &DecisionProblem<'_>,
-        answer: OpenQuestion,
+        k: AttributeId,
         named: usize,
         absent: usize,
         lacking: bool,
     ) -> Self {
+        let answer = OpenQuestion::new(problem.model, k);
+        let cost = problem.cost(Action::Ask(Question::Which(k)));
         let absent_other = absent as f64 * answer.other;
         let told = if lacking { 1.0 } else { 1.0 - absent_other };
         let unheard = 1.0 - problem.model.params().p_l * told;
@@ -106,8 +149,8 @@ impl Channel {
         // No class is answered for with less noise than one that has the attribute.
         let noise = surprise(own) + (named as f64 - 1.0) * surprise(other) + surprise(absent_other);
         Self {
-            price: Price::new(&problem.costs, problem.costs.which_s, unheard),
-            cost: problem.costs.which_s,
+            price: Price::new(&problem.costs, cost, unheard),
+            cost,
             own,
             other,
             lacking: answer.lacking,
@@ -120,6 +163,12 @@ impl Channel {
 }
 
 impl Channel {
+    /// Whether it is answered like another, at whatever price.
+    pub(crate) fn answers_like(&self, other: &Self) -> bool {
+        *self == Self { price: self.price, cost: self.cost, ..*other }
+            && self.price.times == other.price.times
+    }
+
     /// How often questions like this are asked until an entropy, nats, is spent, if every answer
     /// carries all it can and the last leaves no more open than its noise.
     pub(crate) fn times_until_spent(&self, entropy: f64) -> f64 {

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use scene::{AttributeId, ObjectId};
+use scene::{AttributeId, ObjectId, Question};
 
-use crate::{Belief, DecisionProblem};
+use crate::{Action, Belief, DecisionProblem};
 
 /// Classes of objects, in the scene's order.
 pub(super) struct Classes {
@@ -27,9 +27,14 @@ impl Classes {
             (0..probability.len()).filter(|i| probability[*i] > floor).collect();
         let total: f64 = kept.iter().map(|i| probability[*i]).sum();
         let group = groups(problem, &kept);
+        let pick_s = |i: usize| problem.durations.and_then(|own| own.pick_s(i.into()));
+        let quicker = |a: usize, b: usize| {
+            pick_s(a).unwrap_or_default().total_cmp(&pick_s(b).unwrap_or_default())
+        };
         // Stable, so that equals stay in the scene's order.
         kept.sort_by(|a, b| {
-            group[*a].cmp(&group[*b]).then(probability[*b].total_cmp(&probability[*a]))
+            let likelier = probability[*b].total_cmp(&probability[*a]);
+            group[*a].cmp(&group[*b]).then(likelier).then_with(|| quicker(*a, *b))
         });
         let mut classes =
             Self { mass: vec![], best: vec![], share: vec![], interchangeable: vec![] };
@@ -55,17 +60,20 @@ impl Classes {
 }
 
 /// The group of every kept object, numbered in the scene's order: objects of one group agree on
-/// all attributes that can be asked about.
+/// all attributes that can be asked about, and cost the same to point at.
 fn groups(problem: &DecisionProblem<'_>, kept: &[usize]) -> Vec<usize> {
     let model = problem.model;
     let asked = if problem.actions.about_attributes() { model.attributes() } else { 0 };
     let columns: Vec<&[u16]> = (0..asked).map(|k| model.column(AttributeId::from(k))).collect();
+    let point = problem.actions.point() && problem.durations.is_some();
+    let cost = |i: usize| problem.cost(Action::Ask(Question::Point(i.into())));
+    let point_at = |i: usize| if point { cost(i).to_bits() } else { 0 };
     let mut known = HashMap::new();
     let mut group = vec![0; model.hypotheses()];
     for &i in kept {
         let values: Vec<u16> = columns.iter().map(|column| column[i]).collect();
         let fresh = known.len();
-        group[i] = *known.entry(values).or_insert(fresh);
+        group[i] = *known.entry((values, point_at(i))).or_insert(fresh);
     }
     group
 }

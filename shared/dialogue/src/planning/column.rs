@@ -1,9 +1,9 @@
 //! An attribute, as a partition of the classes.
 
-use scene::{AttributeId, ObjectId, ValueId};
+use scene::{AttributeId, ObjectId, Question, ValueId};
 
-use super::channel::Channel;
-use crate::{DecisionProblem, Model, OpenQuestion};
+use super::channel::{Channel, Channels};
+use crate::{DecisionProblem, Model};
 
 /// An attribute that tells classes apart: those of one cell have the same value.
 #[derive(Debug)]
@@ -16,8 +16,8 @@ pub(crate) struct Column {
     pub(crate) values: Vec<Option<ValueId>>,
     /// The cell of what is not here.
     pub(crate) unknown: Option<Unknown>,
-    /// How "is its k v?" is answered.
-    pub(crate) yes_no: Channel,
+    /// How "is its k v?" is answered, per cell.
+    pub(crate) yes_no: Channels,
     /// How "what is its k?" is answered.
     pub(crate) open: Channel,
 }
@@ -70,8 +70,11 @@ impl Column {
         let absent = model.values(k) - named;
         let unknown = cell_of[model.values(k) + 1];
         let unknown = unknown.map(|cell| Unknown { cell, yes: model.unknown_yes(k) });
-        let open = Channel::open(problem, OpenQuestion::new(model, k), named, absent, lacking);
-        let yes_no = Channel::yes_no(model.params(), &problem.costs, problem.costs.attribute_s);
+        let open = Channel::open(problem, k, named, absent, lacking);
+        let is = |value: &Option<ValueId>| {
+            value.map_or(Question::None, |value| Question::Attribute(k, value))
+        };
+        let yes_no = Channels::yes_no(problem, problem.costs.attribute_s, values.iter().map(is));
         Some(Self { attribute: k, cells, values, unknown, yes_no, open })
     }
 
@@ -101,7 +104,9 @@ impl Column {
 
     /// Whether its open question has the same answers as a yes/no question.
     pub(super) fn is_yes_no(&self) -> bool {
-        self.values.len() == 2 && self.named().count() == 2 && self.open.own == self.yes_no.own
+        self.values.len() == 2
+            && self.named().count() == 2
+            && self.open.own == self.yes_no.of(0).own
     }
 
     /// Equal for columns whose open questions have the same answers for every class.

@@ -171,8 +171,11 @@ impl<'a> Glancer<'a> {
     fn point(&self, mass: &[f64], choices: &mut Vec<Choice>) -> f64 {
         let mut pointed = self.reduced.pointed.clone();
         let more = pointed.len() > POINTED_MAX;
-        let rank =
-            |a: &u32, b: &u32| mass[*b as usize].total_cmp(&mass[*a as usize]).then(a.cmp(b));
+        let cost = |class: &u32| self.reduced.point.of(*class as usize).cost;
+        let rank = |a: &u32, b: &u32| {
+            let likelier = mass[*b as usize].total_cmp(&mass[*a as usize]);
+            likelier.then_with(|| cost(a).total_cmp(&cost(b))).then(a.cmp(b))
+        };
         if more {
             pointed.select_nth_unstable_by(POINTED_MAX, rank);
             pointed.truncate(POINTED_MAX);
@@ -185,12 +188,17 @@ impl<'a> Glancer<'a> {
         for class in pointed {
             let yes = &self.classes[class as usize];
             let no = here.without(yes, greatest.but(yes));
-            choices.push(self.yes_no(Query::Point { class }, yes, &no, self.reduced.point.other));
+            choices.push(self.yes_no(
+                Query::Point { class },
+                yes,
+                &no,
+                self.reduced.point.of(class as usize).other,
+            ));
         }
         let last = choices.last().filter(|_| more);
         last.map_or(f64::NEG_INFINITY, |last| {
             let informed = self.bound.informed(&self.all.summary(), last.information);
-            self.reduced.point.price.pay(informed)
+            self.reduced.cheapest_pointing().price.pay(informed)
         })
     }
 }

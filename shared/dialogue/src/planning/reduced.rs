@@ -4,12 +4,13 @@
 //! one class; questions with the same answers for every class are asked in the cheapest way only;
 //! silence, which leaves the belief as it is, is folded into the price of a question.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
+use std::hash::Hash;
 use std::ops::Range;
 
 use scene::{AttributeId, ObjectId, Question, ValueId};
 
-use super::channel::{Channel, Query};
+use super::channel::{Channel, Channels, Query};
 use super::classes::Classes;
 use super::column::Column;
 use crate::{Belief, DecisionProblem, Rng};
@@ -32,10 +33,11 @@ pub(crate) struct Reduced {
     pub(crate) absent: Option<usize>,
     /// Classes that are worth pointing at.
     pub(crate) pointed: Vec<u32>,
-    /// How a pointing question is answered.
-    pub(crate) point: Channel,
-    /// Runs of classes that only pointing tells apart, so that the problem is the same however
-    /// their probabilities are permuted. Each run is in order of falling probability.
+    /// How a pointing question is answered, per class.
+    pub(crate) point: Channels,
+    /// Runs of classes that only pointing tells apart, each at the same price, so that the problem
+    /// is the same however their probabilities are permuted. Each run is in order of falling
+    /// probability.
     pub(crate) interchangeable: Vec<Range<usize>>,
 }
 
@@ -51,7 +53,8 @@ impl Reduced {
         let asked = if problem.actions.about_attributes() { model.attributes() } else { 0 };
         let columns =
             (0..asked).filter_map(|k| Column::of(problem, AttributeId::from(k), &best)).collect();
-        let point = Channel::yes_no(model.params(), &problem.costs, problem.costs.point_s);
+        let point_at = best.iter().map(|object| Question::Point(*object));
+        let point = Channels::yes_no(problem, problem.costs.point_s, point_at);
         let absent = best.iter().position(|object| Some(*object) == model.absent());
         let (queries, pointed) = (Vec::new(), Vec::new());
         let mut reduced =
@@ -81,8 +84,8 @@ impl Reduced {
     /// How a query is answered.
     pub(crate) fn channel(&self, query: Query) -> &Channel {
         match query {
-            Query::Point { .. } => &self.point,
-            Query::Is { column, .. } => &self.column(column).yes_no,
+            Query::Point { class } => self.point.of(class as usize),
+            Query::Is { column, cell } => self.column(column).yes_no.of(usize::from(cell)),
             Query::Which { column } => &self.column(column).open,
         }
     }
@@ -93,17 +96,25 @@ impl Reduced {
         self.queries.iter().copied().chain(pointed).collect()
     }
 
-    /// The different channels among the questions.
+    /// The different channels among the questions; of those that differ in price alone the
+    /// cheapest, which is as good as any of them at every belief.
     pub(crate) fn channels(&self) -> Vec<Channel> {
-        let point = (!self.pointed.is_empty()).then_some(Query::Point { class: 0 });
-        let mut channels = Vec::new();
-        for query in self.queries.iter().copied().chain(point) {
-            let channel = *self.channel(query);
-            if !channels.contains(&channel) {
-                channels.push(channel);
+        let point = (!self.pointed.is_empty()).then(|| *self.cheapest_pointing());
+        let asked = self.queries.iter().map(|query| *self.channel(*query));
+        let mut channels: Vec<Channel> = Vec::new();
+        for channel in asked.chain(point) {
+            match channels.iter_mut().find(|known| known.answers_like(&channel)) {
+                None => channels.push(channel),
+                Some(known) if channel.cost < known.cost => *known = channel,
+                Some(_) => {}
             }
         }
         channels
+    }
+
+    /// The channel of the cheapest pointing question.
+    pub(crate) fn cheapest_pointing(&self) -> &Channel {
+        self.point.cheapest(self.pointed.iter().map(|class| *class as usize))
     }
 
     /// Whether pointing at one class is, but for names, the same as pointing at the other.
@@ -120,37 +131,70 @@ impl Reduced {
     /// Collects the questions. Two yes/no questions are equal if they split the classes alike,
     /// whichever half says yes; and, where the wanted object may not be here, if nobody knows the
     /// answer about it equally. A set of classes is known by the exclusive or of random numbers,
-    /// one per class.
+    /// one per class. Of equal questions the cheapest is kept, of those the first.
     fn find_questions(&mut self, problem: &DecisionProblem<'_>) {
         let mut rng = Rng::new(0x5eed);
         let codes: Vec<u64> = self.mass.iter().map(|_| rng.next_u64()).collect();
         let everyone = codes.iter().fold(0, |all, code| all ^ code);
         let split = |set: u64| set.min(set ^ everyone);
-        let (mut splits, mut partitions) = (HashSet::new(), HashSet::new());
+        let (mut splits, mut partitions) = (Cheapest::default(), Cheapest::default());
+        let mut found = Vec::new();
         for (index, column) in self.columns.iter().enumerate() {
             let index = index as u16;
+            let plainly = (0..column.values.len()).map(|cell| column.yes_no.of(cell).cost);
             let plain = problem.actions.attribute
                 && column.is_yes_no()
-                && problem.costs.attribute_s <= problem.costs.which_s;
-            let open = problem.actions.which && column.tells() && !plain;
-            if open && partitions.insert(column.identity()) {
-                self.queries.push(Query::Which { column: index });
+                && plainly.fold(f64::INFINITY, f64::min) <= column.open.cost;
+            if problem.actions.which && column.tells() && !plain {
+                partitions.offer(column.identity(), column.open.cost, found.len());
+                found.push(Query::Which { column: index });
             }
             if problem.actions.attribute {
                 for (cell, set) in column.sets(&codes) {
                     let split = column.unknown.map_or(split(set), |u| set ^ u.yes.to_bits());
-                    if splits.insert(split) {
-                        self.queries.push(Query::Is { column: index, cell });
-                    }
+                    splits.offer(split, column.yes_no.of(usize::from(cell)).cost, found.len());
+                    found.push(Query::Is { column: index, cell });
                 }
             }
         }
         if problem.actions.point() && self.classes() > 1 {
-            let cheaper = problem.costs.attribute_s <= problem.costs.point_s;
-            let known = |code: u64| cheaper && splits.contains(&split(code));
+            let known = |class: usize, code: u64| {
+                let asked = splits.cost(&split(code));
+                asked.is_some_and(|cost| cost <= self.point.of(class).cost)
+            };
             let here = codes.iter().enumerate().filter(|(class, _)| Some(*class) != self.absent);
-            let pointed = here.filter(|(_, code)| !known(**code));
+            let pointed = here.filter(|(class, code)| !known(*class, **code));
             self.pointed = pointed.map(|(class, _)| class as u32).collect();
         }
+        let kept = splits.places().chain(partitions.places());
+        let mut kept: Vec<usize> = kept.collect();
+        kept.sort_unstable();
+        self.queries = kept.into_iter().map(|place| found[place]).collect();
+    }
+}
+
+/// The cheapest of the questions that are equal, with its place among all of them.
+struct Cheapest<K>(HashMap<K, (f64, usize)>);
+
+impl<K> Default for Cheapest<K> {
+    fn default() -> Self {
+        Self(HashMap::new())
+    }
+}
+
+impl<K: Eq + Hash> Cheapest<K> {
+    fn offer(&mut self, key: K, cost: f64, place: usize) {
+        let best = self.0.entry(key).or_insert((cost, place));
+        if cost < best.0 {
+            *best = (cost, place);
+        }
+    }
+
+    fn cost(&self, key: &K) -> Option<f64> {
+        self.0.get(key).map(|(cost, _)| *cost)
+    }
+
+    fn places(&self) -> impl Iterator<Item = usize> {
+        self.0.values().map(|(_, place)| *place)
     }
 }

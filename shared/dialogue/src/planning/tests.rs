@@ -2,15 +2,15 @@ use scene::{ObjectId, Question, Scene};
 
 use super::bound::Summary;
 use super::*;
-use crate::testing::{bowls, random_scene, scene};
-use crate::{Actions, Answer, Belief, Costs, DecisionProblem, Mode, Model, Params, Rng};
+use crate::testing::{bowls, random_durations, random_scene, scene, uniform};
+use crate::{Actions, Answer, Belief, Costs, DecisionProblem, Durations, Mode, Model, Params, Rng};
 
 const REMOTE: Actions = Actions { mode: Mode::Remote, attribute: true, which: true };
 const PRESENT: Actions = Actions { mode: Mode::Present, attribute: true, which: true };
 const POINTING: Actions = Actions { mode: Mode::Present, attribute: false, which: false };
 
 fn problem(model: &Model, actions: Actions, costs: Costs) -> DecisionProblem<'_> {
-    DecisionProblem { model, costs, actions }
+    DecisionProblem::new(model, costs, actions)
 }
 
 fn random_belief(rng: &mut Rng, objects: usize) -> Belief {
@@ -19,8 +19,8 @@ fn random_belief(rng: &mut Rng, objects: usize) -> Belief {
     Belief::from_probabilities(&weights).unwrap()
 }
 
-/// Problems with identical objects, lacking attributes, values that no object has, and where the
-/// wanted object may not be here.
+/// Problems with identical objects, lacking attributes, values that no object has, where the wanted
+/// object may not be here, and where every question has a cost of its own.
 fn for_many_problems(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Belief, &str)) {
     let mut rng = Rng::new(seed);
     let mut scenes: Vec<Scene> = vec![bowls()];
@@ -35,7 +35,11 @@ fn for_many_problems(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Belief, &s
                 for draw in 0..6 {
                     let belief = random_belief(&mut rng, model.hypotheses());
                     let label = format!("seed {seed} scene {n} draw {draw} {name} {actions:?}");
-                    check(&problem(&model, actions, costs), &belief, &label);
+                    let plain = problem(&model, actions, costs);
+                    check(&plain, &belief, &label);
+                    let own = random_durations(&mut rng, &model, costs);
+                    let own = DecisionProblem { durations: Some(&own), ..plain };
+                    check(&own, &belief, &format!("{label} own costs"));
                 }
             }
         }
@@ -77,6 +81,55 @@ fn objects_that_nothing_tells_apart_are_one_class() {
     assert_eq!(present.interchangeable[0], 0..3);
 }
 
+/// What no question tells apart and is equally probable is picked by the seconds of the pick, and
+/// may be permuted only where pointing at it costs the same.
+#[test]
+fn objects_that_differ_in_seconds_alone() {
+    let scene = scene(
+        r#"{"objects":[
+            {"name":"a","attributes":{"color":"red"}},{"name":"b","attributes":{"color":"red"}},
+            {"name":"c","attributes":{"color":"red"}},{"name":"d","attributes":{"color":"blue"}}]}"#,
+    );
+    let model = Model::new(&scene, Params::default());
+    let belief = Belief::uniform(4);
+    let mut own = uniform(&model, Costs::SECONDS);
+    own.pick = vec![9.0, 7.0, 8.0, 1.0];
+    let remote = problem(&model, REMOTE, Costs::SECONDS);
+    let remote = DecisionProblem { durations: Some(&own), ..remote };
+    assert_eq!(Reduced::new(&remote, &belief).best, [ObjectId(1), ObjectId(3)]);
+    own.point = vec![5.0, 5.0, 6.0, 5.0];
+    let present = problem(&model, PRESENT, Costs::SECONDS);
+    let present = DecisionProblem { durations: Some(&own), ..present };
+    let reduced = Reduced::new(&present, &belief);
+    assert_eq!(reduced.best, [ObjectId(1), ObjectId(0), ObjectId(2), ObjectId(3)]);
+    assert_eq!((reduced.interchangeable.len(), &reduced.interchangeable[0]), (1, &(0..2)));
+    assert!(reduced.interchange(0, 1, &reduced.mass) && !reduced.interchange(1, 2, &reduced.mass));
+}
+
+/// Of two questions with the same answers the cheaper one is asked, whichever comes first.
+#[test]
+fn the_cheapest_of_equal_questions_is_kept() {
+    let model = Model::new(&bowls(), Params::default());
+    let mut own = uniform(&model, Costs::SECONDS);
+    let plain = problem(&model, Actions { which: false, ..REMOTE }, Costs::SECONDS);
+    let asked = |own: Option<&Durations>| -> Vec<Question> {
+        let problem = DecisionProblem { durations: own, ..plain };
+        let reduced = Reduced::new(&problem, &Belief::uniform(6));
+        reduced.queries.iter().map(|query| reduced.question(*query)).collect()
+    };
+    let before = asked(None);
+    assert_eq!(asked(Some(&own)), before);
+    // "Is it small?" tells what "Is it big?" tells.
+    let pairs = |k: usize| [0, 1].map(|v| Question::Attribute(k.into(), v.into()));
+    let size = (0..5).find(|k| model.values((*k).into()) == 2 && before.contains(&pairs(*k)[0]));
+    let [first, second] = pairs(size.unwrap());
+    assert!(before.contains(&first) && !before.contains(&second));
+    own.attribute[size.unwrap()][1] = 3.0;
+    let after = asked(Some(&own));
+    assert!(!after.contains(&first) && after.contains(&second), "{after:?}");
+    assert_eq!(after.len(), before.len());
+}
+
 #[test]
 fn negligible_objects_are_left_out() {
     let model = Model::new(&bowls(), Params::default());
@@ -111,7 +164,7 @@ fn ask_once(problem: &DecisionProblem<'_>, belief: &Belief, question: Question) 
             unheard += probability;
         }
     }
-    let cost = problem.costs.of(crate::Action::Ask(question));
+    let cost = problem.cost(crate::Action::Ask(question));
     let discount = problem.costs.discount;
     (discount * after - cost) / (1.0 - discount * unheard)
 }

@@ -18,7 +18,7 @@ const POINTING: Actions = Actions { mode: Mode::Present, attribute: false, which
 fn agree(scene: &str, actions: Actions, costs: Costs, gap: f64) -> (f64, f64) {
     let scene = Scene::from_toml("scene", scene).unwrap();
     let model = Model::new(&scene, Params::default());
-    let problem = DecisionProblem { model: &model, costs, actions };
+    let problem = DecisionProblem::new(&model, costs, actions);
     let text = of_dialogue(&scene, &problem).unwrap().write("");
     let (lower, upper) = Solver::new(&Pomdp::parse(&text).unwrap()).solve(gap);
     let belief = Belief::uniform(model.objects());

@@ -28,6 +28,28 @@ fn a_snapshot_reads_back_equal() {
 }
 
 #[test]
+fn durations_are_measured_once_and_kept_bit_for_bit() {
+    let over = [("dialogue.costs.from", "robot"), ("dialogue.mode", "present")]
+        .map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let settings = Settings::load(&shipped(), None, &over).unwrap();
+    let durations = settings.durations.clone().unwrap();
+    assert_eq!((durations.point.len(), durations.pick.len()), (6, 6));
+    assert_eq!(settings.measure(&settings.scene, true).unwrap(), durations);
+    let run = tempfile::tempdir().unwrap();
+    settings.write_snapshot(run.path()).unwrap();
+    let read = Settings::load_snapshot(run.path()).unwrap();
+    assert_eq!((&read, read.durations.as_ref()), (&settings, Some(&durations)));
+    assert_eq!(read.durations_text(), settings.durations_text());
+    let path = run.path().join(SNAPSHOT_FILE);
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("pick = [", "pick = [1.0, ")).unwrap();
+    let error = Settings::load_snapshot(run.path()).unwrap_err().to_string();
+    assert!(error.contains("the durations of this scene are missing"), "{error}");
+    let plain = Settings::load(&shipped(), None, &[]).unwrap();
+    assert_eq!((plain.durations.as_ref(), plain.durations_text()), (None, String::new()));
+}
+
+#[test]
 fn editing_the_files_changes_nothing_until_the_next_snapshot() {
     let folder = Folder::new(&[("arm.toml", "speed_ratio = 0.3")]);
     let run = tempfile::tempdir().unwrap();

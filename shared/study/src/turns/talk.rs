@@ -113,7 +113,7 @@ impl Talk<'_> {
     /// Says the question.
     fn ask(&mut self, question: Question, rng: &mut Rng) {
         let costs = self.room.problem.costs;
-        self.value -= self.discount * costs.of(Action::Ask(question));
+        self.value -= self.discount * self.room.problem.cost(Action::Ask(question));
         self.discount *= costs.discount;
         let began_s = self.now_s;
         self.now_s += log_normal(rng, QUESTION_S.0, QUESTION_S.1);

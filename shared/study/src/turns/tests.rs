@@ -1,8 +1,8 @@
 use super::*;
 use crate::interaction::Patience;
-use crate::speech::{Pace, Voice};
 use crate::testing::{bowls, yes_no};
 use dialogue::{Model, Params, registry};
+use durations::{Pace, Voice};
 use language::{Language, Reader};
 
 fn run(rules: &str, talker: &Talker, n: u64) -> Tally {

@@ -1,8 +1,8 @@
 use super::*;
 use crate::Patience;
-use crate::speech::{Pace, Voice};
 use crate::testing::bowls;
 use dialogue::{Actions, Costs, DecisionProblem, Mode, Params};
+use durations::{Pace, Voice};
 use language::{Language, Reader};
 use scene::{AttributeId, Scene};
 
@@ -27,7 +27,7 @@ impl House {
         Room {
             scene: &self.scene,
             reader: &self.reader,
-            problem: DecisionProblem { model: &self.model, costs: Costs::SECONDS, actions },
+            problem: DecisionProblem::new(&self.model, Costs::SECONDS, actions),
             patience: Patience::default(),
             voice: Voice::default(),
             pace: &self.pace,

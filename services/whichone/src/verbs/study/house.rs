@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use dialogue::{Costs, DecisionProblem, Mode};
+use dialogue::{Durations, Mode};
+use durations::{Extent, Motions, Pace, Voice, measure};
 use kinematics::Robot;
 use language::{Language, Reader};
 use runtime::exit::Exit;
-use study::{Motions, Pace, Patience, Room, Voice, measured_costs};
+use study::{Patience, Room};
 
 use crate::cli::{ModeArg, Preset, ProblemArgs, StudyArgs};
 use crate::output::note;
@@ -52,18 +53,17 @@ impl House {
         let (motions, pace) = (motions(&problem)?, Pace::default());
         let mut house = Self { reader, problem, patience, voice, pace, motions, request };
         if args.measured_costs {
-            house.problem.costs = house.measured_costs();
+            house.problem.durations = Some(house.durations());
         }
         Ok(house)
     }
 
     /// The room that interactions take place in.
     pub(super) fn room(&self) -> Room<'_> {
-        let Problem { scene, model, costs, actions, .. } = &self.problem;
         Room {
-            scene,
+            scene: &self.problem.scene,
             reader: &self.reader,
-            problem: DecisionProblem { model, costs: *costs, actions: *actions },
+            problem: self.problem.decision(),
             patience: self.patience,
             voice: self.voice,
             pace: &self.pace,
@@ -77,16 +77,24 @@ impl House {
         self.problem.planner()
     }
 
+    /// The arm's motions, where objects have places.
+    pub(super) fn motions(&self) -> Option<&Motions> {
+        self.motions.as_ref()
+    }
+
     /// Whether picks take the arm's time.
     pub(super) fn moves(&self) -> bool {
         self.motions.is_some()
     }
 
-    /// Costs in seconds of this robot's own voice and arm.
-    pub(super) fn measured_costs(&self) -> Costs {
-        let Problem { scene, model, costs, .. } = &self.problem;
-        let motions = self.motions.as_ref();
-        measured_costs(scene, model, &self.voice, &self.pace, motions, *costs)
+    /// How long this robot takes for each question and pick.
+    pub(super) fn durations(&self) -> Durations {
+        measure(&self.problem.scene, &self.voice, &self.pace, self.motions.as_ref())
+    }
+
+    /// Seconds from the end of a question to its usual answer recognised.
+    pub(super) fn answer_s(&self) -> f64 {
+        self.pace.mean_answer_s()
     }
 }
 
@@ -112,7 +120,8 @@ fn motions(problem: &Problem) -> Result<Option<Motions>, Trouble> {
     let limb = problem.settings.as_ref().and_then(|settings| settings.arm.limb);
     let robot = problem.settings.as_ref().map_or(Robot::baxter(), |settings| &settings.arm.robot);
     let pointing = problem.actions.mode == Mode::Present;
-    Motions::plan(robot, scene, limb, &plan, pointing)
+    let extent = if pointing { Extent::Pairs } else { Extent::Picks };
+    Motions::plan(robot, scene, limb, &plan, extent)
         .map(Some)
         .map_err(|error| Trouble::new(Exit::Config, error.to_string()))
 }

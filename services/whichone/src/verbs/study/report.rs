@@ -5,6 +5,7 @@ use study::Tally;
 
 use super::design::Row;
 use super::house::House;
+use super::seconds;
 use crate::cli::StudyArgs;
 
 /// The whole study.
@@ -25,7 +26,8 @@ pub(super) fn to_json(args: &StudyArgs, house: &House, results: &[(&Row, Tally)]
         "actions": room.problem.actions,
         "params": room.problem.model.params(),
         "costs": room.problem.costs,
-        "costs_measured": house.measured_costs(),
+        "costs_measured": room.problem.durations.is_some(),
+        "durations": seconds::to_json(house),
         "rows": results.iter().map(row).collect::<Vec<_>>(),
     })
 }

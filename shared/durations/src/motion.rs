@@ -17,6 +17,18 @@ pub struct Motions {
     points: Vec<Vec<f64>>,
 }
 
+/// Which motions are planned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// Picks from rest.
+    Picks,
+    /// Picks and pointing from rest: what single actions take.
+    FromRest,
+    /// Also from aiming at each object: what a whole interaction takes. Their number grows with the
+    /// square of that of the objects.
+    Pairs,
+}
+
 /// Why the motions of a scene cannot be computed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MotionError {
@@ -43,8 +55,8 @@ const OBJECTS_MAX: usize = 12;
 #[derive(Clone, Copy)]
 struct Posture {
     arms: Arms,
-    /// The limb that is away from rest, and seconds to bring it there.
-    away: Option<(Limb, f64)>,
+    /// The limb that is away from rest.
+    away: Option<Limb>,
 }
 
 struct Planner<'a> {
@@ -55,8 +67,8 @@ struct Planner<'a> {
 }
 
 impl Motions {
-    /// Plans every motion as the arm's service does, at the scene's places: picks, and where
-    /// `pointing` also aiming. `limb` is the one to be used; `None`: the better one.
+    /// Plans motions as the arm's service does, at the scene's places. `limb` is the one to be
+    /// used; `None`: the better one.
     ///
     /// # Errors
     /// The first object that has no place or cannot be reached from rest.
@@ -65,7 +77,7 @@ impl Motions {
         scene: &Scene,
         limb: Option<Limb>,
         settings: &PlanSettings,
-        pointing: bool,
+        extent: Extent,
     ) -> Result<Self, MotionError> {
         let places = places(scene)?;
         let count = places.len();
@@ -77,24 +89,36 @@ impl Motions {
         let rest = Posture { arms: robot.neutral(), away: None };
         let from_rest = |i| planner.pick(&rest, i).map_err(failed("fetch", i));
         let picks: Vec<f64> = (0..count).map(from_rest).collect::<Result<_, _>>()?;
-        let (mut picks, mut points) = (vec![picks], Vec::new());
-        if pointing {
+        let mut motions = Self { picks: vec![picks], points: Vec::new() };
+        if extent != Extent::Picks {
             let aim = |i| planner.aim(&rest, i).map_err(failed("point at", i));
             let aims = (0..count).map(aim).collect::<Result<Vec<_>, _>>()?;
-            points.push(aims.iter().map(|(seconds, _)| *seconds).collect::<Vec<_>>());
-            for (_, aimed) in &aims {
-                let home_s = aimed.away.map_or(0.0, |(_, home_s)| home_s);
-                let tried = count <= OBJECTS_MAX;
-                let pick = |i| tried.then(|| planner.pick(aimed, i).ok()).flatten();
-                let aim = |i| tried.then(|| planner.aim(aimed, i).ok()).flatten();
-                let pick_s = |i: usize| pick(i).unwrap_or(home_s + picks[0][i]);
-                let aim_s = |i: usize| aim(i).map_or(home_s + points[0][i], |(s, _)| s);
-                let rows: (Vec<f64>, Vec<f64>) = (0..count).map(|i| (pick_s(i), aim_s(i))).unzip();
-                picks.push(rows.0);
-                points.push(rows.1);
+            motions.points.push(aims.iter().map(|(seconds, ..)| *seconds).collect());
+            if extent == Extent::Pairs {
+                for (i, (_, limb, arms)) in aims.iter().enumerate() {
+                    let aimed = Posture { arms: *arms, away: Some(*limb) };
+                    motions.go_on(&planner, &aimed).map_err(failed("come back from", i))?;
+                }
             }
         }
-        Ok(Self { picks, points })
+        Ok(motions)
+    }
+
+    /// Adds what follows from one posture of aiming. Where the arm cannot do it from there, it goes
+    /// to rest first.
+    fn go_on(&mut self, planner: &Planner<'_>, aimed: &Posture) -> Result<(), Refusal> {
+        let count = self.picks[0].len();
+        let tried = count <= OBJECTS_MAX;
+        let home_s = planner.home_s(aimed)?;
+        let (picks, points) = (&self.picks[0], &self.points[0]);
+        let pick = |i| tried.then(|| planner.pick(aimed, i).ok()).flatten();
+        let aim = |i| tried.then(|| planner.aim(aimed, i).ok()).flatten();
+        let pick_s = |i: usize| pick(i).unwrap_or(home_s + picks[i]);
+        let aim_s = |i: usize| aim(i).map_or(home_s + points[i], |(seconds, ..)| seconds);
+        let rows: (Vec<f64>, Vec<f64>) = (0..count).map(|i| (pick_s(i), aim_s(i))).unzip();
+        self.picks.push(rows.0);
+        self.points.push(rows.1);
+        Ok(())
     }
 
     /// Seconds from the decision to pick `object` to its hand-over, from rest or from aiming at
@@ -131,21 +155,22 @@ impl Planner<'_> {
         Ok(released_s)
     }
 
-    /// Seconds until the arm aims, and the posture that it has then.
-    fn aim(&self, from: &Posture, i: usize) -> Result<(f64, Posture), Refusal> {
+    /// Seconds until the arm aims, with which limb, and where both are then.
+    fn aim(&self, from: &Posture, i: usize) -> Result<(f64, Limb, Arms), Refusal> {
         let (others, at) = (self.others(None), self.places[i].xyz_m);
         let plan = plan_point(self.robot, at, self.limb, &from.arms, &others, self.settings)?;
         from.refuse_other(plan.limb())?;
         let (_, aimed_s) = plan.timeline.span_s(PointPhase::Aim).unwrap_or_default();
         let mut arms = self.robot.neutral();
         *arms.of_mut(plan.limb()) = plan.timeline.at(aimed_s).q;
-        let home_s = match from.away {
-            Some(_) => 0.0,
-            None => {
-                plan_return(self.robot, plan.limb(), &arms, &others, self.settings)?.duration_s()
-            }
-        };
-        Ok((aimed_s, Posture { arms, away: Some((plan.limb(), home_s)) }))
+        Ok((aimed_s, plan.limb(), arms))
+    }
+
+    /// Seconds back to rest.
+    fn home_s(&self, from: &Posture) -> Result<f64, Refusal> {
+        let Some(limb) = from.away else { return Ok(0.0) };
+        Ok(plan_return(self.robot, limb, &from.arms, &self.others(None), self.settings)?
+            .duration_s())
     }
 }
 
@@ -169,13 +194,13 @@ impl From<PlanError> for Refusal {
 impl Posture {
     fn refuse_other(&self, limb: Limb) -> Result<(), Refusal> {
         match self.away {
-            Some((away, _)) if away != limb => Err(Refusal::OtherLimb),
+            Some(away) if away != limb => Err(Refusal::OtherLimb),
             _ => Ok(()),
         }
     }
 }
 
-fn places(scene: &Scene) -> Result<Vec<ObjectPose>, MotionError> {
+pub(crate) fn places(scene: &Scene) -> Result<Vec<ObjectPose>, MotionError> {
     let place = |object: &scene::Object| {
         let placement =
             object.placement.ok_or_else(|| MotionError::NoPlace(object.name.clone()))?;
@@ -198,7 +223,8 @@ mod tests {
     fn the_bowls_take_what_their_trajectories_take() {
         let scene = bowls();
         let settings = PlanSettings::default();
-        let motions = Motions::plan(Robot::baxter(), &scene, None, &settings, true).unwrap();
+        let motions =
+            Motions::plan(Robot::baxter(), &scene, None, &settings, Extent::Pairs).unwrap();
         let places = places(&scene).unwrap();
         for i in 0..6 {
             let others: Vec<Cuboid> =
@@ -227,7 +253,7 @@ mod tests {
     #[test]
     fn pointing_is_planned_where_it_is_asked_for() {
         let motions =
-            Motions::plan(Robot::baxter(), &bowls(), None, &PlanSettings::default(), false)
+            Motions::plan(Robot::baxter(), &bowls(), None, &PlanSettings::default(), Extent::Picks)
                 .unwrap();
         assert_eq!(motions.point_s(None, ObjectId(0)), None);
         let (rest, aimed) = (None, Some(ObjectId(1)));
@@ -238,8 +264,9 @@ mod tests {
     fn an_object_without_a_place_is_named() {
         let json = serde_json::json!({"objects": [{"name": "cup", "attributes": {"a": "b"}}]});
         let scene = Scene::from_json("s", &json).unwrap();
-        let error = Motions::plan(Robot::baxter(), &scene, None, &PlanSettings::default(), true)
-            .unwrap_err();
+        let error =
+            Motions::plan(Robot::baxter(), &scene, None, &PlanSettings::default(), Extent::Pairs)
+                .unwrap_err();
         assert_eq!(error, MotionError::NoPlace("cup".to_owned()));
     }
 }
