@@ -3,11 +3,13 @@
 use clap::{Parser, Subcommand};
 use runtime::group::{ENV_GROUP, GroupName};
 
+mod arm;
 mod batch;
 mod group;
 mod study;
 mod talk;
 
+pub use arm::{AnyLimbArg, ArmPlotArgs, ArmVerb, ArmVerbArgs};
 pub use batch::{
     ArmArgs, BeliefArgs, ExportArgs, Exported, GroundArgs, InputArgs, LanguageArg, LimbArg,
     ModeArg, PlanArgs, ProblemArgs, WhichArm,
@@ -129,6 +131,8 @@ pub enum Verb {
     /// many questions, in how many seconds, and what that is worth, each with its 95 % interval.
     /// The same seed gives the same table, byte for byte, on any number of threads.
     Study(StudyArgs),
+    /// See what the arm would do, without a group.
+    Arm(ArmVerbArgs),
     /// Read joint positions, one JSON object a line, and print the pose of every link.
     Fk(ArmArgs),
     /// Read poses of an arm's last link, one JSON object a line, and print joint positions.

@@ -8,6 +8,7 @@ use crate::output::Output;
 use crate::trouble::{Outcome, Trouble};
 use crate::{batch, scene_file};
 
+mod arm;
 mod await_pick;
 mod chat;
 mod check;
@@ -75,6 +76,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         }
         Verb::Export(args) => export::export(&args, out),
         Verb::Study(args) => study::study(&args, out),
+        Verb::Arm(args) => arm::arm(&args, out),
         Verb::Fk(args) => batch::fk(&described_arm(&args)?, batch::open(&args.input)?, out),
         Verb::Ik(args) => {
             let chain = described_arm(&args)?.chain()?;

@@ -1,6 +1,8 @@
 //! What a picture is made of: lines, boxes, marks and words, in units of which a screen shows one
 //! or two pixels each.
 
+use crate::raster::Raster;
+
 /// A picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Canvas {
@@ -42,6 +44,15 @@ pub enum Shape {
         outline: Vec<Place>,
         /// Its colour.
         ink: Ink,
+    },
+    /// A picture in pixels.
+    Raster {
+        /// Its upper left corner.
+        corner: Place,
+        /// Width and height.
+        size: (f64, f64),
+        /// The picture.
+        raster: Raster,
     },
     /// Words. The place is at half their height.
     Words {
@@ -123,6 +134,11 @@ impl Canvas {
     /// Fills a box.
     pub fn area(&mut self, corner: Place, size: (f64, f64), ink: Ink) {
         self.shapes.push(Shape::Area { corner, size, ink });
+    }
+
+    /// Lays a picture in pixels; a PNG shows two of them a unit.
+    pub fn raster(&mut self, corner: Place, size: (f64, f64), raster: Raster) {
+        self.shapes.push(Shape::Raster { corner, size, raster });
     }
 
     /// Writes words.

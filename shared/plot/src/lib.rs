@@ -10,6 +10,7 @@ mod axis;
 mod canvas;
 mod lines;
 mod png;
+mod raster;
 mod svg;
 
 pub use axis::{Linear, Logarithmic, Missing};
@@ -18,6 +19,7 @@ pub use canvas::{
 };
 pub use lines::{Lines, Scale, Series};
 pub use png::png;
+pub use raster::Raster;
 pub use svg::svg;
 
 /// A picture cannot be drawn.

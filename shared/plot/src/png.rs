@@ -38,6 +38,7 @@ fn draw(shape: &Shape, pixmap: &mut PixmapMut<'_>) {
             let corners = [(*x, *y), (x + w, *y), (x + w, y + h), (*x, y + h)];
             fill(pixmap, &corners, *ink, scale);
         }
+        Shape::Raster { corner, size, raster } => raster.lay(pixmap, *corner, *size, SCALE),
         Shape::Mark { outline, ink } => fill(pixmap, outline, *ink, scale),
         Shape::Words { at, text, align, size, ink } => {
             words(pixmap, *at, text, (*align, *size), *ink);

@@ -40,6 +40,13 @@ fn element(shape: &Shape) -> String {
                  fill=\"{ink}\"/>"
             )
         }
+        Shape::Raster { corner: (x, y), size: (w, h), raster } => {
+            let file = raster.base64();
+            format!(
+                "<image x=\"{x:.2}\" y=\"{y:.2}\" width=\"{w:.2}\" height=\"{h:.2}\" \
+                 href=\"data:image/png;base64,{file}\"/>"
+            )
+        }
         Shape::Mark { outline, ink } => {
             let point = |(x, y): &Place| format!("{x:.2},{y:.2}");
             let points: Vec<String> = outline.iter().map(point).collect();

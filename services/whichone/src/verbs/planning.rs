@@ -91,7 +91,7 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Trouble> {
 }
 
 /// A word that is no file's name is one of the configuration's scenes.
-fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Trouble> {
+pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Trouble> {
     let is_word = named.extension().is_none() && named.components().count() == 1;
     if named.is_file() || !is_word {
         return Ok(named.to_owned());

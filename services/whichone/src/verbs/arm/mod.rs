@@ -1,0 +1,124 @@
+//! `arm`: what the arm would do, without a group.
+
+use std::path::Path;
+
+use kinematics::{Cuboid, Limb, ObjectPose, PickPhase, PlanSettings, Robot, plan_pick};
+use runtime::exit::Exit;
+use scene::Scene;
+use serde_json::{Value as Json, json};
+
+use super::{place, planning};
+use crate::cli::{ArmPlotArgs, ArmVerb, ArmVerbArgs};
+use crate::output::Output;
+use crate::scene_file;
+use crate::trouble::{Outcome, Trouble};
+
+mod bodies;
+mod figure;
+mod furniture;
+mod pick;
+mod strip;
+
+use pick::Pick;
+
+/// Does it.
+pub(super) fn arm(args: &ArmVerbArgs, out: &mut Output<'_>) -> Outcome {
+    let ArmVerb::Plot(args) = &args.what;
+    plot(args, out)
+}
+
+/// Draws how an object is fetched.
+fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
+    let ending = args.out.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if !["png", "svg"].contains(&ending) {
+        let cure = "end its name with .png or .svg";
+        let what = format!("{}: is no kind of picture ({cure})", args.out.display());
+        return Err(Trouble::new(Exit::Usage, what));
+    }
+    let settings = place::settings(&args.config)?;
+    let scene = match &args.scene {
+        None => settings.scene.clone(),
+        Some(named) => scene_file::load(&planning::scene_path(named, &args.config)?)?,
+    };
+    let limb = args.limb.map_or(settings.arm.limb, Into::into);
+    let robot = &settings.arm.robot;
+    let pick = planned(&scene, args.object.as_deref(), limb, robot, &settings.arm.plan)?;
+    if out.is_json() {
+        out.json(&to_json(&pick))?;
+        return Ok(Exit::Ok);
+    }
+    let failed = |error: ::plot::PlotError| Trouble::new(Exit::Storage, error.to_string());
+    let canvas = figure::draw(&pick, args.width, args.samples).map_err(failed)?;
+    let bytes = match ending {
+        "svg" => ::plot::svg(&canvas).into_bytes(),
+        _ => ::plot::png(&canvas).map_err(failed)?,
+    };
+    write(&args.out, &bytes)?;
+    let name = &pick.scene.object(pick.object.into()).name;
+    let seconds = pick.plan.duration_s();
+    let limb = pick.plan.limb();
+    let file = args.out.display();
+    out.line(format_args!("{file}: the {limb} limb fetches {name} in {seconds:.2} s"))?;
+    Ok(Exit::Ok)
+}
+
+/// Plans the pick as the arm's service does, from rest.
+fn planned<'a>(
+    scene: &'a Scene,
+    object: Option<&str>,
+    limb: Option<Limb>,
+    robot: &'a Robot,
+    settings: &'a PlanSettings,
+) -> Result<Pick<'a>, Trouble> {
+    let refuse =
+        |what: String| Trouble::new(Exit::Config, format!("scene {}: {what}", scene.name()));
+    let names = || scene.objects().iter().map(|object| object.name.as_str()).collect::<Vec<_>>();
+    let object = object.map_or(Some(0), |name| scene.objects().iter().position(|o| o.name == name));
+    let object = object.ok_or_else(|| {
+        refuse(format!("there is no such object (--object is one of {})", names().join(", ")))
+    })?;
+    let placed = scene.objects().iter().map(|object| {
+        let at = object.placement.ok_or_else(|| {
+            let cure = "add `xyz`, `size` and `grasp_width`";
+            refuse(format!("object `{}` has no place ({cure})", object.name))
+        })?;
+        Ok(ObjectPose {
+            xyz_m: at.xyz,
+            yaw_rad: at.yaw,
+            size_m: at.size,
+            grasp_width_m: at.grasp_width,
+        })
+    });
+    let places: Vec<ObjectPose> = placed.collect::<Result<_, Trouble>>()?;
+    let others = places.iter().enumerate().filter(|(i, _)| *i != object);
+    let others: Vec<Cuboid> = others.map(|(_, place)| place.cuboid()).collect();
+    let rest = robot.neutral();
+    let plan = plan_pick(robot, &places[object], limb, &rest, &others, settings);
+    let plan = plan.map_err(|error| {
+        let name = &scene.objects()[object].name;
+        let cure = "move it, or let the other limb fetch it: --limb auto";
+        refuse(format!("object `{name}` cannot be fetched: {error} ({cure})"))
+    })?;
+    Ok(Pick { scene, robot, settings, places, object, plan })
+}
+
+fn to_json(pick: &Pick<'_>) -> Json {
+    let plan = &pick.plan;
+    let stage = |phase: PickPhase| {
+        let (begin_s, end_s) = plan.timeline.span_s(phase)?;
+        Some(
+            json!({ "phase": phase, "begin_s": begin_s, "end_s": end_s, "seconds": end_s - begin_s }),
+        )
+    };
+    json!({
+        "scene": pick.scene.name(),
+        "object": pick.scene.object(pick.object.into()).name,
+        "limb": plan.limb().to_string(),
+        "seconds": plan.duration_s(),
+        "stages": pick::PHASES.iter().filter_map(|(phase, ..)| stage(*phase)).collect::<Vec<_>>(),
+    })
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Trouble> {
+    std::fs::write(path, bytes).map_err(|error| Trouble::file(path, &error))
+}
