@@ -6,6 +6,7 @@ use roxmltree::Node;
 use crate::model::{JointKind, Limits};
 
 use super::reader::{Reader, child};
+use super::spelling;
 
 /// A joint as the file writes it: other parts are still names.
 pub(super) struct Written<'a> {
@@ -55,7 +56,8 @@ fn kind<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, element: &str) -> Joint
             "floating" | "planar" => format!("its type {text} is not supported"),
             _ => format!("its type {text:?} is unknown"),
         };
-        let cure = "write type=\"fixed\", \"revolute\", \"continuous\" or \"prismatic\"";
+        let otherwise = "write type=\"fixed\", \"revolute\", \"continuous\" or \"prismatic\"";
+        let cure = spelling::cure(text, KINDS.iter().map(|kind| kind.name()), otherwise);
         reader.fault(node, element, problem, cure);
         JointKind::Fixed
     })

@@ -8,6 +8,7 @@ use roxmltree::Node;
 use crate::model::{Body, Inertial, Link, Rgba, Shape};
 
 use super::reader::{Reader, child, children};
+use super::spelling;
 
 /// Colours by name; a material may also be a picture, which has none.
 pub(super) type Materials<'a> = HashMap<&'a str, Option<Rgba>>;
@@ -61,7 +62,9 @@ fn colour_of<'a>(
     let known = materials.get(name).copied();
     if known.is_none() {
         let problem = format!("<material> {name:?} is not defined");
-        reader.fault(node, element, problem, "give it a <color rgba=\"…\"/>, or leave it out");
+        let otherwise = "give it a <color rgba=\"…\"/>, or leave it out";
+        let cure = spelling::cure(name, materials.keys().copied(), otherwise);
+        reader.fault(node, element, problem, cure);
     }
     known.flatten()
 }

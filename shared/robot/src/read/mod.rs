@@ -4,6 +4,7 @@ mod joint;
 mod link;
 mod reader;
 mod semantics;
+mod spelling;
 mod tree;
 
 use std::collections::HashMap;
@@ -48,6 +49,7 @@ fn described(urdf: &str) -> Result<Robot, Faults> {
         reader.fault(macro_node, "robot", problem, cure);
         return Err(reader.into_faults());
     }
+    spelling::check(&mut reader, root);
     let name = reader.name(root, "robot").to_owned();
     let mut materials = HashMap::new();
     for node in children(root, "material") {

@@ -8,6 +8,7 @@ use crate::fault::{Document, Faults};
 use crate::model::{Posture, Robot};
 
 use super::reader::{self, Reader, children};
+use super::spelling;
 
 /// Adds what the text says to the robot.
 pub(super) fn read(srdf: &str, robot: &mut Robot) -> Result<(), Faults> {
@@ -67,7 +68,9 @@ fn posture<'a>(
         }
         let Some(&index) = indices.get(joint) else {
             let problem = format!("the robot has no joint {joint:?}");
-            reader.fault(entry, &element, problem, "correct the name, or remove it");
+            let known = robot.joints.iter().map(|known| known.name.as_str());
+            let cure = spelling::cure(joint, known, "correct the name, or remove it");
+            reader.fault(entry, &element, problem, cure);
             continue;
         };
         if positions.iter().any(|(other, _)| *other == index) {
@@ -93,7 +96,9 @@ fn pair<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, robot: &Robot) -> Optio
         let index = robot.link_index(name);
         if index.is_none() && !name.is_empty() {
             let problem = format!("the robot has no link {name:?}");
-            reader.fault(node, element, problem, "correct the name, or remove the pair");
+            let known = robot.links.iter().map(|known| known.name.as_str());
+            let cure = spelling::cure(name, known, "correct the name, or remove the pair");
+            reader.fault(node, element, problem, cure);
         }
         index
     });

@@ -8,6 +8,7 @@ use crate::model::{Joint, JointKind, Link, Mimic, Robot};
 
 use super::joint::Written;
 use super::reader::Reader;
+use super::spelling;
 
 type Links<'a> = Vec<(Link, Node<'a, 'a>)>;
 type Joints<'a> = Vec<(Written<'a>, Node<'a, 'a>)>;
@@ -66,7 +67,8 @@ fn carriers(
         for (which, name) in [("parent", joint.parent), ("child", joint.child)] {
             if !name.is_empty() && !places.contains_key(name) {
                 let problem = format!("its {which} {name:?} is not a link");
-                let cure = format!("describe <link name={name:?}/>, or correct the name");
+                let otherwise = format!("describe <link name={name:?}/>, or correct the name");
+                let cure = spelling::cure(name, places.keys().map(String::as_str), otherwise);
                 reader.fault(*node, &joint.element, problem, cure);
             }
         }
@@ -90,12 +92,16 @@ fn rules(
     for (start, (joint, node)) in joints.iter().enumerate() {
         let mut rule = Mimic { joint: start, multiplier: 1.0, offset: 0.0 };
         let mut problem = None;
+        let mut cure = "name a joint that moves by itself".to_owned();
         for _ in 0..=joints.len() {
             let Some(next) = joints[rule.joint].0.mimic else { break };
             let Some(&followed) = names.get(next.joint) else {
                 // An end that another joint names wrongly is told at that joint.
                 if rule.joint == start && !next.joint.is_empty() {
                     problem = Some(format!("it mimics {:?}, which is not a joint", next.joint));
+                    let others =
+                        names.keys().map(String::as_str).filter(|name| *name != joint.name);
+                    cure = spelling::cure(next.joint, others, cure);
                 }
                 break;
             };
@@ -114,7 +120,7 @@ fn rules(
             problem = Some(format!("it mimics {followed:?}, which does not move"));
         }
         if let Some(problem) = problem {
-            reader.fault(*node, &joint.element, problem, "name a joint that moves by itself");
+            reader.fault(*node, &joint.element, problem, cure);
         }
         rules.push(joint.mimic.map(|_| rule));
     }

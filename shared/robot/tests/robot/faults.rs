@@ -50,7 +50,7 @@ fn every_fault_of_a_file_is_told_at_once() {
     assert_eq!(
         urdf(text),
         r#"arm.urdf:2: material "red": <color> has rgba="1 0 0 2"; each of its numbers must be 0 to 1
-arm.urdf:4: link "a": <material> "rde" is not defined; give it a <color rgba="…"/>, or leave it out
+arm.urdf:4: link "a": <material> "rde" is not defined; did you mean "red"?
 arm.urdf:4: link "a": <sphere> has radius="0"; it must be more than 0
 arm.urdf:5: link "a": <origin> has xyz="0 0"; write 3 finite numbers with spaces between them
 arm.urdf:5: link "a": <geometry> has the unknown shape <cone>; use <box>, <cylinder>, <capsule>, <sphere> or <mesh>
@@ -61,7 +61,7 @@ arm.urdf:9: link: it has no name; write name="…"
 arm.urdf:10: link "b": <box> has no size; write size="x y z" in metres
 arm.urdf:11: joint "j1": it is revolute and has no <limit>; write <limit lower="…" upper="…" velocity="…" effort="…"/>
 arm.urdf:13: joint "j1": <axis> has xyz="0 0 0"; write a vector of length 1
-arm.urdf:15: joint "j2": its type "revolvute" is unknown; write type="fixed", "revolute", "continuous" or "prismatic"
+arm.urdf:15: joint "j2": its type "revolvute" is unknown; did you mean "revolute"?
 arm.urdf:15: joint "j2": it has no <child>; write <child link="…"/>
 arm.urdf:16: joint "j2": <parent> has no link; write link="…"
 arm.urdf:17: joint "j2": <origin> has rpy="0 zero 0"; write 3 finite numbers with spaces between them
@@ -78,6 +78,37 @@ arm.urdf:24: joint: its child "b" already hangs on joint "j1"; a link has one pa
 arm.urdf:26: joint "j4": <limit> has effort="-2"; it must be 0 or more
 arm.urdf:28: joint "j5": its child "b" already hangs on joint; a link has one parent: remove one joint
 arm.urdf:29: joint "j5": <limit> has neither lower nor upper; write both, or make the joint continuous or fixed"#
+    );
+}
+
+#[test]
+fn slips_of_the_fingers_are_recognised() {
+    let text = r#"<robot name="arm">
+  <link name="base"/>
+  <link name="upper_arm"><colision/><sensor/></link>
+  <joint name="shoulder" type="revolute">
+    <orgin xyz="0 0 1"/>
+    <parent link="bse"/><child link="upperarm"/>
+    <axis xzy="0 0 1" verbose="yes"/>
+    <limit lower="-1" uper="1" velocity="1" effort="1"/>
+    <mimic joint="elbw"/>
+  </joint>
+  <joint name="elbow" type="fixed"><parent link="base"/><child link="hand"/></joint>
+</robot>"#;
+    assert_eq!(urdf(text), r#"arm.urdf:3: link "upper_arm": <link> has <colision>; did you mean <collision>?
+arm.urdf:4: joint "shoulder": its parent "bse" is not a link; did you mean "base"?
+arm.urdf:4: joint "shoulder": its child "upperarm" is not a link; did you mean "upper_arm"?
+arm.urdf:4: joint "shoulder": it mimics "elbw", which is not a joint; did you mean "elbow"?
+arm.urdf:5: joint "shoulder": <joint> has <orgin>; did you mean <origin>?
+arm.urdf:7: joint "shoulder": <axis> has xzy; did you mean xyz?
+arm.urdf:7: joint "shoulder": <axis> has no xyz; write xyz="x y z"
+arm.urdf:8: joint "shoulder": <limit> has uper; did you mean upper?
+arm.urdf:11: joint "elbow": its child "hand" is not a link; describe <link name="hand"/>, or correct the name"#);
+    assert_eq!(
+        srdf(
+            "<robot name=\"arm\"><group_state name=\"x\" group=\"g\"><joint name=\"J\" value=\"0\"/></group_state></robot>"
+        ),
+        r#"arm.srdf:1: group_state "x": the robot has no joint "J"; did you mean "j"?"#
     );
 }
 
