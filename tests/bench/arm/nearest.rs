@@ -39,7 +39,7 @@ pub(super) fn measure(
     }
     let mut heads = heads();
     heads.insert(1, "seed".to_owned());
-    let note = "The same targets. Peers look for better answers until their time is up.";
+    let note = "The same targets; distances are means over what was solved. Peers look for better answers until their time is up.";
     report.tables.push(Table {
         title: "Inverse kinematics nearest to a seed".to_owned(),
         note: note.to_owned(),

@@ -95,7 +95,9 @@ fn slips_of_the_fingers_are_recognised() {
   </joint>
   <joint name="elbow" type="fixed"><parent link="base"/><child link="hand"/></joint>
 </robot>"#;
-    assert_eq!(urdf(text), r#"arm.urdf:3: link "upper_arm": <link> has <colision>; did you mean <collision>?
+    assert_eq!(
+        urdf(text),
+        r#"arm.urdf:3: link "upper_arm": <link> has <colision>; did you mean <collision>?
 arm.urdf:4: joint "shoulder": its parent "bse" is not a link; did you mean "base"?
 arm.urdf:4: joint "shoulder": its child "upperarm" is not a link; did you mean "upper_arm"?
 arm.urdf:4: joint "shoulder": it mimics "elbw", which is not a joint; did you mean "elbow"?
@@ -103,7 +105,8 @@ arm.urdf:5: joint "shoulder": <joint> has <orgin>; did you mean <origin>?
 arm.urdf:7: joint "shoulder": <axis> has xzy; did you mean xyz?
 arm.urdf:7: joint "shoulder": <axis> has no xyz; write xyz="x y z"
 arm.urdf:8: joint "shoulder": <limit> has uper; did you mean upper?
-arm.urdf:11: joint "elbow": its child "hand" is not a link; describe <link name="hand"/>, or correct the name"#);
+arm.urdf:11: joint "elbow": its child "hand" is not a link; describe <link name="hand"/>, or correct the name"#
+    );
     assert_eq!(
         srdf(
             "<robot name=\"arm\"><group_state name=\"x\" group=\"g\"><joint name=\"J\" value=\"0\"/></group_state></robot>"
