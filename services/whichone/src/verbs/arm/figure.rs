@@ -22,7 +22,7 @@ const STEP: u8 = 3;
 /// Height of a line of names.
 const LINE: f64 = 10.0;
 const WAY_M: f64 = 0.006;
-const PAPER: [f64; 3] = [0.965, 0.97, 0.975];
+const PAPER: [f64; 3] = [0.965, 0.967, 0.97];
 
 /// Draws it so many pixels wide, with so many samples along either side of a pixel.
 ///
@@ -95,7 +95,10 @@ fn names(canvas: &mut Canvas, pick: &Pick<'_>, onto: impl Fn(&Vector3<f64>) -> O
         let middle = 0.5 * (top + bottom);
         let above = top - (bottom - top).abs().min(10.0) - LINE;
         let beside = [(over, above), (over, bottom + LINE), (over + aside, middle)];
-        let places = beside.into_iter().chain([(over - aside, middle), (over, above - LINE)]);
+        let farther =
+            [1.0, 2.0].map(|n| [(over, above - n * LINE), (over, bottom + (n + 1.0) * LINE)]);
+        let places = beside.into_iter().chain([(over - aside, middle)]);
+        let places = places.chain(farther.into_iter().flatten());
         let free = |(x, y): &(f64, f64)| {
             taken
                 .iter()

@@ -28,10 +28,12 @@ pub(super) fn draw(canvas: &mut Canvas, pick: &Pick<'_>, (left, top, width, heig
         .collect();
     curves(canvas, pick, frame(0), "joint speed, % of what is allowed", &speeds, 100.0);
     joint_names(canvas, pick, frame(0));
-    let height_at = |t: f64| pick.tip(&pick.links(t)).translation.z - pick.settings.table_z_m;
+    let boards = pick.places.iter().map(|place| place.bottom_z_m());
+    let lowest_m = boards.fold(pick.settings.table_z_m, f64::min);
+    let height_at = |t: f64| pick.tip(&pick.links(t)).translation.z - lowest_m;
     let heights: Vec<(f64, f64)> = times(pick).map(|t| (t, 100.0 * height_at(t))).collect();
     let most = heights.iter().map(|(_, z)| *z).fold(10.0, f64::max);
-    curves(canvas, pick, frame(1), "gripper above the table, cm", &[(BLACK, heights)], most);
+    curves(canvas, pick, frame(1), "gripper above the lowest board, cm", &[(BLACK, heights)], most);
 }
 
 fn times(pick: &Pick<'_>) -> impl Iterator<Item = f64> {
