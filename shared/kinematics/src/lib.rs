@@ -1,5 +1,5 @@
-//! Kinematics of Baxter's arms: where every link is, which joint positions reach a pose, and how
-//! to move there and fetch an object.
+//! Kinematics of a robot with two arms of seven joints, Baxter above all: where the gripper is,
+//! which joint positions reach a pose, and how to move there and fetch an object.
 //!
 //! This crate is pure: no IO, no clock, no threads, and the same question has the same answer
 //! every time. What it returns keeps the joint limits to the last bit, the velocity, acceleration
@@ -7,12 +7,10 @@
 //! a typed error, never a motion.
 //!
 //! Units are metres, radians and seconds throughout; poses are in frame `base` of the robot
-//! description unless said otherwise. `<limb>_gripper` is the tip of the electric gripper with
-//! extended fingers, 0.1577 m past the hand; [`Chain::with_tool`] says otherwise.
+//! description unless said otherwise. `<limb>_gripper` is the frame that a limb's kinematics end at;
+//! on Baxter the tip of the electric gripper with extended fingers, 0.1577 m past the hand.
 //!
-//! Numbers from baxter_common 1.2.0, BSD-3-Clause, Copyright (c) 2013-2015 Rethink Robotics.
-//!
-//! Start at [`Limb`], then [`plan_pick`].
+//! Start at [`Robot`], then [`plan_pick`].
 
 pub mod baxter;
 mod block;
@@ -27,7 +25,6 @@ mod held;
 mod inverse;
 mod limb;
 pub mod limits;
-pub mod links;
 mod path;
 mod plan;
 mod profile;

@@ -3,11 +3,12 @@
 
 use super::IkSolution;
 use super::crossing;
+use super::fold;
 use super::goal::Aim;
 use super::golden;
 use super::posture::{Branch, Posture};
 use super::refine::{Refined, refine};
-use super::slice::Slice;
+use super::slice::{NARROW_RAD, Slice};
 use super::solve::exact;
 
 /// Closed forms spent between the neighbours of one sample; they narrow s0 to 5e-5 rad.
@@ -24,11 +25,21 @@ const MINIMA: usize = 16;
 /// only refinement finds, radians.
 const HOPEFUL_RAD: f64 = 0.002;
 
+/// |w1| below which a wrist is all but straight, radians.
+const STRAIGHT_RAD: f64 = 0.1;
+
 /// Refinement steps for a hopeful posture.
 const STEPS_HOPEFUL: usize = 40;
 
 /// Refinement steps towards the nearest posture when there is no hope of an exact one.
 const STEPS_NEAREST: usize = 16;
+
+/// What came of a closer look that found no solution.
+pub(crate) struct Missed {
+    pub(crate) nearest: Refined,
+    /// Positions of s0 where the wrist of a posture that nearly fits is all but straight, radians.
+    pub(crate) straight: Vec<f64>,
+}
 
 /// What the sweep saw of postures that are not solutions.
 pub(crate) struct Nearly {
@@ -55,8 +66,8 @@ impl Nearly {
     }
 
     /// Follows every local minimum of the violation along s0, looks where two joints' violations
-    /// cross, then refines what came nearest.
-    pub(crate) fn look_closer(mut self, aim: &Aim<'_>) -> Result<IkSolution, Refined> {
+    /// cross and beside folds, then refines what came nearest.
+    pub(crate) fn look_closer(mut self, aim: &Aim<'_>) -> Result<IkSolution, Missed> {
         let mut closer = Vec::with_capacity(MINIMA);
         for (branch, posture) in self.minima() {
             let found = least_violation(aim, self.cell_rad, branch, posture);
@@ -65,14 +76,8 @@ impl Nearly {
             }
             closer.push(found);
         }
-        for pair in self.seen.windows(2) {
-            let [left, right] = pair else { continue };
-            if left.branch == right.branch && right.cell == left.cell + 1 {
-                let found = crossing::between(aim, left.branch, &left.posture, &right.posture);
-                if let Some(answer) = found.and_then(|found| settled(aim, left.branch, &found)) {
-                    return Ok(answer);
-                }
-            }
+        if let Some(answer) = self.hidden(aim) {
+            return Ok(answer);
         }
         closer.sort_by(|a, b| a.violation.total_cmp(&b.violation));
         let mut best = nearest(aim, closer.first());
@@ -85,7 +90,41 @@ impl Nearly {
                 best = refined;
             }
         }
-        Err(best)
+        let straight = self.straight(aim);
+        Err(Missed { nearest: best, straight })
+    }
+
+    /// A solution where two joints' violations cross between neighbouring samples, or beside a fold
+    /// at which a branch ends between them.
+    fn hidden(&self, aim: &Aim<'_>) -> Option<IkSolution> {
+        let beside = |a: &Seen, b: &&Seen| b.branch == a.branch && b.cell.abs_diff(a.cell) == 1;
+        (0..self.seen.len()).find_map(|i| {
+            let seen = &self.seen[i];
+            let before = i.checked_sub(1).map(|i| &self.seen[i]).filter(|b| beside(seen, b));
+            let after = self.seen.get(i + 1).filter(|b| beside(seen, b));
+            let crossed =
+                after.and_then(|b| crossing::between(aim, seen.branch, &seen.posture, &b.posture));
+            let fold = |neighbour: Option<&Seen>, side: f64| {
+                let goes_on = neighbour.is_some_and(|b| b.posture.lack == 0.0);
+                let end = seen.posture.q[0] + side * self.cell_rad;
+                (seen.posture.lack == 0.0 && !goes_on)
+                    .then(|| fold::beside(aim, seen.branch, &seen.posture, end))
+                    .flatten()
+            };
+            let found = crossed.or_else(|| fold(before, -1.0)).or_else(|| fold(after, 1.0))?;
+            settled(aim, seen.branch, &found)
+        })
+    }
+
+    /// Positions of s0 at which a posture nearly fits whose wrist is all but straight, so that its
+    /// fixed point is not the only one; the nearest fit first.
+    fn straight(&self, aim: &Aim<'_>) -> Vec<f64> {
+        let is_straight = |p: &Posture| (p.q[5] + aim.arm.zero[5]).abs() < STRAIGHT_RAD;
+        let postures = self.seen.iter().map(|seen| &seen.posture);
+        let mut straight: Vec<_> =
+            postures.filter(|p| p.violation < NARROW_RAD && is_straight(p)).collect();
+        straight.sort_by(|a, b| a.violation.total_cmp(&b.violation));
+        straight.into_iter().map(|posture| posture.q[0]).collect()
     }
 
     /// Samples whose two neighbours of the same branch violate more (or have no posture at all),

@@ -7,6 +7,7 @@
 
 mod closer;
 mod crossing;
+mod fold;
 mod goal;
 mod golden;
 mod nearest;

@@ -36,6 +36,8 @@ pub(crate) struct Posture {
     /// the squares of the elbow's and the roll's root lack. 0 only where every joint is within its
     /// limits and both roots exist.
     pub(crate) violation: f64,
+    /// What the squares of the roots lack alone.
+    pub(crate) lack: f64,
     pub(crate) settled: bool,
 }
 

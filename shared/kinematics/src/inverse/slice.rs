@@ -263,7 +263,7 @@ impl<'a> Slice<'a> {
         let w1 = self.position(5, Self::wrist(&arm.unturned(&self.z), branch));
         let violation = self.limits.outside(5, w1) + arm.lack;
         let q = [self.s0, 0.0, 0.0, 0.0, 0.0, w1, 0.0];
-        (violation > margin_rad).then_some(Posture { q, violation, settled: false })
+        (violation > margin_rad).then_some(Posture { q, violation, lack: arm.lack, settled: false })
     }
 
     /// Sine and cosine of w1's angle, given the target's z axis before w0.
@@ -297,7 +297,8 @@ impl<'a> Slice<'a> {
             self.position(5, w1),
             self.position(6, w2),
         ];
-        Posture { q, violation: self.limits.violation(&q) + arm.lack, settled }
+        let violation = self.limits.violation(&q) + arm.lack;
+        Posture { q, violation, lack: arm.lack, settled }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::IkSolution;
-use super::closer::Nearly;
+use super::closer::{Missed, Nearly};
 use super::goal::Aim;
 use super::posture::{Branch, Posture};
 use super::refine::{Refined, distance, refine};
@@ -14,7 +14,7 @@ use crate::limb::Joints;
 const CELL_RAD: f64 = 0.0535;
 
 /// Intervals of the second sweep, for targets that the first nearly reached.
-const FINE: usize = 60;
+const FINE: usize = 120;
 
 /// Greatest distance of the positions of s0 at which all solutions are looked for, radians: 40 on
 /// Baxter.
@@ -23,16 +23,16 @@ pub(crate) const SAMPLE_RAD: f64 = 0.0875;
 /// How far the second sweep looks either side of where the first came nearest, radians of s0.
 const WINDOW_RAD: f64 = 0.15;
 
+/// Places about which it looks.
+const WINDOWS: usize = 3;
+
 /// Error twist below which the second sweep is worth its time, metres and radians: what the first
 /// leaves of a target in reach. More with a straight wrist, whose other fixed points lie further.
 const NEAR_MISS: f64 = 2e-3;
-const NEAR_MISS_STRAIGHT: f64 = 5e-3;
-
-/// |w1| below which the wrist counts as straight, radians.
-const STRAIGHT_RAD: f64 = 0.3;
+const NEAR_MISS_STRAIGHT: f64 = 1e-2;
 
 /// Postures refined in the second sweep, least violating first.
-const PATIENT: usize = 24;
+const PATIENT: usize = 80;
 
 /// Refinement steps for each of them: along a fold or a limit they are short.
 const STEPS_PATIENT: usize = 60;
@@ -51,10 +51,10 @@ pub(crate) fn first(aim: &Aim<'_>) -> Result<IkSolution, Refined> {
     if let Some(answer) = sweep(aim) {
         return Ok(answer);
     }
-    between(aim).or_else(|nearest| {
-        let straight = (nearest.q[5] + aim.arm.zero[5]).abs() < STRAIGHT_RAD;
-        let near_miss = if straight { NEAR_MISS_STRAIGHT } else { NEAR_MISS };
-        if nearest.error() < near_miss { patiently(aim, nearest) } else { Err(nearest) }
+    between(aim).or_else(|Missed { nearest, straight }| {
+        let error = nearest.error();
+        let hidden = error < NEAR_MISS || error < NEAR_MISS_STRAIGHT && !straight.is_empty();
+        if hidden { patiently(aim, nearest, &straight) } else { Err(nearest) }
     })
 }
 
@@ -75,7 +75,7 @@ fn sweep(aim: &Aim<'_>) -> Option<IkSolution> {
 }
 
 /// A solution between two samples of s0, found from what nearly fits at them.
-fn between(aim: &Aim<'_>) -> Result<IkSolution, Refined> {
+fn between(aim: &Aim<'_>) -> Result<IkSolution, Missed> {
     let cells = cells(aim);
     let mut nearly = Nearly::new(aim, cells);
     for cell in 0..=cells {
@@ -90,12 +90,14 @@ fn between(aim: &Aim<'_>) -> Result<IkSolution, Refined> {
 /// The last resort, for one target in a million: the arm is at a limit, its wrist nearly straight
 /// or its elbow at the end of its travel, and what is feasible is narrower than a cell or on
 /// another of the wrist's fixed points.
-fn patiently(aim: &Aim<'_>, nearest: Refined) -> Result<IkSolution, Refined> {
+fn patiently(aim: &Aim<'_>, nearest: Refined, places: &[f64]) -> Result<IkSolution, Refined> {
     let mut starts = vec![(0.0, nearest.q)];
     let (lower, upper) = aim.limits(0);
-    for k in 0..=FINE {
+    for (place, k) in
+        apart(nearest.q[0], places).into_iter().flat_map(|p| (0..=FINE).map(move |k| (p, k)))
+    {
         let aside = WINDOW_RAD * (2.0 * k as f64 / FINE as f64 - 1.0);
-        let slice = Slice::roughly(aim, (nearest.q[0] + aside).clamp(lower, upper));
+        let slice = Slice::roughly(aim, (place + aside).clamp(lower, upper));
         for (branch, quarter) in Branch::all().flat_map(|b| (0..4).map(move |q| (b, q))) {
             let posture = slice.posture_from(branch, f64::from(quarter) * FRAC_PI_2);
             let near = posture.filter(|posture| posture.violation < NARROW_RAD);
@@ -118,6 +120,17 @@ fn patiently(aim: &Aim<'_>, nearest: Refined) -> Result<IkSolution, Refined> {
         }
     }
     Err(nearest)
+}
+
+/// The first and those of the others that lie apart from each other, at most [`WINDOWS`].
+fn apart(first: f64, others: &[f64]) -> Vec<f64> {
+    let mut places = vec![first];
+    for other in others {
+        if places.len() < WINDOWS && places.iter().all(|p| (p - other).abs() > WINDOW_RAD) {
+            places.push(*other);
+        }
+    }
+    places
 }
 
 /// Every posture at samples of s0.
