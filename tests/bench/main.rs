@@ -1,7 +1,8 @@
 //! Benchmarks of the decision core, of the arm and of the running group: what a decision and a
 //! belief update cost and how good decisions are; how often and how fast poses are reached, beside
 //! other solvers; how fast the group starts and recovers, how long an utterance
-//! takes to become a decision and where the time goes, and what it costs when nothing happens.
+//! takes to become a decision and where the time goes, what it costs when nothing happens, and how
+//! steadily joint states come.
 //!
 //! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
 //! test rests on one.
@@ -9,6 +10,7 @@
 mod arm;
 mod core;
 mod idle;
+mod jitter;
 mod latency;
 mod peers;
 mod report;
@@ -17,14 +19,15 @@ mod start;
 use report::Report;
 use std::process::ExitCode;
 
-const HELP: &str = "Usage: bench [--quick] [--core] [--kinematics]
+const HELP: &str = "Usage: bench [--quick] [--core] [--kinematics] [--joints]
 
   --quick       fewer repetitions and smaller series: a minute in place of several
   --core        only the decision core, without starting a group
   --kinematics  only the arm: inverse kinematics, motions and clearances beside other solvers
+  --joints      only how steadily joint states come
 ";
 
-const OPTIONS: [&str; 3] = ["--quick", "--core", "--kinematics"];
+const OPTIONS: [&str; 4] = ["--quick", "--core", "--kinematics", "--joints"];
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -38,8 +41,8 @@ fn main() -> ExitCode {
     }
     let asked = |word: &str| words.iter().any(|known| known == word);
     let mut report = Report::default();
-    let [core_only, arm_only] = ["--core", "--kinematics"].map(asked);
-    let all = !core_only && !arm_only;
+    let [core_only, arm_only, joints_only] = ["--core", "--kinematics", "--joints"].map(asked);
+    let all = !core_only && !arm_only && !joints_only;
     if all || core_only {
         peers::measure(&mut report);
         let effort = if asked("--quick") { core::Effort::QUICK } else { core::Effort::FULL };
@@ -52,6 +55,9 @@ fn main() -> ExitCode {
         start::measure(&mut report);
         latency::measure(&mut report);
         idle::measure(&mut report);
+    }
+    if all || joints_only {
+        jitter::measure(&mut report);
     }
     match report.write() {
         Ok(()) => ExitCode::SUCCESS,

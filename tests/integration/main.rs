@@ -15,6 +15,7 @@ mod people;
 mod person;
 mod planners;
 mod recovery;
+mod robot;
 mod speech;
 mod supervision;
 mod swap;

@@ -1,0 +1,99 @@
+//! How steadily joint states come: the intervals between those that the arm sends, for an arm that
+//! stands and for one that moves, beside a thread that does nothing but sleep until every tenth
+//! millisecond, measured at the same time on the same machine.
+
+use crate::report::{Report, percentile};
+use protocol::{JointStates, topics};
+use runtime::bus::Reader;
+use runtime::client::Client;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use whichone_tests::Group;
+
+/// How long each of the two is watched.
+const WATCHED: Duration = Duration::from_secs(10);
+/// The interval that is promised, milliseconds.
+const NOMINAL_MS: f64 = 10.0;
+/// How often the topic is looked at; it holds the last sixteen joint states.
+const LOOK_EVERY: Duration = Duration::from_millis(30);
+
+pub(crate) fn measure(report: &mut Report) {
+    let group = Group::up(&["arm.time_scale=0.5"]);
+    let client = Client::join(group.paths()).expect("a running group");
+    let joints: Reader<JointStates> = client.bus().reader(&topics::JOINTS).expect("joint states");
+    std::thread::sleep(Duration::from_secs(2));
+    watch(report, &joints, "standing");
+    group.say("the clear bowl");
+    group.wait_for_decision("pick");
+    watch(report, &joints, "moving");
+    drop((joints, client));
+    group.down();
+}
+
+fn watch(report: &mut Report, joints: &Reader<JointStates>, what: &str) {
+    let peer = Peer::start();
+    let (mut sent, mut moved) = (Vec::new(), false);
+    joints.latest().expect("a topic that can be read");
+    let until = Instant::now() + WATCHED;
+    while Instant::now() < until {
+        let read = joints.drain_stamped(|states, stamp| {
+            sent.push(stamp.sent_ns);
+            moved |= states.velocity.iter().any(|v| v.abs() > 0.01);
+        });
+        read.expect("a topic that can be read");
+        std::thread::sleep(LOOK_EVERY);
+    }
+    let beside = peer.stop();
+    let name = format!("100 Hz by a sleeping thread, arm {what}");
+    add(report, &name, &beside, None);
+    let ms: Vec<f64> = sent.windows(2).map(|w| (w[1] - w[0]) as f64 / 1e6).collect();
+    let note = if moved { "" } else { "no joint moved" };
+    add(report, &format!("joint states, arm {what}"), &ms, Some((&name, note)));
+}
+
+/// Deviation of every interval from the nominal one, with the longest and the shortest in words.
+fn add(report: &mut Report, what: &str, intervals_ms: &[f64], beside: Option<(&str, &str)>) {
+    let off: Vec<f64> = intervals_ms.iter().map(|ms| (ms - NOMINAL_MS).abs() * 1e3).collect();
+    let [p50, p99, max] = [0.5, 0.99, 1.0].map(|share| percentile(intervals_ms, share));
+    let span = format!("intervals p50 {p50:.3}, p99 {p99:.3}, max {max:.3} ms");
+    match beside {
+        None => report.add(what, "µs off 10 ms", &off, &span),
+        Some((peer, note)) => {
+            let note = if note.is_empty() { span } else { format!("{span}; {note}") };
+            report.add_beside(what, "µs off 10 ms", &off, peer, &note);
+        }
+    }
+}
+
+/// A thread that notes when it wakes, a hundred times a second.
+struct Peer {
+    ends: Arc<AtomicBool>,
+    thread: JoinHandle<Vec<f64>>,
+}
+
+impl Peer {
+    fn start() -> Self {
+        let ends = Arc::new(AtomicBool::new(false));
+        let told = Arc::clone(&ends);
+        let thread = std::thread::spawn(move || {
+            let period = Duration::from_secs_f64(NOMINAL_MS / 1e3);
+            let (mut next, mut last) = (Instant::now() + period, Instant::now());
+            let mut intervals_ms = Vec::new();
+            while !told.load(Ordering::Relaxed) {
+                std::thread::sleep(next.saturating_duration_since(Instant::now()));
+                let now = Instant::now();
+                intervals_ms.push((now - last).as_secs_f64() * 1e3);
+                (last, next) = (now, next + period);
+            }
+            intervals_ms
+        });
+        Self { ends, thread }
+    }
+
+    fn stop(self) -> Vec<f64> {
+        self.ends.store(true, Ordering::Relaxed);
+        self.thread.join().expect("a thread of ours")
+    }
+}

@@ -1,0 +1,110 @@
+//! The arm with its driver for a Baxter, and the simulated one as a process of the group: real time,
+//! real messages.
+
+use rustix::process::Signal;
+use serde_json::Value;
+use std::process::Command;
+use whichone_tests::{Group, program, run, wait_for};
+
+/// A group with the simulated robot behind the robot's own topics.
+fn group() -> Group {
+    let robot = ["group.services.baxter.nice=0", "arm.driver=baxter", "arm.time_scale=1.0"];
+    Group::up(&robot)
+}
+
+/// Something happens to the robot.
+fn drill(group: &Group, words: &[&str]) {
+    let mut command = Command::new(program("whichone-baxter"));
+    command.env("WHICHONE_HOME", group.paths().home());
+    command.env("WHICHONE_GROUP", group.paths().name().as_str());
+    let ended = run(command.args(words), "", 20.0);
+    assert_eq!(ended.code, Some(0), "{words:?}: {ended:?}");
+}
+
+fn wait_for_arm(group: &Group, what: &str, holds: impl Fn(&Value) -> bool) {
+    wait_for(what, 40.0, || Some(group.arm()).filter(&holds));
+}
+
+fn assert_delivered(group: &Group, outcome: &Value) {
+    let facts = (&outcome["outcome"], &outcome["object"]);
+    assert_eq!(facts, (&"delivered".into(), &"clear".into()), "{outcome}\n{}", group.logs());
+    group.verify_journals();
+}
+
+#[test]
+fn a_dialogue_ends_with_a_pick_by_the_robot() {
+    let group = group();
+    assert_eq!(group.service("baxter")["actual"], "ready");
+    assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
+    assert_eq!(group.arm()["hindrance"], "none");
+    group.down();
+}
+
+#[test]
+fn the_arm_is_killed_in_the_middle_of_a_motion_and_one_pick_results() {
+    let group = group();
+    let outcome = group.fetch_while("the clear bowl", "clear", || {
+        for phase in ["moving", "holding"] {
+            wait_for_arm(&group, phase, |arm| arm["phase"] == phase && arm["moving"] == true);
+            let before = group.incarnation("arm");
+            group.signal("arm", Signal::KILL);
+            group.wait_for_restart("arm", before);
+        }
+    });
+    assert_delivered(&group, &outcome);
+    group.down();
+}
+
+#[test]
+fn the_robots_own_process_is_killed_and_comes_back() {
+    let group = group();
+    let outcome = group.fetch_while("the clear bowl", "clear", || {
+        wait_for_arm(&group, "moving", |arm| arm["phase"] == "moving");
+        let before = group.incarnation("baxter");
+        group.signal("baxter", Signal::STOP);
+        wait_for_arm(&group, "silence is noticed", |arm| arm["hindrance"] == "stale");
+        group.signal("baxter", Signal::KILL);
+        group.wait_for_restart("baxter", before);
+    });
+    assert_delivered(&group, &outcome);
+    group.down();
+}
+
+#[test]
+fn the_emergency_stop_latches_and_resume_goes_on() {
+    let group = group();
+    let outcome = group.fetch_while("the clear bowl", "clear", || {
+        wait_for_arm(&group, "moving", |arm| arm["phase"] == "moving" && arm["moving"] == true);
+        drill(&group, &["press-estop"]);
+        wait_for_arm(&group, "latched", |arm| arm["stopped"] == true && arm["moving"] == false);
+        assert_eq!(group.arm()["hindrance"], "stopped");
+        for word in ["release-estop", "reset", "enable"] {
+            drill(&group, &[word]);
+        }
+        wait_for_arm(&group, "the robot is back", |arm| arm["hindrance"] == "none");
+        assert_eq!(group.arm()["stopped"], true, "latched until somebody says so");
+        group.must(&["resume-motion"]);
+    });
+    assert_delivered(&group, &outcome);
+    group.down();
+}
+
+#[test]
+fn a_grasp_that_misses_is_told_to_the_person() {
+    let group = group();
+    drill(&group, &["miss", "2"]);
+    let outcome = group.fetch("the clear bowl", "clear");
+    assert_eq!(outcome["outcome"], "failed", "{outcome}\n{}", group.logs());
+    let text = group.dialogue()["text"].as_str().unwrap_or_default().to_owned();
+    assert!(text.contains("could not get hold"), "{text}");
+    assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
+    group.down();
+}
+
+#[test]
+fn a_robot_in_another_time_is_refused_with_the_cure() {
+    let mut group = Group::new();
+    let ended = group.start(&["arm.driver=baxter"]);
+    assert_eq!(ended.code, Some(78), "{ended:?}");
+    assert!(ended.stderr.contains("time_scale") && ended.stderr.contains("real time"), "{ended:?}");
+}
