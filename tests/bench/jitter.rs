@@ -24,36 +24,49 @@ pub(crate) fn measure(report: &mut Report) {
     let client = Client::join(group.paths()).expect("a running group");
     let joints: Reader<JointStates> = client.bus().reader(&topics::JOINTS).expect("joint states");
     std::thread::sleep(Duration::from_secs(2));
-    watch(report, &joints, "standing");
-    group.say("the clear bowl");
-    group.wait_for_decision("pick");
-    watch(report, &joints, "moving");
+    Samples::take(&joints).add(report, "standing");
+    let mut samples = None;
+    group.fetch_while("the clear bowl", "clear", || samples = Some(Samples::take(&joints)));
+    samples.expect("it was ordered to pick").add(report, "moving");
     drop((joints, client));
     group.down();
 }
 
-fn watch(report: &mut Report, joints: &Reader<JointStates>, what: &str) {
-    let peer = Peer::start();
-    let (mut sent, mut moved) = (Vec::new(), false);
-    joints.latest().expect("a topic that can be read");
-    let until = Instant::now() + WATCHED;
-    while Instant::now() < until {
-        let read = joints.drain_stamped(|states, stamp| {
-            sent.push(stamp.sent_ns);
-            moved |= states.velocity.iter().any(|v| v.abs() > 0.01);
-        });
-        read.expect("a topic that can be read");
-        std::thread::sleep(LOOK_EVERY);
-    }
-    let beside = peer.stop();
-    let name = format!("100 Hz by a sleeping thread, arm {what}");
-    add(report, &name, &beside, None);
-    let ms: Vec<f64> = sent.windows(2).map(|w| (w[1] - w[0]) as f64 / 1e6).collect();
-    let note = if moved { "" } else { "no joint moved" };
-    add(report, &format!("joint states, arm {what}"), &ms, Some((&name, note)));
+/// What was seen in one stretch of time.
+struct Samples {
+    sent_ns: Vec<u64>,
+    moved: bool,
+    beside_ms: Vec<f64>,
 }
 
-/// Deviation of every interval from the nominal one, with the longest and the shortest in words.
+impl Samples {
+    fn take(joints: &Reader<JointStates>) -> Self {
+        let peer = Peer::start();
+        let (mut sent_ns, mut moved) = (Vec::new(), false);
+        joints.latest().expect("a topic that can be read");
+        let until = Instant::now() + WATCHED;
+        while Instant::now() < until {
+            let read = joints.drain_stamped(|states, stamp| {
+                sent_ns.push(stamp.sent_ns);
+                moved |= states.velocity.iter().any(|v| v.abs() > 0.01);
+            });
+            read.expect("a topic that can be read");
+            std::thread::sleep(LOOK_EVERY);
+        }
+        Self { sent_ns, moved, beside_ms: peer.stop() }
+    }
+
+    fn add(&self, report: &mut Report, what: &str) {
+        let name = format!("100 Hz by a sleeping thread, arm {what}");
+        add(report, &name, &self.beside_ms, None);
+        let ms = self.sent_ns.windows(2).map(|w| (w[1] - w[0]) as f64 / 1e6);
+        let note = if self.moved { "" } else { "no joint moved" };
+        let ms: Vec<f64> = ms.collect();
+        add(report, &format!("joint states, arm {what}"), &ms, Some((&name, note)));
+    }
+}
+
+/// Deviation of every interval from the nominal one, with the intervals themselves in words.
 fn add(report: &mut Report, what: &str, intervals_ms: &[f64], beside: Option<(&str, &str)>) {
     let off: Vec<f64> = intervals_ms.iter().map(|ms| (ms - NOMINAL_MS).abs() * 1e3).collect();
     let [p50, p99, max] = [0.5, 0.99, 1.0].map(|share| percentile(intervals_ms, share));

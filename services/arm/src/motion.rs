@@ -42,11 +42,17 @@ impl ArmNode {
         }
     }
 
-    /// Remembers the joints from time to time.
+    /// Remembers the joints from time to time; between two joint states, so that none of them waits
+    /// for the disk.
     pub(crate) fn hint(&mut self, now: Time, fx: &mut Fx) {
-        if !self.executor.is_standing() && now >= self.recorded + HINT_EVERY {
-            self.record(Cause::Moved, now, fx);
+        if self.executor.is_standing() || now < self.recorded + HINT_EVERY {
+            return;
         }
+        if self.publisher.joints_are_due(&self.driver.measured(), now) {
+            self.urgent = true;
+            return;
+        }
+        self.record(Cause::Moved, now, fx);
     }
 
     /// Whether the next step begins a phase that has to be made durable first. If so, it has been

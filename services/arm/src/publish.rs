@@ -59,14 +59,25 @@ impl Publisher {
         self.joints.next.min(self.status_due).min(world)
     }
 
-    /// Publishes what is due.
-    pub(crate) fn tick(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
-        let is_due = self.joints.is_due(now);
-        let at = match facts.measured.at {
-            Source::Model => is_due.then_some(now),
+    /// Whether joint states are due.
+    pub(crate) fn joints_are_due(&self, measured: &Measured, now: Time) -> bool {
+        self.joints_due(measured, now).is_some()
+    }
+
+    /// When the joints were so whose state is due: a model's in its beat, those of sensors when
+    /// there are new ones.
+    fn joints_due(&self, measured: &Measured, now: Time) -> Option<Time> {
+        match measured.at {
+            Source::Model => (now >= self.joints.next).then_some(now),
             Source::Sensors(at) => (at > self.joints_at).then_some(at),
             Source::Memory => None,
-        };
+        }
+    }
+
+    /// Publishes what is due.
+    pub(crate) fn tick(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
+        let at = self.joints_due(facts.measured, now);
+        self.joints.is_due(now);
         if let Some(at) = at {
             self.joints_at = at;
             fx.publish(Out::Joints(Box::new(self.joint_states(facts.measured, at))));

@@ -81,6 +81,8 @@ pub struct BaxterNode {
     robot: Robot,
     beat: u64,
     next: Time,
+    /// A beat was told, and what has changed is to be remembered before the next one.
+    told: bool,
     remembered: (Body, Time),
 }
 
@@ -93,7 +95,7 @@ impl Node for BaxterNode {
     fn recover(config: Config, mut records: Vec<Body>) -> Result<Self, NodeError> {
         let robot = Robot::new(config, records.pop());
         let remembered = (robot.body(), Time(0));
-        Ok(Self { robot, beat: 0, next: Time(0), remembered })
+        Ok(Self { robot, beat: 0, next: Time(0), told: false, remembered })
     }
 
     fn on(&mut self, event: Event<In>, now: Time, fx: &mut Effects<Out, Body>) {
@@ -109,7 +111,7 @@ impl Node for BaxterNode {
     }
 
     fn deadline(&self) -> Option<Time> {
-        Some(self.next)
+        Some(if self.told { Time(0) } else { self.next })
     }
 
     fn snapshot(&self) -> Option<Vec<Body>> {
@@ -125,13 +127,17 @@ impl BaxterNode {
 
     fn tick(&mut self, now: Time, fx: &mut Effects<Out, Body>) {
         self.robot.advance(now);
+        // The disk is waited for between two beats.
+        if std::mem::take(&mut self.told) && now < self.next {
+            return self.remember(now, fx);
+        }
+        self.told = true;
         self.robot.tell(self.beat, now).into_iter().for_each(|told| fx.publish(told));
         self.beat += 1;
         self.next = self.next + BEAT;
         if self.next <= now {
             self.next = now + BEAT;
         }
-        self.remember(now, fx);
     }
 
     /// Remembers what has changed: the joints now and then, everything else at once.
