@@ -5,6 +5,7 @@
 //! within [`TOLERANCE_M`] and [`TOLERANCE_RAD`] of the target and inside every joint limit to the
 //! last bit, or it is an [`Unreachable`].
 
+mod angles;
 mod closer;
 mod crossing;
 mod fold;

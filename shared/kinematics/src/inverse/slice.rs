@@ -12,6 +12,7 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
+use super::angles::{ArmAngles, Elbow, root};
 use super::goal::Aim;
 use super::posture::{Branch, Posture};
 use super::secant::Secant;
@@ -25,9 +26,6 @@ pub(crate) const NARROW_RAD: f64 = 0.1;
 /// The same while looking for what lies between two samples of s0: above half a cell times the
 /// most that a joint turns per radian of s0 (s1, with the wrist near the first axis).
 pub(crate) const WIDE_RAD: f64 = 0.45;
-
-/// The most that a square may lack for its root to be still looked at.
-const LACK_MAX: f64 = 0.3;
 
 /// A wrist offset that moves less than this between two rounds has settled, metres; the tool is
 /// then thirty times nearer still.
@@ -60,23 +58,6 @@ pub(crate) struct Slice<'a> {
     /// The target's z axis, and its x axis.
     z: Vector3<f64>,
     x: Vector3<f64>,
-}
-
-/// The elbow's sine and cosine, and what the square of its root lacks.
-#[derive(Clone, Copy)]
-struct Elbow {
-    e1: (f64, f64),
-    lack: f64,
-}
-
-/// The elbow and shoulder as sines and cosines, and what the squares of their roots lack; `a` is
-/// s1 + π/2.
-#[derive(Clone, Copy)]
-struct ArmAngles {
-    e1: (f64, f64),
-    e0: (f64, f64),
-    a: (f64, f64),
-    lack: f64,
 }
 
 impl<'a> Slice<'a> {
@@ -302,36 +283,7 @@ impl<'a> Slice<'a> {
     }
 }
 
-impl ArmAngles {
-    /// A direction in the turned shoulder's axes, seen from the frame before w0.
-    #[inline(always)]
-    fn unturned(&self, p: &Vector3<f64>) -> Vector3<f64> {
-        let (s, c) = self.a;
-        let (x, z) = (c * p.x - s * p.z, s * p.x + c * p.z);
-        let (s, c) = self.e0;
-        let (x, y) = (c * x + s * p.y, c * p.y - s * x);
-        let (s, c) = self.e1;
-        Vector3::new(c * x - s * z, y, s * x + c * z)
-    }
-}
-
 #[inline(always)]
 fn squared([x, z]: [f64; 2]) -> f64 {
     x * x + z * z
-}
-
-/// The square root of a number in units of the arm, and how much the number lacks where it has
-/// none; nothing far below 0.
-///
-/// A root that is nearly there is kept so that a feasible s0 between two samples can be found from
-/// them: near the stretched arm it is a narrow range.
-#[inline(always)]
-fn root(square: f64) -> Option<(f64, f64)> {
-    if square >= 0.0 {
-        Some((square.sqrt(), 0.0))
-    } else if square > -LACK_MAX {
-        Some((0.0, -square))
-    } else {
-        None
-    }
 }
