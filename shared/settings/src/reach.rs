@@ -1,6 +1,6 @@
 //! Whether the arm can fetch what the scene holds.
 
-use kinematics::{ObjectPose, PlanError, PlanSettings, check_reachable};
+use kinematics::{ObjectPose, PlanError, PlanSettings, check_reachable, gripper};
 use scene::{Placement, Problem, Scene};
 
 use crate::Arm;
@@ -11,6 +11,7 @@ use crate::text_file::TextFile;
 /// Reports every object without a place, and every one that the arm cannot bring.
 pub(crate) fn check(scene: &Scene, file: &TextFile, arm: &Arm, tree: &Table, report: &mut Report) {
     let placed = placed(scene, file, report);
+    check_widths(&placed, scene, file, arm, report);
     let poses: Vec<ObjectPose> = placed.iter().map(|(_, pose)| *pose).collect();
     let found = check_reachable(&arm.robot, &poses, arm.limb, &arm.plan);
     if found.iter().all(Result::is_ok) {
@@ -32,6 +33,33 @@ pub(crate) fn check(scene: &Scene, file: &TextFile, arm: &Arm, tree: &Table, rep
     }
     if let Some(error) = hand_over {
         report.add(hand_over_problem(tree, &error));
+    }
+}
+
+/// Reports every object that the gripper could hold but not as it is told to: the fingers do not open
+/// that wide, or do not feel it.
+fn check_widths(
+    placed: &[(usize, ObjectPose)],
+    scene: &Scene,
+    file: &TextFile,
+    arm: &Arm,
+    report: &mut Report,
+) {
+    let open_m = arm.plan.open_width_m;
+    for (n, pose) in placed {
+        let width_m = pose.grasp_width_m;
+        let (what, cure) = if width_m > open_m && width_m <= gripper::STROKE_M {
+            let what = format!("is wider than the fingers open: {:.1} mm", open_m * 1e3);
+            (what, "raise grip_open_percent of the arm")
+        } else if width_m > 0.0 && !gripper::is_felt(width_m) {
+            let least_m = gripper::DEAD_ZONE * gripper::STROKE_M;
+            let what = format!("is too thin to be told from nothing: {:.1} mm", least_m * 1e3);
+            (what, "have it gripped where it is thicker")
+        } else {
+            continue;
+        };
+        let what = format!("`{}` {what}", scene.objects()[*n].name);
+        report.add(Problem::new(&*file.label, format!("objects[{n}].grasp_width"), what, cure));
     }
 }
 

@@ -17,6 +17,11 @@ fn an_object_that_the_arm_cannot_fetch() {
     let wide = complaints(&bowl_with("grasp_width", "grasp_width = 0.09"), &[]);
     let expected = "scenes/bowls.toml: objects[0].grasp_width: `red_one` cannot be grasped: ";
     assert!(wide.starts_with(expected), "{wide}");
+    let thin = complaints(&bowl_with("grasp_width", "grasp_width = 0.002"), &[]);
+    assert!(thin.contains("`red_one` is too thin to be told from nothing: 2.1 mm"), "{thin}");
+    let narrow = [("arm.grip_open_percent", "30.0")];
+    let narrow = complaints(&bowl_with("grasp_width", "grasp_width = 0.02"), &narrow);
+    assert!(narrow.contains("`red_one` is wider than the fingers open: 12.5 mm"), "{narrow}");
 }
 
 #[test]
