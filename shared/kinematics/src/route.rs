@@ -16,6 +16,9 @@ const NODES_MAX: usize = 3000;
 /// Random postures tried before giving up, when nearly every edge is blocked.
 const SAMPLES_MAX: usize = 3000;
 
+/// How far beside the straight line between two postures ways are looked for first, radians.
+const BESIDE_RAD: f64 = 0.6;
+
 /// Attempts to cut corners off a way that was found by searching.
 const SHORTCUTS: usize = 60;
 
@@ -109,7 +112,11 @@ impl Trees {
             if samples > SAMPLES_MAX {
                 break;
             }
-            let sample = self.random.posture(limits);
+            // Most ways need only a bend: every second sample is beside the straight line.
+            let sample = match samples % 2 {
+                0 => self.random.beside(&self.trees[0][0].0, &self.trees[1][0].0, limits),
+                _ => self.random.posture(limits),
+            };
             if let Some(reached) = extend(&mut self.trees[growing], &sample, clear) {
                 let other = 1 - growing;
                 while let Some(node) = extend(&mut self.trees[other], &reached, clear) {
@@ -183,6 +190,13 @@ impl Random {
 
     fn below(&mut self, n: usize) -> usize {
         ((self.next() * n as f64) as usize).min(n.saturating_sub(1))
+    }
+
+    /// A posture within [`BESIDE_RAD`] of the line between two, in every joint.
+    fn beside(&mut self, a: &Joints, b: &Joints, limits: &PositionLimits) -> Joints {
+        let share = self.next();
+        let on_line = mix(a, b, share);
+        limits.clamp(&on_line.map(|q| q + BESIDE_RAD * (2.0 * self.next() - 1.0)))
     }
 
     fn posture(&mut self, limits: &PositionLimits) -> Joints {

@@ -30,7 +30,7 @@ pub fn check_reachable(
             while let Some(choice) = choices.next(&mut furthest) {
                 let carrying = choice.carrying(&objects[i]);
                 let fetched = choice.hold(&carrying).and_then(|hold| {
-                    Carry::find(&carrying, hold.above(), Search::No).map_err(|error| (5, error))
+                    Carry::find(&carrying, hold.above(), Search::No).map_err(|error| (6, error))
                 });
                 match fetched {
                     Ok(_) => return Ok(situation.limb),

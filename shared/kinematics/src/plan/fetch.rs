@@ -36,6 +36,9 @@ const TURNS: usize = 180;
 const TURNS_TRIED: usize = 10;
 const TURNS_APART_RAD: f64 = 0.3;
 
+/// How far above the hand over an object is handed over, metres: no higher than needed.
+const RAISED_M: [f64; 4] = [0.0, 0.04, 0.08, 0.12];
+
 pub(crate) const ABOVE: &str = "the place above the object";
 pub(crate) const GRASP: &str = "the grasp";
 pub(crate) const LIFT: &str = "the lift";
@@ -75,11 +78,26 @@ impl Hold {
 }
 
 impl Carry {
-    /// From `from` to the hand over, where what is held is upright: straight, else turned about the
-    /// vertical and through joint space.
+    /// From `from` to the hand over, or straight above it where what is held or the hand would touch
+    /// something there.
     pub(crate) fn find(
         situation: &Situation<'_>,
         from: &Joints,
+        search: Search,
+    ) -> Result<Self, PlanError> {
+        let [lowest, higher @ ..] = RAISED_M;
+        let first = Self::to(situation, from, lowest, search);
+        let Err(PlanError::Blocked { .. }) = first else { return first };
+        let raised = higher.into_iter().find_map(|up| Self::to(situation, from, up, search).ok());
+        raised.map_or(first, Ok)
+    }
+
+    /// To `raised_m` above the hand over, where what is held is upright: straight, else turned about
+    /// the vertical and through joint space.
+    fn to(
+        situation: &Situation<'_>,
+        from: &Joints,
+        raised_m: f64,
         search: Search,
     ) -> Result<Self, PlanError> {
         let limb = situation.limb;
@@ -87,6 +105,7 @@ impl Carry {
         let target = |turn: f64| {
             let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn);
             let place = Vector3::from(situation.settings.hand_over_m(limb));
+            let place = place + Vector3::z() * raised_m;
             Isometry3::from_parts(place.into(), turn * upright)
         };
         if let Some(waypoints) = straight(situation, from, &target(0.0)) {

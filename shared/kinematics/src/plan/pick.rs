@@ -175,11 +175,11 @@ impl Choice<'_> {
         let limb = situation.limb;
         let way = situation
             .way(&situation.q, hold.above(), search)
-            .ok_or_else(|| (6, situation.no_way(ABOVE, &situation.q, hold.above())))?;
+            .ok_or_else(|| (5, situation.no_way(ABOVE, &situation.q, hold.above())))?;
         let width_m = gripper::closed_on(self.grasp.width_m);
         let lift: Vec<Joints> = hold.descent.iter().rev().copied().collect();
         let delivery = deliver(situation, &carrying, lift, width_m, search);
-        let delivery = delivery.map_err(|error| (5, error))?;
+        let delivery = delivery.map_err(|error| (6, error))?;
         let approach = approach(situation, &way, &hold).map_err(|error| (7, error))?;
         let open_m = situation.settings.open_width_m;
         let mut stages = vec![

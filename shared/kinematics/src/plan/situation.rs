@@ -51,7 +51,8 @@ pub struct PlanSettings {
     pub speed_ratio: f64,
     /// Height above the grasp from which the gripper comes straight down, and to which it lifts.
     pub hover_m: f64,
-    /// Where the left gripper lets go of an object; the right one mirrors y.
+    /// Where the left gripper lets go of an object; the right one mirrors y. Where the object or the
+    /// hand would touch something there, it lets go up to 12 cm above.
     pub hand_over_xyz_m: [f64; 3],
     /// Height of the table's top. An object that stands lower (in a rack, in a drawer) lowers it.
     pub table_z_m: f64,
