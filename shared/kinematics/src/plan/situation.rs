@@ -72,7 +72,7 @@ impl Default for PlanSettings {
         Self {
             speed_ratio: DEFAULT_SPEED_RATIO,
             hover_m: 0.15,
-            hand_over_xyz_m: [0.80, 0.35, 0.15],
+            hand_over_xyz_m: [0.80, 0.30, 0.22],
             table_z_m: -0.155,
             open_width_m: crate::gripper::STROKE_M,
             standoff_m: 0.25,
