@@ -4,8 +4,11 @@ use nalgebra::Vector3;
 
 use crate::limb::{Joints, Limb};
 use crate::robot::{Arm, Robot};
-use crate::shape::{Capsule, Cuboid};
+pub use shape::{Capsule, Cuboid};
 
+pub(crate) mod block;
+pub(crate) mod held;
+mod shape;
 #[cfg(test)]
 mod tests;
 

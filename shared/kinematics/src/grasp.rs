@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 use crate::chain::positive;
+use crate::clearance::Cuboid;
 use crate::gripper::STROKE_M;
-use crate::shape::Cuboid;
 
 #[cfg(test)]
 mod tests;

@@ -13,46 +13,31 @@
 //! Start at [`Robot`], then [`plan_pick`].
 
 pub mod baxter;
-mod block;
-mod cartesian;
 mod chain;
 mod clearance;
-mod clock;
-mod course;
 mod grasp;
 pub mod gripper;
-mod held;
 mod inverse;
 mod limb;
 pub mod limits;
-mod path;
+mod motion;
 mod plan;
-mod profile;
 mod robot;
-mod route;
 #[cfg(test)]
 mod samples;
-mod shape;
-mod timeline;
-mod timing;
-mod trajectory;
-mod trig;
 
 pub use crate::robot::{Arm, Robot, Unsuitable};
-pub use cartesian::LineError;
-pub use chain::{Axis, Chain, Frame, Jacobian, ZeroPosture};
-pub use clearance::{ArmShape, Clearance, Gap};
+pub use chain::{Axis, Chain, Frame, Jacobian, LineError, ZeroPosture};
+pub use clearance::{ArmShape, Capsule, Clearance, Cuboid, Gap};
 pub use grasp::{Grasp, GraspError, ObjectPose};
 pub use gripper::attached_pose;
 pub use inverse::{IkSolution, TOLERANCE_M, TOLERANCE_RAD, Unreachable};
 pub use limb::{JOINTS, Joints, Limb};
 pub use limits::{MotionLimits, PositionLimits};
-pub use path::Path;
+pub use motion::{
+    INTERVALS_MIN, Moment, Path, Stage, State, Timeline, Trajectory, TrajectoryError,
+};
 pub use plan::{
     Arms, PickPhase, PickPlan, PlanError, PlanSettings, PointPhase, PointPlan, check_reachable,
     plan_delivery, plan_pick, plan_point, plan_return,
 };
-pub use profile::State;
-pub use shape::{Capsule, Cuboid};
-pub use timeline::{Moment, Stage, Timeline};
-pub use trajectory::{INTERVALS_MIN, Trajectory, TrajectoryError};

@@ -9,8 +9,8 @@ use nalgebra::Vector3;
 
 use super::frame::Frame;
 use super::zero::ZeroPosture;
+use crate::chain::trig::sin_cos;
 use crate::limb::Joints;
-use crate::trig::sin_cos;
 
 /// How far from right angles, and from meeting, axes may be, radians and metres. Descriptions
 /// round π/2 to twelve digits.

@@ -2,8 +2,8 @@
 
 use super::frame::Frame;
 use super::zero::ZeroPosture;
+use crate::chain::trig::sin_cos;
 use crate::limb::Joints;
-use crate::trig::sin_cos;
 use nalgebra::Vector3;
 
 /// Each joint turns about the z axis of its own frame.

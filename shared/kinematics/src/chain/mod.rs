@@ -3,6 +3,8 @@
 mod alternating;
 mod frame;
 mod general;
+mod line;
+pub(crate) mod trig;
 mod zero;
 
 use nalgebra::{Isometry3, SMatrix, Vector3};
@@ -11,6 +13,7 @@ pub(crate) use alternating::Alternating;
 pub use frame::Frame;
 pub(crate) use frame::positive;
 use general::General;
+pub use line::LineError;
 pub use zero::{Axis, ZeroPosture};
 
 use crate::limb::Joints;

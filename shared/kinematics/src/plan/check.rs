@@ -5,10 +5,10 @@ use super::error::{Furthest, PlanError};
 use super::fetch::Carry;
 use super::pick::situations;
 use super::situation::{PlanSettings, Search};
+use crate::clearance::Cuboid;
 use crate::grasp::ObjectPose;
 use crate::limb::Limb;
 use crate::robot::Robot;
-use crate::shape::Cuboid;
 
 /// For each object, the limb that can fetch it from the neutral posture among the others, or why
 /// none can: what a scene is checked for before anything moves. Ways between are not searched.

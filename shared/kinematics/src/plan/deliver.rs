@@ -6,13 +6,12 @@ use super::error::PlanError;
 use super::fetch::{ABOVE, Carry, HAND_OVER, HOME};
 use super::pick::{PickPhase, PickPlan, situation};
 use super::situation::{Arms, PlanSettings, Search, Situation};
+use crate::clearance::Cuboid;
 use crate::grasp::ObjectPose;
 use crate::gripper;
 use crate::limb::{Joints, Limb};
+use crate::motion::{Stage, Timeline, Trajectory, refuse_outside};
 use crate::robot::Robot;
-use crate::shape::Cuboid;
-use crate::timeline::{Stage, Timeline};
-use crate::trajectory::{Trajectory, refuse_outside};
 
 /// Waypoints of a straight line left out at its upper end, so that the corner there has room: 3 cm.
 pub(crate) const CORNER: usize = 6;

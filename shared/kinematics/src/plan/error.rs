@@ -1,10 +1,10 @@
 //! Why no plan was made.
 
-use crate::cartesian::LineError;
+use crate::chain::LineError;
 use crate::clearance::Gap;
 use crate::grasp::GraspError;
 use crate::limb::Limb;
-use crate::trajectory::TrajectoryError;
+use crate::motion::TrajectoryError;
 
 /// Why no plan was made: of all that was tried, the attempt that came furthest. Nothing moves.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! What the arm works at: a table, boards of shelves, and the objects on them, as upright boxes.
 
-use crate::shape::Cuboid;
+use crate::clearance::Cuboid;
 
 /// A box and what to call it.
 pub(crate) type Obstacle = (&'static str, Cuboid);
@@ -72,7 +72,7 @@ mod tests {
     use nalgebra::Vector3;
 
     use super::*;
-    use crate::shape::Capsule;
+    use crate::clearance::Capsule;
 
     /// Whether a point is inside any of the boxes.
     fn inside(obstacles: &[Obstacle], [x, y, z]: [f64; 3]) -> bool {

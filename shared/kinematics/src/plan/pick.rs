@@ -8,13 +8,12 @@ use super::deliver::{CORNER, deliver, fingers};
 use super::error::{Furthest, PlanError};
 use super::fetch::{ABOVE, GRASP, Hold};
 use super::situation::{Arms, PlanSettings, Search, Situation};
+use crate::clearance::Cuboid;
 use crate::grasp::{Grasp, ObjectPose};
 use crate::gripper;
 use crate::limb::{Joints, Limb};
+use crate::motion::{Moment, Stage, Timeline, Trajectory, refuse_outside};
 use crate::robot::Robot;
-use crate::shape::Cuboid;
-use crate::timeline::{Moment, Stage, Timeline};
-use crate::trajectory::{Trajectory, refuse_outside};
 
 /// The stages of a pick, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -9,11 +9,10 @@ use super::error::{Furthest, PlanError};
 use super::fetch::HOME;
 use super::situation::{Arms, PlanSettings, Search, Situation};
 use crate::chain::positive;
+use crate::clearance::Cuboid;
 use crate::limb::{Joints, Limb};
+use crate::motion::{Stage, Timeline, Trajectory, refuse_outside};
 use crate::robot::Robot;
-use crate::shape::Cuboid;
-use crate::timeline::{Stage, Timeline};
-use crate::trajectory::{Trajectory, refuse_outside};
 
 /// The stages of pointing, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

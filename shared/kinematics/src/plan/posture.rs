@@ -10,7 +10,7 @@ use super::situation::Situation;
 use crate::clearance::Gap;
 use crate::inverse::Unreachable;
 use crate::limb::Joints;
-use crate::timeline::Timeline;
+use crate::motion::Timeline;
 
 /// Seconds that a posture at a joint limit is worse than one [`FREE_RAD`] away from all.
 const LIMIT_S: f64 = 1.0;

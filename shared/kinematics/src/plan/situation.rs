@@ -5,17 +5,17 @@ use nalgebra::{Isometry3, UnitQuaternion};
 use super::error::PlanError;
 use super::furniture::{self, Obstacle};
 use crate::baxter::DEFAULT_SPEED_RATIO;
-use crate::block::Block;
 use crate::chain::Chain;
+use crate::clearance::Cuboid;
+use crate::clearance::block::Block;
+use crate::clearance::held::Held;
 use crate::clearance::{ArmShape, Gap};
 use crate::grasp::ObjectPose;
-use crate::held::Held;
 use crate::limb::{Joints, Limb};
 use crate::limits::MotionLimits;
+use crate::motion::Trajectory;
+use crate::motion::route::{blocking, largest_change, searched, simple};
 use crate::robot::{Arm, Robot};
-use crate::route::{blocking, largest_change, searched, simple};
-use crate::shape::Cuboid;
-use crate::trajectory::Trajectory;
 
 /// Joint positions of both arms, radians.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,12 +2,12 @@ use nalgebra::{Isometry3, Translation3, Vector3};
 
 use super::*;
 use crate::clearance::Clearance;
+use crate::clearance::Cuboid;
 use crate::grasp::ObjectPose;
 use crate::gripper::{STROKE_M, attached_pose};
 use crate::limb::{Joints, Limb};
+use crate::motion::Timeline;
 use crate::samples::{Random, arm, full, named, neutral, robot};
-use crate::shape::Cuboid;
-use crate::timeline::Timeline;
 
 const SETTINGS: PlanSettings = PlanSettings {
     speed_ratio: 0.6,

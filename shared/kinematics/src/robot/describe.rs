@@ -8,9 +8,9 @@ use robot::{Body as Shaped, Joint, JointKind, Limits, Robot as Description, Shap
 
 use super::{Body, Parts, Robot};
 use crate::chain::{Axis, Chain, ZeroPosture};
+use crate::clearance::{Capsule, Cuboid};
 use crate::limb::{Joints, Limb};
 use crate::limits::{MotionLimits, PositionLimits};
-use crate::shape::{Capsule, Cuboid};
 
 /// Why a described robot cannot be moved by this crate: what is missing, and the cure.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

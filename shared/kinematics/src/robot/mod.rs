@@ -12,10 +12,10 @@ use robot::Robot as Description;
 
 use crate::chain::{Chain, ZeroPosture};
 use crate::clearance::ArmShape;
+use crate::clearance::{Capsule, Cuboid};
 use crate::limb::{Joints, Limb};
 use crate::limits::MotionLimits;
 use crate::plan::Arms;
-use crate::shape::{Capsule, Cuboid};
 
 pub use describe::Unsuitable;
 

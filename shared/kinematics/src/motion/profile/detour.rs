@@ -6,7 +6,7 @@ use rsruckig::prelude::{ControlInterface, DataArrayOrVec, InputParameter};
 use super::calculated;
 use super::curve::Curve;
 use crate::limits::MotionLimits;
-use crate::trajectory::TrajectoryError;
+use crate::motion::trajectory::TrajectoryError;
 
 /// One joint's limits.
 pub(super) struct Bounds {

@@ -2,7 +2,7 @@
 
 use crate::gripper;
 use crate::limb::{Joints, Limb};
-use crate::trajectory::Trajectory;
+use crate::motion::trajectory::Trajectory;
 
 /// One stage of a plan.
 #[derive(Clone, Debug, PartialEq)]

@@ -10,9 +10,9 @@ use rsruckig::prelude::{
 
 use crate::limb::{JOINTS, Joints};
 use crate::limits::MotionLimits;
-use crate::path::{Path, Piece};
-use crate::timing::Knot;
-use crate::trajectory::TrajectoryError;
+use crate::motion::path::{Path, Piece};
+use crate::motion::timing::Knot;
+use crate::motion::trajectory::TrajectoryError;
 use curve::Curve;
 
 mod curve;
@@ -37,7 +37,7 @@ impl State {
 
     /// Refuses a state that `limits` forbid.
     fn check(&self, limits: &MotionLimits) -> Result<(), TrajectoryError> {
-        crate::trajectory::refuse_outside(&limits.position, &self.q)?;
+        crate::motion::trajectory::refuse_outside(&limits.position, &self.q)?;
         for (what, values, most) in [
             ("velocity", &self.qd, &limits.velocity),
             ("acceleration", &self.qdd, &limits.acceleration),

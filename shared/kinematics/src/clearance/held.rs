@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
-use crate::block::Block;
+use crate::clearance::block::Block;
 use crate::clearance::{ArmShape, Gap};
 use crate::grasp::ObjectPose;
 use crate::plan::Obstacle;

@@ -11,7 +11,7 @@
 
 use crate::limb::Joints;
 use crate::limits::MotionLimits;
-use crate::path::{Path, Piece};
+use crate::motion::path::{Path, Piece};
 
 /// A grid point of a timed path: from here to the next the path acceleration is constant.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! Slowing a motion down to rest without leaving its curve: its own time `τ` passes more and more
 //! slowly. With `x = τ̇²` and `u = τ̈`, a joint accelerates by `q″ x + q′ u`.
 
-use crate::course::Course;
 use crate::limb::Joints;
+use crate::motion::course::Course;
 
 /// From here to the next tick the course's time is slowed evenly.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Vector3};
 
-use crate::shape::{Capsule, Cuboid, segment_to_box};
+use crate::clearance::shape::{Capsule, Cuboid, segment_to_box};
 
 #[cfg(test)]
 mod tests;

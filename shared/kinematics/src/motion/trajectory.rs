@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use crate::clock::Clock;
-use crate::course::Course;
 use crate::limb::Joints;
 use crate::limits::{MotionLimits, PositionLimits};
-use crate::path::Path;
-use crate::profile::{self, State};
-use crate::timing::{self, Knot};
+use crate::motion::clock::Clock;
+use crate::motion::course::Course;
+use crate::motion::path::Path;
+use crate::motion::profile::{self, State};
+use crate::motion::timing::{self, Knot};
 
 #[cfg(test)]
 mod tests;

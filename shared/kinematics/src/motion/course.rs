@@ -9,8 +9,8 @@
 
 use crate::limb::Joints;
 use crate::limits::MotionLimits;
-use crate::path::Path;
-use crate::timing::{Knot, motion_at};
+use crate::motion::path::Path;
+use crate::motion::timing::{Knot, motion_at};
 
 /// A motion of one limb in time.
 #[derive(Clone, Debug, PartialEq)]
