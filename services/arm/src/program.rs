@@ -9,7 +9,7 @@ use kinematics::{
     ArmShape, Arms, Cuboid, Limb, MotionLimits, PickPhase as PickStage, PlanError, PlanSettings,
     Robot, Stage, Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_return,
 };
-use nalgebra::{Translation3, Vector3};
+use nalgebra::Translation3;
 use protocol::pick::Pick;
 use protocol::{PickId, PickPhase};
 use scene::ObjectId;
@@ -146,10 +146,8 @@ impl Planner<'_> {
 
     /// Whether `limb` has its gripper where objects are handed over.
     pub(crate) fn is_at_hand_over(&self, limb: Limb) -> bool {
-        let [x, y, z] = self.settings.hand_over_xyz_m;
-        let place = Vector3::new(x, limb.side() * y, z);
-        let tolerance_m = HAND_OVER_M + REACH_M * self.measured.accuracy_rad;
-        (self.tip(limb).vector - place).norm() < tolerance_m
+        let within_m = HAND_OVER_M + REACH_M * self.measured.accuracy_rad;
+        self.settings.is_hand_over(limb, &self.tip(limb).vector, within_m)
     }
 
     /// Plans with the configured margin or, where something is in the way of a limb that is away

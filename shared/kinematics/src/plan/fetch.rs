@@ -6,9 +6,9 @@ use std::f64::consts::PI;
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use super::error::PlanError;
-use super::situation::{Search, Situation};
+use super::situation::{PlanSettings, Search, Situation};
 use crate::grasp::Grasp;
-use crate::limb::Joints;
+use crate::limb::{Joints, Limb};
 
 /// How the arm holds the object: postures above the grasp and on the straight way down to it.
 #[derive(Clone, Debug)]
@@ -74,6 +74,15 @@ impl Hold {
     /// The posture at the grasp.
     pub(crate) fn grasp(&self) -> &Joints {
         &self.descent[self.descent.len() - 1]
+    }
+}
+
+impl PlanSettings {
+    /// Whether a gripper at `tip_m` (frame `base`) is where `limb` hands objects over: at the place, or
+    /// straight above it where a pick had to go higher; to within `within_m` metres.
+    pub fn is_hand_over(&self, limb: Limb, tip_m: &Vector3<f64>, within_m: f64) -> bool {
+        let place = Vector3::from(self.hand_over_m(limb));
+        RAISED_M.iter().any(|up| (place + Vector3::z() * *up - tip_m).norm() < within_m)
     }
 }
 
