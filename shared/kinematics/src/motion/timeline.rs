@@ -61,7 +61,9 @@ impl<P: Copy + PartialEq> Timeline<P> {
     /// When the first stage of `phase` begins and ends, seconds from the start of the plan.
     pub fn span_s(&self, phase: P) -> Option<(f64, f64)> {
         let index = self.stages.iter().position(|stage| stage.phase == phase)?;
-        let begin: f64 = self.stages[..index].iter().map(|s| s.motion.duration_s()).sum();
+        // From plus zero: the sum of no numbers is minus zero.
+        let before = self.stages[..index].iter().map(|s| s.motion.duration_s());
+        let begin = before.fold(0.0, |sum, seconds| sum + seconds);
         Some((begin, begin + self.stages[index].motion.duration_s()))
     }
 
