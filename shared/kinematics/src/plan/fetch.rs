@@ -176,3 +176,22 @@ fn straight(
     let waypoints = situation.chain.line(from, target).ok()?;
     situation.blocked_along(&waypoints).is_none().then_some(waypoints)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_object_is_handed_over_at_the_place_or_straight_above_it() {
+        let settings = PlanSettings::default();
+        for limb in Limb::BOTH {
+            let place = Vector3::from(settings.hand_over_m(limb));
+            let is_there = |x: f64, y: f64, z: f64| {
+                settings.is_hand_over(limb, &(place + Vector3::new(x, y, z)), 0.005)
+            };
+            assert!(is_there(0.0, 0.0, 0.0) && is_there(0.001, -0.001, 0.08));
+            assert!(!is_there(0.02, 0.0, 0.08) && !is_there(0.0, 0.0, -0.02));
+            assert!(!is_there(0.0, 0.0, 0.3));
+        }
+    }
+}

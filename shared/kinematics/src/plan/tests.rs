@@ -431,21 +431,6 @@ fn random_table(random: &mut Random) -> Vec<ObjectPose> {
 }
 
 #[test]
-fn an_object_is_handed_over_at_the_place_or_straight_above_it() {
-    for limb in Limb::BOTH {
-        let place = Vector3::from(SETTINGS.hand_over_m(limb));
-        let is_there =
-            |off: [f64; 3]| SETTINGS.is_hand_over(limb, &(place + Vector3::from(off)), 0.005);
-        assert!(is_there([0.0; 3]) && is_there([0.001, -0.001, 0.08]));
-        assert!(
-            !is_there([0.02, 0.0, 0.08])
-                && !is_there([0.0, 0.0, -0.02])
-                && !is_there([0.0, 0.0, 0.3])
-        );
-    }
-}
-
-#[test]
 fn a_raised_gripper_needs_no_lift() {
     let object = marker();
     let far = Isometry3::from(Translation3::new(0.2, 0.6, 0.3));
