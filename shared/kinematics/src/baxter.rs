@@ -6,12 +6,6 @@
 /// The SDK's default speed ratio.
 pub const DEFAULT_SPEED_RATIO: f64 = 0.3;
 
-/// Rate of joint commands and joint states, Hz.
-pub const COMMAND_RATE_HZ: f64 = 100.0;
-
-/// Height of the floor in `base`, metres.
-pub const FLOOR_Z_M: f64 = -0.9242;
-
 /// Travel of one finger, metres; the gripper's stroke is twice that.
 pub const FINGER_TRAVEL_M: f64 = 0.020833;
 
@@ -43,7 +37,5 @@ mod tests {
         assert_eq!(tool::PLAIN_M, tool("plain_urdf_gripper"));
         assert_eq!(FINGER_TRAVEL_M, of("electric_gripper", "travel_per_finger"));
         assert_eq!(DEFAULT_SPEED_RATIO, of("velocity_limits", "sdk_default_speed_ratio"));
-        assert_eq!(COMMAND_RATE_HZ, of("sdk", "command_rate_hz"));
-        assert_eq!(FLOOR_Z_M, of("workspace", "floor_z"));
     }
 }

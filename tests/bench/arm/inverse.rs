@@ -101,16 +101,23 @@ pub(super) fn run(solver: &mut dyn Solver, targets: &[Target], seed: Seed, rule:
     Outcome::of(name, targets, seed, answers, rule)
 }
 
-/// This project's solver, any answer.
-struct Own;
+/// This project's solver: any answer, or the one nearest to the seed.
+pub(super) enum Own {
+    First,
+    Nearest,
+}
 
 impl Solver for Own {
     fn name(&self) -> String {
         "**whichone**, one thread, to 1e-6".to_owned()
     }
 
-    fn solve(&mut self, limb: Limb, pose: &Isometry3<f64>, _: &Joints) -> Option<Joints> {
-        arm(limb).chain.inverse(pose, None).ok().map(|answer| answer.q)
+    fn solve(&mut self, limb: Limb, pose: &Isometry3<f64>, seed: &Joints) -> Option<Joints> {
+        let seed = match self {
+            Self::First => None,
+            Self::Nearest => Some(seed),
+        };
+        arm(limb).chain.inverse(pose, seed).ok().map(|answer| answer.q)
     }
 }
 
@@ -121,7 +128,7 @@ pub(super) fn measure(
     effort: Effort,
 ) {
     let few = &targets[..effort.peers];
-    let own = run(&mut Own, targets, Seed::Middle, Rule::OWN);
+    let own = run(&mut Own::First, targets, Seed::Middle, Rule::OWN);
     let mut peers = vec![run(&mut Damped::new(), few, Seed::Middle, Rule::PEER)];
     #[cfg(feature = "peers")]
     for solver in super::k_crate::solvers() {

@@ -1,24 +1,10 @@
 //! The posture nearest to a seed: how near, and how fast.
 
-use super::inverse::{Outcome, Seed, Solver, heads, run};
+use super::Effort;
+use super::inverse::{Outcome, Own, Seed, heads, run};
 use super::judge::Rule;
 use super::targets::Target;
-use super::{Effort, arm};
 use crate::report::{Report, Table};
-use kinematics::{Joints, Limb};
-use nalgebra::Isometry3;
-
-struct Own;
-
-impl Solver for Own {
-    fn name(&self) -> String {
-        "**whichone**, one thread, to 1e-6".to_owned()
-    }
-
-    fn solve(&mut self, limb: Limb, pose: &Isometry3<f64>, seed: &Joints) -> Option<Joints> {
-        arm(limb).chain.nearest(pose, seed).ok().map(|answer| answer.q)
-    }
-}
 
 pub(super) fn measure(
     report: &mut Report,
@@ -29,7 +15,7 @@ pub(super) fn measure(
     let few = &targets[..effort.peers];
     let mut rows = Vec::new();
     for (seed, from) in [(Seed::Middle, "middle"), (Seed::Random, "random")] {
-        let own = run(&mut Own, few, seed, Rule::OWN);
+        let own = run(&mut Own::Nearest, few, seed, Rule::OWN);
         let peers = python.outcomes(targets, true, seed);
         rows.extend(std::iter::once(&own).chain(&peers).map(|outcome: &Outcome| {
             let mut cells = outcome.cells(own.mean());
