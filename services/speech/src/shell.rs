@@ -3,9 +3,7 @@
 use crate::devices::ear::{Ear, EarEvent, EarOptions, EarState as Hearing, Sound};
 use crate::devices::recogniser::{Hypothesis, Outcome, PocketSphinxOptions};
 use crate::devices::vad::SegmenterOptions;
-use crate::devices::voice::{
-    Player, Voice, VoiceEvent as Device, VoiceMode, VoiceOptions, VoiceOutput,
-};
+use crate::devices::voice::{Voice, VoiceEvent as Device, VoiceOptions, VoiceOutput};
 use crate::{Config, In, Line, Out, Recognised, Segment, SpeechNode, Spoken, VoiceEvent};
 use crossbeam_channel::Receiver;
 use language::{Language, Reader as TextReader};
@@ -207,7 +205,7 @@ struct VoiceDevice(Voice);
 
 impl VoiceDevice {
     fn start(settings: &Settings, work: &Path, inbox: &DeviceSender<In>) -> Self {
-        let (voice, events) = Voice::start(voice_options(settings, work));
+        let (voice, events) = Voice::start(VoiceOptions::of(&settings.speech, &work.join("voice")));
         let inbox = inbox.clone();
         forward("voice", events, move |event| match spoken(event) {
             Some((line, what)) => inbox.send(In::Voice(VoiceEvent { line, what })),
@@ -218,31 +216,9 @@ impl VoiceDevice {
 
     fn speak(&self, line: &Line) {
         self.0.interrupt();
-        if let Err(error) = self.0.speak(line.number, &line.text) {
+        if let Err(error) = self.0.speak(line.number, &line.number.to_string(), &line.text) {
             tracing::warn!(%error, "not said");
         }
-    }
-}
-
-fn voice_options(settings: &Settings, work: &Path) -> VoiceOptions {
-    let speech = &settings.speech;
-    let defaults = VoiceOptions::new(work.join("voice"));
-    let players = match speech.player.as_deref() {
-        Some([program, arguments @ ..]) => {
-            vec![Player { program: program.clone(), arguments: arguments.to_vec() }]
-        }
-        _ => defaults.players.clone(),
-    };
-    VoiceOptions {
-        mode: match speech.voice {
-            settings::Voice::Auto => VoiceMode::Auto,
-            settings::Voice::EspeakNg => VoiceMode::EspeakNg,
-            settings::Voice::Print => VoiceMode::Print,
-        },
-        voice: speech.voice_name.clone(),
-        words_per_minute: u16::try_from(speech.voice_words_per_minute).unwrap_or(u16::MAX),
-        players,
-        ..defaults
     }
 }
 

@@ -14,8 +14,13 @@ pub struct Speech {
     pub voice_name: String,
     /// Speed of the voice.
     pub voice_words_per_minute: u32,
+    /// Program that speaks under [`Voice::Command`], with its arguments, in which `{text}` and `{wav}`
+    /// stand for the text and the file to write.
+    pub voice_command: Option<Vec<String>>,
+    /// Folder in which the sound of the latest sentences is kept, if in any.
+    pub voice_dir: Option<PathBuf>,
     /// Program, with its arguments before the file, that plays a WAV file; found by itself where
-    /// nothing is said.
+    /// nothing is said. `none` plays nothing for as long as it would take.
     pub player: Option<Vec<String>>,
     /// What turns audio into words.
     pub recogniser: Recogniser,
@@ -39,6 +44,10 @@ pub enum Voice {
     Auto,
     /// The espeak-ng program.
     EspeakNg,
+    /// The flite program.
+    Flite,
+    /// The program of `voice_command`.
+    Command,
     /// No sound: the text alone.
     Print,
 }
@@ -55,13 +64,22 @@ pub enum Recogniser {
 }
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
+    let voice = f.choice(
+        "voice",
+        &[
+            ("auto", Voice::Auto),
+            ("espeak-ng", Voice::EspeakNg),
+            ("flite", Voice::Flite),
+            ("command", Voice::Command),
+            ("print", Voice::Print),
+        ],
+    );
     Speech {
-        voice: f.choice(
-            "voice",
-            &[("auto", Voice::Auto), ("espeak-ng", Voice::EspeakNg), ("print", Voice::Print)],
-        ),
-        voice_name: f.text("voice_name"),
+        voice,
+        voice_name: voice_name(f, voice),
         voice_words_per_minute: f.whole("voice_words_per_minute", 80..=450),
+        voice_command: voice_command(f, voice),
+        voice_dir: absolute(f, "voice_dir"),
         player: f.optional_command("player"),
         recogniser: f.choice(
             "recogniser",
@@ -71,7 +89,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
                 ("none", Recogniser::None),
             ],
         ),
-        model_dir: model_dir(f),
+        model_dir: absolute(f, "model_dir"),
         accept_score_min: f.number("accept_score_min", 0.0..=1.0),
         closing_pause: Duration::from_millis(f.whole("closing_pause_ms", 100..=5000)),
         utterance_bytes_max: f.whole("utterance_bytes_max", 16..=UTTERANCE_BYTES_MAX) as usize,
@@ -82,11 +100,40 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
 /// What the utterance topic carries at most, bytes.
 const UTTERANCE_BYTES_MAX: u32 = 16_384;
 
+/// Each program has its own names for its voices.
+fn voice_name(f: &mut Fields<'_>, voice: Voice) -> String {
+    let name = f.text("voice_name");
+    if voice == Voice::Flite && f.is_built_in(&["voice_name"]) {
+        let cure = "set voice_name to one that `flite -lv` lists, e.g. `slt`";
+        f.problem("voice", format!("flite has no voice `{name}`"), cure);
+    }
+    name
+}
+
+fn voice_command(f: &mut Fields<'_>, voice: Voice) -> Option<Vec<String>> {
+    const CURE: &str = "write `voice_command = [\"program\", \"{text}\", \"{wav}\"]`";
+    let words = f.optional_command("voice_command");
+    match &words {
+        None if voice == Voice::Command => {
+            f.problem("voice", "`command` needs a voice_command", CURE);
+        }
+        Some(words) => {
+            for slot in ["{text}", "{wav}"] {
+                if words.iter().skip(1).all(|word| !word.contains(slot)) {
+                    f.problem("voice_command", format!("lacks {slot}"), CURE);
+                }
+            }
+        }
+        None => {}
+    }
+    words
+}
+
 /// The services run in other folders than the one where this was written, so it must be absolute.
-fn model_dir(f: &mut Fields<'_>) -> Option<PathBuf> {
-    let dir = PathBuf::from(f.optional_text("model_dir")?);
+fn absolute(f: &mut Fields<'_>, key: &'static str) -> Option<PathBuf> {
+    let dir = PathBuf::from(f.optional_text(key)?);
     if !dir.is_absolute() {
-        f.problem("model_dir", "is not an absolute path", "write it from `/` on");
+        f.problem(key, "is not an absolute path", "write it from `/` on");
     }
     Some(dir)
 }

@@ -64,6 +64,28 @@ fn a_value_of_another_type() {
             "speech.toml: player: expected a list of texts, found a text (write `[\"one\", \"two\"]`)",
         ],
     );
+    check(
+        "speech.toml",
+        "voice = 'command'",
+        &[
+            "speech.toml: voice: `command` needs a voice_command (write `voice_command = [\"program\", \"{text}\", \"{wav}\"]`)",
+        ],
+    );
+    check(
+        "speech.toml",
+        "voice_command = ['say', '{text}']\nvoice_dir = 'sounds'",
+        &[
+            "speech.toml: voice_command: lacks {wav} (write `voice_command = [\"program\", \"{text}\", \"{wav}\"]`)",
+            "speech.toml: voice_dir: is not an absolute path (write it from `/` on)",
+        ],
+    );
+    check(
+        "speech.toml",
+        "voice = 'flite'",
+        &[
+            "speech.toml: voice: flite has no voice `en-us` (set voice_name to one that `flite -lv` lists, e.g. `slt`)",
+        ],
+    );
     check("speech.toml", "voice_name = ' '", &["speech.toml: voice_name: is empty (write a text)"]);
     check(
         "group.toml",
@@ -154,7 +176,9 @@ fn a_choice_that_does_not_exist() {
     check(
         "speech.toml",
         "voice = 'opera'",
-        &["speech.toml: voice: `opera` is not one of auto, espeak-ng, print (use one of these)"],
+        &[
+            "speech.toml: voice: `opera` is not one of auto, espeak-ng, flite, command, print (use one of these)",
+        ],
     );
     let planner = Folder::new(&[("dialogue.toml", "planner = 'lookahed'")]).complaints(None, &[]);
     assert_eq!(planner.len(), 1);

@@ -1,72 +1,42 @@
-//! The robot's voice: sentences spoken by espeak-ng, one after the other, each of which can be cut
-//! short.
+//! The robot's voice: sentences made sound by a program and played by another, one after the
+//! other, each of which can be cut short.
 //!
 //! Invariant: every sentence that is taken yields `Started` and then exactly one of `Ended`,
 //! `Interrupted` and `Failed` (which may also come alone), in the order of the sentences, within a
 //! deadline that depends on its length only.
+//!
+//! `Started` comes when the player has begun and the sound was made before: making it is no speech.
+//! `Ended` comes when the player has ended, and not before the sound's own length has passed since
+//! `Started`: some players return early, and a null one at once. The sound's length goes from its
+//! first to its last audible sample (`trim.rs`).
 
+mod kept;
+mod options;
 mod player;
+mod program;
 mod synthesis;
+mod trim;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded, unbounded};
 
 use crate::devices::child::End;
+pub use kept::KEPT_MAX;
+use kept::Kept;
+pub use options::{VoiceMode, VoiceOptions};
 pub use player::Player;
+pub use program::Program;
+use synthesis::Sound;
 pub use synthesis::{SynthesisError, Synthesiser};
-
-/// How sentences are presented.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum VoiceMode {
-    /// Aloud where espeak-ng and a player that works are there, else as text alone.
-    #[default]
-    Auto,
-    /// Aloud; where that is impossible every sentence fails.
-    EspeakNg,
-    /// As text alone: a sentence ends as soon as it starts.
-    Print,
-}
-
-/// How the voice sounds and what it needs.
-#[derive(Clone, Debug, PartialEq)]
-pub struct VoiceOptions {
-    /// How sentences are presented.
-    pub mode: VoiceMode,
-    /// espeak-ng's voice, e.g. `en-us`.
-    pub voice: String,
-    /// Speed, words a minute.
-    pub words_per_minute: u16,
-    /// The program that speaks.
-    pub espeak_ng: PathBuf,
-    /// Players to try, the preferred one first.
-    pub players: Vec<Player>,
-    /// A folder of this service's own for the sound of the current sentence.
-    pub work: PathBuf,
-}
-
-impl VoiceOptions {
-    /// An American voice at a calm pace, aloud where possible.
-    pub fn new(work: impl Into<PathBuf>) -> Self {
-        Self {
-            mode: VoiceMode::Auto,
-            voice: "en-us".to_owned(),
-            words_per_minute: 150,
-            espeak_ng: "espeak-ng".into(),
-            players: Player::usual(),
-            work: work.into(),
-        }
-    }
-}
 
 /// What became of the wish to speak aloud.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VoiceOutput {
-    /// Sentences are played by this program.
+    /// Sentences are played by this program, or by none for as long as they would take.
     Aloud(Player),
     /// Sentences are text alone, for this reason.
     Text {
@@ -129,6 +99,8 @@ pub struct Voice {
 struct Sentence {
     id: u64,
     turn: u64,
+    /// Its name among the kept ones.
+    name: String,
     text: String,
 }
 
@@ -140,22 +112,26 @@ impl Voice {
         let turn = Arc::new(AtomicU64::new(0));
         let speaker_turn = Arc::clone(&turn);
         let thread = thread::spawn(move || {
-            let output = choose(&options);
+            let mut synthesiser = Synthesiser::new(&options);
+            let output = choose(&options, &mut synthesiser);
+            let (mode, kept) = (options.mode, options.kept.as_deref().and_then(keeper));
             // Without a listener for its events the voice has no more to do.
             if events.send(VoiceEvent::Output(output.clone())).is_ok() {
-                Speaker { options, output, events, turn: speaker_turn }.run(&taken);
+                let turn = speaker_turn;
+                Speaker { mode, output, synthesiser, kept, events, turn }.run(&taken);
             }
         });
         (Self { sentences: Some(sentences), turn, thread: Some(thread) }, happened)
     }
 
-    /// Speaks a sentence after those that wait. `id` names it in the events.
+    /// Speaks a sentence after those that wait. `id` names it in the events, `name` among the kept
+    /// files.
     ///
     /// # Errors
     /// If [`SENTENCES_MAX`] sentences wait already, or the thread is gone.
-    pub fn speak(&self, id: u64, text: &str) -> Result<(), SpeakError> {
+    pub fn speak(&self, id: u64, name: &str, text: &str) -> Result<(), SpeakError> {
         let turn = self.turn.load(Ordering::SeqCst);
-        let sentence = Sentence { id, turn, text: text.to_owned() };
+        let sentence = Sentence { id, turn, name: name.to_owned(), text: text.to_owned() };
         let sentences = self.sentences.as_ref().ok_or(SpeakError::Gone)?;
         sentences.try_send(sentence).map_err(|error| match error {
             TrySendError::Full(_) => SpeakError::Busy,
@@ -180,12 +156,11 @@ impl Drop for Voice {
     }
 }
 
-fn choose(options: &VoiceOptions) -> VoiceOutput {
+fn choose(options: &VoiceOptions, synthesiser: &mut Synthesiser) -> VoiceOutput {
     if options.mode == VoiceMode::Print {
         return VoiceOutput::Text { reason: "the configuration asks for text".to_owned() };
     }
-    let synthesiser = Synthesiser::new(options);
-    let player = match synthesiser.silence() {
+    let player = match synthesiser.try_out().and_then(|()| synthesiser.silence()) {
         Ok(file) => Player::find(&options.players, &file),
         Err(error) => Err(error.to_string()),
     };
@@ -195,30 +170,39 @@ fn choose(options: &VoiceOptions) -> VoiceOutput {
     }
 }
 
+fn keeper(folder: &std::path::Path) -> Option<Kept> {
+    match Kept::open(folder) {
+        Ok(kept) => Some(kept),
+        Err(error) => {
+            tracing::warn!(%error, folder = %folder.display(), "the robot's sentences are not kept");
+            None
+        }
+    }
+}
+
 /// The thread's side.
 struct Speaker {
-    options: VoiceOptions,
+    mode: VoiceMode,
     output: VoiceOutput,
+    synthesiser: Synthesiser,
+    kept: Option<Kept>,
     events: Sender<VoiceEvent>,
     turn: Arc<AtomicU64>,
 }
 
 /// Beyond the sound's own length: opening the device and playing out its buffer.
 const PLAY_SLACK: Duration = Duration::from_secs(5);
+/// How often it is looked whether to stop.
+const LOOK: Duration = Duration::from_millis(5);
 
 impl Speaker {
-    fn run(&self, sentences: &Receiver<Sentence>) {
-        let synthesiser = Synthesiser::new(&self.options);
+    fn run(mut self, sentences: &Receiver<Sentence>) {
         for sentence in sentences {
             let id = sentence.id;
-            let end = if self.is_called_off(&sentence) {
-                VoiceEvent::Interrupted { id }
-            } else {
-                match self.present(&sentence, &synthesiser) {
-                    Ok(End::Done) => VoiceEvent::Ended { id },
-                    Ok(End::CalledOff) => VoiceEvent::Interrupted { id },
-                    Err(error) => VoiceEvent::Failed { id, error },
-                }
+            let end = match self.present(&sentence) {
+                Ok(End::Done) => VoiceEvent::Ended { id },
+                Ok(End::CalledOff) => VoiceEvent::Interrupted { id },
+                Err(error) => VoiceEvent::Failed { id, error },
             };
             if self.events.send(end).is_err() {
                 return;
@@ -226,33 +210,74 @@ impl Speaker {
         }
     }
 
-    fn present(&self, sentence: &Sentence, synthesiser: &Synthesiser) -> Result<End, String> {
-        let started = || {
-            // A listener that is gone is noticed at the sentence's end.
-            let _ = self.events.send(VoiceEvent::Started { id: sentence.id });
-        };
+    fn present(&mut self, sentence: &Sentence) -> Result<End, String> {
+        if self.is_called_off(sentence) {
+            return Ok(End::CalledOff);
+        }
         let player = match &self.output {
-            VoiceOutput::Aloud(player) => player,
-            VoiceOutput::Text { reason } if self.options.mode == VoiceMode::EspeakNg => {
+            VoiceOutput::Aloud(player) => player.clone(),
+            VoiceOutput::Text { reason } if self.mode == VoiceMode::Aloud => {
                 return Err(reason.clone());
             }
             VoiceOutput::Text { .. } => {
-                started();
+                self.begin(sentence);
                 return Ok(End::Done);
             }
         };
-        let Some(sound) = synthesiser.speak(&sentence.text).map_err(|e| e.to_string())? else {
-            started();
-            return Ok(End::Done);
+        let turn = Arc::clone(&self.turn);
+        let is_called_off = || sentence.turn < turn.load(Ordering::SeqCst);
+        match self.synthesiser.speak(&sentence.text, is_called_off) {
+            Ok(Some(sound)) => {
+                self.keep(sentence, &sound);
+                self.play(sentence, &sound, &player)
+            }
+            Ok(None) => {
+                self.begin(sentence);
+                Ok(End::Done)
+            }
+            Err(SynthesisError::CalledOff) => Ok(End::CalledOff),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    fn begin(&self, sentence: &Sentence) {
+        // A listener that is gone is noticed at the sentence's end.
+        let _ = self.events.send(VoiceEvent::Started { id: sentence.id });
+    }
+
+    fn keep(&mut self, sentence: &Sentence, sound: &Sound) {
+        let Some(kept) = &mut self.kept else { return };
+        if let Err(error) = kept.keep(&sentence.name, &sound.file) {
+            tracing::warn!(%error, "a sentence is not kept");
+        }
+    }
+
+    /// Plays a sound, for its own length at least.
+    fn play(&self, sentence: &Sentence, sound: &Sound, player: &Player) -> Result<End, String> {
+        let length = Duration::from_secs_f64(sound.seconds);
+        let mut playing = match player.is_none() {
+            true => None,
+            false => Some(player.play(&sound.file).map_err(|e| e.to_string())?),
         };
-        let mut playing = player.play(&sound.file).map_err(|e| e.to_string())?;
-        started();
-        let deadline = Duration::from_secs_f64(sound.seconds) + PLAY_SLACK;
-        let pause = |time| {
-            thread::sleep(time);
-            self.is_called_off(sentence)
-        };
-        playing.wait(deadline, pause).map_err(|e| e.to_string())
+        let began = Instant::now();
+        self.begin(sentence);
+        if let Some(playing) = &mut playing {
+            let pause = |time| {
+                thread::sleep(time);
+                self.is_called_off(sentence)
+            };
+            let end = playing.wait(length + PLAY_SLACK, pause).map_err(|e| e.to_string())?;
+            if end == End::CalledOff {
+                return Ok(end);
+            }
+        }
+        while let Some(left) = length.checked_sub(began.elapsed()) {
+            if self.is_called_off(sentence) {
+                return Ok(End::CalledOff);
+            }
+            thread::sleep(left.min(LOOK));
+        }
+        Ok(End::Done)
     }
 
     fn is_called_off(&self, sentence: &Sentence) -> bool {

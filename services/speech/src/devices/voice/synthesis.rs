@@ -1,27 +1,29 @@
-//! From text to sound, by the program espeak-ng. It stays a program: its licence (GPL-3) would
-//! become that of anything that links it.
+//! From text to sound: a cache before the program that speaks, and the silence cut off behind it.
 
+use std::collections::VecDeque;
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
-use super::VoiceOptions;
-use crate::devices::audio::{RATE_HZ, WavError, read_wav, seconds};
-use crate::devices::child::{self, ChildError};
+use super::program::Program;
+use super::{VoiceOptions, trim};
+use crate::devices::audio::{RATE_HZ, WavError, read_wav};
+use crate::devices::child::{ChildError, End, Running};
 
 /// Why a text could not be made sound.
 #[derive(Debug, thiserror::Error)]
 pub enum SynthesisError {
-    /// espeak-ng is missing or failed.
-    #[error("{source}{}", install_hint(source))]
-    Espeak {
+    /// The program is missing or failed.
+    #[error("{source}{hint}")]
+    Program {
         /// How it failed.
-        #[from]
         source: ChildError,
+        /// What can be done about it.
+        hint: &'static str,
     },
     /// What it wrote cannot be read.
-    #[error("espeak-ng's sound is unusable: {0}")]
+    #[error("the voice's sound is unusable: {0}")]
     Sound(#[from] WavError),
     /// The folder for the sound cannot be written.
     #[error("{} cannot be written: {source}", path.display())]
@@ -31,76 +33,119 @@ pub enum SynthesisError {
         /// Why not.
         source: std::io::Error,
     },
-}
-
-fn install_hint(error: &ChildError) -> &'static str {
-    match error {
-        ChildError::NotInstalled { .. } => " (install the package espeak-ng)",
-        _ => "",
-    }
+    /// Nobody wants to hear it any more.
+    #[error("called off")]
+    CalledOff,
 }
 
 /// A sentence as sound.
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sound {
     pub(super) file: PathBuf,
+    /// From its first sound to its last, seconds.
     pub(super) seconds: f64,
 }
 
-/// Makes sentences sound.
+/// Makes sentences sound, each once while it is remembered.
 pub struct Synthesiser {
-    espeak_ng: PathBuf,
+    program: Program,
     voice: String,
     words_per_minute: u16,
     work: PathBuf,
+    /// Sentences and their sound, the latest last.
+    made: VecDeque<(String, Sound)>,
+    /// Sentences made so far: numbers the files.
+    count: usize,
 }
 
 /// Characters of a sentence that are spoken; what is longer is no sentence.
 const TEXT_MAX: usize = 500;
-/// espeak-ng needs 20 to 40 ms for a sentence.
+/// espeak-ng needs 20 to 40 ms for a sentence, flite 160 ms; a command may need more.
 const DEADLINE: Duration = Duration::from_secs(5);
 /// Longest sound of a sentence: 500 characters at the slowest pace, seconds.
-const SOUND_MAX_S: f64 = 120.0;
+pub(super) const SOUND_MAX_S: f64 = 120.0;
+/// Sentences whose sound is remembered. The questions of a scene are fewer.
+const MADE_MAX: usize = 64;
 
 impl Synthesiser {
-    /// A synthesiser with these options' voice, pace and folder.
+    /// A synthesiser with these options' program, voice, pace and folder.
     pub fn new(options: &VoiceOptions) -> Self {
-        let VoiceOptions { espeak_ng, voice, words_per_minute, work, .. } = options.clone();
-        Self { espeak_ng, voice, words_per_minute, work }
+        let VoiceOptions { program, voice, words_per_minute, work, .. } = options.clone();
+        Self { program, voice, words_per_minute, work, made: VecDeque::new(), count: 0 }
     }
 
     /// The text as samples at [`RATE_HZ`].
     ///
     /// # Errors
-    /// If espeak-ng is missing or fails.
-    pub fn samples(&self, text: &str) -> Result<Vec<i16>, SynthesisError> {
-        match self.speak(text)? {
+    /// If the program is missing or fails.
+    pub fn samples(&mut self, text: &str) -> Result<Vec<i16>, SynthesisError> {
+        match self.speak(text, || false)? {
             Some(sound) => Ok(read_wav(&sound.file, SOUND_MAX_S)?),
             None => Ok(Vec::new()),
         }
     }
 
-    /// Writes the text as a WAV file; `None` if there is nothing to say in it.
-    pub(super) fn speak(&self, text: &str) -> Result<Option<Sound>, SynthesisError> {
+    /// The text as a WAV file; `None` if there is nothing to say in it. The file stays as it is
+    /// until [`MADE_MAX`] other sentences were made.
+    pub(super) fn speak(
+        &mut self,
+        text: &str,
+        is_called_off: impl Fn() -> bool,
+    ) -> Result<Option<Sound>, SynthesisError> {
         let text = speakable(text);
         if !text.contains(char::is_alphanumeric) {
             return Ok(None);
         }
-        let file = self.file("sentence.wav")?;
-        let mut command = Command::new(&self.espeak_ng);
-        command.arg("-v").arg(&self.voice);
-        command.arg("-s").arg(self.words_per_minute.to_string());
-        command.arg("-w").arg(&file).arg("--").arg(text);
-        child::run(command, DEADLINE)?;
-        let seconds = seconds(read_wav(&file, SOUND_MAX_S)?.len());
-        Ok(Some(Sound { file, seconds }))
+        if let Some(known) = self.remembered(&text) {
+            return Ok(Some(known));
+        }
+        let file = self.file(&format!("sentence-{:02}.wav", self.count % (MADE_MAX + 1)))?;
+        let command = self.program.speak(&text, &self.voice, self.words_per_minute, &file);
+        self.run(command, is_called_off)?;
+        let seconds = trim::trim(&file)?;
+        let sound = Sound { file, seconds };
+        self.count += 1;
+        if self.made.len() == MADE_MAX {
+            self.made.pop_front();
+        }
+        self.made.push_back((text, sound.clone()));
+        Ok(Some(sound))
     }
 
-    /// A WAV file with a twentieth of a second of silence, once espeak-ng has shown that it is
-    /// there.
+    /// The sound of a sentence that was made before and is still there.
+    fn remembered(&self, text: &str) -> Option<Sound> {
+        let (_, sound) = self.made.iter().find(|(known, _)| known == text)?;
+        sound.file.is_file().then(|| sound.clone())
+    }
+
+    fn run(
+        &self,
+        mut command: Command,
+        is_called_off: impl Fn() -> bool,
+    ) -> Result<(), SynthesisError> {
+        let fault = |source: ChildError| {
+            let hint = self.program.hint(&source);
+            SynthesisError::Program { source, hint }
+        };
+        command.stdout(std::process::Stdio::null());
+        let mut running = Running::start(command).map_err(fault)?;
+        let pause = |time| {
+            std::thread::sleep(time);
+            is_called_off()
+        };
+        match running.wait(DEADLINE, pause).map_err(fault)? {
+            End::Done => Ok(()),
+            End::CalledOff => Err(SynthesisError::CalledOff),
+        }
+    }
+
+    /// Makes a short sentence, to see whether the program works.
+    pub(super) fn try_out(&mut self) -> Result<(), SynthesisError> {
+        self.speak("hello", || false).map(|_| ())
+    }
+
+    /// A WAV file with a twentieth of a second of silence.
     pub(super) fn silence(&self) -> Result<PathBuf, SynthesisError> {
-        let mut version = Command::new(&self.espeak_ng);
-        version.arg("--version");
-        child::run(version, DEADLINE)?;
         let file = self.file("silence.wav")?;
         let spec = hound::WavSpec {
             channels: 1,
@@ -112,14 +157,8 @@ impl Synthesiser {
             (0..RATE_HZ / 20).try_for_each(|_| wav.write_sample(0_i16))?;
             wav.finalize()
         });
-        match written {
-            Ok(()) => Ok(file),
-            Err(hound::Error::IoError(source)) => Err(SynthesisError::Work { path: file, source }),
-            Err(error) => {
-                let reason = error.to_string();
-                Err(WavError::NotWav { path: file, reason }.into())
-            }
-        }
+        written.map_err(|error| trim::unwritten(&file, error))?;
+        Ok(file)
     }
 
     fn file(&self, name: &str) -> Result<PathBuf, SynthesisError> {
@@ -149,13 +188,13 @@ mod tests {
     #[test]
     fn nothing_to_say_needs_no_program() {
         let options = VoiceOptions::new("/nonexistent/folder");
-        let synthesiser = Synthesiser::new(&options);
+        let mut synthesiser = Synthesiser::new(&options);
         assert!(synthesiser.samples(" ?! \n").unwrap().is_empty());
     }
 
     #[test]
     fn a_folder_that_cannot_be_made_is_named() {
-        let synthesiser = Synthesiser::new(&VoiceOptions::new("/dev/null/folder"));
+        let mut synthesiser = Synthesiser::new(&VoiceOptions::new("/dev/null/folder"));
         let error = synthesiser.samples("hello").unwrap_err();
         assert!(error.to_string().contains("/dev/null/folder"), "{error}");
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use settings::{Recogniser, Settings, Voice};
 use speech::devices::recogniser::{PocketSphinx, PocketSphinxOptions};
-use speech::devices::voice::{self, Player, VoiceEvent, VoiceMode, VoiceOptions, VoiceOutput};
+use speech::devices::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
 
 use super::{Finding, good, poor};
 
@@ -51,26 +51,16 @@ pub(super) fn recogniser(settings: &Settings) -> Finding {
 pub(super) fn voice(settings: &Settings) -> Finding {
     const WHAT: &str = "voice";
     let work = Work::new("voice");
-    let defaults = VoiceOptions::new(&work.0);
-    let own = settings.speech.player.as_deref().and_then(|command| command.split_first());
-    let own = own.map(|(program, arguments)| Player {
-        program: program.clone(),
-        arguments: arguments.to_vec(),
-    });
-    let options = VoiceOptions {
-        mode: match settings.speech.voice {
-            Voice::Print => return good(WHAT, "switched off (speech.voice)"),
-            Voice::EspeakNg => VoiceMode::EspeakNg,
-            Voice::Auto => VoiceMode::Auto,
-        },
-        voice: settings.speech.voice_name.clone(),
-        players: own.map_or(defaults.players.clone(), |own| vec![own]),
-        ..defaults
-    };
+    if settings.speech.voice == Voice::Print {
+        return good(WHAT, "switched off (speech.voice)");
+    }
+    // Nothing is said, so nothing is to be kept.
+    let options = VoiceOptions { kept: None, ..VoiceOptions::of(&settings.speech, &work.0) };
+    let speaks = options.program.name();
     let (_voice, events) = voice::Voice::start(options);
     match events.recv() {
         Ok(VoiceEvent::Output(VoiceOutput::Aloud(player))) => {
-            good(WHAT, format!("espeak-ng through {}", player.program))
+            good(WHAT, format!("{speaks} through {}", player.program))
         }
         Ok(VoiceEvent::Output(VoiceOutput::Text { reason })) => {
             poor(WHAT, format!("{reason}; questions are shown and not heard"))
