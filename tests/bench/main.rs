@@ -1,8 +1,8 @@
 //! Benchmarks of the decision core, of the arm and of the running group: what a decision and a
 //! belief update cost and how good decisions are; how often and how fast poses are reached, beside
 //! other solvers; how fast the group starts and recovers, how long an utterance
-//! takes to become a decision and where the time goes, what it costs when nothing happens, and how
-//! steadily joint states come.
+//! takes to become a decision and where the time goes, what it costs when nothing happens, how
+//! steadily joint states come, and how much of spoken sentences is understood.
 //!
 //! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
 //! test rests on one.
@@ -14,20 +14,22 @@ mod jitter;
 mod latency;
 mod peers;
 mod report;
+mod speech;
 mod start;
 
 use report::Report;
 use std::process::ExitCode;
 
-const HELP: &str = "Usage: bench [--quick] [--core] [--kinematics] [--joints]
+const HELP: &str = "Usage: bench [--quick] [--core] [--kinematics] [--joints] [--speech]
 
   --quick       fewer repetitions and smaller series: a minute in place of several
   --core        only the decision core, without starting a group
   --kinematics  only the arm: inverse kinematics, motions and clearances beside other solvers
   --joints      only how steadily joint states come
+  --speech      only spoken input: what is understood of spoken sentences, how late
 ";
 
-const OPTIONS: [&str; 4] = ["--quick", "--core", "--kinematics", "--joints"];
+const OPTIONS: [&str; 5] = ["--quick", "--core", "--kinematics", "--joints", "--speech"];
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -41,8 +43,9 @@ fn main() -> ExitCode {
     }
     let asked = |word: &str| words.iter().any(|known| known == word);
     let mut report = Report::default();
-    let [core_only, arm_only, joints_only] = ["--core", "--kinematics", "--joints"].map(asked);
-    let all = !core_only && !arm_only && !joints_only;
+    let [core_only, arm_only, joints_only, speech_only] =
+        ["--core", "--kinematics", "--joints", "--speech"].map(asked);
+    let all = !core_only && !arm_only && !joints_only && !speech_only;
     if all || core_only {
         peers::measure(&mut report);
         let effort = if asked("--quick") { core::Effort::QUICK } else { core::Effort::FULL };
@@ -58,6 +61,9 @@ fn main() -> ExitCode {
     }
     if all || joints_only {
         jitter::measure(&mut report);
+    }
+    if all || speech_only {
+        speech::measure(&mut report, asked("--quick"));
     }
     match report.write() {
         Ok(()) => ExitCode::SUCCESS,

@@ -58,7 +58,7 @@ fn arm(limb: Limb) -> &'static Arm {
 }
 
 /// Seconds of processor that this thread has used: what else runs on the machine counts little.
-fn thread_s() -> f64 {
+pub(crate) fn thread_s() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }

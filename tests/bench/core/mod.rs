@@ -6,7 +6,7 @@ mod decide;
 mod gap;
 mod quality;
 mod scaling;
-mod scenes;
+pub(crate) mod scenes;
 mod update;
 
 use crate::report::Report;

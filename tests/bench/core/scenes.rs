@@ -16,7 +16,7 @@ pub(super) const POINTING: Actions =
     Actions { mode: Mode::Present, attribute: false, which: false };
 
 /// A scene of the configuration.
-pub(super) fn configured(name: &str) -> Scene {
+pub(crate) fn configured(name: &str) -> Scene {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/scenes");
     let text = std::fs::read_to_string(format!("{root}/{name}.toml")).expect("a scene");
     Scene::from_toml(name, &text).expect("a scene that holds")

@@ -1,0 +1,62 @@
+//! The service's own way from samples to hypotheses: detector of speech, recogniser, gate.
+
+use super::corpus::Clip;
+use crate::arm::thread_s;
+use ::speech::devices::recogniser::{
+    Gate, Hypothesis, Outcome, PocketSphinx, PocketSphinxOptions, Recogniser, RecogniserUnavailable,
+};
+use ::speech::devices::vad::{SegmentEvent, Segmenter, SegmenterOptions};
+use scene::Scene;
+use std::ops::Range;
+use std::path::Path;
+use std::time::Instant;
+
+/// A stretch of a clip that was taken for speech.
+pub(super) struct Heard {
+    /// Where the detector put the voice, samples.
+    pub(super) speech: Range<usize>,
+    /// Where it knew that the voice was over, samples.
+    pub(super) known_at: usize,
+    /// Best first, as the gate lets them pass or not.
+    pub(super) hypotheses: Vec<Hypothesis>,
+    pub(super) accepted: bool,
+    /// Seconds from the closing of the segment to the hypotheses, by the clock and of processor.
+    pub(super) took_s: (f64, f64),
+}
+
+/// One robot's ears.
+pub(super) struct Listener {
+    recogniser: PocketSphinx,
+    gate: Gate,
+    /// Seconds from nothing to a recogniser that is ready.
+    pub(super) start_s: f64,
+}
+
+impl Listener {
+    pub(super) fn new(scene: &Scene, work: &Path) -> Result<Self, RecogniserUnavailable> {
+        let started = Instant::now();
+        let recogniser = PocketSphinx::open(scene, &PocketSphinxOptions::debian(work))?;
+        let start_s = started.elapsed().as_secs_f64();
+        Ok(Self { recogniser, gate: Gate::new(scene, Gate::THRESHOLD), start_s })
+    }
+
+    pub(super) fn hear(&mut self, clip: &Clip) -> Vec<Heard> {
+        let mut segmenter = Segmenter::new(SegmenterOptions::default());
+        let mut events = segmenter.push(&clip.samples);
+        events.extend(segmenter.finish());
+        let ends = events.into_iter().filter_map(|event| match event {
+            SegmentEvent::End { range, speech } => Some((range, speech)),
+            SegmentEvent::Onset { .. } => None,
+        });
+        ends.map(|(range, speech)| self.decode(&clip.samples, range, speech)).collect()
+    }
+
+    fn decode(&mut self, samples: &[i16], range: Range<usize>, speech: Range<usize>) -> Heard {
+        let (started, cpu_s) = (Instant::now(), thread_s());
+        let known_at = range.end;
+        let hypotheses = self.recogniser.recognise(&samples[range]).unwrap_or_default();
+        let accepted = matches!(self.gate.judge(hypotheses.clone()), Outcome::Accepted(_));
+        let took_s = (started.elapsed().as_secs_f64(), thread_s() - cpu_s);
+        Heard { speech, known_at, hypotheses, accepted, took_s }
+    }
+}

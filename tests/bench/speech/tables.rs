@@ -1,0 +1,140 @@
+//! The trials of one corpus as tables.
+
+use super::Trial;
+use super::corpus::Corpus;
+use super::score::Score;
+use crate::report::{Report, Table, percentile};
+
+/// Which trials a row is about.
+type Of<'a> = (String, Box<dyn Fn(&Trial) -> bool + 'a>);
+
+pub(super) fn add(report: &mut Report, corpus: &Corpus, levels: &[f64], trials: &[Trial]) {
+    let mut rows: Vec<Of<'_>> = Vec::new();
+    for &level in levels {
+        rows.push((format!("{level} dB"), Box::new(move |t| t.snr_db == level)));
+    }
+    let ends = [levels.first(), levels.last()].into_iter().flatten();
+    for &level in ends {
+        for (half, name) in [(0, "even"), (1, "odd")] {
+            let of = move |t: &Trial| t.snr_db == level && t.sentence % 2 == half;
+            rows.push((format!("{level} dB, {name} sentences"), Box::new(of)));
+        }
+        for (voice, named) in corpus.voices.iter().enumerate() {
+            let of = move |t: &Trial| t.snr_db == level && t.voice == voice;
+            rows.push((format!("{level} dB, {}", named.title()), Box::new(of)));
+        }
+    }
+    let scores = |of: &Of<'_>| -> Vec<Score> {
+        trials.iter().filter(|t| of.1(t)).map(|t| t.score).collect()
+    };
+    report.tables.push(understood(
+        corpus,
+        &rows.iter().map(|of| (of.0.clone(), scores(of))).collect::<Vec<_>>(),
+    ));
+    rows.truncate(levels.len());
+    report
+        .tables
+        .push(timed(corpus, &rows.iter().map(|of| (of.0.clone(), scores(of))).collect::<Vec<_>>()));
+}
+
+fn understood(corpus: &Corpus, rows: &[(String, Vec<Score>)]) -> Table {
+    let heads = [
+        "noise",
+        "for the robot",
+        "word errors",
+        "right: best",
+        "right: weighed",
+        "right: any of them",
+        "right by word spotting",
+        "passed and right",
+        "wrong action",
+        "likeliest objects right",
+        "about other things",
+        "acted on",
+    ];
+    let row = |(name, scores): &(String, Vec<Score>)| {
+        let (meant, other): (Vec<Score>, Vec<Score>) =
+            scores.iter().partition(|score| score.for_the_robot);
+        let words: usize = meant.iter().map(|s| s.words).sum();
+        let errors: usize = meant.iter().map(|s| s.word_errors).sum();
+        vec![
+            name.clone(),
+            meant.len().to_string(),
+            percent(errors, words),
+            share(&meant, |s| s.best),
+            share(&meant, |s| s.weighed),
+            share(&meant, |s| s.oracle),
+            share(&meant, |s| s.spotted),
+            share(&meant, |s| s.passed),
+            share(&meant, |s| s.wrong_action),
+            share(&meant, |s| s.objects),
+            other.len().to_string(),
+            share(&other, |s| s.acted_on),
+        ]
+    };
+    Table {
+        title: format!("Spoken input: {}", corpus.name),
+        note: "Right: values asserted, groups ruled out, answer and order all equal those of the \
+               true text. Best: of the best hypothesis; weighed: the meaning with the largest sum \
+               of weights over the five; any: one of the five is right; these three with the gate \
+               open. Passed: the gate lets it in and the weighed meaning is right; wrong action: \
+               it lets it in and the robot would act on another meaning. Likeliest objects: the \
+               objects most probable after the weighed hypotheses are those after the true text. \
+               Word errors: edits of scene words of the best hypothesis over scene words said."
+            .to_owned(),
+        heads: heads.map(str::to_owned).into(),
+        rows: rows.iter().map(row).collect(),
+    }
+}
+
+fn timed(corpus: &Corpus, rows: &[(String, Vec<Score>)]) -> Table {
+    let heads = [
+        "noise",
+        "onset late by, ms, p50",
+        "p95",
+        "release late by, ms, p50",
+        "p95",
+        "voice's end to result less the closing pause, ms, p50",
+        "p95",
+        "decoding, CPU over sound",
+        "not one stretch",
+    ];
+    let row = |(name, scores): &(String, Vec<Score>)| {
+        let of = |value: fn(&Score) -> f64| -> Vec<f64> {
+            scores.iter().map(value).filter(|x| x.is_finite()).map(|x| x * 1e3).collect()
+        };
+        let at = |samples: &[f64], share| format!("{:.0}", percentile(samples, share));
+        let [onset, release, delay] = [of(|s| s.onset_s), of(|s| s.release_s), of(|s| s.delay_s)];
+        let sum = |value: fn(&Score) -> f64| scores.iter().map(value).sum::<f64>();
+        vec![
+            name.clone(),
+            at(&onset, 0.5),
+            at(&onset, 0.95),
+            at(&release, 0.5),
+            at(&release, 0.95),
+            at(&delay, 0.5),
+            at(&delay, 0.95),
+            format!("{:.3}", sum(|s| s.cpu_s) / sum(|s| s.sound_s)),
+            share(scores, |s| s.stretches != 1),
+        ]
+    };
+    Table {
+        title: format!("Spoken input, times: {}", corpus.name),
+        note: "Onset and release: the detector's edges against the voice's. Not one stretch: the \
+               voice was missed or cut in two."
+            .to_owned(),
+        heads: heads.map(str::to_owned).into(),
+        rows: rows.iter().map(row).collect(),
+    }
+}
+
+fn share(scores: &[Score], is: fn(&Score) -> bool) -> String {
+    percent(scores.iter().filter(|score| is(score)).count(), scores.len())
+}
+
+fn percent(part: usize, whole: usize) -> String {
+    match whole {
+        0 => "–".to_owned(),
+        _ => format!("{:.1} %", 100.0 * part as f64 / whole as f64),
+    }
+}

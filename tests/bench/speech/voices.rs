@@ -1,0 +1,127 @@
+//! Programs that speak.
+
+use ::speech::devices::audio::{RATE_HZ, read_wav};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+/// One voice of one program.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Voice {
+    program: Program,
+    name: &'static str,
+    words_per_minute: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Program {
+    Espeak,
+    Flite,
+}
+
+impl Voice {
+    pub(super) const fn espeak(name: &'static str, words_per_minute: u32) -> Self {
+        Self { program: Program::Espeak, name, words_per_minute }
+    }
+
+    pub(super) const fn flite(name: &'static str) -> Self {
+        Self { program: Program::Flite, name, words_per_minute: 0 }
+    }
+
+    /// `espeak-ng en-gb`.
+    pub(super) fn title(&self) -> String {
+        match self.program {
+            Program::Espeak => format!("espeak-ng {}", self.name),
+            Program::Flite => format!("flite {}", self.name),
+        }
+    }
+
+    fn command(&self, text: &str, wav: &std::path::Path) -> Command {
+        let mut command;
+        match self.program {
+            Program::Espeak => {
+                command = Command::new("espeak-ng");
+                command.args(["-v", self.name, "-s", &self.words_per_minute.to_string(), "-w"]);
+                command.arg(wav).args(["--", text]);
+            }
+            Program::Flite => {
+                command = Command::new("flite");
+                command.args(["-voice", self.name, "-t", text, "-o"]).arg(wav);
+            }
+        }
+        command.stdout(Stdio::null());
+        command
+    }
+}
+
+/// Speaks, and keeps what was spoken in `target/bench/speech`.
+pub(super) struct Voices {
+    folder: PathBuf,
+}
+
+/// Loudest sample of a sentence: 6 dB below full scale.
+const PEAK: f32 = 32_767.0 * 0.501;
+/// Power of what counts as voice: programs pad with silence of their own.
+const VOICE_RMS: f64 = 200.0;
+/// Over which that power is taken: 10 ms.
+const STRETCH: usize = RATE_HZ as usize / 100;
+
+impl Voices {
+    pub(super) fn new() -> std::io::Result<Self> {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/bench/speech");
+        std::fs::create_dir_all(folder)?;
+        Ok(Self { folder: folder.into() })
+    }
+
+    /// The first of the programs that is not installed.
+    pub(super) fn missing() -> Option<&'static str> {
+        let starts = |program: &str| {
+            let mut asked = Command::new(program);
+            asked.arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
+        };
+        ["espeak-ng", "flite"].into_iter().find(|program| !starts(program))
+    }
+
+    /// The sentence, without silence around it, as 16 kHz samples.
+    pub(super) fn speak(&self, voice: &Voice, text: &str) -> Vec<i16> {
+        let letters = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
+        let name = format!("{} {} {text}", voice.title(), voice.words_per_minute);
+        let mut name: String = name.chars().map(letters).collect();
+        // What is longer may share its beginning with another sentence; so its length stands there.
+        if name.len() > 150 {
+            name.truncate(150);
+            name += &text.len().to_string();
+        }
+        let cached = self.folder.join(name).with_extension("s16");
+        if let Ok(bytes) = std::fs::read(&cached) {
+            return bytes.chunks_exact(2).map(|b| i16::from_le_bytes([b[0], b[1]])).collect();
+        }
+        let wav = cached.with_extension("wav");
+        let status = voice.command(text, &wav).status();
+        let spoke = status.as_ref().is_ok_and(std::process::ExitStatus::success);
+        assert!(spoke, "{} does not speak {text:?}: {status:?}", voice.title());
+        let samples = read_wav(&wav, 60.0).expect("a WAV file of a voice");
+        let samples = trimmed(&normalised(&samples));
+        let bytes: Vec<u8> = samples.iter().flat_map(|s| s.to_le_bytes()).collect();
+        std::fs::write(&cached, bytes).expect("room for a sentence");
+        let _ = std::fs::remove_file(wav);
+        samples
+    }
+}
+
+fn normalised(samples: &[i16]) -> Vec<i16> {
+    let peak = samples.iter().map(|s| s.unsigned_abs()).max().unwrap_or(0).max(1);
+    let gain = PEAK / f32::from(peak);
+    samples.iter().map(|&s| (f32::from(s) * gain) as i16).collect()
+}
+
+fn trimmed(samples: &[i16]) -> Vec<i16> {
+    let power = |at: usize| {
+        let from = at.saturating_sub(STRETCH / 2);
+        let stretch = &samples[from..(from + STRETCH).min(samples.len())];
+        stretch.iter().map(|&s| f64::from(s) * f64::from(s)).sum::<f64>() / STRETCH as f64
+    };
+    let loud = |at: &usize| power(*at) > VOICE_RMS * VOICE_RMS;
+    let first = (0..samples.len()).find(loud).unwrap_or(0);
+    let last = (0..samples.len()).rev().find(loud).unwrap_or(0);
+    samples[first..=last.max(first).min(samples.len().saturating_sub(1))].to_vec()
+}
