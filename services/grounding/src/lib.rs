@@ -1,14 +1,20 @@
 //! Grounding: turns an utterance's words into what they say about the scene.
 //!
+//! What an utterance says depends on the question that it answers, and which one that is only the
+//! policy can judge. So every hypothesis is read as an answer to each question that it may answer,
+//! and to none.
+//!
 //! Stateless: an observation depends on the scene and the utterance alone, so this service can be
 //! killed or swapped at any moment and forgets nothing.
 
+mod interpret;
 pub mod shell;
 
+use interpret::interpretations;
 use language::Reader;
 use node::{Effects, Event, Never, Node, NodeError, Time};
-use protocol::{Fits, FixedText, Observation, Utterance, WireReading};
-use scene::{Question, Reading, Scene};
+use protocol::{Fits, FixedText, Interpretation, Observation, Utterance, WireError, WireReading};
+use scene::{Reading, Scene};
 
 /// How it reads: the scene and its reader.
 pub struct Config {
@@ -56,41 +62,38 @@ impl Node for GroundingNode {
 }
 
 impl GroundingNode {
-    fn read(&self, utterance: &Utterance, now: Time) -> Result<Observation, protocol::WireError> {
-        let question = Question::try_from(utterance.heard_question)?;
-        // In another scene its numbers mean something else.
-        let scene = &self.config.scene;
-        let is_known = utterance.heard_scene == scene.key() && scene.contains(question);
-        let question = if is_known { question } else { Question::None };
+    fn read(&self, utterance: &Utterance, now: Time) -> Result<Observation, WireError> {
         let mut observation = Observation {
             seq: utterance.seq,
-            heard_prompt: utterance.heard_prompt,
-            heard_question: utterance.heard_question,
+            asked: utterance.asked,
+            asked_count: utterance.asked_count,
+            source: utterance.source,
             scene_key: self.config.scene.key(),
             gesture: utterance.gesture.target_m()?.into(),
             onset_ns: utterance.onset_ns,
+            end_ns: utterance.end_ns,
             accepted_ns: utterance.accepted_ns,
             grounded_ns: now.ns(),
             ..Observation::default()
         };
-        let hypotheses = utterance.hypotheses()?;
-        if hypotheses.is_empty() && utterance.gesture.target_m()?.is_some() {
+        let heard = utterance.hypotheses()?;
+        let mut meant = if heard.is_empty() && utterance.gesture.target_m()?.is_some() {
             // Somebody points and says nothing: one reading, without a word.
-            observation.reading_count = 1;
-            observation.readings[0] = WireReading::new(&Reading::default(), 1.0).0;
-            return Ok(observation);
-        }
-        observation.reading_count = hypotheses.len() as u8;
-        for (i, (text, weight)) in hypotheses.into_iter().enumerate() {
-            let understood = self.config.reader.read(text, question);
-            let (wire, fits) = WireReading::new(&understood.reading, weight);
+            vec![Interpretation { weight: 1.0, question: None, reading: Reading::default() }]
+        } else {
+            interpretations(&self.config, &heard, utterance.asked()?)?
+        };
+        meant.truncate(observation.readings.len());
+        observation.reading_count = meant.len() as u8;
+        for (slot, interpretation) in observation.readings.iter_mut().zip(&meant) {
+            let (wire, fits) = WireReading::new(interpretation);
             if fits == Fits::Cut {
                 tracing::warn!(seq = utterance.seq, "more scene words than a message holds");
             }
-            observation.readings[i] = wire;
-            if let (0, Some(word)) = (i, understood.unknown.first()) {
-                observation.unknown = FixedText::truncated(word);
-            }
+            *slot = wire;
+        }
+        if let Some(word) = heard.first().and_then(|best| interpret::unknown(&self.config, best)) {
+            observation.unknown = FixedText::truncated(&word);
         }
         Ok(observation)
     }

@@ -1,8 +1,8 @@
 //! What was said in the open interaction, in words in place of numbers: it outlives a change of the
 //! scene, under which every object, attribute, value and word may get another number.
 
-use crate::state::{Heard, Interaction};
-use scene::{AttributeId, Question, Reading, Response, Scene, WordId};
+use crate::state::Interaction;
+use scene::{AttributeId, Doubt, Question, Reading, Response, Scene, WordId};
 use serde::{Deserialize, Serialize};
 
 /// Names and words that the evidence of one interaction may hold, all utterances together. Beyond
@@ -71,10 +71,8 @@ impl Asked {
 /// What one utterance said about the wanted object.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
-    /// The question that the person had heard.
-    pub asked: Asked,
-    /// What it may mean, with probabilities.
-    pub readings: Vec<(f64, Said)>,
+    /// What it may mean and which question it answers then, with weights; the likeliest first.
+    pub meant: Vec<(f64, Asked, Said)>,
     /// A word that the scene did not have; may be empty. Another one may.
     pub unknown: String,
     /// The point that the person pointed at, metres, frame `base`.
@@ -82,7 +80,7 @@ pub struct Evidence {
 }
 
 /// A [`Reading`] in words.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Said {
     /// The scene's words as they were said.
     pub base: Vec<String>,
@@ -90,10 +88,16 @@ pub struct Said {
     pub response: Response,
     /// Groups of words that rule out what has all of them.
     pub excluded: Vec<Vec<String>>,
+    /// How doubtful its parts are.
+    pub doubt: Doubt,
 }
 
 impl Said {
-    fn new(scene: &Scene, reading: &Reading) -> Self {
+    /// A reading in words.
+    ///
+    /// # Panics
+    /// If it is not of this scene.
+    pub fn new(scene: &Scene, reading: &Reading) -> Self {
         let names = |words: &[WordId]| -> Vec<String> {
             words.iter().map(|word| scene.words()[word.index()].clone()).collect()
         };
@@ -101,19 +105,25 @@ impl Said {
             base: names(&reading.base),
             response: reading.response,
             excluded: reading.excluded.iter().map(|group| names(group)).collect(),
+            doubt: reading.doubt.clone(),
         }
     }
 
     /// In a scene. A word that it does not have is true of no object, and so is a group with one.
     fn reading(&self, scene: &Scene) -> Reading {
         let word = |name: &String| scene.word_named(name);
-        let groups = self.excluded.iter();
-        Reading {
-            base: self.base.iter().filter_map(word).collect(),
-            response: self.response,
-            excluded: groups.filter_map(|group| group.iter().map(word).collect()).collect(),
-            ..Reading::default()
-        }
+        let base = self.base.iter().enumerate();
+        let base = base.filter_map(|(at, name)| Some((word(name)?, self.doubt.of_word(at))));
+        let groups = self.excluded.iter().enumerate();
+        let groups = groups.filter_map(|(at, group)| {
+            let words: Option<Vec<WordId>> = group.iter().map(word).collect();
+            Some((words?, self.doubt.of_group(at)))
+        });
+        let (base, base_doubt) = base.unzip();
+        let (excluded, excluded_doubt) = groups.unzip();
+        let doubt =
+            Doubt { base: base_doubt, excluded: excluded_doubt, response: self.doubt.response };
+        Reading { base, response: self.response, excluded, doubt, ..Reading::default() }
     }
 
     fn names(&self) -> usize {
@@ -122,21 +132,12 @@ impl Said {
 }
 
 impl Evidence {
-    /// What was understood of an utterance, in words.
-    ///
-    /// # Panics
-    /// If question or reading are not of this scene.
-    pub fn new(scene: &Scene, asked: Asked, heard: &Heard) -> Self {
-        let readings = heard.readings.iter().map(|(w, reading)| (*w, Said::new(scene, reading)));
-        let (unknown, gesture) = (heard.unknown.clone(), heard.gesture);
-        Self { asked, readings: readings.collect(), unknown, gesture }
-    }
-
-    /// What it says in a scene, each reading as the answer to the question.
+    /// What it says in a scene, each reading as the answer to its question.
     pub fn in_scene(&self, scene: &Scene) -> Vec<(f64, Question, Reading)> {
-        let question = self.asked.question(scene);
-        let mut heard: Vec<(f64, Question, Reading)> =
-            self.readings.iter().map(|(w, said)| (*w, question, said.reading(scene))).collect();
+        let meant = self.meant.iter();
+        let mut heard: Vec<(f64, Question, Reading)> = meant
+            .map(|(weight, asked, said)| (*weight, asked.question(scene), said.reading(scene)))
+            .collect();
         // The unknown word is of the best reading. Whether it was denied is not known, so it counts
         // only where nothing was.
         if let (Some((_, _, best)), Some(word)) =
@@ -150,7 +151,8 @@ impl Evidence {
     }
 
     fn names(&self) -> usize {
-        ENTRY + self.asked.names() + self.readings.iter().map(|(_, s)| s.names()).sum::<usize>()
+        let of = |(_, asked, said): &(f64, Asked, Said)| asked.names() + said.names();
+        ENTRY + self.meant.iter().map(of).sum::<usize>()
     }
 }
 

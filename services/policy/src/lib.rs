@@ -16,18 +16,19 @@ mod view;
 #[cfg(test)]
 mod tests;
 
+use dialogue::person::Reaction;
 use mind::{Mind, Turns};
 use node::{Effects, Event, Node, NodeError, Span, Time};
 use protocol::inbox::{Inbox, Verdict};
 use protocol::{
-    ActKind, Activity, AppliedMark, ArmStatus, Observation, PickOutcome, PickPhase, PolicyView,
-    Presentation, Presented, PromptId, RobotAct, UtteranceSeq,
+    ActKind, Activity, AppliedMark, ArmStatus, AskedQuestion, Observation, PickOutcome, PickPhase,
+    PolicyView, Presentation, Presented, PromptId, RobotAct, Source, UtteranceSeq,
 };
-use state::{Cause, Heard, Record, State};
+use state::{Asking, Cause, Heard, Record, State};
 
 /// How often what stands is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);
-/// Longest time that a sound being heard holds back a repetition.
+/// Longest time that a sound being heard holds back a decision or a repetition.
 const HEARING_MAX: Span = Span::from_ms(10_000);
 
 /// What arrives.
@@ -92,7 +93,10 @@ impl Node for PolicyNode {
             Event::Started => self.start(now, fx),
             Event::Message(In::Observation(observation)) => self.observe(&observation, now, fx),
             Event::Message(In::Presented(presented)) => self.presented = presented,
-            Event::Message(In::Activity(activity)) => self.activity = activity,
+            Event::Message(In::Activity(activity)) => {
+                self.activity = activity;
+                self.go_on(now, fx);
+            }
             Event::Message(In::Arm(status)) => self.watch_arm(&status, now, fx),
             Event::Tick => self.tick(now, fx),
             Event::Shutdown => fx.exit(),
@@ -138,10 +142,12 @@ impl PolicyNode {
                 return;
             }
         }
-        let readings = observation.readings(self.mind.scene().words().len());
+        let meant = observation.interpretations(self.mind.scene().words().len());
         let gesture = observation.gesture.target_m();
         let same_scene = observation.scene_key == self.mind.scene().key();
-        let (Ok(readings), Ok(gesture), true) = (readings, gesture, same_scene) else {
+        let (Ok(meant), Ok(asked), Ok(gesture), true) =
+            (meant, observation.asked(), gesture, same_scene)
+        else {
             // Not applied, so speech sends the utterance again: a grounding that is mended or
             // swapped meanwhile gets another chance at it, and nothing is lost.
             self.refused += 1;
@@ -150,27 +156,26 @@ impl PolicyNode {
             return;
         };
         self.waiting_since = None;
+        let begun =
+            if observation.onset_ns > 0 { observation.onset_ns } else { observation.accepted_ns };
         let heard = Heard {
             seq,
-            prompt: PromptId(observation.heard_prompt),
+            asked: asked.iter().map(asking).collect(),
+            typed: observation.source == Source::Text.code(),
+            onset: Time(begun),
+            end: Time(observation.end_ns.max(begun)),
             accepted: Time(observation.accepted_ns),
-            readings,
+            meant,
             unknown: observation.unknown.as_str().unwrap_or_default().to_owned(),
             gesture,
-            reaction_s: self.reaction_s(observation),
+            more: self.more_is_coming(now),
         };
         self.apply(Cause::Utterance(heard), now, fx);
     }
 
-    /// Seconds from the end of the question that was heard to the beginning of what was said.
-    fn reaction_s(&self, observation: &Observation) -> Option<f64> {
-        let begun =
-            if observation.onset_ns > 0 { observation.onset_ns } else { observation.accepted_ns };
-        let question_is_known = self.presented.prompt == observation.heard_prompt
-            && self.presented.prompt > 0
-            && self.presented.state == Presentation::Ended.code();
-        let after = begun.checked_sub(self.presented.ended_ns).filter(|_| question_is_known);
-        after.map(|ns| Span(ns).s())
+    /// Whether more than the utterance at hand was said: somebody speaks, or is being recognised.
+    fn more_is_coming(&self, now: Time) -> bool {
+        self.somebody_is_heard(now) || self.activity.pending > 1
     }
 
     /// Ends the interaction when the arm has ended its pick.
@@ -184,10 +189,19 @@ impl PolicyNode {
     }
 
     fn tick(&mut self, now: Time, fx: &mut Fx) {
+        self.go_on(now, fx);
         if self.silence_has_lasted(now) {
             self.apply(Cause::Silence, now, fx);
         } else if now >= self.next_send {
             self.send(now, fx);
+        }
+    }
+
+    /// Decides what was held, once nobody speaks any more.
+    fn go_on(&mut self, now: Time, fx: &mut Fx) {
+        let held = self.state.open.as_ref().and_then(|open| open.held.as_ref());
+        if held.is_some_and(|held| !self.somebody_speaks(now) || now >= held.since + HEARING_MAX) {
+            self.apply(Cause::Quiet, now, fx);
         }
     }
 
@@ -206,9 +220,11 @@ impl PolicyNode {
     }
 
     fn somebody_speaks(&self, now: Time) -> bool {
-        let speaking =
-            self.activity.onset_ns > 0 && now < Time(self.activity.onset_ns) + HEARING_MAX;
-        speaking || self.activity.pending > 0 || self.waiting_since.is_some()
+        self.somebody_is_heard(now) || self.activity.pending > 0 || self.waiting_since.is_some()
+    }
+
+    fn somebody_is_heard(&self, now: Time) -> bool {
+        self.activity.onset_ns > 0 && now < Time(self.activity.onset_ns) + HEARING_MAX
     }
 
     fn apply(&mut self, cause: Cause, now: Time, fx: &mut Fx) {
@@ -223,6 +239,15 @@ impl PolicyNode {
         let view = view::view(&self.mind, &self.state, self.refused);
         fx.publish(Out::View(Box::new(view)));
         self.next_send = now + RESEND_EVERY;
+    }
+}
+
+fn asking(asked: &AskedQuestion) -> Asking {
+    Asking {
+        prompt: PromptId(asked.prompt),
+        began: Time(asked.began_ns),
+        ended: (asked.ended_ns > 0).then_some(Time(asked.ended_ns)),
+        whole: asked.whole != 0,
     }
 }
 
@@ -242,5 +267,8 @@ pub fn turns(settings: &settings::Settings) -> Turns {
         response_window_s: turns.response_window_s,
         repeats_max: turns.repeats_max,
         questions_max: turns.questions_max,
+        attribution: turns.attribution,
+        spoken: Reaction::new(turns.reaction_median_s, turns.reaction_log_sd),
+        typed: Reaction::new(turns.typing_median_s, turns.typing_log_sd),
     }
 }

@@ -2,6 +2,7 @@
 //! check of its journal, and in simulation.
 
 mod acts;
+mod addressed;
 mod ahead;
 mod anew;
 mod inform;
@@ -14,7 +15,10 @@ mod words;
 use crate::state::{Act, Cause, Interaction, State};
 use acts::{ask, keep_words, order_again, pick, repeat, say, set};
 use dialogue::gesture::Gestures;
-use dialogue::{Action, Actions, Costs, DecisionProblem, Durations, Model, Params, Planner, Step};
+use dialogue::person::Reaction;
+use dialogue::{
+    Action, Actions, Attribution, Costs, DecisionProblem, Durations, Model, Params, Planner, Step,
+};
 use node::Time;
 use pointing::Pointing;
 use protocol::{ActKind, Ended, Outcome, PickId, PickOutcome, PromptId, UtteranceSeq};
@@ -30,6 +34,12 @@ pub struct Turns {
     pub repeats_max: u32,
     /// How often the robot asks in one interaction, repetitions included, before it stops asking.
     pub questions_max: u32,
+    /// How an utterance is attributed to a question.
+    pub attribution: Attribution,
+    /// How soon people answer aloud, before anything is known of the person at hand.
+    pub spoken: Reaction,
+    /// How soon people type their answer.
+    pub typed: Reaction,
 }
 
 /// What is taken to be true of people, and what is wanted of the robot.
@@ -107,6 +117,7 @@ impl Mind {
             Cause::Snapshot => {}
             Cause::Utterance(heard) => self.hear(&mut next, heard, at),
             Cause::Silence => self.bear_silence(&mut next, at),
+            Cause::Quiet => self.decide_held(&mut next, at),
             Cause::PickEnded { pick, outcome } => self.end_pick(&mut next, *pick, *outcome, at),
             Cause::Reconfigured => self.look_anew(&mut next, at),
         }
@@ -161,7 +172,7 @@ impl Mind {
 
     fn bear_silence(&self, state: &mut State, at: Time) {
         if state.open.is_some() {
-            self.see_answer(state, false, None);
+            self.see_answer(state, false);
         }
         let Some(open) = &mut state.open else { return };
         open.silences += 1;

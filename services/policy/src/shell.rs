@@ -18,7 +18,7 @@ pub struct PolicyProgram;
 
 impl Program for PolicyProgram {
     const SERVICE: Service = Service::Policy;
-    const RECORD: Option<&'static str> = Some("policy/2");
+    const RECORD: Option<&'static str> = Some("policy/3");
     const ABOUT: &'static str = "keeps the belief over the objects and decides what to ask or do";
     type Node = PolicyNode;
     type Shell = PolicyShell;

@@ -4,10 +4,14 @@
 use crate::evidence::{Asked, Evidence};
 use crate::history::History;
 use dialogue::Belief;
+use dialogue::person::Reaction;
 use dialogue::person::{Joint, Person};
 use node::Time;
-use protocol::{ActId, ActKind, Ended, InteractionId, PickId, PickOutcome, PromptId, UtteranceSeq};
-use scene::{ObjectId, Question, Reading};
+use protocol::{
+    ActId, ActKind, Ended, InteractionId, Interpretation, PickId, PickOutcome, PromptId,
+    UtteranceSeq,
+};
+use scene::{ObjectId, Question};
 use serde::{Deserialize, Serialize};
 
 /// The dialogue's state.
@@ -33,6 +37,17 @@ pub struct State {
     pub history: History,
     /// What earlier interactions have told about the person, where the planner makes use of it.
     pub person: Option<Person>,
+    /// How soon this person answers, as far as that was seen.
+    pub timing: Timing,
+}
+
+/// How soon a person answers. None until an answer was seen: then what is configured holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Timing {
+    /// From the end of a spoken question to the first sound of the answer.
+    pub spoken: Option<Reaction>,
+    /// From a question's appearance to the answer typed.
+    pub typed: Option<Reaction>,
 }
 
 /// One fetch in progress.
@@ -63,10 +78,25 @@ pub struct Interaction {
     pub silences: u32,
     /// First and last utterance.
     pub utterances: (UtteranceSeq, UtteranceSeq),
+    /// A decision that waits until the person has ended.
+    pub held: Option<Held>,
     /// The pick that was ordered.
     pub pick: Option<(PickId, ObjectId)>,
     /// Name of the object that it picks.
     pub picked: String,
+}
+
+/// A decision that waits: the person spoke on while the belief took in what was said before.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Held {
+    /// The last question that the person had heard whole.
+    pub heard: PromptId,
+    /// What is to be said before the next question.
+    pub preface: String,
+    /// The latest utterance that the decision rests on.
+    pub utterance: UtteranceSeq,
+    /// Since when it waits.
+    pub since: Time,
 }
 
 /// An object that a dialogue is about.
@@ -96,8 +126,8 @@ pub struct Prompt {
     pub id: PromptId,
     /// What was asked.
     pub asked: Asked,
-    /// Whether something was said to it.
-    pub answered: bool,
+    /// When what was said to it had ended, since it was last asked.
+    pub answered: Option<Time>,
 }
 
 /// A decision with its reasons.
@@ -160,6 +190,8 @@ pub enum Cause {
     Utterance(Heard),
     /// The response window passed and nobody spoke.
     Silence,
+    /// Nobody speaks any more: what was held can be decided.
+    Quiet,
     /// The arm has ended the pick.
     PickEnded {
         /// Which pick.
@@ -172,23 +204,49 @@ pub enum Cause {
 }
 
 /// An utterance as it was understood.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Heard {
     /// Its number.
     pub seq: UtteranceSeq,
-    /// The last question that the person had heard whole.
-    pub prompt: PromptId,
+    /// The latest questions whose sound had begun when it was accepted, newest first.
+    pub asked: Vec<Asking>,
+    /// Whether it was typed; else it was spoken.
+    pub typed: bool,
+    /// When the person began to speak, or typed.
+    pub onset: Time,
+    /// When the person had ended.
+    pub end: Time,
     /// When it was accepted.
     pub accepted: Time,
-    /// What it may mean, with probabilities that sum to 1.
-    pub readings: Vec<(f64, Reading)>,
+    /// What it may mean as an answer to each of these questions, and to none.
+    pub meant: Vec<Interpretation>,
     /// A word that the scene does not have; may be empty.
     pub unknown: String,
     /// The point that the person points at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
-    /// Seconds from the end of that question to the beginning of the utterance, where both are
-    /// known.
-    pub reaction_s: Option<f64>,
+    /// Whether the person speaks on, or more that was said is being recognised.
+    pub more: bool,
+}
+
+/// A question as it was put to the person, once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Asking {
+    /// Its prompt.
+    pub prompt: PromptId,
+    /// When its sound began.
+    pub began: Time,
+    /// When its sound ended or was broken off, if it has.
+    pub ended: Option<Time>,
+    /// Whether it was said to its end.
+    pub whole: bool,
+}
+
+impl Heard {
+    /// The last question that the person had heard whole before beginning to speak.
+    pub fn heard_whole(&self) -> PromptId {
+        let whole = |asking: &&Asking| asking.whole && asking.ended <= Some(self.onset);
+        self.asked.iter().find(whole).map_or(PromptId(0), |asking| asking.prompt)
+    }
 }
 
 /// A journal record: why the state changed, when, and the state after it.

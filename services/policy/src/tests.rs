@@ -8,13 +8,13 @@ mod seconds;
 
 use crate::mind::{Mind, questions};
 use crate::shell;
-use crate::state::{Cause, Heard, Record, State};
+use crate::state::{Asking, Cause, Heard, Record, State};
 use crate::{In, Out, PolicyNode, journal_check};
 use dialogue::{Answer, Model, Rng};
 use node::{Effects, Event, Node, Span, Time};
 use protocol::{
-    ActKind, ArmStatus, FixedText, Observation, Outcome, PickOutcome, PickPhase, Presentation,
-    Presented, PromptId, UtteranceSeq, WireReading,
+    ActKind, ArmStatus, AskedQuestion, FixedText, Interpretation, Observation, Outcome,
+    PickOutcome, PickPhase, Presentation, Presented, PromptId, UtteranceSeq, WireReading,
 };
 use scene::{Intent, ObjectId, Question, Reading, Response};
 use settings::Settings;
@@ -41,18 +41,21 @@ pub(crate) fn mind_of(planner: &str) -> Mind {
     shell::mind(&settings).unwrap()
 }
 
+/// An utterance typed after that prompt had been said, if any had.
 fn heard(seq: u64, prompt: PromptId, reading: Reading) -> Cause {
-    let readings = vec![(1.0, reading)];
-    let (seq, accepted) = (UtteranceSeq(seq), Time(seq * 1_000_000_000));
-    Cause::Utterance(Heard {
-        seq,
-        prompt,
-        accepted,
-        readings,
-        unknown: String::new(),
-        gesture: None,
-        reaction_s: None,
-    })
+    Cause::Utterance(typed(seq, prompt, reading))
+}
+
+fn typed(seq: u64, prompt: PromptId, reading: Reading) -> Heard {
+    let accepted = at(seq);
+    let began = Time(accepted.ns() - 500_000_000);
+    let asking = Asking { prompt, began, ended: Some(began), whole: true };
+    let asked = if prompt == PromptId(0) { Vec::new() } else { vec![asking] };
+    let as_answer_to =
+        |question| Interpretation { weight: 1.0, question, reading: reading.clone() };
+    let meant = (0..asked.len()).map(Some).chain([None]).map(as_answer_to).collect();
+    let (seq, onset, end) = (UtteranceSeq(seq), accepted, accepted);
+    Heard { seq, asked, typed: true, onset, end, accepted, meant, ..Heard::default() }
 }
 
 fn answer(response: Response) -> Reading {
@@ -136,13 +139,18 @@ fn starting_over_forgets_what_was_said() {
 fn observation(seq: u64, prompt: u64, reading: &Reading) -> In {
     let mut observation = Observation {
         seq,
-        heard_prompt: prompt,
         scene_key: settings().scene.key(),
         reading_count: 1,
         unknown: FixedText::default(),
         ..Observation::default()
     };
-    observation.readings[0] = WireReading::new(reading, 1.0).0;
+    if prompt > 0 {
+        observation.asked_count = 1;
+        observation.asked[0] = AskedQuestion { prompt, whole: 1, ..AskedQuestion::default() };
+    }
+    let question = (prompt > 0).then_some(0);
+    let meant = Interpretation { weight: 1.0, question, reading: reading.clone() };
+    observation.readings[0] = WireReading::new(&meant).0;
     In::Observation(Box::new(observation))
 }
 

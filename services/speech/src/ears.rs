@@ -1,20 +1,23 @@
 //! Hearing: each utterance accepted once, numbered without a gap, and sent until it is applied.
 
 use crate::mouth::Mouth;
-use crate::record::{Accepted, Record};
+use crate::record::{Accepted, Hypothesis, Record, Said};
 use crate::said::{Content, in_words};
 use crate::{Config, Fx, Out, Recognised, Segment};
 use node::{Span, Time};
 use protocol::outbox::Outbox;
 use protocol::{
-    Activity, AppliedMark, EarState, FixedText, Injection, MotionCommand, MotionOrder, Receipt,
-    ReceiptStatus, RequestKey, Sound, Source, Utterance, UtteranceSeq, topics,
+    Activity, AppliedMark, AskedQuestion, EarState, FixedText, Injection, MotionCommand,
+    MotionOrder, Receipt, ReceiptStatus, RequestKey, Sound, Source, Utterance, UtteranceSeq,
+    topics,
 };
 use scene::{Intent, Question};
 use std::collections::{BTreeMap, VecDeque};
 
 /// Utterances that wait to be applied at a time; beyond it people are asked to wait.
 const WAITING_MAX: usize = 256;
+/// Longest time that a person's speech holds back what the robot has to say.
+const HOLD_MAX: Span = Span::from_ms(10_000);
 /// Answered requests that are remembered, so that a repeated one gets the same answer.
 const ANSWERED_MAX: usize = 128;
 
@@ -27,6 +30,8 @@ pub(crate) struct Ears {
     /// Sounds that the recogniser is listening to: whose they are and when they began.
     listening: BTreeMap<u64, (RequestKey, Time)>,
     last_sound: u64,
+    /// When the person who is speaking just now began.
+    speaking: Option<Time>,
     state: EarState,
     /// Whether the policy's mark is known. Before that a number could be given out twice.
     marked: bool,
@@ -41,6 +46,7 @@ impl Ears {
             recent: VecDeque::new(),
             listening: BTreeMap::new(),
             last_sound: 0,
+            speaking: None,
             state: EarState::Loading,
             marked: false,
         }
@@ -66,7 +72,7 @@ impl Ears {
         let whole = Piece { key: injection.key, segment: (0, 1), span: (onset, now) };
         match injection.sound {
             Sound::Text(text) => {
-                let content = Content::words(vec![(text, 1.0)], Source::Text);
+                let content = Content::words(vec![Hypothesis::certain(text)], Source::Text);
                 self.accept(whole, content, mouth, now, fx);
             }
             Sound::Point { target_m, words } => {
@@ -137,7 +143,7 @@ impl Ears {
             hypotheses: content.hypotheses,
             gesture: content.gesture,
             source: content.source.code(),
-            heard: mouth.heard_at(piece.span.0),
+            asked: mouth.asked(),
             onset: piece.span.0,
             end: piece.span.1,
             accepted: now,
@@ -149,9 +155,9 @@ impl Ears {
         fx.publish(Out::Activity(self.activity()));
     }
 
-    fn says_stop(&self, hypotheses: &[(String, f64)]) -> bool {
-        hypotheses.first().is_some_and(|(text, _)| {
-            self.config.reader.read(text, Question::None).reading.intent == Intent::Stop
+    fn says_stop(&self, hypotheses: &[Hypothesis]) -> bool {
+        hypotheses.first().is_some_and(|best| {
+            self.config.reader.read(&best.text, Question::None).reading.intent == Intent::Stop
         })
     }
 
@@ -215,10 +221,30 @@ impl Ears {
         fx.publish(Out::Activity(self.activity()));
     }
 
+    /// Somebody began to speak, or has ended.
+    pub(crate) fn set_speaking(&mut self, since: Option<Time>, fx: &mut Fx) {
+        self.speaking = since;
+        fx.publish(Out::Activity(self.activity()));
+    }
+
+    /// Since when somebody speaks, or was heard and is not yet understood and applied.
+    fn busy_since(&self) -> Option<Time> {
+        let listening = self.listening.values().map(|(_, began)| *began);
+        let waiting = self.outbox.window().map(|(_, accepted)| accepted.accepted);
+        self.speaking.into_iter().chain(listening).chain(waiting).min()
+    }
+
+    /// Whether the robot holds its tongue: a person speaks, or what was said is not applied yet. A
+    /// sound that never ends, or a recogniser that never answers, does not silence it for ever.
+    pub(crate) fn somebody_speaks(&self, now: Time) -> bool {
+        self.busy_since().is_some_and(|since| now < since + HOLD_MAX)
+    }
+
     fn activity(&self) -> Activity {
-        let onset = self.listening.values().map(|(_, began)| began.ns()).min();
+        let listening = self.listening.values().map(|(_, began)| *began);
+        let onset = self.speaking.into_iter().chain(listening).min();
         Activity {
-            onset_ns: onset.unwrap_or(0),
+            onset_ns: onset.map_or(0, Time::ns),
             pending: (self.listening.len() + self.outbox.len()) as u32,
             ear: self.state.code(),
             ..Activity::default()
@@ -247,7 +273,7 @@ fn keep<T>(queue: &mut VecDeque<T>, item: T) {
 }
 
 fn receipt(accepted: &Accepted) -> Receipt {
-    let text = accepted.hypotheses.first().map_or("", |(text, _)| text);
+    let text = accepted.hypotheses.first().map_or("", |best| best.text.as_str());
     Receipt {
         key: accepted.key.0,
         seq: accepted.seq.0,
@@ -260,12 +286,8 @@ fn receipt(accepted: &Accepted) -> Receipt {
 }
 
 fn utterance(accepted: &Accepted) -> Utterance {
-    let heard = accepted.heard;
     let mut utterance = Utterance {
         seq: accepted.seq.0,
-        heard_prompt: heard.map_or(0, |said| said.prompt.0),
-        heard_question: heard.map_or(Question::None, |said| said.question).into(),
-        heard_scene: heard.map_or(0, |said| said.scene_key),
         gesture: accepted.gesture.into(),
         onset_ns: accepted.onset.ns(),
         end_ns: accepted.end.ns(),
@@ -273,11 +295,32 @@ fn utterance(accepted: &Accepted) -> Utterance {
         source: accepted.source,
         ..Utterance::default()
     };
-    if utterance.set_hypotheses(&accepted.hypotheses).is_err() {
+    let asked: Vec<AskedQuestion> = accepted.asked.iter().map(asked_question).collect();
+    utterance.set_asked(&asked);
+    let heard: Vec<protocol::Hypothesis<'_>> = (accepted.hypotheses.iter())
+        .map(|Hypothesis { text, weight, confidence }| {
+            let confidence = confidence.clone();
+            protocol::Hypothesis { text, weight: *weight, confidence }
+        })
+        .collect();
+    if utterance.set_hypotheses(&heard).is_err() {
         // The best one fits (it was checked when it was accepted); the others are a refinement.
-        let best = accepted.hypotheses.get(..1).unwrap_or_default();
+        let best = heard.get(..1).unwrap_or_default();
         let fitted = utterance.set_hypotheses(best);
         debug_assert!(fitted.is_ok(), "an accepted utterance fits");
     }
     utterance
+}
+
+fn asked_question(said: &Said) -> AskedQuestion {
+    AskedQuestion {
+        prompt: said.prompt.0,
+        scene: said.scene_key,
+        began_ns: said.started.ns(),
+        ended_ns: if said.whole || said.ended > said.started { said.ended.ns() } else { 0 },
+        question: said.question.into(),
+        presentation: said.presentation,
+        whole: u8::from(said.whole),
+        ..AskedQuestion::default()
+    }
 }

@@ -20,6 +20,8 @@ use protocol::{
 };
 use record::Record;
 
+pub use record::Hypothesis;
+
 /// How often what is not yet superseded is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);
 
@@ -34,6 +36,10 @@ pub enum In {
     Act(Box<RobotAct>),
     /// From the arm: what it points at.
     Arm(ArmStatus),
+    /// From a live source: a person began to speak to the robot at that time.
+    Onset(Time),
+    /// From a live source: nobody speaks any more; what was said is being recognised.
+    Offset,
     /// From the recogniser.
     Recognised(Recognised),
     /// From the recogniser: whether it works.
@@ -106,8 +112,8 @@ pub struct Recognised {
 pub struct Segment {
     /// When it begins and ends, seconds from the start of the sound.
     pub span_s: (f64, f64),
-    /// What was heard with its weight, or what was heard but is not for the robot.
-    pub heard: Result<Vec<(String, f64)>, String>,
+    /// What was heard, or what was heard but is not for the robot.
+    pub heard: Result<Vec<Hypothesis>, String>,
 }
 
 type Fx = Effects<Out, Record>;
@@ -152,16 +158,16 @@ impl Node for SpeechNode {
             Event::Started => self.send(now, fx),
             Event::Message(message) => self.take(message, now, fx),
             Event::Tick => {
-                self.mouth.tick(now, fx);
                 if now >= self.next_send {
                     self.send(now, fx);
                 }
             }
             Event::Shutdown => {
                 fx.publish(Out::Hush);
-                fx.exit();
+                return fx.exit();
             }
         }
+        self.mouth.go_on(self.ears.somebody_speaks(now), now, fx);
     }
 
     fn deadline(&self) -> Option<Time> {
@@ -182,6 +188,11 @@ impl SpeechNode {
     fn take(&mut self, message: In, now: Time, fx: &mut Fx) {
         match message {
             In::Injection(injection) => self.ears.hear(injection, &self.mouth, now, fx),
+            In::Onset(at) => {
+                self.ears.set_speaking(Some(at.min(now)), fx);
+                self.mouth.interrupted(now, fx);
+            }
+            In::Offset => self.ears.set_speaking(None, fx),
             In::Recognised(recognised) => {
                 self.ears.recognised(recognised, &self.mouth, now, fx);
                 self.send(now, fx);
@@ -193,7 +204,7 @@ impl SpeechNode {
                 }
             }
             In::Act(act) => self.mouth.act(&act, now, fx),
-            In::Arm(status) => self.mouth.aimed(&status, now, fx),
+            In::Arm(status) => self.mouth.aimed(&status),
             In::Voice(event) => self.mouth.spoken(event, now, fx),
         }
     }

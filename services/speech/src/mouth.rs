@@ -1,23 +1,23 @@
-//! Speaking: each prompt said once per presentation, and known as heard only when it was said to
-//! its end.
+//! Speaking: each prompt said once per presentation, held back while a person speaks, broken off
+//! when interrupted, and known as heard whole only when it was said to its end.
 
 use crate::record::{Record, Said};
 use crate::{Fx, Line, Out, Spoken, VoiceEvent};
 use node::{Span, Time};
-use protocol::{ActId, ActKind, ArmStatus, Presentation, Presented, PromptId, RobotAct};
+use protocol::{ASKED_MAX, ActId, ActKind, ArmStatus, Presentation, Presented, PromptId, RobotAct};
 use scene::Question;
 use std::collections::VecDeque;
 
-/// Questions that an utterance may still refer to.
-const HEARD_MAX: usize = 16;
+/// Presentations of questions that are remembered.
+const SAID_MAX: usize = 16;
 /// How long a pointing question waits for the arm before it is asked without.
 const AIM_PATIENCE: Span = Span::from_ms(6_000);
 
 /// The speaking half of the node.
 #[derive(Default)]
 pub(crate) struct Mouth {
-    /// Questions said to their end, oldest first.
-    heard: VecDeque<Said>,
+    /// Questions said, whole or not, oldest first.
+    said: VecDeque<Said>,
     /// The latest prompt said to its end, question or not.
     last: Option<Said>,
     saying: Option<Saying>,
@@ -43,28 +43,33 @@ struct Saying {
     started: Option<Time>,
 }
 
-/// A pointing question that waits for the arm to aim.
+/// Words that wait to be said.
 struct Waiting {
     act: ActId,
     words: Words,
-    until: Time,
+    /// For a pointing question: until when it waits for the arm to aim.
+    aim_until: Option<Time>,
 }
 
 impl Mouth {
     /// Takes in a prompt that the journal holds.
     pub(crate) fn remember(&mut self, said: Said) {
-        self.last = Some(said);
+        if said.whole {
+            self.last = Some(said);
+        }
         if said.question != Question::None {
-            if self.heard.len() >= HEARD_MAX {
-                self.heard.pop_front();
+            if self.said.len() >= SAID_MAX {
+                self.said.pop_front();
             }
-            self.heard.push_back(said);
+            self.said.push_back(said);
         }
     }
 
-    /// The question that a person who began to speak at `onset` had heard last.
-    pub(crate) fn heard_at(&self, onset: Time) -> Option<Said> {
-        self.heard.iter().rev().find(|said| said.ended <= onset).copied()
+    /// The questions that a person may have heard something of, newest first.
+    pub(crate) fn asked(&self) -> Vec<Said> {
+        let saying = self.saying.as_ref().and_then(Saying::so_far);
+        let saying = saying.filter(|said| said.question != Question::None);
+        saying.into_iter().chain(self.said.iter().rev().copied()).take(ASKED_MAX).collect()
     }
 
     /// The policy's standing decision, which comes again and again.
@@ -77,7 +82,7 @@ impl Mouth {
         };
         let (prompt, presentation) = (PromptId(act.prompt), act.presentation);
         if kind == ActKind::Wait || text.is_empty() {
-            return self.hush(fx);
+            return self.hush(now, fx);
         }
         if self.is_known(prompt, presentation) {
             return;
@@ -85,13 +90,8 @@ impl Mouth {
         let question = if kind == ActKind::Ask { question } else { Question::None };
         let scene_key = act.scene_key;
         let words = Words { prompt, presentation, question, scene_key, text: text.to_owned() };
-        self.waiting = None;
-        if matches!(question, Question::Point(_)) {
-            let until = now + AIM_PATIENCE;
-            self.waiting = Some(Waiting { act: ActId(act.act), words, until });
-        } else {
-            self.say(words, fx);
-        }
+        let aim_until = matches!(question, Question::Point(_)).then(|| now + AIM_PATIENCE);
+        self.waiting = Some(Waiting { act: ActId(act.act), words, aim_until });
     }
 
     /// Whether the presentation was said, is being said, or waits to be said.
@@ -103,42 +103,63 @@ impl Mouth {
     }
 
     /// The arm aims at something: a pointing question that waits for it can be asked.
-    pub(crate) fn aimed(&mut self, status: &ArmStatus, _now: Time, fx: &mut Fx) {
-        let aimed = |waiting: &Waiting| status.aimed_at() == Some(waiting.act);
-        if self.waiting.as_ref().is_some_and(aimed) {
-            self.ask_waiting(fx);
+    pub(crate) fn aimed(&mut self, status: &ArmStatus) {
+        if let Some(waiting) = &mut self.waiting
+            && status.aimed_at() == Some(waiting.act)
+        {
+            waiting.aim_until = None;
         }
     }
 
-    /// The arm did not come round to it: the question is asked all the same.
-    pub(crate) fn tick(&mut self, now: Time, fx: &mut Fx) {
-        if self.waiting.as_ref().is_some_and(|waiting| now >= waiting.until) {
-            self.ask_waiting(fx);
+    /// Says what waits, unless a person speaks. If the arm does not come round to aiming, the
+    /// question is asked all the same.
+    pub(crate) fn go_on(&mut self, somebody_speaks: bool, now: Time, fx: &mut Fx) {
+        let aiming = |waiting: &Waiting| waiting.aim_until.is_some_and(|until| now < until);
+        if somebody_speaks || self.waiting.as_ref().is_none_or(aiming) {
+            return;
+        }
+        if let Some(waiting) = self.waiting.take() {
+            self.say(waiting.words, now, fx);
+        }
+    }
+
+    /// A person interrupts: what is being said is broken off. It is said again when the policy
+    /// still wants it said after what the person has said.
+    pub(crate) fn interrupted(&mut self, now: Time, fx: &mut Fx) {
+        if self.saying.is_some() {
+            self.break_off(now, fx);
+            fx.publish(Out::Hush);
         }
     }
 
     pub(crate) fn deadline(&self) -> Option<Time> {
-        self.waiting.as_ref().map(|waiting| waiting.until)
+        self.waiting.as_ref().and_then(|waiting| waiting.aim_until)
     }
 
-    fn ask_waiting(&mut self, fx: &mut Fx) {
-        if let Some(waiting) = self.waiting.take() {
-            self.say(waiting.words, fx);
-        }
-    }
-
-    fn say(&mut self, words: Words, fx: &mut Fx) {
+    fn say(&mut self, words: Words, now: Time, fx: &mut Fx) {
+        self.break_off(now, fx);
         self.last_line += 1;
         let line = self.last_line;
         fx.publish(Out::Speak(Line { number: line, text: words.text.clone() }));
         self.saying = Some(Saying { line, words, started: None });
     }
 
-    fn hush(&mut self, fx: &mut Fx) {
+    fn hush(&mut self, now: Time, fx: &mut Fx) {
         self.waiting = None;
-        if self.saying.take().is_some() {
-            fx.publish(Out::Hush);
+        self.interrupted(now, fx);
+    }
+
+    /// What has been said of a question so far may be answered all the same.
+    fn break_off(&mut self, now: Time, fx: &mut Fx) {
+        let so_far = self.saying.take().and_then(|saying| saying.so_far());
+        if let Some(said) = so_far.filter(|said| said.question != Question::None) {
+            self.keep(Said { ended: now, ..said }, fx);
         }
+    }
+
+    fn keep(&mut self, said: Said, fx: &mut Fx) {
+        fx.append(Record::Presented(said));
+        self.remember(said);
     }
 
     /// The voice has come along.
@@ -149,24 +170,18 @@ impl Mouth {
         };
         match event.what {
             Spoken::Started => saying.started = Some(now),
-            Spoken::Interrupted => self.saying = None,
+            Spoken::Interrupted => self.break_off(now, fx),
             Spoken::Ended => self.end(now, fx),
         }
         self.send(fx);
     }
 
     fn end(&mut self, now: Time, fx: &mut Fx) {
-        let Some(Saying { words, started, .. }) = self.saying.take() else { return };
-        let said = Said {
-            prompt: words.prompt,
-            presentation: words.presentation,
-            question: words.question,
-            scene_key: words.scene_key,
-            started: started.unwrap_or(now),
-            ended: now,
-        };
-        fx.append(Record::Presented(said));
-        self.remember(said);
+        if let Some(mut saying) = self.saying.take() {
+            saying.started.get_or_insert(now);
+            let whole = saying.so_far().map(|said| Said { ended: now, whole: true, ..said });
+            whole.into_iter().for_each(|said| self.keep(said, fx));
+        }
     }
 
     /// Tells the policy what is being said or was said last.
@@ -194,7 +209,23 @@ impl Mouth {
 
     /// The prompts that a new journal must begin with.
     pub(crate) fn snapshot(&self) -> impl Iterator<Item = Said> + '_ {
-        let questions = self.heard.iter().copied();
-        questions.chain(self.last.filter(|last| self.heard.back() != Some(last)))
+        let questions = self.said.iter().copied();
+        questions.chain(self.last.filter(|last| !self.said.contains(last)))
+    }
+}
+
+impl Saying {
+    /// What has been said, once its sound has begun.
+    fn so_far(&self) -> Option<Said> {
+        let started = self.started?;
+        Some(Said {
+            prompt: self.words.prompt,
+            presentation: self.words.presentation,
+            question: self.words.question,
+            scene_key: self.words.scene_key,
+            started,
+            ended: started,
+            whole: false,
+        })
     }
 }

@@ -10,8 +10,27 @@ use serde::{Deserialize, Serialize};
 pub enum Record {
     /// An utterance was accepted. From here on it will be applied, once.
     Accepted(Accepted),
-    /// A prompt was said to its end. From here on an answer can be meant for it.
+    /// A prompt was said, to its end or until it was broken off. From here on an answer can be
+    /// meant for it.
     Presented(Said),
+}
+
+/// One way to understand an utterance.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Hypothesis {
+    /// The words.
+    pub text: String,
+    /// Relative weight among the hypotheses, above 0.
+    pub weight: f64,
+    /// How sure each blank-separated word is, 0 to 1; those beyond the end are certain.
+    pub confidence: Vec<f32>,
+}
+
+impl Hypothesis {
+    /// Words that are certain: typed ones.
+    pub fn certain(text: impl Into<String>) -> Self {
+        Self { text: text.into(), weight: 1.0, confidence: Vec::new() }
+    }
 }
 
 /// An accepted utterance.
@@ -23,14 +42,14 @@ pub struct Accepted {
     pub key: RequestKey,
     /// Which piece of the client's sound, and of how many.
     pub segment: (u32, u32),
-    /// What was heard with its weight, most likely first; nothing for a gesture without words.
-    pub hypotheses: Vec<(String, f64)>,
+    /// What was heard, most likely first; nothing for a gesture without words.
+    pub hypotheses: Vec<Hypothesis>,
     /// The point that was pointed at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
     /// [`protocol::Source`] as on the wire.
     pub source: u8,
-    /// The last question that had been said to its end when the person began to speak.
-    pub heard: Option<Said>,
+    /// The latest questions whose sound had begun by then, newest first.
+    pub asked: Vec<Said>,
     /// When the person began to speak.
     pub onset: Time,
     /// When the person had ended.
@@ -39,7 +58,7 @@ pub struct Accepted {
     pub accepted: Time,
 }
 
-/// A prompt that was said to its end.
+/// A prompt that was said.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Said {
     /// The prompt.
@@ -52,6 +71,8 @@ pub struct Said {
     pub scene_key: u64,
     /// When its sound began.
     pub started: Time,
-    /// When its sound ended.
+    /// When its sound ended or was broken off; its beginning while it lasts.
     pub ended: Time,
+    /// Whether it was said to its end.
+    pub whole: bool,
 }

@@ -2,13 +2,13 @@
 
 use protocol::{POINTED_AT_MAX_M, Source, is_somewhere};
 
-use crate::Config;
+use crate::{Config, Hypothesis};
 
 /// Words, a pointing gesture, or both.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Content {
-    /// What was heard with its weight, most likely first; nothing for a gesture without words.
-    pub(crate) hypotheses: Vec<(String, f64)>,
+    /// What was heard, most likely first; nothing for a gesture without words.
+    pub(crate) hypotheses: Vec<Hypothesis>,
     /// The point that was pointed at, metres, frame `base`.
     pub(crate) gesture: Option<[f64; 3]>,
     /// Where it came from.
@@ -17,20 +17,20 @@ pub(crate) struct Content {
 
 impl Content {
     /// Words alone.
-    pub(crate) fn words(hypotheses: Vec<(String, f64)>, source: Source) -> Self {
+    pub(crate) fn words(hypotheses: Vec<Hypothesis>, source: Source) -> Self {
         Self { hypotheses, gesture: None, source }
     }
 
     /// A gesture, with words unless they are blank.
     pub(crate) fn pointing(target_m: [f64; 3], words: String) -> Self {
         let said = !words.trim().is_empty();
-        let hypotheses = if said { vec![(words, 1.0)] } else { Vec::new() };
+        let hypotheses = if said { vec![Hypothesis::certain(words)] } else { Vec::new() };
         Self { hypotheses, gesture: Some(target_m), source: Source::Gesture }
     }
 
     /// Why it cannot be taken, if it cannot.
     pub(crate) fn fault(&self, config: &Config) -> Option<String> {
-        let best = self.hypotheses.first().map_or("", |(text, _)| text.as_str());
+        let best = self.hypotheses.first().map_or("", |best| best.text.as_str());
         let (bytes, max) = (best.len(), config.utterance_bytes_max);
         match &self.gesture {
             None if best.trim().is_empty() => Some("nothing was said".to_owned()),

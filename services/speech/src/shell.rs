@@ -1,10 +1,12 @@
 //! The speech service's topics and devices.
 
 use crate::devices::ear::{Ear, EarEvent, EarOptions, EarState as Hearing, Sound};
-use crate::devices::recogniser::{Hypothesis, Outcome, PocketSphinxOptions};
+use crate::devices::recogniser::{Hypothesis as Decoded, Outcome, PocketSphinxOptions};
 use crate::devices::vad::SegmenterOptions;
 use crate::devices::voice::{Voice, VoiceEvent as Device, VoiceOptions, VoiceOutput};
-use crate::{Config, In, Line, Out, Recognised, Segment, SpeechNode, Spoken, VoiceEvent};
+use crate::{
+    Config, Hypothesis, In, Line, Out, Recognised, Segment, SpeechNode, Spoken, VoiceEvent,
+};
 use crossbeam_channel::Receiver;
 use language::{Language, Reader as TextReader};
 use protocol::{
@@ -25,7 +27,7 @@ pub struct SpeechProgram;
 
 impl Program for SpeechProgram {
     const SERVICE: Service = Service::Speech;
-    const RECORD: Option<&'static str> = Some("speech/2");
+    const RECORD: Option<&'static str> = Some("speech/3");
     const ABOUT: &'static str = "hears what people say or type, and says the robot's questions";
     type Node = SpeechNode;
     type Shell = SpeechShell;
@@ -187,16 +189,21 @@ fn hearing(state: &Hearing) -> EarState {
     }
 }
 
-fn understood(outcome: Outcome) -> Result<Vec<(String, f64)>, String> {
+fn understood(outcome: Outcome) -> Result<Vec<Hypothesis>, String> {
     match outcome {
-        Outcome::Accepted(hypotheses) => Ok(hypotheses
-            .into_iter()
-            .map(|Hypothesis { text, confidence, .. }| (text, f64::from(confidence.max(1e-3))))
-            .collect()),
+        Outcome::Accepted(decoded) => Ok(decoded.into_iter().map(hypothesis).collect()),
         Outcome::Rejected { text, reason } => {
             tracing::info!(text, ?reason, "heard, but not for the robot");
             Err(text)
         }
+    }
+}
+
+fn hypothesis(decoded: Decoded) -> Hypothesis {
+    Hypothesis {
+        weight: f64::from(decoded.confidence.max(1e-3)),
+        confidence: decoded.words.iter().map(|(_, confidence)| *confidence).collect(),
+        text: decoded.text,
     }
 }
 

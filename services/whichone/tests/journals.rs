@@ -6,8 +6,8 @@ use std::process::{Command, Output};
 use journal::{Header, Journal};
 use node::Time;
 use policy::mind::Mind;
-use policy::state::{Cause, Heard, Record, State};
-use protocol::{PromptId, UtteranceSeq};
+use policy::state::{Asking, Cause, Heard, Record, State};
+use protocol::{Interpretation, PromptId, UtteranceSeq};
 use scene::{Reading, Response};
 use settings::Settings;
 
@@ -27,7 +27,7 @@ impl Lab {
         let folder = self.0.path().join("lab/journal");
         std::fs::create_dir_all(&folder).expect("a folder");
         let header = Header {
-            record: "policy/2".into(),
+            record: "policy/3".into(),
             schema: 0,
             scene: 0,
             group: "lab".into(),
@@ -69,16 +69,20 @@ fn dialogue() -> Vec<Record> {
     let mut records = Vec::new();
     for (seq, reading) in [request, answer].into_iter().enumerate() {
         let seq = seq as u64 + 1;
+        let at = Time(seq * 1_000_000_000);
+        let began = Time(at.ns() - 500_000_000);
+        let asking = Asking { prompt: PromptId(seq - 1), began, ended: Some(began), whole: true };
         let heard = Heard {
             seq: UtteranceSeq(seq),
-            prompt: PromptId(seq - 1),
-            accepted: Time(seq),
-            readings: vec![(1.0, reading)],
-            unknown: String::new(),
-            gesture: None,
-            reaction_s: None,
+            asked: vec![asking],
+            typed: true,
+            onset: at,
+            end: at,
+            accepted: at,
+            meant: vec![Interpretation { weight: 1.0, question: Some(0), reading }],
+            ..Heard::default()
         };
-        let (cause, at) = (Cause::Utterance(heard), Time(seq * 1_000_000_000));
+        let cause = Cause::Utterance(heard);
         state = mind.step(&state, &cause, at);
         records.push(Record { cause, at, state: state.clone() });
     }

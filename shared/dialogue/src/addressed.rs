@@ -1,34 +1,72 @@
 //! Which question an answer is meant for, judged by when it began.
 //!
 //! An answer begins some time after the end of the question that it answers. How long people take
-//! is well described by a log-normal distribution, so its density at the time between a question's
-//! end and the answer's beginning says how well the two fit. The question that is addressed is then
-//! one more thing that the robot does not know, and the belief sums over it:
+//! is well described by a log-normal distribution. The question that is addressed is then one more
+//! thing that the robot does not know, and the belief sums over it:
 //! `P(o | D) = Σ_j w_j P(o | D, Q_j)` ([`Belief::update_mixture`](crate::Belief::update_mixture)).
+//!
+//! The weights are rates of competing events: at the moment when somebody begins to speak, each
+//! question that waits for its answer draws one at its hazard, `p f(t) / (1 − p F(t))` with the
+//! reaction time's density `f` and distribution `F` and the share `p` of questions that are answered
+//! at all. A density alone would give up a slow answer to the only question there is. A question
+//! that was answered draws second thoughts only, and one that is still being said hardly anything
+//! before its last words.
 
 use scene::Question;
 
-/// How long people take from the end of a question to the first sound of their answer.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ReactionTime {
-    /// Median, seconds; above 0.
-    pub median_s: f64,
-    /// Standard deviation of the logarithm; above 0.
-    pub log_sd: f64,
-    /// What passes before people can react at all, seconds: 0 with an open microphone, the click
-    /// and the pause after it with push-to-talk.
-    pub delay_s: f64,
+/// How an utterance is attributed to a question.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Attribution {
+    /// It counts for each question by its weight.
+    #[default]
+    Mixture,
+    /// It counts for the latest question that had been said when it began.
+    Onset,
+    /// It counts for the question that is pending when the recogniser's result arrives. What naive
+    /// systems do; kept to be compared with.
+    Naive,
 }
 
-/// A question as it was asked.
+/// A question as it was put to the person, once. Times are seconds on any one clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Asked {
     /// What was asked.
     pub question: Question,
-    /// When the robot began to say it, seconds on any clock.
+    /// When the robot began to say it.
     pub began_s: f64,
-    /// When it had been said, seconds on the same clock.
+    /// When it had been said, or was broken off. While it lasts: not before the utterance at hand.
     pub ended_s: f64,
+    /// Whether it was said to its end.
+    pub whole: bool,
+    /// When the answer to it had ended, if it was answered.
+    pub answered_s: Option<f64>,
+}
+
+impl Asked {
+    /// A question that was said to its end and has no answer yet.
+    pub fn whole(question: Question, began_s: f64, ended_s: f64) -> Self {
+        Self { question, began_s, ended_s, whole: true, answered_s: None }
+    }
+
+    /// Answers to it that begin at `onset_s`, per second.
+    fn rate(&self, onset_s: f64, rate: impl Fn(f64) -> f64) -> f64 {
+        let since = |then: f64| onset_s - then;
+        if onset_s < self.began_s {
+            0.0
+        } else if let Some(answered_s) = self.answered_s {
+            AGAIN * (-since(answered_s).max(0.0) / AGAIN_S).exp()
+        } else if onset_s < self.ended_s {
+            let share = since(self.began_s) / (self.ended_s - self.began_s);
+            EARLY * share.powi(4)
+        } else if self.whole {
+            rate(since(self.ended_s))
+        } else {
+            EARLY * (-since(self.ended_s) / BROKEN_OFF_S).exp()
+        }
+    }
 }
 
 /// How an utterance is divided among the questions that it may answer.
@@ -40,86 +78,120 @@ pub struct Addressed {
     pub none: f64,
 }
 
-impl Default for ReactionTime {
-    /// An open microphone.
-    fn default() -> Self {
-        Self { median_s: 0.9, log_sd: 0.55, delay_s: 0.0 }
-    }
-}
-
-/// Weight of "answers none of them", as a density per second: what a question must fit better than
-/// to be taken as addressed.
-const NONE_DENSITY: f64 = 0.002;
-/// Density of an answer that begins while the question is still being said: some people know by
-/// then what is asked.
-const EARLY_DENSITY: f64 = 0.02;
-
-impl ReactionTime {
-    /// Density at `seconds` after the question's end, per second; 0 before [`Self::delay_s`].
-    pub fn density(&self, seconds: f64) -> f64 {
-        let t = seconds - self.delay_s;
-        if t <= 0.0 {
-            return 0.0;
-        }
-        let z = (t / self.median_s).ln() / self.log_sd;
-        (-0.5 * z * z).exp() / (t * self.log_sd * (2.0 * std::f64::consts::PI).sqrt())
-    }
-}
+/// Utterances that answer no question, per second: a yes or no that is said to somebody else in the
+/// room, once in half an hour.
+const NONE: f64 = 0.0005;
+/// Answers just before a question's last word, per second; people know by then what is asked. What
+/// is asked stands at the end of the sentence, so the rate grows with the fourth power of the share
+/// that was said.
+const EARLY: f64 = 0.1;
+/// Seconds in which somebody who broke a question off still answers it.
+const BROKEN_OFF_S: f64 = 1.0;
+/// Second thoughts right after an answer, per second ("yes. No, wait."), and the seconds in which
+/// they become fewer.
+const AGAIN: f64 = 0.1;
+const AGAIN_S: f64 = 2.0;
 
 impl Addressed {
-    /// Divides an utterance that began at `onset_s` among the questions that had begun before it.
-    ///
-    /// Weights are in proportion to `density`, that of the person's reaction time, at the seconds
-    /// since each question's end ([`ReactionTime::density`], or what is known of the one person),
-    /// with a small one for an utterance that answers none, which takes all where no question fits.
-    pub fn of(asked: &[Asked], onset_s: f64, density: impl Fn(f64) -> f64) -> Self {
-        let weight = |asked: &Asked| {
-            if onset_s < asked.began_s {
-                0.0
-            } else if onset_s < asked.ended_s {
-                EARLY_DENSITY
-            } else {
-                density(onset_s - asked.ended_s)
-            }
-        };
-        let mut questions: Vec<f64> = asked.iter().map(weight).collect();
-        let sum = questions.iter().sum::<f64>() + NONE_DENSITY;
+    /// Divides an utterance that was spoken from `onset_s` on. `rate` is how many answers to a
+    /// question begin per second, so many seconds after its end, while it is unanswered
+    /// ([`Reaction::rate`](crate::person::Reaction::rate)).
+    pub fn of(asked: &[Asked], onset_s: f64, rate: impl Fn(f64) -> f64) -> Self {
+        let weights = asked.iter().map(|asked| asked.rate(onset_s, &rate)).collect();
+        Self::of_weights(weights, NONE)
+    }
+
+    /// Divides an utterance that was typed at `at_s`. Typed words are meant for the robot and answer
+    /// what is on the screen, where a question stands as soon as it is asked: one without an answer
+    /// if there is any, else the latest.
+    pub fn typed(asked: &[Asked], at_s: f64, rate: impl Fn(f64) -> f64) -> Self {
+        let open = |asked: &Asked| asked.answered_s.is_none() && asked.began_s <= at_s;
+        let weight = |asked: &Asked| if open(asked) { rate(at_s - asked.began_s) } else { 0.0 };
+        let weights: Vec<f64> = asked.iter().map(weight).collect();
+        if weights.iter().sum::<f64>() > 0.0 {
+            return Self::of_weights(weights, 0.0);
+        }
+        let begun = |at: &usize| asked[*at].began_s <= at_s;
+        let newest = (0..asked.len())
+            .filter(begun)
+            .max_by(|a, b| asked[*a].began_s.total_cmp(&asked[*b].began_s));
+        Self::only(newest, asked.len())
+    }
+
+    /// Gives an utterance to the latest question that had been said when it began.
+    pub fn latest_said(asked: &[Asked], onset_s: f64) -> Self {
+        let said = |at: &usize| asked[*at].whole && asked[*at].ended_s <= onset_s;
+        let newest = (0..asked.len())
+            .filter(said)
+            .max_by(|a, b| asked[*a].ended_s.total_cmp(&asked[*b].ended_s));
+        Self::only(newest, asked.len())
+    }
+
+    /// Gives an utterance to one question, or to none.
+    pub fn only(question: Option<usize>, of: usize) -> Self {
+        let weight = |at| if question == Some(at) { 1.0 } else { 0.0 };
+        let none = if question.is_some_and(|at| at < of) { 0.0 } else { 1.0 };
+        Self { questions: (0..of).map(weight).collect(), none }
+    }
+
+    fn of_weights(mut questions: Vec<f64>, none: f64) -> Self {
+        let sum = questions.iter().sum::<f64>() + none;
         questions.iter_mut().for_each(|weight| *weight /= sum);
-        Self { questions, none: NONE_DENSITY / sum }
+        Self { questions, none: none / sum }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Rng;
+    use crate::person::Reaction;
     use scene::ObjectId;
 
     fn asked(n: u16, began_s: f64, ended_s: f64) -> Asked {
-        Asked { question: Question::Point(ObjectId(n)), began_s, ended_s }
+        Asked::whole(Question::Point(ObjectId(n)), began_s, ended_s)
+    }
+
+    fn rate(seconds: f64) -> f64 {
+        Reaction::default().rate(seconds, 0.95)
     }
 
     fn addressed(asked: &[Asked], onset_s: f64) -> Addressed {
-        Addressed::of(asked, onset_s, |seconds| ReactionTime::default().density(seconds))
+        Addressed::of(asked, onset_s, rate)
     }
 
     #[test]
-    fn the_density_is_that_of_a_log_normal_distribution() {
-        let reaction = ReactionTime::default();
-        // 1 / (m σ √2π) at the median.
-        assert!((reaction.density(0.9) - 0.805_944).abs() < 1e-5, "{}", reaction.density(0.9));
-        assert_eq!((reaction.density(0.0), reaction.density(-1.0)), (0.0, 0.0));
-        let step = 0.001;
-        let sum: f64 = (0..60_000).map(|k| step * reaction.density(step * f64::from(k))).sum();
-        assert!((sum - 1.0).abs() < 1e-4, "{sum}");
-        let late = ReactionTime { delay_s: 1.0, ..reaction };
-        assert_eq!(late.density(1.9), reaction.density(1.9 - 1.0));
+    fn shares_are_a_distribution() {
+        let mut rng = Rng::new(3);
+        for _ in 0..2_000 {
+            let mut now = 0.0;
+            let mut some: Vec<Asked> = Vec::new();
+            for n in 0..rng.below(5) {
+                let began = now + 3.0 * rng.uniform();
+                now = began + 2.5 * rng.uniform();
+                let whole = rng.below(3) > 0;
+                let answered_s = (rng.below(3) == 0).then_some(now + rng.uniform());
+                some.push(Asked { whole, answered_s, ..asked(n as u16, began, now) });
+            }
+            let onset = 1.5 * now * rng.uniform();
+            for shares in [
+                addressed(&some, onset),
+                Addressed::typed(&some, onset, rate),
+                Addressed::latest_said(&some, onset),
+            ] {
+                let sum = shares.questions.iter().sum::<f64>() + shares.none;
+                assert!((sum - 1.0).abs() < 1e-12, "{some:?} at {onset}: {shares:?}");
+                for (asked, share) in some.iter().zip(&shares.questions) {
+                    assert!(onset >= asked.began_s || *share == 0.0, "{some:?} at {onset}");
+                }
+            }
+        }
     }
 
     #[test]
     fn a_prompt_answer_is_meant_for_the_question_before_it() {
-        let two = [asked(0, 0.0, 2.0), asked(1, 8.0, 10.0)];
-        let Addressed { questions, none } = addressed(&two, 10.9);
-        assert!((questions.iter().sum::<f64>() + none - 1.0).abs() < 1e-12);
+        let first = Asked { answered_s: Some(3.2), ..asked(0, 0.0, 2.0) };
+        let Addressed { questions, none } = addressed(&[first, asked(1, 8.0, 10.0)], 10.9);
         assert!(questions[1] > 0.99 && none < 0.01, "{questions:?} {none}");
     }
 
@@ -127,8 +199,22 @@ mod tests {
     #[test]
     fn an_answer_into_a_new_question_is_meant_for_the_old_one() {
         let two = [asked(0, 0.0, 2.0), asked(1, 2.8, 4.6)];
-        let addressed = addressed(&two, 3.0);
-        assert!(addressed.questions[0] > 0.95, "{addressed:?}");
+        assert!(addressed(&two, 3.2).questions[0] > 0.98, "{:?}", addressed(&two, 3.2));
+    }
+
+    #[test]
+    fn a_slow_answer_to_the_only_question_is_still_its_answer() {
+        assert!(addressed(&[asked(0, 0.0, 2.0)], 9.0).questions[0] > 0.8);
+    }
+
+    /// "Yes. … Yes!" while the next question begins.
+    #[test]
+    fn a_doubled_answer_is_not_an_answer_to_the_question_that_begins() {
+        let first = Asked { answered_s: Some(3.5), ..asked(0, 0.0, 2.0) };
+        let doubled = addressed(&[first, asked(1, 3.6, 5.4)], 4.2);
+        assert!(doubled.questions[0] > 0.95, "{doubled:?}");
+        let answer = addressed(&[first, asked(1, 3.6, 5.4)], 6.0);
+        assert!(answer.questions[1] > 0.95, "{answer:?}");
     }
 
     #[test]
@@ -137,6 +223,36 @@ mod tests {
         let later = addressed(&[asked(0, 5.0, 6.0)], 3.0);
         assert_eq!((later.questions[0], later.none), (0.0, 1.0));
         let long_after = addressed(&[asked(0, 0.0, 1.0)], 600.0);
-        assert!(long_after.none > 0.99, "{long_after:?}");
+        assert!(long_after.none > 0.9, "{long_after:?}");
+    }
+
+    #[test]
+    fn a_question_that_was_broken_off_is_answered_by_who_broke_it_off() {
+        let broken = Asked { whole: false, ..asked(1, 3.0, 4.0) };
+        let barge_in = addressed(&[broken], 3.95);
+        assert!(barge_in.questions[0] > 0.9, "{barge_in:?}");
+        let next = addressed(&[broken, asked(2, 6.0, 8.0)], 8.8);
+        assert!(next.questions[1] > 0.99, "{next:?}");
+    }
+
+    #[test]
+    fn typed_words_answer_what_waits_for_an_answer() {
+        let answered = Asked { answered_s: Some(1.0), ..asked(0, 0.0, 0.5) };
+        // A program answers within a millisecond.
+        let quick = Addressed::typed(&[answered, asked(1, 1.0, 1.0)], 1.001, rate);
+        assert_eq!(quick, Addressed::only(Some(1), 2));
+        let again = Addressed::typed(&[answered], 30.0, rate);
+        assert_eq!(again, Addressed::only(Some(0), 1));
+        let leisure = Addressed::typed(&[asked(0, 0.0, 1.0)], 500.0, rate);
+        assert_eq!(leisure, Addressed::only(Some(0), 1));
+        assert_eq!(Addressed::typed(&[], 1.0, rate).none, 1.0);
+    }
+
+    #[test]
+    fn the_simpler_rules_choose_one_question() {
+        let two = [asked(0, 0.0, 2.0), asked(1, 2.8, 4.6)];
+        assert_eq!(Addressed::latest_said(&two, 3.0), Addressed::only(Some(0), 2));
+        assert_eq!(Addressed::latest_said(&two, 5.0), Addressed::only(Some(1), 2));
+        assert_eq!(Addressed::latest_said(&two, 1.0), Addressed::only(None, 2));
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use scene::{AttributeId, ObjectId, Question, Scene, ValueId, WordId};
 
-use crate::Params;
+use crate::{Confusion, Params};
 
 /// What equations (4)–(7) need of a scene, attribute by attribute.
 ///
@@ -21,6 +21,7 @@ pub struct Model {
 
 #[derive(Clone, Debug, PartialEq)]
 struct Tables {
+    confusion: Confusion,
     columns: Vec<Column>,
     words: Vec<Word>,
     vocabulary: Vocabulary,
@@ -80,7 +81,8 @@ impl Model {
                 .map(|i| (scene.vocabulary_len(ObjectId::from(i)) as f64 + smoothing).ln())
                 .collect(),
         );
-        let mut tables = Tables { columns, words, vocabulary };
+        let confusion = Confusion::even(words.len());
+        let mut tables = Tables { confusion, columns, words, vocabulary };
         tables.find_what_splits();
         Self { params, objects, absent: false, tables: Arc::new(tables) }
     }
@@ -98,6 +100,17 @@ impl Model {
             let smoothing = self.params.alpha * self.tables.words.len() as f64;
             Arc::make_mut(&mut self.tables).add_unknown(smoothing.ln());
         }
+        self
+    }
+
+    /// The model with what is known of the words that are taken for one another.
+    ///
+    /// # Panics
+    /// If it is not about as many words as the scene has.
+    #[must_use]
+    pub fn with_confusion(mut self, confusion: Confusion) -> Self {
+        assert_eq!(confusion.words(), self.tables.words.len(), "about the scene's words");
+        Arc::make_mut(&mut self.tables).confusion = confusion;
         self
     }
 
@@ -235,6 +248,25 @@ impl Model {
                     *entry += factor - above;
                 }
             }
+        }
+        constant
+    }
+}
+
+impl Model {
+    /// As [`Model::add_log_word`] for a word that was said with `1 − doubt`, and else was one that
+    /// is taken for it: `ln ((1−d) P(w|D) + d Σ_u κ(u|w) P(u|D))`.
+    pub(crate) fn add_doubted_word(&self, word: WordId, doubt: f64, out: &mut [f64]) -> f64 {
+        let Vocabulary { least, above } = &self.tables.vocabulary;
+        let alpha = self.params.alpha;
+        let mut said = vec![alpha; out.len()];
+        for (u, share) in self.tables.confusion.said_instead(word, doubt) {
+            let own = |i: usize| self.has_word(ObjectId::from(i), u);
+            said.iter_mut().enumerate().filter(|(i, _)| own(*i)).for_each(|(_, s)| *s += share);
+        }
+        let constant = (1.0 + alpha).ln() - least;
+        for ((entry, said), above) in out.iter_mut().zip(said).zip(above) {
+            *entry += (said / (1.0 + alpha)).ln() - above;
         }
         constant
     }

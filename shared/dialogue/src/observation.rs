@@ -9,10 +9,15 @@
 //! | a value, question `which k` | [`OpenQuestion`] in place of that word's factor | section 7's future work |
 //! | yes or no, question `which k` | `1/3` each: no answer to it | extension |
 //! | excluded group | `ε` for an object that has all of its words, `1−ε` for others | extension |
+//! | word doubted by `d` | `(1−d) P(w∣D) + d Σ_u κ(u∣w) P(u∣D)`, `κ` of [`Confusion`](crate::Confusion) | extension |
+//! | answer or group doubted by `d` | `ε + d (1/2 − ε)` in place of `ε` | extension |
+//!
+//! A doubt is the probability that something else was said ([`scene::Doubt`]): what a recogniser
+//! misheard, what a person was not sure of.
 
 use scene::{AttributeId, ObjectId, Question, Reading, Response, ValueId, WordId};
 
-use crate::Model;
+use crate::{Model, Params};
 
 /// `ln P(l_b, l_r | D, Q_t, Q_v)` of eq. (1) for every hypothesis `D`, in the model's order.
 ///
@@ -31,12 +36,20 @@ pub fn log_likelihood(model: &Model, question: Question, reading: &Reading) -> V
 /// `ln Σ_j w_j P(o_j | D, Q_j)` for every hypothesis: what was heard, or which question it answers,
 /// is uncertain. None if there is nothing of weight.
 ///
+/// The weights are how probable it is that `o_j` was said, given the sound. A longer reading is a
+/// rarer observation than a shorter one whatever is wanted, so the factor of its words is taken
+/// relative to its mean over the hypotheses; else the shortest reading would always win. Answers
+/// need no such thing: as many can be given to one question as to another.
+///
 /// # Panics
 /// If a weight is negative or not finite, or anything is not about the model's scene.
 pub(crate) fn log_mixture(model: &Model, heard: &[(f64, Question, Reading)]) -> Option<Vec<f64>> {
     let rows = weighty(heard).map(|(weight, question, reading)| {
-        let mut log = log_likelihood(model, *question, reading);
-        log.iter_mut().for_each(|log| *log += weight.ln());
+        let mut log = vec![0.0; model.hypotheses()];
+        add_words(model, *question, reading, &mut log);
+        let mean = log.iter().map(|log| log.exp()).sum::<f64>() / log.len() as f64;
+        let constant = add_response(model, *question, reading, &mut log) + weight.ln() - mean.ln();
+        log.iter_mut().for_each(|log| *log += constant);
         log
     });
     rows.reduce(|mut mixture, row| {
@@ -69,10 +82,16 @@ fn log_add(a: f64, b: f64) -> f64 {
 pub(crate) fn weigh(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
     assert!(model.contains(question), "{question:?} is not about this scene");
     assert_eq!(log.len(), model.hypotheses(), "belief and model are of one scene");
-    let said = reading.excluded.iter().filter(|group| !group.is_empty());
-    let mut constant = add_base(model, question, reading, log);
-    constant += add_response(model, question, reading.response, log);
-    said.fold(constant, |constant, group| constant + add_excluded(model, group, log))
+    add_words(model, question, reading, log) + add_response(model, question, reading, log)
+}
+
+/// What was said of the object's own values.
+fn add_words(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
+    let constant = add_base(model, question, reading, log);
+    let said = reading.excluded.iter().enumerate().filter(|(_, group)| !group.is_empty());
+    said.fold(constant, |constant, (at, group)| {
+        constant + add_excluded(model, group, reading.doubt.of_group(at), log)
+    })
 }
 
 /// How a person answers "what is its k?": the value that the object has with `1 − ε`, each other
@@ -100,6 +119,13 @@ impl OpenQuestion {
             return Self { own: 1.0, other: 0.0, lacking: 1.0 };
         }
         Self { own: 1.0 - epsilon, other: epsilon / (values - 1.0), lacking: 1.0 / values }
+    }
+
+    /// The same where another value may have been named with probability `doubt`.
+    fn doubted(self, doubt: f64, values: usize) -> Self {
+        let any = 1.0 / values as f64;
+        let blend = |p: f64| if doubt > 0.0 { (1.0 - doubt) * p + doubt * any } else { p };
+        Self { own: blend(self.own), other: blend(self.other), lacking: self.lacking }
     }
 
     /// Probability of naming `v`, given an answer, of somebody who wants an object with that entry
@@ -133,18 +159,24 @@ fn add_base(model: &Model, question: Question, reading: &Reading, log: &mut [f64
     }
     let mut constant = model.params().p_l.ln();
     let answer = open_answer(model, question, &reading.base);
-    if let Some((k, v)) = answer {
-        constant += add_open(model, k, v, log);
-    }
     let answering = answer.map(|(k, v)| model.word(k, v));
-    for &word in reading.base.iter().filter(|&&word| Some(word) != answering) {
-        constant += model.add_log_word(word, log);
+    if let Some((k, v)) = answer {
+        let said = reading.base.iter().position(|word| Some(*word) == answering);
+        constant += add_open(model, k, v, reading.doubt.of_word(said.unwrap_or(0)), log);
+    }
+    for (at, &word) in reading.base.iter().enumerate() {
+        if Some(word) != answering {
+            constant += match reading.doubt.of_word(at) {
+                0.0 => model.add_log_word(word, log),
+                doubt => model.add_doubted_word(word, doubt, log),
+            };
+        }
     }
     constant
 }
 
-fn add_open(model: &Model, k: AttributeId, v: ValueId, log: &mut [f64]) -> f64 {
-    let open = OpenQuestion::new(model, k);
+fn add_open(model: &Model, k: AttributeId, v: ValueId, doubt: f64, log: &mut [f64]) -> f64 {
+    let open = OpenQuestion::new(model, k).doubted(doubt, model.values(k));
     let column = model.column(k);
     if column.iter().all(|entry| *entry == column[0]) {
         return open.answer(v, column[0]).ln();
@@ -161,9 +193,15 @@ fn add_open(model: &Model, k: AttributeId, v: ValueId, log: &mut [f64]) -> f64 {
     constant
 }
 
+/// An error rate of one half says nothing, and is what a doubt of 1 comes to.
+fn doubted(params: Params, doubt: f64) -> Params {
+    Params { epsilon: params.epsilon + doubt * (0.5 - params.epsilon), ..params }
+}
+
 /// Eq. (6) and (7).
-fn add_response(model: &Model, question: Question, response: Response, log: &mut [f64]) -> f64 {
-    let params = model.params();
+fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut [f64]) -> f64 {
+    let params = doubted(model.params(), reading.doubt.response);
+    let response = reading.response;
     let yes = match (question, response) {
         (Question::None | Question::Which(_), _) => return (1.0_f64 / 3.0).ln(),
         (_, Response::None) => return (1.0 - params.p_l).ln(),
@@ -202,9 +240,9 @@ fn add_response(model: &Model, question: Question, response: Response, log: &mut
 
 /// "Not the small white one": an error of the person's or of the listening is as likely as in an
 /// answer.
-fn add_excluded(model: &Model, group: &[WordId], log: &mut [f64]) -> f64 {
+fn add_excluded(model: &Model, group: &[WordId], doubt: f64, log: &mut [f64]) -> f64 {
     let ruled_out = |i: usize| group.iter().all(|&word| model.has_word(i.into(), word));
-    let epsilon = model.params().epsilon;
+    let epsilon = doubted(model.params(), doubt).epsilon;
     let constant = (1.0 - epsilon).ln();
     let factor = epsilon.ln() - constant;
     if (0..log.len()).all(ruled_out) {

@@ -11,7 +11,7 @@ mod joint;
 mod reaction;
 
 pub use joint::Joint;
-pub use reaction::Reaction;
+pub use reaction::{Reaction, SPOKEN, TYPED};
 
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,6 @@ pub struct Person {
     /// Questions that were answered and that were not, with those that the prior is worth.
     answered: f64,
     unanswered: f64,
-    reaction: Reaction,
 }
 
 /// How many questions the configured `p_l` is worth.
@@ -47,7 +46,6 @@ impl Person {
             log_errors: ERROR_RATES.iter().map(|rate| -STEEPNESS * distance(*rate)).collect(),
             answered: CONFIDENCE * params.p_l,
             unanswered: CONFIDENCE * (1.0 - params.p_l),
-            reaction: Reaction::default(),
         }
     }
 
@@ -92,16 +90,6 @@ impl Person {
             log_errors: self.error_probabilities().into_iter().map(log).collect(),
             ..self.clone()
         }
-    }
-
-    /// How long this person takes to react.
-    pub fn reaction(&self) -> &Reaction {
-        &self.reaction
-    }
-
-    /// Takes in that an answer began so many seconds after the question had ended.
-    pub fn see_reaction(&mut self, seconds: f64) {
-        self.reaction.see(seconds);
     }
 }
 

@@ -1,6 +1,7 @@
 //! How long speech takes: the robot's, the person's, and until it is recognised.
 
-use dialogue::{ReactionTime, Rng};
+use dialogue::Rng;
+use dialogue::person::SPOKEN;
 
 use crate::draw::{between, log_normal};
 
@@ -41,8 +42,9 @@ impl Voice {
 /// How people talk, and how long the recogniser takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pace {
-    /// From the end of a question to the answer's first sound.
-    pub reaction: ReactionTime,
+    /// From the end of a question to the answer's first sound: median, seconds, and standard
+    /// deviation of the logarithm.
+    pub reaction_s: (f64, f64),
     /// An answer of one word: median, seconds, and standard deviation of the logarithm.
     pub word_s: (f64, f64),
     /// Each further word, seconds.
@@ -54,7 +56,7 @@ pub struct Pace {
 impl Default for Pace {
     fn default() -> Self {
         Self {
-            reaction: ReactionTime::default(),
+            reaction_s: SPOKEN,
             word_s: (0.55, 0.35),
             further_word_s: 0.3,
             recogniser_s: (0.5, 1.5),
@@ -65,7 +67,7 @@ impl Default for Pace {
 impl Pace {
     /// Draws how long it takes to react, seconds.
     pub fn reaction_s(&self, rng: &mut Rng) -> f64 {
-        self.reaction.delay_s + log_normal(rng, self.reaction.median_s, self.reaction.log_sd)
+        log_normal(rng, self.reaction_s.0, self.reaction_s.1)
     }
 
     /// Draws how long a person takes to say so many words, seconds.
@@ -82,9 +84,10 @@ impl Pace {
     /// From a question's end to an answer of one word recognised, seconds, in expectation.
     pub fn mean_answer_s(&self) -> f64 {
         let mean = |median: f64, log_sd: f64| median * (0.5 * log_sd * log_sd).exp();
-        let reaction = self.reaction.delay_s + mean(self.reaction.median_s, self.reaction.log_sd);
         let (least, most) = self.recogniser_s;
-        reaction + mean(self.word_s.0, self.word_s.1) + 0.5 * (least + most)
+        mean(self.reaction_s.0, self.reaction_s.1)
+            + mean(self.word_s.0, self.word_s.1)
+            + 0.5 * (least + most)
     }
 }
 

@@ -57,7 +57,7 @@ impl WordSpotter {
             (false, true) => Response::No,
             _ => Response::None,
         };
-        Reading { base, response, excluded: Vec::new(), intent: Intent::Inform }
+        Reading { base, response, intent: Intent::Inform, ..Reading::default() }
     }
 }
 

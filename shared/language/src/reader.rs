@@ -90,6 +90,7 @@ impl Reader {
                 response: if intent == scene::Intent::None { Response::None } else { response },
                 excluded: meaning.excluded,
                 intent,
+                ..Reading::default()
             },
             unknown: unknown_words(&marks, &clauses),
         }

@@ -39,7 +39,8 @@ fn layout() -> String {
     describe::<protocol::Stamp>(&mut text);
     describe::<protocol::WireQuestion>(&mut text);
     describe::<protocol::WireGesture>(&mut text);
-    describe::<protocol::Hypothesis>(&mut text);
+    describe::<protocol::AskedQuestion>(&mut text);
+    describe::<protocol::WireHypothesis>(&mut text);
     describe::<protocol::WireReading>(&mut text);
     describe::<protocol::Utterance>(&mut text);
     describe::<protocol::Observation>(&mut text);
@@ -91,7 +92,8 @@ fn no_struct_has_padding() {
     assert_without_padding::<protocol::Stamp>();
     assert_without_padding::<protocol::WireQuestion>();
     assert_without_padding::<protocol::WireGesture>();
-    assert_without_padding::<protocol::Hypothesis>();
+    assert_without_padding::<protocol::AskedQuestion>();
+    assert_without_padding::<protocol::WireHypothesis>();
     assert_without_padding::<protocol::WireReading>();
     assert_without_padding::<protocol::Utterance>();
     assert_without_padding::<protocol::Observation>();

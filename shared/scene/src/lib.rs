@@ -30,4 +30,4 @@ pub use model::{Attribute, Object, Placement, Role, Scene, Value};
 pub use problem::Problem;
 pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};
-pub use reading::{Intent, Reading, Response};
+pub use reading::{Doubt, Intent, Reading, Response};

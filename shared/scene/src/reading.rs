@@ -53,4 +53,30 @@ pub struct Reading {
     pub excluded: Vec<Vec<WordId>>,
     /// What the person wants with it.
     pub intent: Intent,
+    /// How doubtful its parts are.
+    pub doubt: Doubt,
+}
+
+/// How doubtful it is that a reading's parts are what was said: for each the probability that it
+/// was something else, 0 (certain, as of typed words) to 1. What is missing at an end is certain.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Doubt {
+    /// By word of [`Reading::base`].
+    pub base: Vec<f64>,
+    /// By group of [`Reading::excluded`].
+    pub excluded: Vec<f64>,
+    /// Of [`Reading::response`].
+    pub response: f64,
+}
+
+impl Doubt {
+    /// Of word `at` of the base.
+    pub fn of_word(&self, at: usize) -> f64 {
+        self.base.get(at).copied().unwrap_or(0.0)
+    }
+
+    /// Of group `at` of the excluded ones.
+    pub fn of_group(&self, at: usize) -> f64 {
+        self.excluded.get(at).copied().unwrap_or(0.0)
+    }
 }

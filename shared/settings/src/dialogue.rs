@@ -1,6 +1,6 @@
 //! `dialogue.toml`: how the robot understands, believes and decides.
 
-use dialogue::{Actions, Costs, Fault, Mode, Params};
+use dialogue::{Actions, Attribution, Costs, Fault, Mode, Params};
 use language::Language;
 
 use crate::fields::Fields;
@@ -49,6 +49,16 @@ pub struct Turns {
     pub repeats_max: u32,
     /// Questions of one interaction after which the robot decides with what it knows.
     pub questions_max: u32,
+    /// How an utterance is attributed to a question.
+    pub attribution: Attribution,
+    /// Median of the time from a question's end to a spoken answer's first sound, seconds.
+    pub reaction_median_s: f64,
+    /// Standard deviation of that time's logarithm.
+    pub reaction_log_sd: f64,
+    /// Median of the time from a question's appearance to a typed answer, seconds.
+    pub typing_median_s: f64,
+    /// Standard deviation of that time's logarithm.
+    pub typing_log_sd: f64,
 }
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
@@ -104,6 +114,18 @@ fn turns(f: &mut Fields<'_>) -> Turns {
         response_window_s: f.number("response_window_s", 0.05..=600.0),
         repeats_max: f.whole("repeats_max", 0..=100),
         questions_max: f.whole("questions_max", 0..=1000),
+        attribution: f.choice(
+            "attribution",
+            &[
+                ("mixture", Attribution::Mixture),
+                ("onset", Attribution::Onset),
+                ("naive", Attribution::Naive),
+            ],
+        ),
+        reaction_median_s: f.number("reaction_median_s", 0.05..=60.0),
+        reaction_log_sd: f.number("reaction_log_sd", 0.05..=2.0),
+        typing_median_s: f.number("typing_median_s", 0.05..=60.0),
+        typing_log_sd: f.number("typing_log_sd", 0.05..=2.0),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::words;
 use crate::evidence::Asked;
-use crate::state::{Act, Prompt, State};
+use crate::state::{Act, Interaction, Prompt, State};
 use node::Time;
 use protocol::{ActKind, InteractionId, PickId, PromptId};
 use scene::{ObjectId, Question, Scene};
@@ -34,6 +34,7 @@ pub(super) fn ask(
     open.presentations += 1;
     let text = format!("{preface}{}", scene.phrase(question));
     if stands {
+        ask_anew(open, standing.prompt);
         let again =
             Act { presentation: standing.presentation + 1, ..keep_words(reasons, &standing) };
         set(state, Act { text, ..again });
@@ -41,7 +42,7 @@ pub(super) fn ask(
     }
     state.last_prompt = state.last_prompt.next();
     let asked = Asked::new(scene, question);
-    open.prompts.push(Prompt { id: state.last_prompt, asked, answered: false });
+    open.prompts.push(Prompt { id: state.last_prompt, asked, answered: None });
     let prompt = state.last_prompt;
     let kind = ActKind::Ask;
     set(state, Act { kind, prompt, presentation: 1, question, text, ..reasons });
@@ -94,9 +95,17 @@ pub(super) fn say(state: &mut State, text: &str, at: Time) {
 
 /// Says the standing words once more.
 pub(super) fn repeat(state: &mut State, at: Time) {
+    let prompt = state.act.prompt;
     if let Some(open) = &mut state.open {
         open.presentations += 1;
+        ask_anew(open, prompt);
     }
     let presentation = state.act.presentation + 1;
     set(state, Act { presentation, decided: at, utterance: state.applied, ..state.act.clone() });
+}
+
+/// A question that is asked again waits for its answer again.
+fn ask_anew(open: &mut Interaction, id: PromptId) {
+    let prompt = open.prompts.iter_mut().find(|prompt| prompt.id == id);
+    prompt.into_iter().for_each(|prompt| prompt.answered = None);
 }

@@ -1,13 +1,12 @@
 //! What an utterance says about the wanted object.
 
 use super::{Mind, posterior, words};
-use crate::evidence::{Asked, Evidence};
-use crate::state::{Heard, Interaction, State};
+use crate::state::{Heard, Held, Interaction, State};
 use node::Time;
 use scene::{Reading, Response};
 
 impl Mind {
-    /// Scores what was said against the question that was heard, and decides anew.
+    /// Scores what was said against the questions that it may answer, and decides anew.
     pub(super) fn inform(&mut self, state: &mut State, heard: &Heard, at: Time) {
         if state.open.is_none() {
             if !self.is_request(heard) {
@@ -21,18 +20,39 @@ impl Mind {
         if open.pick.is_some() {
             return;
         }
-        // An answer to an earlier question of this interaction still says what it says about that
-        // question; one to another interaction's says nothing.
-        let asked = open.prompts.iter().find(|prompt| prompt.id == heard.prompt);
-        let asked = asked.map_or(Asked::Nothing, |prompt| prompt.asked.clone());
-        let evidence = Evidence::new(&self.scene, asked, heard);
+        let to = self.addressed(state, heard);
+        let Some(open) = &mut state.open else { return };
+        let evidence = self.evidence(open, heard, &to);
         let mut believed = posterior::of(open);
         self.observe(&mut believed, &evidence);
         posterior::store(believed, open);
         open.keep(evidence);
-        self.note_answer(state, heard);
-        let preface = words::unknown(heard);
-        self.decide(state, heard.prompt, &preface, heard.seq, at);
+        self.note_answer(state, heard, &to);
+        self.hold(state, heard, at);
+        if !heard.more {
+            self.decide_held(state, at);
+        }
+    }
+
+    /// Notes what the next decision rests on. While the person speaks on it waits.
+    fn hold(&self, state: &mut State, heard: &Heard, at: Time) {
+        let Some(open) = &mut state.open else { return };
+        let before = open.held.take().unwrap_or(Held { since: at, ..Held::default() });
+        let remark = words::unknown(heard);
+        open.held = Some(Held {
+            heard: heard.heard_whole(),
+            preface: if remark.is_empty() { before.preface } else { remark },
+            utterance: heard.seq,
+            since: before.since,
+        });
+    }
+
+    /// Decides what was held back, if anything was.
+    pub(super) fn decide_held(&mut self, state: &mut State, at: Time) {
+        let held = state.open.as_mut().and_then(|open| open.held.take());
+        if let Some(Held { heard, preface, utterance, .. }) = held {
+            self.decide(state, heard, &preface, utterance, at);
+        }
     }
 
     fn open(&self, state: &mut State, heard: &Heard) {
@@ -48,25 +68,6 @@ impl Mind {
         state.open = Some(open);
     }
 
-    /// A question counts as answered once, however much is said after it.
-    fn note_answer(&self, state: &mut State, heard: &Heard) {
-        let says = |reading: &Reading| {
-            reading.response != Response::None
-                || !reading.base.is_empty()
-                || !reading.excluded.is_empty()
-        };
-        let open = state.open.as_mut();
-        let prompts = open.map_or(&mut [][..], |open| &mut open.prompts[..]);
-        let asked = prompts.iter_mut().find(|prompt| prompt.id == heard.prompt);
-        if let Some(prompt) = asked
-            && !prompt.answered
-            && heard.readings.iter().any(|(_, reading)| says(reading))
-        {
-            prompt.answered = true;
-            self.see_answer(state, true, heard.reaction_s);
-        }
-    }
-
     /// Where the person points, if gestures count.
     pub(super) fn pointed_at(&self, heard: &Heard) -> Option<[f64; 3]> {
         heard.gesture.filter(|_| self.pointing.is_some())
@@ -75,9 +76,9 @@ impl Mind {
     /// Whether the utterance can begin an interaction: nothing but answers means nothing where
     /// nothing was asked, and neither does a hand that does not count.
     fn is_request(&self, heard: &Heard) -> bool {
-        let only_answers = heard.readings.iter().all(|(_, reading)| is_answer(reading));
+        let only_answers = heard.meant.iter().all(|meant| is_answer(&meant.reading));
         let only_gesture = heard.gesture.is_some()
-            && heard.readings.iter().all(|(_, reading)| *reading == Reading::default());
+            && heard.meant.iter().all(|meant| meant.reading == Reading::default());
         self.pointed_at(heard).is_some() || !(only_answers || only_gesture)
     }
 }

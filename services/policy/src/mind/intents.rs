@@ -10,8 +10,7 @@ impl Mind {
     /// Takes in one utterance. Whatever it is, it counts as applied.
     pub(super) fn hear(&mut self, state: &mut State, heard: &Heard, at: Time) {
         state.applied = heard.seq;
-        let likeliest = heard.readings.iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        match likeliest.map_or(Intent::None, |(_, reading)| reading.intent) {
+        match self.wanted(state, heard) {
             Intent::Inform => self.inform(state, heard, at),
             // "That one over there" holds no word of the scene, but the hand does.
             Intent::None if self.pointed_at(heard).is_some() => self.inform(state, heard, at),
@@ -22,6 +21,22 @@ impl Mind {
             Intent::StartOver => self.start_over(state, heard.seq, at),
             Intent::AskBack => self.answer_back(state, at),
         }
+    }
+
+    /// What the person wants most likely, over all that the utterance may mean.
+    fn wanted(&self, state: &State, heard: &Heard) -> Intent {
+        let to = self.addressed(state, heard);
+        let mut shares: Vec<(Intent, f64)> = Vec::new();
+        for meant in &heard.meant {
+            let share = meant.weight * meant.question.map_or(to.none, |at| to.questions[at]);
+            match shares.iter_mut().find(|(intent, _)| *intent == meant.reading.intent) {
+                Some((_, sum)) => *sum += share,
+                None => shares.push((meant.reading.intent, share)),
+            }
+        }
+        let likeliest =
+            shares.into_iter().reduce(|best, next| if next.1 > best.1 { next } else { best });
+        likeliest.map_or(Intent::None, |(intent, _)| intent)
     }
 
     /// The arm has been stopped by the speech service already; here it is only said. An ordered

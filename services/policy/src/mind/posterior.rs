@@ -73,14 +73,10 @@ impl Mind {
         posterior
     }
 
-    /// Takes note that a question was answered, how soon if that is known, or was not although there
-    /// was time.
-    pub(super) fn see_answer(&self, state: &mut State, answered: bool, reaction_s: Option<f64>) {
+    /// Takes note that a question was answered, or was not although there was time.
+    pub(super) fn see_answer(&self, state: &mut State, answered: bool) {
         let Some(person) = self.person(state) else { return };
-        let see = |person: &mut Person| {
-            person.see_answer(answered);
-            reaction_s.into_iter().for_each(|seconds| person.see_reaction(seconds));
-        };
+        let see = |person: &mut Person| person.see_answer(answered);
         let joint = state.open.as_mut().and_then(|open| open.joint.as_mut());
         joint.into_iter().for_each(|joint| see(joint.person_mut()));
         see(state.person.insert(person));
@@ -90,7 +86,8 @@ impl Mind {
     /// who was seen to answer a few times, those in which this person does.
     pub(crate) fn response_window_s(&self, state: &State) -> f64 {
         let configured = self.turns.response_window_s;
-        let known = self.person(state).map(|person| *person.reaction());
+        // Somebody who was seen to type may type the next answer, too.
+        let known = state.timing.typed.or(state.timing.spoken);
         known.filter(|reaction| reaction.seen() >= ACQUAINTED).map_or(configured, |reaction| {
             reaction.patience_s().clamp(configured * WINDOW.0, configured * WINDOW.1)
         })

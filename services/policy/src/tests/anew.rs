@@ -194,7 +194,7 @@ fn where_nothing_is_left_the_interaction_ends() {
 #[test]
 fn a_word_that_nothing_had_counts_for_what_has_it_now() {
     let mut mind = mind();
-    let Cause::Utterance(told) = heard(1, PromptId(0), Reading::default()) else { unreachable!() };
+    let told = typed(1, PromptId(0), Reading::default());
     let cause = Cause::Utterance(Heard { unknown: "copper".to_owned(), ..told });
     let state = mind.step(&mind.first(), &cause, at(1));
     let copper =

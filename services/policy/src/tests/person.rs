@@ -137,10 +137,10 @@ fn the_response_window_follows_a_person_whose_answers_were_seen() {
         let mut mind = learning_mind();
         let mut state = asked(&mut mind);
         for seq in 2..2 + answers {
-            let Cause::Utterance(said) = heard(seq, state.act.prompt, answer(Response::Yes)) else {
-                unreachable!("it is an utterance")
-            };
-            let said = Heard { reaction_s: Some(reaction_s), ..said };
+            let mut said = typed(seq, state.act.prompt, answer(Response::Yes));
+            said.asked[0].began = Time(0);
+            said.onset = Time(0) + Span::from_s(reaction_s);
+            said.end = said.onset;
             state = mind.step(&state, &Cause::Utterance(said), at(seq));
             if state.act.kind != ActKind::Ask {
                 let again = heard(seq + 1_000, PromptId(0), Reading::default());
@@ -154,7 +154,7 @@ fn the_response_window_follows_a_person_whose_answers_were_seen() {
     };
     let configured = settings().dialogue.turns.response_window_s;
     assert_eq!(window(0.5, 3), configured, "not known yet");
-    assert!(window(0.5, 12) < 0.5 * configured, "{}", window(0.5, 12));
+    assert!(window(0.5, 12) < 0.6 * configured, "{}", window(0.5, 12));
     assert!(window(12.0, 12) > configured, "{}", window(12.0, 12));
     assert!(window(60.0, 40) <= 2.0 * configured);
 }

@@ -14,8 +14,7 @@ fn place(bowl: &str) -> [f64; 3] {
 
 /// An utterance with a gesture towards a bowl.
 fn shown(seq: u64, prompt: PromptId, reading: Reading, bowl: &str) -> Cause {
-    let Cause::Utterance(heard) = heard(seq, prompt, reading) else { unreachable!() };
-    Cause::Utterance(Heard { gesture: Some(place(bowl)), ..heard })
+    Cause::Utterance(Heard { gesture: Some(place(bowl)), ..typed(seq, prompt, reading) })
 }
 
 fn word(name: &str) -> WordId {

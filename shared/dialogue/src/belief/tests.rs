@@ -200,8 +200,14 @@ fn a_mixture_is_the_sum_of_its_hypotheses() {
         let mut expected = vec![0.0; 12];
         for (weight, question, reading) in &heard {
             let likelihood = log_likelihood(&model, *question, reading);
+            // Without an answer it is a third of the factor of the words.
+            let words = Reading { response: Response::None, ..reading.clone() };
+            let open = matches!(question, Question::Which(_));
+            let asked = if open { *question } else { Question::None };
+            let words = log_likelihood(&model, asked, &words);
+            let mean = words.iter().map(|log| log.exp()).sum::<f64>() / 12.0;
             for (sum, log) in expected.iter_mut().zip(likelihood) {
-                *sum += weight * log.exp();
+                *sum += weight * log.exp() / mean;
             }
         }
         let expected = Belief::from_probabilities(&expected).unwrap();

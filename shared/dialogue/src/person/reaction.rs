@@ -18,23 +18,39 @@ pub struct Reaction {
 }
 
 /// Median of people's reaction to a spoken question, seconds, and the deviation of its logarithm.
-const MEDIAN_S: f64 = 0.9;
-const DEVIATION: f64 = 0.55;
+pub const SPOKEN: (f64, f64) = (0.9, 0.55);
+/// The same of typed answers, from when the question is on the screen. Judged, not measured.
+pub const TYPED: (f64, f64) = (3.0, 0.9);
 /// Shape of the prior; its count is as large. Worth a handful of times seen.
 const SHAPE: f64 = 3.0;
 /// `Γ(3.5) / Γ(3)`.
 const GAMMA_RATIO: f64 = 1.661_675_445_222_153_8;
+/// Nobody is more regular than this: the least spread of the logarithm.
+const SPREAD_MIN: f64 = 0.1;
+/// Even of the most willing, some questions stay unanswered.
+const ANSWERED_MAX: f64 = 0.999;
 /// Times are cut off here: nobody reacts within, and typing at leisure is no reaction.
 const SECONDS: std::ops::RangeInclusive<f64> = 0.05..=60.0;
 
+/// Times of one person that are remembered in full: beyond it the latest of them count more than
+/// the earliest.
+const SEEN_MAX: f64 = 200.0;
+
 impl Default for Reaction {
+    /// People who speak.
     fn default() -> Self {
-        let scale = DEVIATION * DEVIATION * (SHAPE - 1.0);
-        Self { mean: MEDIAN_S.ln(), count: SHAPE, shape: SHAPE, scale }
+        Self::new(SPOKEN.0, SPOKEN.1)
     }
 }
 
 impl Reaction {
+    /// What is known of people in general: median, seconds, and standard deviation of the
+    /// logarithm, both above 0.
+    pub fn new(median_s: f64, log_sd: f64) -> Self {
+        let scale = log_sd * log_sd * (SHAPE - 1.0);
+        Self { mean: median_s.ln(), count: SHAPE, shape: SHAPE, scale }
+    }
+
     /// Takes in a reaction time, seconds.
     pub fn see(&mut self, seconds: f64) {
         if !seconds.is_finite() {
@@ -44,8 +60,13 @@ impl Reaction {
         let surprise = log - self.mean;
         self.scale += 0.5 * self.count / (self.count + 1.0) * surprise * surprise;
         self.mean += surprise / (self.count + 1.0);
-        self.count += 1.0;
-        self.shape += 0.5;
+        if self.count < SHAPE + SEEN_MAX {
+            self.count += 1.0;
+            self.shape += 0.5;
+        } else {
+            // As if one that was seen were forgotten.
+            self.scale *= self.shape / (self.shape + 0.5);
+        }
     }
 
     /// How many times were taken in.
@@ -73,6 +94,22 @@ impl Reaction {
             - seconds.ln()
     }
 
+    /// Probability that a person who answers has begun to within `seconds`.
+    pub fn share_begun(&self, seconds: f64) -> f64 {
+        if seconds <= 0.0 {
+            return 0.0;
+        }
+        let t = (seconds.ln() - self.mean) / self.spread();
+        0.5 + 0.5 * t.signum() * student_within(t.abs(), (2.0 * self.shape).round() as u32)
+    }
+
+    /// Answers that begin per second, `seconds` after a question that has not been answered yet:
+    /// `p f(t) / (1 − p F(t))` where a share `p` of questions is answered at all.
+    pub fn rate(&self, seconds: f64, answered: f64) -> f64 {
+        let (soonest, answered) = (seconds.max(*SECONDS.start()), answered.min(ANSWERED_MAX));
+        answered * self.log_density(soonest).exp() / (1.0 - answered * self.share_begun(soonest))
+    }
+
     /// Seconds within which all but a few in a thousand reactions begin: three spreads, for a
     /// distribution whose tails are a little heavier than normal.
     pub fn patience_s(&self) -> f64 {
@@ -80,17 +117,35 @@ impl Reaction {
     }
 
     fn spread(&self) -> f64 {
-        (self.scale * (self.count + 1.0) / (self.shape * self.count)).sqrt()
+        (self.scale * (self.count + 1.0) / (self.shape * self.count)).sqrt().max(SPREAD_MIN)
     }
 
     /// `Γ(a + ½) / Γ(a)` for the shape, which grows in halves from [`SHAPE`]: with `R(a)` for it,
     /// `R(a + ½) = a / R(a)`.
     fn gamma_ratio(&self) -> f64 {
         let steps = (2.0 * (self.shape - SHAPE)).round() as u32;
-        if steps > 1_000 {
-            // The ratio tends to √a; the next term of the series is exact enough here.
-            return self.shape.sqrt() * (1.0 - 0.125 / self.shape);
-        }
         (0..steps).fold(GAMMA_RATIO, |ratio, step| (SHAPE + 0.5 * f64::from(step)) / ratio)
+    }
+}
+
+/// `P(|T| ≤ t)` of Student's distribution with `freedom` degrees: Abramowitz and Stegun, 26.7.3 and
+/// 26.7.4, finite sums in the angle `atan(t / √ν)`.
+fn student_within(t: f64, freedom: u32) -> f64 {
+    let angle = (t / f64::from(freedom).sqrt()).atan();
+    let (sin, cos) = angle.sin_cos();
+    let odd = freedom % 2 == 1;
+    let (mut term, mut sum) = (if odd { cos } else { 1.0 }, 0.0);
+    let mut k = if odd { 3 } else { 2 };
+    while k <= freedom {
+        sum += term;
+        term *= cos * cos * f64::from(k - 1) / f64::from(k);
+        k += 2;
+    }
+    if !odd {
+        sin * sum
+    } else if freedom == 1 {
+        2.0 * angle / std::f64::consts::PI
+    } else {
+        2.0 / std::f64::consts::PI * (angle + sin * sum)
     }
 }

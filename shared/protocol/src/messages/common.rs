@@ -48,10 +48,33 @@ impl TryFrom<WireQuestion> for Question {
     }
 }
 
-pub(super) fn checked_weight(weight: f64) -> Result<f64, WireError> {
-    if weight.is_finite() && (0.0..=1.0 + 1e-9).contains(&weight) {
-        Ok(weight)
+wire_struct! {
+    /// A question as it was put to the person: one presentation of a prompt.
+    AskedQuestion = "AskedQuestion" nests [WireQuestion] {
+        /// [`crate::PromptId`].
+        prompt: u64,
+        /// [`scene::Scene::key`] of the scene that it was asked about.
+        scene: u64,
+        /// When its sound began.
+        began_ns: u64,
+        /// When its sound ended or was broken off; 0 while it lasts.
+        ended_ns: u64,
+        /// What was asked.
+        question: WireQuestion,
+        /// Which presentation of the prompt.
+        presentation: u32,
+        /// 1 where it was said to its end.
+        whole: u8,
+        /// Zero.
+        reserved: [u8; 3],
+    }
+}
+
+/// A number from 0 to 1; `what` names it in the error.
+pub(super) fn checked_share(what: &'static str, share: f64) -> Result<f64, WireError> {
+    if share.is_finite() && (0.0..=1.0 + 1e-9).contains(&share) {
+        Ok(share)
     } else {
-        Err(WireError::new("weight", weight.to_bits() as u32))
+        Err(WireError::new(what, (share as f32).to_bits()))
     }
 }

@@ -13,7 +13,7 @@ mod speech;
 mod utterance;
 
 pub use arm::*;
-pub use common::{Stamp, WireQuestion};
+pub use common::{AskedQuestion, Stamp, WireQuestion};
 pub use gesture::{POINTED_AT_MAX_M, WireGesture, is_somewhere};
 pub use observation::*;
 pub use policy::*;

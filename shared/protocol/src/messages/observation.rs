@@ -1,25 +1,45 @@
 //! What an utterance was understood to say.
 
-use crate::messages::common::{WireQuestion, checked_weight};
+use crate::messages::common::{AskedQuestion, checked_share};
 use crate::messages::gesture::WireGesture;
-use crate::messages::utterance::HYPOTHESES_MAX;
+use crate::messages::utterance::ASKED_MAX;
 use crate::schema::wire_struct;
 use crate::text::FixedText;
 use crate::wire::{self, WireError};
 use iceoryx2::prelude::ZeroCopySend;
-use scene::{Reading, WordId};
+use scene::{Doubt, Reading, WordId};
+use serde::{Deserialize, Serialize};
 
+/// Readings of one utterance, for all questions together.
+pub const READINGS_MAX: usize = 32;
 /// Scene words of one reading.
 pub const BASE_WORDS_MAX: usize = 32;
 /// Excluded groups of one reading.
 pub const EXCLUDED_GROUPS_MAX: usize = 8;
 /// Words of one excluded group.
 pub const EXCLUDED_WORDS_MAX: usize = 6;
+/// [`WireReading::question`] of a reading that answers no question.
+pub const NO_QUESTION: u8 = u8::MAX;
 wire_struct! {
     /// A [`Reading`] on the wire.
     WireReading = "Reading" {
-        /// Probability among the readings; they sum to 1.
+        /// Probability among the readings for the same question; they sum to 1.
         weight: f64,
+        /// By word of `base`: probability that it was not said.
+        base_doubt: [f32; BASE_WORDS_MAX],
+        /// By excluded group: probability that it was not meant.
+        excluded_doubt: [f32; EXCLUDED_GROUPS_MAX],
+        /// Probability that the response was not given.
+        response_doubt: f32,
+        /// [`WordId`]s.
+        base: [u16; BASE_WORDS_MAX],
+        /// [`WordId`]s by group.
+        excluded: [[u16; EXCLUDED_WORDS_MAX]; EXCLUDED_GROUPS_MAX],
+        /// Used words of each excluded group.
+        excluded_len: [u8; EXCLUDED_GROUPS_MAX],
+        /// The question that it is the answer to if the utterance answers that one: its place in
+        /// the observation's `asked`, or [`NO_QUESTION`].
+        question: u8,
         /// [`scene::Response`]: 0 none, 1 yes, 2 no.
         response: u8,
         /// [`scene::Intent`], in its order.
@@ -28,29 +48,39 @@ wire_struct! {
         base_count: u8,
         /// Used entries of `excluded`.
         excluded_count: u8,
-        /// Used words of each excluded group.
-        excluded_len: [u8; EXCLUDED_GROUPS_MAX],
         /// Zero.
-        reserved: [u8; 4],
-        /// [`WordId`]s.
-        base: [u16; BASE_WORDS_MAX],
-        /// [`WordId`]s by group.
-        excluded: [[u16; EXCLUDED_WORDS_MAX]; EXCLUDED_GROUPS_MAX],
+        reserved: [u8; 7],
     }
 }
 
+/// What an utterance may mean if it answers a certain question.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Interpretation {
+    /// Probability among those for the same question.
+    pub weight: f64,
+    /// The question's place among those asked; none for an answer to none of them.
+    pub question: Option<usize>,
+    /// What it says then.
+    pub reading: Reading,
+}
+
 impl WireReading {
-    /// The reading with its weight; words beyond the bounds are left out, and the caller told.
-    pub fn new(reading: &Reading, weight: f64) -> (Self, Fits) {
+    /// The interpretation on the wire; words beyond the bounds are left out, and the caller told.
+    pub fn new(interpretation: &Interpretation) -> (Self, Fits) {
+        let Interpretation { weight, question, reading } = interpretation;
         let mut wire = Self {
-            weight,
+            weight: *weight,
+            question: question.map_or(NO_QUESTION, |place| place as u8),
             response: wire::response_code(reading.response),
             intent: wire::intent_code(reading.intent),
             base_count: reading.base.len().min(BASE_WORDS_MAX) as u8,
             excluded_count: reading.excluded.len().min(EXCLUDED_GROUPS_MAX) as u8,
+            response_doubt: reading.doubt.response as f32,
             ..Self::default()
         };
         copy_words(&mut wire.base, &reading.base);
+        copy_doubts(&mut wire.base_doubt, &reading.doubt.base);
+        copy_doubts(&mut wire.excluded_doubt, &reading.doubt.excluded);
         let mut fits =
             reading.base.len() <= BASE_WORDS_MAX && reading.excluded.len() <= EXCLUDED_GROUPS_MAX;
         for (i, group) in reading.excluded.iter().take(EXCLUDED_GROUPS_MAX).enumerate() {
@@ -60,29 +90,55 @@ impl WireReading {
         (wire, if fits { Fits::Whole } else { Fits::Cut })
     }
 
-    /// The reading and its weight. `words` is `|V|` of the scene.
+    /// What it stands for. `words` is `|V|` of the scene, `asked` the number of questions.
     ///
     /// # Errors
-    /// Counts, codes or words that make no sense in such a scene.
-    pub fn reading(&self, words: usize) -> Result<(f64, Reading), WireError> {
+    /// Counts, codes, doubts, questions or words that make no sense then.
+    pub fn interpretation(&self, words: usize, asked: usize) -> Result<Interpretation, WireError> {
+        let question = match self.question {
+            NO_QUESTION => None,
+            place if usize::from(place) < asked => Some(usize::from(place)),
+            place => return Err(WireError::new("question", place.into())),
+        };
+        let reading = self.reading(words)?;
+        Ok(Interpretation { weight: checked_share("weight", self.weight)?, question, reading })
+    }
+
+    fn reading(&self, words: usize) -> Result<Reading, WireError> {
         let base = checked_words(&self.base, self.base_count, words)?;
         let groups = self
             .excluded
             .get(..usize::from(self.excluded_count))
             .ok_or(WireError::new("excluded count", self.excluded_count.into()))?;
-        let excluded = groups
+        let excluded: Vec<Vec<WordId>> = groups
             .iter()
             .zip(self.excluded_len)
             .map(|(group, len)| checked_words(group, len, words))
             .collect::<Result<_, _>>()?;
-        let reading = Reading {
+        let doubt = Doubt {
+            base: doubts(&self.base_doubt, base.len())?,
+            excluded: doubts(&self.excluded_doubt, excluded.len())?,
+            response: checked_share("doubt", self.response_doubt.into())?,
+        };
+        Ok(Reading {
             base,
             excluded,
             response: wire::response_from(self.response)?,
             intent: wire::intent_from(self.intent)?,
-        };
-        Ok((checked_weight(self.weight)?, reading))
+            doubt,
+        })
     }
+}
+
+fn copy_doubts(slots: &mut [f32], doubts: &[f64]) {
+    slots.iter_mut().zip(doubts).for_each(|(slot, doubt)| *slot = *doubt as f32);
+}
+
+/// The doubts of the used entries, up to the last that is one.
+fn doubts(slots: &[f32], used: usize) -> Result<Vec<f64>, WireError> {
+    let used = &slots[..used.min(slots.len())];
+    let known = used.iter().rposition(|doubt| *doubt != 0.0).map_or(0, |last| last + 1);
+    used[..known].iter().map(|doubt| checked_share("doubt", f64::from(*doubt))).collect()
 }
 
 /// Whether everything fitted into a fixed layout.
@@ -113,13 +169,11 @@ fn checked_words(slots: &[u16], count: u8, known: usize) -> Result<Vec<WordId>, 
 
 wire_struct! {
     /// What an utterance was understood to say. Grounding to policy, one for each utterance.
-    Observation = "Observation" nests [WireReading, WireQuestion, WireGesture] {
+    Observation = "Observation" nests [WireReading, AskedQuestion, WireGesture] {
         /// The utterance's [`UtteranceSeq`].
         seq: u64,
         /// Of the utterance.
-        heard_prompt: u64,
-        /// Of the utterance.
-        heard_question: WireQuestion,
+        asked: [AskedQuestion; ASKED_MAX],
         /// Of the utterance.
         gesture: WireGesture,
         /// [`scene::Scene::key`] of the scene that it was read with.
@@ -127,30 +181,47 @@ wire_struct! {
         /// Of the utterance.
         onset_ns: u64,
         /// Of the utterance.
+        end_ns: u64,
+        /// Of the utterance.
         accepted_ns: u64,
         /// When it was read.
         grounded_ns: u64,
         /// How many of `readings` are used.
         reading_count: u8,
+        /// How many of `asked` are used.
+        asked_count: u8,
+        /// [`crate::Source`] of the utterance.
+        source: u8,
         /// Zero.
-        reserved: [u8; 7],
-        /// One reading per hypothesis, in its order.
-        readings: [WireReading; HYPOTHESES_MAX],
+        reserved: [u8; 5],
+        /// What it may mean: for each question asked and for none, most likely first.
+        readings: [WireReading; READINGS_MAX],
         /// A word that the scene does not have, for the robot's reply; may be empty.
         unknown: FixedText<60>,
     }
 }
 
 impl Observation {
-    /// The readings with their weights. `words` is `|V|` of the scene.
+    /// What the utterance may mean. `words` is `|V|` of the scene.
     ///
     /// # Errors
-    /// As [`WireReading::reading`]; or none or too many readings.
-    pub fn readings(&self, words: usize) -> Result<Vec<(f64, Reading)>, WireError> {
-        let count = usize::from(self.reading_count);
+    /// As [`WireReading::interpretation`]; or none or too many.
+    pub fn interpretations(&self, words: usize) -> Result<Vec<Interpretation>, WireError> {
+        let (count, asked) = (usize::from(self.reading_count), self.asked()?.len());
         match self.readings.get(..count) {
-            Some(used) if count > 0 => used.iter().map(|r| r.reading(words)).collect(),
+            Some(used) if count > 0 => {
+                used.iter().map(|reading| reading.interpretation(words, asked)).collect()
+            }
             _ => Err(WireError::new("reading count", self.reading_count.into())),
         }
+    }
+
+    /// The questions that the utterance may answer, newest first.
+    ///
+    /// # Errors
+    /// A count that makes no sense.
+    pub fn asked(&self) -> Result<&[AskedQuestion], WireError> {
+        let asked = self.asked.get(..usize::from(self.asked_count));
+        asked.ok_or(WireError::new("asked count", self.asked_count.into()))
     }
 }

@@ -1,6 +1,6 @@
 //! An accepted utterance.
 
-use crate::messages::common::{WireQuestion, checked_weight};
+use crate::messages::common::{AskedQuestion, checked_share};
 use crate::messages::gesture::WireGesture;
 use crate::schema::wire_struct;
 use crate::text::{FixedText, TextTooLong};
@@ -11,6 +11,10 @@ use iceoryx2::prelude::ZeroCopySend;
 pub const UTTERANCE_BYTES_MAX: usize = 16_380;
 /// Hypotheses of one utterance.
 pub const HYPOTHESES_MAX: usize = 5;
+/// Words of one hypothesis whose confidence is told.
+pub const CONFIDENCES_MAX: usize = 32;
+/// Presentations of questions that an utterance may answer.
+pub const ASKED_MAX: usize = 4;
 wire_enum! {
     /// Where an utterance came from.
     Source {
@@ -28,29 +32,39 @@ wire_enum! {
 }
 
 wire_struct! {
-    /// A hypothesis: where its words lie in the utterance's text, and how likely it is.
-    Hypothesis = "Hypothesis" {
+    /// A [`Hypothesis`] on the wire: where its words lie in the utterance's text, and how sure it is.
+    WireHypothesis = "Hypothesis" {
         /// First byte.
         start: u32,
         /// Bytes.
         len: u32,
         /// Probability among the hypotheses; they sum to 1.
         weight: f64,
+        /// How sure each word is, words being what blanks separate: 0 (not said) to 255 (certain).
+        /// Of words beyond these nothing is known.
+        confidence: [u8; CONFIDENCES_MAX],
     }
+}
+
+/// What an utterance may have said.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Hypothesis<'a> {
+    /// The words.
+    pub text: &'a str,
+    /// Probability among the hypotheses.
+    pub weight: f64,
+    /// How sure each blank-separated word is, 0 to 1. Words beyond the end are certain.
+    pub confidence: Vec<f32>,
 }
 
 wire_struct! {
     /// An accepted utterance. Speech to grounding.
-    Utterance = "Utterance" nests [WireQuestion, WireGesture, Hypothesis] {
+    Utterance = "Utterance" nests [AskedQuestion, WireGesture, WireHypothesis] {
         /// [`UtteranceSeq`].
         seq: u64,
-        /// [`PromptId`] of the last question whose presentation had ended when the person began
-        /// to speak.
-        heard_prompt: u64,
-        /// That question.
-        heard_question: WireQuestion,
-        /// [`scene::Scene::key`] of the scene that it was asked about.
-        heard_scene: u64,
+        /// The latest questions whose sound had begun when the utterance was accepted, newest
+        /// first.
+        asked: [AskedQuestion; ASKED_MAX],
         /// Where the person points, if anywhere.
         gesture: WireGesture,
         /// When the person began to speak or type.
@@ -63,10 +77,12 @@ wire_struct! {
         source: u8,
         /// How many of `hypotheses` are used; the first is the best. 0 for a gesture without words.
         hypothesis_count: u8,
+        /// How many of `asked` are used.
+        asked_count: u8,
         /// Zero.
-        reserved: [u8; 6],
+        reserved: [u8; 5],
         /// What was heard, most likely first.
-        hypotheses: [Hypothesis; HYPOTHESES_MAX],
+        hypotheses: [WireHypothesis; HYPOTHESES_MAX],
         /// The text of all hypotheses, one after another.
         text: FixedText<UTTERANCE_BYTES_MAX>,
     }
@@ -77,25 +93,26 @@ impl Utterance {
     ///
     /// # Errors
     /// Their texts together are longer than [`UTTERANCE_BYTES_MAX`].
-    pub fn set_hypotheses(&mut self, hypotheses: &[(String, f64)]) -> Result<(), TextTooLong> {
-        let used = &hypotheses[..hypotheses.len().min(HYPOTHESES_MAX)];
-        let total: f64 = used.iter().map(|(_, weight)| weight).sum();
+    pub fn set_hypotheses(&mut self, heard: &[Hypothesis<'_>]) -> Result<(), TextTooLong> {
+        let used = &heard[..heard.len().min(HYPOTHESES_MAX)];
+        let total: f64 = used.iter().map(|heard| heard.weight).sum();
         let mut text = String::new();
-        for (slot, (words, weight)) in self.hypotheses.iter_mut().zip(used) {
-            let (start, len) = (text.len() as u32, words.len() as u32);
-            *slot = Hypothesis { start, len, weight: weight / total };
-            text.push_str(words);
+        for (slot, heard) in self.hypotheses.iter_mut().zip(used) {
+            let (start, len) = (text.len() as u32, heard.text.len() as u32);
+            let confidence = confidence_codes(&heard.confidence);
+            *slot = WireHypothesis { start, len, weight: heard.weight / total, confidence };
+            text.push_str(heard.text);
         }
         self.hypothesis_count = used.len() as u8;
         self.text = FixedText::new(&text)?;
         Ok(())
     }
 
-    /// The hypotheses with their weights, most likely first.
+    /// The hypotheses, most likely first.
     ///
     /// # Errors
     /// Counts, spans, weights or bytes that make no sense.
-    pub fn hypotheses(&self) -> Result<Vec<(&str, f64)>, WireError> {
+    pub fn hypotheses(&self) -> Result<Vec<Hypothesis<'_>>, WireError> {
         let count = usize::from(self.hypothesis_count);
         let used = self
             .hypotheses
@@ -106,10 +123,41 @@ impl Utterance {
             .map(|h| {
                 let end = h.start.saturating_add(h.len) as usize;
                 let words = text.get(h.start as usize..end);
-                let words = words.ok_or(WireError::new("hypothesis span", h.start))?;
-                let weight = checked_weight(h.weight)?;
-                Ok((words, weight))
+                let text = words.ok_or(WireError::new("hypothesis span", h.start))?;
+                let weight = checked_share("weight", h.weight)?;
+                Ok(Hypothesis { text, weight, confidence: confidences(&h.confidence) })
             })
             .collect()
     }
+
+    /// Sets the questions that it may answer, newest first; those beyond [`ASKED_MAX`] are left out.
+    pub fn set_asked(&mut self, asked: &[AskedQuestion]) {
+        let used = self.asked.iter_mut().zip(asked);
+        self.asked_count = used.map(|(slot, asked)| *slot = *asked).count() as u8;
+    }
+
+    /// The questions that it may answer, newest first.
+    ///
+    /// # Errors
+    /// A count that makes no sense.
+    pub fn asked(&self) -> Result<&[AskedQuestion], WireError> {
+        let asked = self.asked.get(..usize::from(self.asked_count));
+        asked.ok_or(WireError::new("asked count", self.asked_count.into()))
+    }
+}
+
+const CERTAIN: u8 = u8::MAX;
+
+fn confidence_codes(confidence: &[f32]) -> [u8; CONFIDENCES_MAX] {
+    let mut codes = [CERTAIN; CONFIDENCES_MAX];
+    for (code, confidence) in codes.iter_mut().zip(confidence) {
+        *code = (confidence.clamp(0.0, 1.0) * f32::from(CERTAIN)).round() as u8;
+    }
+    codes
+}
+
+/// The confidences up to the last word that is not certain.
+fn confidences(codes: &[u8; CONFIDENCES_MAX]) -> Vec<f32> {
+    let known = codes.iter().rposition(|code| *code != CERTAIN).map_or(0, |last| last + 1);
+    codes[..known].iter().map(|code| f32::from(*code) / f32::from(CERTAIN)).collect()
 }

@@ -16,7 +16,7 @@ mod rules;
 mod talk;
 
 pub use person::Talker;
-pub use rules::{Attribution, Rules, UnknownRule};
+pub use rules::{Rules, UnknownRule};
 
 use crate::draw::{Stream, stream};
 use crate::interaction::Room;

@@ -2,17 +2,7 @@
 
 use std::fmt;
 
-/// Which question an answer counts for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Attribution {
-    /// The one that is pending when the recogniser's result arrives.
-    Naive,
-    /// The latest that had been said when the answer began.
-    Onset,
-    /// Each by how well the time between its end and the answer's beginning fits people's reaction
-    /// times ([`dialogue::Addressed`]).
-    Mixture,
-}
+use dialogue::Attribution;
 
 /// How the robot takes turns.
 #[derive(Clone, Copy, Debug, PartialEq)]

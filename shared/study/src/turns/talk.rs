@@ -1,10 +1,11 @@
 //! The robot's side of a dialogue in real time.
 
-use dialogue::{Action, Addressed, Answer, Asked, Posterior, ReactionTime, Rng};
+use dialogue::person::Reaction;
+use dialogue::{Action, Addressed, Answer, Asked, Attribution, Posterior, Rng};
 use scene::Question;
 
 use super::person::{Person, Talker, Utterance};
-use super::rules::{Attribution, Rules};
+use super::rules::Rules;
 use crate::draw::log_normal;
 use crate::interaction::{End, Outcome, Room};
 use crate::memo::Memo;
@@ -22,11 +23,12 @@ pub(super) fn talk(
     rng: &mut Rng,
 ) -> Outcome {
     let person = Person::new(room, *talker, rules.open, rng);
-    let reaction = ReactionTime { delay_s: person.delay_s(), ..room.pace.reaction };
+    let (median_s, log_sd) = room.pace.reaction_s;
     let mut talk = Talk {
         room,
         rules,
-        reaction,
+        reaction: Reaction::new(median_s, log_sd),
+        answers: talker.answers,
         now_s: person.request_s(rng),
         person,
         posterior: memo.beginning(&room.problem),
@@ -58,7 +60,9 @@ pub(super) fn talk(
 struct Talk<'a> {
     room: &'a Room<'a>,
     rules: &'a Rules,
-    reaction: ReactionTime,
+    reaction: Reaction,
+    /// Share of questions that people answer.
+    answers: f64,
     person: Person<'a>,
     now_s: f64,
     posterior: Posterior,
@@ -117,7 +121,7 @@ impl Talk<'_> {
         self.discount *= costs.discount;
         let began_s = self.now_s;
         self.now_s += log_normal(rng, QUESTION_S.0, QUESTION_S.1);
-        self.asked.push(Asked { question, began_s, ended_s: self.now_s });
+        self.asked.push(Asked::whole(question, began_s, self.now_s));
         self.person.hear(self.asked.len() - 1, question, self.now_s, rng);
     }
 
@@ -164,28 +168,28 @@ impl Talk<'_> {
         let mut heard: Vec<_> =
             questions.zip(&addressed.questions).map(|(q, w)| (*w, q, reading.clone())).collect();
         heard.push((addressed.none, Question::None, reading));
-        let likeliest = heard.iter().max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, q, _)| *q);
+        let likeliest = (0..heard.len()).max_by(|a, b| heard[*a].0.total_cmp(&heard[*b].0));
         self.posterior.update_mixture(model, &heard);
         self.heard += 1;
         let meant = self.asked[utterance.answers].question;
-        self.misplaced += u32::from(likeliest != Some(meant));
+        let taken = likeliest.and_then(|at| self.asked.get_mut(at));
+        self.misplaced += u32::from(taken.as_ref().is_none_or(|asked| asked.question != meant));
+        if let Some(asked) = taken {
+            asked.answered_s = Some(utterance.end_s);
+        }
         true
     }
 
     fn addressed(&self, utterance: &Utterance) -> Addressed {
-        let only = |wanted: Option<usize>| Addressed {
-            questions: (0..self.asked.len())
-                .map(|j| f64::from(u8::from(wanted == Some(j))))
-                .collect(),
-            none: f64::from(u8::from(wanted.is_none())),
-        };
         let asked = &self.asked;
         match self.rules.attribution {
-            Attribution::Naive => only(asked.len().checked_sub(1)),
-            Attribution::Onset => only(asked.iter().rposition(|q| q.ended_s <= utterance.onset_s)),
+            Attribution::Naive => Addressed::only(asked.len().checked_sub(1), asked.len()),
+            Attribution::Onset => Addressed::latest_said(asked, utterance.onset_s),
             Attribution::Mixture => {
-                let density = |seconds| self.reaction.density(seconds);
-                Addressed::of(asked, utterance.onset_s, density)
+                // With push-to-talk people wait for the click before they speak.
+                let delay_s = self.person.delay_s();
+                let rate = |seconds: f64| self.reaction.rate(seconds - delay_s, self.answers);
+                Addressed::of(asked, utterance.onset_s, rate)
             }
         }
     }

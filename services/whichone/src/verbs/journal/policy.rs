@@ -18,6 +18,7 @@ pub(super) fn line(record: &Record) -> String {
         Cause::Snapshot => "begun anew".to_owned(),
         Cause::Utterance(heard) => format!("utterance {}", heard.seq),
         Cause::Silence => "silence".to_owned(),
+        Cause::Quiet => "quiet".to_owned(),
         Cause::PickEnded { pick, outcome } => {
             format!("pick {}.{} {outcome:?}", pick.interaction, pick.attempt).to_lowercase()
         }
@@ -132,15 +133,7 @@ mod tests {
     use super::*;
 
     fn heard(seq: u64) -> Record {
-        let heard = Heard {
-            seq: UtteranceSeq(seq),
-            prompt: Default::default(),
-            accepted: Default::default(),
-            readings: Vec::new(),
-            unknown: String::new(),
-            gesture: None,
-            reaction_s: None,
-        };
+        let heard = Heard { seq: UtteranceSeq(seq), ..Heard::default() };
         let state = State { applied: UtteranceSeq(seq), ..State::default() };
         Record { cause: Cause::Utterance(heard), at: node::Time(0), state }
     }

@@ -10,18 +10,15 @@ use super::{Broken, Part, at};
 pub(super) fn line(record: &Record) -> String {
     match record {
         Record::Accepted(accepted) => {
-            let words = accepted.hypotheses.first().map_or("", |(words, _)| words.as_str());
+            let words = accepted.hypotheses.first().map_or("", |best| best.text.as_str());
             let pointed = accepted.gesture.map(|[x, y, z]| format!(" [points at {x} {y} {z} m]"));
             let pointed = pointed.unwrap_or_default();
             format!("{}  utterance {}: {words}{pointed}", at(accepted.accepted), accepted.seq)
         }
         Record::Presented(said) => {
-            let times = said.presentation;
-            format!(
-                "{}  prompt {} said to its end, presentation {times}",
-                at(said.ended),
-                said.prompt
-            )
+            let (times, prompt) = (said.presentation, said.prompt);
+            let how = if said.whole { "said to its end" } else { "broken off" };
+            format!("{}  prompt {prompt} {how}, presentation {times}", at(said.ended))
         }
     }
 }
