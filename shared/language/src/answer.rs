@@ -58,7 +58,7 @@ impl Answers {
 
 /// Only "and", "or" or "but" in between.
 fn is_tied(between: &[Mark<'_>]) -> bool {
-    let tie = |mark: &Mark<'_>| mark.is_any(cues![And Or But]);
+    let tie = |mark: &Mark<'_>| mark.is_any(cues![And Or But]) || mark.word == "sometimes";
     between.iter().any(tie)
         && between.iter().all(|mark| tie(mark) || mark.is_any(cues![Filler Plain]))
 }
@@ -75,7 +75,7 @@ pub(crate) fn answer(marks: &[Mark<'_>], clause: &Clause, at: usize) -> Option<A
         Cue::WeakNo if is_bare(marks, clause) => Some(Answer::No),
         Cue::Likely if is_bare(marks, clause) => Some(Answer::Yes),
         Cue::Other if is_other_one(marks, clause, at) => Some(Answer::No),
-        Cue::Be if is_the_one(marks, clause, at) => Some(Answer::Yes),
+        Cue::Be | Cue::Auxiliary if is_affirmed(marks, clause, at) => Some(Answer::Yes),
         _ => None,
     }
 }
@@ -101,18 +101,45 @@ fn is_other_one(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
     whole && plain && !before.is_some_and(|before| before.is_any(cues![Quantifier AskBack]))
 }
 
+/// A sentence about what was asked that says no more than yes.
+fn is_affirmed(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
+    let about_it =
+        marks[clause.marks.start..at].last().is_some_and(|mark| mark.is_any(cues![It Pointer]));
+    let said = &marks[at + 1..clause.marks.end];
+    about_it
+        && (marks[at].is(Cue::Be) && (is_the_one(marks, clause, at) || is_what(said))
+            || is_it(said))
+}
+
+/// "that's where it is", "that's what I've been looking for".
+fn is_what(said: &[Mark<'_>]) -> bool {
+    let [what, whose, rest @ ..] = said else { return false };
+    const STRANGE: &[Cue] = cues![Not No Unsure Unlisted Third Other Ordinal];
+    what.is(Cue::Question)
+        && (whose.is_any(cues![It First Possessive]) || whose.word == "it")
+        && rest.iter().all(|mark| mark.value().is_none() && !mark.is_any(STRANGE))
+        && rest.iter().filter(|mark| mark.sense == Sense::Unknown).count() <= 1
+}
+
+/// "it is made of that", "it does have that".
+fn is_it(said: &[Mark<'_>]) -> bool {
+    let Some((last, rest)) = said.split_last() else { return false };
+    last.is_any(cues![Pointer It])
+        && rest
+            .iter()
+            .all(|mark| mark.is_any(cues![Plain Preposition Attribute Auxiliary Be Filler]))
+}
+
 /// "that is exactly the one I want", "it's the one".
 fn is_the_one(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    let subject = &marks[clause.marks.start..at];
     let said = &marks[at + 1..clause.marks.end];
-    let about_it = subject.last().is_some_and(|mark| mark.is_any(cues![It Pointer]));
     let plain = marks[clause.marks.clone()].iter().all(|mark| {
         mark.value().is_none()
             && mark.sense != Sense::Unknown
             && !mark.is_any(cues![Not Ordinal Unlisted Other Question])
     });
     let the_one = said.windows(2).any(|pair| pair[0].word == "the" && pair[1].is(Cue::Head));
-    about_it && plain && the_one
+    plain && the_one
 }
 
 /// The response to the question: the answer that stands, or what the values said imply.

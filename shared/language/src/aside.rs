@@ -40,6 +40,7 @@ impl Sketch<'_> {
 
     /// "white house": the noun that the value stands before is not one of ours.
     fn modifies_unknown(&self, at: usize) -> bool {
+        let noun = self.marks[at].value().map(|value| self.lexicon.value(value).role);
         let mut unknown = false;
         for mark in &self.marks[at + 1..self.range.end] {
             match mark.sense {
@@ -54,7 +55,9 @@ impl Sketch<'_> {
                 }
                 Sense::Cue(Cue::Head | Cue::Unlisted | Cue::Attribute) => return false,
                 // "the long weekend"
-                Sense::Cue(Cue::When) => return true,
+                Sense::Cue(Cue::When) => {
+                    return unknown || noun != Some(Role::Kind) && mark.word == "weekend";
+                }
                 Sense::Cue(Cue::And | Cue::Or) if !unknown => {}
                 Sense::Cue(_) => break,
             }

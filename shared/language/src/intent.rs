@@ -10,9 +10,17 @@ use crate::meaning::Meaning;
 use crate::tokens::Gap;
 
 /// The intent of an utterance whose meaning is known.
-pub(crate) fn intent(marks: &[Mark<'_>], clauses: &[Clause], meaning: &Meaning<'_>) -> Intent {
+///
+/// In text that no person says (`code`) only the opening counts as a command.
+pub(crate) fn intent(
+    marks: &[Mark<'_>],
+    clauses: &[Clause],
+    meaning: &Meaning<'_>,
+    code: bool,
+) -> Intent {
     let says_nothing = meaning.base.is_empty() && meaning.excluded.is_empty();
-    let commands = |cue| clauses.iter().any(|clause| commands(marks, clause, cue));
+    let spoken = if code { clauses.len().min(1) } else { clauses.len() };
+    let commands = |cue| clauses[..spoken].iter().any(|clause| commands(marks, clause, cue));
     if commands(Cue::Stop) || is_only_wait(marks) {
         Intent::Stop
     } else if commands(Cue::StartOver) {
@@ -91,9 +99,16 @@ fn informs(marks: &[Mark<'_>], clauses: &[Clause], meaning: &Meaning<'_>) -> boo
         })
 }
 
-/// "no, I was talking to my wife": an answer, but not to the robot.
+/// "no, I was talking to my wife", "yes I'll have it done by Friday": an answer, but not to the
+/// robot.
 pub(crate) fn is_side_talk(marks: &[Mark<'_>], clauses: &[Clause]) -> bool {
-    let aside = marks.iter().any(|mark| mark.is(Cue::Aside));
+    let plans = |clause: &Clause| {
+        let marks = &marks[clause.marks.clone()];
+        let speaker = marks.first().is_some_and(|mark| matches!(mark.word, "i" | "we"));
+        let will = |mark: &Mark<'_>| mark.word == "will" || mark.is(Cue::Want);
+        speaker && marks.iter().any(will) && marks.iter().any(|mark| mark.is(Cue::When))
+    };
+    let aside = marks.iter().any(|mark| mark.is(Cue::Aside)) || clauses.iter().any(plans);
     aside && !clauses.iter().any(|clause| clause.requests)
 }
 

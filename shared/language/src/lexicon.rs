@@ -107,6 +107,23 @@ impl Lexicon {
         self.sounds.get(&sounds).copied().flatten()
     }
 
+    /// The only value that sounds like the words one after the other, unstressed "her" as "er".
+    pub(crate) fn sounds_like_run<'a>(&self, run: impl Iterator<Item = &'a str>) -> Option<u32> {
+        const CONSONANTS_MIN: usize = 3;
+        let mut sounds = String::new();
+        for word in run {
+            let word = skeleton(word)?;
+            let word = if sounds.is_empty() { &word } else { word.trim_start_matches(['H', 'A']) };
+            let word = if word.chars().next() == sounds.chars().last() {
+                &word[1.min(word.len())..]
+            } else {
+                word
+            };
+            sounds.push_str(word);
+        }
+        self.sounds.get(&sounds).copied().flatten().filter(|_| sounds.len() >= CONSONANTS_MIN)
+    }
+
     /// The only value that sounds like the word.
     pub(crate) fn sounds_like(&self, word: &str) -> Option<u32> {
         self.sounds.get(&skeleton(word)?).copied().flatten()
@@ -248,7 +265,8 @@ impl Lexicon {
 /// How many words the rest of a phrase takes, if it is there. Adverbs may stand inside: "I don't
 /// really care".
 fn matched(rest: &[Box<str>], after: &[Token<'_>]) -> Option<usize> {
-    const ADVERBS: &[&str] = &["really", "just", "honestly", "even", "truly", "actually"];
+    const ADVERBS: &[&str] =
+        &["really", "just", "honestly", "even", "truly", "actually", "also", "still", "maybe"];
     let mut words = 0;
     for word in rest {
         let here = |at: usize| after.get(at).filter(|token| token.gap <= Gap::None);

@@ -11,7 +11,7 @@
 //! |---|---|---|
 //! | normalise | `normalise.rs` | plain lower-case text |
 //! | tokens | `tokens.rs` | words and the pauses between them |
-//! | marks | `marks.rs` (`lexicon.rs`, `forms.rs`, `spelling.rs`, `sound.rs`, `vocabulary/`) | the part that each word or phrase plays |
+//! | marks | `marks.rs` (`settle.rs`, `lexicon.rs`, `forms.rs`, `spelling.rs`, `sound.rs`, `vocabulary/`) | the part that each word or phrase plays |
 //! | clauses | `clauses.rs` (`topic.rs`, `aside.rs`) | which parts are about the objects |
 //! | meaning | `meaning.rs` (`denial.rs`, `negation.rs`, `repair.rs`) | values asserted, groups ruled out, answers |
 //! | answer, intent | `answer.rs`, `intent.rs` | the response that counts, what the person wants |
@@ -35,6 +35,7 @@ mod normalise;
 mod paper;
 mod reader;
 mod repair;
+mod settle;
 mod sound;
 mod spelling;
 mod tokens;

@@ -95,7 +95,7 @@ impl<'a> Listener<'a> {
         match cue {
             Cue::Determiner | Cue::Quantifier | Cue::Possessive => self.determiner(),
             Cue::Pointer | Cue::Question => self.pointer(at),
-            Cue::Head => self.head(),
+            Cue::Head => self.head(at),
             Cue::Preposition => self.on_denial(Denial::join),
             Cue::Landmark | Cue::Than => self.landmark = true,
             Cue::Or => {
@@ -118,6 +118,7 @@ impl<'a> Listener<'a> {
             Cue::Withdraw => self.repair(repair::Strength::Hard),
             Cue::Cancel | Cue::StartOver if commands(self.marks, clause, cue) => self.forget(),
             Cue::Unsure => self.unsure(at),
+            Cue::Indifferent => self.wondering = self.wonders_after(at),
             Cue::Hedge => self.meaning.hedged = true,
             _ => {}
         }
@@ -189,8 +190,13 @@ impl<'a> Listener<'a> {
         if relative { self.on_denial(Denial::join) } else { self.determiner() }
     }
 
-    fn head(&mut self) {
-        self.on_denial(Denial::head);
+    /// A noun ends what is denied, but for "anything tight", whose quality follows it.
+    fn head(&mut self, at: usize) {
+        let indefinite = matches!(self.marks[at].word, "anything" | "something" | "everything");
+        let next = self.marks.get(at + 1).filter(|next| next.gap <= Gap::None);
+        if !(indefinite && next.is_some_and(|next| next.value().is_some())) {
+            self.on_denial(Denial::head);
+        }
     }
 
     fn and(&mut self, at: usize) {
@@ -259,10 +265,17 @@ impl<'a> Listener<'a> {
 
     fn unsure(&mut self, at: usize) {
         self.meaning.answers.push(Answer::Unsure, at);
-        self.wondering = self
-            .marks
-            .get(at + 1)
-            .is_some_and(|next| next.is_any(cues![Join Question Preposition]));
+        self.wondering = self.wonders_after(at);
+    }
+
+    /// "not sure if it is white", "I don't care what colour", "it doesn't have to be white".
+    fn wonders_after(&self, at: usize) -> bool {
+        let next = self.marks.get(at + 1).filter(|next| next.gap <= Gap::None);
+        let open = matches!(self.marks[at].word, "does" | "do" | "need" | "it");
+        next.is_some_and(|next| {
+            next.is_any(cues![Join Question Preposition])
+                || open && (next.value().is_some() || next.is(Cue::Determiner))
+        })
     }
 
     fn on_denial(&mut self, change: impl FnOnce(&mut Denial<'a>)) {

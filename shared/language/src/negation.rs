@@ -93,6 +93,9 @@ pub(crate) fn is_whole_answer(marks: &[Mark<'_>], clause: &Clause, at: usize) ->
     if marks[clause.marks.start..at].iter().any(|mark| mark.sense == Sense::Unknown) {
         return false;
     }
+    if is_not_what(marks, clause, at) || is_not_by_far(marks, clause, at) {
+        return true;
+    }
     let mut rest = marks[at + 1..].iter().peekable();
     while rest.next_if(|mark| mark.gap < Gap::Pause && mark.is_any(LINKS)).is_some() {}
     let head = rest.next_if(|mark| {
@@ -106,8 +109,34 @@ pub(crate) fn is_whole_answer(marks: &[Mark<'_>], clause: &Clause, at: usize) ->
         None => true,
         Some(next) if next.gap >= Gap::Pause => true,
         Some(next) if head.is_some() => next.is_any(cues![
-            Determiner First Fetch Want It And But Join No Repair Filler Not
+            Determiner First Fetch Want It And But Join No Repair Filler Not Story
         ]),
         Some(next) => next.is_any(cues![No Yes Repair But Hedge]),
     }
+}
+
+/// "not what I'm after", "that's not where it is".
+fn is_not_what(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
+    let [what, whose, ..] = &marks[at + 1..clause.marks.end] else { return false };
+    let ours = whose.is_any(cues![First It Possessive]) || whose.word == "it";
+    what.is(Cue::Question) && ours && denies_no_value(marks, clause, at)
+}
+
+/// "not by a mile", "not in a hundred years": how little it is so, and nothing else.
+fn is_not_by_far(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
+    let opens = marks[clause.marks.start..at]
+        .iter()
+        .all(|mark| mark.is_any(cues![Filler Courtesy No Yes WeakNo]));
+    let next = marks[at + 1..clause.marks.end].first();
+    opens
+        && next.is_some_and(|next| next.is(Cue::Preposition) && next.gap <= Gap::None)
+        && denies_no_value(marks, clause, at)
+}
+
+/// Nothing after the negation describes an object, not even one that the scene lacks.
+fn denies_no_value(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
+    (at + 1..clause.marks.end).all(|at| {
+        let describes = marks[at].value().is_some() && clause.counts(at);
+        !describes && !marks[at].is_any(cues![Unlisted Head Fetch])
+    })
 }

@@ -20,12 +20,13 @@ pub(crate) fn normalise(text: &str) -> Cow<'_, str> {
         };
     }
     let mut plain = String::with_capacity(text.len().min(TEXT_CHARS_MAX * 2));
+    // The accent that stands alone is typed for an apostrophe; its compatibility form would part
+    // the word.
+    let chars = text.chars().map(|c| if c == '\u{00b4}' { '\'' } else { c });
     // Compatibility forms first (full-width letters, ligatures, ellipsis), then each on its own.
-    for c in text.chars().take(TEXT_CHARS_MAX).nfkd().take(TEXT_CHARS_MAX) {
+    for c in chars.take(TEXT_CHARS_MAX).nfkd().take(TEXT_CHARS_MAX) {
         match c {
-            '\u{2018}' | '\u{2019}' | '\u{201b}' | '\u{02bc}' | '\u{00b4}' | '\u{2032}' => {
-                plain.push('\'');
-            }
+            '\u{2018}' | '\u{2019}' | '\u{201b}' | '\u{02bc}' | '\u{2032}' => plain.push('\''),
             '\u{2010}' | '\u{2011}' => plain.push('-'),
             '\u{2012}'..='\u{2015}' => plain.push_str(" , "),
             '\u{3002}' | '\u{061f}' => plain.push_str(" . "),
@@ -53,6 +54,7 @@ mod tests {
         for (text, plain) in [
             ("The BIG bowl", "the big bowl"),
             ("isn\u{2019}t", "isn't"),
+            ("isn\u{b4}t", "isn't"),
             ("ｗｈｉｔｅ", "white"),
             ("𝐰𝐡𝐢𝐭𝐞", "white"),
             ("w\u{200b}hi\u{ad}te", "white"),

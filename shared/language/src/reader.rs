@@ -77,13 +77,18 @@ impl Reader {
         let clauses = clauses(&self.lexicon, &marks, tokens.code);
         let asked = self.askable.asked(last_question);
         let mut meaning = listen(&self.lexicon, &marks, &clauses, asked);
-        if meaning.base.is_empty() && meaning.excluded.is_empty() && is_side_talk(&marks, &clauses)
-        {
+        let side_talk = meaning.base.is_empty()
+            && meaning.excluded.is_empty()
+            && is_side_talk(&marks, &clauses);
+        if side_talk {
             meaning = Meaning::default();
         }
         let certain = !meaning.hedged && !meaning.alternatives;
         let response = response(&meaning.answers, &marks, &meaning.base, asked, certain);
-        let intent = intent(&marks, &clauses, &meaning);
+        let intent = match intent(&marks, &clauses, &meaning, tokens.code) {
+            scene::Intent::Inform if side_talk => scene::Intent::None,
+            intent => intent,
+        };
         Understood {
             reading: Reading {
                 base: meaning.base.iter().map(|value| value.word).collect(),

@@ -28,6 +28,8 @@ pub(crate) struct Replacement<'a> {
     whole: bool,
     /// "it is …": a statement that adds rather than replaces.
     statement: bool,
+    /// "the small one": the noun, and what else was said of it, are those before.
+    anaphoric: bool,
 }
 
 impl<'a> Replacement<'a> {
@@ -39,6 +41,7 @@ impl<'a> Replacement<'a> {
                 || mark.is_any(cues![Repair Withdraw No Not Except But Landmark Than])
         };
         let after = marks[at + 1..].iter().take(REACH).take_while(|mark| !ends(mark));
+        let head = after.clone().find(|mark| mark.is(Cue::Head));
         let values = std::iter::once(&marks[at]).chain(after).filter_map(Mark::value);
         let lead = marks[..at].iter().rev().take_while(|mark| !ends(mark)).take(3);
         let lead: Vec<&Mark<'_>> = lead.collect();
@@ -46,11 +49,16 @@ impl<'a> Replacement<'a> {
             values: values.map(|value| lexicon.value(value)).collect(),
             whole: lead.first().is_some_and(|mark| mark.is(Cue::Determiner)),
             statement: lead.iter().any(|mark| mark.is(Cue::Be)),
+            anaphoric: head.is_some_and(|mark| mark.word.starts_with("one")),
         }
     }
 
     /// Takes out of `base` what the replacement stands in for.
     pub(crate) fn replace(&self, base: &mut Vec<&'a ValueSense>, strength: Strength) {
+        if let Some(from) = self.retraced(base).filter(|_| strength > Strength::Stumble) {
+            let mut at = 0..;
+            base.retain(|old| at.next() < Some(from) || is_place(old));
+        }
         let rival = |old: &ValueSense| self.values.iter().any(|new| rivals(old, new));
         if base.iter().any(|old| rival(old)) {
             // "the blue pen, no, the marker": another kind of thing, the rest goes with the old.
@@ -65,6 +73,13 @@ impl<'a> Replacement<'a> {
         }
     }
 
+    /// "the small white, I mean the small metal bowl": the speaker goes back to a word said before
+    /// and begins anew from there (Levelt 1983, "retracing").
+    fn retraced(&self, base: &[&ValueSense]) -> Option<usize> {
+        let first = self.values.first().filter(|_| !self.anaphoric)?;
+        base.iter().position(|old| old.word == first.word)
+    }
+
     fn renames(&self, base: &[&ValueSense]) -> bool {
         let kind = |value: &&&ValueSense| value.role == Role::Kind;
         let new: Vec<WordId> = self.values.iter().filter(kind).map(|value| value.word).collect();
@@ -75,18 +90,20 @@ impl<'a> Replacement<'a> {
     }
 }
 
-/// "the red uh blue one", "the red one uh the blue one": a hesitation between rivals.
+/// "the red uh blue one", "the red one uh the blue one": a hesitation between rivals. "the red …
+/// the blue one": a noun phrase broken off and begun again.
 pub(crate) fn is_stumble(lexicon: &Lexicon, marks: &[Mark<'_>], at: usize) -> bool {
     const REACH: usize = 6;
     let Some(new) = marks[at].value().map(|value| lexicon.value(value)) else { return false };
-    let mut hesitated = false;
+    let (mut hesitated, mut begun, mut ended) = (false, false, false);
     for mark in marks[..at].iter().rev().take(REACH) {
         if let Some(old) = mark.value() {
-            return hesitated && rivals(lexicon.value(old), new);
+            return (hesitated || begun && !ended) && rivals(lexicon.value(old), new);
         }
         match mark.cue() {
             Some(Cue::Filler) => hesitated = true,
-            Some(Cue::Determiner | Cue::Head) => {}
+            Some(Cue::Determiner) => begun |= mark.gap == Gap::Pause,
+            Some(Cue::Head) => ended = true,
             _ => return false,
         }
     }

@@ -184,7 +184,10 @@ fn is_code(text: &str) -> bool {
     let tag = |at: usize| {
         text[at + 1..].starts_with(|c: char| c.is_ascii_alphabetic() || c == '/' || c == '|')
     };
-    text.contains(['{', '}', '`', '\\'])
+    // A backslash alone may be part of a face: "¯\_(ツ)_/¯".
+    let escape = |at: usize| text[at + 1..].starts_with(|c: char| c.is_ascii_alphanumeric());
+    text.contains(['{', '}', '`'])
+        || text.match_indices('\\').any(|(at, _)| escape(at))
         || text.contains("://")
         || text.contains("$(")
         || text.match_indices('<').any(|(at, _)| tag(at))

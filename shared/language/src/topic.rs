@@ -60,7 +60,9 @@ impl<'a> Sketch<'a> {
             return Topic::Off;
         }
         if self.asks_back(before) {
-            let strange = self.unknown > 0 && self.values == 0 && !self.has(SCENE_NAMES);
+            // "what can you offer me", but not "what is the capital of France"
+            let to_us = self.unknown == 1 && self.clause().iter().any(|mark| mark.word == "me");
+            let strange = self.unknown > 0 && self.values == 0 && !self.has(SCENE_NAMES) && !to_us;
             return if strange { Topic::Off } else { Topic::AskBack };
         }
         let named = self.has(SCENE_NAMES);
@@ -75,9 +77,18 @@ impl<'a> Sketch<'a> {
             return Topic::Off;
         }
         let wanted = self.has(cues![Want]) && self.values > aside;
-        let tied = named || wanted || self.has(cues![Fetch It Pointer]);
+        let tied = named || wanted || self.has(cues![Fetch It]) || self.points();
         let elsewhere = self.unknown > 0 && self.has(cues![Unlisted]) && self.has(cues![Be]);
         if (self.unknown > 1 || elsewhere) && !tied { Topic::Off } else { Topic::On }
+    }
+
+    /// "that one", but not "this phone".
+    fn points(&self) -> bool {
+        let clause = self.clause();
+        clause.iter().enumerate().any(|(at, mark)| {
+            mark.is(Cue::Pointer)
+                && clause.get(at + 1).is_none_or(|next| next.sense != Sense::Unknown)
+        })
     }
 
     /// "get me the white one": a person asks for a thing, whatever else the text says.
@@ -98,7 +109,7 @@ impl<'a> Sketch<'a> {
         if self.has(cues![Fetch Want]) {
             return false;
         }
-        let about_it = self.has(cues![It]) || self.has_the_one();
+        let about_it = self.has(cues![It]) || self.has_the_one() || self.confirms();
         let told = self.has(cues![Story]) && !about_it;
         match opening {
             Cue::Story | Cue::When => !about_it,
@@ -111,13 +122,23 @@ impl<'a> Sketch<'a> {
             }
             // "my bowl is the white one" is about the bowl.
             Cue::Possessive => {
-                let owned = self.clause().get(at + 1);
-                let ours =
-                    owned.is_some_and(|mark| mark.is_any(SCENE_NAMES) || mark.value().is_some());
+                let ours = self.clause().get(at + 1).is_some_and(|owned| {
+                    owned.is_any(SCENE_NAMES) || owned.value().is_some() || self.owns_kind(at + 1)
+                });
                 told || !ours && !about_it && self.unknown > 0
             }
             _ => false,
         }
+    }
+
+    /// "my silk shirt": the noun that ends what stands here is one of ours.
+    fn owns_kind(&self, at: usize) -> bool {
+        let phrase = self.clause()[at..].iter().enumerate().take_while(|(n, mark)| {
+            (*n == 0 || mark.gap <= Gap::None)
+                && (mark.sense == Sense::Unknown || mark.value().is_some())
+        });
+        let noun = phrase.last().and_then(|(_, mark)| mark.value());
+        noun.is_some_and(|value| self.lexicon.value(value).role == Role::Kind)
     }
 
     /// "put it on the table", "empty the dishwasher": an order, but not to fetch.
@@ -143,6 +164,12 @@ impl<'a> Sketch<'a> {
         values.filter(|&value| self.lexicon.value(value).role == Role::Place).count()
     }
 
+    /// "that's the one" and the like, whatever is told after it.
+    fn confirms(&self) -> bool {
+        let shown = |mark: &Mark<'_>| matches!(mark.word, "that" | "this" | "it");
+        self.clause().iter().any(|mark| mark.is_any(cues![Yes WeakYes No]) && shown(mark))
+    }
+
     /// "one", "ones" as what the clause is about.
     fn has_the_one(&self) -> bool {
         self.clause().iter().any(|mark| mark.is(Cue::Head) && mark.word.starts_with("one"))
@@ -164,6 +191,25 @@ impl<'a> Sketch<'a> {
                     && then.is_some_and(|then| then.is(Cue::AskBack))
             }
             Cue::Question => self.is_question(at),
+            Cue::Be => self.asks_whether(at),
+            _ => false,
+        }
+    }
+
+    /// "are you pointing at the clear one", "is the pen on the table".
+    fn asks_whether(&self, at: usize) -> bool {
+        let rest = &self.clause()[at + 1..];
+        let value = |mark: &Mark<'_>| mark.value().is_some();
+        match rest {
+            [subject, ..] if subject.is(Cue::Second) => {
+                rest.iter().any(value) || self.has(SCENE_NAMES)
+            }
+            [subject, about @ ..] if subject.is(Cue::Determiner) => {
+                let place = about.iter().position(|mark| mark.is(Cue::Preposition));
+                place.is_some_and(|at| {
+                    about[..at].iter().any(value) && about[at..].iter().any(value)
+                })
+            }
             _ => false,
         }
     }
@@ -180,8 +226,25 @@ impl<'a> Sketch<'a> {
         let relative = next.is_some_and(|next| {
             next.is_any(cues![First Possessive Yes No]) || matches!(next.word, "a" | "an")
         });
-        let inverted = next.is_some_and(|next| next.is(Cue::Auxiliary)) && !self.has(cues![Not]);
+        // "what can you bring", "which tools can you reach"
+        let turns = self.clause()[at..].windows(2).any(|pair| {
+            pair[0].is(Cue::Auxiliary) && pair[1].is_any(cues![Second It Third Pointer])
+        });
+        let inverted =
+            (turns || next.is_some_and(|next| next.is(Cue::Auxiliary))) && !self.has(cues![Not]);
         !relative && (inverted || !self.has(cues![Fetch]))
+    }
+
+    /// "the wok please": all that is said names one thing.
+    fn is_bare_noun(&self) -> bool {
+        let clause = self.clause();
+        let said = clause.iter().rposition(|mark| !mark.is_any(cues![Courtesy Filler]));
+        clause.len() == self.marks.len()
+            && clause.first().is_some_and(|mark| matches!(mark.word, "the" | "a" | "an"))
+            && said.is_some_and(|last| {
+                (1..=2).contains(&last)
+                    && clause[1..=last].iter().all(|mark| mark.sense == Sense::Unknown)
+            })
     }
 
     /// Only parts of a noun phrase: "blue", "the green one".
@@ -204,6 +267,7 @@ impl<'a> Sketch<'a> {
                 && (self.unknown == 0 || self.is_fragment() && self.ends_unlisted())
             || verb && named
             || fetches()
+            || self.is_bare_noun()
             || self.has(cues![Ordinal Other]) && self.unknown == 0
     }
 }

@@ -15,15 +15,26 @@ const BOWLS: &str =
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml"));
 const TOOLS: &str =
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/tools.toml"));
-const PUBLIC: &str = include_str!(concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/../../tests/fixtures/utterances/public.jsonl"
-));
+
+/// A file of the utterance fixtures.
+macro_rules! fixture {
+    ($file:literal) => {
+        include_str!(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../tests/fixtures/utterances/",
+            $file
+        ))
+    };
+}
+use fixture;
+
+const PUBLIC: &str = fixture!("public.jsonl");
 
 fn scene(name: &str) -> Scene {
     let text = match name {
         "bowls" => BOWLS,
         "tools" => TOOLS,
+        "garments" => fixture!("garments.toml"),
         other => panic!("no scene {other}"),
     };
     Scene::from_toml(name, text).expect("a shipped scene")

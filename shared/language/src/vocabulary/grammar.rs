@@ -8,7 +8,8 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
     (
         Cue::Quantifier,
         "any, every, each, all, some, both, several, either, two, three, four, five, six, most, \
-         many, half, couple, few",
+         many, half, couple, few, a pair of, pair of, a set of, set of, a bit of, a piece of, one \
+         pair of, a kind of, a type of, a sort of, seven, eight, nine, ten",
     ),
     (Cue::One, "one, 1"),
     (
@@ -25,7 +26,12 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          centre, far, final, 1st, 2nd, 3rd, 4th, 5th, 6th, right hand, left hand, right side, \
          left side, from the right, from the left",
     ),
-    (Cue::Other, "other, others, different, another, something else, someone else, anything else"),
+    (
+        Cue::Other,
+        "other, others, different, another, something else, someone else, anything else, somewhere \
+         else, someplace else, some place else, elsewhere, another place, another spot, a \
+         different place, a different spot, one of the others, the rest",
+    ),
     (
         Cue::Preposition,
         "in, on, from, inside, at, of, with, within, out, off, up, over, for, down, about, by, \
@@ -61,7 +67,8 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
     (
         Cue::Be,
         "is, are, am, was, were, be, been, being, s, re, looks, look, seems, appears, sounds, \
-         became",
+         became, turned, turns, turning, stayed, remains, becomes, becoming, feels, feel, felt, \
+         tastes, smells, smelled",
     ),
     (
         Cue::Auxiliary,
@@ -76,24 +83,32 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          down there, in there, whichever, whatever, actual, simply, at all, in the least, \
          particularly, even close, check, like, know, think, say, said, says, saying, tell, told, \
          mean, meant, asked, ask, asking, see, seen, thought, thinking, guess, believe, suppose, \
-         hear, heard, way, kind, sort, type, bit, little bit, more, less, much, still, even, \
-         ever, me, always, already, else, back, same, new, old, nice, good one, whole, plain, \
-         only one, single, particular, certain, somewhere, anywhere, try, trying, let, go, come, \
-         looking, colored, coloured, sized, shaped, kept, stored, sitting, standing, lying, \
-         located, available, difference, dirty, wet, dry, light, broken, fresh, full, usual, \
-         favorite, favourite, own, great big, nearly, almost, rather, somehow, exact, used, \
-         using, belongs, friend, has to, have to, use, please just, makes, make, made, without \
-         delay, asap, quick, quickly, fast, hurry, careful, carefully, slowly, colour of, \
-         mention, mentioned, referring, talking about, meaning, called, name, question, answer, \
-         first of all, wanted, needs, wants, needed, that would be great, would be great, would \
-         be nice, would be good, looking like, called a, afraid",
+         hear, heard, way, kind, sort, type, bit, little bit, more, less, much, still, even, ever, \
+         me, always, already, else, back, same, new, old, nice, good one, whole, plain, only one, \
+         single, particular, certain, somewhere, anywhere, try, trying, let, go, come, looking, \
+         colored, coloured, sized, shaped, kept, stored, sitting, standing, lying, located, \
+         available, difference, dirty, wet, dry, broken, fresh, full, usual, favorite, favourite, \
+         own, great big, nearly, almost, rather, somehow, exact, used, using, belongs, friend, has \
+         to, have to, use, please just, makes, make, made, without delay, asap, quick, quickly, \
+         fast, hurry, careful, carefully, slowly, colour of, mention, mentioned, referring, \
+         talking about, meaning, called, name, question, answer, first of all, wanted, needs, \
+         wants, needed, that would be great, would be great, would be nice, would be good, looking \
+         like, called a, afraid, had in mind, have in mind, in mind, remotely, whatsoever, in the \
+         slightest, i was after, i was looking at, i asked for, i was referring to, i am referring \
+         to, i am talking about, i was talking about, i was describing, i told you about, would be \
+         lovely, would be perfect, would be fine, would be ideal, would be wonderful, would be \
+         fantastic, that would be lovely, that would be perfect, that would be wonderful, wear, \
+         put on, nicely, drawn",
     ),
     (
         Cue::When,
         "today, yesterday, tomorrow, tonight, this morning, this evening, last night, last week, \
          last year, last time, next week, next year, earlier, later, ago, on monday, on tuesday, \
          on wednesday, on thursday, on friday, on saturday, on sunday, weekend, this afternoon, \
-         last month",
+         last month, by monday, by tuesday, by wednesday, by thursday, by friday, by saturday, by \
+         sunday, next monday, next friday, next month, last summer, last winter, in the morning, \
+         in the evening, in the afternoon, at night, at noon, at midnight, every day, every \
+         morning, these days, the other day, this week, this year, this month",
     ),
     (Cue::Not, "not, without, never, neither, forget the, lose the, leave out, none of"),
     (

@@ -78,20 +78,21 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          above, ignore the system, ignore what, ignore previous, ignore the previous, ignore any, \
          ignore everything, ignore my previous, ignore prior, previous instructions, prior \
          instructions, your instructions, above instructions, these instructions, all \
-         instructions, new instructions, system prompt, system message, system override, \
-         developer mode, debug mode, admin mode, god mode, maintenance mode, print your, your \
-         configuration, your config, your prompt, your system, your rules, your programming, your \
-         settings, your password, you are now, from now on, drop table, drop database, delete \
-         from, select from, insert into, union select, rm rf, sudo, script alert, disregard all, \
-         disregard your, disregard previous, disregard the, override, overwrite, pretend, pretend \
-         that, jailbreak, as an ai, language model, root access, execute, answer yes, answer no, \
-         reply yes, reply with, respond with, always say, always answer, set belief, set the \
-         belief, belief to, probability to, set probability, output the, prompt injection, act \
-         as, role play, roleplay, assistant, developer, administrator, import os, eval, exec, \
-         null, undefined, bypass, disable, safety, confidential, reveal your, reveal the, forget \
-         your, forget all previous, forget previous, forget your instructions, instructions, \
-         prompt, system, select all, api key, secret, config, parameters, intent, response, every \
-         object, all objects, all the objects",
+         instructions, new instructions, system prompt, system message, system override, developer \
+         mode, debug mode, admin mode, god mode, maintenance mode, print your, your configuration, \
+         your config, your prompt, your system, your rules, your programming, your settings, your \
+         password, you are now, from now on, drop table, drop database, delete from, select from, \
+         insert into, union select, rm rf, sudo, script alert, disregard all, disregard your, \
+         disregard previous, disregard the, override, overwrite, pretend, pretend that, jailbreak, \
+         as an ai, language model, root access, execute, answer yes, answer no, reply yes, reply \
+         with, respond with, always say, always answer, set belief, set the belief, belief to, \
+         probability to, set probability, output the, prompt injection, act as, role play, \
+         roleplay, assistant, developer, administrator, import os, eval, exec, null, undefined, \
+         bypass, disable, safety, confidential, reveal your, reveal the, forget your, forget all \
+         previous, forget previous, forget your instructions, instructions, prompt, system, select \
+         all, api key, secret, config, parameters, intent, response, every object, all objects, \
+         all the objects, everything you were told, all you were told, what you were told, \
+         anything you were told, you were told, your orders, your task is, your new task",
     ),
     (
         Cue::OtherLanguage,
