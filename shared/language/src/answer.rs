@@ -38,6 +38,11 @@ impl Answers {
         self.given.clear();
     }
 
+    /// Whether the last answer is a no.
+    pub(crate) fn denies(&self) -> bool {
+        self.given.last().is_some_and(|(answer, _)| *answer == Answer::No)
+    }
+
     pub(crate) fn is_empty(&self) -> bool {
         self.given.is_empty()
     }
@@ -48,7 +53,7 @@ impl Answers {
         if let [.., (before, Some(from)), _] = self.given[..]
             && let Some(to) = at
             && before != last
-            && is_tied(marks.get(from + 1..to).unwrap_or_default())
+            && (is_tied(marks.get(from + 1..to).unwrap_or_default()) || is_doubled(marks, from, to))
         {
             return Some(Answer::Unsure);
         }
@@ -58,9 +63,16 @@ impl Answers {
 
 /// Only "and", "or" or "but" in between.
 fn is_tied(between: &[Mark<'_>]) -> bool {
-    let tie = |mark: &Mark<'_>| mark.is_any(cues![And Or But]) || mark.word == "sometimes";
+    let tie = |mark: &Mark<'_>| mark.is_any(cues![And Or But]);
     between.iter().any(tie)
         && between.iter().all(|mark| tie(mark) || mark.is_any(cues![Filler Plain]))
+}
+
+/// "sometimes yes, sometimes no", "could be yes, could be no".
+fn is_doubled(marks: &[Mark<'_>], from: usize, to: usize) -> bool {
+    let lead = |at: usize| at.checked_sub(1).and_then(|before| marks.get(before));
+    let (Some(first), Some(second)) = (lead(from), lead(to)) else { return false };
+    first.word == second.word && !second.is_any(cues![Yes No Repair Filler])
 }
 
 /// The answer that a mark gives by itself.
@@ -76,6 +88,8 @@ pub(crate) fn answer(marks: &[Mark<'_>], clause: &Clause, at: usize) -> Option<A
         Cue::Likely if is_bare(marks, clause) => Some(Answer::Yes),
         Cue::Other if is_other_one(marks, clause, at) => Some(Answer::No),
         Cue::Be | Cue::Auxiliary if is_affirmed(marks, clause, at) => Some(Answer::Yes),
+        Cue::WeakYes if is_judged(marks, clause, at) => Some(Answer::Yes),
+        Cue::WeakNo if is_judged(marks, clause, at) => Some(Answer::No),
         _ => None,
     }
 }
@@ -93,38 +107,63 @@ fn is_bare(marks: &[Mark<'_>], clause: &Clause) -> bool {
 fn is_other_one(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
     let before = marks[clause.marks.start..at].last();
     let after = marks[at + 1..clause.marks.end].first();
-    let whole = after
-        .is_none_or(|next| next.is_any(cues![Head Courtesy Filler No]) || next.gap >= Gap::Pause);
+    let whole = after.is_none_or(|next| {
+        next.is_any(cues![Head Attribute Courtesy Filler No Be]) || next.gap >= Gap::Pause
+    });
     let plain = marks[clause.marks.clone()]
         .iter()
         .all(|mark| !matches!(mark.sense, Sense::Unknown) && mark.value().is_none());
     whole && plain && !before.is_some_and(|before| before.is_any(cues![Quantifier AskBack]))
 }
 
+/// "drawer is right", "white would be wrong".
+fn is_judged(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
+    let before = &marks[clause.marks.start..at];
+    let plain = |mark: &Mark<'_>| {
+        mark.value().is_some() || mark.is_any(cues![Determiner Head Filler Yes No Preposition])
+    };
+    matches!(before, [said @ .., be]
+        if be.is(Cue::Be) && said.iter().all(plain) && said.iter().any(|mark| mark.value().is_some()))
+        && at + 1 == clause.marks.end
+}
+
 /// A sentence about what was asked that says no more than yes.
 fn is_affirmed(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    let about_it =
-        marks[clause.marks.start..at].last().is_some_and(|mark| mark.is_any(cues![It Pointer]));
+    let before = &marks[clause.marks.start..at];
+    let subject = before.iter().rev().find(|mark| !mark.is(Cue::Plain));
     let said = &marks[at + 1..clause.marks.end];
-    about_it
-        && (marks[at].is(Cue::Be) && (is_the_one(marks, clause, at) || is_what(said))
-            || is_it(said))
+    if said.is_empty() {
+        // "it very much is", but not "if it is"
+        const OPEN: &[Cue] = cues![Question Join Unsure Not Unlisted Ordinal AskBack];
+        let plain = |mark: &Mark<'_>| {
+            mark.sense != Sense::Unknown && mark.value().is_none() && !mark.is_any(OPEN)
+        };
+        return subject.is_some_and(|mark| mark.is(Cue::It)) && before.iter().all(plain);
+    }
+    let about_it = before.last().is_some_and(|mark| mark.is_any(cues![It Pointer]));
+    let is = marks[at].is(Cue::Be);
+    about_it && (is && (is_the_one(marks, clause, at) || is_what(said)) || is_it(said))
 }
 
 /// "that's where it is", "that's what I've been looking for".
 fn is_what(said: &[Mark<'_>]) -> bool {
     let [what, whose, rest @ ..] = said else { return false };
     const STRANGE: &[Cue] = cues![Not No Unsure Unlisted Third Other Ordinal];
-    what.is(Cue::Question)
-        && (whose.is_any(cues![It First Possessive]) || whose.word == "it")
+    // "what is in it" is a phrase
+    let phrase = what.is(Cue::AskBack) && what.word == "what";
+    (what.is(Cue::Question) || phrase)
+        && (whose.is_any(cues![It First Possessive Be]) || whose.word == "it")
         && rest.iter().all(|mark| mark.value().is_none() && !mark.is_any(STRANGE))
         && rest.iter().filter(|mark| mark.sense == Sense::Unknown).count() <= 1
 }
 
-/// "it is made of that", "it does have that".
+/// "it is made of that", "it does have that", "it's in there", "it is one".
 fn is_it(said: &[Mark<'_>]) -> bool {
     let Some((last, rest)) = said.split_last() else { return false };
-    last.is_any(cues![Pointer It])
+    let place = matches!(last.word, "in" | "there" | "here" | "up" | "down" | "over" | "right");
+    let shown =
+        last.is_any(cues![Pointer It]) || last.is(Cue::Plain) && (place || last.word == "one");
+    shown
         && rest
             .iter()
             .all(|mark| mark.is_any(cues![Plain Preposition Attribute Auxiliary Be Filler]))
@@ -138,7 +177,9 @@ fn is_the_one(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
             && mark.sense != Sense::Unknown
             && !mark.is_any(cues![Not Ordinal Unlisted Other Question])
     });
-    let the_one = said.windows(2).any(|pair| pair[0].word == "the" && pair[1].is(Cue::Head));
+    let the_one = said.windows(2).any(|pair| {
+        (pair[0].word == "the" || pair[0].is(Cue::Possessive)) && pair[1].is(Cue::Head)
+    });
     plain && the_one
 }
 

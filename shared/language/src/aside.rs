@@ -5,6 +5,7 @@ use scene::Role;
 
 use crate::cue::{Cue, cues};
 use crate::lexicon::Sense;
+use crate::marks::Mark;
 use crate::topic::{SCENE_NAMES, Sketch};
 
 impl Sketch<'_> {
@@ -68,18 +69,27 @@ impl Sketch<'_> {
     /// "my shirt is white": the value is said of something unknown.
     fn tells_of_unknown(&self, at: usize) -> bool {
         let before = &self.marks[self.range.start..at];
-        let Some(be) = before.iter().rposition(|mark| mark.is(Cue::Be)) else { return false };
+        let links = |mark: &Mark<'_>| {
+            mark.is(Cue::Be)
+                || mark.is_any(cues![Likely Hedge])
+                    && matches!(mark.word, "should" | "must" | "might" | "could" | "may" | "ought")
+        };
+        let Some(be) = before.iter().rposition(links) else { return false };
         let linked = before[be + 1..].iter().all(|mark| {
-            mark.is_any(cues![Plain Not Determiner Join And Or]) || mark.value().is_some()
+            mark.is_any(cues![Plain Not Determiner Join And Or Story]) || mark.value().is_some()
         });
         let subject = &before[..be];
+        // "my glass is empty", but not "the glass is empty"
+        let owned = subject.iter().any(|mark| mark.is(Cue::Possessive));
         let ours = subject.iter().any(|mark| {
             mark.is_any(SCENE_NAMES)
-                || mark.is_any(cues![It Pointer Unlisted])
+                || mark.is_any(cues![It Pointer])
+                || mark.is(Cue::Unlisted) && !owned
                 || mark.value().is_some()
         });
         // "my shirt is white", "I am short"
-        let theirs = subject.iter().any(|mark| mark.sense == Sense::Unknown)
+        let theirs = owned && subject.last().is_some_and(|mark| mark.is(Cue::Unlisted))
+            || subject.iter().any(|mark| mark.sense == Sense::Unknown)
             || subject.last().is_some_and(|mark| mark.is_any(cues![First Second Third]));
         linked && !ours && theirs
     }
@@ -107,15 +117,21 @@ impl Sketch<'_> {
         if before.iter().any(|mark| mark.is(Cue::Preposition)) {
             let tied =
                 self.has(SCENE_NAMES) || self.has(cues![Fetch It Pointer Unlisted]) || described;
-            return self.unknown > 0 && !tied;
+            return self.unknown > 0 && !tied && !self.is_bare_noun();
         }
         // Without a preposition it is named, not used to locate: only as a short answer.
         let named_alone = self.clause().iter().enumerate().all(|(n, mark)| {
             mark.is_any(BESIDE)
                 || mark.value().is_some()
-                || mark.is(Cue::Be) && self.range.start + n < at
+                || mark.is(Cue::Be) && (self.range.start + n < at || self.is_judgement(n))
         });
         !described && !named_alone
+    }
+
+    /// "drawer is right": the verb before a judgement that ends the clause.
+    fn is_judgement(&self, verb: usize) -> bool {
+        let rest = &self.clause()[verb + 1..];
+        matches!(rest, [judged] if judged.is_any(cues![WeakYes WeakNo]))
     }
 
     fn has_other_value(&self, at: usize) -> bool {

@@ -25,7 +25,11 @@ pub(crate) fn intent(
         Intent::Stop
     } else if commands(Cue::StartOver) {
         Intent::StartOver
-    } else if says_nothing && (commands(Cue::Cancel) || commands(Cue::Withdraw)) {
+    } else if says_nothing
+        && (commands(Cue::Cancel)
+            || commands(Cue::Withdraw)
+            || meaning.answers.is_empty() && clauses.iter().any(|clause| declines(marks, clause)))
+    {
         Intent::Cancel
     } else if says_nothing && (commands(Cue::Repeat) || is_only_huh(marks)) {
         Intent::Repeat
@@ -70,6 +74,19 @@ pub(crate) fn commands(marks: &[Mark<'_>], clause: &Clause, cue: Cue) -> bool {
         }
         _ => plain && clause.topic != Topic::Off,
     }
+}
+
+/// "I don't want a bowl any more", "forget about the bowl": what is declined is any of them.
+fn declines(marks: &[Mark<'_>], clause: &Clause) -> bool {
+    let marks = &marks[clause.marks.clone()];
+    let denies = marks.iter().any(|mark| mark.is(Cue::Not));
+    let fetches = marks.iter().any(|mark| mark.is_any(cues![Fetch Want]) || mark.word == "forget");
+    let noun = marks.iter().any(|mark| mark.is(Cue::Head) && !mark.word.starts_with("one"));
+    let told = marks.iter().all(|mark| {
+        mark.sense != Sense::Unknown
+            && !mark.is_any(cues![Pointer Other Unlisted Ordinal Attribute Preposition Landmark])
+    });
+    clause.topic == Topic::On && denies && fetches && noun && told
 }
 
 /// "wait", and nothing else.

@@ -48,6 +48,8 @@ pub(crate) struct Lexicon {
     phrases: HashMap<String, Vec<Phrase>>,
     values: Vec<ValueSense>,
     spelling: SpellingIndex,
+    /// Values of several words, written as one.
+    compounds: SpellingIndex,
     /// The value with that skeleton, if it is the only one.
     sounds: HashMap<String, Option<u32>>,
     common: HashSet<&'static str>,
@@ -80,7 +82,7 @@ impl Lexicon {
         let phrases = self.phrases.get(tokens[at].word)?;
         phrases.iter().find_map(|phrase| {
             let words = matched(&phrase.rest, after)?;
-            self.closes(phrase, &after[words..]).then_some((words + 1, phrase.sense))
+            self.closes(phrase, tokens, at + 1 + words).then_some((words + 1, phrase.sense))
         })
     }
 
@@ -93,6 +95,11 @@ impl Lexicon {
     /// The value that the misspelt word must be.
     pub(crate) fn misspelt(&self, word: &str) -> Option<u32> {
         if self.common.contains(word) { None } else { self.spelling.correct(word) }
+    }
+
+    /// The value of several words that is one slip away from words written as one.
+    pub(crate) fn misspelt_compound(&self, joined: &str) -> Option<u32> {
+        self.compounds.correct(joined)
     }
 
     /// The value one slip away, even from an everyday word.
@@ -143,15 +150,23 @@ impl Lexicon {
     }
 
     /// Whether a closing phrase stands where its clause ends.
-    fn closes(&self, phrase: &Phrase, after: &[Token<'_>]) -> bool {
+    fn closes(&self, phrase: &Phrase, tokens: &[Token<'_>], end: usize) -> bool {
         if !phrase.closing {
             return true;
         }
-        let Some(next) = after.first() else { return true };
+        let Some(next) = tokens.get(end) else { return true };
+        // One word is looked up, or one whole phrase that does not close anything itself: the work
+        // stays linear.
+        let last = |phrase: &&Phrase| {
+            !phrase.closing && matched(&phrase.rest, &tokens[end + 1..]).is_some()
+        };
+        let phrases = self.phrases.get(next.word).into_iter().flatten();
         next.gap >= Gap::Pause
-            || matches!(
-                self.word(next.word),
-                Some(Sense::Cue(Cue::Filler | Cue::Courtesy | Cue::Yes | Cue::No | Cue::WeakYes))
+            || phrases.filter(|phrase| phrase.sense != Sense::Unknown).find(last).is_some_and(
+                |next| {
+                    use Cue::{Courtesy, Filler, Hedge, No, WeakYes, Yes};
+                    matches!(next.sense, Sense::Cue(Filler | Courtesy | Yes | No | WeakYes | Hedge))
+                },
             )
     }
 
@@ -202,6 +217,7 @@ impl Lexicon {
         if words.len() > 1 {
             let joined = words.concat();
             self.spelling.add(&joined, sense);
+            self.compounds.add(&joined, sense);
             self.add(&[joined], Sense::Value(sense));
         }
         let quality = words.len() == 1 && self.value(sense).role == Role::Quality;

@@ -89,7 +89,9 @@ fn written_apart(lexicon: &Lexicon, tokens: &[Token<'_>]) -> Option<(usize, Sens
             return None;
         }
         let joined: String = run.iter().map(|token| token.word).collect();
-        let sense = lexicon.word(&joined)?;
+        let whole = matches!(lexicon.word(run[0].word), Some(Sense::Value(_)));
+        let compound = || lexicon.misspelt_compound(&joined).filter(|_| !whole).map(Sense::Value);
+        let sense = lexicon.word(&joined).or_else(compound)?;
         matches!(sense, Sense::Value(_)).then_some((words, sense))
     })
 }

@@ -63,6 +63,7 @@ pub(crate) fn listen<'a>(
         repair: None,
     };
     for clause in clauses {
+        listener.landmark = false;
         if clause.topic == Topic::On {
             for at in clause.marks.clone() {
                 listener.hear(clause, at);
@@ -157,8 +158,10 @@ impl<'a> Listener<'a> {
             let new = repair::Replacement::at(self.lexicon, self.marks, at);
             let agreed = self.agrees();
             new.replace(&mut self.meaning.base, strength);
-            if agreed && !self.agrees() {
-                // "yes, the pen, no, the marker": the yes goes with the pen.
+            let asked = matches!(self.asked, Asked::Value(_, asked) if asked == value.word);
+            if agreed && !self.agrees() || asked && self.meaning.answers.denies() {
+                // "yes, the pen, no, the marker": the yes goes with the pen; "no, wait, it is
+                // black": and the no with what is said now.
                 self.meaning.answers.clear();
             }
             // "not the red one, I mean the red one": taken back in so many words.
@@ -271,7 +274,7 @@ impl<'a> Listener<'a> {
     /// "not sure if it is white", "I don't care what colour", "it doesn't have to be white".
     fn wonders_after(&self, at: usize) -> bool {
         let next = self.marks.get(at + 1).filter(|next| next.gap <= Gap::None);
-        let open = matches!(self.marks[at].word, "does" | "do" | "need" | "it");
+        let open = matches!(self.marks[at].word, "does" | "do" | "need" | "it" | "i" | "at");
         next.is_some_and(|next| {
             next.is_any(cues![Join Question Preposition])
                 || open && (next.value().is_some() || next.is(Cue::Determiner))

@@ -90,7 +90,8 @@ pub(crate) fn is_whole_answer(marks: &[Mark<'_>], clause: &Clause, at: usize) ->
         Determiner Pointer Be Plain Filler Courtesy Want Auxiliary Possessive
     ];
     // "nice weather, isn't it" is not about the question.
-    if marks[clause.marks.start..at].iter().any(|mark| mark.sense == Sense::Unknown) {
+    let before = &marks[clause.marks.start..at];
+    if marks[at].word == "forget" || before.iter().any(|mark| mark.sense == Sense::Unknown) {
         return false;
     }
     if is_not_what(marks, clause, at) || is_not_by_far(marks, clause, at) {

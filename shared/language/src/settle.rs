@@ -15,6 +15,8 @@ pub(crate) fn settle(lexicon: &Lexicon, marks: &mut [Mark<'_>]) {
             Sense::Cue(Cue::OtherLanguage) if marks[at].word == "non" => not_prefix(marks, at),
             Sense::Cue(Cue::But) => exception(marks, at),
             Sense::Cue(Cue::Join) if marks[at].word == "so" => degree(marks, at),
+            Sense::Cue(Cue::Preposition) if marks[at].word == "as" => equal(marks, at),
+            Sense::Cue(Cue::Courtesy) => named(marks, at),
             Sense::Cue(Cue::Aside) => pause_for_repair(marks, at),
             Sense::Cue(Cue::Put) if marks[at].word == "leave" => leave_out(lexicon, marks, at),
             Sense::Unknown => participle(lexicon, marks, at)
@@ -48,6 +50,8 @@ fn one(marks: &[Mark<'_>], at: usize) -> Option<Sense> {
                 | Cue::WeakYes
                 | Cue::WeakNo
                 | Cue::Not
+                | Cue::Story
+                | Cue::Fetch
         ),
     });
     Some(Sense::Cue(if head { Cue::Head } else { Cue::Plain }))
@@ -72,6 +76,25 @@ fn degree(marks: &[Mark<'_>], at: usize) -> Option<Sense> {
     let next = marks.get(at + 1).filter(|next| next.gap <= Gap::None);
     let before_value = next.is_some_and(|next| next.value().is_some());
     (after_verb || before_value).then_some(Sense::Cue(Cue::Plain))
+}
+
+/// "as big as the metal one": what follows the second "as" is another object.
+fn equal(marks: &[Mark<'_>], at: usize) -> Option<Sense> {
+    let near = |mark: &&Mark<'_>| mark.gap <= Gap::None;
+    let value = |mark: &Mark<'_>| mark.value().is_some();
+    let first = marks[..at].last().is_some_and(value);
+    let second = marks.get(at + 1).filter(near).is_some_and(value);
+    match (first, second) {
+        (_, true) => Some(Sense::Cue(Cue::Plain)),
+        (true, false) => Some(Sense::Cue(Cue::Than)),
+        _ => None,
+    }
+}
+
+/// "the honey please": a thing, not what the robot is called.
+fn named(marks: &[Mark<'_>], at: usize) -> Option<Sense> {
+    let before = marks[..at].last().filter(|_| marks[at].gap <= Gap::None)?;
+    before.is(Cue::Determiner).then_some(Sense::Unknown)
 }
 
 /// "the wide bowl", "the red ranch": where a value belongs, the one that sounds or looks like it.
@@ -122,7 +145,7 @@ fn ends_noun_phrase(marks: &[Mark<'_>], at: usize) -> bool {
 /// "the clear one, hang on, the white one": a moment to think, and the words before are replaced.
 fn pause_for_repair(marks: &[Mark<'_>], at: usize) -> Option<Sense> {
     const REACH: usize = 4;
-    let names = |mark: &Mark<'_>| mark.value().is_some();
+    let names = |mark: &Mark<'_>| mark.value().is_some() || mark.is_any(cues![Yes No]);
     let thinks = matches!(marks[at].word, "hang" | "hold" | "one" | "just");
     let before = marks[at.saturating_sub(REACH)..at].iter().any(names);
     let after = marks[at + 1..].iter().take(REACH).any(names);

@@ -185,10 +185,14 @@ fn is_code(text: &str) -> bool {
         text[at + 1..].starts_with(|c: char| c.is_ascii_alphabetic() || c == '/' || c == '|')
     };
     // A backslash alone may be part of a face: "¯\_(ツ)_/¯".
+    let joins = |at: usize| {
+        text[..at].ends_with(char::is_alphabetic) && text[at + 1..].starts_with(char::is_alphabetic)
+    };
     let escape = |at: usize| text[at + 1..].starts_with(|c: char| c.is_ascii_alphanumeric());
     text.contains(['{', '}', '`'])
         || text.match_indices('\\').any(|(at, _)| escape(at))
-        || text.contains("://")
+        || ["://", "[/", "()", "=="].iter().any(|mark| text.contains(mark))
+        || text.match_indices('_').any(|(at, _)| joins(at))
         || text.contains("$(")
         || text.match_indices('<').any(|(at, _)| tag(at))
 }

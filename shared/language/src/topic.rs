@@ -53,7 +53,8 @@ impl<'a> Sketch<'a> {
         if injected && !self.is_plain_request() {
             return Topic::Off;
         }
-        if self.is_errand() && self.values == self.places() && !self.has(cues![Head]) {
+        let strange = self.unknown > 0 || self.values == self.places();
+        if self.is_errand() && strange && !self.has(cues![Head]) {
             return Topic::Off;
         }
         if self.has(cues![Aside]) || self.is_other_language() || self.is_story() {
@@ -61,12 +62,15 @@ impl<'a> Sketch<'a> {
         }
         if self.asks_back(before) {
             // "what can you offer me", but not "what is the capital of France"
-            let to_us = self.unknown == 1 && self.clause().iter().any(|mark| mark.word == "me");
+            let which = self.clause().first().is_some_and(|mark| mark.word == "which");
+            let to_us =
+                self.unknown == 1 && (which || self.clause().iter().any(|mark| mark.word == "me"));
             let strange = self.unknown > 0 && self.values == 0 && !self.has(SCENE_NAMES) && !to_us;
             return if strange { Topic::Off } else { Topic::AskBack };
         }
         let named = self.has(SCENE_NAMES);
-        if aside > 0 && aside == self.values && !named && !self.has(cues![Fetch Unlisted]) {
+        let wished = self.has(cues![Fetch]) || self.has(cues![Unlisted]) && !self.owns_unlisted();
+        if aside > 0 && aside == self.values && !named && !wished {
             return Topic::Off;
         }
         // "I painted it white, blue and green": what goes on in a list stays in it.
@@ -77,9 +81,21 @@ impl<'a> Sketch<'a> {
             return Topic::Off;
         }
         let wanted = self.has(cues![Want]) && self.values > aside;
-        let tied = named || wanted || self.has(cues![Fetch It]) || self.points();
+        let tied = named
+            || wanted
+            || self.has(cues![Fetch It])
+            || self.points()
+            || self.is_bare_noun()
+            || self.denies_by_far();
         let elsewhere = self.unknown > 0 && self.has(cues![Unlisted]) && self.has(cues![Be]);
         if (self.unknown > 1 || elsewhere) && !tied { Topic::Off } else { Topic::On }
+    }
+
+    /// "not in a month of sundays"
+    fn denies_by_far(&self) -> bool {
+        let clause = self.clause();
+        self.values == 0
+            && matches!(clause, [not, how, ..] if not.is(Cue::Not) && how.is(Cue::Preposition))
     }
 
     /// "that one", but not "this phone".
@@ -99,8 +115,11 @@ impl<'a> Sketch<'a> {
     }
 
     fn is_other_language(&self) -> bool {
+        // Articles that are slips of an English finger elsewhere.
+        let article = |mark: &Mark<'_>| matches!(mark.word, "de" | "da" | "te");
         let foreign = self.clause().iter().filter(|mark| mark.is(Cue::OtherLanguage)).count();
-        foreign > 0 && 2 * (foreign + self.unknown) >= self.clause().len()
+        let articles = self.clause().iter().filter(|mark| article(mark)).count();
+        foreign > 0 && 2 * (foreign + articles + self.unknown) >= self.clause().len()
     }
 
     /// "I had a big breakfast", "my shirt is white", "he said yes".
@@ -113,6 +132,11 @@ impl<'a> Sketch<'a> {
         let told = self.has(cues![Story]) && !about_it;
         match opening {
             Cue::Story | Cue::When => !about_it,
+            // "shall we go out for coffee"
+            Cue::Auxiliary => {
+                let ours = self.clause().get(at + 1).is_some_and(|next| next.is(Cue::First));
+                ours && matches!(self.clause()[at].word, "shall" | "should")
+            }
             Cue::First => told || self.has(cues![When]) && !about_it,
             // "he small white bowl" is a "the" that was not heard well.
             Cue::Third => {
@@ -139,6 +163,12 @@ impl<'a> Sketch<'a> {
         });
         let noun = phrase.last().and_then(|(_, mark)| mark.value());
         noun.is_some_and(|value| self.lexicon.value(value).role == Role::Kind)
+    }
+
+    /// "my glass is empty": a thing of the kind, but not one of ours.
+    fn owns_unlisted(&self) -> bool {
+        let pairs = self.clause().windows(2);
+        pairs.into_iter().any(|pair| pair[0].is(Cue::Possessive) && pair[1].is(Cue::Unlisted))
     }
 
     /// "put it on the table", "empty the dishwasher": an order, but not to fetch.
@@ -198,6 +228,10 @@ impl<'a> Sketch<'a> {
 
     /// "are you pointing at the clear one", "is the pen on the table".
     fn asks_whether(&self, at: usize) -> bool {
+        // "there is a pen on the table" states it.
+        if self.clause()[..at].iter().any(|mark| mark.is(Cue::Plain)) {
+            return false;
+        }
         let rest = &self.clause()[at + 1..];
         let value = |mark: &Mark<'_>| mark.value().is_some();
         match rest {
@@ -235,16 +269,20 @@ impl<'a> Sketch<'a> {
         !relative && (inverted || !self.has(cues![Fetch]))
     }
 
-    /// "the wok please": all that is said names one thing.
-    fn is_bare_noun(&self) -> bool {
+    /// "the wok please", "the pepper on the shelf": all that is said names one thing.
+    pub(crate) fn is_bare_noun(&self) -> bool {
         let clause = self.clause();
-        let said = clause.iter().rposition(|mark| !mark.is_any(cues![Courtesy Filler]));
-        clause.len() == self.marks.len()
-            && clause.first().is_some_and(|mark| matches!(mark.word, "the" | "a" | "an"))
-            && said.is_some_and(|last| {
-                (1..=2).contains(&last)
-                    && clause[1..=last].iter().all(|mark| mark.sense == Sense::Unknown)
-            })
+        let opens = clause.first().is_some_and(|mark| matches!(mark.word, "the" | "a" | "an"));
+        let unknown = |mark: &&Mark<'_>| mark.sense == Sense::Unknown;
+        let named = clause.iter().skip(1).take_while(unknown).count();
+        let rest = &clause[(named + 1).min(clause.len())..];
+        let place = |mark: &Mark<'_>| {
+            mark.value().is_some_and(|value| self.lexicon.value(value).role == Role::Place)
+        };
+        let located = rest
+            .iter()
+            .all(|mark| place(mark) || mark.is_any(cues![Preposition Determiner Courtesy Filler]));
+        opens && clause.len() == self.marks.len() && (1..=2).contains(&named) && located
     }
 
     /// Only parts of a noun phrase: "blue", "the green one".

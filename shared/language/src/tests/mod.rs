@@ -35,6 +35,7 @@ fn scene(name: &str) -> Scene {
         "bowls" => BOWLS,
         "tools" => TOOLS,
         "garments" => fixture!("garments.toml"),
+        "pantry" => fixture!("pantry.toml"),
         other => panic!("no scene {other}"),
     };
     Scene::from_toml(name, text).expect("a shipped scene")

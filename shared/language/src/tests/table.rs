@@ -2,6 +2,8 @@
 //! empty, `attribute=value` or `@object`, and the meaning lists values said, `-a+b` for a group
 //! ruled out, `yes` or `no` for the answer and `!intent`; `|` parts readings that are as good.
 //!
+//! A line that starts with `~` is known to be misread; it may not come right unnoticed.
+//!
 //! `cases.txt` grew with the reader. `fresh_1.txt` and `fresh_2.txt` were each written without a
 //! look at what the reader makes of them, and measured before it was changed for them.
 
@@ -47,6 +49,7 @@ fn meaning(text: &str) -> Meaning {
 /// One line of a table.
 struct Case<'a> {
     kind: &'a str,
+    missed: bool,
     line: &'a str,
     scene: &'a str,
     asked: &'a str,
@@ -62,12 +65,13 @@ fn cases(table: &str) -> Vec<Case<'_>> {
             kind = heading;
             continue;
         }
+        let missed = line.starts_with('~');
         let (input, expected) = line.rsplit_once("=>").expect("a meaning");
         let (context, text) = input.split_once(':').expect("a text");
-        let (scene, asked) = context.split_once('?').expect("a question");
+        let (scene, asked) = context.trim_start_matches('~').split_once('?').expect("a question");
         let (scene, asked, text) = (scene.trim(), asked.trim(), text.trim());
         let expected = expected.split('|').map(meaning).collect();
-        cases.push(Case { kind, line, scene, asked, text, expected });
+        cases.push(Case { kind, missed, line, scene, asked, text, expected });
     }
     cases
 }
@@ -91,7 +95,7 @@ fn check(table: &str) {
         counts[0] += 1;
         counts[1] += usize::from(exact);
         counts[2] += usize::from(response);
-        if !exact {
+        if exact == case.missed {
             let _ = writeln!(failures, "{}: {}\n    read as {read:?}", case.kind, case.line);
         }
     }
@@ -107,4 +111,9 @@ fn the_cases_are_understood() {
 #[test]
 fn the_first_fresh_set_is_understood() {
     check(fixture!("fresh_1.txt"));
+}
+
+#[test]
+fn the_second_fresh_set_is_understood() {
+    check(fixture!("fresh_2.txt"));
 }

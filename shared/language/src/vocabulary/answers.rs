@@ -15,50 +15,58 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          without a doubt, no question, why not, bingo, spot on, right on, exactly right, quite \
          right, quite so, that would be it, that would be the one, that will be it, that will be \
          the one, sounds right, looks right, seems right, sounds good, that sounds right, that \
-         sounds good, yes please, please do, go ahead, go for it, yessir, hell yes, hell yeah, yes \
-         sir, it sure is, it certainly is, it definitely is, it really is, that it is, so it is, \
-         most certainly, most definitely, you are spot on, roger, that goes without saying, it \
-         goes without saying, thumbs up, too right, damn right, damn straight, without doubt, that \
-         one there, there you go, exactly that one, that very one, that is what i want, that is \
-         what i wanted, that is what i mean, that is what i meant, that is the one i want, that is \
-         the one i wanted, that is the one i mean, that is the one i meant, 10 4, ten four, nailed \
-         it, you nailed it, yes it is, i am afraid so, that is exactly right, that is exactly it, \
-         positive, ya, very much so, so very much, that is the ticket, that is the badger, that is \
-         the stuff, that is the spirit, that is the fella, that is the fellow, that is the guy, \
-         that is the baby, that is the bunny, that is the way, just the ticket, hit the nail on \
-         the head, on the nose, on the button, on the money, right on the money, bang on, dead on, \
-         dead right, bang to rights, you said it, you can say that again, i will say, could not be \
-         more right, could not be righter, could not agree more, could not have said it better, \
-         could not put it better, took the words right out of my mouth, took the words out of my \
-         mouth, bullseye, jackpot, eureka, ding ding, ding ding ding, right first time, first time \
-         right, no two ways about it, no ifs or buts, no ifs no buts, no ifs ands or buts, hits \
-         the spot, hit the spot, fits the bill, ticks the box, ticks all the boxes, does the \
-         trick, that does the trick, that did it, you have hit it, hit it in one, full marks, \
-         correctamundo, okie dokie, okey dokey, okey doke, yes sirree, yessiree, righto, righty, \
-         right oh, right you are, aye aye, hear hear, amen, amen to that, i second that, as sure \
-         as eggs is eggs, sure as hell, you betcha, betcha, damn skippy, does a bear shit in the \
-         woods, is the pope catholic, do bears shit in the woods, yse, ys, yeas, yees, yers, yass, \
-         yas, yus, yuh, yeps, yepp, yeppers, yupp, fraid so, afraid so, hundred percent, a hundred \
-         percent, one hundred percent, 100 percent, 100, a thousand times yes, that is him, that \
-         is her, that is them, that is that one, the very one, the very same, the very thing, that \
-         is the very one, the one and only, one and the same, got it right, guessed right, guessed \
-         it, guessed correctly, right guess, good guess, correct guess, well guessed, you are on \
-         the right track, on the right track, you have nailed it, there you have it, there we go, \
-         now you have got it, now you have it, now we are talking, that is my one, same one, \
-         exactly the one, just the one, just that one, just right, exactly so, just so, even so, \
-         such is the case, that is the case, this is true, this is right, this is correct, this is \
-         so, that is so, that is a fact, it is a yes, that is affirmative, that is a definite yes, \
-         why certainly, of course it is, but yes, naturally yes, you know it is, sounds about \
-         right, about right, looks about right, seems about right, seems about it, that is about \
-         right, that is about the size of it, more or less yes, it is a match, we have a match, we \
-         have a winner, winner winner chicken dinner, touche, say no more, no argument, no \
-         argument there, no argument from me, no arguments, no contest, no objection, no \
-         objections, nothing but yes, not wrong, you are not wrong, not incorrect, nothing wrong \
-         with that, can not argue with that, no mistake, no mistake about it, make no mistake, no \
-         denying it, no denying that, there is no denying it, there is no doubt, there is no doubt \
-         about it, there is no question, beyond doubt, beyond question, beyond a doubt, beyond a \
-         shadow of a doubt, no brainer, bet, fo sho, fer sure, def, deffo, totes, yip, that is \
-         more like it, more like it, i would guess so, i should guess so, my guess is yes",
+         sounds good, yes please, go ahead, go for it, yessir, hell yes, hell yeah, yes sir, it \
+         sure is, it certainly is, it definitely is, it really is, most certainly, most \
+         definitely, you are spot on, roger, that goes without saying, it goes without saying, \
+         thumbs up, too right, damn right, damn straight, without doubt, that one there, there you \
+         go, exactly that one, that very one, that is what i want, that is what i wanted, that is \
+         what i mean, that is what i meant, that is the one i want, that is the one i wanted, that \
+         is the one i mean, that is the one i meant, 10 4, ten four, nailed it, you nailed it, yes \
+         it is, i am afraid so, that is exactly right, that is exactly it, positive, ya, very much \
+         so, so very much, that is the ticket, that is the badger, that is the stuff, that is the \
+         spirit, that is the fella, that is the fellow, that is the guy, that is the baby, that is \
+         the bunny, that is the way, just the ticket, hit the nail on the head, on the nose, on \
+         the button, on the money, right on the money, bang on, dead on, dead right, bang to \
+         rights, you said it, you can say that again, i will say, could not be more right, could \
+         not be righter, could not agree more, could not have said it better, could not put it \
+         better, took the words right out of my mouth, took the words out of my mouth, bullseye, \
+         jackpot, eureka, ding ding, ding ding ding, right first time, first time right, no two \
+         ways about it, no ifs or buts, no ifs no buts, no ifs ands or buts, hits the spot, hit \
+         the spot, fits the bill, ticks the box, ticks all the boxes, does the trick, that does \
+         the trick, that did it, you have hit it, hit it in one, full marks, correctamundo, okie \
+         dokie, okey dokey, okey doke, yes sirree, yessiree, righto, righty, right oh, right you \
+         are, aye aye, hear hear, amen, amen to that, i second that, as sure as eggs is eggs, sure \
+         as hell, you betcha, betcha, damn skippy, does a bear shit in the woods, is the pope \
+         catholic, do bears shit in the woods, yse, ys, yeas, yees, yers, yass, yas, yus, yuh, \
+         yeps, yepp, yeppers, yupp, fraid so, afraid so, hundred percent, a hundred percent, one \
+         hundred percent, 100 percent, 100, a thousand times yes, that is him, that is her, that \
+         is them, that is that one, the very one, the very same, the very thing, that is the very \
+         one, the one and only, one and the same, got it right, guessed right, guessed it, guessed \
+         correctly, right guess, good guess, correct guess, well guessed, you are on the right \
+         track, on the right track, you have nailed it, there you have it, there we go, now you \
+         have got it, now you have it, now we are talking, that is my one, same one, exactly the \
+         one, just the one, just that one, just right, exactly so, just so, even so, such is the \
+         case, that is the case, this is true, this is right, this is correct, this is so, that is \
+         so, that is a fact, it is a yes, that is affirmative, that is a definite yes, why \
+         certainly, of course it is, but yes, naturally yes, you know it is, sounds about right, \
+         about right, looks about right, seems about right, seems about it, that is about right, \
+         that is about the size of it, more or less yes, it is a match, we have a match, we have a \
+         winner, winner winner chicken dinner, touche, say no more, no argument, no argument \
+         there, no argument from me, no arguments, no contest, no objection, no objections, \
+         nothing but yes, not wrong, you are not wrong, not incorrect, nothing wrong with that, \
+         can not argue with that, no mistake, no mistake about it, make no mistake, no denying it, \
+         no denying that, there is no denying it, there is no doubt, there is no doubt about it, \
+         there is no question, beyond doubt, beyond question, beyond a doubt, beyond a shadow of a \
+         doubt, no brainer, bet, fo sho, fer sure, def, deffo, totes, yip, that is more like it, \
+         more like it, i would guess so, i should guess so, my guess is yes, please do ., nail on \
+         the head, bob on, smack on, slap bang on, that is my baby, that is my boy, that is my \
+         girl, safe bet, a safe bet, it is a safe bet, you can bank on it, bank on it, you can \
+         count on it, count on it, you can bet on it, you bet it is, take it ., take that one, \
+         take this one, grab it, grab that one, get that one, i will take it, i will take that \
+         one, i will have that one, i want that one, i want this one, i want that, i want it ., i \
+         would like that one, give me that one, give me that, give it to me, bring it, bring it \
+         here, bring that one, bring me that one, get it, get me that one, hand it over, hand it \
+         to me",
     ),
     (
         Cue::WeakYes,
@@ -78,7 +86,8 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          do nicely, true that, true enough, fair play, affirm, roger that, copy that, ten out of \
          ten, super duper, splendid, brilliant, fantastic, marvellous, marvelous, terrific, \
          amazing, superb, grand, ideal, bravo, well done, good job, great job, nice one, good \
-         work, smart robot, clever robot, good robot",
+         work, smart robot, clever robot, good robot, it has been, i can confirm that, i can \
+         confirm, i confirm, i confirm that, we agree, my thoughts exactly, my sentiments exactly",
     ),
     (
         Cue::No,
@@ -90,37 +99,44 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          them, none of these, neither of them, none, not on your life, nothing like it, not by a \
          long shot, not a bit, not one bit, under no circumstances, unlikely, highly unlikely, \
          anything but that, far from it, by no means, on the contrary, keep looking, you are \
-         mistaken, not in a million years, in no way, i would not say so, i would not say that, \
-         some other one, a different one, not my one, not what i want, not what i asked, not what \
-         i asked for, not what i meant, not what i said, not what i am looking for, not what i \
-         wanted, not what i need, guess again, wrong again, wrong guess, bad guess, guessed wrong, \
-         no dice, no cigar, close but no cigar, nice try, nice try but no, no can do, no siree, no \
-         sirree bob, nosiree, nope nope, wide of the mark, way off, way off the mark, off the \
-         mark, off base, way off base, barking up the wrong tree, wrong tree, on the wrong track, \
-         you are on the wrong track, wrong track, ice cold, getting colder, you are getting \
-         colder, you are cold, not warm, not on your nelly, not your cup of tea, not my cup of \
-         tea, not by a long chalk, not by a mile, not by any means, not by any stretch, not by any \
-         stretch of the imagination, dream on, in your dreams, fat chance, when pigs fly, when \
-         hell freezes over, over my dead body, that will be the day, no luck, think again, look \
-         again, fraid not, afraid not, hard no, that is a no, it is a no, it is a no from me, \
-         negatory, nuhuh, nopes, nopers, nuh, naah, noes, noe, absolutely not, try another, try \
-         another one, try a different one, try the other one, keep trying, keep going, keep \
-         guessing, next one please, next please, next ., strike one, strike two, swing and a miss, \
-         missed, you missed, that is a miss, no match, not a match, mismatch, wrong answer, you \
-         have got it wrong, you got it wrong, you got that wrong, got it wrong, got that wrong, \
-         you have it wrong, you have got that wrong, you have got the wrong one, you got the wrong \
-         one, pointing at the wrong one, the wrong way, wrong thing, the wrong thing, that is not \
-         it chief, quite the contrary, quite the opposite, the other way around, the other way \
-         round, could not be further from the truth, could not be more wrong, nothing of the sort, \
-         nothing of the kind, nothing like that, no such thing, like hell, like hell it is, my \
-         foot, pull the other one, far from that, never ever, never in a million years, never in \
-         my life, no fear, doubtful, i have my doubts about that, highly doubtful, very doubtful, \
-         not that i know of, not that i know, not that i am aware of, not that i can see, not that \
-         i can tell, not that i remember, not that i recall, not to my knowledge, not as far as i \
-         know, not as far as i can tell, not in my book, not likely, not very likely, not bloody \
-         likely, not especially, not particularly, not in the slightest, not remotely, not nearly, \
-         not anywhere near, nowhere near, not this time, not today, nix, nada, that is not the \
-         case, that is not so, not so, not so much, not true, not as such, not for me, you are off",
+         mistaken, not in a million years, in no way, some other one, a different one, not my one, \
+         not what i want, not what i asked, not what i asked for, not what i meant, not what i \
+         said, not what i am looking for, not what i wanted, not what i need, guess again, wrong \
+         again, wrong guess, bad guess, guessed wrong, no dice, no cigar, close but no cigar, nice \
+         try, nice try but no, no can do, no siree, no sirree bob, nosiree, nope nope, wide of the \
+         mark, way off, way off the mark, off the mark, off base, way off base, barking up the \
+         wrong tree, wrong tree, on the wrong track, you are on the wrong track, wrong track, ice \
+         cold, getting colder, you are getting colder, you are cold, not warm, not on your nelly, \
+         not your cup of tea, not my cup of tea, not by a long chalk, not by a mile, not by any \
+         means, not by any stretch, not by any stretch of the imagination, dream on, in your \
+         dreams, fat chance, when pigs fly, when hell freezes over, over my dead body, that will \
+         be the day, no luck, think again, look again, fraid not, afraid not, hard no, that is a \
+         no, it is a no, it is a no from me, negatory, nuhuh, nopes, nopers, nuh, naah, noes, noe, \
+         absolutely not, try another, try another one, try a different one, try the other one, \
+         keep trying, keep going, keep guessing, next one please, next please, next ., strike one, \
+         strike two, swing and a miss, missed, you missed, that is a miss, no match, not a match, \
+         mismatch, wrong answer, you have got it wrong, you got it wrong, you got that wrong, got \
+         it wrong, got that wrong, you have it wrong, you have got that wrong, you have got the \
+         wrong one, you got the wrong one, pointing at the wrong one, the wrong way, wrong thing, \
+         the wrong thing, that is not it chief, quite the contrary, quite the opposite, the other \
+         way around, the other way round, could not be further from the truth, could not be more \
+         wrong, nothing of the sort, nothing of the kind, nothing like that, no such thing, like \
+         hell, like hell it is, my foot, pull the other one, far from that, never ever, never in a \
+         million years, never in my life, no fear, doubtful, i have my doubts about that, highly \
+         doubtful, very doubtful, not that i know of, not that i know, not that i am aware of, not \
+         that i can see, not that i can tell, not that i remember, not that i recall, not to my \
+         knowledge, not as far as i know, not as far as i can tell, not in my book, not likely, \
+         not very likely, not bloody likely, not especially, not particularly, not in the \
+         slightest, not remotely, not nearly, not anywhere near, nowhere near, not this time, not \
+         today, nix, nada, that is not the case, that is not so, not so, not so much, not true, \
+         not as such, not for me, you are off, i would not say that ., i would not say so, could \
+         be further from the truth, nothing could be further from the truth, not for the world, \
+         not for all the tea in china, not for love nor money, not for love or money, not in a \
+         month of sundays, not in this life, not if i can help it, wrong end of the stick, i beg \
+         to differ, beg to differ, i disagree with that, leave that one, leave that, leave it \
+         there, put that one back, put it back, put that back, not that way, try somewhere else, \
+         look somewhere else, wrong place, wrong color, wrong colour, wrong size, wrong kind, \
+         wrong shape, not any longer",
     ),
     (
         Cue::WeakNo,
@@ -156,7 +172,9 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          it, can not see it from here, can not see from here, could not see it, not in a position \
          to say, could be either, could be both, might be either, it is complicated, complicated, \
          that depends, depends on, tough to say, tough call, tough one, tricky one, tricky to say, \
-         good question .",
+         good question ., can not see, could not see, can not make it out, can not make out, can \
+         not read it, partly, partially, to some extent, to a degree, up to a point, in a way, \
+         jury still out, the jury still out",
     ),
     (
         Cue::Hedge,
@@ -177,7 +195,10 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          inclined to say, i suspect, i expect, i gather, i fancy, hopefully, i am not mistaken, \
          correct me if i am wrong, do not quote me on that, do not quote me, in my opinion, in my \
          view, it could well be, something like that, or something, or something like that, or \
-         whatever, or so, or thereabouts",
+         whatever, or so, or thereabouts, last i checked, last time i checked, last i heard, last \
+         i saw, last time i looked, the last time i looked, the last time i checked, the last time \
+         i saw it, last time i saw it, when i last looked, when i last checked, when i last saw \
+         it, at least i think so, at least i think, i am almost certain, almost certain",
     ),
     (
         Cue::Likely,
@@ -193,8 +214,7 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          chances are, odds are, i would imagine so, i imagine so, i would assume so, i assume so, \
          i presume so, i reckon so, i expect so, i would expect so, i suspect so, i would bet on \
          it, i would bet, more or less so, ish, it ought to be, it should be, it must be, it has \
-         to be, got to be, must be that one, by the looks of it, by the look of it, last i \
-         checked, last time i checked, last i heard, last i saw",
+         to be, got to be, must be that one, by the looks of it, by the look of it",
     ),
     (
         Cue::Indifferent,
@@ -211,7 +231,8 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          closest, whichever is easiest, whichever is nearest, dealer is choice, take your pick, be \
          my guest, no skin off my nose, not fussy, i am not fussy, i am flexible, i could go \
          either way, it makes no odds, makes no odds, it is immaterial, immaterial, you be the \
-         judge",
+         judge, i was about to say, i nearly said, i almost said, i first thought, at first i \
+         thought, i first said, i was going to say, i wanted to say",
     ),
     (
         Cue::Reply,
@@ -254,8 +275,7 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          about it, now i think about it, or maybe rather, nay rather, or better yet, better yet, \
          even better, better make that, better make it, make that a, let us say, let us make it, \
          or let us say, what am i saying, what i mean is, what i meant is, what i meant was, what \
-         i meant to say, what i am trying to say, i was going to say, i wanted to say, i should \
-         have said",
+         i meant to say, what i am trying to say, i should have said",
     ),
     (
         Cue::Withdraw,

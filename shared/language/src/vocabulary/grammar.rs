@@ -46,7 +46,7 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          underneath, beneath, across from, along with, together with, same as, adjacent to, \
          opposite, around the",
     ),
-    (Cue::Than, "than, compared to, as big as, as small as"),
+    (Cue::Than, "than, compared to"),
     (Cue::And, "and, plus, n, as well as, and also"),
     (Cue::Or, "or, nor, and or"),
     (Cue::But, "but, however, though, although"),
@@ -110,7 +110,10 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          in the evening, in the afternoon, at night, at noon, at midnight, every day, every \
          morning, these days, the other day, this week, this year, this month",
     ),
-    (Cue::Not, "not, without, never, neither, forget the, lose the, leave out, none of"),
+    (
+        Cue::Not,
+        "not, without, never, neither, forget the, lose the, leave out, none of, forget about the",
+    ),
     (
         Cue::Except,
         "anything but, everything but, anything except, everything except, all but, any but, any \

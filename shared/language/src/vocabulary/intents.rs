@@ -36,13 +36,12 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          do not do that, do not do anything, do not touch that, do not touch it, hold your horses, \
          stahp, cease, knock it off, stop stop, do not grab it, do not take it, do not pick it up, \
          do not pick it, do not pick that up, do not pick that, do not grab that, do not take \
-         that, do not move an inch, that is enough, stop at once, stop immediately, stop this, \
-         stop there now, stop please stop, hold your fire, do not go any further, no further, \
-         hands off, back off, back away, break off, shut down, shut it down, shut off, power off, \
-         kill the motor, kill the arm, cut the power, cut the motor, watch out, look out, careful \
-         stop, easy stop, freeze now, not another inch, stop the motion, stop the movement, stop \
-         your arm, stop the gripper, stop grabbing, stop reaching, stop going, stand down, stand \
-         by .",
+         that, do not move an inch, that is enough, stop at once, stop immediately, stop there \
+         now, stop please stop, hold your fire, do not go any further, no further, hands off, back \
+         off, back away, break off, shut down, shut it down, shut off, power off, kill the motor, \
+         kill the arm, cut the power, cut the motor, watch out, look out, careful stop, easy stop, \
+         freeze now, not another inch, stop the motion, stop the movement, stop your arm, stop the \
+         gripper, stop grabbing, stop reaching, stop going, stand down, stand by .",
     ),
     (
         Cue::Cancel,
@@ -50,20 +49,17 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          about it, forget about that, forget the whole thing, forget i asked, forget i said \
          anything, do not bother, leave it be, call it off, scrap it, i do not need it anymore, i \
          do not want it anymore, do not need it anymore, do not want it anymore, no longer need \
-         it, no longer want it, i do not need it, i do not need anything, i do not want anything, \
-         do not need anything, do not want anything, i do not need that anymore, no need, not \
+         it, no longer want it, i do not need it, i do not need that anymore, no need, not \
          necessary, not needed, no longer needed, not needed anymore, not anymore, not any more, \
          quit, exit, cancel my request, cancel the request, cancel my order, cancel the order, \
          cancel everything, i will get it myself, i will do it myself, i got it myself, i will \
-         grab it myself, i found it, i have found it, do not get me anything, do not get anything, \
-         do not bring me anything, do not bring anything, do not fetch anything, i want nothing, \
-         never you mind, i am all set, we are done, i am done, it is okay i do not need it, undo, \
-         disregard, withdraw, i do not need one anymore, i give up, forget this, do not worry \
-         about getting it, it does not matter anymore, does not matter anymore, does not matter \
-         any more, leave it ., drop it ., let it be ., let it go ., i am good ., i am fine ., we \
-         are good ., i need nothing, i want nothing from you, i do not want one anymore, i do not \
-         want one any more, i do not need it any more, i do not want it any more, i do not need \
-         one any more, no longer interested, not interested, not interested anymore, i am not \
+         grab it myself, i found it, i have found it, never you mind, i am all set, we are done, i \
+         am done, it is okay i do not need it, undo, disregard, withdraw, i do not need one \
+         anymore, i give up, forget this, do not worry about getting it, it does not matter \
+         anymore, does not matter anymore, does not matter any more, leave it ., drop it ., let it \
+         be ., let it go ., i am good ., i am fine ., we are good ., i do not want one anymore, i \
+         do not want one any more, i do not need it any more, i do not want it any more, i do not \
+         need one any more, no longer interested, not interested, not interested anymore, i am not \
          interested, changed my mind about it, i have changed my mind about it, forget i said it, \
          forget i said that, forget my request, forget my order, forget the order, forget the \
          request, drop the request, drop the order, drop the whole thing, scrap the whole thing, \
@@ -77,7 +73,10 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          no thanks i am good, we do not need it, we do not need it anymore, we are all set, that \
          will be all, that is it for now, not right now ., maybe later ., some other time ., \
          another time ., revoke, retract, call off, call off the search, quit looking, give it up, \
-         leave me alone, go away",
+         leave me alone, go away, i do not need anything ., i do not want anything ., do not need \
+         anything ., do not want anything ., do not get me anything ., do not get anything ., do \
+         not bring me anything ., do not bring anything ., do not fetch anything ., i want nothing \
+         ., i need nothing ., i want nothing from you .",
     ),
     (
         Cue::Repeat,
@@ -112,7 +111,9 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          distracted, hear the question again, the question again, the question once more, question \
          again, question please, another time please, can not understand you, could not understand \
          you, could not understand, could not understand that, can not understand that, can not \
-         understand, lost you there, i lost you, you lost me, i zoned out, zoned out",
+         understand, lost you there, i lost you, you lost me, i zoned out, zoned out, what was \
+         your question, what is your question, your question, what is the question again, what was \
+         the question again",
     ),
     (
         Cue::Huh,
@@ -130,25 +131,25 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          all that, forget all of that, forget what i said, forget what i just said, forget \
          everything i just said, clear everything, wipe the slate clean, clean slate, redo, \
          reboot, let us start over, start the whole thing over, start all over, start it over, \
-         rewind, different request, i want something else entirely, from the top ., start the \
-         whole thing again, start this over, start that over, start everything over, go back to \
-         start, back to start, start new, start again from the top, start all over again, begin \
-         all over, begin all over again, go back to the top, go from the top, back to the top, \
-         from the start, go back to square one, take it from the beginning, from zero, start from \
-         zero, start at zero, start at the beginning, start from the start, start at the top, \
-         begin from scratch, begin from the start, begin at the beginning, begin from the top, \
-         wipe everything, erase everything, delete everything, forget all i said, forget all i \
-         told you, forget everything i told you, forget everything so far, forget it all, scrap \
-         all that, scrap it all, scratch all that, scratch all of that, ignore everything i said, \
-         ignore all i said, disregard everything i said, disregard all i said, disregard what i \
-         said, ignore what i said, new start, fresh start, a fresh start, make a fresh start, make \
-         a new start, clear the slate, clear it all, clear all, clear all that, one more time from \
-         the top, one more time from the beginning, again from the beginning, again from the \
-         start, again from the top, back to zero, do it again from the start, do everything again, \
-         do that again from the start, repeat from the beginning, repeat from the start, let us \
-         try again, let us try that again, let us try this again, let us go again, let us do this \
-         again, let us do it again, let us do that again, restart the whole thing, reset the \
-         conversation, reset everything, reset all, reset yourself, restart the conversation",
+         rewind, different request, i want something else entirely, start the whole thing again, \
+         start this over, start that over, start everything over, go back to start, back to start, \
+         start new, start again from the top, start all over again, begin all over, begin all over \
+         again, go back to the top, back to the top, from the start, go back to square one, take \
+         it from the beginning, from zero, start from zero, start at zero, start at the beginning, \
+         start from the start, start at the top, begin from scratch, begin from the start, begin \
+         at the beginning, begin from the top, wipe everything, erase everything, delete \
+         everything, forget all i said, forget all i told you, forget everything i told you, \
+         forget everything so far, forget it all, scrap all that, scrap it all, scratch all that, \
+         scratch all of that, ignore everything i said, ignore all i said, disregard everything i \
+         said, disregard all i said, disregard what i said, ignore what i said, new start, fresh \
+         start, a fresh start, make a fresh start, make a new start, clear the slate, clear it \
+         all, clear all, clear all that, one more time from the top, one more time from the \
+         beginning, again from the beginning, again from the start, again from the top, back to \
+         zero, do it again from the start, do everything again, do that again from the start, \
+         repeat from the beginning, repeat from the start, let us try again, let us try that \
+         again, let us try this again, let us go again, let us do this again, let us do it again, \
+         let us do that again, restart the whole thing, reset the conversation, reset everything, \
+         reset all, reset yourself, restart the conversation",
     ),
     (
         Cue::AskBack,

@@ -92,7 +92,10 @@ pub(super) const LISTS: &[(Cue, &str)] = &[
          previous, forget previous, forget your instructions, instructions, prompt, system, select \
          all, api key, secret, config, parameters, intent, response, every object, all objects, \
          all the objects, everything you were told, all you were told, what you were told, \
-         anything you were told, you were told, your orders, your task is, your new task",
+         anything you were told, you were told, your orders, your task is, your new task, user \
+         confirms, the user says, the user said, user says, user said, user input, end of input, \
+         confirmed by the user, reprogrammed, been reprogrammed, sys, sql, html, javascript, \
+         python, password, shell, terminal, root",
     ),
     (
         Cue::OtherLanguage,
