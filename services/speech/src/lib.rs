@@ -11,6 +11,9 @@ pub mod record;
 mod said;
 pub mod shell;
 
+#[cfg(test)]
+mod tests;
+
 use ears::Ears;
 use mouth::Mouth;
 use node::{Effects, Event, Node, NodeError, Span, Time};

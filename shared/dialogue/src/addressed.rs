@@ -37,7 +37,7 @@ pub struct Asked {
     pub question: Question,
     /// When the robot began to say it.
     pub began_s: f64,
-    /// When it had been said, or was broken off. While it lasts: not before the utterance at hand.
+    /// When it had been said, or was broken off, or is expected to have been said.
     pub ended_s: f64,
     /// Whether it was said to its end.
     pub whole: bool,

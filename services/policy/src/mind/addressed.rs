@@ -13,8 +13,7 @@ impl Mind {
     /// How an utterance is divided among the questions of `heard.asked`.
     pub(super) fn addressed(&self, state: &State, heard: &Heard) -> Addressed {
         let onset_s = heard.onset.since(Time(0)).s();
-        let asked: Vec<Asked> =
-            heard.asked.iter().map(|asking| put(state, asking, heard.onset)).collect();
+        let asked: Vec<Asked> = heard.asked.iter().map(|asking| put(state, asking)).collect();
         match self.turns.attribution {
             Attribution::Naive => Addressed::only(pending(state, heard), asked.len()),
             Attribution::Onset => Addressed::latest_said(&asked, onset_s),
@@ -108,15 +107,18 @@ fn content(reading: &Reading) -> Reading {
     }
 }
 
+/// About how long it takes to say a question, seconds, where it is still being said.
+const QUESTION_S: f64 = 1.5;
+
 /// The question as the person met it.
-fn put(state: &State, asking: &Asking, onset: Time) -> Asked {
+fn put(state: &State, asking: &Asking) -> Asked {
     let seconds = |time: Time| time.since(Time(0)).s();
     let open = state.open.as_ref();
     let prompt = open.and_then(|open| open.prompts.iter().find(|p| p.id == asking.prompt));
     Asked {
         question: Question::None,
         began_s: seconds(asking.began),
-        ended_s: seconds(asking.ended.unwrap_or_else(|| onset.max(asking.began))),
+        ended_s: asking.ended.map_or(seconds(asking.began) + QUESTION_S, seconds),
         whole: asking.whole,
         answered_s: prompt.and_then(|prompt| prompt.answered).map(seconds),
     }
