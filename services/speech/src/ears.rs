@@ -83,6 +83,7 @@ impl Ears {
                 self.listening.insert(self.last_sound, (injection.key, onset));
                 fx.publish(Out::Recognise(self.last_sound, path));
             }
+            Sound::Talk { .. } => {}
         }
     }
 

@@ -6,6 +6,7 @@
 
 pub mod devices;
 mod ears;
+pub mod live;
 mod mouth;
 pub mod record;
 mod said;

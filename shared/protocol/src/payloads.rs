@@ -37,7 +37,8 @@ pub struct Injection {
 encoded!(
     Injection,
     "Injection",
-    "key[u8;16] onset_ns:u64 sound{Text(str),Wav(path str),Point(target_m[f64;3] words str)}"
+    "key[u8;16] onset_ns:u64 sound{Text(str),Wav(path str),Point(target_m[f64;3] words str),\
+     Talk(longest_s f64)}"
 );
 
 /// What a client gives.
@@ -53,6 +54,11 @@ pub enum Sound {
         target_m: [f64; 3],
         /// What is said with it; empty for nothing.
         words: String,
+    },
+    /// What a person says into the microphone of the robot's computer from now on: one utterance.
+    Talk {
+        /// Longest wait for its end, seconds.
+        longest_s: f64,
     },
 }
 

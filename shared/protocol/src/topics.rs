@@ -116,6 +116,8 @@ pub const ACTIVITY: Topic = Topic {
     readers: &[Service::Policy],
     ..topic::<Activity>("speech/activity", Some(Service::Speech))
 };
+/// Speech to clients.
+pub const HEARING: Topic = topic::<Hearing>("speech/hearing", Some(Service::Speech));
 /// Grounding to policy.
 pub const OBSERVATION: Topic = Topic {
     readers: &[Service::Policy],
@@ -243,12 +245,13 @@ pub mod robot {
 
 /// Every topic that the group's services and clients share; those of [`robot`] are only used with a
 /// robot behind them.
-pub const ALL: [Topic; 13] = [
+pub const ALL: [Topic; 14] = [
     INJECTION,
     RECEIPT,
     UTTERANCE,
     PRESENTED,
     ACTIVITY,
+    HEARING,
     OBSERVATION,
     MARK,
     ACT,

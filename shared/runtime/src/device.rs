@@ -1,7 +1,7 @@
 //! Blocking sources (a recogniser, a voice, a microphone) live on threads of their own and hand
 //! what they have to the main loop through a bounded channel that wakes it.
 
-use crossbeam_channel::{Receiver, Sender, bounded};
+use crossbeam_channel::{Receiver, Sender, TrySendError, bounded};
 use rustix::event::{EventfdFlags, eventfd};
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::sync::Arc;
@@ -29,6 +29,21 @@ impl<T> DeviceSender<T> {
         // The counter only fails to grow when it is full, and then the loop is awake anyway.
         let _ = rustix::io::write(&self.wake, &1_u64.to_ne_bytes());
         sent
+    }
+
+    /// Hands over `message` if there is room.
+    ///
+    /// # Errors
+    /// The message, where the channel is full. Once the loop has ended, nothing is ever full.
+    pub fn offer(&self, message: T) -> Result<(), T> {
+        match self.sender.try_send(message) {
+            Err(TrySendError::Full(message)) => Err(message),
+            Ok(()) | Err(TrySendError::Disconnected(_)) => {
+                // As above.
+                let _ = rustix::io::write(&self.wake, &1_u64.to_ne_bytes());
+                Ok(())
+            }
+        }
     }
 }
 

@@ -46,7 +46,7 @@ pub use crate::problems::Problems;
 pub use crate::resolved::{Origin, Section};
 pub use crate::services::{BUILT_IN, OPTIONAL, Restart, Service};
 pub use crate::snapshot::SNAPSHOT_FILE;
-pub use crate::speech::{Recogniser, Speech, Voice};
+pub use crate::speech::{Microphone, MicrophoneMode, Recogniser, Speech, Voice};
 
 use crate::resolved::Resolved;
 

@@ -31,10 +31,39 @@ pub struct Speech {
     pub accept_score_min: f64,
     /// Quiet that ends an utterance.
     pub closing_pause: Duration,
+    /// Longest utterance that is listened to in one piece.
+    pub spoken_max: Duration,
     /// Longest typed or injected utterance, bytes of UTF-8.
     pub utterance_bytes_max: usize,
     /// Longest recording that is recognised.
     pub recording_max: Duration,
+    /// The microphone of the robot's computer.
+    pub microphone: Microphone,
+}
+
+/// The microphone of the robot's computer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Microphone {
+    /// When it listens.
+    pub mode: MicrophoneMode,
+    /// Program with its arguments that writes one channel of signed 16-bit samples, low byte first,
+    /// at 16 kHz, to its standard output; found by itself where nothing is said.
+    pub command: Option<Vec<String>>,
+    /// Whether people may interrupt the robot: only where the microphone does not hear it.
+    pub barge_in: bool,
+    /// How long after a sentence of the robot's the microphone still hears it.
+    pub echo_pause: Duration,
+}
+
+/// When a microphone listens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MicrophoneMode {
+    /// Never.
+    Off,
+    /// All the time.
+    HandsFree,
+    /// For one utterance, when somebody asks to talk.
+    PushToTalk,
 }
 
 /// What says the robot's questions.
@@ -92,8 +121,26 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
         model_dir: absolute(f, "model_dir"),
         accept_score_min: f.number("accept_score_min", 0.0..=1.0),
         closing_pause: Duration::from_millis(f.whole("closing_pause_ms", 100..=5000)),
+        spoken_max: f.seconds("spoken_s_max", 2.0..=60.0),
         utterance_bytes_max: f.whole("utterance_bytes_max", 16..=UTTERANCE_BYTES_MAX) as usize,
         recording_max: f.seconds("recording_s_max", 1.0..=600.0),
+        microphone: f.table("microphone", microphone),
+    }
+}
+
+fn microphone(f: &mut Fields<'_>) -> Microphone {
+    Microphone {
+        mode: f.choice(
+            "mode",
+            &[
+                ("off", MicrophoneMode::Off),
+                ("hands-free", MicrophoneMode::HandsFree),
+                ("push-to-talk", MicrophoneMode::PushToTalk),
+            ],
+        ),
+        command: f.optional_command("command"),
+        barge_in: f.flag("barge_in"),
+        echo_pause: Duration::from_millis(f.whole("echo_pause_ms", 0..=5000)),
     }
 }
 

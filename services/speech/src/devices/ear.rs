@@ -17,6 +17,7 @@ use crate::devices::audio::{read_wav, seconds};
 use crate::devices::recogniser::{
     Gate, Outcome, PocketSphinx, PocketSphinxOptions, RecogniseError, Recogniser,
 };
+use crate::devices::stream::Cut;
 use crate::devices::vad::{SegmentEvent, Segmenter, SegmenterOptions};
 
 /// What the ear is made of.
@@ -68,6 +69,8 @@ pub enum Sound {
     File(PathBuf),
     /// Samples of one channel at 16 kHz.
     Samples(Vec<i16>),
+    /// One utterance that was cut out of a stream already.
+    Speech(Cut),
 }
 
 /// A stretch of speech and what became of it.
@@ -227,6 +230,11 @@ impl Listener {
         let samples = match sound {
             Sound::File(path) => read_wav(&path, self.longest_s).map_err(|e| e.to_string())?,
             Sound::Samples(samples) => samples,
+            Sound::Speech(Cut { samples, speech, .. }) => {
+                let whole = 0..samples.len();
+                let segment = segment(recogniser, &self.gate, &samples, whole, &speech);
+                return Ok(vec![segment.map_err(|e| e.to_string())?]);
+            }
         };
         let mut segmenter = Segmenter::new(self.segmenter.clone());
         let mut events = segmenter.push(&samples);

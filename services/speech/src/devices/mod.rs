@@ -9,9 +9,11 @@ pub mod audio;
 pub(crate) mod child;
 pub mod ear;
 pub mod language_model;
+pub mod microphone;
 pub mod pronunciation;
 mod random;
 pub mod recogniser;
+pub mod stream;
 #[cfg(test)]
 pub(crate) mod testing;
 pub mod vad;

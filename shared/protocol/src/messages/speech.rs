@@ -65,6 +65,53 @@ wire_enum! {
 }
 
 wire_enum! {
+    /// What the microphone of the robot's computer does.
+    MicrophoneState {
+        /// There is none, or it is switched off.
+        Off = 0,
+        /// It is opened when somebody asks to talk.
+        Closed = 1,
+        /// Its program was started and has given no sound yet.
+        Opening = 2,
+        /// It listens.
+        Listening = 3,
+        /// It leaves out the robot's own voice.
+        Muted = 4,
+        /// Its program died; another try will follow.
+        Broken = 5,
+    }
+}
+
+wire_struct! {
+    /// How well the robot hears. Speech to clients.
+    Hearing = "Hearing" {
+        /// When the last utterance began to be heard, 0 for none.
+        onset_ns: u64,
+        /// Loudness of the microphone over the last fifth of a second, decibels below full scale,
+        /// -100 where nothing is known.
+        level_db: f32,
+        /// How far the last utterance stood above the noise around it, decibels, 0 to 60.
+        snr_db: f32,
+        /// Times that the microphone's program died.
+        restarts: u32,
+        /// Utterances lost because too much was said at a time.
+        dropped: u32,
+        /// Utterances that are being spoken or recognised.
+        pending: u32,
+        /// [`EarState`].
+        ear: u8,
+        /// [`MicrophoneState`].
+        microphone: u8,
+        /// 1 where the last utterance was spoken (`snr_db` counts).
+        measured: u8,
+        /// Zero.
+        reserved: u8,
+        /// The program that records, or why there is none.
+        note: FixedText<200>,
+    }
+}
+
+wire_enum! {
     /// What became of an injection.
     ReceiptStatus {
         /// Durable; it will be applied.
@@ -77,9 +124,9 @@ wire_enum! {
 }
 
 wire_struct! {
-    /// Answer to an injection. Speech to clients.
+    /// Answer to an injection, or what a microphone heard. Speech to clients.
     Receipt = "Receipt" {
-        /// [`RequestKey`] of the injection.
+        /// [`RequestKey`] of the injection; one of its own for what a microphone heard.
         key: [u8; 16],
         /// [`UtteranceSeq`] given, 0 where refused.
         seq: u64,
@@ -87,10 +134,20 @@ wire_struct! {
         segment: u32,
         /// Pieces in all.
         segments: u32,
+        /// When the person began to speak; 0 where nothing was heard.
+        onset_ns: u64,
+        /// When the person had ended.
+        end_ns: u64,
+        /// Probability of the text heard among all that it may have been, 0 to 1; 1 for text.
+        confidence: f32,
+        /// How far the speech stood above the noise around it, decibels, 0 to 60; 0 for text.
+        snr_db: f32,
         /// [`ReceiptStatus`].
         status: u8,
+        /// [`crate::Source`].
+        source: u8,
         /// Zero.
-        reserved: [u8; 7],
+        reserved: [u8; 6],
         /// The text heard, or why it was refused.
         note: FixedText<500>,
     }

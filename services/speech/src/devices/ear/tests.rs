@@ -61,6 +61,19 @@ fn segments_are_heard_in_order_and_rejected_ones_are_kept() {
 }
 
 #[test]
+fn an_utterance_of_a_stream_is_decoded_as_it_was_cut() {
+    let (ear, events) = stub(false);
+    let samples = [vec![0; 8_000], testing::voice(1.0), vec![0; 8_000]].concat();
+    let at = node::Time(0);
+    let cut = Cut { onset: at, end: at, samples, speech: 8_000..24_000 };
+    ear.hear(4, Sound::Speech(cut)).unwrap();
+    let EarEvent::Heard { id: 4, segments } = next(&events) else { panic!("heard") };
+    let [segment] = segments.as_slice() else { panic!("{segments:?}") };
+    assert_eq!((segment.onset_s, segment.end_s), (0.5, 1.5));
+    assert!(matches!(&segment.outcome, Outcome::Accepted(h) if h[0].text == "white"));
+}
+
+#[test]
 fn silence_is_heard_without_segments() {
     let (ear, events) = stub(false);
     ear.hear(1, Sound::Samples(vec![0; 32_000])).unwrap();
