@@ -10,6 +10,7 @@ mod config;
 mod dialogues;
 mod export;
 mod gestures;
+mod hearing;
 mod isolation;
 mod people;
 mod person;

@@ -6,14 +6,14 @@ use whichone_tests::{Group, run, wait_for};
 
 /// Whether speech can be tested here. Where `scripts/test` has installed everything, a missing part
 /// is a failure.
-fn can_speak() -> bool {
+pub(crate) fn can_speak() -> bool {
     let there = Command::new("espeak-ng").arg("--version").output().is_ok()
         && Path::new("/usr/share/pocketsphinx/model/en-us/en-us").exists();
     assert!(there || std::env::var_os("WHICHONE_REQUIRE_SPEECH").is_none(), "speech is required");
     there
 }
 
-fn spoken(text: &str, folder: &Path) -> String {
+pub(crate) fn spoken(text: &str, folder: &Path) -> String {
     let path = folder.join(format!("{}.wav", text.replace(' ', "_"))).display().to_string();
     let mut command = Command::new("espeak-ng");
     command.args(["-v", "en-us", "-s", "150", "-w", &path, text]);

@@ -251,7 +251,10 @@ impl World {
                     self.inboxes.speech.push(speech::In::Voice(started));
                 }
                 speech::Out::Hush => self.voice = None,
-                speech::Out::Recognise(..) => unreachable!("the person types"),
+                speech::Out::Hearing(_) => {}
+                speech::Out::Recognise(..) | speech::Out::Talk(..) => {
+                    unreachable!("the person types")
+                }
             }
         }
     }

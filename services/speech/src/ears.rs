@@ -1,18 +1,22 @@
 //! Hearing: each utterance accepted once, numbered without a gap, and sent until it is applied.
 
+use crate::devices::microphone::MicrophoneStatus;
+use crate::listening::{Listened, Listening};
+use crate::live::{Began, Live};
 use crate::mouth::Mouth;
 use crate::record::{Accepted, Hypothesis, Record, Said};
 use crate::said::{Content, in_words};
-use crate::{Config, Fx, Out, Recognised, Segment};
+use crate::{Config, Fx, Out, Recognised, Segment, ToRecognise};
 use node::{Span, Time};
 use protocol::outbox::Outbox;
 use protocol::{
-    Activity, AppliedMark, AskedQuestion, EarState, FixedText, Injection, MotionCommand,
+    Activity, AppliedMark, AskedQuestion, EarState, FixedText, Hearing, Injection, MotionCommand,
     MotionOrder, Receipt, ReceiptStatus, RequestKey, Sound, Source, Utterance, UtteranceSeq,
     topics,
 };
 use scene::{Intent, Question};
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
+use std::ops::RangeInclusive;
 
 /// Utterances that wait to be applied at a time; beyond it people are asked to wait.
 const WAITING_MAX: usize = 256;
@@ -20,6 +24,8 @@ const WAITING_MAX: usize = 256;
 const HOLD_MAX: Span = Span::from_ms(10_000);
 /// Answered requests that are remembered, so that a repeated one gets the same answer.
 const ANSWERED_MAX: usize = 128;
+/// How long somebody may ask to talk, seconds.
+const TALK_S: RangeInclusive<f64> = 1.0..=60.0;
 
 /// The hearing half of the node.
 pub(crate) struct Ears {
@@ -27,12 +33,9 @@ pub(crate) struct Ears {
     outbox: Outbox<Accepted>,
     answered: VecDeque<Receipt>,
     recent: VecDeque<Accepted>,
-    /// Sounds that the recogniser is listening to: whose they are and when they began.
-    listening: BTreeMap<u64, (RequestKey, Time)>,
-    last_sound: u64,
-    /// When the person who is speaking just now began.
-    speaking: Option<Time>,
+    listening: Listening,
     state: EarState,
+    hearing: Hearing,
     /// Whether the policy's mark is known. Before that a number could be given out twice.
     marked: bool,
 }
@@ -44,10 +47,9 @@ impl Ears {
             outbox: Outbox::new(UtteranceSeq(0), topics::WINDOW, WAITING_MAX),
             answered: VecDeque::new(),
             recent: VecDeque::new(),
-            listening: BTreeMap::new(),
-            last_sound: 0,
-            speaking: None,
+            listening: Listening::default(),
             state: EarState::Loading,
+            hearing: Hearing::default(),
             marked: false,
         }
     }
@@ -62,29 +64,90 @@ impl Ears {
     }
 
     /// A client's sound. Before the policy's mark is known nothing is taken; the client asks again.
-    pub(crate) fn hear(&mut self, injection: Injection, mouth: &Mouth, now: Time, fx: &mut Fx) {
-        let listening = self.listening.values().any(|(key, _)| *key == injection.key);
-        if self.answer_again(injection.key, fx) || listening || !self.marked {
-            return;
+    /// Returns whether a person has something to say at this moment.
+    pub(crate) fn hear(
+        &mut self,
+        injection: Injection,
+        mouth: &Mouth,
+        now: Time,
+        fx: &mut Fx,
+    ) -> bool {
+        let listening = self.listening.has(injection.key);
+        if listening || self.answer_again(injection.key, fx) || !self.marked {
+            return false;
         }
         let onset = Time(injection.onset_ns).min(now);
         let onset = if onset == Time(0) { now } else { onset };
-        let whole = Piece { key: injection.key, segment: (0, 1), span: (onset, now) };
+        let whole = Piece::whole(injection.key, (onset, now));
         match injection.sound {
             Sound::Text(text) => {
                 let content = Content::words(vec![Hypothesis::certain(text)], Source::Text);
-                self.accept(whole, content, mouth, now, fx);
+                self.accept(whole, content, mouth, now, fx)
             }
             Sound::Point { target_m, words } => {
-                self.accept(whole, Content::pointing(target_m, words), mouth, now, fx);
+                self.accept(whole, Content::pointing(target_m, words), mouth, now, fx)
             }
             Sound::Wav(path) => {
-                self.last_sound += 1;
-                self.listening.insert(self.last_sound, (injection.key, onset));
-                fx.publish(Out::Recognise(self.last_sound, path));
+                let sound = self.listening.take(injection.key, Source::Wav, onset);
+                fx.publish(Out::Recognise(sound, ToRecognise::File(path)));
+                false
             }
-            Sound::Talk { .. } => {}
+            Sound::Talk { longest_s } if TALK_S.contains(&longest_s) => {
+                let sound = self.listening.take(injection.key, Source::Microphone, now);
+                fx.publish(Out::Talk(sound, Span::from_s(longest_s)));
+                self.publish(fx);
+                true
+            }
+            Sound::Talk { longest_s } => {
+                let (least, most) = (TALK_S.start(), TALK_S.end());
+                let reason = format!("nobody talks for {longest_s} s: use {least} to {most}");
+                self.refuse(whole, &reason, fx)
+            }
         }
+    }
+
+    /// What a live source has to tell.
+    pub(crate) fn live(&mut self, live: Live, now: Time, fx: &mut Fx) {
+        match live {
+            Live::Began(began) => self.began(&began, now),
+            Live::Ended { sound, cut } => {
+                let span = (cut.onset.min(now), cut.end.min(now));
+                if self.listening.ended(sound, span) {
+                    fx.publish(Out::Recognise(sound, ToRecognise::Speech(cut)));
+                }
+            }
+            Live::Silent { sound, reason } => {
+                if let Some(listened) = self.listening.remove(sound) {
+                    self.refuse(Piece::of(&listened, 0, 1), &reason, fx);
+                }
+            }
+        }
+        self.publish(fx);
+    }
+
+    fn began(&mut self, began: &Began, now: Time) {
+        self.listening.began(began, now);
+        self.hearing.onset_ns = began.at.min(now).ns();
+    }
+
+    /// How the microphone is.
+    pub(crate) fn set_microphone(&mut self, status: &MicrophoneStatus, fx: &mut Fx) {
+        self.hearing.microphone = status.state.code();
+        self.hearing.level_db = status.level_db;
+        self.hearing.restarts = status.restarts;
+        self.hearing.dropped = status.dropped;
+        self.hearing.note = FixedText::truncated(&status.note);
+        self.publish_hearing(fx);
+    }
+
+    fn publish(&self, fx: &mut Fx) {
+        fx.publish(Out::Activity(self.activity()));
+        self.publish_hearing(fx);
+    }
+
+    fn publish_hearing(&self, fx: &mut Fx) {
+        let (pending, ear) = (self.listening.len() as u32, self.state.code());
+        fx.publish(Out::Hearing(Hearing { pending, ear, ..self.hearing }));
     }
 
     /// What the recogniser made of a sound.
@@ -95,42 +158,68 @@ impl Ears {
         now: Time,
         fx: &mut Fx,
     ) {
-        let Some((key, began)) = self.listening.remove(&recognised.sound) else { return };
-        let segments = match recognised.segments {
+        let Some(listened) = self.listening.remove(recognised.sound) else { return };
+        match recognised.segments {
             Ok(segments) if segments.is_empty() => {
-                return self.refuse(key, (0, 1), "no speech in it", fx);
+                self.refuse(Piece::of(&listened, 0, 1), "no speech in it", fx);
             }
-            Ok(segments) => segments,
-            Err(reason) => return self.refuse(key, (0, 1), &reason, fx),
-        };
-        let count = segments.len() as u32;
-        for (i, Segment { span_s, heard }) in segments.into_iter().enumerate() {
-            let at = |s: f64| (began + Span::from_s(s)).min(now);
-            let span = (at(span_s.0), at(span_s.1));
-            let piece = Piece { key, segment: (i as u32, count), span };
-            match heard {
-                Ok(hypotheses) => {
-                    let content = Content::words(hypotheses, Source::Wav);
-                    self.accept(piece, content, mouth, now, fx);
+            Ok(segments) => {
+                let count = segments.len() as u32;
+                for (i, segment) in segments.into_iter().enumerate() {
+                    let piece = Piece::of(&listened, i as u32, count);
+                    self.understood(piece.cut(&segment, now), segment, mouth, now, fx);
                 }
-                Err(text) => self.report(piece, ReceiptStatus::NotForMe, 0, &text, fx),
             }
+            Err(reason) => {
+                self.refuse(Piece::of(&listened, 0, 1), &reason, fx);
+            }
+        }
+        self.publish(fx);
+    }
+
+    fn understood(
+        &mut self,
+        piece: Piece,
+        segment: Segment,
+        mouth: &Mouth,
+        now: Time,
+        fx: &mut Fx,
+    ) {
+        self.hearing.onset_ns = piece.span.0.ns();
+        (self.hearing.snr_db, self.hearing.measured) = (segment.snr_db, 1);
+        match segment.heard {
+            Ok(hypotheses) => {
+                let content = Content::words(hypotheses, piece.source);
+                self.accept(piece, content, mouth, now, fx);
+            }
+            Err(text) => self.report(piece, ReceiptStatus::NotForMe, &text, fx),
         }
     }
 
-    fn accept(&mut self, piece: Piece, content: Content, mouth: &Mouth, now: Time, fx: &mut Fx) {
+    /// Takes in an utterance. Returns whether it is a new one.
+    fn accept(
+        &mut self,
+        piece: Piece,
+        content: Content,
+        mouth: &Mouth,
+        now: Time,
+        fx: &mut Fx,
+    ) -> bool {
         // A piece that was accepted before a restart keeps its number.
         let known = |a: &&Accepted| a.key == piece.key && a.segment.0 == piece.segment.0;
         if let Some(accepted) = self.recent.iter().find(known) {
             fx.publish(Out::Receipt(Box::new(receipt(accepted))));
-            return;
+            return false;
         }
         if let Some(reason) = content.fault(&self.config) {
-            return self.refuse(piece.key, piece.segment, &reason, fx);
+            return self.refuse(piece, &reason, fx);
+        }
+        if !self.marked {
+            return self.refuse(piece, "the robot is not ready yet; say it again", fx);
         }
         let seq = match self.outbox.next() {
             Ok(seq) => seq,
-            Err(full) => return self.refuse(piece.key, piece.segment, &full.to_string(), fx),
+            Err(full) => return self.refuse(piece, &full.to_string(), fx),
         };
         if self.says_stop(&content.hypotheses) {
             let order = MotionOrder::Stop.code();
@@ -147,6 +236,7 @@ impl Ears {
             asked: mouth.asked(),
             onset: piece.span.0,
             end: piece.span.1,
+            snr_db: piece.snr_db,
             accepted: now,
         };
         fx.append(Record::Accepted(accepted.clone()));
@@ -154,6 +244,7 @@ impl Ears {
         fx.publish(Out::Utterance(Box::new(utterance(&accepted))));
         self.remember(accepted);
         fx.publish(Out::Activity(self.activity()));
+        true
     }
 
     fn says_stop(&self, hypotheses: &[Hypothesis]) -> bool {
@@ -162,18 +253,22 @@ impl Ears {
         })
     }
 
-    fn refuse(&mut self, key: RequestKey, segment: (u32, u32), reason: &str, fx: &mut Fx) {
-        let piece = Piece { key, segment, span: (Time(0), Time(0)) };
-        self.report(piece, ReceiptStatus::Refused, 0, reason, fx);
+    /// Tells why there is no new utterance.
+    fn refuse(&mut self, piece: Piece, reason: &str, fx: &mut Fx) -> bool {
+        self.report(piece, ReceiptStatus::Refused, reason, fx);
+        false
     }
 
-    fn report(&mut self, piece: Piece, status: ReceiptStatus, seq: u64, note: &str, fx: &mut Fx) {
+    fn report(&mut self, piece: Piece, status: ReceiptStatus, note: &str, fx: &mut Fx) {
         let receipt = Receipt {
             key: piece.key.0,
-            seq,
             segment: piece.segment.0,
             segments: piece.segment.1,
+            onset_ns: piece.span.0.ns(),
+            end_ns: piece.span.1.ns(),
+            snr_db: piece.snr_db,
             status: status.code(),
+            source: piece.source.code(),
             note: FixedText::truncated(note),
             ..Receipt::default()
         };
@@ -204,8 +299,9 @@ impl Ears {
         self.outbox.len() != before || !was_marked
     }
 
-    pub(crate) fn set_state(&mut self, state: EarState) {
+    pub(crate) fn set_state(&mut self, state: EarState, fx: &mut Fx) {
         self.state = state;
+        self.publish(fx);
     }
 
     pub(crate) fn pending_since(&self) -> Option<Time> {
@@ -219,20 +315,13 @@ impl Ears {
                 fx.publish(Out::Utterance(Box::new(utterance(accepted))));
             }
         }
-        fx.publish(Out::Activity(self.activity()));
-    }
-
-    /// Somebody began to speak, or has ended.
-    pub(crate) fn set_speaking(&mut self, since: Option<Time>, fx: &mut Fx) {
-        self.speaking = since;
-        fx.publish(Out::Activity(self.activity()));
+        self.publish(fx);
     }
 
     /// Since when somebody speaks, or was heard and is not yet understood and applied.
     fn busy_since(&self) -> Option<Time> {
-        let listening = self.listening.values().map(|(_, began)| *began);
         let waiting = self.outbox.window().map(|(_, accepted)| accepted.accepted);
-        self.speaking.into_iter().chain(listening).chain(waiting).min()
+        self.listening.since().into_iter().chain(waiting).min()
     }
 
     /// Whether the robot holds its tongue: a person speaks, or what was said is not applied yet. A
@@ -242,10 +331,8 @@ impl Ears {
     }
 
     fn activity(&self) -> Activity {
-        let listening = self.listening.values().map(|(_, began)| *began);
-        let onset = self.speaking.into_iter().chain(listening).min();
         Activity {
-            onset_ns: onset.map_or(0, Time::ns),
+            onset_ns: self.listening.since().map_or(0, Time::ns),
             pending: (self.listening.len() + self.outbox.len()) as u32,
             ear: self.state.code(),
             ..Activity::default()
@@ -258,12 +345,38 @@ impl Ears {
     }
 }
 
-/// A piece of a client's sound.
+/// A piece of a sound.
 #[derive(Clone, Copy)]
 struct Piece {
     key: RequestKey,
     segment: (u32, u32),
+    source: Source,
+    /// Begin and end, where anything was heard.
     span: (Time, Time),
+    snr_db: f32,
+}
+
+impl Piece {
+    /// Text, or whatever else comes whole.
+    fn whole(key: RequestKey, span: (Time, Time)) -> Self {
+        Self { key, segment: (0, 1), source: Source::Text, span, snr_db: 0.0 }
+    }
+
+    /// Piece `number` of `count` of a sound; of a live one that is a piece itself all there is.
+    fn of(listened: &Listened, number: u32, count: u32) -> Self {
+        let segment = listened.segment.map_or((number, count), |segment| (segment, 1));
+        let span = (listened.onset, listened.end.unwrap_or(Time(0)));
+        Self { key: listened.key, segment, source: listened.source, span, snr_db: 0.0 }
+    }
+
+    /// The piece with what was measured. Of a live sound the times are known, those in a recording
+    /// count from its beginning.
+    fn cut(self, segment: &Segment, now: Time) -> Self {
+        let at = |s: f64| (self.span.0 + Span::from_s(s)).min(now);
+        let recorded = (at(segment.span_s.0), at(segment.span_s.1));
+        let span = if self.span.1 == Time(0) { recorded } else { self.span };
+        Self { span, snr_db: segment.snr_db, ..self }
+    }
 }
 
 fn keep<T>(queue: &mut VecDeque<T>, item: T) {
@@ -274,13 +387,21 @@ fn keep<T>(queue: &mut VecDeque<T>, item: T) {
 }
 
 fn receipt(accepted: &Accepted) -> Receipt {
-    let text = accepted.hypotheses.first().map_or("", |best| best.text.as_str());
+    let best = accepted.hypotheses.first();
+    let text = best.map_or("", |best| best.text.as_str());
+    let total: f64 = accepted.hypotheses.iter().map(|heard| heard.weight).sum();
+    let confidence = best.map_or(1.0, |best| best.weight / total);
     Receipt {
         key: accepted.key.0,
         seq: accepted.seq.0,
         segment: accepted.segment.0,
         segments: accepted.segment.1,
+        onset_ns: accepted.onset.ns(),
+        end_ns: accepted.end.ns(),
+        confidence: confidence as f32,
+        snr_db: accepted.snr_db,
         status: ReceiptStatus::Accepted.code(),
+        source: accepted.source,
         note: FixedText::truncated(&in_words(text, accepted.gesture)),
         ..Receipt::default()
     }

@@ -6,6 +6,7 @@
 
 pub mod devices;
 mod ears;
+mod listening;
 pub mod live;
 mod mouth;
 pub mod record;
@@ -15,12 +16,15 @@ pub mod shell;
 #[cfg(test)]
 mod tests;
 
+use devices::microphone::MicrophoneStatus;
+use devices::stream::Cut;
 use ears::Ears;
+use live::Live;
 use mouth::Mouth;
 use node::{Effects, Event, Node, NodeError, Span, Time};
 use protocol::{
-    Activity, AppliedMark, ArmStatus, EarState, Injection, MotionCommand, Presented, Receipt,
-    RobotAct, Utterance,
+    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MotionCommand, Presented,
+    Receipt, RobotAct, Utterance,
 };
 use record::Record;
 
@@ -40,10 +44,10 @@ pub enum In {
     Act(Box<RobotAct>),
     /// From the arm: what it points at.
     Arm(ArmStatus),
-    /// From a live source: a person began to speak to the robot at that time.
-    Onset(Time),
-    /// From a live source: nobody speaks any more; what was said is being recognised.
-    Offset,
+    /// From a microphone.
+    Live(Live),
+    /// From the microphone: how it is.
+    Microphone(MicrophoneStatus),
     /// From the recogniser.
     Recognised(Recognised),
     /// From the recogniser: whether it works.
@@ -65,12 +69,26 @@ pub enum Out {
     Activity(Activity),
     /// To the arm: somebody said stop.
     Motion(MotionCommand),
-    /// To the recogniser: what is in this file? The number comes back with the answer.
-    Recognise(u64, String),
+    /// To clients: how well the robot hears.
+    Hearing(Hearing),
+    /// To the recogniser: what is said in this? The number comes back with the answer.
+    Recognise(u64, ToRecognise),
+    /// To the microphone: listen for one utterance, for so long at most. The number comes back with
+    /// it.
+    Talk(u64, Span),
     /// To the voice: say this, breaking off what is being said.
     Speak(Line),
     /// To the voice: be silent.
     Hush,
+}
+
+/// What the recogniser is to listen to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ToRecognise {
+    /// A WAV file, absolute path.
+    File(String),
+    /// One utterance of a live source.
+    Speech(Cut),
 }
 
 /// What the voice is to say.
@@ -116,6 +134,8 @@ pub struct Recognised {
 pub struct Segment {
     /// When it begins and ends, seconds from the start of the sound.
     pub span_s: (f64, f64),
+    /// How far it stands above the noise around it, decibels, 0 to 60.
+    pub snr_db: f32,
     /// What was heard, or what was heard but is not for the robot.
     pub heard: Result<Vec<Hypothesis>, String>,
 }
@@ -191,17 +211,24 @@ impl Node for SpeechNode {
 impl SpeechNode {
     fn take(&mut self, message: In, now: Time, fx: &mut Fx) {
         match message {
-            In::Injection(injection) => self.ears.hear(injection, &self.mouth, now, fx),
-            In::Onset(at) => {
-                self.ears.set_speaking(Some(at.min(now)), fx);
-                self.mouth.interrupted(now, fx);
+            In::Injection(injection) => {
+                // Who talks by key, types or points does not wait for the robot to end.
+                if self.ears.hear(injection, &self.mouth, now, fx) {
+                    self.mouth.interrupted(now, fx);
+                }
             }
-            In::Offset => self.ears.set_speaking(None, fx),
             In::Recognised(recognised) => {
                 self.ears.recognised(recognised, &self.mouth, now, fx);
                 self.send(now, fx);
             }
-            In::Ear(state) => self.ears.set_state(state),
+            In::Live(live) => {
+                if matches!(&live, Live::Began(began) if began.interrupts) {
+                    self.mouth.interrupted(now, fx);
+                }
+                self.ears.live(live, now, fx);
+            }
+            In::Microphone(status) => self.ears.set_microphone(&status, fx),
+            In::Ear(state) => self.ears.set_state(state, fx),
             In::Mark(mark) => {
                 if self.ears.acknowledge(mark) {
                     self.send(now, fx);

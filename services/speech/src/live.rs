@@ -26,15 +26,6 @@ pub enum Live {
         /// Why nothing was heard, in words for people.
         reason: String,
     },
-    /// A client's stream is over; nothing of it comes any more.
-    Over {
-        /// The stream.
-        stream: RequestKey,
-        /// Utterances that were in it.
-        utterances: u32,
-        /// Samples of it that were lost on their way.
-        lost: u64,
-    },
 }
 
 /// The beginning of an utterance.

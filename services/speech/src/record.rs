@@ -54,6 +54,8 @@ pub struct Accepted {
     pub onset: Time,
     /// When the person had ended.
     pub end: Time,
+    /// How far the speech stood above the noise around it, decibels; 0 for text.
+    pub snr_db: f32,
     /// When it was accepted.
     pub accepted: Time,
 }

@@ -1,12 +1,14 @@
 //! The rules of hearing and speaking, without devices.
 
+use crate::devices::stream::Cut;
+use crate::live::{Began, LIVE_FROM, Live};
 use crate::record::{Hypothesis, Record};
 use crate::{Config, In, Line, Out, Recognised, Segment, SpeechNode, Spoken, VoiceEvent};
 use language::{Language, Reader};
 use node::{Effects, Event, Node, Span, Time};
 use protocol::{
     ActKind, Activity, AppliedMark, FixedText, Injection, Presentation, RequestKey, RobotAct,
-    Sound, Utterance,
+    Sound, Source, Utterance,
 };
 use scene::{AttributeId, Question, Scene, ValueId};
 
@@ -57,6 +59,30 @@ impl Speech {
 fn injection() -> Injection {
     let (key, sound) = (RequestKey([0; 16]), Sound::Text(String::new()));
     Injection { key, onset_ns: 0, sound }
+}
+
+const SOUND: u64 = LIVE_FROM;
+
+/// Somebody whom the microphone tells from the robot begins to speak.
+fn began(at: Time) -> In {
+    In::Live(Live::Began(Began {
+        sound: SOUND,
+        at,
+        stream: RequestKey([7; 16]),
+        segment: 0,
+        source: Source::Microphone,
+        interrupts: true,
+    }))
+}
+
+fn ended(onset: Time) -> In {
+    let end = onset + Span::from_s(0.3);
+    let cut = Cut { onset, end, samples: vec![0; 4_800], speech: 0..4_800 };
+    In::Live(Live::Ended { sound: SOUND, cut })
+}
+
+fn nothing() -> In {
+    In::Recognised(Recognised { sound: SOUND, segments: Ok(Vec::new()) })
 }
 
 fn ask(prompt: u64) -> In {
@@ -112,10 +138,14 @@ fn an_utterance_names_the_questions_that_had_begun() {
 fn the_robot_holds_its_tongue_while_a_person_speaks_or_is_being_understood() {
     let mut speech = Speech::new();
     let onset = speech.now;
-    let outputs = speech.take(0.1, In::Onset(onset));
+    let outputs = speech.take(0.1, began(onset));
     assert_eq!(activity(&outputs).map(|a| a.onset_ns), Some(onset.ns()), "published at once");
     assert!(spoken(&speech.take(0.2, ask(7))).is_none());
-    let outputs = speech.take(0.5, In::Offset);
+    let outputs = speech.take(0.5, ended(onset));
+    assert!(spoken(&outputs).is_none(), "what was said is being recognised");
+    assert!(outputs.iter().any(|out| matches!(out, Out::Recognise(SOUND, _))), "{outputs:?}");
+    assert_eq!(activity(&outputs).map(|a| (a.onset_ns, a.pending)), Some((onset.ns(), 1)));
+    let outputs = speech.take(0.2, nothing());
     assert!(spoken(&outputs).is_some(), "nothing was understood and nobody speaks: {outputs:?}");
     assert_eq!(activity(&outputs).map(|a| a.onset_ns), Some(0));
 }
@@ -134,7 +164,7 @@ fn what_was_typed_is_taken_in_before_the_robot_speaks() {
 fn the_robot_does_not_wait_for_ever() {
     let mut speech = Speech::new();
     let onset = speech.now;
-    speech.take(0.0, In::Onset(onset));
+    speech.take(0.0, began(onset));
     assert!(spoken(&speech.take(5.0, ask(7))).is_none());
     assert!(spoken(&speech.take(6.0, ask(7))).is_some());
 }
@@ -145,7 +175,7 @@ fn who_interrupts_is_listened_to_and_the_question_is_said_again_if_it_stands() {
     speech.take(0.0, ask(7));
     speech.voice(0.1, 1, Spoken::Started);
     let onset = speech.now + Span::from_s(0.6);
-    let outputs = speech.take(0.7, In::Onset(onset));
+    let outputs = speech.take(0.7, began(onset));
     assert!(outputs.iter().any(|out| matches!(out, Out::Hush)), "{outputs:?}");
     let Some(Record::Presented(broken)) = speech.records.last() else { panic!() };
     assert!(!broken.whole && broken.question == WHITE);
@@ -154,7 +184,8 @@ fn who_interrupts_is_listened_to_and_the_question_is_said_again_if_it_stands() {
         .any(|out| matches!(out, Out::Presented(p) if p.state == Presentation::Speaking.code()));
     assert!(!told, "nobody heard it whole");
     assert!(spoken(&speech.take(0.1, ask(7))).is_none(), "the person still speaks");
-    let outputs = speech.take(1.0, In::Offset);
+    speech.take(0.5, ended(onset));
+    let outputs = speech.take(0.5, nothing());
     assert_eq!(spoken(&outputs).map(|line| line.number), Some(2), "{outputs:?}");
     // What interrupted it may answer it.
     let outputs = speech.type_in(0.1, "yes");
@@ -205,5 +236,72 @@ fn all_hypotheses_are_handed_on_with_the_confidence_of_their_words() {
 }
 
 fn segment() -> Segment {
-    Segment { span_s: (0.2, 0.7), heard: Err(String::new()) }
+    Segment { span_s: (0.2, 0.7), snr_db: 30.0, heard: Err(String::new()) }
+}
+
+#[test]
+fn each_live_utterance_has_one_result_with_its_times() {
+    let mut speech = Speech::new();
+    let onset = speech.now;
+    speech.take(0.1, began(onset));
+    speech.take(0.4, ended(onset));
+    let heard = Ok(vec![Hypothesis::certain("get me the bowl")]);
+    let segments = Ok(vec![Segment { heard, ..segment() }]);
+    let result = In::Recognised(Recognised { sound: SOUND, segments });
+    let outputs = speech.take(0.2, result.clone());
+    let utterance = uttered(&outputs).unwrap();
+    assert_eq!(utterance.source, Source::Microphone.code());
+    assert_eq!(
+        (utterance.onset_ns, utterance.end_ns - utterance.onset_ns),
+        (onset.ns(), 300_000_000)
+    );
+    let receipt = outputs.iter().find_map(|out| match out {
+        Out::Receipt(receipt) => Some(**receipt),
+        _ => None,
+    });
+    let receipt = receipt.unwrap();
+    assert_eq!((receipt.seq, receipt.snr_db, receipt.onset_ns), (1, 30.0, onset.ns()));
+    assert_eq!(activity(&outputs).map(|a| a.onset_ns), Some(0));
+    speech.take(0.1, result);
+    assert_eq!(speech.records.len(), 1, "a second result is of no sound");
+    assert!(speech.take(0.1, ended(onset)).iter().all(|out| !matches!(out, Out::Recognise(..))));
+}
+
+#[test]
+fn a_microphone_that_hears_the_robot_does_not_interrupt_it_but_typed_words_do() {
+    let mut speech = Speech::new();
+    speech.take(0.0, ask(7));
+    speech.voice(0.1, 1, Spoken::Started);
+    let In::Live(Live::Began(heard)) = began(speech.now) else { panic!() };
+    let half_duplex = In::Live(Live::Began(Began { interrupts: false, ..heard }));
+    let outputs = speech.take(0.2, half_duplex);
+    assert!(!outputs.iter().any(|out| matches!(out, Out::Hush)), "{outputs:?}");
+    let outputs = speech.type_in(0.2, "the white one");
+    assert!(outputs.iter().any(|out| matches!(out, Out::Hush)), "{outputs:?}");
+}
+
+#[test]
+fn who_asks_to_talk_is_listened_to_and_told_where_nobody_spoke() {
+    let mut speech = Speech::new();
+    let talk = |longest_s| {
+        let sound = Sound::Talk { longest_s };
+        In::Injection(Injection { key: RequestKey([3; 16]), sound, ..injection() })
+    };
+    let outputs = speech.take(0.1, talk(5.0));
+    let asked = outputs.iter().find_map(|out| match out {
+        Out::Talk(sound, longest) => Some((*sound, *longest)),
+        _ => None,
+    });
+    let (sound, longest) = asked.unwrap();
+    assert_eq!(longest, Span::from_s(5.0));
+    assert!(speech.take(0.1, talk(5.0)).is_empty(), "the repeated request is the same one");
+    let reason = "nobody was heard".to_owned();
+    let outputs = speech.take(5.0, In::Live(Live::Silent { sound, reason }));
+    let told = |outputs: &[Out]| {
+        outputs
+            .iter()
+            .any(|out| matches!(out, Out::Receipt(r) if r.note.as_str() == Ok("nobody was heard")))
+    };
+    assert!(told(&outputs));
+    assert!(told(&speech.take(0.1, talk(5.0))), "and so is its answer");
 }

@@ -20,7 +20,7 @@ pub use group::{
 };
 pub use study::{ALL as STUDY_ALL, Preset, StudyArgs};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, CompletionsArgs, JournalArgs, ListenArgs};
-pub use talk::{MotionArgs, PointArgs, SayArgs, WatchArgs};
+pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
 
 /// A robot that asks which one you mean before it fetches it.
 ///
@@ -98,6 +98,11 @@ pub enum Verb {
     Point(PointArgs),
     /// Let the robot listen to a WAV file.
     Listen(ListenArgs),
+    /// Talk to the robot through the microphone of its computer.
+    ///
+    /// The robot falls silent and listens until you have paused, and what it understood is printed.
+    /// Taken where `speech.microphone.mode` is not `off`.
+    Talk(TalkArgs),
     /// See what the robot believes, asks and does, live.
     Watch(WatchArgs),
     /// Talk to the robot in this terminal; starts a group if none runs.

@@ -16,6 +16,7 @@ mod completions;
 mod conversation;
 mod doctor;
 mod export;
+mod hearing;
 mod interrupt;
 mod journal;
 mod leftovers;
@@ -53,6 +54,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Say(args) => speak::say(&paths()?, &args.text, args.timeout, out),
         Verb::Point(args) => speak::point(&paths()?, &args, out),
         Verb::Listen(args) => speak::listen(&paths()?, &args.file, args.timeout, out),
+        Verb::Talk(args) => speak::talk(&paths()?, &args, out),
         Verb::Watch(args) => watch::watch(&paths()?, &args, out),
         Verb::Chat(args) => chat::chat(&paths()?, &args, out),
         Verb::Await(args) => match args.what {

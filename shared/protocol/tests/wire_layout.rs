@@ -48,6 +48,7 @@ fn layout() -> String {
     describe::<protocol::RobotAct>(&mut text);
     describe::<protocol::Presented>(&mut text);
     describe::<protocol::Activity>(&mut text);
+    describe::<protocol::Hearing>(&mut text);
     describe::<protocol::Receipt>(&mut text);
     describe::<protocol::ArmStatus>(&mut text);
     describe::<protocol::JointStates>(&mut text);
@@ -101,6 +102,7 @@ fn no_struct_has_padding() {
     assert_without_padding::<protocol::RobotAct>();
     assert_without_padding::<protocol::Presented>();
     assert_without_padding::<protocol::Activity>();
+    assert_without_padding::<protocol::Hearing>();
     assert_without_padding::<protocol::Receipt>();
     assert_without_padding::<protocol::ArmStatus>();
     assert_without_padding::<protocol::JointStates>();

@@ -50,6 +50,17 @@ pub struct ListenArgs {
     pub timeout: Duration,
 }
 
+/// Arguments of `talk`.
+#[derive(Debug, Args)]
+pub struct TalkArgs {
+    /// Longest time until you have said it, seconds.
+    #[arg(long, value_name = "S", default_value = "10", value_parser = seconds)]
+    pub seconds: Duration,
+    /// Longest wait for what was understood, seconds.
+    #[arg(long, value_name = "S", default_value = "20", value_parser = seconds)]
+    pub timeout: Duration,
+}
+
 /// Arguments of `watch`.
 #[derive(Debug, Args)]
 pub struct WatchArgs {

@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 
 use node::Span;
 use protocol::{
-    Activity, ArmStatus, Injection, PolicyView, Presented, Receipt, RequestKey, Sound, topics,
+    Activity, ArmStatus, Hearing, Injection, PolicyView, Presented, Receipt, RequestKey, Sound,
+    topics,
 };
 use runtime::bus::{EncodedReader, EncodedWriter, PortError, Reader};
 use runtime::client::{Client, random_key};
@@ -43,6 +44,7 @@ pub(super) struct Conversation {
     views: EncodedReader<PolicyView>,
     presented: Reader<Presented>,
     activity: Reader<Activity>,
+    hearing: Reader<Hearing>,
     receipts: Reader<Receipt>,
     statuses: Reader<ArmStatus>,
     injections: Option<EncodedWriter<Injection>>,
@@ -78,6 +80,7 @@ impl Conversation {
             views: client.views()?,
             presented: bus.reader(&topics::PRESENTED)?,
             activity: bus.reader(&topics::ACTIVITY)?,
+            hearing: bus.reader(&topics::HEARING)?,
             receipts: bus.reader(&topics::RECEIPT)?,
             statuses: bus.reader(&topics::STATUS)?,
             injections: None,
@@ -179,6 +182,7 @@ impl Conversation {
         // What is pending is looked at before the view, so that the view is the newer of the two.
         self.seen.activity = quiet(self.activity.latest()).or(self.seen.activity);
         self.seen.presented = quiet(self.presented.latest()).unwrap_or(self.seen.presented);
+        self.seen.hearing = quiet(self.hearing.latest()).or(self.seen.hearing);
         self.seen.arm = quiet(self.statuses.latest()).or(self.seen.arm);
         if let Some(view) = quiet(self.views.latest()) {
             self.follow_scene(&view);

@@ -4,14 +4,15 @@ use std::path::Path;
 use std::time::Duration;
 
 use node::Span;
-use protocol::{Receipt, ReceiptStatus, Sound};
+use protocol::{Receipt, ReceiptStatus, Sound, Source};
 use runtime::client::Client;
 use runtime::exit::Exit;
 use runtime::group::GroupPaths;
 use serde_json::json;
 
-use crate::cli::PointArgs;
-use crate::output::{Ink, Output};
+use super::hearing;
+use crate::cli::{PointArgs, TalkArgs};
+use crate::output::{Ink, Output, note};
 use crate::trouble::{Outcome, Trouble};
 
 /// Says words, and tells whether they were accepted.
@@ -47,6 +48,15 @@ pub(super) fn listen(
     give(paths, Sound::Wav(path), timeout, out)
 }
 
+/// Opens the microphone for one utterance, and tells what was heard.
+pub(super) fn talk(paths: &GroupPaths, args: &TalkArgs, out: &mut Output<'_>) -> Outcome {
+    let longest_s = args.seconds.as_secs_f64();
+    if !out.is_json() {
+        note("speak now");
+    }
+    give(paths, Sound::Talk { longest_s }, args.seconds + args.timeout, out)
+}
+
 fn give(paths: &GroupPaths, sound: Sound, timeout: Duration, out: &mut Output<'_>) -> Outcome {
     let client = Client::join(paths)?;
     let receipts = client.inject(sound, Span::from_s(timeout.as_secs_f64()))?;
@@ -64,21 +74,36 @@ fn tell_all(receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
 fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Trouble> {
     let unclear = |error: protocol::WireError| Trouble::new(Exit::NotReached, error.to_string());
     let status = ReceiptStatus::from_code(receipt.status).map_err(unclear)?;
+    let source = Source::from_code(receipt.source).map_err(unclear)?;
     let note = receipt.note.as_str().map_err(unclear)?;
     let utterance = receipt.utterance().map(|seq| seq.0);
     if out.is_json() {
-        return out.json(&json!({ "status": status, "utterance": utterance, "note": note }));
+        return out.json(&json!({
+            "status": status, "utterance": utterance, "note": note, "source": source,
+            "confidence": receipt.confidence, "snr_db": receipt.snr_db,
+            "onset_ns": receipt.onset_ns, "end_ns": receipt.end_ns,
+        }));
     }
     let style = out.style();
+    let spoken = matches!(source, Source::Wav | Source::Microphone);
     match (status, utterance) {
-        (ReceiptStatus::Accepted, Some(seq)) => {
-            out.line(format_args!("heard as utterance {seq}: {note}"))
+        (ReceiptStatus::Accepted, seq) => {
+            let seq = seq.map_or(String::new(), |seq| format!(" as utterance {seq}"));
+            let (sure, snr_db) = (receipt.confidence * 100.0, receipt.snr_db);
+            let how = format!(" ({sure:.0} % sure, {snr_db:.0} dB above the noise)");
+            let how = style.paint(Ink::Dim, if spoken { how } else { String::new() });
+            out.line(format_args!("heard{seq}: {note}{how}"))?;
         }
-        (ReceiptStatus::Accepted, None) => out.line(format_args!("heard: {note}")),
-        (ReceiptStatus::NotForMe, _) => out
-            .line(style.paint(Ink::Yellow, format!("heard, but not meant for the robot: {note}"))),
+        (ReceiptStatus::NotForMe, _) => {
+            let told = format!("heard, but not meant for the robot: {note}");
+            out.line(style.paint(Ink::Yellow, told))?;
+        }
         (ReceiptStatus::Refused, _) => {
-            Err(Trouble::new(Exit::NotReached, format!("not accepted: {note}")))
+            return Err(Trouble::new(Exit::NotReached, format!("not accepted: {note}")));
         }
+    }
+    match hearing::noise(receipt.snr_db).filter(|_| spoken) {
+        Some(noise) => out.line(style.paint(Ink::Yellow, noise)),
+        None => Ok(()),
     }
 }

@@ -9,7 +9,7 @@ use supervisor::machine::{Actual, Wanted};
 use supervisor::status::{GroupStatus, ServiceStatus};
 
 use super::operate::{Unanswered, status_of};
-use super::words;
+use super::{hearing, words};
 use crate::output::{Ink, Output, Style, table};
 use crate::trouble::Outcome;
 
@@ -20,10 +20,15 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
         Err(Unanswered::Call(CallError::NoGroup { .. })) => return down(paths, out),
         Err(other) => return Err(other.into()),
     };
+    let hearing = hearing::look(paths);
     if out.is_json() {
-        out.json(&status)?;
+        let mut json = serde_json::to_value(&status).unwrap_or_default();
+        json["hearing"] = hearing.as_ref().map(hearing::to_json).into();
+        out.json(&json)?;
     } else {
-        for line in lines(&status, out.style()) {
+        let mut lines = lines(&status, out.style());
+        lines.extend(hearing.map(|hearing| hearing::line(&hearing, out.style())));
+        for line in lines {
             out.line(line)?;
         }
     }

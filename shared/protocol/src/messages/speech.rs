@@ -107,7 +107,7 @@ wire_struct! {
         /// Zero.
         reserved: u8,
         /// The program that records, or why there is none.
-        note: FixedText<200>,
+        note: FixedText<204>,
     }
 }
 

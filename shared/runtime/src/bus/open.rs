@@ -98,6 +98,7 @@ fn keep(bus: &Bus, topic: &Topic) -> Result<Box<dyn std::fmt::Debug>, BusError> 
         Utterance,
         Presented,
         Activity,
+        Hearing,
         Observation,
         AppliedMark,
         RobotAct,

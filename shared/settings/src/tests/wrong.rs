@@ -180,6 +180,14 @@ fn a_choice_that_does_not_exist() {
             "speech.toml: voice: `opera` is not one of auto, espeak-ng, flite, command, print (use one of these)",
         ],
     );
+    check(
+        "speech.toml",
+        "[microphone]\nmode = 'handsfree'\necho_pause_ms = -1",
+        &[
+            "speech.toml: microphone.mode: `handsfree` is not one of off, hands-free, push-to-talk (did you mean `hands-free`?)",
+            "speech.toml: microphone.echo_pause_ms: -1 is out of range (use a number from 0 to 5000)",
+        ],
+    );
     let planner = Folder::new(&[("dialogue.toml", "planner = 'lookahed'")]).complaints(None, &[]);
     assert_eq!(planner.len(), 1);
     assert!(planner[0].starts_with("dialogue.toml: planner: `lookahed` is not one of "));

@@ -15,6 +15,9 @@ const COMPLAINT_BYTES: usize = 300;
 const READ_BYTES: usize = 1 << 16;
 /// A program that hands over this much at once is faster than any microphone and is held back.
 const HOLD_BACK: Duration = Duration::from_millis(20);
+/// How long, and how often, a program's end is waited for once it has closed its output.
+const LAST_LOOK: Duration = Duration::from_millis(5);
+const LAST_LOOKS: usize = 40;
 
 /// The command lines that give one channel of signed 16-bit samples, low byte first, at 16 kHz, on
 /// their standard output: ALSA's (package alsa-utils), PipeWire's (pipewire-bin) and PulseAudio's
@@ -108,7 +111,13 @@ impl Recording {
     }
 
     fn end(&mut self) -> String {
-        // It has closed its output; what it still does is of no use.
+        // It has closed its output and ends by itself, or what it still does is of no use.
+        for _ in 0..LAST_LOOKS {
+            match self.child.try_wait() {
+                Ok(None) => thread::sleep(LAST_LOOK),
+                Ok(Some(_)) | Err(_) => break,
+            }
+        }
         let _ = self.child.kill();
         match self.child.wait() {
             Ok(status) if status.success() => format!("{} has ended", self.name),
@@ -174,8 +183,8 @@ mod tests {
 
     #[test]
     fn a_programs_end_is_told() {
-        let (samples, why) = read_all(&mut shell("exec >&-; exit 3"));
-        assert!(samples.is_empty() && why.starts_with("sh "), "{why}");
+        let (samples, why) = read_all(&mut shell("exit 3"));
+        assert_eq!((samples.len(), why.as_str()), (0, "sh failed (exit status: 3)"));
         let unknown = Recording::start(&["no-such-recorder".to_owned()]).err();
         assert_eq!(unknown.as_deref(), Some("the program no-such-recorder is not installed"));
     }

@@ -1,6 +1,8 @@
 //! What is known of a dialogue at one moment.
 
-use protocol::{Activity, ArmStatus, PolicyView, Presentation, Presented, Receipt, ReceiptStatus};
+use protocol::{
+    Activity, ArmStatus, Hearing, PolicyView, Presentation, Presented, Receipt, ReceiptStatus,
+};
 
 /// The latest of everything.
 #[derive(Clone, Debug, Default)]
@@ -11,6 +13,8 @@ pub(in crate::verbs) struct Seen {
     pub(in crate::verbs) presented: Presented,
     /// What is still to be applied.
     pub(in crate::verbs) activity: Option<Activity>,
+    /// How well the robot hears.
+    pub(in crate::verbs) hearing: Option<Hearing>,
     /// What the arm does.
     pub(in crate::verbs) arm: Option<ArmStatus>,
     /// Highest utterance that was accepted.

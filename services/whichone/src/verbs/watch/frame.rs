@@ -8,7 +8,7 @@ use supervisor::status::{GroupStatus, ServiceStatus};
 
 use super::picture::{Picture, Speaker, object_name};
 use crate::output::{Ink, Style};
-use crate::verbs::{await_pick, words};
+use crate::verbs::{await_pick, hearing, words};
 
 /// Begins drawing: an empty screen beside the one that was there, without a cursor.
 pub(super) const BEGIN: &str = "\x1b[?1049h\x1b[?25l";
@@ -39,6 +39,7 @@ pub(super) fn lines(picture: &Picture, style: Style, columns: usize) -> Vec<Stri
     lines.push(String::new());
     lines.extend(said(picture, style, columns));
     lines.push(String::new());
+    lines.extend(seen.hearing.as_ref().map(|hearing| hearing::line(hearing, style)));
     lines.push(match &seen.arm {
         Some(arm) => arm_line(scene, arm, style),
         None => style.paint(Ink::Yellow, "the arm is silent").to_string(),
@@ -152,6 +153,7 @@ fn said(picture: &Picture, style: Style, columns: usize) -> Vec<String> {
         let text = cut(text, columns.saturating_sub(8));
         match speaker {
             Speaker::Person => format!("   you  {text}"),
+            Speaker::Unmeant => style.paint(Ink::Dim, format!("        {text}")).to_string(),
             Speaker::Robot => format!(" {}  {text}", style.paint(Ink::Cyan, "robot")),
         }
     };

@@ -2,7 +2,9 @@
 
 use std::collections::VecDeque;
 
+use node::Time;
 use protocol::{ArmStatus, Hindrance, PickOutcome, PickPhase, Receipt, ReceiptStatus};
+use runtime::clock;
 use runtime::group::GroupPaths;
 use scene::{Scene, question_to_json};
 use serde_json::{Map, Value as Json, json};
@@ -10,6 +12,7 @@ use supervisor::status::GroupStatus;
 
 use crate::trouble::Trouble;
 use crate::verbs::conversation::{Conversation, Seen};
+use crate::verbs::hearing;
 
 /// Lines of the dialogue that are kept.
 const LINES_MAX: usize = 6;
@@ -24,6 +27,8 @@ pub(super) struct Picture {
     last_words: Option<(u64, u32)>,
     /// The highest utterance of the time before this.
     before: Option<u64>,
+    /// When the looking began.
+    began: Time,
 }
 
 /// Who said something.
@@ -31,11 +36,20 @@ pub(super) struct Picture {
 pub(super) enum Speaker {
     Person,
     Robot,
+    /// Somebody, but not to the robot, or so it seemed.
+    Unmeant,
 }
 
 impl Picture {
     pub(super) fn new(conversation: Conversation) -> Self {
-        Self { conversation, status: None, said: VecDeque::new(), last_words: None, before: None }
+        Self {
+            conversation,
+            status: None,
+            said: VecDeque::new(),
+            last_words: None,
+            before: None,
+            began: clock::now(),
+        }
     }
 
     pub(super) fn paths(&self) -> &GroupPaths {
@@ -75,11 +89,13 @@ impl Picture {
     }
 
     fn heard(&mut self, receipt: &Receipt) {
-        if receipt.status == ReceiptStatus::Accepted.code()
-            && receipt.seq > self.before.unwrap_or(0)
-            && let Ok(text) = receipt.note.as_str()
-        {
+        let Ok(text) = receipt.note.as_str() else { return };
+        let is = |status: ReceiptStatus| receipt.status == status.code();
+        if is(ReceiptStatus::Accepted) && receipt.seq > self.before.unwrap_or(0) {
             self.say(Speaker::Person, text.to_owned());
+        } else if is(ReceiptStatus::NotForMe) && Time(receipt.end_ns) > self.began {
+            let text = if text.is_empty() { "(nothing that could be made out)" } else { text };
+            self.say(Speaker::Unmeant, format!("heard, not for me: {text}"));
         }
     }
 
@@ -94,13 +110,18 @@ impl Picture {
     pub(super) fn to_json(&self) -> Json {
         let said: Vec<Json> = (self.said.iter())
             .map(|(speaker, text)| {
-                let who = if *speaker == Speaker::Person { "person" } else { "robot" };
+                let who = match speaker {
+                    Speaker::Person => "person",
+                    Speaker::Robot => "robot",
+                    Speaker::Unmeant => "unmeant",
+                };
                 json!({ "who": who, "text": text })
             })
             .collect();
         json!({
             "dialogue": dialogue(self.scene(), self.seen()),
             "said": said,
+            "hearing": self.seen().hearing.as_ref().map(hearing::to_json),
             "arm": self.seen().arm.map(|arm| arm_to_json(self.scene(), &arm)),
             "group": self.status,
         })

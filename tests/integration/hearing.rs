@@ -1,0 +1,145 @@
+//! Live speech: a microphone that is a pipe, into which the tests speak with espeak-ng.
+
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use serde_json::Value;
+use speech::devices::audio::read_wav;
+use whichone_tests::{Group, wait_for};
+
+use crate::speech::{can_speak, spoken};
+
+/// A pipe that a microphone's program reads, and into which a person speaks.
+struct Person {
+    folder: tempfile::TempDir,
+    pipe: File,
+    path: PathBuf,
+}
+
+impl Person {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("microphone");
+        assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
+        // Open for both: so nobody waits for the other end.
+        let pipe = OpenOptions::new().read(true).write(true).open(&path).unwrap();
+        Self { folder, pipe, path }
+    }
+
+    fn command(&self) -> String {
+        format!("speech.microphone.command=[\"cat\", \"{}\"]", self.path.display())
+    }
+
+    /// Speaks as fast as people do, with the pause behind it that ends an utterance: what comes at
+    /// once was said before it came.
+    fn says(&mut self, text: &str) {
+        let samples = read_wav(Path::new(&spoken(text, self.folder.path())), 20.0).unwrap();
+        let quiet = vec![0_i16; 12_000];
+        let sound = quiet.iter().chain(&samples).chain(&quiet);
+        let bytes: Vec<u8> = sound.flat_map(|sample| sample.to_le_bytes()).collect();
+        for tenth in bytes.chunks(3_200) {
+            self.pipe.write_all(tenth).unwrap();
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    }
+}
+
+fn up(person: &Person, mode: &str, more: &[&str]) -> Group {
+    let mode = format!("speech.microphone.mode={mode}");
+    let command = person.command();
+    let mut settings = vec![mode.as_str(), command.as_str()];
+    settings.extend(more);
+    Group::up(&settings)
+}
+
+fn hearing(group: &Group) -> Value {
+    group.status()["hearing"].take()
+}
+
+fn wait_for_microphone(group: &Group, state: &str) -> Value {
+    wait_for(&format!("a microphone that is {state}"), 20.0, || {
+        Some(hearing(group)).filter(|hearing| hearing["microphone"] == state)
+    })
+}
+
+#[test]
+fn a_spoken_request_is_understood_hands_free() {
+    if !can_speak() {
+        return;
+    }
+    let mut person = Person::new();
+    let group = up(&person, "hands-free", &[]);
+    person.says("get me the small white bowl");
+    let mut asked = String::new();
+    loop {
+        let dialogue = wait_for("another decision", 20.0, || {
+            Some(group.dialogue())
+                .filter(|d| d["text"] != asked.as_str() && d["decision"] != "wait")
+        });
+        if dialogue["decision"] != "ask" {
+            break;
+        }
+        asked = dialogue["text"].as_str().unwrap().to_owned();
+        let wanted = ["small", "white", "plastic", "counter"];
+        person.says(if wanted.iter().any(|word| asked.contains(word)) { "yes" } else { "no" });
+    }
+    let outcome = group.await_pick(None);
+    assert_eq!((&outcome["outcome"], &outcome["object"]), (&"delivered".into(), &"white2".into()));
+    let hearing = wait_for_microphone(&group, "listening");
+    assert!(hearing["snr_db"].as_f64().unwrap() > 15.0, "{hearing}");
+    assert_eq!((&hearing["dropped"], &hearing["note"]), (&0.into(), &"cat".into()));
+    group.verify_journals();
+    group.down();
+}
+
+#[test]
+fn talk_opens_the_microphone_for_one_utterance() {
+    if !can_speak() {
+        return;
+    }
+    let mut person = Person::new();
+    let group = up(&person, "push-to-talk", &[]);
+    wait_for_microphone(&group, "closed");
+    let heard = std::thread::scope(|scope| {
+        let talk = scope.spawn(|| group.call(&["talk", "--json", "--seconds", "30"]));
+        person.says("get me the small white bowl");
+        talk.join().unwrap()
+    });
+    let receipt = heard.json();
+    assert_eq!(
+        (&receipt["status"], &receipt["source"]),
+        (&"accepted".into(), &"microphone".into())
+    );
+    assert!(receipt["note"].as_str().unwrap().contains("small white bowl"), "{receipt}");
+    assert!(receipt["end_ns"].as_u64() > receipt["onset_ns"].as_u64(), "{receipt}");
+    assert_eq!(heard.code, Some(0));
+    wait_for_microphone(&group, "closed");
+    let silent = group.call(&["talk", "--seconds", "1"]);
+    assert_eq!(silent.code, Some(1));
+    assert!(silent.stderr.contains("microphone"), "{silent:?}");
+    group.down();
+}
+
+#[test]
+fn a_microphone_that_dies_is_started_again_and_one_that_is_off_says_so() {
+    let person = Person::new();
+    let dies = "speech.microphone.command=[\"sh\", \"-c\", \"echo no card >&2; exit 3\"]";
+    let group = up(&person, "hands-free", &[dies]);
+    let hearing = wait_for("the second start", 20.0, || {
+        Some(hearing(&group)).filter(|hearing| hearing["restarts"].as_u64() >= Some(2))
+    });
+    assert_eq!(hearing["microphone"], "broken");
+    assert!(hearing["note"].as_str().unwrap().contains("sh"), "{hearing}");
+    let log = group.must(&["logs", "speech"]).stdout;
+    assert!(log.contains("no card"), "{log}");
+    assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear", "typed words do");
+    group.down();
+    let group = up(&person, "off", &[]);
+    let refused = group.call(&["talk"]);
+    assert_eq!(refused.code, Some(1));
+    assert!(refused.stderr.contains("speech.toml"), "{refused:?}");
+    group.down();
+}
