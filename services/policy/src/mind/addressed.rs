@@ -10,19 +10,28 @@ use protocol::ActKind;
 use scene::{Intent, Question, Reading};
 
 impl Mind {
-    /// How an utterance is divided among the questions of `heard.asked`.
+    /// How an utterance is divided among the questions of `heard.asked`. Those of other interactions
+    /// are no longer open: they draw no answer.
     pub(super) fn addressed(&self, state: &State, heard: &Heard) -> Addressed {
-        let onset_s = heard.onset.since(Time(0)).s();
-        let asked: Vec<Asked> = heard.asked.iter().map(|asking| put(state, asking)).collect();
+        let put: Vec<Option<Asked>> = heard.asked.iter().map(|asking| put(state, asking)).collect();
+        let asked: Vec<Asked> = put.iter().flatten().copied().collect();
+        let among = self.among(state, heard, &asked);
+        let mut shares = among.questions.into_iter();
+        let share = |known: Option<Asked>| known.and_then(|_| shares.next()).unwrap_or(0.0);
+        Addressed { questions: put.into_iter().map(share).collect(), none: among.none }
+    }
+
+    fn among(&self, state: &State, heard: &Heard, asked: &[Asked]) -> Addressed {
+        let onset_s = seconds(heard.onset);
         match self.turns.attribution {
-            Attribution::Naive => Addressed::only(pending(state, heard), asked.len()),
-            Attribution::Onset => Addressed::latest_said(&asked, onset_s),
+            Attribution::Naive => Addressed::only(pending(state, asked), asked.len()),
+            Attribution::Onset => Addressed::latest_said(asked, onset_s),
             Attribution::Mixture => {
                 let answered = self.model.params().p_l;
                 let reaction = self.reaction(state, heard.typed);
                 let rate = |seconds: f64| reaction.rate(seconds, answered);
                 let divide = if heard.typed { Addressed::typed } else { Addressed::of };
-                divide(&asked, onset_s, rate)
+                divide(asked, onset_s, rate)
             }
         }
     }
@@ -110,23 +119,25 @@ fn content(reading: &Reading) -> Reading {
 /// About how long it takes to say a question, seconds, where it is still being said.
 const QUESTION_S: f64 = 1.5;
 
-/// The question as the person met it.
-fn put(state: &State, asking: &Asking) -> Asked {
-    let seconds = |time: Time| time.since(Time(0)).s();
-    let open = state.open.as_ref();
-    let prompt = open.and_then(|open| open.prompts.iter().find(|p| p.id == asking.prompt));
-    Asked {
+/// A question of the open interaction as the person met it; none for another's.
+fn put(state: &State, asking: &Asking) -> Option<Asked> {
+    let open = state.open.as_ref()?;
+    let prompt = open.prompts.iter().find(|prompt| prompt.id == asking.prompt)?;
+    Some(Asked {
         question: Question::None,
         began_s: seconds(asking.began),
         ended_s: asking.ended.map_or(seconds(asking.began) + QUESTION_S, seconds),
         whole: asking.whole,
-        answered_s: prompt.and_then(|prompt| prompt.answered).map(seconds),
-    }
+        answered_s: prompt.answered.map(seconds),
+    })
 }
 
-/// The question that stands when the result arrives, as naive systems take it.
-fn pending(state: &State, heard: &Heard) -> Option<usize> {
-    let standing = (state.act.kind == ActKind::Ask).then_some(state.act.prompt);
-    let is_standing = |asking: &Asking| Some(asking.prompt) == standing;
-    heard.asked.iter().position(is_standing).or((!heard.asked.is_empty()).then_some(0))
+fn seconds(time: Time) -> f64 {
+    time.since(Time(0)).s()
+}
+
+/// The question that stands when the result arrives, as naive systems take it: the one asked last.
+fn pending(state: &State, asked: &[Asked]) -> Option<usize> {
+    let stands = state.act.kind == ActKind::Ask && !asked.is_empty();
+    stands.then_some(0)
 }
