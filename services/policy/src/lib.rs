@@ -234,8 +234,9 @@ impl PolicyNode {
     }
 
     fn send(&mut self, now: Time, fx: &mut Fx) {
-        fx.publish(Out::Mark(AppliedMark { seq: self.state.applied.0 }));
+        // The act first: the mark lets speech go on, which must not be with what stood before.
         fx.publish(Out::Act(Box::new(view::act(&self.state))));
+        fx.publish(Out::Mark(AppliedMark { seq: self.state.applied.0 }));
         let view = view::view(&self.mind, &self.state, self.refused);
         fx.publish(Out::View(Box::new(view)));
         self.next_send = now + RESEND_EVERY;

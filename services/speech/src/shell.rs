@@ -105,9 +105,9 @@ impl Shell<SpeechNode> for SpeechShell {
 
     fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
         self.answers.drain(..).for_each(&mut *take);
+        self.acts.drain(|message| take(In::Act(Box::new(*message))))?;
         self.marks.drain(|message| take(In::Mark(*message)))?;
         self.arm.drain(|message| take(In::Arm(*message)))?;
-        self.acts.drain(|message| take(In::Act(Box::new(*message))))?;
         while let Some(injection) = self.injections.take()? {
             take(In::Injection(injection));
         }

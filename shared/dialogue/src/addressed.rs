@@ -58,14 +58,20 @@ impl Asked {
             0.0
         } else if let Some(answered_s) = self.answered_s {
             AGAIN * (-since(answered_s).max(0.0) / AGAIN_S).exp()
-        } else if onset_s < self.ended_s {
-            let share = since(self.began_s) / (self.ended_s - self.began_s);
-            EARLY * share.powi(4)
-        } else if self.whole {
+        } else if self.whole && onset_s >= self.ended_s {
             rate(since(self.ended_s))
         } else {
-            EARLY * (-since(self.ended_s) / BROKEN_OFF_S).exp()
+            let after = since(self.ended_s).max(0.0);
+            EARLY * self.share_said(onset_s).powi(4) * (-after / BROKEN_OFF_S).exp()
         }
+    }
+
+    /// Share of the question that had been said by then. One that was broken off would have taken
+    /// a usual question's time.
+    fn share_said(&self, at_s: f64) -> f64 {
+        let said_s = self.ended_s - self.began_s;
+        let length_s = if self.whole { said_s } else { said_s.max(QUESTION_S) };
+        (at_s.min(self.ended_s) - self.began_s) / length_s
     }
 }
 
@@ -85,6 +91,8 @@ const NONE: f64 = 0.0005;
 /// is asked stands at the end of the sentence, so the rate grows with the fourth power of the share
 /// that was said.
 const EARLY: f64 = 0.1;
+/// A question's usual length, seconds.
+const QUESTION_S: f64 = 1.5;
 /// Seconds in which somebody who broke a question off still answers it.
 const BROKEN_OFF_S: f64 = 1.0;
 /// Second thoughts right after an answer, per second ("yes. No, wait."), and the seconds in which
@@ -193,6 +201,18 @@ mod tests {
         let first = Asked { answered_s: Some(3.2), ..asked(0, 0.0, 2.0) };
         let Addressed { questions, none } = addressed(&[first, asked(1, 8.0, 10.0)], 10.9);
         assert!(questions[1] > 0.99 && none < 0.01, "{questions:?} {none}");
+    }
+
+    /// The robot falls silent at once when somebody speaks: how little of the question had been said
+    /// counts, and not that it was its end.
+    #[test]
+    fn who_breaks_off_a_question_at_its_first_words_does_not_answer_it() {
+        let first = Asked { answered_s: Some(3.2), ..asked(0, 0.0, 2.0) };
+        let broken_off = |ended_s| Asked { whole: false, ..asked(1, 4.0, ended_s) };
+        let early = addressed(&[first, broken_off(4.6)], 4.5);
+        assert!(early.questions[0] > 0.9, "{early:?}");
+        let late = addressed(&[first, broken_off(5.5)], 5.4);
+        assert!(late.questions[1] > 0.6, "{late:?}");
     }
 
     /// The answer comes just as the next question begins: nobody can have heard that one.
