@@ -2,7 +2,8 @@
 //! belief update cost and how good decisions are; how often and how fast poses are reached, beside
 //! other solvers; how fast the group starts and recovers, how long an utterance
 //! takes to become a decision and where the time goes, what it costs when nothing happens, how
-//! steadily joint states come, and how much of spoken sentences is understood.
+//! steadily joint states come, how much of spoken sentences is understood, and how turns are taken in
+//! simulated time.
 //!
 //! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
 //! test rests on one.
@@ -12,24 +13,16 @@ mod core;
 mod idle;
 mod jitter;
 mod latency;
+mod options;
 mod peers;
 mod report;
 mod speech;
 mod start;
+mod turns;
 
+use options::{HELP, Options};
 use report::Report;
 use std::process::ExitCode;
-
-const HELP: &str = "Usage: bench [--quick] [--core] [--kinematics] [--joints] [--speech]
-
-  --quick       fewer repetitions and smaller series: a minute in place of several
-  --core        only the decision core, without starting a group
-  --kinematics  only the arm: inverse kinematics, motions and clearances beside other solvers
-  --joints      only how steadily joint states come
-  --speech      only spoken input: what is understood of spoken sentences, how late
-";
-
-const OPTIONS: [&str; 5] = ["--quick", "--core", "--kinematics", "--joints", "--speech"];
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -37,39 +30,45 @@ fn main() -> ExitCode {
         report::print(HELP);
         return ExitCode::SUCCESS;
     }
-    if let Some(unknown) = words.iter().find(|word| !OPTIONS.contains(&word.as_str())) {
-        report::print(&format!("{unknown} is no option\n\n{HELP}"));
-        return ExitCode::from(64);
-    }
-    let asked = |word: &str| words.iter().any(|known| known == word);
+    let options = match Options::read(words) {
+        Ok(options) => options,
+        Err(error) => {
+            report::print(&format!("{error}\n\n{HELP}"));
+            return ExitCode::from(64);
+        }
+    };
     let mut report = Report::default();
-    let [core_only, arm_only, joints_only, speech_only] =
-        ["--core", "--kinematics", "--joints", "--speech"].map(asked);
-    let all = !core_only && !arm_only && !joints_only && !speech_only;
-    if all || core_only {
-        peers::measure(&mut report);
-        let effort = if asked("--quick") { core::Effort::QUICK } else { core::Effort::FULL };
-        core::measure(&mut report, effort);
-    }
-    if all || arm_only {
-        arm::measure(&mut report, asked("--quick"));
-    }
-    if all {
-        start::measure(&mut report);
-        latency::measure(&mut report);
-        idle::measure(&mut report);
-    }
-    if all || joints_only {
-        jitter::measure(&mut report);
-    }
-    if all || speech_only {
-        speech::measure(&mut report, asked("--quick"));
-    }
+    measure(&options, &mut report);
     match report.write() {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             report::print(&format!("target/bench: {error}"));
             ExitCode::from(74)
         }
+    }
+}
+
+fn measure(options: &Options, report: &mut Report) {
+    if options.wants("--core") {
+        peers::measure(report);
+        let effort = if options.quick { core::Effort::QUICK } else { core::Effort::FULL };
+        core::measure(report, effort);
+    }
+    if options.wants("--kinematics") {
+        arm::measure(report, options.quick);
+    }
+    if options.wants_all() {
+        start::measure(report);
+        latency::measure(report);
+        idle::measure(report);
+    }
+    if options.wants("--joints") {
+        jitter::measure(report);
+    }
+    if options.wants("--speech") {
+        speech::measure(report, options.quick);
+    }
+    if options.wants("--turns") {
+        turns::measure(report, options);
     }
 }

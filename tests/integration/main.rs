@@ -18,5 +18,6 @@ mod planners;
 mod recovery;
 mod robot;
 mod speech;
+mod spoken;
 mod supervision;
 mod swap;

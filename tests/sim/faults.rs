@@ -1,9 +1,9 @@
 //! Faults drawn from a seed. They stop after a while, so that every dialogue can end: before that
 //! nothing bad may happen, after that something good must.
 
-use crate::host::Crash;
 use dialogue::Rng;
 use node::{Span, Time};
+use whichone_tests::Crash;
 
 /// How often what goes wrong.
 pub(crate) struct Faults {

@@ -7,14 +7,15 @@
 
 mod checkers;
 mod faults;
-mod host;
 mod person;
+mod turns;
 mod world;
 
 use faults::Faults;
 use person::Person;
 use settings::Settings;
-use world::{World, settings};
+use whichone_tests::settings;
+use world::World;
 
 /// Dialogues with faults, each with its own seed.
 const SEEDS: u64 = 120;

@@ -1,7 +1,6 @@
 //! The simulated machine: a bus that forgets, a voice, a clock, and the processes on it.
 
 use crate::faults::Faults;
-use crate::host::Host;
 use crate::person::Person;
 use arm::ArmNode;
 use dialogue::Model;
@@ -9,11 +8,10 @@ use grounding::GroundingNode;
 use node::{Event, Node, Span, Time};
 use policy::PolicyNode;
 use protocol::{ActKind, Outcome, PolicyView};
-use runtime::lifecycle::Environment;
 use scene::{Question, Scene};
 use settings::Settings;
 use speech::{SpeechNode, Spoken, VoiceEvent};
-use std::path::Path;
+use whichone_tests::{Host, configured};
 
 /// How long the voice takes for a line.
 const LINE: Span = Span::from_ms(400);
@@ -53,13 +51,6 @@ struct Inboxes {
     grounding: Vec<Box<protocol::Utterance>>,
     policy: Vec<policy::In>,
     arm: Vec<arm::In>,
-}
-
-/// The shipped configuration, with these settings over it.
-pub(crate) fn settings(over: &[(&str, &str)]) -> Settings {
-    let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"));
-    let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-    Settings::load(config, Some("ci"), &over).unwrap_or_else(|e| panic!("{e}"))
 }
 
 impl World {
@@ -309,14 +300,6 @@ impl World {
             self.premature.push(format!("act {} before record {durable}", act.act));
         }
     }
-}
-
-/// Makes the configuration that the real program would give its node.
-fn configured<P: runtime::driver::Program>(
-    settings: &Settings,
-) -> impl Fn() -> <P::Node as Node>::Config + use<P> {
-    let settings = settings.clone();
-    move || P::config(&Environment::nowhere(), &settings).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn pass<N: Node>(

@@ -1,11 +1,28 @@
-//! What the tests with real processes share: a group of their own that leaves nothing behind, and
-//! the command line that their users would type.
+//! What tests share: real processes in a group of their own that leaves nothing behind, with the
+//! command line that their users would type; reducers in simulated processes; people who speak.
 
 mod command;
 mod group;
+mod host;
+pub mod spoken;
+pub mod turns;
 
 pub use command::{Ended, program, run};
 pub use group::Group;
+pub use host::{Crash, Host, configured};
+
+use settings::Settings;
+use std::path::Path;
+
+/// The shipped configuration with the profile for tests, and these settings over it.
+///
+/// # Panics
+/// Where a setting is none.
+pub fn settings(over: &[(&str, &str)]) -> Settings {
+    let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"));
+    let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
+    Settings::load(config, Some("ci"), &over).unwrap_or_else(|e| panic!("{e}"))
+}
 
 /// Waits until `fact` gives a value.
 ///

@@ -2,10 +2,12 @@
 //! effects, and comes back from what its journal had synced by then.
 
 use node::{Effects, Event, Node, Time};
+use runtime::lifecycle::Environment;
+use settings::Settings;
 
 /// Where in a pass the process dies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Crash {
+pub enum Crash {
     /// After deciding, before the sync: the records are gone and nothing was seen.
     BeforeSync,
     /// After the sync and this many outputs.
@@ -13,24 +15,29 @@ pub(crate) enum Crash {
 }
 
 /// A node, its journal, and how to make it anew.
-pub(crate) struct Host<N: Node> {
+#[allow(missing_debug_implementations, reason = "nodes have none")]
+pub struct Host<N: Node> {
     config: Box<dyn Fn() -> N::Config>,
     node: Option<N>,
     journal: Vec<N::Record>,
     /// How often it was started.
-    pub(crate) incarnation: u32,
+    pub incarnation: u32,
 }
 
 impl<N: Node> Host<N>
 where
     N::Record: Clone,
 {
-    pub(crate) fn new(config: impl Fn() -> N::Config + 'static) -> Self {
+    /// A process that is not started yet.
+    pub fn new(config: impl Fn() -> N::Config + 'static) -> Self {
         Self { config: Box::new(config), node: None, journal: Vec::new(), incarnation: 0 }
     }
 
     /// Starts the process, if it is not up. Returns what its start makes visible.
-    pub(crate) fn start(&mut self, now: Time) -> Vec<N::Out> {
+    ///
+    /// # Panics
+    /// Where its journal cannot be gone on from.
+    pub fn start(&mut self, now: Time) -> Vec<N::Out> {
         if self.node.is_some() {
             return Vec::new();
         }
@@ -41,26 +48,28 @@ where
     }
 
     /// Ends the process, and has the next one started with another configuration.
-    pub(crate) fn replace(&mut self, config: impl Fn() -> N::Config + 'static) {
+    pub fn replace(&mut self, config: impl Fn() -> N::Config + 'static) {
         (self.node, self.config) = (None, Box::new(config));
     }
 
-    pub(crate) fn is_up(&self) -> bool {
+    /// Whether it runs.
+    pub fn is_up(&self) -> bool {
         self.node.is_some()
     }
 
     /// What is durable.
-    pub(crate) fn journal(&self) -> &[N::Record] {
+    pub fn journal(&self) -> &[N::Record] {
         &self.journal
     }
 
-    pub(crate) fn deadline(&self) -> Option<Time> {
+    /// When it wants to be woken.
+    pub fn deadline(&self) -> Option<Time> {
         self.node.as_ref().and_then(Node::deadline)
     }
 
     /// One pass of the main loop: the events, then the sync, then the outputs, in the order of the
     /// real driver. Returns what became visible.
-    pub(crate) fn pass(
+    pub fn pass(
         &mut self,
         events: Vec<Event<N::In>>,
         now: Time,
@@ -81,4 +90,15 @@ where
         }
         outputs
     }
+}
+
+/// Makes the configuration that the real program would give its node.
+///
+/// # Panics
+/// Where the settings give none.
+pub fn configured<P: runtime::driver::Program>(
+    settings: &Settings,
+) -> impl Fn() -> <P::Node as Node>::Config + use<P> {
+    let settings = settings.clone();
+    move || P::config(&Environment::nowhere(), &settings).unwrap_or_else(|e| panic!("{e}"))
 }

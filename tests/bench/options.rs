@@ -1,0 +1,59 @@
+//! What is to be measured.
+
+pub(crate) const HELP: &str = "Usage: bench [--quick] [PART]… [--dialogues N] [--seed S]
+
+  --quick        fewer repetitions and smaller series: a minute in place of several
+
+Parts; all of them where none is named:
+  --core         only the decision core, without starting a group
+  --kinematics   only the arm: inverse kinematics, motions and clearances beside other solvers
+  --joints       only how steadily joint states come
+  --speech       only spoken input: what is understood of spoken sentences, how late
+  --turns        only turn-taking in simulated time: answers late, early, overlapping, doubled
+
+  --dialogues N  dialogues of --turns (500)
+  --seed S       seed of these dialogues (1)
+";
+
+const PARTS: [&str; 5] = ["--core", "--kinematics", "--joints", "--speech", "--turns"];
+
+/// What the command line says.
+pub(crate) struct Options {
+    parts: Vec<String>,
+    pub(crate) quick: bool,
+    pub(crate) dialogues: Option<u64>,
+    pub(crate) seed: u64,
+}
+
+impl Options {
+    /// Reads the words of the command line.
+    pub(crate) fn read(mut words: Vec<String>) -> Result<Self, String> {
+        let dialogues = number(&mut words, "--dialogues")?;
+        let seed = number(&mut words, "--seed")?.unwrap_or(1);
+        let quick = words.iter().any(|word| word == "--quick");
+        words.retain(|word| word != "--quick");
+        match words.iter().find(|word| !PARTS.contains(&word.as_str())) {
+            Some(unknown) => Err(format!("{unknown} is no option")),
+            None => Ok(Self { parts: words, quick, dialogues, seed }),
+        }
+    }
+
+    /// Whether this part is to be measured.
+    pub(crate) fn wants(&self, part: &str) -> bool {
+        self.wants_all() || self.parts.iter().any(|asked| asked == part)
+    }
+
+    /// Whether all parts are.
+    pub(crate) fn wants_all(&self) -> bool {
+        self.parts.is_empty()
+    }
+}
+
+/// Takes `option N` out of the words.
+fn number(words: &mut Vec<String>, option: &str) -> Result<Option<u64>, String> {
+    let Some(at) = words.iter().position(|word| word == option) else { return Ok(None) };
+    let value = words.get(at + 1).and_then(|word| word.parse().ok());
+    let value = value.ok_or_else(|| format!("{option} needs a number behind it"))?;
+    words.drain(at..at + 2);
+    Ok(Some(value))
+}

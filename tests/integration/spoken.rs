@@ -1,0 +1,35 @@
+//! The robot's own voice, without a sound card.
+
+use crate::speech::can_speak;
+use protocol::{Presentation, Presented, topics};
+use runtime::client::Client;
+use whichone_tests::{Group, wait_for};
+
+/// The robot takes as long to ask as its sound does, and keeps that sound for others.
+#[test]
+fn a_question_lasts_as_long_as_its_sound_without_a_sound_card() {
+    if !can_speak() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let kept = format!("speech.voice_dir={}", folder.path().display());
+    let group = Group::up(&["speech.voice=espeak-ng", "speech.player=[\"none\"]", &kept]);
+    let client = Client::join(group.paths()).unwrap();
+    let presented = client.bus().reader::<Presented>(&topics::PRESENTED).unwrap();
+    group.say("get me the bowl");
+    let said = wait_for("a question said to its end", 20.0, || {
+        let latest = presented.latest().unwrap()?;
+        (latest.state == Presentation::Ended.code()).then_some(latest)
+    });
+    let entries = std::fs::read_dir(folder.path()).unwrap();
+    let files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    let [file] = files.as_slice() else { panic!("one question: {files:?}") };
+    let samples = speech::devices::audio::read_wav(file, 60.0).unwrap();
+    let sound_s = samples.len() as f64 / 16_000.0;
+    let took_s = (said.ended_ns - said.started_ns) as f64 / 1e9;
+    // The two ends are noticed by the service's loop, each a little after it happened.
+    assert!(sound_s > 0.5 && took_s > sound_s - 0.1, "{took_s} s for {sound_s} s of sound");
+    drop(presented);
+    drop(client);
+    group.down();
+}

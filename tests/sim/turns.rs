@@ -1,0 +1,25 @@
+//! Answers that come late, early, into the next question, and twice: each counts for the question
+//! that it was meant for, so that nothing wrong is fetched because of when somebody spoke.
+
+use whichone_tests::turns::{Count, study};
+
+const DIALOGUES: u64 = 60;
+
+#[test]
+fn whenever_people_answer_the_right_object_is_decided_on() {
+    let seed = crate::number("WHICHONE_SEED").unwrap_or(1);
+    let study = study(crate::number("WHICHONE_SEEDS").unwrap_or(DIALOGUES), seed);
+    let of = |rule: &str| -> Vec<&Count> {
+        study.counts.iter().filter(|count| count.rule == rule).collect()
+    };
+    let sum = |rule: &str, of_count: fn(&Count) -> f64| -> f64 {
+        of(rule).into_iter().map(of_count).sum()
+    };
+    for count in of("mixture") {
+        assert_eq!(count.wrong_by_timing, 0, "seed {seed}: {}", count.stories.join("\n\n"));
+    }
+    let wrong = |rule| sum(rule, |count| count.wrong as f64);
+    let credited = |rule| sum(rule, |count| count.credited) / sum(rule, |c| c.answers as f64);
+    assert!(wrong("mixture") < wrong("naive"), "seed {seed}: {study:#?}");
+    assert!(credited("mixture") > credited("naive"), "seed {seed}: {study:#?}");
+}

@@ -1,0 +1,324 @@
+//! One spoken dialogue with the real group: a person wants an object, asks for it, answers what is
+//! asked, and gets something.
+
+use std::collections::HashSet;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use dialogue::Rng;
+use language::{Language, Reader};
+use node::{Span, Time};
+use protocol::{EarState, Outcome, ReceiptStatus};
+use runtime::client::Client;
+use runtime::clock;
+use scene::{Question, Reading, Scene};
+use serde::Serialize;
+use speech::devices::voice::Synthesiser;
+
+use super::room::Room;
+use super::sound::{Pink, SPEAKERS, SPEECH_RMS, levelled};
+use super::taps::{News, Said, Taps};
+use super::words::{Asked, Person};
+use crate::{Group, wait_for};
+
+/// Under what a dialogue is held.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conditions {
+    /// How far speech stands above the noise, decibels.
+    pub snr_db: f64,
+    /// Whether the microphone does not hear the robot, so that people may interrupt it.
+    pub barge_in: bool,
+    /// Which dialogue: decides what is wanted and by whom, what is said and when.
+    pub number: u64,
+    /// Seed of all dialogues.
+    pub seed: u64,
+}
+
+/// How a dialogue went.
+#[derive(Clone, Debug, Serialize)]
+pub struct Told {
+    /// Its number.
+    pub number: u64,
+    /// The voice that the person had.
+    pub speaker: &'static str,
+    /// What was wanted.
+    pub wanted: String,
+    /// What was brought; nothing where the dialogue did not end.
+    pub brought: Option<String>,
+    /// Questions that were asked.
+    pub questions: u32,
+    /// From the person's first sound to the decision what to bring, seconds.
+    pub seconds: f64,
+    /// Utterances said by the person.
+    pub said: u32,
+    /// Those that were heard and taken to be not for the robot, or not heard at all.
+    pub rejected: u32,
+    /// Those that were taken to say something else than they said.
+    pub misunderstood: u32,
+    /// What happened when, to be read.
+    pub story: Vec<String>,
+}
+
+impl Told {
+    /// Whether the right object was brought.
+    pub fn is_right(&self) -> bool {
+        self.brought.as_deref() == Some(self.wanted.as_str())
+    }
+}
+
+/// A dialogue that takes longer has failed.
+const LONGEST: Duration = Duration::from_secs(150);
+/// After so much without a reaction to a request it is made again, seconds.
+const PATIENCE_S: f64 = 6.0;
+/// How often the person looks what the robot does.
+const LOOK: Duration = Duration::from_millis(4);
+/// How far the detector's idea of where speech is may be off, seconds.
+const EDGE_S: f64 = 0.6;
+
+/// Holds a dialogue with a group of its own.
+///
+/// # Panics
+/// If the group does not start, or a topic breaks.
+pub fn converse(conditions: Conditions) -> Told {
+    let folder = tempfile::tempdir().expect("a folder");
+    let pipe = folder.path().join("microphone");
+    let noise = SPEECH_RMS / 10_f64.powf(conditions.snr_db / 20.0);
+    let noise = Pink::new(noise, conditions.seed ^ (conditions.number << 20));
+    let room = Room::open(&pipe, noise);
+    let settings = settings(&pipe, conditions);
+    let group = Group::up(&settings.iter().map(String::as_str).collect::<Vec<_>>());
+    let client = Client::join(group.paths()).expect("a running group");
+    let scene = settings::Settings::load_snapshot(&group.paths().run()).expect("a snapshot").scene;
+    let mut talk = Talk::new(&client, scene, room, folder.path(), conditions);
+    talk.hold();
+    let told = talk.told();
+    drop(client);
+    group.verify_journals();
+    group.down();
+    told
+}
+
+/// The shipped speech settings with the pipe for a microphone, and a voice that takes its time.
+fn settings(pipe: &Path, conditions: Conditions) -> Vec<String> {
+    vec![
+        "speech.voice=espeak-ng".to_owned(),
+        "speech.player=[\"none\"]".to_owned(),
+        "speech.recogniser=pocketsphinx".to_owned(),
+        "speech.microphone.mode=hands-free".to_owned(),
+        format!("speech.microphone.command=[\"cat\", \"{}\"]", pipe.display()),
+        format!("speech.microphone.barge_in={}", conditions.barge_in),
+    ]
+}
+
+/// Something that the person said.
+struct Sentence {
+    text: String,
+    /// What it was said to.
+    question: Question,
+    began: Time,
+    ended: Time,
+    heard: bool,
+}
+
+/// A remark that is still to come.
+struct Thought {
+    at: Time,
+    text: String,
+}
+
+struct Talk {
+    number: u64,
+    speaker: &'static str,
+    scene: Scene,
+    reader: Reader,
+    person: Person,
+    wanted: scene::ObjectId,
+    voice: Synthesiser,
+    room: Room,
+    taps: Taps,
+    answered: HashSet<Said>,
+    thought: Option<Thought>,
+    sentences: Vec<Sentence>,
+    /// The question that was answered last.
+    question: Question,
+    requests: u32,
+    reacted: bool,
+    decided: Option<Time>,
+    misunderstood: u32,
+    story: Vec<String>,
+}
+
+impl Talk {
+    fn new(
+        client: &Client,
+        scene: Scene,
+        room: Room,
+        folder: &Path,
+        conditions: Conditions,
+    ) -> Self {
+        let mut rng = Rng::new(conditions.seed);
+        let stream = rng.next_u64() ^ conditions.number.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let number = conditions.number as usize;
+        let wanted = scene::ObjectId::from(number % scene.objects().len());
+        let speaker = SPEAKERS[(number / scene.objects().len() + number) % SPEAKERS.len()];
+        Self {
+            number: conditions.number,
+            speaker: speaker.name,
+            reader: Reader::new(&scene, Language::Careful),
+            person: Person::new(&scene, wanted, Rng::new(stream)),
+            wanted,
+            voice: speaker.synthesiser(&folder.join("person")),
+            room,
+            taps: Taps::open(client),
+            answered: HashSet::new(),
+            thought: None,
+            sentences: Vec::new(),
+            question: Question::None,
+            requests: 0,
+            reacted: false,
+            decided: None,
+            misunderstood: 0,
+            story: Vec::new(),
+            scene,
+        }
+    }
+
+    fn hold(&mut self) {
+        wait_for("a recogniser that is ready", 30.0, || {
+            self.taps.look();
+            (self.taps.ear == Some(EarState::Ready)).then_some(())
+        });
+        let request = self.person.request();
+        self.say(clock::now() + Span::from_ms(800), request, Question::None);
+        let begun = Instant::now();
+        while self.taps.view.last.is_none() && begun.elapsed() < LONGEST {
+            let news = self.taps.look();
+            self.follow(news);
+            self.speak_up();
+            std::thread::sleep(LOOK);
+        }
+    }
+
+    fn follow(&mut self, news: News) {
+        for receipt in &news.receipts {
+            let note = receipt.note.as_str().unwrap_or_default().to_owned();
+            let accepted = receipt.status == ReceiptStatus::Accepted.code();
+            self.heard(Time(receipt.seq), &note, accepted, 0.0);
+        }
+        for (said, at) in news.began {
+            if let Some(words) = self.taps.questions.get(&said).cloned() {
+                self.tell(Time(at), format!("robot: {words}"));
+            }
+        }
+        for (said, at) in news.ended {
+            let words = self.taps.questions.get(&said).cloned();
+            if let (Some(words), true) = (words, self.answered.insert(said)) {
+                self.reacted = true;
+                self.answer(&words, Time(at));
+            }
+        }
+        if self.taps.picks && self.decided.is_none() {
+            self.decided = Some(clock::now());
+            let text = self.taps.view.text.clone();
+            self.tell(clock::now(), format!("robot: {text}"));
+        }
+    }
+
+    /// Answers a question that ended then, after a while of thinking.
+    fn answer(&mut self, words: &str, ended: Time) {
+        let asked = self.person.understand(words);
+        self.question = match asked {
+            Asked::Whether(k, v) => Question::Attribute(k, v),
+            Asked::Which(k) => Question::Which(k),
+            Asked::Open => Question::None,
+        };
+        let reaction = Span::from_s(self.person.reaction_s());
+        let text = self.person.answer(asked);
+        let end = self.say(ended + reaction, text, self.question);
+        if let Some((pause_s, text)) = self.person.second_thought() {
+            self.thought = Some(Thought { at: end + Span::from_s(pause_s), text });
+        }
+    }
+
+    /// Remarks, and the request again where it met with nothing.
+    fn speak_up(&mut self) {
+        let now = clock::now();
+        let due = |thought: &mut Thought| thought.at <= now;
+        if let Some(Thought { at, text }) = self.thought.take_if(due)
+            && self.decided.is_none()
+        {
+            self.say(at, text, self.question);
+        }
+        let last = self.sentences.last().map_or(now, |sentence| sentence.ended);
+        let unheard = !self.reacted && self.decided.is_none();
+        if unheard && now >= last + Span::from_s(PATIENCE_S) && self.requests < 4 {
+            let request = self.person.request_again();
+            self.say(now, request, Question::None);
+        }
+    }
+
+    fn say(&mut self, at: Time, text: String, question: Question) -> Time {
+        self.requests += u32::from(question == Question::None);
+        let samples = self.voice.samples(&text).expect("a synthesised voice");
+        let (began, ended) = self.room.say(at, levelled(&samples));
+        self.tell(began, format!("person: {text}"));
+        self.sentences.push(Sentence { text, question, began, ended, heard: false });
+        ended
+    }
+
+    /// The robot has heard something.
+    fn heard(&mut self, onset: Time, note: &str, accepted: bool, snr_db: f32) {
+        let edge = Span::from_s(EDGE_S);
+        let is_it = |sentence: &&mut Sentence| {
+            onset + edge >= sentence.began && onset < sentence.ended + edge
+        };
+        let said = self.sentences.iter_mut().rev().find(is_it);
+        let what = match (said, accepted) {
+            (Some(said), true) => {
+                said.heard = true;
+                let meaning = |text: &str| meaning(&self.reader.read(text, said.question).reading);
+                let right = meaning(&said.text) == meaning(note);
+                self.misunderstood += u32::from(!right);
+                if right { "heard" } else { "heard WRONGLY" }
+            }
+            (None, true) => "heard OUT OF NOTHING",
+            (_, false) => "heard, not for me",
+        };
+        self.tell(clock::now(), format!("  {what}: {note} ({snr_db:.0} dB)"));
+    }
+
+    fn tell(&mut self, at: Time, what: String) {
+        let began = self.sentences.first().map_or(at, |first| first.began);
+        let seconds = (at.ns() as f64 - began.ns() as f64) / 1e9;
+        self.story.push(format!("{seconds:7.2} s  {what}"));
+    }
+
+    fn told(self) -> Told {
+        let last = self.taps.view.last.as_ref();
+        let delivered = last.filter(|last| last.outcome == Outcome::Delivered);
+        let began = self.sentences.first().map_or(Time(0), |first| first.began);
+        let ended = self.decided.unwrap_or_else(clock::now);
+        Told {
+            number: self.number,
+            speaker: self.speaker,
+            wanted: self.scene.object(self.wanted).name.clone(),
+            brought: delivered.and_then(|last| last.name.clone()),
+            questions: last.map_or(0, |last| last.questions),
+            seconds: ended.since(began).s(),
+            said: self.sentences.len() as u32,
+            rejected: self.sentences.iter().filter(|sentence| !sentence.heard).count() as u32,
+            misunderstood: self.misunderstood,
+            story: self.story,
+        }
+    }
+}
+
+/// What counts of a reading: the words in any order, each once, what is ruled out, and the answer.
+fn meaning(reading: &Reading) -> impl PartialEq + use<> {
+    let mut base = reading.base.clone();
+    base.sort_unstable();
+    base.dedup();
+    let mut excluded = reading.excluded.clone();
+    excluded.sort_unstable();
+    (base, excluded, reading.response)
+}

@@ -1,0 +1,159 @@
+//! A microphone in a room: a pipe that the robot's recording program reads, into which noise and
+//! speech are written in real time.
+
+use std::collections::VecDeque;
+use std::fs::{File, OpenOptions};
+use std::io::Write;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use node::{Span, Time};
+use runtime::clock;
+use rustix::fs::{CWD, FileType, Mode, OFlags, mknodat};
+
+use super::sound::Pink;
+
+/// Samples a second.
+const RATE_HZ: f64 = 16_000.0;
+/// Samples that are written at a time: 20 ms.
+const FRAME: usize = 320;
+
+/// What is still to be heard: where it begins, counted in samples, and the samples.
+type Speech = VecDeque<(u64, Vec<i16>)>;
+
+/// The room. Dropping it ends its sound.
+#[derive(Debug)]
+pub struct Room {
+    speech: Arc<Mutex<Speech>>,
+    silent: Arc<AtomicBool>,
+    began: Time,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Room {
+    /// A room with this noise whose sound comes out of the named pipe `path`, which is made.
+    ///
+    /// # Panics
+    /// If the pipe cannot be made.
+    pub fn open(path: &Path, noise: Pink) -> Self {
+        let mode = Mode::RUSR | Mode::WUSR;
+        mknodat(CWD, path, FileType::Fifo, mode, 0).expect("a named pipe");
+        let (speech, silent) = (Arc::default(), Arc::new(AtomicBool::new(false)));
+        let began = clock::now();
+        let air = Air {
+            path: path.to_owned(),
+            noise,
+            speech: Arc::clone(&speech),
+            silent: Arc::clone(&silent),
+        };
+        let thread = std::thread::spawn(move || air.sound());
+        Self { speech, silent, began, thread: Some(thread) }
+    }
+
+    /// Has speech begin at `at`, or when what was said before has ended. Returns when it begins and
+    /// ends.
+    ///
+    /// # Panics
+    /// If the thread that makes the sound has panicked.
+    pub fn say(&self, at: Time, samples: Vec<i16>) -> (Time, Time) {
+        let mut speech = self.speech.lock().unwrap_or_else(PoisonError::into_inner);
+        let earliest = at.max(clock::now()).since(self.began).s() * RATE_HZ;
+        let free = speech.back().map_or(0, |(start, samples)| start + samples.len() as u64);
+        let start = (earliest as u64).max(free);
+        let end = start + samples.len() as u64;
+        speech.push_back((start, samples));
+        let time = |sample: u64| self.began + Span::from_s(sample as f64 / RATE_HZ);
+        (time(start), time(end))
+    }
+}
+
+impl Drop for Room {
+    fn drop(&mut self) {
+        self.silent.store(true, Ordering::SeqCst);
+        if let Some(thread) = self.thread.take() {
+            let ended = thread.join();
+            debug_assert!(ended.is_ok(), "the room's sound broke down");
+        }
+    }
+}
+
+struct Air {
+    path: PathBuf,
+    noise: Pink,
+    speech: Arc<Mutex<Speech>>,
+    silent: Arc<AtomicBool>,
+}
+
+impl Air {
+    /// Each frame is written when its last sample has sounded. Where nobody reads, or not fast
+    /// enough, it is lost as it would be from a real microphone.
+    fn sound(mut self) {
+        let began = Instant::now();
+        let mut pipe: Option<File> = None;
+        for frame in 0_u64.. {
+            if self.silent.load(Ordering::SeqCst) {
+                return;
+            }
+            let bytes = self.frame(frame * FRAME as u64);
+            let due = began + Duration::from_secs_f64((frame + 1) as f64 * FRAME as f64 / RATE_HZ);
+            std::thread::sleep(due.saturating_duration_since(Instant::now()));
+            if pipe.is_none() {
+                let flags = OFlags::NONBLOCK.bits() as i32;
+                pipe = OpenOptions::new().write(true).custom_flags(flags).open(&self.path).ok();
+            }
+            let written = pipe.as_mut().map(|pipe| pipe.write(&bytes));
+            if let Some(Err(error)) = written
+                && error.kind() == std::io::ErrorKind::BrokenPipe
+            {
+                pipe = None;
+            }
+        }
+    }
+
+    fn frame(&mut self, first: u64) -> Vec<u8> {
+        let mut samples: Vec<f64> = (0..FRAME).map(|_| self.noise.next()).collect();
+        let mut speech = self.speech.lock().unwrap_or_else(PoisonError::into_inner);
+        for (start, said) in speech.iter() {
+            for (n, sample) in samples.iter_mut().enumerate() {
+                let at = (first + n as u64).checked_sub(*start);
+                let spoken = at.and_then(|at| said.get(at as usize));
+                *sample += spoken.map_or(0.0, |s| f64::from(*s));
+            }
+        }
+        speech.retain(|(start, said)| start + said.len() as u64 > first + FRAME as u64);
+        let limit = f64::from(i16::MAX);
+        let bytes = samples.iter().map(|s| s.clamp(-limit, limit) as i16);
+        bytes.flat_map(i16::to_le_bytes).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Read;
+
+    #[test]
+    fn speech_sounds_when_it_was_to_and_one_after_the_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("microphone");
+        let room = Room::open(&path, Pink::new(1.0, 1));
+        let mut pipe = File::open(&path).unwrap();
+        let soon = clock::now() + Span::from_ms(100);
+        let first = room.say(soon, vec![9_000; 1_600]);
+        let second = room.say(soon, vec![-9_000; 1_600]);
+        assert!(first.0.ns().abs_diff(soon.ns()) < 1_000_000, "{first:?}, {soon:?}");
+        assert_eq!(second.0, first.1);
+        let mut bytes = vec![0; 32_000];
+        pipe.read_exact(&mut bytes).unwrap();
+        let samples: Vec<i16> =
+            bytes.chunks(2).map(|pair| i16::from_le_bytes([pair[0], pair[1]])).collect();
+
+        let positive = samples.iter().filter(|s| **s > 8_000).count();
+        let negative = samples.iter().filter(|s| **s < -8_000).count();
+        assert_eq!((positive, negative), (1_600, 1_600));
+    }
+}

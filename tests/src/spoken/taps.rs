@@ -1,0 +1,91 @@
+//! What a person sees and hears of the robot, and what an observer may know beyond that.
+
+use std::collections::BTreeMap;
+
+use protocol::{
+    ActKind, Activity, EarState, PolicyView, Presentation, Presented, Receipt, RobotAct, topics,
+};
+use runtime::bus::{EncodedReader, Reader};
+use runtime::client::Client;
+
+/// A prompt and which presentation of it.
+pub(super) type Said = (u64, u32);
+
+/// Readers of the robot's topics, and the latest of each.
+pub(super) struct Taps {
+    acts: Reader<RobotAct>,
+    presented: Reader<Presented>,
+    receipts: Reader<Receipt>,
+    activity: Reader<Activity>,
+    views: EncodedReader<PolicyView>,
+    /// Questions that were decided: their words.
+    pub(super) questions: BTreeMap<Said, String>,
+    /// Whether a pick was ordered.
+    pub(super) picks: bool,
+    pub(super) view: PolicyView,
+    pub(super) ear: Option<EarState>,
+}
+
+/// What is new.
+#[derive(Default)]
+pub(super) struct News {
+    /// Questions that have begun to sound: which, and when.
+    pub(super) began: Vec<(Said, u64)>,
+    /// Questions that were said to their end: which, and when that was.
+    pub(super) ended: Vec<(Said, u64)>,
+    /// What became of what was heard.
+    pub(super) receipts: Vec<Receipt>,
+}
+
+impl Taps {
+    /// # Panics
+    /// If a topic cannot be opened.
+    pub(super) fn open(client: &Client) -> Self {
+        let bus = client.bus();
+        Self {
+            acts: bus.reader(&topics::ACT).expect("acts"),
+            presented: bus.reader(&topics::PRESENTED).expect("presented"),
+            receipts: bus.reader(&topics::RECEIPT).expect("receipts"),
+            activity: bus.reader(&topics::ACTIVITY).expect("activity"),
+            views: client.views().expect("views"),
+            questions: BTreeMap::new(),
+            picks: false,
+            view: PolicyView::default(),
+            ear: None,
+        }
+    }
+
+    /// Takes in everything that has happened.
+    ///
+    /// # Panics
+    /// If a topic breaks.
+    pub(super) fn look(&mut self) -> News {
+        let mut news = News::default();
+        let (questions, picks) = (&mut self.questions, &mut self.picks);
+        let take = |act: &RobotAct| match act.kind() {
+            Ok(ActKind::Ask) => {
+                let text = act.text.as_str().unwrap_or_default().to_owned();
+                questions.insert((act.prompt, act.presentation), text);
+            }
+            Ok(ActKind::Pick) => *picks = true,
+            _ => {}
+        };
+        self.acts.drain(take).expect("acts");
+        let told = |presented: &Presented| {
+            let said = (presented.prompt, presented.presentation);
+            match Presentation::from_code(presented.state) {
+                Ok(Presentation::Speaking) => news.began.push((said, presented.started_ns)),
+                Ok(Presentation::Ended) => news.ended.push((said, presented.ended_ns)),
+                _ => {}
+            }
+        };
+        self.presented.drain(told).expect("presented");
+        self.receipts.drain(|receipt| news.receipts.push(*receipt)).expect("receipts");
+        let ear = |activity: &Activity| self.ear = EarState::from_code(activity.ear).ok();
+        self.activity.drain(ear).expect("activity");
+        while let Some(view) = self.views.take().expect("views") {
+            self.view = view;
+        }
+        news
+    }
+}
