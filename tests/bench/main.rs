@@ -2,8 +2,8 @@
 //! belief update cost and how good decisions are; how often and how fast poses are reached, beside
 //! other solvers; how fast the group starts and recovers, how long an utterance
 //! takes to become a decision and where the time goes, what it costs when nothing happens, how
-//! steadily joint states come, how much of spoken sentences is understood, and how turns are taken in
-//! simulated time.
+//! steadily joint states come, how much of spoken sentences is understood, how turns are taken in
+//! simulated time, and how dialogues by voice end.
 //!
 //! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
 //! test rests on one.
@@ -17,6 +17,7 @@ mod options;
 mod peers;
 mod report;
 mod speech;
+mod spoken;
 mod start;
 mod turns;
 
@@ -70,5 +71,8 @@ fn measure(options: &Options, report: &mut Report) {
     }
     if options.wants("--turns") {
         turns::measure(report, options);
+    }
+    if options.wants("--spoken") {
+        spoken::measure(report, options);
     }
 }

@@ -1,6 +1,7 @@
 //! What is to be measured.
 
-pub(crate) const HELP: &str = "Usage: bench [--quick] [PART]… [--dialogues N] [--seed S]
+pub(crate) const HELP: &str =
+    "Usage: bench [--quick] [PART]… [--dialogues N] [--seed S] [--groups N]
 
   --quick        fewer repetitions and smaller series: a minute in place of several
 
@@ -10,12 +11,14 @@ Parts; all of them where none is named:
   --joints       only how steadily joint states come
   --speech       only spoken input: what is understood of spoken sentences, how late
   --turns        only turn-taking in simulated time: answers late, early, overlapping, doubled
+  --spoken       only dialogues by voice with the real group, in real time
 
-  --dialogues N  dialogues of --turns (500)
+  --dialogues N  dialogues of --turns (500) and, in each noise, of --spoken (60; 6 among all parts)
   --seed S       seed of these dialogues (1)
+  --groups N     groups that hold spoken dialogues at a time (3)
 ";
 
-const PARTS: [&str; 5] = ["--core", "--kinematics", "--joints", "--speech", "--turns"];
+const PARTS: [&str; 6] = ["--core", "--kinematics", "--joints", "--speech", "--turns", "--spoken"];
 
 /// What the command line says.
 pub(crate) struct Options {
@@ -23,6 +26,7 @@ pub(crate) struct Options {
     pub(crate) quick: bool,
     pub(crate) dialogues: Option<u64>,
     pub(crate) seed: u64,
+    pub(crate) groups: usize,
 }
 
 impl Options {
@@ -30,11 +34,12 @@ impl Options {
     pub(crate) fn read(mut words: Vec<String>) -> Result<Self, String> {
         let dialogues = number(&mut words, "--dialogues")?;
         let seed = number(&mut words, "--seed")?.unwrap_or(1);
+        let groups = number(&mut words, "--groups")?.unwrap_or(3) as usize;
         let quick = words.iter().any(|word| word == "--quick");
         words.retain(|word| word != "--quick");
         match words.iter().find(|word| !PARTS.contains(&word.as_str())) {
             Some(unknown) => Err(format!("{unknown} is no option")),
-            None => Ok(Self { parts: words, quick, dialogues, seed }),
+            None => Ok(Self { parts: words, quick, dialogues, seed, groups }),
         }
     }
 

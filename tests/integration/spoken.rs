@@ -1,8 +1,10 @@
-//! The robot's own voice, without a sound card.
+//! Dialogues with real sound in real time: a synthesised person at the microphone's program, and the
+//! robot's own voice without a sound card.
 
 use crate::speech::can_speak;
 use protocol::{Presentation, Presented, topics};
 use runtime::client::Client;
+use whichone_tests::spoken::{Conditions, tally};
 use whichone_tests::{Group, wait_for};
 
 /// The robot takes as long to ask as its sound does, and keeps that sound for others.
@@ -32,4 +34,16 @@ fn a_question_lasts_as_long_as_its_sound_without_a_sound_card() {
     drop(presented);
     drop(client);
     group.down();
+}
+
+#[test]
+fn whoever_speaks_gets_the_right_bowl() {
+    if !can_speak() {
+        return;
+    }
+    let conditions = Conditions { snr_db: 40.0, barge_in: false, number: 0, seed: 1 };
+    let tally = tally(conditions, 3, 2, |_| {});
+    for told in &tally.dialogues {
+        assert!(told.is_right(), "{told:#?}");
+    }
 }

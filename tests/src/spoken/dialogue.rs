@@ -203,7 +203,7 @@ impl Talk {
         for receipt in &news.receipts {
             let note = receipt.note.as_str().unwrap_or_default().to_owned();
             let accepted = receipt.status == ReceiptStatus::Accepted.code();
-            self.heard(Time(receipt.seq), &note, accepted, 0.0);
+            self.heard(Time(receipt.onset_ns), &note, accepted, receipt.snr_db);
         }
         for (said, at) in news.began {
             if let Some(words) = self.taps.questions.get(&said).cloned() {

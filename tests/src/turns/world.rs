@@ -11,11 +11,13 @@ use policy::PolicyNode;
 use policy::evidence::Asked;
 use policy::state::Cause;
 use protocol::{
-    ActKind, Injection, Presentation, Presented, Receipt, RequestKey, Sound, UtteranceSeq,
+    ActKind, Injection, Presentation, Presented, Receipt, RequestKey, Sound, Source, UtteranceSeq,
 };
 use scene::{ObjectId, Question};
 use settings::Settings;
-use speech::{Hypothesis, Line, Recognised, Segment, SpeechNode, Spoken, VoiceEvent};
+use speech::devices::stream::Cut;
+use speech::live::{Began, LIVE_FROM, Live};
+use speech::{Hypothesis, Line, Recognised, Segment, SpeechNode, Spoken, ToRecognise, VoiceEvent};
 
 use super::person::{Channel, Heard, Person, Timing, Utterance};
 use crate::{Host, configured};
@@ -201,14 +203,17 @@ impl<'a> World<'a> {
             if !began && self.now >= utterance.onset + DETECTION {
                 self.said[n].1 = true;
                 if live {
-                    self.to_speech.push(speech::In::Onset(utterance.onset));
+                    self.to_speech
+                        .push(speech::In::Live(Live::Began(began_to_speak(n, &utterance))));
                 }
             }
             if !ended && self.now >= utterance.end {
                 self.said[n].2 = true;
                 if live {
-                    self.hand_in(n);
-                    self.to_speech.push(speech::In::Offset);
+                    let (onset, end) = (utterance.onset, utterance.end);
+                    let cut = Cut { onset, end, samples: Vec::new(), speech: 0..0 };
+                    let sound = LIVE_FROM + n as u64;
+                    self.to_speech.push(speech::In::Live(Live::Ended { sound, cut }));
                 } else {
                     // The client has it recognised and sends what comes out.
                     let at = self.now + self.recogniser_s();
@@ -243,7 +248,7 @@ impl<'a> World<'a> {
             let said = &self.said[utterance].0;
             let span_s = (0.0, said.end.since(said.onset).s());
             let heard = Ok(vec![Hypothesis::certain(said.text.clone())]);
-            let segments = Ok(vec![Segment { span_s, heard }]);
+            let segments = Ok(vec![Segment { span_s, snr_db: 40.0, heard }]);
             self.to_speech.push(speech::In::Recognised(Recognised { sound, segments }));
         }
     }
@@ -262,15 +267,17 @@ impl<'a> World<'a> {
                 }
                 speech::Out::Speak(line) => self.speak(&line),
                 speech::Out::Hush => self.fall_silent(),
-                speech::Out::Recognise(sound, path) => {
-                    let utterance = path.parse().expect("an utterance's number");
-                    let pause = match self.channel {
-                        Channel::Live => self.recogniser_s(),
-                        Channel::Afterwards => STEP,
+                speech::Out::Recognise(sound, what) => {
+                    let (utterance, pause) = match what {
+                        ToRecognise::File(path) => (path.parse().expect("its number"), STEP),
+                        ToRecognise::Speech(_) => {
+                            ((sound - LIVE_FROM) as usize, self.recogniser_s())
+                        }
                     };
                     self.working.push(Working { at: self.now + pause, sound, utterance });
                 }
-                speech::Out::Motion(_) => {}
+                speech::Out::Motion(_) | speech::Out::Hearing(_) => {}
+                speech::Out::Talk(..) => unreachable!("nobody asks for the microphone"),
             }
         }
     }
@@ -355,6 +362,17 @@ impl<'a> World<'a> {
             credits: self.credits(),
             story: self.story,
         }
+    }
+}
+
+fn began_to_speak(n: usize, utterance: &Utterance) -> Began {
+    Began {
+        sound: LIVE_FROM + n as u64,
+        at: utterance.onset,
+        stream: key(n),
+        segment: 0,
+        source: Source::Microphone,
+        interrupts: true,
     }
 }
 

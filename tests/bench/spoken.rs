@@ -1,0 +1,136 @@
+//! Spoken dialogues with the real group, and what the voice needs.
+
+use crate::options::Options;
+use crate::report::{Report, Table, print};
+use speech::devices::voice::{
+    Player, Synthesiser, Voice, VoiceEvent, VoiceMode, VoiceOptions, VoiceOutput,
+};
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+use whichone_tests::spoken::{Conditions, Tally, Told, tally};
+
+/// Noise under the speech: how far the speech stands above it, decibels, and how that is called.
+const NOISES: [(f64, &str); 2] = [(40.0, "quiet"), (20.0, "20 dB")];
+/// Times that a sentence is broken off.
+const BREAKS: usize = 40;
+
+/// Dialogues in each noise where nothing else is said: alone, and among everything else.
+const DIALOGUES: (u64, u64) = (60, 6);
+
+pub(crate) fn measure(report: &mut Report, options: &Options) {
+    if !can_speak() {
+        return print("without espeak-ng, flite and pocketsphinx there are no spoken dialogues");
+    }
+    let usual = if options.wants_all() { DIALOGUES.1 } else { DIALOGUES.0 };
+    let (dialogues, seed) = (options.dialogues.unwrap_or(usual), options.seed);
+    voice(report);
+    let tallies: Vec<(&str, Tally)> = NOISES
+        .iter()
+        .map(|(snr_db, name)| {
+            let conditions = Conditions { snr_db: *snr_db, barge_in: false, number: 0, seed };
+            (*name, tally(conditions, dialogues, options.groups, tell))
+        })
+        .collect();
+    keep(&tallies);
+    let heads = [
+        "noise",
+        "right picks",
+        "95 % interval",
+        "questions",
+        "seconds to the decision",
+        "utterances",
+        "rejected",
+        "misunderstood",
+    ];
+    report.tables.push(Table {
+        title: "Spoken dialogues".to_owned(),
+        note: format!(
+            "{dialogues} dialogues of seed {seed} over the six bowls in each noise, with the real \
+             processes: a synthesised person speaks into the microphone's program in real time, and \
+             answers after the robot's real questions. Every dialogue is in target/bench/spoken.json."
+        ),
+        heads: heads.map(str::to_owned).to_vec(),
+        rows: tallies.iter().map(|(name, tally)| row(name, tally)).collect(),
+    });
+}
+
+fn can_speak() -> bool {
+    let is_there = |program: &str| Command::new(program).arg("--version").output().is_ok();
+    is_there("espeak-ng")
+        && is_there("flite")
+        && Path::new("/usr/share/pocketsphinx/model/en-us/en-us").exists()
+}
+
+fn tell(told: &Told) {
+    let how = if told.is_right() { "right" } else { "WRONG" };
+    let Told { number, speaker, wanted, questions, seconds, .. } = told;
+    print(&format!(
+        "{number:3} {how} {wanted:7} {speaker:9} {questions} questions {seconds:5.1} s"
+    ));
+    if !told.is_right() {
+        told.story.iter().for_each(|line| print(line));
+    }
+}
+
+fn row(name: &str, tally: &Tally) -> Vec<String> {
+    let (all, (low, high)) = (tally.dialogues.len(), tally.interval());
+    let said = tally.sum(|told| told.said);
+    let share = |of: u32| format!("{of} ({:.1} %)", 100.0 * f64::from(of) / f64::from(said.max(1)));
+    vec![
+        name.to_owned(),
+        format!("{} of {all}", tally.right()),
+        format!("{:.1} to {:.1} %", 100.0 * low, 100.0 * high),
+        format!("{:.2}", tally.mean(|told| f64::from(told.questions))),
+        format!("{:.1}", tally.mean(|told| told.seconds)),
+        said.to_string(),
+        share(tally.sum(|told| told.rejected)),
+        share(tally.sum(|told| told.misunderstood)),
+    ]
+}
+
+fn keep(tallies: &[(&str, Tally)]) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/bench");
+    let json = serde_json::to_vec_pretty(tallies).map_err(std::io::Error::other);
+    let kept = std::fs::create_dir_all(&folder)
+        .and_then(|()| std::fs::write(folder.join("spoken.json"), json?));
+    if let Err(error) = kept {
+        print(&format!("target/bench/spoken.json: {error}"));
+    }
+}
+
+/// How long a sentence needs to be made, and to be broken off.
+fn voice(report: &mut Report) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let options = VoiceOptions::new(folder.path());
+    let mut synthesiser = Synthesiser::new(&options);
+    let time = |synthesiser: &mut Synthesiser, text: &str| {
+        let began = Instant::now();
+        synthesiser.samples(text).expect("espeak-ng");
+        began.elapsed().as_secs_f64() * 1e3
+    };
+    let new: Vec<f64> =
+        (0..BREAKS).map(|n| time(&mut synthesiser, &format!("Is it number {n}?"))).collect();
+    let known: Vec<f64> =
+        (0..BREAKS).map(|n| time(&mut synthesiser, &format!("Is it number {n}?"))).collect();
+    report.add("a new sentence made sound", "ms", &new, "not counted as speech");
+    report.add("a sentence said before", "ms", &known, "");
+    // A player that would go on for ever, as a stuck sound card does.
+    let script = "case \"$1\" in *silence.wav) ;; *) exec sleep 60 ;; esac";
+    let words = ["-c", script, "player"].map(str::to_owned).to_vec();
+    let players = vec![Player { program: "sh".to_owned(), arguments: words }];
+    let options = VoiceOptions { mode: VoiceMode::Aloud, players, ..options };
+    let (voice, events) = Voice::start(options);
+    assert!(matches!(events.recv(), Ok(VoiceEvent::Output(VoiceOutput::Aloud(_)))));
+    let broken: Vec<f64> = (0..BREAKS as u64)
+        .map(|id| {
+            voice.speak(id, "bench", "Is it in the dishwasher?").expect("a voice");
+            assert_eq!(events.recv(), Ok(VoiceEvent::Started { id }));
+            let began = Instant::now();
+            voice.interrupt();
+            assert_eq!(events.recv(), Ok(VoiceEvent::Interrupted { id }));
+            began.elapsed().as_secs_f64() * 1e3
+        })
+        .collect();
+    report.add("hush to the player's end", "ms", &broken, "bar: 50 ms");
+}
