@@ -24,7 +24,7 @@ use mouth::Mouth;
 use node::{Effects, Event, Node, NodeError, Span, Time};
 use protocol::{
     Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MotionCommand, Presented,
-    Receipt, RobotAct, Utterance,
+    PromptId, Receipt, RobotAct, Utterance,
 };
 use record::Record;
 
@@ -96,6 +96,10 @@ pub enum ToRecognise {
 pub struct Line {
     /// Comes back with the voice's events.
     pub number: u64,
+    /// The prompt that it says.
+    pub prompt: PromptId,
+    /// Which presentation of the prompt.
+    pub presentation: u32,
     /// The words.
     pub text: String,
 }

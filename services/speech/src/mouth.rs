@@ -140,7 +140,8 @@ impl Mouth {
         self.break_off(now, fx);
         self.last_line += 1;
         let line = self.last_line;
-        fx.publish(Out::Speak(Line { number: line, text: words.text.clone() }));
+        let Words { prompt, presentation, text, .. } = words.clone();
+        fx.publish(Out::Speak(Line { number: line, prompt, presentation, text }));
         self.saying = Some(Saying { line, words, started: None });
     }
 

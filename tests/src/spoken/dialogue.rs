@@ -136,6 +136,7 @@ struct Talk {
     voice: Synthesiser,
     room: Room,
     taps: Taps,
+    begun: HashSet<Said>,
     answered: HashSet<Said>,
     thought: Option<Thought>,
     sentences: Vec<Sentence>,
@@ -170,6 +171,7 @@ impl Talk {
             voice: speaker.synthesiser(&folder.join("person")),
             room,
             taps: Taps::open(client),
+            begun: HashSet::new(),
             answered: HashSet::new(),
             thought: None,
             sentences: Vec::new(),
@@ -206,7 +208,8 @@ impl Talk {
             self.heard(Time(receipt.onset_ns), &note, accepted, receipt.snr_db);
         }
         for (said, at) in news.began {
-            if let Some(words) = self.taps.questions.get(&said).cloned() {
+            let words = self.taps.questions.get(&said).cloned();
+            if let (Some(words), true) = (words, self.begun.insert(said)) {
                 self.tell(Time(at), format!("robot: {words}"));
             }
         }

@@ -44,7 +44,9 @@ impl VoiceDevice {
 
     pub(super) fn speak(&self, line: &Line) {
         self.0.interrupt();
-        if let Err(error) = self.0.speak(line.number, &line.number.to_string(), &line.text) {
+        if let Err(error) =
+            self.0.speak(line.number, &format!("{}-{}", line.prompt, line.presentation), &line.text)
+        {
             tracing::warn!(%error, "not said");
         }
     }
