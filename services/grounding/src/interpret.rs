@@ -2,7 +2,7 @@
 
 use crate::Config;
 use protocol::{AskedQuestion, Hypothesis, Interpretation, READINGS_MAX, WireError};
-use scene::{Question, Reading};
+use scene::{Doubt, Question, Reading};
 
 /// The interpretations for each of the questions asked and for none, most likely first. Each
 /// question's weights sum to 1.
@@ -41,10 +41,17 @@ fn readings(
 ) -> Vec<(f64, Reading)> {
     let mut together: Vec<(f64, Reading)> = Vec::new();
     for hypothesis in heard {
-        let reading = config.reader.read(hypothesis.text, question).reading;
-        match together.iter_mut().find(|(_, known)| *known == reading) {
-            Some((weight, _)) => *weight += hypothesis.weight,
-            None => together.push((hypothesis.weight, reading)),
+        let Hypothesis { text, weight: heard, confidence } = hypothesis;
+        for (share, reading) in config.reader.readings(text, confidence, question) {
+            let share = share * heard;
+            match together.iter_mut().find(|(_, known)| says_the_same(known, &reading)) {
+                Some((weight, known)) => {
+                    let part = share / (*weight + share);
+                    known.doubt = blend(&known.doubt, &reading.doubt, part);
+                    *weight += share;
+                }
+                None => together.push((share, reading)),
+            }
         }
     }
     together.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -54,7 +61,74 @@ fn readings(
     together
 }
 
+/// Equal but for how doubtful they are.
+fn says_the_same(a: &Reading, b: &Reading) -> bool {
+    (&a.base, a.response, &a.excluded, a.intent) == (&b.base, b.response, &b.excluded, b.intent)
+}
+
+/// The mean of two doubts; `part` is the share of the second.
+fn blend(a: &Doubt, b: &Doubt, part: f64) -> Doubt {
+    let mean = |a: f64, b: f64| a + part * (b - a);
+    let entries = |a: &[f64], b: &[f64]| -> Vec<f64> {
+        let entry = |list: &[f64], at: usize| list.get(at).copied().unwrap_or(0.0);
+        (0..a.len().max(b.len())).map(|at| mean(entry(a, at), entry(b, at))).collect()
+    };
+    Doubt {
+        base: entries(&a.base, &b.base),
+        excluded: entries(&a.excluded, &b.excluded),
+        response: mean(a.response, b.response),
+    }
+}
+
 /// A word of the best hypothesis that the scene does not have, for the robot's reply.
 pub(crate) fn unknown(config: &Config, best: &Hypothesis<'_>) -> Option<String> {
     config.reader.read(best.text, Question::None).unknown.into_iter().next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use language::{Language, Reader};
+    use scene::{Response, Scene};
+
+    const BOWLS: &str =
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml"));
+
+    fn heard<'a>(text: &'a str, weight: f64, confidence: &[f32]) -> Hypothesis<'a> {
+        Hypothesis { text, weight, confidence: confidence.to_vec() }
+    }
+
+    #[test]
+    fn hypotheses_of_one_meaning_are_one_reading() {
+        let scene = Scene::from_toml("bowls", BOWLS).unwrap();
+        let reader = Reader::new(&scene, Language::Careful);
+        let config = Config { scene, reader };
+        let hypotheses = [
+            heard("the white bowl", 0.6, &[1.0, 0.5, 1.0]),
+            heard("a white ball", 0.3, &[1.0, 0.2, 1.0]),
+            heard("white or clear", 0.1, &[]),
+        ];
+        let meant = readings(&config, &hypotheses, Question::None, 8);
+        assert_eq!(meant.len(), 3);
+        let (weight, best) = &meant[0];
+        assert!((weight - (0.9 + 0.1 / 3.0)).abs() < 1e-12);
+        let doubt = (0.6 * 0.5 + 0.3 * 0.8) / (0.9 + 0.1 / 3.0);
+        assert!((best.doubt.of_word(0) - doubt).abs() < 1e-6, "{best:?}");
+        assert!((meant.iter().map(|(weight, _)| weight).sum::<f64>() - 1.0).abs() < 1e-12);
+        assert_eq!(readings(&config, &hypotheses, Question::None, 2).len(), 2);
+    }
+
+    #[test]
+    fn a_hedged_answer_is_doubted() {
+        let scene = Scene::from_toml("bowls", BOWLS).unwrap();
+        let asked = Question::Point(scene::ObjectId(0));
+        let reader = Reader::new(&scene, Language::Careful);
+        let config = Config { scene, reader };
+        let doubt = |text| {
+            let (_, reading) = readings(&config, &[heard(text, 1.0, &[])], asked, 8).remove(0);
+            assert_eq!(reading.response, Response::Yes);
+            reading.doubt.response
+        };
+        assert!(doubt("yes") == 0.0 && doubt("I think so") > 0.0);
+    }
 }

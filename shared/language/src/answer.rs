@@ -5,8 +5,9 @@ use scene::Response;
 use crate::asked::Asked;
 use crate::clauses::Clause;
 use crate::cue::{Cue, cues};
-use crate::lexicon::{Sense, ValueSense};
+use crate::lexicon::Sense;
 use crate::marks::Mark;
+use crate::meaning::{Meaning, Said};
 use crate::tokens::Gap;
 
 /// An answer to the question asked, or the lack of one.
@@ -21,17 +22,27 @@ pub(crate) enum Answer {
 /// Answers in order, each with its mark; a denial of what was asked about has none.
 #[derive(Debug, Default)]
 pub(crate) struct Answers {
-    given: Vec<(Answer, Option<usize>)>,
+    given: Vec<Given>,
+}
+
+/// One answer.
+#[derive(Clone, Copy, Debug)]
+struct Given {
+    answer: Answer,
+    /// Its mark.
+    at: Option<usize>,
+    /// Probability that it was not given.
+    doubt: f64,
 }
 
 impl Answers {
-    pub(crate) fn push(&mut self, answer: Answer, at: usize) {
-        self.given.push((answer, Some(at)));
+    pub(crate) fn push(&mut self, answer: Answer, marks: &[Mark<'_>], at: usize) {
+        self.given.push(Given { answer, at: Some(at), doubt: marks[at].answer_doubt() });
     }
 
     /// "not the white one", when white was asked about.
-    pub(crate) fn push_denial(&mut self) {
-        self.given.push((Answer::No, None));
+    pub(crate) fn push_denial(&mut self, doubt: f64) {
+        self.given.push(Given { answer: Answer::No, at: None, doubt });
     }
 
     pub(crate) fn clear(&mut self) {
@@ -40,24 +51,26 @@ impl Answers {
 
     /// Whether the last answer is a no.
     pub(crate) fn denies(&self) -> bool {
-        self.given.last().is_some_and(|(answer, _)| *answer == Answer::No)
+        self.given.last().is_some_and(|given| given.answer == Answer::No)
     }
 
     pub(crate) fn is_empty(&self) -> bool {
         self.given.is_empty()
     }
 
-    /// The answer that stands: the last one, unless it is tied to its opposite ("yes and no").
-    fn standing(&self, marks: &[Mark<'_>]) -> Option<Answer> {
-        let (last, at) = *self.given.last()?;
-        if let [.., (before, Some(from)), _] = self.given[..]
-            && let Some(to) = at
-            && before != last
+    /// The answer that stands: the last one, unless it is tied to its opposite ("yes and no"); and
+    /// its doubt. An answer that was given twice is doubted as the surer one is.
+    fn standing(&self, marks: &[Mark<'_>]) -> Option<(Answer, f64)> {
+        let last = *self.given.last()?;
+        if let [.., before, _] = self.given[..]
+            && let (Some(from), Some(to)) = (before.at, last.at)
+            && before.answer != last.answer
             && (is_tied(marks.get(from + 1..to).unwrap_or_default()) || is_doubled(marks, from, to))
         {
-            return Some(Answer::Unsure);
+            return Some((Answer::Unsure, 0.0));
         }
-        Some(last)
+        let again = self.given.iter().rev().take_while(|given| given.answer == last.answer);
+        Some((last.answer, again.map(|given| given.doubt).fold(1.0, f64::min)))
     }
 }
 
@@ -183,47 +196,45 @@ fn is_the_one(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
     plain && the_one
 }
 
-/// The response to the question: the answer that stands, or what the values said imply.
+/// The response to the question: the answer that stands, or what the values said imply; and the
+/// probability that it was not given.
 pub(crate) fn response(
-    answers: &Answers,
+    meaning: &Meaning<'_>,
     marks: &[Mark<'_>],
-    base: &[&ValueSense],
     asked: Asked<'_>,
-    certain: bool,
-) -> Response {
+) -> (Response, f64) {
     if matches!(asked, Asked::Nothing) {
-        return Response::None;
+        return (Response::None, 0.0);
     }
-    match answers.standing(marks) {
-        Some(Answer::Yes) => Response::Yes,
-        Some(Answer::No) => Response::No,
-        Some(Answer::Unsure) => Response::None,
-        None if certain => implied(base, asked),
-        None => Response::None,
+    let certain = !meaning.hedged && !meaning.alternatives;
+    match meaning.answers.standing(marks) {
+        Some((Answer::Yes, doubt)) => (Response::Yes, doubt),
+        Some((Answer::No, doubt)) => (Response::No, doubt),
+        None if certain => implied(&meaning.base, asked),
+        Some((Answer::Unsure, _)) | None => (Response::None, 0.0),
     }
 }
 
-/// "Is it white?" "The clear one." is a no, "The white one." a yes.
-fn implied(base: &[&ValueSense], asked: Asked<'_>) -> Response {
-    match asked {
+/// "Is it white?" "The clear one." is a no, "The white one." a yes. It is as doubtful as the
+/// surest of the values that imply it.
+fn implied(base: &[Said<'_>], asked: Asked<'_>) -> (Response, f64) {
+    let (response, implies): (Response, Vec<&Said<'_>>) = match asked {
         Asked::Value(attribute, word) => {
-            let mut said = base.iter().filter(|value| value.attributes.contains(&attribute));
-            match said.next() {
-                None => Response::None,
-                Some(first) if first.word == word => {
-                    if said.all(|value| value.word == word) {
-                        Response::Yes
-                    } else {
-                        Response::None
-                    }
-                }
-                Some(_) if said.all(|value| value.word != word) => Response::No,
-                Some(_) => Response::None,
+            let said = base.iter().filter(|value| value.attributes.contains(&attribute));
+            let said: Vec<&Said<'_>> = said.collect();
+            let agreeing = said.iter().filter(|value| value.word == word).count();
+            match (agreeing, said.len()) {
+                (0, 1..) => (Response::No, said),
+                (agreeing, all) if all > 0 && agreeing == all => (Response::Yes, said),
+                _ => (Response::None, Vec::new()),
             }
         }
-        Asked::Object(words) if base.iter().any(|value| !words.contains(&value.word)) => {
-            Response::No
+        Asked::Object(words) => {
+            let other = base.iter().filter(|value| !words.contains(&value.word));
+            let other: Vec<&Said<'_>> = other.collect();
+            (if other.is_empty() { Response::None } else { Response::No }, other)
         }
-        Asked::Object(_) | Asked::Nothing | Asked::Attribute => Response::None,
-    }
+        Asked::Nothing | Asked::Attribute => (Response::None, Vec::new()),
+    };
+    (response, implies.iter().map(|value| value.doubt).reduce(f64::min).unwrap_or(0.0))
 }

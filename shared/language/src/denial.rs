@@ -1,8 +1,9 @@
 //! What a "not" rules out: the noun phrases in its scope, as groups of values.
 
-use scene::{Role, WordId};
+use scene::Role;
 
 use crate::lexicon::ValueSense;
+use crate::meaning::Denied;
 
 /// A negation whose scope is still open.
 #[derive(Debug)]
@@ -14,6 +15,8 @@ pub(crate) struct Denial<'a> {
     coordinated: bool,
     /// Words that were not expected between the negation and a noun phrase.
     strayed: usize,
+    /// Probability that the negation was not said.
+    doubt: f64,
 }
 
 /// One noun phrase: an object with all of the values is ruled out.
@@ -23,17 +26,26 @@ struct Group<'a> {
     headed: bool,
     /// Names something that the scene lacks: "not the purple pen" rules out no pen.
     elsewhere: bool,
+    /// Probability that one of the values was not said.
+    doubt: f64,
 }
 
-impl Group<'_> {
+impl<'a> Group<'a> {
     fn is_open(&self) -> bool {
         self.values.is_empty() && !self.headed && !self.elsewhere
+    }
+
+    fn add(&mut self, value: &'a ValueSense, doubt: f64) {
+        self.values.push(value);
+        self.doubt = 1.0 - (1.0 - self.doubt) * (1.0 - doubt);
     }
 }
 
 impl<'a> Denial<'a> {
-    pub(crate) fn new() -> Self {
-        Self { groups: vec![Group::default()], joined: false, coordinated: false, strayed: 0 }
+    /// A negation that was said but for this doubt.
+    pub(crate) fn new(doubt: f64) -> Self {
+        let groups = vec![Group::default()];
+        Self { groups, joined: false, coordinated: false, strayed: 0, doubt }
     }
 
     /// Whether nothing has been ruled out yet.
@@ -54,8 +66,9 @@ impl<'a> Denial<'a> {
         self.groups.last_mut().expect("a denial has a group")
     }
 
-    /// Takes a value in; `false` if it lies beyond the scope. `adjacent`: it follows another value.
-    pub(crate) fn value(&mut self, value: &'a ValueSense, adjacent: bool) -> bool {
+    /// Takes a value in; `false` if it lies beyond the scope. `adjacent`: it follows another value;
+    /// `doubt`: the probability that it was not said.
+    pub(crate) fn value(&mut self, value: &'a ValueSense, adjacent: bool, doubt: f64) -> bool {
         if self.is_closed() && !adjacent {
             return false;
         }
@@ -68,16 +81,17 @@ impl<'a> Denial<'a> {
             }
             let mut values = self.last().values.clone();
             values.remove(at);
-            self.groups.push(Group { values, ..Group::default() });
+            let doubt = self.last().doubt;
+            self.groups.push(Group { values, doubt, ..Group::default() });
         }
         if value.role == Role::Kind {
             // "not the red or blue marker": the noun is every member's.
             for group in self.groups.iter_mut().filter(|group| !group.headed) {
-                group.values.push(value);
+                group.add(value, doubt);
                 group.headed = true;
             }
         } else {
-            self.last_mut().values.push(value);
+            self.last_mut().add(value, doubt);
         }
         self.joined = false;
         true
@@ -136,11 +150,15 @@ impl<'a> Denial<'a> {
     }
 
     /// The groups that were ruled out.
-    pub(crate) fn into_groups(self) -> impl Iterator<Item = Vec<WordId>> + use<'a> {
-        let words = |group: Group<'a>| group.values.iter().map(|value| value.word).collect();
+    pub(crate) fn into_groups(self) -> impl Iterator<Item = Denied> + use<'a> {
+        let doubt = self.doubt;
+        let denied = move |group: Group<'a>| Denied {
+            words: group.values.iter().map(|value| value.word).collect(),
+            doubt: 1.0 - (1.0 - group.doubt) * (1.0 - doubt),
+        };
         self.groups
             .into_iter()
             .filter(|group| !group.values.is_empty() && !group.elsewhere)
-            .map(words)
+            .map(denied)
     }
 }

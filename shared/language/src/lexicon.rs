@@ -8,6 +8,7 @@ use scene::{AttributeId, Role, Scene, WordId};
 
 use crate::cue::Cue;
 use crate::forms::inflected;
+use crate::hedges::sureness;
 use crate::normalise::normalise;
 use crate::sound::skeleton;
 use crate::spelling::SpellingIndex;
@@ -39,6 +40,18 @@ struct Phrase {
     /// Counts only where its clause ends: "it is", but not "it is white".
     closing: bool,
     sense: Sense,
+    /// How sure somebody is who says it.
+    sure: f64,
+}
+
+/// A phrase found in an utterance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Found {
+    /// How many words it takes.
+    pub(crate) words: usize,
+    pub(crate) sense: Sense,
+    /// How sure somebody is who says it.
+    pub(crate) sure: f64,
 }
 
 /// The lexicon of one scene.
@@ -76,13 +89,14 @@ impl Lexicon {
         &self.values[sense as usize]
     }
 
-    /// The longest phrase that starts at `at`, in words, and its sense.
-    pub(crate) fn longest(&self, tokens: &[Token<'_>], at: usize) -> Option<(usize, Sense)> {
+    /// The longest phrase that starts at `at`.
+    pub(crate) fn longest(&self, tokens: &[Token<'_>], at: usize) -> Option<Found> {
         let after = &tokens[at + 1..];
         let phrases = self.phrases.get(tokens[at].word)?;
         phrases.iter().find_map(|phrase| {
             let words = matched(&phrase.rest, after)?;
-            self.closes(phrase, tokens, at + 1 + words).then_some((words + 1, phrase.sense))
+            let found = Found { words: words + 1, sense: phrase.sense, sure: phrase.sure };
+            self.closes(phrase, tokens, at + 1 + words).then_some(found)
         })
     }
 
@@ -256,24 +270,25 @@ impl Lexicon {
             // "on the left" is a position in a row unless the scene itself knows a left.
             let is_value = |word: &String| matches!(self.word(word), Some(Sense::Value(_)));
             if cue != Cue::Ordinal || !words.iter().any(is_value) {
-                self.add_phrase(&words, Sense::Cue(cue), closing);
+                let sure = sureness(cue, phrase);
+                self.add_phrase(&words, Sense::Cue(cue), closing, sure);
             }
         }
     }
 
     fn add(&mut self, words: &[String], sense: Sense) {
-        self.add_phrase(words, sense, false);
+        self.add_phrase(words, sense, false, 1.0);
     }
 
     /// Adds a phrase unless it is taken.
-    fn add_phrase(&mut self, words: &[String], sense: Sense, closing: bool) {
+    fn add_phrase(&mut self, words: &[String], sense: Sense, closing: bool, sure: f64) {
         let Some((first, rest)) = words.split_first() else { return };
         let rest: Box<[Box<str>]> = rest.iter().map(|word| word.as_str().into()).collect();
         let phrases = self.phrases.entry(first.clone()).or_default();
         if phrases.iter().all(|phrase| phrase.rest != rest) {
             // A word alone stays last, where `word` looks for it, also before the final sort.
             let at = if rest.is_empty() { phrases.len() } else { 0 };
-            phrases.insert(at, Phrase { rest, closing, sense });
+            phrases.insert(at, Phrase { rest, closing, sense, sure });
         }
     }
 }

@@ -15,6 +15,9 @@
 //! | clauses | `clauses.rs` (`topic.rs`, `aside.rs`) | which parts are about the objects |
 //! | meaning | `meaning.rs` (`denial.rs`, `negation.rs`, `repair.rs`) | values asserted, groups ruled out, answers |
 //! | answer, intent | `answer.rs`, `intent.rs` | the response that counts, what the person wants |
+//! | readings | `heard.rs` (`hedges.rs`) | the ways to understand it, with weights and doubts |
+//!
+//! [`confusion`] says which of a scene's words are heard for one another.
 //!
 //! Words that belong to a scene come from the scene; words of English that hold a dialogue
 //! together are data in `vocabulary/`.
@@ -23,9 +26,12 @@ mod answer;
 mod aside;
 mod asked;
 mod clauses;
+mod confusion;
 mod cue;
 mod denial;
 mod forms;
+mod heard;
+mod hedges;
 mod intent;
 mod lexicon;
 mod marks;
@@ -45,5 +51,7 @@ mod vocabulary;
 #[cfg(test)]
 mod tests;
 
+pub use confusion::confusion;
+pub use heard::READINGS_MAX;
 pub use normalise::TEXT_CHARS_MAX;
 pub use reader::{Language, Reader, Understood};

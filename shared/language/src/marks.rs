@@ -14,9 +14,58 @@ pub(crate) struct Mark<'a> {
     pub(crate) gap: Gap,
     /// Its first word.
     pub(crate) word: &'a str,
+    /// Probability that something else was said: the recogniser's doubt, and that of taking the
+    /// word for another.
+    pub(crate) doubt: f64,
+    /// How sure the person is of it.
+    pub(crate) sure: f64,
 }
 
-impl Mark<'_> {
+/// A word or phrase taken for what it is not written as.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Guess {
+    words: usize,
+    sense: Sense,
+    doubt: f64,
+}
+
+/// Doubts of taking a word for another, judged.
+pub(crate) mod doubts {
+    /// One slip of the finger, and no other value as near.
+    pub(crate) const SLIP: f64 = 0.05;
+    /// An everyday word one slip away, where a value belongs.
+    pub(crate) const EVERYDAY: f64 = 0.3;
+    /// The same consonants, where a value belongs.
+    pub(crate) const SOUND: f64 = 0.3;
+    /// Several words with the consonants of one value.
+    pub(crate) const APART: f64 = 0.2;
+}
+
+impl<'a> Mark<'a> {
+    /// The mark of `words` tokens, the first of which is `tokens[0]`.
+    fn of(tokens: &[Token<'a>], words: usize, sense: Sense) -> Self {
+        let run = &tokens[..words.min(tokens.len())];
+        let least = run.iter().map(|token| token.confidence).fold(1.0, f32::min);
+        let Token { word, gap, .. } = tokens[0];
+        Self { sense, gap, word, doubt: 1.0 - f64::from(least), sure: 1.0 }
+    }
+
+    /// Taken for what it is, with this doubt.
+    fn doubted(self, doubt: f64) -> Self {
+        Self { doubt: 1.0 - (1.0 - self.doubt) * (1.0 - doubt), ..self }
+    }
+
+    /// Probability that a scene word that it stands for was not meant.
+    pub(crate) fn word_doubt(&self) -> f64 {
+        1.0 - (1.0 - self.doubt) * self.sure
+    }
+
+    /// Probability that an answer or a denial was not given: half of those that were not are right
+    /// by chance.
+    pub(crate) fn answer_doubt(&self) -> f64 {
+        1.0 - (1.0 - self.doubt) * (2.0 * self.sure - 1.0)
+    }
+
     pub(crate) fn cue(&self) -> Option<Cue> {
         match self.sense {
             Sense::Cue(cue) => Some(cue),
@@ -50,28 +99,34 @@ pub(crate) fn marks<'a>(lexicon: &Lexicon, tokens: &[Token<'a>]) -> Vec<Mark<'a>
     let mut marks: Vec<Mark<'a>> = Vec::with_capacity(tokens.len());
     let mut at = 0;
     while at < tokens.len() {
-        let Token { word, gap } = tokens[at];
+        let here = &tokens[at..];
         let phrase = lexicon.longest(tokens, at);
-        let found = match phrase {
-            Some((words, _)) if words > 1 => phrase,
-            _ => written_apart(lexicon, &tokens[at..]).or(phrase),
+        let apart = match phrase {
+            Some(found) if found.words > 1 => None,
+            _ => written_apart(lexicon, here),
         };
-        if let Some((words, sense)) = found {
-            marks.push(Mark { sense, gap, word });
+        if let Some(Guess { words, sense, doubt }) = apart {
+            marks.push(Mark::of(here, words, sense).doubted(doubt));
             at += words;
             continue;
         }
-        let (first, second) = guessed(lexicon, word);
-        if first == Sense::Unknown
-            && let Some((words, sense)) =
-                heard_apart(lexicon, &tokens[at..], marks.last().is_some_and(describes))
+        if let Some(found) = phrase {
+            marks.push(Mark { sure: found.sure, ..Mark::of(here, found.words, found.sense) });
+            at += found.words;
+            continue;
+        }
+        let (first, second) = guessed(lexicon, here[0].word);
+        if first.sense == Sense::Unknown
+            && let Some(Guess { words, sense, doubt }) =
+                heard_apart(lexicon, here, marks.last().is_some_and(describes))
         {
-            marks.push(Mark { sense, gap, word });
+            marks.push(Mark::of(here, words, sense).doubted(doubt));
             at += words;
             continue;
         }
-        marks.push(Mark { sense: first, gap, word });
-        marks.extend(second.map(|sense| Mark { sense, gap: Gap::Glued, word }));
+        let mark = Mark::of(here, 1, first.sense).doubted(first.doubt);
+        marks.push(mark);
+        marks.extend(second.map(|sense| Mark { sense, gap: Gap::Glued, ..mark }));
         at += 1;
     }
     settle(lexicon, &mut marks);
@@ -79,7 +134,7 @@ pub(crate) fn marks<'a>(lexicon: &Lexicon, tokens: &[Token<'a>]) -> Vec<Mark<'a>
 }
 
 /// "dish washer", "screw driver": neighbours that together are one value.
-fn written_apart(lexicon: &Lexicon, tokens: &[Token<'_>]) -> Option<(usize, Sense)> {
+fn written_apart(lexicon: &Lexicon, tokens: &[Token<'_>]) -> Option<Guess> {
     (2..=3).filter(|&words| words <= tokens.len()).find_map(|words| {
         let run = &tokens[..words];
         let letters: usize = run.iter().map(|token| token.word.len()).sum();
@@ -89,16 +144,18 @@ fn written_apart(lexicon: &Lexicon, tokens: &[Token<'_>]) -> Option<(usize, Sens
             return None;
         }
         let joined: String = run.iter().map(|token| token.word).collect();
+        if let Some(sense @ Sense::Value(_)) = lexicon.word(&joined) {
+            return Some(Guess { words, sense, doubt: 0.0 });
+        }
         let whole = matches!(lexicon.word(run[0].word), Some(Sense::Value(_)));
-        let compound = || lexicon.misspelt_compound(&joined).filter(|_| !whole).map(Sense::Value);
-        let sense = lexicon.word(&joined).or_else(compound)?;
-        matches!(sense, Sense::Value(_)).then_some((words, sense))
+        let value = lexicon.misspelt_compound(&joined).filter(|_| !whole)?;
+        Some(Guess { words, sense: Sense::Value(value), doubt: doubts::SLIP })
     })
 }
 
 /// "mark her", "cab in it": neighbours that together sound like one long value; a shorter one
 /// where a noun phrase goes on (`described`).
-fn heard_apart(lexicon: &Lexicon, tokens: &[Token<'_>], described: bool) -> Option<(usize, Sense)> {
+fn heard_apart(lexicon: &Lexicon, tokens: &[Token<'_>], described: bool) -> Option<Guess> {
     (2..=3).filter(|&words| words <= tokens.len()).find_map(|words| {
         let run = &tokens[..words];
         if run[1..].iter().any(|token| token.gap > Gap::None) {
@@ -109,7 +166,7 @@ fn heard_apart(lexicon: &Lexicon, tokens: &[Token<'_>], described: bool) -> Opti
             let run = run.iter().map(|token| token.word);
             lexicon.sounds_like_run(run).filter(|_| described)
         })?;
-        Some((words, Sense::Value(value)))
+        Some(Guess { words, sense: Sense::Value(value), doubt: doubts::APART })
     })
 }
 
@@ -118,28 +175,29 @@ fn describes(mark: &Mark<'_>) -> bool {
 }
 
 /// A word that the lexicon does not have as it stands: lengthened, misspelt, or two run together.
-fn guessed(lexicon: &Lexicon, word: &str) -> (Sense, Option<Sense>) {
+fn guessed(lexicon: &Lexicon, word: &str) -> (Guess, Option<Sense>) {
+    let one = |sense, doubt| (Guess { words: 1, sense, doubt }, None);
     let short = if lexicon.is_common(word) { None } else { shortened(word) };
     for candidate in short.iter().flatten() {
         if let Some(sense) = lexicon.word(candidate) {
-            return (sense, None);
+            return one(sense, 0.0);
         }
     }
     if let Some(value) = lexicon.misspelt(word) {
-        return (Sense::Value(value), None);
+        return one(Sense::Value(value), doubts::SLIP);
     }
     if let Some(stem) = word.strip_suffix('s')
         && let Some(sense @ Sense::Cue(Cue::Unlisted | Cue::Story)) = lexicon.word(stem)
     {
-        return (sense, None);
+        return one(sense, 0.0);
     }
     // "honestly", "immediately": an adverb changes no meaning here.
     if word.len() > 4 && word.ends_with("ly") {
-        return (Sense::Cue(Cue::Plain), None);
+        return one(Sense::Cue(Cue::Plain), 0.0);
     }
     match run_on(lexicon, word) {
-        Some((first, second)) => (first, Some(second)),
-        None => (Sense::Unknown, None),
+        Some((sense, second)) => (Guess { words: 1, sense, doubt: 0.0 }, Some(second)),
+        None => one(Sense::Unknown, 0.0),
     }
 }
 

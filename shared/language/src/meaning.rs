@@ -1,6 +1,8 @@
 //! What the marks add up to: values asserted, groups ruled out, answers given. One pass from left
 //! to right, as a listener goes.
 
+use std::ops::Deref;
+
 use scene::{Role, WordId};
 
 use crate::answer::{self, Answer, Answers};
@@ -15,13 +17,39 @@ use crate::negation::{self, NoUse};
 use crate::repair;
 use crate::tokens::Gap;
 
+/// A value that the wanted object is said to have.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Said<'a> {
+    value: &'a ValueSense,
+    /// Probability that something else was meant.
+    pub(crate) doubt: f64,
+    /// How many times "or" was said before it.
+    pub(crate) choice: usize,
+}
+
+impl Deref for Said<'_> {
+    type Target = ValueSense;
+
+    fn deref(&self) -> &ValueSense {
+        self.value
+    }
+}
+
+/// A group of values that is ruled out.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Denied {
+    pub(crate) words: Vec<WordId>,
+    /// Probability that this was not said.
+    pub(crate) doubt: f64,
+}
+
 /// What an utterance says.
 #[derive(Debug, Default)]
 pub(crate) struct Meaning<'a> {
     /// Values that the wanted object is said to have.
-    pub(crate) base: Vec<&'a ValueSense>,
+    pub(crate) base: Vec<Said<'a>>,
     /// Groups that are ruled out.
-    pub(crate) excluded: Vec<Vec<WordId>>,
+    pub(crate) excluded: Vec<Denied>,
     /// Answers in the order given.
     pub(crate) answers: Answers,
     /// "maybe": what is said does not amount to an answer.
@@ -31,9 +59,9 @@ pub(crate) struct Meaning<'a> {
 }
 
 /// The pass over the marks.
-struct Listener<'a> {
+struct Listener<'a, 'm> {
     lexicon: &'a Lexicon,
-    marks: &'a [Mark<'a>],
+    marks: &'m [Mark<'m>],
     asked: Asked<'a>,
     meaning: Meaning<'a>,
     denial: Option<Denial<'a>>,
@@ -43,12 +71,14 @@ struct Listener<'a> {
     wondering: bool,
     /// A repair that waits for what replaces the words before it.
     repair: Option<repair::Strength>,
+    /// How many times "or" was said.
+    choices: usize,
 }
 
 /// Listens to the clauses that are on topic.
 pub(crate) fn listen<'a>(
     lexicon: &'a Lexicon,
-    marks: &'a [Mark<'a>],
+    marks: &[Mark<'_>],
     clauses: &[Clause],
     asked: Asked<'a>,
 ) -> Meaning<'a> {
@@ -61,6 +91,7 @@ pub(crate) fn listen<'a>(
         landmark: false,
         wondering: false,
         repair: None,
+        choices: 0,
     };
     for clause in clauses {
         listener.landmark = false;
@@ -80,7 +111,7 @@ pub(crate) fn listen<'a>(
     listener.meaning
 }
 
-impl<'a> Listener<'a> {
+impl<'a> Listener<'a, '_> {
     fn hear(&mut self, clause: &Clause, at: usize) {
         let mark = &self.marks[at];
         self.pause(mark, at);
@@ -101,6 +132,7 @@ impl<'a> Listener<'a> {
             Cue::Landmark | Cue::Than => self.landmark = true,
             Cue::Or => {
                 self.meaning.alternatives = true;
+                self.choices += usize::from(self.denial.is_none());
                 self.on_denial(Denial::or);
             }
             Cue::And => self.and(at),
@@ -113,7 +145,7 @@ impl<'a> Listener<'a> {
             Cue::Unlisted => self.on_denial(Denial::elsewhere),
             Cue::Fetch | Cue::Want => self.verb(),
             Cue::Not => self.not(clause, at),
-            Cue::Except => self.deny(),
+            Cue::Except => self.deny(at),
             Cue::No => self.no(at),
             Cue::Repair => self.repair(repair::Strength::Soft),
             Cue::Withdraw => self.repair(repair::Strength::Hard),
@@ -124,7 +156,7 @@ impl<'a> Listener<'a> {
             _ => {}
         }
         if let Some(answer) = answer::answer(self.marks, clause, at) {
-            self.meaning.answers.push(answer, at);
+            self.meaning.answers.push(answer, self.marks, at);
         }
     }
 
@@ -149,7 +181,7 @@ impl<'a> Listener<'a> {
         }
         if let Some(denial) = &mut self.denial {
             let adjacent = at > 0 && self.marks[at - 1].value().is_some();
-            if denial.value(value, adjacent) {
+            if denial.value(value, adjacent, self.marks[at].answer_doubt()) {
                 return;
             }
             self.end_denial();
@@ -165,13 +197,14 @@ impl<'a> Listener<'a> {
                 self.meaning.answers.clear();
             }
             // "not the red one, I mean the red one": taken back in so many words.
-            let restated = |group: &Vec<WordId>| group[..] == [value.word];
+            let restated = |group: &Denied| group.words[..] == [value.word];
             self.meaning.excluded.retain(|group| !restated(group));
         } else if repair::is_stumble(self.lexicon, self.marks, at) {
             let new = repair::Replacement::at(self.lexicon, self.marks, at);
             new.replace(&mut self.meaning.base, repair::Strength::Stumble);
         }
-        self.meaning.base.push(value);
+        let doubt = self.marks[at].word_doubt();
+        self.meaning.base.push(Said { value, doubt, choice: self.choices });
     }
 
     /// Whether the value asked about is among those said.
@@ -228,26 +261,26 @@ impl<'a> Listener<'a> {
         if negation::is_rhetorical(self.marks, clause, at) {
             return;
         }
-        self.deny();
+        self.deny(at);
         if negation::is_whole_answer(self.marks, clause, at) {
-            self.meaning.answers.push(Answer::No, at);
+            self.meaning.answers.push(Answer::No, self.marks, at);
             self.denial = None;
         }
     }
 
-    fn deny(&mut self) {
+    fn deny(&mut self, at: usize) {
         self.end_denial();
-        self.denial = Some(Denial::new());
+        self.denial = Some(Denial::new(self.marks[at].answer_doubt()));
     }
 
     fn no(&mut self, at: usize) {
         match negation::use_of_no(self.lexicon, self.marks, at, &self.meaning.base, self.asked) {
             NoUse::Answer => {
                 self.end_said_denial();
-                self.meaning.answers.push(Answer::No, at);
+                self.meaning.answers.push(Answer::No, self.marks, at);
             }
             NoUse::Repair => self.repair(repair::Strength::Hard),
-            NoUse::Determiner => self.deny(),
+            NoUse::Determiner => self.deny(at),
         }
     }
 
@@ -267,7 +300,7 @@ impl<'a> Listener<'a> {
     }
 
     fn unsure(&mut self, at: usize) {
-        self.meaning.answers.push(Answer::Unsure, at);
+        self.meaning.answers.push(Answer::Unsure, self.marks, at);
         self.wondering = self.wonders_after(at);
     }
 
@@ -297,15 +330,18 @@ impl<'a> Listener<'a> {
     fn end_denial(&mut self) {
         let Some(denial) = self.denial.take() else { return };
         for group in denial.into_groups() {
-            if self.asked.is_denied_by(&group) {
-                self.meaning.answers.push_denial();
+            if self.asked.is_denied_by(&group.words) {
+                self.meaning.answers.push_denial(group.doubt);
             }
             // "the red one, no, not the red one": the denial stands.
-            if let [word] = group[..] {
+            if let [word] = group.words[..] {
                 self.meaning.base.retain(|value| value.word != word);
             }
-            if !self.meaning.excluded.contains(&group) {
-                self.meaning.excluded.push(group);
+            let known = self.meaning.excluded.iter_mut().find(|known| known.words == group.words);
+            match known {
+                // Said twice, it is doubted as the surer one is.
+                Some(known) => known.doubt = known.doubt.min(group.doubt),
+                None => self.meaning.excluded.push(group),
             }
         }
     }

@@ -3,9 +3,9 @@
 use crate::asked::Asked;
 use crate::clauses::Clause;
 use crate::cue::{Cue, cues};
-use crate::lexicon::{Lexicon, Sense, ValueSense};
+use crate::lexicon::{Lexicon, Sense};
 use crate::marks::Mark;
-use crate::meaning::rivals;
+use crate::meaning::{Said, rivals};
 use crate::tokens::Gap;
 
 /// What a "no" does.
@@ -24,7 +24,7 @@ pub(crate) fn use_of_no(
     lexicon: &Lexicon,
     marks: &[Mark<'_>],
     at: usize,
-    base: &[&ValueSense],
+    base: &[Said<'_>],
     asked: Asked<'_>,
 ) -> NoUse {
     const GOVERNORS: &[Cue] = cues![Preposition Be Want Fetch Auxiliary];

@@ -1,10 +1,12 @@
 //! The reader: one utterance in, its meaning out.
 
-use scene::{Question, Reading, Response, Scene};
+use scene::{Intent, Question, Reading, Scene};
 
 use crate::answer::response;
 use crate::asked::Askable;
 use crate::clauses::clauses;
+use crate::heard::Heard;
+use crate::hedges::hedge;
 use crate::intent::{intent, is_side_talk, unknown_words};
 use crate::lexicon::Lexicon;
 use crate::marks::marks;
@@ -66,15 +68,47 @@ impl Reader {
     pub fn read(&self, text: &str, last_question: Question) -> Understood {
         match self.language {
             Language::Paper => Understood { reading: self.spotter.read(text), unknown: Vec::new() },
-            Language::Careful => self.read_carefully(text, last_question),
+            Language::Careful => {
+                let text = normalise(text);
+                let tokens = Tokens::of(&text);
+                let heard = self.listen(&tokens, last_question);
+                Understood {
+                    reading: heard.reading(),
+                    unknown: unknown_words(&heard.marks, &heard.clauses),
+                }
+            }
         }
     }
 
-    fn read_carefully(&self, text: &str, last_question: Question) -> Understood {
-        let text = normalise(text);
-        let tokens = Tokens::of(&text);
-        let marks = marks(&self.lexicon, &tokens.words);
+    /// The ways in which an utterance that was said after `last_question` can be understood, each
+    /// with its weight, best first; the weights sum to 1 and there are at most
+    /// [`READINGS_MAX`](crate::READINGS_MAX). The first is what [`Self::read`] gives, but for its
+    /// doubts.
+    ///
+    /// `confidence` says of each blank-separated word of the text how probable it is that it was
+    /// said, 0 to 1; words beyond its end are certain. It becomes the doubt of the scene words,
+    /// groups and answers that were read from them. The paper's language has one reading without
+    /// doubt.
+    pub fn readings(
+        &self,
+        text: &str,
+        confidence: &[f32],
+        last_question: Question,
+    ) -> Vec<(f64, Reading)> {
+        match self.language {
+            Language::Paper => vec![(1.0, self.spotter.read(text))],
+            Language::Careful => {
+                let text = normalise(text);
+                let tokens = Tokens::heard(&text, confidence);
+                self.listen(&tokens, last_question).readings()
+            }
+        }
+    }
+
+    fn listen<'a>(&'a self, tokens: &Tokens<'a>, last_question: Question) -> Heard<'a> {
+        let mut marks = marks(&self.lexicon, &tokens.words);
         let clauses = clauses(&self.lexicon, &marks, tokens.code);
+        hedge(&mut marks, &clauses);
         let asked = self.askable.asked(last_question);
         let mut meaning = listen(&self.lexicon, &marks, &clauses, asked);
         let side_talk = meaning.base.is_empty()
@@ -83,21 +117,11 @@ impl Reader {
         if side_talk {
             meaning = Meaning::default();
         }
-        let certain = !meaning.hedged && !meaning.alternatives;
-        let response = response(&meaning.answers, &marks, &meaning.base, asked, certain);
+        let response = response(&meaning, &marks, asked);
         let intent = match intent(&marks, &clauses, &meaning, tokens.code) {
-            scene::Intent::Inform if side_talk => scene::Intent::None,
+            Intent::Inform if side_talk => Intent::None,
             intent => intent,
         };
-        Understood {
-            reading: Reading {
-                base: meaning.base.iter().map(|value| value.word).collect(),
-                response: if intent == scene::Intent::None { Response::None } else { response },
-                excluded: meaning.excluded,
-                intent,
-                ..Reading::default()
-            },
-            unknown: unknown_words(&marks, &clauses),
-        }
+        Heard { meaning, response, intent, asked, marks, clauses }
     }
 }

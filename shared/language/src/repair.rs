@@ -6,7 +6,7 @@ use scene::{Role, WordId};
 use crate::cue::{Cue, cues};
 use crate::lexicon::{Lexicon, ValueSense};
 use crate::marks::Mark;
-use crate::meaning::{is_place, rivals};
+use crate::meaning::{Said, is_place, rivals};
 use crate::tokens::Gap;
 
 /// How decidedly the words before are taken back.
@@ -54,7 +54,7 @@ impl<'a> Replacement<'a> {
     }
 
     /// Takes out of `base` what the replacement stands in for.
-    pub(crate) fn replace(&self, base: &mut Vec<&'a ValueSense>, strength: Strength) {
+    pub(crate) fn replace(&self, base: &mut Vec<Said<'a>>, strength: Strength) {
         if let Some(from) = self.retraced(base).filter(|_| strength > Strength::Stumble) {
             let mut at = 0..;
             base.retain(|old| at.next() < Some(from) || is_place(old));
@@ -75,16 +75,17 @@ impl<'a> Replacement<'a> {
 
     /// "the small white, I mean the small metal bowl": the speaker goes back to a word said before
     /// and begins anew from there (Levelt 1983, "retracing").
-    fn retraced(&self, base: &[&ValueSense]) -> Option<usize> {
+    fn retraced(&self, base: &[Said<'_>]) -> Option<usize> {
         let first = self.values.first().filter(|_| !self.anaphoric)?;
         base.iter().position(|old| old.word == first.word)
     }
 
-    fn renames(&self, base: &[&ValueSense]) -> bool {
-        let kind = |value: &&&ValueSense| value.role == Role::Kind;
-        let new: Vec<WordId> = self.values.iter().filter(kind).map(|value| value.word).collect();
+    fn renames(&self, base: &[Said<'_>]) -> bool {
+        let kind = |value: &ValueSense| value.role == Role::Kind;
+        let new = self.values.iter().filter(|value| kind(value));
+        let new: Vec<WordId> = new.map(|value| value.word).collect();
         !new.is_empty()
-            && base.iter().filter(kind).all(|old| !new.contains(&old.word))
+            && base.iter().filter(|old| kind(old)).all(|old| !new.contains(&old.word))
             && base.iter().any(|old| old.role == Role::Kind)
             && self.values.iter().all(|value| value.role == Role::Kind)
     }

@@ -4,7 +4,7 @@ use scene::Role;
 
 use crate::cue::{Cue, cues};
 use crate::lexicon::{Lexicon, Sense};
-use crate::marks::Mark;
+use crate::marks::{Mark, doubts};
 use crate::tokens::Gap;
 
 /// Settles what only the neighbours tell.
@@ -19,9 +19,12 @@ pub(crate) fn settle(lexicon: &Lexicon, marks: &mut [Mark<'_>]) {
             Sense::Cue(Cue::Courtesy) => named(marks, at),
             Sense::Cue(Cue::Aside) => pause_for_repair(marks, at),
             Sense::Cue(Cue::Put) if marks[at].word == "leave" => leave_out(lexicon, marks, at),
-            Sense::Unknown => participle(lexicon, marks, at)
-                .or_else(|| misheard(lexicon, marks, at))
-                .or_else(|| misheard_place(lexicon, marks, at)),
+            Sense::Unknown => participle(lexicon, marks, at).or_else(|| {
+                let (sense, doubt) =
+                    misheard(lexicon, marks, at).or_else(|| misheard_place(lexicon, marks, at))?;
+                marks[at].doubt = 1.0 - (1.0 - marks[at].doubt) * (1.0 - doubt);
+                Some(sense)
+            }),
             _ => None,
         };
         if let Some(sense) = settled {
@@ -98,12 +101,15 @@ fn named(marks: &[Mark<'_>], at: usize) -> Option<Sense> {
 }
 
 /// "the wide bowl", "the red ranch": where a value belongs, the one that sounds or looks like it.
-fn misheard(lexicon: &Lexicon, marks: &[Mark<'_>], at: usize) -> Option<Sense> {
+fn misheard(lexicon: &Lexicon, marks: &[Mark<'_>], at: usize) -> Option<(Sense, f64)> {
     let word = marks[at].word;
     if lexicon.is_like_noun(word) && ends_noun_phrase(marks, at) {
-        return Some(Sense::Cue(Cue::Head));
+        return Some((Sense::Cue(Cue::Head), 0.0));
     }
-    let value = lexicon.sounds_like(word).or_else(|| lexicon.looks_like(word))?;
+    let (value, doubt) = lexicon
+        .sounds_like(word)
+        .map(|value| (value, doubts::SOUND))
+        .or_else(|| lexicon.looks_like(word).map(|value| (value, doubts::EVERYDAY)))?;
     let before = marks[..at].last().filter(|_| marks[at].gap <= Gap::None);
     let after = marks.get(at + 1).filter(|mark| mark.gap <= Gap::None);
     let describes = |mark: &Mark<'_>| {
@@ -128,7 +134,7 @@ fn misheard(lexicon: &Lexicon, marks: &[Mark<'_>], at: usize) -> Option<Sense> {
         }
         Role::Place => false,
     };
-    belongs.then_some(Sense::Value(value))
+    belongs.then_some((Sense::Value(value), doubt))
 }
 
 /// What may follow the noun of a noun phrase.
@@ -178,7 +184,7 @@ fn participle(lexicon: &Lexicon, marks: &[Mark<'_>], at: usize) -> Option<Sense>
 }
 
 /// "on the counted", "in the draw": where a place ends the sentence, the one that it sounds like.
-fn misheard_place(lexicon: &Lexicon, marks: &[Mark<'_>], at: usize) -> Option<Sense> {
+fn misheard_place(lexicon: &Lexicon, marks: &[Mark<'_>], at: usize) -> Option<(Sense, f64)> {
     let [.., preposition, determiner] = &marks[..at] else { return None };
     let after = marks.get(at + 1).filter(|mark| mark.gap <= Gap::None);
     let stands = preposition.is(Cue::Preposition)
@@ -187,5 +193,6 @@ fn misheard_place(lexicon: &Lexicon, marks: &[Mark<'_>], at: usize) -> Option<Se
     let word = marks[at].word;
     let value =
         lexicon.looks_like(word).or_else(|| lexicon.sounds_like(word)).filter(|_| stands)?;
-    (lexicon.value(value).role == Role::Place).then_some(Sense::Value(value))
+    let place = lexicon.value(value).role == Role::Place;
+    place.then_some((Sense::Value(value), doubts::EVERYDAY))
 }

@@ -22,8 +22,13 @@ pub(crate) fn skeleton(word: &str) -> Option<String> {
     Some(sounds)
 }
 
+/// Whether a letter usually spells a vowel.
+pub(crate) fn is_vowel_letter(letter: u8) -> bool {
+    matches!(letter, b'a' | b'e' | b'i' | b'o' | b'u')
+}
+
 /// The first sound of some letters, if it is a consonant, and how many letters spell it.
-fn sound(letters: &[u8], initial: bool) -> (Option<char>, usize) {
+pub(crate) fn sound(letters: &[u8], initial: bool) -> (Option<char>, usize) {
     let two = letters.get(..2).unwrap_or_default();
     match two {
         b"wr" | b"kn" if initial => return (Some(if two == b"wr" { 'R' } else { 'N' }), 2),

@@ -15,10 +15,12 @@ pub(crate) enum Gap {
 }
 
 /// A word and what stood before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Token<'a> {
     pub(crate) word: &'a str,
     pub(crate) gap: Gap,
+    /// How sure it is that this was said, 0 to 1.
+    pub(crate) confidence: f32,
 }
 
 /// The words of a text.
@@ -30,17 +32,28 @@ pub(crate) struct Tokens<'a> {
 }
 
 impl<'a> Tokens<'a> {
-    /// Splits a normalised text.
+    /// Splits a normalised text of which every word is certain.
     pub(crate) fn of(text: &'a str) -> Self {
+        Self::heard(text, &[])
+    }
+
+    /// Splits a normalised text; `confidence` is by blank-separated word, those beyond it certain.
+    pub(crate) fn heard(text: &'a str, confidence: &[f32]) -> Self {
         let mut tokens =
             Self { words: Vec::with_capacity(text.len() / 5 + 1), code: is_code(text) };
         let mut gap = Gap::Stop;
         let mut rest = text;
+        let (mut blanks, mut inside) = (0, false);
         while let Some(c) = rest.chars().next() {
+            if c.is_whitespace() {
+                blanks += usize::from(inside);
+            }
+            inside = !c.is_whitespace();
+            let sure = confidence.get(blanks).map_or(1.0, |sure| sure.clamp(0.0, 1.0));
             let end = if c.is_alphanumeric() { word_end(rest) } else { 0 };
             if end > 0 {
                 let (word, after) = rest.split_at(end);
-                tokens.push_word(word, gap);
+                tokens.push_word(word, gap, sure);
                 rest = after;
                 gap = Gap::None;
                 if let Some(after) = hyphenated(rest) {
@@ -56,10 +69,10 @@ impl<'a> Tokens<'a> {
         tokens
     }
 
-    fn push_word(&mut self, word: &'a str, mut gap: Gap) {
+    fn push_word(&mut self, word: &'a str, mut gap: Gap, confidence: f32) {
         let mut push = |word: &'a str| {
             if !word.is_empty() {
-                self.words.push(Token { word, gap });
+                self.words.push(Token { word, gap, confidence });
                 gap = Gap::None;
             }
         };
@@ -218,6 +231,18 @@ mod tests {
         ] {
             assert_eq!(words(text).join(" "), opened);
         }
+    }
+
+    #[test]
+    fn confidences_follow_the_blanks() {
+        let confidence = [0.9, 0.5, 0.8];
+        let sure = |text| -> Vec<f32> {
+            Tokens::heard(text, &confidence).words.iter().map(|token| token.confidence).collect()
+        };
+        assert_eq!(sure("the white bowl"), [0.9, 0.5, 0.8]);
+        assert_eq!(sure("  the   see-through bowl now"), [0.9, 0.5, 0.5, 0.8, 1.0]);
+        assert_eq!(sure("isn't it"), [0.9, 0.9, 0.5]);
+        assert_eq!(Tokens::heard("no", &[f32::NAN]).words.len(), 1);
     }
 
     #[test]

@@ -14,6 +14,8 @@ const COUNT_MAX: usize = 65_535;
 pub(crate) struct Draft {
     pub(crate) name: String,
     pub(crate) noun: String,
+    pub(crate) ask_wanted: Vec<String>,
+    pub(crate) ask_point: Vec<String>,
     pub(crate) attributes: Vec<DraftAttribute>,
     pub(crate) objects: Vec<DraftObject>,
 }
@@ -22,8 +24,8 @@ pub(crate) struct DraftAttribute {
     pub(crate) key: String,
     pub(crate) name: String,
     pub(crate) synonyms: Vec<String>,
-    pub(crate) ask_yes_no: Option<String>,
-    pub(crate) ask_which: Option<String>,
+    pub(crate) ask_yes_no: Vec<String>,
+    pub(crate) ask_which: Vec<String>,
     pub(crate) values: Vec<DraftValue>,
 }
 
@@ -56,6 +58,8 @@ impl Draft {
             check_values(attribute, report);
             check_wording(attribute, report);
         }
+        check_texts("ask_wanted", &self.ask_wanted, &["{noun}"], report);
+        check_texts("ask_point", &self.ask_point, &["{noun}"], report);
         let places = self.check_objects(report);
         let words = self.words();
         if words.len() > COUNT_MAX {
@@ -162,7 +166,11 @@ impl Draft {
                 placement: object.placement,
             })
             .collect();
-        Scene::assemble(self.name, self.noun, objects, attributes, words)
+        let asks = wording::Asks {
+            wanted: wordings(self.ask_wanted, &wording::ASK_WANTED),
+            point: wordings(self.ask_point, &wording::ASK_POINT),
+        };
+        Scene::assemble(self.name, self.noun, asks, objects, attributes, words)
     }
 }
 
@@ -179,9 +187,14 @@ fn build_attribute(attribute: DraftAttribute, ids: &HashMap<String, WordId>) -> 
         name: attribute.name,
         synonyms: attribute.synonyms.iter().map(|synonym| synonym.to_lowercase()).collect(),
         values,
-        ask_yes_no: attribute.ask_yes_no.unwrap_or_else(|| wording::ASK_YES_NO.to_owned()),
-        ask_which: attribute.ask_which.unwrap_or_else(|| wording::ASK_WHICH.to_owned()),
+        ask_yes_no: wordings(attribute.ask_yes_no, &wording::ASK_YES_NO),
+        ask_which: wordings(attribute.ask_which, &wording::ASK_WHICH),
     }
+}
+
+/// The wordings of a file, or those of everybody.
+fn wordings(own: Vec<String>, common: &[&str]) -> Vec<String> {
+    if own.is_empty() { common.iter().map(|text| (*text).to_owned()).collect() } else { own }
 }
 
 /// Within one attribute every name and synonym must lead to one value, upper case aside.
@@ -207,23 +220,54 @@ fn check_values(attribute: &DraftAttribute, report: &mut Report) {
     }
 }
 
+/// Longest wording of a question, in characters: nobody listens for longer.
+const WORDING_CHARS_MAX: usize = 120;
+
 fn check_wording(attribute: &DraftAttribute, report: &mut Report) {
-    let mut check = |name: &str, text: &Option<String>, takes_value: bool| {
-        let Some(text) = text else { return };
-        let key = format!("{}.{name}", attribute.key);
-        if text.contains("{value}") != takes_value {
-            match takes_value {
-                true => report.add(&key, "does not say {value}", "write {value} where it belongs"),
-                false => report.add(&key, "an open question has no {value}", "remove {value}"),
-            }
+    const SLOTS: [&str; 3] = ["{value}", "{attribute}", "{noun}"];
+    let (yes_no, which) =
+        (format!("{}.ask_yes_no", attribute.key), format!("{}.ask_which", attribute.key));
+    for (key, text) in keyed(&yes_no, &attribute.ask_yes_no) {
+        if !text.contains("{value}") {
+            report.add(key, "does not say {value}", "write {value} where it belongs");
         }
-        if let Some(slot) = wording::unknown_slot(text) {
-            let cure = "the slots are {value}, {attribute} and {noun}";
+    }
+    check_texts(&yes_no, &attribute.ask_yes_no, &SLOTS, report);
+    check_texts(&which, &attribute.ask_which, &SLOTS, report);
+    for (key, text) in keyed(&which, &attribute.ask_which) {
+        if text.contains("{value}") {
+            report.add(key, "an open question has no {value}", "remove {value}");
+        }
+    }
+}
+
+/// What holds for every wording: slots that exist, a length to listen to, each once.
+fn check_texts(key: &str, texts: &[String], slots: &[&str], report: &mut Report) {
+    for (n, (key, text)) in keyed(key, texts).enumerate() {
+        if let Some(slot) = wording::unknown_slot(text, slots) {
+            let last = slots.len() - 1;
+            let cure = match slots.len() {
+                1 => format!("the only slot is {}", slots[0]),
+                _ => format!("the slots are {} and {}", slots[..last].join(", "), slots[last]),
+            };
             report.add(&key, format!("unknown slot {slot}"), cure);
         }
-    };
-    check("ask_yes_no", &attribute.ask_yes_no, true);
-    check("ask_which", &attribute.ask_which, false);
+        let chars = text.chars().count();
+        if chars > WORDING_CHARS_MAX {
+            let cure = format!("ask it in at most {WORDING_CHARS_MAX}");
+            report.add(&key, format!("{chars} characters are long to listen to"), cure);
+        }
+        if texts[..n].contains(text) {
+            report.add(&key, "the same wording is listed twice", "list it once");
+        }
+    }
+}
+
+/// Each text with its key: the list's own if there is but one.
+fn keyed<'a>(key: &str, texts: &'a [String]) -> impl Iterator<Item = (String, &'a String)> {
+    let (key, alone) = (key.to_owned(), texts.len() == 1);
+    let keyed = move |(n, text)| (if alone { key.clone() } else { format!("{key}[{n}]") }, text);
+    texts.iter().enumerate().map(keyed)
 }
 
 /// The first few names, for a cure that fits a line.

@@ -119,6 +119,26 @@ impl Fields {
         text(&self.key_of(name), node, report)
     }
 
+    /// One string or a list of them; absent is an empty list, an empty list is a problem.
+    pub(crate) fn one_or_more_texts(
+        &mut self,
+        name: &'static str,
+        report: &mut Report,
+    ) -> Vec<String> {
+        let key = self.key_of(name);
+        match self.take(name) {
+            None => Vec::new(),
+            Some(Node::List(items)) => {
+                if items.is_empty() {
+                    report.add(&key, "says nothing", "write at least one text or leave it out");
+                }
+                let items = items.into_iter().enumerate();
+                items.filter_map(|(n, item)| text(&format!("{key}[{n}]"), item, report)).collect()
+            }
+            Some(node) => text(&key, node, report).into_iter().collect(),
+        }
+    }
+
     /// A list of strings that may be absent.
     pub(crate) fn texts(&mut self, name: &'static str, report: &mut Report) -> Vec<String> {
         let key = self.key_of(name);

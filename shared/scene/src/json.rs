@@ -90,6 +90,8 @@ fn draft(root: Node, report: &mut Report) -> Option<Draft> {
     Some(Draft {
         name: name.unwrap_or_else(|| "scene".to_owned()),
         noun: noun.unwrap_or_else(|| "object".to_owned()),
+        ask_wanted: Vec::new(),
+        ask_point: Vec::new(),
         attributes,
         objects,
     })
@@ -105,7 +107,8 @@ fn object(key: String, node: Node, report: &mut Report) -> Option<DraftObject> {
 }
 
 fn attribute(key: String, name: String, values: Vec<DraftValue>) -> DraftAttribute {
-    DraftAttribute { key, name, synonyms: Vec::new(), ask_yes_no: None, ask_which: None, values }
+    let (synonyms, ask_yes_no, ask_which) = (Vec::new(), Vec::new(), Vec::new());
+    DraftAttribute { key, name, synonyms, ask_yes_no, ask_which, values }
 }
 
 /// The attributes as `values` lists them.

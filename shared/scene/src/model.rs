@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use crate::wording::Asks;
 use crate::{AttributeId, ObjectId, Question, ValueId, WordId, key};
 
 /// A scene: objects `I`, attributes `K`, values `V_k` (section 3.1 of the paper).
@@ -10,6 +11,7 @@ use crate::{AttributeId, ObjectId, Question, ValueId, WordId, key};
 pub struct Scene {
     name: String,
     noun: String,
+    asks: Asks,
     objects: Vec<Object>,
     attributes: Vec<Attribute>,
     words: Vec<String>,
@@ -51,10 +53,10 @@ pub struct Attribute {
     pub synonyms: Vec<String>,
     /// `V_k`, in the scene file's order.
     pub values: Vec<Value>,
-    /// Yes/no wording with `{value}`, e.g. `Is it {value}?`.
-    pub ask_yes_no: String,
-    /// Open wording, e.g. `What colour is it?`.
-    pub ask_which: String,
+    /// Yes/no wordings with `{value}`, e.g. `Is it {value}?`; at least one, the usual one first.
+    pub ask_yes_no: Vec<String>,
+    /// Open wordings, e.g. `What colour is it?`; at least one, the usual one first.
+    pub ask_which: Vec<String>,
 }
 
 /// A value of an attribute.
@@ -116,6 +118,7 @@ impl Scene {
     pub(crate) fn assemble(
         name: String,
         noun: String,
+        asks: Asks,
         objects: Vec<Object>,
         attributes: Vec<Attribute>,
         words: Vec<String>,
@@ -128,7 +131,7 @@ impl Scene {
         };
         let vocabularies = vocabularies(&objects, &attributes);
         let key = key::of(&objects, &attributes);
-        Self { name, noun, objects, attributes, words, key, names, vocabularies }
+        Self { name, noun, asks, objects, attributes, words, key, names, vocabularies }
     }
 
     /// The scene's name.
@@ -139,6 +142,11 @@ impl Scene {
     /// What the objects are called when nothing distinguishes them, e.g. `bowl`.
     pub fn noun(&self) -> &str {
         &self.noun
+    }
+
+    /// The wordings of the questions that no attribute words.
+    pub(crate) fn asks(&self) -> &Asks {
+        &self.asks
     }
 
     /// The objects, in order.

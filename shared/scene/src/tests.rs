@@ -71,6 +71,80 @@ fn questions_are_worded_by_the_scene() {
 }
 
 #[test]
+fn questions_are_worded_in_turn_and_anew_when_said_again() {
+    let bowls = shipped(BOWLS);
+    for question in all_questions(&bowls) {
+        assert_eq!(bowls.phrase_variant(question, 0, 1), bowls.phrase(question));
+        for (n, presentation) in (0..6).flat_map(|n| (0..6).map(move |p| (n, p))) {
+            let text = bowls.phrase_variant(question, n, presentation);
+            assert!(text.ends_with('?') && !text.contains(['{', '}']), "{text}");
+            assert!(text.starts_with(char::is_uppercase) && text.len() < 60, "{text}");
+        }
+    }
+    let say = |json, n, presentation| {
+        let question = question_from_json(&bowls, &json).expect("a question");
+        bowls.phrase_variant(question, n, presentation)
+    };
+    let white = || json!({"type": "attr", "attribute": "color", "value": "white"});
+    let color = || json!({"type": "which", "attribute": "color"});
+    let this = || json!({"type": "point", "object": "clear"});
+    assert_eq!(say(white(), 0, 2), "Sorry: is it white?");
+    assert_eq!(say(white(), 0, 3), "White: yes or no?");
+    assert_eq!(say(white(), 0, 4), "Once more: is it white?");
+    assert_ne!(say(white(), 1, 1), say(white(), 0, 1));
+    assert_eq!(say(color(), 0, 3), "What colour is it: white, metallic or clear?");
+    assert_eq!(say(this(), 0, 3), "This one: yes or no?");
+    assert_eq!(say(this(), 1, 2), "Sorry: is it this one?");
+    assert_eq!(say(json!(null), 0, 2), "Sorry: which bowl would you like?");
+    let size = bowls.attribute_named("size").expect("there");
+    assert_eq!(bowls.phrase_variant(Question::Which(size), 0, 3), "Once more: is it small or big?");
+}
+
+/// Every question that there is about a scene.
+fn all_questions(scene: &Scene) -> Vec<Question> {
+    let mut all = vec![Question::None];
+    all.extend((0..scene.objects().len()).map(|i| Question::Point(ObjectId::from(i))));
+    for (k, attribute) in scene.attributes().iter().enumerate() {
+        let k = AttributeId::from(k);
+        all.push(Question::Which(k));
+        let values = 0..attribute.values.len();
+        all.extend(values.map(|v| Question::Attribute(k, ValueId::from(v))));
+    }
+    all
+}
+
+#[test]
+fn a_wording_that_cannot_be_asked_is_a_problem() {
+    let scene = |wording: &str| {
+        let text = format!(
+            "name = \"s\"\nnoun = \"jar\"\n{wording}\nvalues = [\"a\"]\n[[objects]]\nname = \"o\"\n"
+        );
+        let problems = Scene::from_toml("s.toml", &text).expect_err(wording);
+        problems.iter().map(|problem| format!("{problem}")).collect::<Vec<_>>().join("\n")
+    };
+    let attribute = "[[attributes]]\nname = \"k\"";
+    for (wording, key, what) in [
+        (format!("{attribute}\nask_yes_no = []"), "attributes[0].ask_yes_no", "says nothing"),
+        (
+            format!("{attribute}\nask_yes_no = [\"Is it {{value}}?\", \"Is it?\"]"),
+            "attributes[0].ask_yes_no[1]",
+            "{value}",
+        ),
+        (
+            format!("{attribute}\nask_which = [\"What?\", \"What?\"]"),
+            "attributes[0].ask_which[1]",
+            "twice",
+        ),
+        (format!("{attribute}\nask_which = \"{}\"", "w".repeat(121)), "ask_which", "121"),
+        (format!("ask_point = \"The {{value}}?\"\n{attribute}"), "ask_point", "{noun}"),
+        (format!("ask_wanted = 7\n{attribute}"), "ask_wanted", "number"),
+    ] {
+        let problem = scene(&wording);
+        assert!(problem.contains(key) && problem.contains(what), "{wording}: {problem}");
+    }
+}
+
+#[test]
 fn objects_are_described_by_what_tells_them_apart() {
     let (bowls, tools) = (shipped(BOWLS), shipped(TOOLS));
     let describe = |scene: &Scene, name| scene.describe(scene.object_named(name).expect("there"));
@@ -228,7 +302,7 @@ fn the_key_sees_the_problem_and_not_its_dress() {
     let original = key(MARKERS);
     for (from, to, same) in [
         ("0.15, -0.148", "0.25, -0.148", true),
-        ("What colour", "Which colour", true),
+        ("What colour", "Of what colour", true),
         ("values = [\"red\", \"blue\"]", "values = [\"blue\", \"red\"]", false),
         ("name = \"red\"\n", "name = \"crimson\"\n", false),
     ] {

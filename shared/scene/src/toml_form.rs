@@ -3,12 +3,14 @@
 //! ```toml
 //! name = "markers"
 //! noun = "marker"
+//! ask_wanted = "Which {noun} would you like?"   # optional, as are all wordings
+//! ask_point = ["This one?", "Is it this one?"]  # several are taken in turn
 //!
 //! [[attributes]]
 //! name = "color"
 //! synonyms = ["colour"]              # other words for the attribute, optional
-//! ask_yes_no = "Is it {value}?"      # optional
-//! ask_which = "What colour is it?"   # optional
+//! ask_yes_no = ["Is it {value}?", "Is the {noun} {value}?"]
+//! ask_which = "What colour is it?"
 //! values = ["red", { name = "blue", synonyms = ["navy"], spoken = "dark blue" }]
 //!
 //! [[objects]]
@@ -19,6 +21,9 @@
 //! size = [0.14, 0.014, 0.014]        # metres
 //! grasp_width = 0.014                # metres
 //! ```
+//!
+//! In a wording `{value}` is the value as `spoken` has it (in yes or no questions alone),
+//! `{attribute}` the attribute's name and `{noun}` the scene's noun.
 //!
 //! Attributes, values and objects are lists because their order counts: it breaks ties between
 //! questions and names the entries of a belief.
@@ -61,12 +66,16 @@ fn draft(root: Node, report: &mut Report) -> Option<Draft> {
     let mut fields = Fields::open(String::new(), root, report)?;
     let name = fields.text("name", report);
     let noun = fields.text("noun", report);
+    let ask_wanted = fields.one_or_more_texts("ask_wanted", report);
+    let ask_point = fields.one_or_more_texts("ask_point", report);
     let attributes = fields.list("attributes", report);
     let objects = fields.list("objects", report);
     fields.finish(report);
     Some(Draft {
         name: name.unwrap_or_default(),
         noun: noun.unwrap_or_default(),
+        ask_wanted,
+        ask_point,
         attributes: (attributes.into_iter().enumerate())
             .filter_map(|(n, node)| attribute(format!("attributes[{n}]"), node, report))
             .collect(),
@@ -80,8 +89,8 @@ fn attribute(key: String, node: Node, report: &mut Report) -> Option<DraftAttrib
     let mut fields = Fields::open(key.clone(), node, report)?;
     let name = fields.text("name", report);
     let synonyms = fields.texts("synonyms", report);
-    let ask_yes_no = fields.optional_text("ask_yes_no", report);
-    let ask_which = fields.optional_text("ask_which", report);
+    let ask_yes_no = fields.one_or_more_texts("ask_yes_no", report);
+    let ask_which = fields.one_or_more_texts("ask_which", report);
     let values = fields.list("values", report);
     fields.finish(report);
     let values = (values.into_iter().enumerate())

@@ -32,7 +32,13 @@ pub(super) fn ask(
         return;
     }
     open.presentations += 1;
-    let text = format!("{preface}{}", scene.phrase(question));
+    // The words are a function of the state: a replay says the same.
+    let (prompt, presentation) = match stands {
+        true => (standing.prompt, standing.presentation + 1),
+        false => (state.last_prompt.next(), 1),
+    };
+    let words = scene.phrase_variant(question, prompt.0, presentation);
+    let text = format!("{preface}{words}");
     if stands {
         ask_anew(open, standing.prompt);
         let again =

@@ -178,7 +178,8 @@ impl<'a> Speaker<'a> {
             Part::Adjective if self.random.chance(50) => form,
             // As the robot asks: "Is it made of metal?"
             Part::Adjective => {
-                let asked = self.scene.attributes()[k].ask_yes_no.strip_prefix("Is it ");
+                let wordings = &self.scene.attributes()[k].ask_yes_no;
+                let asked = wordings.iter().find_map(|asked| asked.strip_prefix("Is it "));
                 let asked = asked.map(|a| a.trim_end_matches('?').replace("{value}", &form));
                 asked.filter(|a| !a.contains('{')).unwrap_or(form)
             }

@@ -1,0 +1,239 @@
+//! Which of a scene's words are heard for one another, judged by how alike they sound.
+//!
+//! A word's spelling becomes a row of sounds: consonants in the classes of `sound.rs`, vowels in
+//! three. Two rows are as far apart as the cheapest way to turn one into the other costs, divided
+//! by what the rows cost themselves; of a value with synonyms the nearest pair counts.
+//!
+//! | step | cost |
+//! |---|---|
+//! | vowel for another vowel | 0.4 |
+//! | consonant for one made alike (two stops, two hissing ones, two nasals, two liquids) | 0.5 |
+//! | any other consonant for another | 1 |
+//! | vowel, or `h`, `w`, `y`, left out or put in | 0.4 |
+//! | any other consonant left out or put in | 0.7 |
+//! | vowel for consonant | never: one is left out, the other put in |
+//!
+//! The costs are judged. They order pairs, and the order is what counts: `pen` is nearer to `red`
+//! than to `screwdriver`.
+
+use scene::Scene;
+
+use crate::normalise::normalise;
+use crate::sound::{is_vowel_letter, sound};
+use crate::tokens::Tokens;
+
+/// Share of each row that is divided evenly: what sounds cannot explain.
+const EVEN: f64 = 0.1;
+/// Distance over which the rest of a row falls by the factor `e`. With it the nearest of the six
+/// bowls' words gets between a quarter and nine tenths of its row.
+const FALL: f64 = 0.15;
+/// How much farther a synonym is than the value's own name: fewer people say it.
+const SYNONYM: f64 = 0.2;
+/// Longest form of a value that is compared, in sounds.
+const SOUNDS_MAX: usize = 48;
+
+/// For each word of the scene (row) that was heard and not said, the probability that each word
+/// (column) was said instead. The diagonal is 0 and a row sums to 1; a word that has no other has
+/// a row of 0.
+///
+/// Each row gives nine tenths of its mass by likeness of sound and spreads the rest evenly.
+pub fn confusion(scene: &Scene) -> Vec<Vec<f64>> {
+    let sounds = forms(scene);
+    let words = sounds.len();
+    let mut likeness = vec![vec![0.0; words]; words];
+    for heard in 0..words {
+        for said in 0..heard {
+            let like = (-distance(&sounds[heard], &sounds[said]) / FALL).exp();
+            likeness[heard][said] = like;
+            likeness[said][heard] = like;
+        }
+    }
+    for (heard, row) in likeness.iter_mut().enumerate().filter(|_| words > 1) {
+        let total: f64 = row.iter().sum();
+        let even = EVEN / (words - 1) as f64;
+        for (_, share) in row.iter_mut().enumerate().filter(|(said, _)| *said != heard) {
+            *share = even + (1.0 - EVEN) * *share / total;
+        }
+    }
+    likeness
+}
+
+/// The forms of each word of the scene, its name first, as sounds.
+fn forms(scene: &Scene) -> Vec<Vec<Vec<char>>> {
+    let mut forms = vec![Vec::new(); scene.words().len()];
+    for value in scene.attributes().iter().flat_map(|attribute| &attribute.values) {
+        for text in std::iter::once(&value.name).chain(&value.synonyms) {
+            let sounds = sounds(text);
+            let known: &mut Vec<Vec<char>> = &mut forms[value.word.index()];
+            if !known.contains(&sounds) {
+                known.push(sounds);
+            }
+        }
+    }
+    forms
+}
+
+/// The sounds of a text, consonants in capitals, vowels in small letters.
+fn sounds(text: &str) -> Vec<char> {
+    let text = normalise(text);
+    let mut all: Vec<char> = Vec::new();
+    for token in &Tokens::of(&text).words {
+        word_sounds(token.word, &mut all);
+    }
+    all.truncate(SOUNDS_MAX);
+    all
+}
+
+fn word_sounds(word: &str, all: &mut Vec<char>) {
+    if !word.bytes().all(|letter| letter.is_ascii_lowercase()) {
+        // A number or a foreign letter sounds like itself alone.
+        all.extend(word.chars());
+        return;
+    }
+    // The "e" of "white" is not heard.
+    let spoken = match word.strip_suffix('e') {
+        Some(stem) if stem.bytes().any(is_vowel_letter) => stem,
+        _ => word,
+    };
+    let letters = spoken.as_bytes();
+    let mut at = 0;
+    while at < letters.len() {
+        let (consonant, length) = sound(&letters[at..], at == 0);
+        let vowel = match letters[at] {
+            b'e' | b'i' | b'y' => Some('e'),
+            b'a' => Some('a'),
+            b'o' | b'u' => Some('o'),
+            _ => None,
+        };
+        let heard = if is_vowel_letter(letters[at]) { vowel } else { consonant.or(vowel) };
+        // Letters that spell one sound together: "ee", "ou", "ll".
+        let again = all.last().is_some_and(|last| {
+            Some(*last) == heard || last.is_lowercase() && heard.is_some_and(char::is_lowercase)
+        });
+        all.extend(heard.filter(|_| at == 0 || !again));
+        at += length;
+    }
+}
+
+/// How far apart the nearest forms of two words are, 0 for the same sounds.
+fn distance(one: &[Vec<char>], other: &[Vec<char>]) -> f64 {
+    let rarity = |form: usize| if form == 0 { 0.0 } else { SYNONYM };
+    let pairs = one.iter().enumerate().flat_map(|(n, one)| {
+        other.iter().enumerate().map(move |(m, other)| relative(one, other) + rarity(n) + rarity(m))
+    });
+    pairs.fold(f64::INFINITY, f64::min).min(1.0)
+}
+
+/// The cost of turning one row of sounds into the other, by the mean cost of the rows.
+fn relative(one: &[char], other: &[char]) -> f64 {
+    let whole = |row: &[char]| row.iter().map(|&sound| loss(sound)).sum::<f64>();
+    let mean = (whole(one) + whole(other)) / 2.0;
+    if mean > 0.0 { edits(one, other) / mean } else { 0.0 }
+}
+
+/// The weighted edit distance (Wagner and Fischer 1974).
+fn edits(one: &[char], other: &[char]) -> f64 {
+    let mut row: Vec<f64> = std::iter::once(0.0)
+        .chain(other.iter().scan(0.0, |sum, &sound| {
+            *sum += loss(sound);
+            Some(*sum)
+        }))
+        .collect();
+    for &a in one {
+        let mut diagonal = row[0];
+        row[0] += loss(a);
+        for (at, &b) in other.iter().enumerate() {
+            let best = (diagonal + swap(a, b)).min(row[at] + loss(b)).min(row[at + 1] + loss(a));
+            diagonal = std::mem::replace(&mut row[at + 1], best);
+        }
+    }
+    row.last().copied().unwrap_or(0.0)
+}
+
+/// What it costs to leave a sound out or to put it in.
+fn loss(sound: char) -> f64 {
+    if sound.is_lowercase() || matches!(sound, 'H' | 'W' | 'Y') { 0.4 } else { 0.7 }
+}
+
+/// What it costs to take one sound for another.
+fn swap(a: char, b: char) -> f64 {
+    const ALIKE: [&str; 4] = ["PTK", "SXF0J", "MN", "LRW"];
+    match (a.is_lowercase(), b.is_lowercase()) {
+        _ if a == b => 0.0,
+        (true, true) => 0.4,
+        (false, false) if ALIKE.iter().any(|made| made.contains(a) && made.contains(b)) => 0.5,
+        (false, false) => 1.0,
+        _ => loss(a) + loss(b),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use scene::Scene;
+
+    use super::{confusion, edits, sounds};
+
+    const BOWLS: &str =
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml"));
+    const TOOLS: &str =
+        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/tools.toml"));
+
+    fn nearest(scene: &Scene, heard: &str) -> String {
+        let row = &confusion(scene)[scene.word_named(heard).expect("a word").index()];
+        let best = (0..row.len()).max_by(|&a, &b| row[a].total_cmp(&row[b])).expect("words");
+        scene.words()[best].clone()
+    }
+
+    #[test]
+    fn rows_are_distributions_over_the_other_words() {
+        for (name, text) in [("bowls", BOWLS), ("tools", TOOLS)] {
+            let scene = Scene::from_toml(name, text).expect("a scene");
+            let rows = confusion(&scene);
+            assert_eq!(rows.len(), scene.words().len());
+            let floor = 0.1 / (rows.len() - 1) as f64;
+            for (heard, row) in rows.iter().enumerate() {
+                assert_eq!(row.len(), rows.len());
+                assert_eq!(row[heard], 0.0);
+                assert!((row.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+                let others = row.iter().enumerate().filter(|(said, _)| *said != heard);
+                assert!(others.map(|(_, share)| *share).all(|share| share >= floor));
+            }
+        }
+    }
+
+    #[test]
+    fn what_sounds_alike_is_nearest() {
+        let bowls = Scene::from_toml("bowls", BOWLS).expect("a scene");
+        let tools = Scene::from_toml("tools", TOOLS).expect("a scene");
+        for (scene, heard, said) in
+            [(&bowls, "metal", "metallic"), (&bowls, "metallic", "metal"), (&tools, "pen", "green")]
+        {
+            assert_eq!(nearest(scene, heard), said, "{heard}");
+        }
+        let like = |a: &str, b: &str| edits(&sounds(a), &sounds(b));
+        assert_eq!(like("white", "wide"), 0.0);
+        assert_eq!(like("red", "read"), 0.0);
+        assert!(like("pen", "pan") < like("pen", "red"));
+        assert!(like("marker", "market") < like("marker", "hammer"));
+        assert!(like("pen", "red") < like("pen", "screwdriver"));
+    }
+
+    #[test]
+    fn a_word_alone_has_an_empty_row() {
+        let json = serde_json::json!({"objects": [{"name": "a", "attributes": {"k": "7"}}],
+            "values": {"k": ["7"]}});
+        let scene = Scene::from_json("one", &json).expect("a scene");
+        assert_eq!(confusion(&scene), [[0.0]]);
+    }
+
+    proptest! {
+        #[test]
+        fn the_distance_is_one(a in "[a-z ]{0,12}", b in "[a-z0-9 ]{0,12}", c in "\\PC{0,8}") {
+            let [a, b, c] = [a, b, c].map(|text| sounds(&text));
+            prop_assert_eq!(edits(&a, &a), 0.0);
+            prop_assert!((edits(&a, &b) - edits(&b, &a)).abs() < 1e-12);
+            prop_assert!(edits(&a, &c) <= edits(&a, &b) + edits(&b, &c) + 1e-12);
+        }
+    }
+}

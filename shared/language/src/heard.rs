@@ -1,0 +1,104 @@
+//! From one utterance's meaning to the ways in which it can be understood.
+
+use scene::{Doubt, Intent, Reading, Response};
+
+use crate::asked::Asked;
+use crate::clauses::Clause;
+use crate::cue::Cue;
+use crate::hedges::MAYBE;
+use crate::marks::Mark;
+use crate::meaning::{Meaning, Said, rivals};
+
+/// Most readings of one utterance.
+pub const READINGS_MAX: usize = 4;
+/// What a "maybe" that is no answer weighs as a yes, judged. That yes is doubted besides, so that
+/// it moves the odds by little.
+const MAYBE_WEIGHT: f64 = 0.4;
+
+/// An utterance listened to.
+pub(crate) struct Heard<'a> {
+    pub(crate) meaning: Meaning<'a>,
+    /// The answer and the probability that it was not given.
+    pub(crate) response: (Response, f64),
+    pub(crate) intent: Intent,
+    pub(crate) asked: Asked<'a>,
+    pub(crate) marks: Vec<Mark<'a>>,
+    pub(crate) clauses: Vec<Clause>,
+}
+
+impl Heard<'_> {
+    /// The best reading.
+    pub(crate) fn reading(&self) -> Reading {
+        self.reading_of(&self.meaning.base)
+    }
+
+    fn reading_of(&self, base: &[Said<'_>]) -> Reading {
+        let (response, doubt) = self.response;
+        let answered = self.intent != Intent::None;
+        let excluded = &self.meaning.excluded;
+        Reading {
+            base: base.iter().map(|value| value.word).collect(),
+            response: if answered { response } else { Response::None },
+            excluded: excluded.iter().map(|group| group.words.clone()).collect(),
+            intent: self.intent,
+            doubt: Doubt {
+                base: known(base.iter().map(|value| value.doubt)),
+                excluded: known(excluded.iter().map(|group| group.doubt)),
+                response: if answered && response != Response::None { doubt } else { 0.0 },
+            },
+        }
+    }
+
+    /// Every reading with its weight, best first.
+    pub(crate) fn readings(&self) -> Vec<(f64, Reading)> {
+        let best = self.reading();
+        let choices = self.choices();
+        if !choices.is_empty() {
+            let weight = 1.0 / (choices.len() + 1) as f64;
+            let readings = choices.iter().map(|base| self.reading_of(base));
+            return std::iter::once(best).chain(readings).map(|one| (weight, one)).collect();
+        }
+        if self.is_maybe(&best) {
+            let doubt = Doubt { response: 2.0 * (1.0 - MAYBE), ..Doubt::default() };
+            let yes = Reading { response: Response::Yes, doubt, ..best.clone() };
+            return vec![(1.0 - MAYBE_WEIGHT, best), (MAYBE_WEIGHT, yes)];
+        }
+        vec![(1.0, best)]
+    }
+
+    /// "red or blue": each with what is said of both; none if nothing is to be chosen from.
+    fn choices(&self) -> Vec<Vec<Said<'_>>> {
+        let base = &self.meaning.base;
+        let Some(at) = base.windows(2).position(|pair| pair[0].choice != pair[1].choice) else {
+            return Vec::new();
+        };
+        let (left, right) = (&base[at], &base[at + 1]);
+        if !rivals(left, right) {
+            let parts = [&base[..=at], &base[at + 1..]];
+            return parts.map(<[_]>::to_vec).into();
+        }
+        let members: Vec<&Said<'_>> = base.iter().filter(|one| rivals(one, left)).collect();
+        let chosen = |member: &&Said<'_>| {
+            let others = |one: &&Said<'_>| !rivals(one, left) || one.word == member.word;
+            base.iter().filter(others).copied().collect()
+        };
+        members.iter().take(READINGS_MAX - 1).map(chosen).collect()
+    }
+
+    /// "maybe", "it could be", and nothing else, in answer to a yes or no question.
+    fn is_maybe(&self, best: &Reading) -> bool {
+        let asked = matches!(self.asked, Asked::Value(..) | Asked::Object(_));
+        asked
+            && *best == Reading { intent: Intent::Inform, ..Reading::default() }
+            && self.meaning.answers.is_empty()
+            && self.marks.iter().any(|mark| mark.is(Cue::Hedge))
+    }
+}
+
+/// The doubts up to the last that is one.
+fn known(doubts: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut doubts: Vec<f64> = doubts.collect();
+    let known = doubts.iter().rposition(|doubt| *doubt != 0.0).map_or(0, |last| last + 1);
+    doubts.truncate(known);
+    doubts
+}

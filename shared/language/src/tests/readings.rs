@@ -1,0 +1,176 @@
+//! Readings with weights and doubts.
+
+use proptest::prelude::*;
+use scene::{AttributeId, Doubt, ObjectId, Question, Reading, Response, ValueId};
+
+use super::{TOOLS_READERS, scene};
+use crate::{Language, READINGS_MAX, Reader};
+
+const ASKED: Question = Question::Attribute(AttributeId(0), ValueId(0));
+
+fn bowls() -> (scene::Scene, Reader) {
+    let scene = scene("bowls");
+    let reader = Reader::new(&scene, Language::Careful);
+    (scene, reader)
+}
+
+/// The best reading, with the confidences of its words.
+fn best(text: &str, confidence: &[f32]) -> Reading {
+    let (_, reader) = bowls();
+    let mut readings = reader.readings(text, confidence, ASKED);
+    readings.remove(0).1
+}
+
+#[test]
+fn clear_typed_words_are_not_doubted() {
+    for text in [
+        "the small white bowl",
+        "yes",
+        "no, the clear one",
+        "not the white one",
+        "nope",
+        "the see-through one in the dish washer",
+        "no not that one, the silver one",
+    ] {
+        assert_eq!(best(text, &[]).doubt, Doubt::default(), "{text}");
+    }
+}
+
+#[test]
+fn confidence_becomes_the_doubt_of_what_was_read() {
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-6;
+    let doubt = best("the white bowl", &[1.0, 0.7, 1.0]).doubt;
+    assert!(doubt.base.len() == 1 && close(doubt.base[0], 0.3), "{doubt:?}");
+    let doubt = best("no the small clear one", &[0.6, 1.0, 0.9, 0.5]).doubt;
+    assert!(close(doubt.response, 0.4) && close(doubt.base[0], 0.1) && close(doubt.base[1], 0.5));
+    let doubt = best("not the white one", &[0.8, 1.0, 0.5]).doubt;
+    assert!(close(doubt.excluded[0], 0.6) && close(doubt.response, 0.6), "{doubt:?}");
+    let doubt = best("the see through one", &[1.0, 0.9, 0.4]).doubt;
+    assert!(close(doubt.base[0], 0.6), "the least sure of a phrase's words: {doubt:?}");
+    let doubt = best("yes the white one yes", &[0.3, 1.0, 1.0, 1.0, 0.9]).doubt;
+    assert!(close(doubt.response, 0.1), "said twice: {doubt:?}");
+    assert_eq!(best("um the white bowl", &[0.1, 0.2, 1.0, 0.3]).doubt, Doubt::default());
+}
+
+#[test]
+fn a_hedge_weakens_what_it_hedges() {
+    let response = |text: &str| {
+        let reading = best(text, &[]);
+        assert_ne!(reading.response, Response::None, "{text}");
+        reading.doubt.response
+    };
+    let order = ["yes", "I'm almost certain it is", "I think so", "probably", "I guess so"];
+    let doubts = order.map(response);
+    assert!(
+        doubts.is_sorted() && doubts[0] == 0.0 && doubts[1] > 0.0 && doubts[4] < 1.0,
+        "{doubts:?}"
+    );
+    assert!(response("I don't think so") > 0.0);
+    assert!(response("yes, I think") > 0.0);
+    let word = |text: &str| best(text, &[]).doubt.of_word(0);
+    assert_eq!(word("the clear one"), 0.0);
+    for text in [
+        "I think the clear one",
+        "the clear one, I think",
+        "maybe the clear one",
+        "it's probably the clear one",
+        "I don't know, the clear one maybe",
+    ] {
+        assert!(word(text) > 0.1, "{text}");
+    }
+    assert!(word("maybe the clear one") > word("I think the clear one"));
+    // What is said in another sentence is not hedged.
+    assert_eq!(word("the clear one. I think it's late."), 0.0);
+}
+
+#[test]
+fn a_guess_at_a_word_is_doubted() {
+    let word = |text: &str| best(text, &[]).doubt.of_word(0);
+    assert!(word("the whtie bowl") > 0.0);
+    assert!(word("the wide bowl") > word("the whtie bowl"));
+    assert_eq!(word("the biiig bowl"), 0.0);
+}
+
+#[test]
+fn alternatives_are_readings_of_their_own() {
+    let (scene, reader) = bowls();
+    let words = |text: &str| -> Vec<Vec<String>> {
+        let readings = reader.readings(text, &[], Question::None);
+        let names = |reading: &Reading| {
+            reading.base.iter().map(|w| scene.words()[w.index()].clone()).collect()
+        };
+        readings.iter().map(|(_, reading)| names(reading)).collect()
+    };
+    assert_eq!(words("white or clear"), [vec!["white", "clear"], vec!["white"], vec!["clear"]]);
+    assert_eq!(
+        words("the white or the clear one on the counter")[1..],
+        [vec!["white", "counter"], vec!["clear", "counter"]]
+    );
+    assert_eq!(words("the white one or the small one")[1..], [["white"], ["small"]]);
+    assert_eq!(words("white, clear or metallic").len(), 4);
+    assert_eq!(words("the white one").len(), 1);
+    assert_eq!(words("not white or clear").len(), 1);
+}
+
+#[test]
+fn a_maybe_leans_to_yes() {
+    let (_, reader) = bowls();
+    for text in ["maybe", "perhaps", "it could be"] {
+        let readings = reader.readings(text, &[], ASKED);
+        let [(_, none), (weight, yes)] = &readings[..] else { panic!("{text}: {readings:?}") };
+        assert_eq!((none.response, yes.response), (Response::None, Response::Yes));
+        assert!(*weight < 0.5 && yes.doubt.response > 0.5);
+        assert_eq!(reader.readings(text, &[], Question::None).len(), 1);
+    }
+    for text in ["I don't know", "no", "um", "maybe the white one"] {
+        assert_eq!(reader.readings(text, &[], ASKED).len(), 1, "{text}");
+    }
+}
+
+#[test]
+fn the_papers_language_has_no_doubt() {
+    let scene = scene("bowls");
+    let reader = Reader::new(&scene, Language::Paper);
+    let readings = reader.readings("maybe the white or clear one", &[0.1; 6], ASKED);
+    assert_eq!(readings, [(1.0, reader.read("maybe the white or clear one", ASKED).reading)]);
+}
+
+proptest! {
+    /// Of any words with any confidence: few readings, weights that sum to 1, shares for doubts,
+    /// and the best one is what is read.
+    #[test]
+    fn readings_are_a_distribution(
+        words in proptest::collection::vec(0..40_usize, 0..24),
+        confidence in proptest::collection::vec(-0.5..1.5_f32, 0..24),
+        n in 0..4_usize,
+    ) {
+        const WORDS: &[&str] = &[
+            "the", "not", "no", "yes", "red", "blue", "marker", "one", "and", "or", "but", ",",
+            ".", "on", "table", "sorry", "i", "do", "want", "get", "is", "it", "think", "so",
+            "maybe", "probably", "markre", "screw", "driver", "pen", "uh", "or", "green", "foo",
+            "isn't", "than", "anything", "other", "perhaps", "never mind",
+        ];
+        let text: Vec<&str> = words.iter().map(|&word| WORDS[word]).collect();
+        let text = text.join(" ");
+        let question = [
+            Question::None,
+            Question::Point(ObjectId(3)),
+            Question::Attribute(AttributeId(1), ValueId(2)),
+            Question::Which(AttributeId(0)),
+        ][n];
+        let (_, [_, reader]) = &*TOOLS_READERS;
+        let readings = reader.readings(&text, &confidence, question);
+        prop_assert!((1..=READINGS_MAX).contains(&readings.len()));
+        prop_assert!((readings.iter().map(|(weight, _)| weight).sum::<f64>() - 1.0).abs() < 1e-12);
+        prop_assert!(readings.iter().all(|(weight, _)| *weight <= readings[0].0));
+        for (_, Reading { doubt, base, excluded, .. }) in &readings {
+            let doubts = doubt.base.iter().chain(&doubt.excluded).chain([&doubt.response]);
+            prop_assert!(doubts.into_iter().all(|doubt| (0.0..=1.0).contains(doubt)), "{doubt:?}");
+            prop_assert!(doubt.base.len() <= base.len() && doubt.excluded.len() <= excluded.len());
+        }
+        let certain = Reading { doubt: Doubt::default(), ..readings[0].1.clone() };
+        let read = reader.read(&text, question).reading;
+        prop_assert_eq!(certain, Reading { doubt: Doubt::default(), ..read.clone() });
+        prop_assert_eq!(&reader.readings(&text, &[], question)[0].1, &read);
+    }
+}
