@@ -12,7 +12,6 @@ mod mouth;
 pub mod record;
 mod said;
 pub mod shell;
-mod transcript;
 
 #[cfg(test)]
 mod tests;
@@ -45,7 +44,7 @@ pub enum In {
     Act(Box<RobotAct>),
     /// From the arm: what it points at.
     Arm(ArmStatus),
-    /// From a microphone or a client's stream.
+    /// From a microphone.
     Live(Live),
     /// From the microphone: how it is.
     Microphone(MicrophoneStatus),

@@ -2,7 +2,6 @@
 //! the services. iceoryx2 is reached through this crate alone.
 
 pub mod admin;
-pub mod audio;
 pub mod bus;
 pub mod client;
 pub mod clock;

@@ -24,10 +24,12 @@ pub struct Speech {
     pub player: Option<Vec<String>>,
     /// What turns audio into words.
     pub recogniser: Recogniser,
+    /// The program, with its arguments, that turns audio into words; there if `recogniser` is
+    /// [`Recogniser::Command`].
+    pub recogniser_command: Option<Vec<String>>,
     /// Folder of the recogniser's acoustic model; found by itself where nothing is said.
     pub model_dir: Option<PathBuf>,
-    /// Share of the scene's words times their mean posterior below which speech is taken not to be
-    /// meant for the robot, 0 … 1.
+    /// How much speech must be about the scene to be taken as meant for the robot, 0 … 1.
     pub accept_score_min: f64,
     /// Quiet that ends an utterance.
     pub closing_pause: Duration,
@@ -37,8 +39,6 @@ pub struct Speech {
     pub utterance_bytes_max: usize,
     /// Longest recording that is recognised.
     pub recording_max: Duration,
-    /// Folder whose WAV files are heard as they appear, if any.
-    pub watch_dir: Option<PathBuf>,
     /// The microphone of the robot's computer.
     pub microphone: Microphone,
 }
@@ -90,6 +90,8 @@ pub enum Recogniser {
     Auto,
     /// The pocketsphinx library.
     PocketSphinx,
+    /// A program of the operator's.
+    Command,
     /// None: typed text only.
     None,
 }
@@ -105,6 +107,15 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
             ("print", Voice::Print),
         ],
     );
+    let recogniser = f.choice(
+        "recogniser",
+        &[
+            ("auto", Recogniser::Auto),
+            ("pocketsphinx", Recogniser::PocketSphinx),
+            ("command", Recogniser::Command),
+            ("none", Recogniser::None),
+        ],
+    );
     Speech {
         voice,
         voice_name: voice_name(f, voice),
@@ -112,21 +123,14 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
         voice_command: voice_command(f, voice),
         voice_dir: absolute(f, "voice_dir"),
         player: f.optional_command("player"),
-        recogniser: f.choice(
-            "recogniser",
-            &[
-                ("auto", Recogniser::Auto),
-                ("pocketsphinx", Recogniser::PocketSphinx),
-                ("none", Recogniser::None),
-            ],
-        ),
+        recogniser,
+        recogniser_command: recogniser_command(f, recogniser),
         model_dir: absolute(f, "model_dir"),
         accept_score_min: f.number("accept_score_min", 0.0..=1.0),
         closing_pause: Duration::from_millis(f.whole("closing_pause_ms", 100..=5000)),
         spoken_max: f.seconds("spoken_s_max", 2.0..=60.0),
         utterance_bytes_max: f.whole("utterance_bytes_max", 16..=UTTERANCE_BYTES_MAX) as usize,
         recording_max: f.seconds("recording_s_max", 1.0..=600.0),
-        watch_dir: absolute(f, "watch_dir"),
         microphone: f.table("microphone", microphone),
     }
 }
@@ -177,6 +181,15 @@ fn voice_command(f: &mut Fields<'_>, voice: Voice) -> Option<Vec<String>> {
         None => {}
     }
     words
+}
+
+fn recogniser_command(f: &mut Fields<'_>, recogniser: Recogniser) -> Option<Vec<String>> {
+    let command = f.optional_command("recogniser_command");
+    if recogniser == Recogniser::Command && command.is_none() {
+        let cure = "write `recogniser_command = [\"program\", \"argument\"]`";
+        f.problem("recogniser", "`command` needs a recogniser_command", cure);
+    }
+    command
 }
 
 /// The services run in other folders than the one where this was written, so it must be absolute.

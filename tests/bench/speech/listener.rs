@@ -54,7 +54,8 @@ impl Listener {
     fn decode(&mut self, samples: &[i16], range: Range<usize>, speech: Range<usize>) -> Heard {
         let (started, cpu_s) = (Instant::now(), thread_s());
         let known_at = range.end;
-        let hypotheses = self.recogniser.recognise(&samples[range]).unwrap_or_default();
+        let voice = speech.start - range.start..speech.end - range.start;
+        let hypotheses = self.recogniser.recognise(&samples[range], voice).unwrap_or_default();
         let accepted = matches!(self.gate.judge(hypotheses.clone()), Outcome::Accepted(_));
         let took_s = (started.elapsed().as_secs_f64(), thread_s() - cpu_s);
         Heard { speech, known_at, hypotheses, accepted, took_s }

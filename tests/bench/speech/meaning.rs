@@ -111,3 +111,29 @@ pub(super) fn edits(said: &[WordId], heard: &[WordId]) -> usize {
     }
     row[heard.len()]
 }
+
+/// Which words of `heard` were said there: those of the longest sequence of words that both texts
+/// have in common.
+pub(super) fn said_too(heard: &[&str], said: &[&str]) -> Vec<bool> {
+    let width = said.len() + 1;
+    let mut common = vec![0_usize; (heard.len() + 1) * width];
+    for (i, j) in (0..heard.len()).rev().flat_map(|i| (0..said.len()).rev().map(move |j| (i, j))) {
+        common[i * width + j] = match heard[i] == said[j] {
+            true => common[(i + 1) * width + j + 1] + 1,
+            false => common[(i + 1) * width + j].max(common[i * width + j + 1]),
+        };
+    }
+    let (mut i, mut j) = (0, 0);
+    let mut right = vec![false; heard.len()];
+    while i < heard.len() && j < said.len() {
+        if heard[i] == said[j] {
+            right[i] = true;
+            (i, j) = (i + 1, j + 1);
+        } else if common[(i + 1) * width + j] >= common[i * width + j + 1] {
+            i += 1;
+        } else {
+            j += 1;
+        }
+    }
+    right
+}

@@ -2,8 +2,9 @@
 
 use super::corpus::{Clip, Sentence};
 use super::listener::Heard;
-use super::meaning::{Meaning, edits, likeliest, meaning, weightiest};
+use super::meaning::{Meaning, edits, likeliest, meaning, said_too, weightiest};
 use ::speech::devices::audio::seconds;
+use ::speech::devices::language_model::words;
 use ::speech::devices::recogniser::Hypothesis;
 use dialogue::{Model, Params};
 use language::{Language, Reader};
@@ -17,7 +18,7 @@ pub(super) struct Judge {
 }
 
 /// What became of a clip.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Score {
     pub(super) for_the_robot: bool,
     /// Scene words that were said, and the edits from them to those of the best hypothesis.
@@ -48,6 +49,8 @@ pub(super) struct Score {
     pub(super) release_s: f64,
     /// Stretches taken for speech.
     pub(super) stretches: usize,
+    /// Of each word of the best hypothesis how sure it is, and whether it was said.
+    pub(super) sure: Vec<(f32, bool)>,
 }
 
 impl Judge {
@@ -99,6 +102,7 @@ impl Judge {
             onset_s: timing.onset_s,
             release_s: timing.release_s,
             stretches: heard.len(),
+            sure: all.first().map(|best| sure(best, &sentence.text)).unwrap_or_default(),
         }
     }
 
@@ -106,6 +110,14 @@ impl Judge {
     fn scene_words(&self, sentence: &Sentence, text: &str) -> Vec<WordId> {
         self.spotter.read(text, sentence.question).reading.base
     }
+}
+
+fn sure(best: &Hypothesis, said: &str) -> Vec<(f32, bool)> {
+    let heard: Vec<&str> = best.words.iter().map(|(word, _)| word.as_str()).collect();
+    let said = words(said);
+    let said: Vec<&str> = said.iter().map(String::as_str).collect();
+    let right = said_too(&heard, &said);
+    best.words.iter().zip(right).map(|((_, sure), right)| (*sure, right)).collect()
 }
 
 fn spotted(

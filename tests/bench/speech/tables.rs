@@ -24,20 +24,22 @@ pub(super) fn add(report: &mut Report, corpus: &Corpus, levels: &[f64], trials: 
             rows.push((format!("{level} dB, {}", named.title()), Box::new(of)));
         }
     }
-    let scores = |of: &Of<'_>| -> Vec<Score> {
-        trials.iter().filter(|t| of.1(t)).map(|t| t.score).collect()
+    let of = |rows: &[Of<'_>]| -> Vec<Row> {
+        let scores = |is: &dyn Fn(&Trial) -> bool| {
+            trials.iter().filter(|t| is(t)).map(|t| t.score.clone()).collect()
+        };
+        rows.iter().map(|(name, is)| (name.clone(), scores(is))).collect()
     };
-    report.tables.push(understood(
-        corpus,
-        &rows.iter().map(|of| (of.0.clone(), scores(of))).collect::<Vec<_>>(),
-    ));
+    report.tables.push(understood(corpus, &of(&rows)));
     rows.truncate(levels.len());
-    report
-        .tables
-        .push(timed(corpus, &rows.iter().map(|of| (of.0.clone(), scores(of))).collect::<Vec<_>>()));
+    report.tables.push(timed(corpus, &of(&rows)));
+    report.tables.push(reliable(corpus, &of(&rows)));
 }
 
-fn understood(corpus: &Corpus, rows: &[(String, Vec<Score>)]) -> Table {
+/// A row's name, and what it is about.
+type Row = (String, Vec<Score>);
+
+fn understood(corpus: &Corpus, rows: &[Row]) -> Table {
     let heads = [
         "noise",
         "for the robot",
@@ -52,9 +54,9 @@ fn understood(corpus: &Corpus, rows: &[(String, Vec<Score>)]) -> Table {
         "about other things",
         "acted on",
     ];
-    let row = |(name, scores): &(String, Vec<Score>)| {
+    let row = |(name, scores): &Row| {
         let (meant, other): (Vec<Score>, Vec<Score>) =
-            scores.iter().partition(|score| score.for_the_robot);
+            scores.iter().cloned().partition(|score| score.for_the_robot);
         let words: usize = meant.iter().map(|s| s.words).sum();
         let errors: usize = meant.iter().map(|s| s.word_errors).sum();
         vec![
@@ -87,7 +89,7 @@ fn understood(corpus: &Corpus, rows: &[(String, Vec<Score>)]) -> Table {
     }
 }
 
-fn timed(corpus: &Corpus, rows: &[(String, Vec<Score>)]) -> Table {
+fn timed(corpus: &Corpus, rows: &[Row]) -> Table {
     let heads = [
         "noise",
         "onset late by, ms, p50",
@@ -99,7 +101,7 @@ fn timed(corpus: &Corpus, rows: &[(String, Vec<Score>)]) -> Table {
         "decoding, CPU over sound",
         "not one stretch",
     ];
-    let row = |(name, scores): &(String, Vec<Score>)| {
+    let row = |(name, scores): &Row| {
         let of = |value: fn(&Score) -> f64| -> Vec<f64> {
             scores.iter().map(value).filter(|x| x.is_finite()).map(|x| x * 1e3).collect()
         };
@@ -122,6 +124,35 @@ fn timed(corpus: &Corpus, rows: &[(String, Vec<Score>)]) -> Table {
         title: format!("Spoken input, times: {}", corpus.name),
         note: "Onset and release: the detector's edges against the voice's. Not one stretch: the \
                voice was missed or cut in two."
+            .to_owned(),
+        heads: heads.map(str::to_owned).into(),
+        rows: rows.iter().map(row).collect(),
+    }
+}
+
+/// How often words are right that the recogniser is so sure of.
+fn reliable(corpus: &Corpus, rows: &[Row]) -> Table {
+    const BOUNDS: [f32; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.001];
+    let cell = |words: &[(f32, bool)], from: f32, to: f32| {
+        let within: Vec<&(f32, bool)> = words.iter().filter(|w| from <= w.0 && w.0 < to).collect();
+        let right = within.iter().filter(|(_, right)| *right).count();
+        let mean = within.iter().map(|w| w.0).sum::<f32>() / within.len().max(1) as f32;
+        match within.len() {
+            0 => "–".to_owned(),
+            n => format!("{mean:.2}: {:.2} ({n})", right as f64 / n as f64),
+        }
+    };
+    let row = |(name, scores): &Row| {
+        let meant = scores.iter().filter(|score| score.for_the_robot);
+        let words: Vec<(f32, bool)> = meant.flat_map(|score| score.sure.clone()).collect();
+        let cells = BOUNDS.windows(2).map(|bounds| cell(&words, bounds[0], bounds[1]));
+        std::iter::once(name.clone()).chain(cells).collect()
+    };
+    let heads = ["noise", "below 0.2", "0.2 to 0.4", "0.4 to 0.6", "0.6 to 0.8", "from 0.8"];
+    Table {
+        title: format!("Spoken input, confidence of words: {}", corpus.name),
+        note: "Words of the best hypotheses of what is for the robot, by their confidence: its \
+               mean, the share of words that were said (number of words)."
             .to_owned(),
         heads: heads.map(str::to_owned).into(),
         rows: rows.iter().map(row).collect(),

@@ -95,7 +95,8 @@ impl Voices {
         if let Ok(bytes) = std::fs::read(&cached) {
             return bytes.chunks_exact(2).map(|b| i16::from_le_bytes([b[0], b[1]])).collect();
         }
-        let wav = cached.with_extension("wav");
+        // espeak-ng cuts off long names of files.
+        let wav = self.folder.join("spoken.wav");
         let status = voice.command(text, &wav).status();
         let spoke = status.as_ref().is_ok_and(std::process::ExitStatus::success);
         assert!(spoke, "{} does not speak {text:?}: {status:?}", voice.title());

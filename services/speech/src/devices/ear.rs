@@ -15,7 +15,7 @@ use scene::Scene;
 
 use crate::devices::audio::{read_wav, seconds};
 use crate::devices::recogniser::{
-    Gate, Outcome, PocketSphinx, PocketSphinxOptions, RecogniseError, Recogniser,
+    Backend, Gate, Outcome, PocketSphinxOptions, RecogniseError, Recogniser,
 };
 use crate::devices::stream::Cut;
 use crate::devices::vad::{SegmentEvent, Segmenter, SegmenterOptions};
@@ -24,7 +24,7 @@ use crate::devices::vad::{SegmentEvent, Segmenter, SegmenterOptions};
 #[derive(Clone, Debug, PartialEq)]
 pub struct EarOptions {
     /// The recogniser.
-    pub recogniser: PocketSphinxOptions,
+    pub recogniser: Backend,
     /// How speech is cut out of the sound.
     pub segmenter: SegmenterOptions,
     /// How sure it must be that speech is about the scene, 0 to 1 (see [`Gate`]).
@@ -37,7 +37,7 @@ impl EarOptions {
     /// The measured defaults, with work files in `work`.
     pub fn new(work: impl Into<PathBuf>) -> Self {
         Self {
-            recogniser: PocketSphinxOptions::debian(work),
+            recogniser: Backend::PocketSphinx(PocketSphinxOptions::debian(work)),
             segmenter: SegmenterOptions::default(),
             gate_threshold: Gate::THRESHOLD,
             longest_s: 60.0,
@@ -134,13 +134,7 @@ impl Ear {
     pub fn start(scene: &Scene, options: EarOptions) -> (Self, Receiver<EarEvent>) {
         let gate = Gate::new(scene, options.gate_threshold);
         let (scene, recogniser) = (scene.clone(), options.recogniser);
-        let open = move || match PocketSphinx::open(&scene, &recogniser) {
-            Ok(recogniser) => {
-                let unpronounceable = recogniser.unpronounceable().to_vec();
-                Ok((Box::new(recogniser) as Box<dyn Recogniser>, unpronounceable))
-            }
-            Err(error) => Err(error.to_string()),
-        };
+        let open = move || recogniser.open(&scene).map_err(|error| error.to_string());
         Self::with(open, gate, options.segmenter, options.longest_s)
     }
 
@@ -260,7 +254,8 @@ fn segment(
     speech: &Range<usize>,
 ) -> Result<Segment, RecogniseError> {
     let snr_db = snr_db(samples, &range, speech);
-    let hypotheses = recogniser.recognise(&samples[range])?;
+    let voice = speech.start - range.start..speech.end - range.start;
+    let hypotheses = recogniser.recognise(&samples[range], voice)?;
     let (onset_s, end_s) = (seconds(speech.start), seconds(speech.end));
     Ok(Segment { onset_s, end_s, snr_db, outcome: gate.judge(hypotheses) })
 }

@@ -5,7 +5,9 @@ use std::path::Path;
 use crate::devices::ear::{
     Ear, EarEvent, EarOptions, EarState as Hearing, Segment as Heard, Sound,
 };
-use crate::devices::recogniser::{Hypothesis as Decoded, Outcome, PocketSphinxOptions};
+use crate::devices::recogniser::{
+    Backend, CommandOptions, Hypothesis as Decoded, Outcome, PocketSphinxOptions,
+};
 use crate::devices::vad::SegmenterOptions;
 use crate::{Hypothesis, In, Recognised, Segment, ToRecognise};
 use protocol::EarState;
@@ -56,14 +58,22 @@ pub(super) fn segmenter(settings: &Settings) -> SegmenterOptions {
 
 fn ear_options(settings: &Settings, work: &Path) -> EarOptions {
     let speech = &settings.speech;
-    let recogniser = PocketSphinxOptions::debian(work.join("recogniser"));
-    let model = speech.model_dir.clone().unwrap_or_else(|| recogniser.model.clone());
     EarOptions {
-        recogniser: PocketSphinxOptions { model, ..recogniser },
+        recogniser: backend(speech, work),
         segmenter: segmenter(settings),
         gate_threshold: speech.accept_score_min as f32,
         longest_s: speech.recording_max.as_secs_f64(),
     }
+}
+
+fn backend(speech: &settings::Speech, work: &Path) -> Backend {
+    if speech.recogniser == settings::Recogniser::Command {
+        let command = speech.recogniser_command.clone().unwrap_or_default();
+        return Backend::Command(CommandOptions::new(command));
+    }
+    let options = PocketSphinxOptions::debian(work.join("recogniser"));
+    let model = speech.model_dir.clone().unwrap_or_else(|| options.model.clone());
+    Backend::PocketSphinx(PocketSphinxOptions { model, ..options })
 }
 
 fn heard(event: EarEvent) -> In {

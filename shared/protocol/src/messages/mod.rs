@@ -5,7 +5,6 @@
 //! needs another topic name while both are in use.
 
 mod arm;
-mod audio;
 mod common;
 mod gesture;
 mod observation;
@@ -14,7 +13,6 @@ mod speech;
 mod utterance;
 
 pub use arm::*;
-pub use audio::{AudioChunk, CHUNK_SAMPLES_MAX, Pcm};
 pub use common::{AskedQuestion, Stamp, WireQuestion};
 pub use gesture::{POINTED_AT_MAX_M, WireGesture, is_somewhere};
 pub use observation::*;

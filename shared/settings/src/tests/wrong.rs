@@ -204,6 +204,13 @@ fn a_choice_that_does_not_exist() {
 #[test]
 fn values_that_contradict_each_other() {
     check(
+        "speech.toml",
+        "recogniser = 'command'",
+        &[
+            "speech.toml: recogniser: `command` needs a recogniser_command (write `recogniser_command = [\"program\", \"argument\"]`)",
+        ],
+    );
+    check(
         "group.toml",
         "restart.backoff_max_ms = 50",
         &[

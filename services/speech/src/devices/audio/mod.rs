@@ -1,9 +1,12 @@
 //! Sound as every part of this service takes it: 16-bit samples of one channel at [`RATE_HZ`].
 
+mod denoise;
 mod noise_floor;
 mod resample;
+mod spectrum;
 mod wav;
 
+pub use denoise::denoised;
 pub use noise_floor::with_noise_floor;
 pub use resample::resample;
 pub use wav::{WavError, read_wav};

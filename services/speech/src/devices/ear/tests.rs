@@ -12,7 +12,11 @@ struct Stub {
 }
 
 impl Recogniser for Stub {
-    fn recognise(&mut self, pcm: &[i16]) -> Result<Vec<Hypothesis>, RecogniseError> {
+    fn recognise(
+        &mut self,
+        pcm: &[i16],
+        _: Range<usize>,
+    ) -> Result<Vec<Hypothesis>, RecogniseError> {
         if self.fails {
             return Err(RecogniseError::Failed);
         }

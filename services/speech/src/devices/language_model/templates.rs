@@ -77,9 +77,10 @@ pub(super) const SHAPES: &[(u32, &[&str])] = &[
         ],
     ),
     // Answers.
-    (40, &["yes", "no"]),
-    (16, &["yeah", "nope", "yep"]),
-    (10, &["yup", "sure", "nah", "okay", "that's right", "that's the one", "correct"]),
+    (60, &["yes", "no"]),
+    (36, &["yeah", "nope", "yep"]),
+    (28, &["yup", "sure", "nah"]),
+    (12, &["okay", "that's right", "that's the one", "correct"]),
     (10, &["the other one", "that one", "not that one", "no not that one", "yes please"]),
     (
         4,

@@ -38,11 +38,9 @@ pub(super) struct Library {
     ps_process_raw: unsafe extern "C" fn(DecoderPtr, *const i16, usize, c_int, c_int) -> c_int,
     ps_end_utt: unsafe extern "C" fn(DecoderPtr) -> c_int,
     ps_get_hyp: unsafe extern "C" fn(DecoderPtr, *mut i32) -> *const c_char,
-    ps_get_prob: unsafe extern "C" fn(DecoderPtr) -> i32,
     ps_seg_iter: unsafe extern "C" fn(DecoderPtr) -> Segment,
     ps_seg_next: unsafe extern "C" fn(Segment) -> Segment,
     ps_seg_word: unsafe extern "C" fn(Segment) -> *const c_char,
-    ps_seg_prob: unsafe extern "C" fn(Segment, *mut i32, *mut i32, *mut i32) -> i32,
     ps_nbest: unsafe extern "C" fn(DecoderPtr) -> NBest,
     ps_nbest_next: unsafe extern "C" fn(NBest) -> NBest,
     ps_nbest_hyp: unsafe extern "C" fn(NBest, *mut i32) -> *const c_char,
@@ -80,11 +78,9 @@ impl Library {
             ps_process_raw,
             ps_end_utt,
             ps_get_hyp,
-            ps_get_prob,
             ps_seg_iter,
             ps_seg_next,
             ps_seg_word,
-            ps_seg_prob,
             ps_nbest,
             ps_nbest_next,
             ps_nbest_hyp,
@@ -111,9 +107,8 @@ pub(super) struct Scored {
 /// What the library made of one utterance.
 #[derive(Default)]
 pub(super) struct Decoded {
-    /// The best path's words, fillers and pronunciation marks included, each with the natural
-    /// logarithm of its posterior.
-    pub(super) words: Vec<(String, f64)>,
+    /// The best path's words, fillers and pronunciation marks included.
+    pub(super) best: Vec<String>,
     /// Best first; a text may appear more than once (other times or pronunciations).
     pub(super) n_best: Vec<Scored>,
 }
@@ -182,35 +177,25 @@ impl Decoder {
         }
         let mut score = 0;
         // SAFETY: an utterance has been ended, which is all that asking for its hypothesis needs;
-        // null means that nothing was found. `ps_get_prob` computes the posteriors that the
-        // segments below carry.
-        let silent = unsafe {
-            let hypothesis = (lib.ps_get_hyp)(ps, &raw mut score);
-            (lib.ps_get_prob)(ps);
-            hypothesis.is_null()
-        };
+        // null means that nothing was found.
+        let silent = unsafe { (lib.ps_get_hyp)(ps, &raw mut score).is_null() };
         if silent {
             return Some(Decoded::default());
         }
-        Some(Decoded { words: self.words(), n_best: self.n_best(n_best_max) })
+        Some(Decoded { best: self.best(), n_best: self.n_best(n_best_max) })
     }
 
-    /// The segments of the best path.
-    fn words(&mut self) -> Vec<(String, f64)> {
+    /// The words of the best path.
+    fn best(&mut self) -> Vec<String> {
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         let mut words = Vec::new();
         // SAFETY: the iterator is walked to its end, where the library frees it and answers null;
         // it is used only while not null. The word lives as long as the dictionary and is copied
-        // at once. The three null pointers are outputs that the library leaves out when null. The
-        // logarithm table belongs to the decoder.
+        // at once.
         unsafe {
-            let logmath = (lib.ps_get_logmath)(ps);
             let mut segment = (lib.ps_seg_iter)(ps);
             while !segment.is_null() {
-                let none = ptr::null_mut();
-                let posterior = (lib.ps_seg_prob)(segment, none, none, none);
-                let word = text_of((lib.ps_seg_word)(segment));
-                words.push((word, (lib.logmath_log_to_ln)(logmath, posterior)));
+                words.push(text_of((lib.ps_seg_word)(segment)));
                 segment = (lib.ps_seg_next)(segment);
             }
         }

@@ -1,11 +1,20 @@
 //! From samples to words.
 
+mod agreement;
+mod command;
 mod ffi;
 mod gate;
 mod pocketsphinx;
+mod unavailable;
 
+use std::ops::Range;
+
+use scene::Scene;
+
+pub use command::{Command, CommandOptions};
 pub use gate::{Gate, Outcome, RejectReason};
-pub use pocketsphinx::{PocketSphinx, PocketSphinxOptions, RecogniserUnavailable};
+pub use pocketsphinx::{PocketSphinx, PocketSphinxOptions};
+pub use unavailable::RecogniserUnavailable;
 
 /// One way to understand an utterance.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,8 +23,7 @@ pub struct Hypothesis {
     pub text: String,
     /// Its share among the hypotheses of the utterance, 0 to 1; they sum to 1 at most.
     pub confidence: f32,
-    /// Each word with the posterior probability that it was said there, 0 to 1; known of the best
-    /// hypothesis only.
+    /// Each word of the text with the probability that it was said there, 0 to 1.
     pub words: Vec<(String, f32)>,
 }
 
@@ -25,14 +33,54 @@ pub enum RecogniseError {
     /// The library reported a failure; the next utterance may do better.
     #[error("the recogniser failed on this utterance")]
     Failed,
+    /// A program reported a failure, or failed itself.
+    #[error("the recogniser failed on this utterance: {reason}")]
+    Told {
+        /// Its words, or what became of it.
+        reason: String,
+    },
 }
 
 /// Turns an utterance into words.
 pub trait Recogniser: Send {
-    /// Decodes one whole utterance, 16 kHz mono. The hypotheses come best first, with different
+    /// Decodes one whole utterance, 16 kHz mono, in which `speech` are the samples of the voice;
+    /// the noise around it tells what to leave out. The hypotheses come best first, with different
     /// texts; none if nothing was recognised.
     ///
     /// # Errors
     /// If the backend fails on these samples.
-    fn recognise(&mut self, pcm: &[i16]) -> Result<Vec<Hypothesis>, RecogniseError>;
+    fn recognise(
+        &mut self,
+        pcm: &[i16],
+        speech: Range<usize>,
+    ) -> Result<Vec<Hypothesis>, RecogniseError>;
+}
+
+/// What turns samples into words.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Backend {
+    /// The offline recogniser with the scene's own language model.
+    PocketSphinx(PocketSphinxOptions),
+    /// A program of the operator's.
+    Command(CommandOptions),
+}
+
+impl Backend {
+    /// Makes the recogniser for a scene; with it come the scene's words that it cannot know.
+    ///
+    /// # Errors
+    /// If something that it needs is not there.
+    pub fn open(
+        &self,
+        scene: &Scene,
+    ) -> Result<(Box<dyn Recogniser>, Vec<String>), RecogniserUnavailable> {
+        Ok(match self {
+            Self::PocketSphinx(options) => {
+                let recogniser = PocketSphinx::open(scene, options)?;
+                let unpronounceable = recogniser.unpronounceable().to_vec();
+                (Box::new(recogniser), unpronounceable)
+            }
+            Self::Command(options) => (Box::new(Command::open(options.clone())?), Vec::new()),
+        })
+    }
 }

@@ -1,13 +1,15 @@
 //! The offline recogniser: Debian's pocketsphinx with a language model made for the scene.
 
+use std::fs;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 use scene::Scene;
 
+use super::agreement::hypotheses;
 use super::ffi::{Decoded, Decoder, DecoderFiles, Library};
-use super::{Hypothesis, RecogniseError, Recogniser};
-use crate::devices::audio::with_noise_floor;
+use super::{Hypothesis, RecogniseError, Recogniser, RecogniserUnavailable};
+use crate::devices::audio::{denoised, with_noise_floor};
 use crate::devices::language_model::{Trigram, Weights, common_words, scene_sentences};
 use crate::devices::pronunciation::{EspeakSpelling, Pronunciations};
 
@@ -37,41 +39,6 @@ impl PocketSphinxOptions {
             n_best_max: 5,
         }
     }
-}
-
-/// Why there is no recogniser.
-#[derive(Debug, thiserror::Error)]
-pub enum RecogniserUnavailable {
-    /// The shared object is missing or is another one.
-    #[error("{} cannot be used: {reason} (install the package libpocketsphinx3)", file.display())]
-    Library {
-        /// The file that was looked for.
-        file: PathBuf,
-        /// The loader's reason.
-        reason: String,
-    },
-    /// A file of the model is missing.
-    #[error("{} cannot be read: {source} (install the package pocketsphinx-en-us)", path.display())]
-    Model {
-        /// The file.
-        path: PathBuf,
-        /// Why not.
-        source: io::Error,
-    },
-    /// The scene's dictionary or language model could not be written.
-    #[error("{} cannot be written: {source}", path.display())]
-    Work {
-        /// The file or folder.
-        path: PathBuf,
-        /// Why not.
-        source: io::Error,
-    },
-    /// The library would not open a decoder.
-    #[error("pocketsphinx refused its model: {reason}")]
-    Refused {
-        /// The last errors that it reported.
-        reason: String,
-    },
 }
 
 /// A recogniser for the words of one scene.
@@ -129,46 +96,34 @@ impl PocketSphinx {
 const PATHS_MAX: usize = 100;
 
 impl Recogniser for PocketSphinx {
-    fn recognise(&mut self, pcm: &[i16]) -> Result<Vec<Hypothesis>, RecogniseError> {
-        let pcm = with_noise_floor(pcm);
+    fn recognise(
+        &mut self,
+        pcm: &[i16],
+        speech: Range<usize>,
+    ) -> Result<Vec<Hypothesis>, RecogniseError> {
+        let clear = denoised(pcm, &speech);
+        let pcm = with_noise_floor(&clear);
         let decoded = self.decoder.decode(&pcm, PATHS_MAX).ok_or(RecogniseError::Failed)?;
-        Ok(hypotheses(decoded, self.n_best_max))
+        Ok(heard(&decoded, self.n_best_max))
     }
 }
 
-/// The library's own weight of acoustic scores in posteriors (its option `-ascale`): path scores
-/// are far too sure of themselves because frames are not independent.
-const ACOUSTIC_SCALE: f64 = 20.0;
+/// What a path's score is divided by before it becomes a weight: path scores are far too sure of
+/// themselves because frames are not independent. It is the library's own (its option `-ascale`),
+/// and with it the words' probabilities are about as often right as they say.
+const SCORE_SCALE: f64 = 20.0;
 
-fn hypotheses(decoded: Decoded, at_most: usize) -> Vec<Hypothesis> {
-    let words: Vec<(String, f32)> = (decoded.words.into_iter())
-        .filter_map(|(word, ln)| Some((spelling(&word)?, ln.exp().min(1.0) as f32)))
-        .collect();
-    if words.is_empty() {
-        return Vec::new();
-    }
-    let text = words.iter().map(|(word, _)| word.as_str()).collect::<Vec<_>>().join(" ");
-    let mut best = Hypothesis { text, confidence: 0.0, words };
-    let mut others: Vec<Hypothesis> = Vec::new();
-    let top = decoded.n_best.iter().map(|s| s.ln_score).fold(f64::NEG_INFINITY, f64::max);
-    for path in &decoded.n_best {
-        let weight = ((path.ln_score - top) / ACOUSTIC_SCALE).exp() as f32;
-        let text = path.text.split(' ').filter_map(spelling).collect::<Vec<_>>().join(" ");
-        match std::iter::once(&mut best).chain(&mut others).find(|h| h.text == text) {
-            Some(hypothesis) => hypothesis.confidence += weight,
-            None => others.push(Hypothesis { text, confidence: weight, words: Vec::new() }),
-        }
-    }
-    others.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
+fn heard(decoded: &Decoded, at_most: usize) -> Vec<Hypothesis> {
+    let words_of = |text: &str| text.split(' ').filter_map(spelling).collect::<Vec<_>>().join(" ");
+    let mut paths: Vec<(String, f64)> =
+        decoded.n_best.iter().map(|path| (words_of(&path.text), path.ln_score)).collect();
     // The best path may lie outside the paths that were looked at; it is the best all the same.
-    let runner_up = others.first().map_or(1.0, |h| h.confidence);
-    best.confidence = best.confidence.max(runner_up);
-    let mut found = vec![best];
-    found.append(&mut others);
-    let total: f32 = found.iter().map(|h| h.confidence).sum();
-    found.iter_mut().for_each(|h| h.confidence /= total);
-    found.truncate(at_most);
-    found
+    let best = words_of(&decoded.best.join(" "));
+    if paths.iter().all(|(text, _)| *text != best) {
+        let top = paths.iter().map(|(_, score)| *score).reduce(f64::max).unwrap_or(0.0);
+        paths.insert(0, (best, top));
+    }
+    hypotheses(&paths, SCORE_SCALE, at_most)
 }
 
 /// The word without its pronunciation mark; `None` for silence, noise and the sentence's ends.
