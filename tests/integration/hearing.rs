@@ -124,6 +124,117 @@ fn talk_opens_the_microphone_for_one_utterance() {
 }
 
 #[test]
+fn the_microphone_leaves_out_the_robots_own_voice() {
+    if !can_speak() {
+        return;
+    }
+    let person = Person::new();
+    let silence = "while :; do head -c 3200 /dev/zero; sleep 0.1; done";
+    let silence = format!("speech.microphone.command=[\"sh\", \"-c\", \"{silence}\"]");
+    // Nothing plays, but every sentence takes as long as it would sound.
+    let aloud = ["speech.voice=espeak-ng", "speech.player=[\"none\"]"];
+    let group = up(&person, "hands-free", &[silence.as_str(), aloud[0], aloud[1]]);
+    wait_for_microphone(&group, "listening");
+    group.say("get me the bowl");
+    wait_for_microphone(&group, "muted");
+    wait_for_microphone(&group, "listening");
+    group.down();
+}
+
+#[test]
+fn a_stream_of_sound_is_heard_from_standard_input_and_at_the_pace_of_a_recording() {
+    if !can_speak() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let group = Group::up(&[]);
+    let file = spoken("get me the small white bowl", folder.path());
+    let live = group.must(&["listen", &file, "--live", "--json"]).stdout;
+    let raw = folder.path().join("raw");
+    let quiet = vec![0_i16; 16_000];
+    let samples = [quiet.clone(), read_wav(Path::new(&file), 20.0).unwrap(), quiet].concat();
+    let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
+    std::fs::write(&raw, bytes).unwrap();
+    let mut command = group.command(&["listen", "-", "--json"]);
+    let piped = command.stdin(File::open(&raw).unwrap()).output().unwrap();
+    assert_eq!(piped.status.code(), Some(0), "{piped:?}");
+    for told in [live, String::from_utf8(piped.stdout).unwrap()] {
+        let lines: Vec<Value> =
+            told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        let [heard, over] = lines.as_slice() else { panic!("{told}") };
+        assert_eq!((&heard["status"], &over["status"]), (&"accepted".into(), &"over".into()));
+        assert!(heard["note"].as_str().unwrap().contains("small white bowl"), "{told}");
+        assert_eq!(over["note"], "", "nothing was lost");
+    }
+    let nobody = group.call(&["listen", "-"]);
+    assert_eq!(nobody.code, Some(1), "{nobody:?}");
+    group.down();
+}
+
+#[test]
+fn files_in_a_watched_folder_are_heard_and_put_away() {
+    if !can_speak() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let watched = folder.path().join("said");
+    let setting = format!("speech.watch_dir={}", watched.display());
+    let group = Group::up(&[&setting]);
+    wait_for("the folder", 20.0, || watched.join("heard").is_dir().then_some(()));
+    let request = spoken("get me the small white bowl", folder.path());
+    std::fs::rename(request, watched.join("request.wav")).unwrap();
+    std::fs::write(folder.path().join("noise"), "this is not a WAV file").unwrap();
+    std::fs::rename(folder.path().join("noise"), watched.join("noise.wav")).unwrap();
+    let told = |path: &str| {
+        let path = watched.join(path);
+        wait_for(&path.display().to_string(), 30.0, || {
+            path.with_extension("wav").exists().then_some(())
+        });
+        serde_json::from_str::<Value>(&std::fs::read_to_string(path).unwrap()).unwrap()
+    };
+    let heard = told("heard/request.json");
+    assert_eq!(heard["segments"][0]["utterance"], 1, "{heard}");
+    assert!(heard["segments"][0]["note"].as_str().unwrap().contains("small white bowl"), "{heard}");
+    let refused = told("refused/noise.json");
+    assert_eq!(refused["segments"][0]["status"], "refused", "{refused}");
+    group.down();
+}
+
+#[test]
+fn what_a_browser_has_recognised_comes_with_its_times_and_alternatives() {
+    let group = Group::up(&[]);
+    let words = [
+        "say",
+        "the clear bowl",
+        "--began-ago",
+        "2",
+        "--ended-ago",
+        "0.5",
+        "--or",
+        "the cleared bowl=0.25",
+        "--confidence",
+        "1,0.5,1",
+        "--json",
+    ];
+    let receipt = group.must(&words).json();
+    assert_eq!((&receipt["status"], &receipt["source"]), (&"accepted".into(), &"browser".into()));
+    assert_eq!(receipt["confidence"], 0.75);
+    let spoken_ns = receipt["end_ns"].as_u64().unwrap() - receipt["onset_ns"].as_u64().unwrap();
+    assert_eq!(spoken_ns, 1_500_000_000);
+    assert_eq!(group.await_pick(Some("clear"))["object"], "clear");
+    for (more, why) in [
+        (["--confidence", "1,1,1,1"], "3 words has 4"),
+        (["--or", "x=1.5"], "TEXT=WEIGHT"),
+        (["--began-ago", "soon"], "write seconds"),
+    ] {
+        let wrong = group.call(&["say", "the clear bowl", more[0], more[1]]);
+        assert_ne!(wrong.code, Some(0));
+        assert!(wrong.stderr.contains(why), "{wrong:?}");
+    }
+    group.down();
+}
+
+#[test]
 fn a_microphone_that_dies_is_started_again_and_one_that_is_off_says_so() {
     let person = Person::new();
     let dies = "speech.microphone.command=[\"sh\", \"-c\", \"echo no card >&2; exit 3\"]";

@@ -62,7 +62,7 @@ impl Person {
     fn give(&mut self, sound: Sound, at: Time) {
         self.keys += 1;
         let key = RequestKey([self.keys; 16]);
-        let injection = Injection { key, onset_ns: at.ns().max(1), sound };
+        let injection = Injection { key, onset_ns: at.ns().max(1), end_ns: 0, sound };
         self.saying = Some(Saying { injection, next: at });
     }
 

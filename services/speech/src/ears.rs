@@ -6,6 +6,7 @@ use crate::live::{Began, Live};
 use crate::mouth::Mouth;
 use crate::record::{Accepted, Hypothesis, Record, Said};
 use crate::said::{Content, in_words};
+use crate::transcript;
 use crate::{Config, Fx, Out, Recognised, Segment, ToRecognise};
 use node::{Span, Time};
 use protocol::outbox::Outbox;
@@ -24,6 +25,8 @@ const WAITING_MAX: usize = 256;
 const HOLD_MAX: Span = Span::from_ms(10_000);
 /// Answered requests that are remembered, so that a repeated one gets the same answer.
 const ANSWERED_MAX: usize = 128;
+/// Streams whose end waits to be told.
+const STREAMS_MAX: usize = 64;
 /// How long somebody may ask to talk, seconds.
 const TALK_S: RangeInclusive<f64> = 1.0..=60.0;
 
@@ -36,6 +39,9 @@ pub(crate) struct Ears {
     listening: Listening,
     state: EarState,
     hearing: Hearing,
+    /// Clients' streams that are over and of which something is still being recognised: utterances
+    /// and samples lost.
+    over: Vec<(RequestKey, u32, u64)>,
     /// Whether the policy's mark is known. Before that a number could be given out twice.
     marked: bool,
 }
@@ -50,6 +56,7 @@ impl Ears {
             listening: Listening::default(),
             state: EarState::Loading,
             hearing: Hearing::default(),
+            over: Vec::new(),
             marked: false,
         }
     }
@@ -78,7 +85,9 @@ impl Ears {
         }
         let onset = Time(injection.onset_ns).min(now);
         let onset = if onset == Time(0) { now } else { onset };
-        let whole = Piece::whole(injection.key, (onset, now));
+        let end = Time(injection.end_ns).min(now).max(onset);
+        let end = if injection.end_ns == 0 { now } else { end };
+        let whole = Piece::whole(injection.key, (onset, end));
         match injection.sound {
             Sound::Text(text) => {
                 let content = Content::words(vec![Hypothesis::certain(text)], Source::Text);
@@ -92,6 +101,13 @@ impl Ears {
                 fx.publish(Out::Recognise(sound, ToRecognise::File(path)));
                 false
             }
+            Sound::Transcript { hypotheses } => match transcript::hypotheses(hypotheses) {
+                Ok(hypotheses) => {
+                    let content = Content::words(hypotheses, Source::Browser);
+                    self.accept(Piece { source: Source::Browser, ..whole }, content, mouth, now, fx)
+                }
+                Err(reason) => self.refuse(whole, &reason, fx),
+            },
             Sound::Talk { longest_s } if TALK_S.contains(&longest_s) => {
                 let sound = self.listening.take(injection.key, Source::Microphone, now);
                 fx.publish(Out::Talk(sound, Span::from_s(longest_s)));
@@ -116,6 +132,9 @@ impl Ears {
                     fx.publish(Out::Recognise(sound, ToRecognise::Speech(cut)));
                 }
             }
+            Live::Over { stream, utterances, lost } => {
+                self.stream_over(stream, utterances, lost, fx);
+            }
             Live::Silent { sound, reason } => {
                 if let Some(listened) = self.listening.remove(sound) {
                     self.refuse(Piece::of(&listened, 0, 1), &reason, fx);
@@ -128,6 +147,29 @@ impl Ears {
     fn began(&mut self, began: &Began, now: Time) {
         self.listening.began(began, now);
         self.hearing.onset_ns = began.at.min(now).ns();
+    }
+
+    /// A client's stream is over. It is told so once everything said in it has its result.
+    fn stream_over(&mut self, stream: RequestKey, utterances: u32, lost: u64, fx: &mut Fx) {
+        if self.over.len() >= STREAMS_MAX {
+            self.over.remove(0);
+        }
+        self.over.retain(|(key, ..)| *key != stream);
+        self.over.push((stream, utterances, lost));
+        self.tell_streams_over(fx);
+    }
+
+    fn tell_streams_over(&mut self, fx: &mut Fx) {
+        let listening = &self.listening;
+        let ready = self.over.extract_if(.., |(key, ..)| !listening.has(*key));
+        for (key, utterances, lost) in ready.collect::<Vec<_>>() {
+            let note = match lost {
+                0 => String::new(),
+                lost => format!("{lost} samples were lost on their way"),
+            };
+            let piece = Piece { segment: (u32::MAX, utterances), ..Piece::of_stream(key) };
+            self.report(piece, ReceiptStatus::Over, &note, fx);
+        }
     }
 
     /// How the microphone is.
@@ -174,6 +216,7 @@ impl Ears {
                 self.refuse(Piece::of(&listened, 0, 1), &reason, fx);
             }
         }
+        self.tell_streams_over(fx);
         self.publish(fx);
     }
 
@@ -362,9 +405,15 @@ impl Piece {
         Self { key, segment: (0, 1), source: Source::Text, span, snr_db: 0.0 }
     }
 
+    /// A client's stream as such.
+    fn of_stream(key: RequestKey) -> Self {
+        let nothing = (Time(0), Time(0));
+        Self { source: Source::Microphone, ..Self::whole(key, nothing) }
+    }
+
     /// Piece `number` of `count` of a sound; of a live one that is a piece itself all there is.
     fn of(listened: &Listened, number: u32, count: u32) -> Self {
-        let segment = listened.segment.map_or((number, count), |segment| (segment, 1));
+        let segment = listened.segment.unwrap_or((number, count));
         let span = (listened.onset, listened.end.unwrap_or(Time(0)));
         Self { key: listened.key, segment, source: listened.source, span, snr_db: 0.0 }
     }

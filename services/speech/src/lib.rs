@@ -12,6 +12,7 @@ mod mouth;
 pub mod record;
 mod said;
 pub mod shell;
+mod transcript;
 
 #[cfg(test)]
 mod tests;
@@ -44,7 +45,7 @@ pub enum In {
     Act(Box<RobotAct>),
     /// From the arm: what it points at.
     Arm(ArmStatus),
-    /// From a microphone.
+    /// From a microphone or a client's stream.
     Live(Live),
     /// From the microphone: how it is.
     Microphone(MicrophoneStatus),

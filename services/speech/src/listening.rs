@@ -11,8 +11,9 @@ use protocol::{RequestKey, Source};
 pub(crate) struct Listened {
     /// The request, or the stream, that it belongs to.
     pub(crate) key: RequestKey,
-    /// Which piece of a stream it is; none for a recording, which consists of any number.
-    pub(crate) segment: Option<u32>,
+    /// Which piece of how many it is; none for a recording, which turns out to be any number. Of a
+    /// stream nobody knows how many: 0.
+    pub(crate) segment: Option<(u32, u32)>,
     /// Where it comes from.
     pub(crate) source: Source,
     /// When it began.
@@ -37,7 +38,7 @@ impl Listening {
     /// A sound that a client gave. Returns its number.
     pub(crate) fn take(&mut self, key: RequestKey, source: Source, onset: Time) -> u64 {
         self.last += 1;
-        let segment = (source == Source::Microphone).then_some(0);
+        let segment = (source == Source::Microphone).then_some((0, 1));
         self.sounds.insert(self.last, Listened { key, segment, source, onset, end: None });
         self.last
     }
@@ -48,7 +49,7 @@ impl Listening {
         let asked = self.sounds.get(&began.sound).map(|sound| sound.key);
         let listened = Listened {
             key: asked.unwrap_or(began.stream),
-            segment: Some(began.segment),
+            segment: Some(began.segment.map_or((0, 1), |segment| (segment, 0))),
             source: began.source,
             onset,
             end: None,

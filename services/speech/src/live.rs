@@ -26,6 +26,15 @@ pub enum Live {
         /// Why nothing was heard, in words for people.
         reason: String,
     },
+    /// A client's stream is over; nothing more comes of it.
+    Over {
+        /// The stream.
+        stream: RequestKey,
+        /// Utterances that were in it.
+        utterances: u32,
+        /// Samples of it that were lost on their way.
+        lost: u64,
+    },
 }
 
 /// The beginning of an utterance.
@@ -38,8 +47,9 @@ pub struct Began {
     pub at: Time,
     /// The stream that it is in.
     pub stream: RequestKey,
-    /// Which utterance of the stream.
-    pub segment: u32,
+    /// Which utterance of a client's stream: the tenth of a second in which it began. None for a
+    /// microphone's, which stands alone.
+    pub segment: Option<u32>,
     /// Where it comes from.
     pub source: Source,
     /// Whether the robot shall fall silent for it.

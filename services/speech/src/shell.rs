@@ -1,16 +1,19 @@
 //! The speech service's topics and devices.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
+use crate::devices::client_streams::ClientStreams;
 use crate::devices::stream::OwnVoice;
+use crate::devices::watched_folder::WatchedFolder;
 use crate::live::Live;
 use crate::{Config, In, Out, Recognised, SpeechNode};
 use crossbeam_channel::Receiver;
 use language::{Language, Reader as TextReader};
 use node::Span;
 use protocol::{
-    Activity, AppliedMark, ArmStatus, Hearing, Injection, MotionCommand, Presented, Receipt,
-    RobotAct, Service, Utterance, topics,
+    Activity, AppliedMark, ArmStatus, AudioChunk, Hearing, Injection, MotionCommand, Presented,
+    Receipt, RobotAct, Service, Utterance, topics,
 };
 use runtime::bus::{EncodedReader, PortError, Reader, Writer};
 use runtime::device::DeviceSender;
@@ -53,6 +56,7 @@ impl Program for SpeechProgram {
 /// The speech service's topics and devices.
 pub struct SpeechShell {
     injections: EncodedReader<Injection>,
+    audio: Reader<AudioChunk>,
     marks: Reader<AppliedMark>,
     acts: Reader<RobotAct>,
     arm: Reader<ArmStatus>,
@@ -64,6 +68,8 @@ pub struct SpeechShell {
     hearing: Writer<Hearing>,
     ear: EarDevice,
     microphone: MicrophoneDevice,
+    streams: ClientStreams,
+    watched: Option<WatchedFolder>,
     voice: VoiceDevice,
     inbox: DeviceSender<In>,
     /// Answers of the devices for which there was no room in the inbox.
@@ -84,8 +90,10 @@ impl Shell<SpeechNode> for SpeechShell {
         let (settings, inbox) = (context.settings, &context.devices);
         let echo = Span::from_s(settings.speech.microphone.echo_pause.as_secs_f64());
         let own_voice = Arc::new(OwnVoice::new(echo));
+        let watched = settings.speech.watch_dir.clone().map(|folder| watch(folder, inbox));
         Ok(Self {
             injections: bus.encoded_reader(&topics::INJECTION)?,
+            audio: bus.reader(&topics::AUDIO)?,
             marks: bus.reader(&topics::MARK)?,
             acts: bus.reader(&topics::ACT)?,
             arm: bus.reader(&topics::STATUS)?,
@@ -97,6 +105,8 @@ impl Shell<SpeechNode> for SpeechShell {
             hearing: bus.writer(&topics::HEARING)?,
             ear: EarDevice::start(settings, &work, inbox),
             microphone: MicrophoneDevice::start(settings, &own_voice, inbox),
+            streams: microphone::streams(settings, &own_voice, inbox),
+            watched,
             voice: VoiceDevice::start(settings, &work, own_voice, inbox),
             inbox: inbox.clone(),
             answers: Vec::new(),
@@ -108,6 +118,7 @@ impl Shell<SpeechNode> for SpeechShell {
         self.acts.drain(|message| take(In::Act(Box::new(*message))))?;
         self.marks.drain(|message| take(In::Mark(*message)))?;
         self.arm.drain(|message| take(In::Arm(*message)))?;
+        self.audio.drain(|chunk| self.streams.take(chunk))?;
         while let Some(injection) = self.injections.take()? {
             take(In::Injection(injection));
         }
@@ -117,7 +128,10 @@ impl Shell<SpeechNode> for SpeechShell {
     fn publish(&mut self, output: Out) -> Result<(), PortError> {
         match output {
             Out::Utterance(message) => self.utterances.send(&message),
-            Out::Receipt(message) => self.receipts.send(&message),
+            Out::Receipt(message) => {
+                self.watched.iter().for_each(|watched| watched.told(&message));
+                self.receipts.send(&message)
+            }
             Out::Presented(message) => self.presented.send(&message),
             Out::Activity(message) => self.activity.send(&message),
             Out::Motion(message) => self.motion.send(&message),
@@ -145,6 +159,14 @@ impl Shell<SpeechNode> for SpeechShell {
             }
         }
     }
+}
+
+/// A folder is a client within the service.
+fn watch(folder: PathBuf, inbox: &DeviceSender<In>) -> WatchedFolder {
+    let inbox = inbox.clone();
+    // One for which there is no room is given again.
+    let give = move |injection| drop(inbox.offer(In::Injection(injection)));
+    WatchedFolder::start(folder, Box::new(give))
 }
 
 /// Hands a device's events to the main loop until either ends.

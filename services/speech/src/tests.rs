@@ -58,7 +58,7 @@ impl Speech {
 
 fn injection() -> Injection {
     let (key, sound) = (RequestKey([0; 16]), Sound::Text(String::new()));
-    Injection { key, onset_ns: 0, sound }
+    Injection { key, onset_ns: 0, end_ns: 0, sound }
 }
 
 const SOUND: u64 = LIVE_FROM;
@@ -69,7 +69,7 @@ fn began(at: Time) -> In {
         sound: SOUND,
         at,
         stream: RequestKey([7; 16]),
-        segment: 0,
+        segment: None,
         source: Source::Microphone,
         interrupts: true,
     }))

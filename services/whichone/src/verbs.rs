@@ -20,6 +20,7 @@ mod hearing;
 mod interrupt;
 mod journal;
 mod leftovers;
+mod listen;
 mod logs;
 mod motion;
 mod operate;
@@ -51,9 +52,9 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Reload(args) => operate::reload(&paths()?, args.timeout, out),
         Verb::Check(args) => check::check(&args, out),
         Verb::Swap(args) => operate::swap(&paths()?, args, out),
-        Verb::Say(args) => speak::say(&paths()?, &args.text, args.timeout, out),
+        Verb::Say(args) => speak::say(&paths()?, &args, out),
         Verb::Point(args) => speak::point(&paths()?, &args, out),
-        Verb::Listen(args) => speak::listen(&paths()?, &args.file, args.timeout, out),
+        Verb::Listen(args) => listen::listen(&paths()?, &args, out),
         Verb::Talk(args) => speak::talk(&paths()?, &args, out),
         Verb::Watch(args) => watch::watch(&paths()?, &args, out),
         Verb::Chat(args) => chat::chat(&paths()?, &args, out),

@@ -31,14 +31,17 @@ pub struct Injection {
     pub key: RequestKey,
     /// When the person began to speak or type, monotonic clock; 0: when it arrives.
     pub onset_ns: u64,
+    /// When the person had ended, monotonic clock; 0: when it arrives. Of a recording it is found
+    /// out.
+    pub end_ns: u64,
     /// What is to be heard.
     pub sound: Sound,
 }
 encoded!(
     Injection,
     "Injection",
-    "key[u8;16] onset_ns:u64 sound{Text(str),Wav(path str),Point(target_m[f64;3] words str),\
-     Talk(longest_s f64)}"
+    "key[u8;16] onset_ns:u64 end_ns:u64 sound{Text(str),Wav(path str),Point(target_m[f64;3] words str),\
+     Talk(longest_s f64),Transcript(hypotheses[(str,f64,[f32])])}"
 );
 
 /// What a client gives.
@@ -59,6 +62,12 @@ pub enum Sound {
     Talk {
         /// Longest wait for its end, seconds.
         longest_s: f64,
+    },
+    /// Speech that another recogniser has recognised already, a browser's say.
+    Transcript {
+        /// What may have been said: text, weight above 0 (their sum need not be 1), and how sure
+        /// each blank-separated word is, 0 to 1; words beyond the end are certain.
+        hypotheses: Vec<(String, f64, Vec<f32>)>,
     },
 }
 

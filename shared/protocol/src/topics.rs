@@ -93,6 +93,14 @@ pub const INJECTION: Topic = Topic {
     history: 0,
     ..topic::<Injection>("speech/inject", None)
 };
+/// Clients to speech, ten or more a second while somebody streams.
+pub const AUDIO: Topic = Topic {
+    readers: &[Service::Speech],
+    writers_max: CLIENTS_MAX,
+    buffer: 2 * WINDOW,
+    history: 0,
+    ..topic::<AudioChunk>("speech/audio", None)
+};
 /// Speech to clients.
 pub const RECEIPT: Topic = Topic {
     buffer: WINDOW,
@@ -245,8 +253,9 @@ pub mod robot {
 
 /// Every topic that the group's services and clients share; those of [`robot`] are only used with a
 /// robot behind them.
-pub const ALL: [Topic; 14] = [
+pub const ALL: [Topic; 15] = [
     INJECTION,
+    AUDIO,
     RECEIPT,
     UTTERANCE,
     PRESENTED,

@@ -83,9 +83,23 @@ impl Client {
     /// # Errors
     /// No answer within `patience`.
     pub fn inject(&self, sound: Sound, patience: Span) -> Result<Vec<Receipt>, ClientError> {
+        self.inject_said(sound, (clock::now(), Time(0)), patience)
+    }
+
+    /// As [`Client::inject`], with when the person began to say it and had ended (0: when it
+    /// arrives).
+    ///
+    /// # Errors
+    /// As [`Client::inject`].
+    pub fn inject_said(
+        &self,
+        sound: Sound,
+        said: (Time, Time),
+        patience: Span,
+    ) -> Result<Vec<Receipt>, ClientError> {
         let receipts = self.bus.reader::<Receipt>(&topics::RECEIPT)?;
         let writer = self.bus.encoded_writer::<Injection>(&topics::INJECTION)?;
-        self.inject_with(&writer, &receipts, sound, patience)
+        deliver(&writer, &receipts, sound, said, patience)
     }
 
     /// Points at a place, metres, frame `base`, as the person whom the robot sees; `words` is what is
@@ -114,28 +128,7 @@ impl Client {
         sound: Sound,
         patience: Span,
     ) -> Result<Vec<Receipt>, ClientError> {
-        let started = clock::now();
-        let injection = Injection { key: random_key(), onset_ns: started.ns(), sound };
-        let mut answers: Vec<Receipt> = Vec::new();
-        let mut sent: Option<Time> = None;
-        while clock::now() < started + patience {
-            if sent.is_none_or(|at| clock::now() >= at + RESEND_EVERY) {
-                writer.send(&injection)?;
-                sent = Some(clock::now());
-            }
-            receipts.drain(|receipt| {
-                let new = answers.iter().all(|a| a.segment != receipt.segment);
-                if receipt.request() == injection.key && new {
-                    answers.push(*receipt);
-                }
-            })?;
-            if answers.first().is_some_and(|first| answers.len() >= first.segments as usize) {
-                answers.sort_by_key(|receipt| receipt.segment);
-                return Ok(answers);
-            }
-            std::thread::sleep(POLL_EVERY);
-        }
-        Err(ClientError::Timeout { what: "speech", seconds: patience.s() })
+        deliver(writer, receipts, sound, (clock::now(), Time(0)), patience)
     }
 
     /// Latches or releases the motion stop and waits until the arm says so.
@@ -167,6 +160,39 @@ impl Client {
         }
         Err(ClientError::Timeout { what: "arm", seconds: patience.s() })
     }
+}
+
+/// Sends a sound until it is answered.
+fn deliver(
+    writer: &EncodedWriter<Injection>,
+    receipts: &Reader<Receipt>,
+    sound: Sound,
+    (began, ended): (Time, Time),
+    patience: Span,
+) -> Result<Vec<Receipt>, ClientError> {
+    let started = clock::now();
+    let (onset_ns, end_ns) = (began.ns(), ended.ns());
+    let injection = Injection { key: random_key(), onset_ns, end_ns, sound };
+    let mut answers: Vec<Receipt> = Vec::new();
+    let mut sent: Option<Time> = None;
+    while clock::now() < started + patience {
+        if sent.is_none_or(|at| clock::now() >= at + RESEND_EVERY) {
+            writer.send(&injection)?;
+            sent = Some(clock::now());
+        }
+        receipts.drain(|receipt| {
+            let new = answers.iter().all(|a| a.segment != receipt.segment);
+            if receipt.request() == injection.key && new {
+                answers.push(*receipt);
+            }
+        })?;
+        if answers.first().is_some_and(|first| answers.len() >= first.segments as usize) {
+            answers.sort_by_key(|receipt| receipt.segment);
+            return Ok(answers);
+        }
+        std::thread::sleep(POLL_EVERY);
+    }
+    Err(ClientError::Timeout { what: "speech", seconds: patience.s() })
 }
 
 /// A key that no other request has.

@@ -2,6 +2,7 @@
 //! the services. iceoryx2 is reached through this crate alone.
 
 pub mod admin;
+pub mod audio;
 pub mod bus;
 pub mod client;
 pub mod clock;

@@ -231,7 +231,8 @@ impl<'a> World<'a> {
     /// Gives the sound of an utterance to the robot.
     fn hand_in(&mut self, n: usize) {
         let onset_ns = self.said[n].0.onset.ns();
-        let injection = Injection { key: key(n), onset_ns, sound: Sound::Wav(n.to_string()) };
+        let injection =
+            Injection { key: key(n), onset_ns, end_ns: 0, sound: Sound::Wav(n.to_string()) };
         self.to_speech.push(speech::In::Injection(injection));
     }
 
@@ -370,7 +371,7 @@ fn began_to_speak(n: usize, utterance: &Utterance) -> Began {
         sound: LIVE_FROM + n as u64,
         at: utterance.onset,
         stream: key(n),
-        segment: 0,
+        segment: None,
         source: Source::Microphone,
         interrupts: true,
     }

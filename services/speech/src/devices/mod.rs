@@ -7,6 +7,7 @@
 
 pub mod audio;
 pub(crate) mod child;
+pub mod client_streams;
 pub mod ear;
 pub mod language_model;
 pub mod microphone;
@@ -18,3 +19,4 @@ pub mod stream;
 pub(crate) mod testing;
 pub mod vad;
 pub mod voice;
+pub mod watched_folder;

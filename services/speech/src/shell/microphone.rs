@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::In;
+use crate::devices::client_streams::ClientStreams;
 use crate::devices::microphone::{
     Microphone, MicrophoneEvent, MicrophoneOptions, MicrophoneState, MicrophoneStatus,
 };
@@ -51,6 +52,17 @@ impl MicrophoneDevice {
         let longest = Duration::from_secs_f64(longest.s());
         microphone.talk(sound, longest).map_err(|error| error.to_string())
     }
+}
+
+/// The listener to clients' streams.
+pub(super) fn streams(
+    settings: &Settings,
+    own_voice: &Arc<OwnVoice>,
+    inbox: &DeviceSender<In>,
+) -> ClientStreams {
+    let inbox = inbox.clone();
+    let sink = Box::new(move |event| hand_over(&inbox, event));
+    ClientStreams::start(segmenter(settings), Arc::clone(own_voice), sink)
 }
 
 fn hand_over(inbox: &DeviceSender<In>, event: MicrophoneEvent) -> Result<(), MicrophoneEvent> {

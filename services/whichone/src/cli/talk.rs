@@ -14,6 +14,19 @@ pub struct SayArgs {
     /// The words.
     #[arg(required = true, value_name = "TEXT")]
     pub text: Vec<String>,
+    /// It was spoken, and began so many seconds ago; another recogniser made text of it.
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub began_ago: Option<Duration>,
+    /// It was spoken, and ended so many seconds ago.
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub ended_ago: Option<Duration>,
+    /// What may have been said instead, with its weight; TEXT itself has what is left of 1. Can be
+    /// repeated.
+    #[arg(long = "or", value_name = "TEXT=WEIGHT", value_parser = alternative)]
+    pub alternatives: Vec<(String, f64)>,
+    /// How sure each word of TEXT is, 0 to 1, with commas between.
+    #[arg(long, value_name = "P,P,…", value_delimiter = ',')]
+    pub confidence: Vec<f32>,
     /// Longest wait until it is accepted, seconds.
     #[arg(long, value_name = "S", default_value = "10", value_parser = seconds)]
     pub timeout: Duration,
@@ -42,9 +55,17 @@ pub struct PointArgs {
 /// Arguments of `listen`.
 #[derive(Debug, Args)]
 pub struct ListenArgs {
-    /// A WAV file with speech.
+    /// A WAV file with speech, or - for a stream on standard input: one channel of signed 16-bit
+    /// samples, low byte first, at 16 kHz, with a WAV header or without.
     #[arg(value_name = "FILE.wav")]
     pub file: PathBuf,
+    /// Stream the file as fast as it was spoken, as if somebody spoke just now.
+    #[arg(long)]
+    pub live: bool,
+    /// The stream does not hold the robot's own voice (a headset): whoever speaks interrupts the
+    /// robot. Without it nothing is listened to while the robot speaks.
+    #[arg(long)]
+    pub echo_free: bool,
     /// Longest wait until it is recognised, seconds.
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds)]
     pub timeout: Duration,
@@ -142,12 +163,29 @@ pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     sensible.then(|| Duration::from_secs_f64(seconds)).ok_or_else(wrong)
 }
 
+/// A text with its weight.
+fn alternative(text: &str) -> Result<(String, f64), String> {
+    let wrong = || "write TEXT=WEIGHT with a weight between 0 and 1, e.g. `the red one=0.3`";
+    let (text, weight) = text.rsplit_once('=').ok_or_else(wrong)?;
+    let weight: f64 = weight.trim().parse().map_err(|_| wrong())?;
+    let is_share = weight > 0.0 && weight < 1.0;
+    is_share.then(|| (text.to_owned(), weight)).ok_or_else(|| wrong().to_owned())
+}
+
 /// A month: nobody waits longer, and sums of times stay far from overflow.
 const SECONDS_MAX: f64 = 2_678_400.0;
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn alternatives_have_a_weight() {
+        assert_eq!(alternative("a=b=0.25"), Ok(("a=b".to_owned(), 0.25)));
+        for wrong in ["a", "a=", "a=0", "a=1", "a=-0.5", "a=NaN"] {
+            assert!(alternative(wrong).is_err(), "{wrong}");
+        }
+    }
 
     #[test]
     fn seconds_are_numbers_that_somebody_would_wait() {

@@ -126,7 +126,8 @@ impl Conversation {
             self.injections = Some(self.client.bus().encoded_writer(&topics::INJECTION)?);
         }
         let sound = Sound::Text(text.to_owned());
-        let injection = Injection { key: random_key(), onset_ns: clock::now().ns(), sound };
+        let injection =
+            Injection { key: random_key(), onset_ns: clock::now().ns(), end_ns: 0, sound };
         self.own.insert(injection.key);
         self.saying.push_back(Words { injection, sent: None });
         Ok(())

@@ -1,28 +1,57 @@
-//! `say`, `point` and `listen`: giving the robot something to hear or see.
+//! `say`, `talk` and `point`: giving the robot something to hear or see.
 
-use std::path::Path;
 use std::time::Duration;
 
-use node::Span;
+use node::{Span, Time};
 use protocol::{Receipt, ReceiptStatus, Sound, Source};
 use runtime::client::Client;
+use runtime::clock;
 use runtime::exit::Exit;
 use runtime::group::GroupPaths;
 use serde_json::json;
 
 use super::hearing;
-use crate::cli::{PointArgs, TalkArgs};
+use crate::cli::{PointArgs, SayArgs, TalkArgs};
 use crate::output::{Ink, Output, note};
 use crate::trouble::{Outcome, Trouble};
 
 /// Says words, and tells whether they were accepted.
-pub(super) fn say(
-    paths: &GroupPaths,
-    words: &[String],
-    timeout: Duration,
-    out: &mut Output<'_>,
-) -> Outcome {
-    give(paths, Sound::Text(words.join(" ")), timeout, out)
+pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> Outcome {
+    let spoken = args.began_ago.is_some()
+        || args.ended_ago.is_some()
+        || !args.alternatives.is_empty()
+        || !args.confidence.is_empty();
+    if !spoken {
+        return give(paths, Sound::Text(args.text.join(" ")), args.timeout, out);
+    }
+    let client = Client::join(paths)?;
+    let patience = Span::from_s(args.timeout.as_secs_f64());
+    let (sound, said) = (transcript(args)?, when(args)?);
+    tell_all(&client.inject_said(sound, said, patience)?, out)
+}
+
+/// When it was said.
+fn when(args: &SayArgs) -> Result<(Time, Time), Trouble> {
+    let ended = args.ended_ago.unwrap_or_default();
+    let began = args.began_ago.unwrap_or(ended);
+    if began < ended {
+        let what = "nobody ends before he begins: --began-ago is the longer time";
+        return Err(Trouble::new(Exit::Usage, what));
+    }
+    let now = clock::now();
+    let ago = |time: Duration| now - Span::from_s(time.as_secs_f64());
+    Ok((ago(began), ago(ended)))
+}
+
+fn transcript(args: &SayArgs) -> Result<Sound, Trouble> {
+    let others: f64 = args.alternatives.iter().map(|(_, weight)| weight).sum();
+    if others >= 1.0 {
+        let what = format!("the alternatives weigh {others} and leave nothing of 1 for the text");
+        return Err(Trouble::new(Exit::Usage, what));
+    }
+    let best = (args.text.join(" "), 1.0 - others, args.confidence.clone());
+    let others = args.alternatives.iter().map(|(text, weight)| (text.clone(), *weight, Vec::new()));
+    Ok(Sound::Transcript { hypotheses: std::iter::once(best).chain(others).collect() })
 }
 
 /// Points at a place, and tells whether that was accepted.
@@ -30,22 +59,6 @@ pub(super) fn point(paths: &GroupPaths, args: &PointArgs, out: &mut Output<'_>) 
     let patience = Span::from_s(args.timeout.as_secs_f64());
     let client = Client::join(paths)?;
     tell_all(&client.point([args.x, args.y, args.z], &args.say, patience)?, out)
-}
-
-/// Plays a file to the robot, and tells what was heard in it.
-pub(super) fn listen(
-    paths: &GroupPaths,
-    file: &Path,
-    timeout: Duration,
-    out: &mut Output<'_>,
-) -> Outcome {
-    let absolute = file.canonicalize().map_err(|error| Trouble::file(file, &error))?;
-    std::fs::File::open(&absolute).map_err(|error| Trouble::file(file, &error))?;
-    let path = absolute.into_os_string().into_string().map_err(|path| {
-        let what = format!("{}: the path is not UTF-8; rename the file", path.display());
-        Trouble::new(Exit::Usage, what)
-    })?;
-    give(paths, Sound::Wav(path), timeout, out)
 }
 
 /// Opens the microphone for one utterance, and tells what was heard.
@@ -57,7 +70,13 @@ pub(super) fn talk(paths: &GroupPaths, args: &TalkArgs, out: &mut Output<'_>) ->
     give(paths, Sound::Talk { longest_s }, args.seconds + args.timeout, out)
 }
 
-fn give(paths: &GroupPaths, sound: Sound, timeout: Duration, out: &mut Output<'_>) -> Outcome {
+/// Gives a sound to the robot, and tells what became of it.
+pub(super) fn give(
+    paths: &GroupPaths,
+    sound: Sound,
+    timeout: Duration,
+    out: &mut Output<'_>,
+) -> Outcome {
     let client = Client::join(paths)?;
     let receipts = client.inject(sound, Span::from_s(timeout.as_secs_f64()))?;
     tell_all(&receipts, out)
@@ -71,7 +90,8 @@ fn tell_all(receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
     Ok(if receipts.iter().any(accepted) { Exit::Ok } else { Exit::NotReached })
 }
 
-fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Trouble> {
+/// Tells what became of an utterance.
+pub(super) fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Trouble> {
     let unclear = |error: protocol::WireError| Trouble::new(Exit::NotReached, error.to_string());
     let status = ReceiptStatus::from_code(receipt.status).map_err(unclear)?;
     let source = Source::from_code(receipt.source).map_err(unclear)?;
@@ -98,11 +118,14 @@ fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Trouble> {
             let told = format!("heard, but not meant for the robot: {note}");
             out.line(style.paint(Ink::Yellow, told))?;
         }
+        (ReceiptStatus::Over, _) if note.is_empty() => {}
+        (ReceiptStatus::Over, _) => out.line(style.paint(Ink::Yellow, note))?,
         (ReceiptStatus::Refused, _) => {
             return Err(Trouble::new(Exit::NotReached, format!("not accepted: {note}")));
         }
     }
-    match hearing::noise(receipt.snr_db).filter(|_| spoken) {
+    let measured = spoken && receipt.snr_db > 0.0;
+    match hearing::noise(receipt.snr_db).filter(|_| measured) {
         Some(noise) => out.line(style.paint(Ink::Yellow, noise)),
         None => Ok(()),
     }

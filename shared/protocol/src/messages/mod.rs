@@ -5,6 +5,7 @@
 //! needs another topic name while both are in use.
 
 mod arm;
+mod audio;
 mod common;
 mod gesture;
 mod observation;
@@ -13,6 +14,7 @@ mod speech;
 mod utterance;
 
 pub use arm::*;
+pub use audio::{AudioChunk, CHUNK_SAMPLES_MAX, Pcm};
 pub use common::{AskedQuestion, Stamp, WireQuestion};
 pub use gesture::{POINTED_AT_MAX_M, WireGesture, is_somewhere};
 pub use observation::*;

@@ -120,6 +120,8 @@ wire_enum! {
         Refused = 1,
         /// Heard, but not meant for the robot; `note` holds what was heard.
         NotForMe = 2,
+        /// A stream is over, and everything said in it has its receipt; `note` tells what was lost.
+        Over = 3,
     }
 }
 
@@ -130,9 +132,9 @@ wire_struct! {
         key: [u8; 16],
         /// [`UtteranceSeq`] given, 0 where refused.
         seq: u64,
-        /// Which piece of the sound, 0 for text.
+        /// Which piece of the sound, 0 for text; of a stream the tenth of a second in which it began.
         segment: u32,
-        /// Pieces in all.
+        /// Pieces in all; of a stream 0, and with [`ReceiptStatus::Over`] its utterances.
         segments: u32,
         /// When the person began to speak; 0 where nothing was heard.
         onset_ns: u64,

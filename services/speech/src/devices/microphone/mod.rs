@@ -18,6 +18,7 @@ use crossbeam_channel::{Sender, TrySendError, bounded};
 use crate::devices::stream::OwnVoice;
 use crate::devices::vad::SegmenterOptions;
 use crate::live::Live;
+pub(crate) use outgoing::Outgoing;
 pub use outgoing::Sink;
 pub use program::usual;
 pub use protocol::MicrophoneState;

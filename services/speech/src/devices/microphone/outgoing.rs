@@ -12,7 +12,7 @@ pub type Sink = Box<dyn Fn(MicrophoneEvent) -> Result<(), MicrophoneEvent> + Sen
 const WAITING_MAX: usize = 16;
 
 /// What is on its way out.
-pub(super) struct Outgoing {
+pub(crate) struct Outgoing {
     sink: Sink,
     waiting: VecDeque<MicrophoneEvent>,
     /// An utterance whose beginning was dropped, so that its end is, too.
@@ -21,17 +21,17 @@ pub(super) struct Outgoing {
 }
 
 impl Outgoing {
-    pub(super) fn new(sink: Sink) -> Self {
+    pub(crate) fn new(sink: Sink) -> Self {
         Self { sink, waiting: VecDeque::new(), left_out: None, dropped: 0 }
     }
 
     /// Utterances that were dropped.
-    pub(super) fn dropped(&self) -> u32 {
+    pub(crate) fn dropped(&self) -> u32 {
         self.dropped
     }
 
     /// Hands an event over as soon as there is room.
-    pub(super) fn send(&mut self, event: MicrophoneEvent) {
+    pub(crate) fn send(&mut self, event: MicrophoneEvent) {
         self.flush();
         let full = self.waiting.len() >= WAITING_MAX;
         match &event {
@@ -54,7 +54,7 @@ impl Outgoing {
     }
 
     /// Hands over what waits, as far as there is room.
-    pub(super) fn flush(&mut self) {
+    pub(crate) fn flush(&mut self) {
         while let Some(event) = self.waiting.pop_front() {
             if let Err(event) = (self.sink)(event) {
                 self.waiting.push_front(event);
@@ -78,7 +78,7 @@ mod tests {
             sound,
             at: Time(sound),
             stream: RequestKey([0; 16]),
-            segment: 0,
+            segment: None,
             source: Source::Microphone,
             interrupts: false,
         }))

@@ -182,7 +182,7 @@ impl Worker {
                     sound,
                     at,
                     stream: random_key(),
-                    segment: 0,
+                    segment: None,
                     source: Source::Microphone,
                     interrupts: self.options.barge_in || talking.is_some(),
                 }));

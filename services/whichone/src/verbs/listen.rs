@@ -1,0 +1,250 @@
+//! `listen`: recorded and streamed speech.
+
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use protocol::{AudioChunk, Receipt, ReceiptStatus, Sound};
+use runtime::audio::AudioStream;
+use runtime::client::Client;
+use runtime::clock;
+use runtime::exit::Exit;
+use runtime::group::GroupPaths;
+use speech::devices::audio::{RATE_HZ, read_wav};
+use speech::devices::stream::SampleClock;
+
+use super::speak;
+use crate::cli::ListenArgs;
+use crate::output::Output;
+use crate::trouble::{Outcome, Trouble};
+
+/// Samples that are streamed at a time: a twentieth of a second.
+const PIECE: usize = RATE_HZ as usize / 20;
+/// Longest recording that is streamed, seconds.
+const LONGEST_S: f64 = 3_600.0;
+/// How long one look at the sound waits for it.
+const LOOK: Duration = Duration::from_millis(20);
+/// How often a stream's end is told until it is confirmed.
+const END_EVERY: Duration = Duration::from_millis(250);
+
+/// Lets the robot listen, and tells what was heard.
+pub(super) fn listen(paths: &GroupPaths, args: &ListenArgs, out: &mut Output<'_>) -> Outcome {
+    if args.file == Path::new("-") {
+        return stream(paths, args, from_stdin(), out);
+    }
+    if args.live {
+        let samples = read_wav(&args.file, LONGEST_S);
+        let samples = samples.map_err(|error| Trouble::new(Exit::NotReached, error.to_string()))?;
+        return stream(paths, args, from_samples(samples), out);
+    }
+    let absolute = args.file.canonicalize().map_err(|error| Trouble::file(&args.file, &error))?;
+    std::fs::File::open(&absolute).map_err(|error| Trouble::file(&args.file, &error))?;
+    let path = absolute.into_os_string().into_string().map_err(|path| {
+        let what = format!("{}: the path is not UTF-8; rename the file", path.display());
+        Trouble::new(Exit::Usage, what)
+    })?;
+    speak::give(paths, Sound::Wav(path), args.timeout, out)
+}
+
+/// Pieces of sound, or why there are none.
+type Pieces = Receiver<Result<Vec<i16>, String>>;
+
+/// Streams pieces in real time and prints receipts as they come.
+fn stream(paths: &GroupPaths, args: &ListenArgs, pieces: Pieces, out: &mut Output<'_>) -> Outcome {
+    let client = Client::join(paths)?;
+    let flags = if args.echo_free { AudioChunk::ECHO_FREE } else { 0 };
+    let mut stream = AudioStream::open(&client, flags)?;
+    let (mut times, mut told) = (SampleClock::default(), Told::default());
+    loop {
+        match pieces.recv_timeout(LOOK) {
+            Ok(Ok(samples)) => {
+                let taken = times.read(samples.len(), clock::now());
+                stream.send(taken, &samples)?;
+            }
+            Ok(Err(why)) => return Err(Trouble::new(Exit::NotReached, why)),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+        told.tell(&stream.receipts()?, out)?;
+    }
+    let (until, mut ended) = (Instant::now() + args.timeout, None::<Instant>);
+    while !stream.is_over() {
+        if Instant::now() >= until {
+            let what =
+                format!("no answer within {} s; see: whichone status", args.timeout.as_secs());
+            return Err(Trouble::new(Exit::NotReached, what));
+        }
+        if ended.is_none_or(|ended| ended.elapsed() >= END_EVERY) {
+            stream.end(clock::now())?;
+            ended = Some(Instant::now());
+        }
+        thread::sleep(LOOK);
+        told.tell(&stream.receipts()?, out)?;
+    }
+    told.outcome()
+}
+
+/// What has been told of a stream.
+#[derive(Default)]
+struct Told {
+    segments: Vec<u32>,
+    accepted: bool,
+}
+
+impl Told {
+    fn tell(&mut self, receipts: &[Receipt], out: &mut Output<'_>) -> Result<(), Trouble> {
+        for receipt in receipts {
+            if self.segments.contains(&receipt.segment) {
+                continue;
+            }
+            self.segments.push(receipt.segment);
+            self.accepted |= receipt.status == ReceiptStatus::Accepted.code();
+            match speak::tell(receipt, out) {
+                // One utterance that is refused does not end the others.
+                Err(trouble) if receipt.status == ReceiptStatus::Refused.code() => {
+                    crate::output::note(trouble);
+                }
+                told => told?,
+            }
+        }
+        Ok(())
+    }
+
+    fn outcome(&self) -> Outcome {
+        match self.segments.len() {
+            0 | 1 => Err(Trouble::new(Exit::NotReached, "nobody was heard to speak".to_owned())),
+            _ => Ok(if self.accepted { Exit::Ok } else { Exit::NotReached }),
+        }
+    }
+}
+
+fn from_samples(samples: Vec<i16>) -> Pieces {
+    let (send, pieces) = sync_channel(0);
+    thread::spawn(move || {
+        let mut pace = Pace::begin();
+        for piece in samples.chunks(PIECE) {
+            pace.wait(piece.len());
+            if send.send(Ok(piece.to_vec())).is_err() {
+                return;
+            }
+        }
+    });
+    pieces
+}
+
+/// Sound as it comes; what comes faster than it was spoken waits in its pipe.
+fn from_stdin() -> Pieces {
+    let (send, pieces) = sync_channel(0);
+    thread::spawn(move || {
+        let mut input = match past_header(BufReader::new(io::stdin())) {
+            Ok(input) => input,
+            Err(why) => {
+                let _ = send.send(Err(why));
+                return;
+            }
+        };
+        let mut pace = Pace::begin();
+        let mut bytes = [0; 2 * PIECE];
+        loop {
+            let mut filled = 0;
+            // A piece is as long as what is there, but of whole samples.
+            while filled == 0 || filled % 2 == 1 {
+                match input.read(&mut bytes[filled..]) {
+                    Ok(0) => return,
+                    Ok(count) => filled += count,
+                    Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                    Err(error) => {
+                        let _ = send.send(Err(format!("standard input: {error}")));
+                        return;
+                    }
+                }
+            }
+            let pairs = bytes[..filled].chunks_exact(2);
+            let samples: Vec<i16> = pairs.map(|b| i16::from_le_bytes([b[0], b[1]])).collect();
+            pace.wait(samples.len());
+            if send.send(Ok(samples)).is_err() {
+                return;
+            }
+        }
+    });
+    pieces
+}
+
+/// Skips a WAV header, if there is one, and checks what it says.
+fn past_header(mut input: BufReader<impl Read + 'static>) -> Result<Box<dyn Read>, String> {
+    const CURE: &str = "convert it, e.g.: ffmpeg -i FILE -ar 16000 -ac 1 -f s16le - | whichone \
+        listen -";
+    let first = input.fill_buf().map_err(|error| format!("standard input: {error}"))?;
+    if !first.starts_with(b"RIFF") {
+        return Ok(Box::new(input));
+    }
+    let header = hound::WavReader::new(input);
+    let header = header.map_err(|error| format!("standard input: {error}; {CURE}"))?;
+    let spec = header.spec();
+    if (spec.sample_rate, spec.channels, spec.bits_per_sample) != (RATE_HZ, 1, 16) {
+        let hound::WavSpec { sample_rate, channels, bits_per_sample, .. } = spec;
+        return Err(format!(
+            "standard input has {channels} channels of {bits_per_sample} bits at {sample_rate} Hz, \
+             not one of 16 bits at {RATE_HZ} Hz; {CURE}"
+        ));
+    }
+    Ok(Box::new(header.into_inner()))
+}
+
+/// Holds back what comes faster than it was spoken.
+struct Pace {
+    began: Instant,
+    samples: usize,
+}
+
+impl Pace {
+    fn begin() -> Self {
+        Self { began: Instant::now(), samples: 0 }
+    }
+
+    /// Waits until these samples can have been spoken.
+    fn wait(&mut self, samples: usize) {
+        self.samples += samples;
+        let spoken = Duration::from_secs_f64(self.samples as f64 / f64::from(RATE_HZ));
+        match spoken.checked_sub(self.began.elapsed()) {
+            Some(early) => thread::sleep(early),
+            // Whoever paused does not catch up.
+            None => *self = Self::begin(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(bytes: &'static [u8]) -> Result<Vec<u8>, String> {
+        let mut all = Vec::new();
+        past_header(BufReader::new(bytes))?.read_to_end(&mut all).map_err(|e| e.to_string())?;
+        Ok(all)
+    }
+
+    fn wav(rate: u32) -> Vec<u8> {
+        let spec = hound::WavSpec {
+            channels: 1,
+            sample_rate: rate,
+            bits_per_sample: 16,
+            sample_format: hound::SampleFormat::Int,
+        };
+        let mut file = io::Cursor::new(Vec::new());
+        let mut writer = hound::WavWriter::new(&mut file, spec).unwrap();
+        writer.write_sample(513_i16).unwrap();
+        writer.finalize().unwrap();
+        file.into_inner()
+    }
+
+    #[test]
+    fn a_header_is_skipped_and_checked() {
+        assert_eq!(read(&[1, 2, 3, 4, 5, 6]), Ok(vec![1, 2, 3, 4, 5, 6]));
+        assert_eq!(read(wav(16_000).leak()), Ok(vec![1, 2]));
+        let error = read(wav(44_100).leak()).unwrap_err();
+        assert!(error.contains("44100 Hz") && error.contains("ffmpeg"), "{error}");
+    }
+}
