@@ -161,7 +161,7 @@ impl PolicyNode {
         let heard = Heard {
             seq,
             asked: asked.iter().map(asking).collect(),
-            typed: observation.source == Source::Text.code(),
+            typed: !is_live(observation.source),
             onset: Time(begun),
             end: Time(observation.end_ns.max(begun)),
             accepted: Time(observation.accepted_ns),
@@ -241,6 +241,12 @@ impl PolicyNode {
         fx.publish(Out::View(Box::new(view)));
         self.next_send = now + RESEND_EVERY;
     }
+}
+
+/// Whether the times are those at which a person spoke. Whatever a client gives whole, a recording
+/// too, comes at a moment of its own choosing.
+fn is_live(source: u8) -> bool {
+    [Source::Microphone, Source::Browser].iter().any(|live| live.code() == source)
 }
 
 fn asking(asked: &AskedQuestion) -> Asking {

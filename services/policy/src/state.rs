@@ -210,7 +210,7 @@ pub struct Heard {
     pub seq: UtteranceSeq,
     /// The latest questions whose sound had begun when it was accepted, newest first.
     pub asked: Vec<Asking>,
-    /// Whether it was typed; else it was spoken.
+    /// Whether it was typed, or given whole in another way; else it was spoken into a microphone.
     pub typed: bool,
     /// When the person began to speak, or typed.
     pub onset: Time,
