@@ -17,7 +17,8 @@ use acts::{ask, keep_words, order_again, pick, repeat, say, set};
 use dialogue::gesture::Gestures;
 use dialogue::person::Reaction;
 use dialogue::{
-    Action, Actions, Attribution, Costs, DecisionProblem, Durations, Model, Params, Planner, Step,
+    Action, Actions, Attribution, Confusion, Costs, DecisionProblem, Durations, Model, Params,
+    Planner, Step,
 };
 use node::Time;
 use pointing::Pointing;
@@ -47,6 +48,8 @@ pub struct Turns {
 pub struct Assumptions {
     /// How people speak.
     pub params: Params,
+    /// Which words are misheard for one another.
+    pub confusion: Confusion,
     /// What actions cost.
     pub costs: Costs,
     /// What each question costs, where that was measured.
@@ -82,8 +85,9 @@ impl Mind {
         turns: Turns,
         key: u64,
     ) -> Self {
-        let Assumptions { params, costs, durations, actions, prior, gestures } = assumptions;
-        let model = Model::new(&scene, params);
+        let Assumptions { params, confusion, costs, durations, actions, prior, gestures } =
+            assumptions;
+        let model = Model::new(&scene, params).with_confusion(confusion);
         let model = if prior.absent > 0.0 { model.with_absent() } else { model };
         let pointing = gestures.map(|(model, person)| Pointing::new(model, person, &scene));
         Self { scene, model, costs, durations, actions, pointing, prior, planner, turns, key }

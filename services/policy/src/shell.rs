@@ -2,6 +2,7 @@
 
 use crate::mind::{Assumptions, Mind};
 use crate::{In, Out, PolicyNode, kept, turns};
+use dialogue::Confusion;
 use protocol::{
     Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, Service, topics,
 };
@@ -9,7 +10,7 @@ use runtime::bus::{EncodedWriter, PortError, Reader, Writer};
 use runtime::driver::{Context, Program, Shell};
 use runtime::exit::{Exit, Failure};
 use runtime::lifecycle::Environment;
-use scene::Fnv1a;
+use scene::{Fnv1a, Scene};
 use settings::{Section, Settings};
 
 /// The policy as a program.
@@ -41,6 +42,7 @@ pub fn mind(settings: &Settings) -> Result<Mind, Failure> {
     let gesture = dialogue.gesture;
     let assumptions = Assumptions {
         params: dialogue.params,
+        confusion: confusion(&settings.scene)?,
         costs: dialogue.costs,
         durations: settings.durations.clone(),
         actions: dialogue.actions,
@@ -49,6 +51,12 @@ pub fn mind(settings: &Settings) -> Result<Mind, Failure> {
     };
     let (scene, turns) = (settings.scene.clone(), turns(settings));
     Ok(Mind::new(scene, assumptions, planner, turns, key(settings)))
+}
+
+/// Which of the scene's words are misheard for one another.
+fn confusion(scene: &Scene) -> Result<Confusion, Failure> {
+    Confusion::from_rows(language::confusion(scene))
+        .map_err(|e| Failure::new(Exit::Invariant, format!("words by sound: {e}")))
 }
 
 /// Identity of all that the mind decides by.

@@ -92,7 +92,7 @@ const NONE: f64 = 0.0005;
 /// that was said.
 const EARLY: f64 = 0.1;
 /// A question's usual length, seconds.
-const QUESTION_S: f64 = 1.5;
+pub const QUESTION_S: f64 = 1.5;
 /// Seconds in which somebody who broke a question off still answers it.
 const BROKEN_OFF_S: f64 = 1.0;
 /// Second thoughts right after an answer, per second ("yes. No, wait."), and the seconds in which

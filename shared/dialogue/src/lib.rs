@@ -30,7 +30,7 @@ mod user;
 mod testing;
 
 pub use action::{Action, Actions, Decision, Mode};
-pub use addressed::{Addressed, Asked, Attribution};
+pub use addressed::{Addressed, Asked, Attribution, QUESTION_S};
 pub use answer::Answer;
 pub use belief::{Belief, BeliefError};
 pub use confusion::{Confusion, NotAConfusion};

@@ -4,7 +4,7 @@ use super::Mind;
 use crate::evidence::{Asked as InWords, Evidence, Said};
 use crate::state::{Asking, Heard, Interaction, State};
 use dialogue::person::Reaction;
-use dialogue::{Addressed, Asked, Attribution};
+use dialogue::{Addressed, Asked, Attribution, QUESTION_S};
 use node::{Span, Time};
 use protocol::ActKind;
 use scene::{Intent, Question, Reading};
@@ -115,9 +115,6 @@ fn content(reading: &Reading) -> Reading {
         _ => Reading::default(),
     }
 }
-
-/// About how long it takes to say a question, seconds, where it is still being said.
-const QUESTION_S: f64 = 1.5;
 
 /// A question of the open interaction as the person met it; none for another's.
 fn put(state: &State, asking: &Asking) -> Option<Asked> {
