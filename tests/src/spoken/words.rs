@@ -15,6 +15,9 @@ const MANNERS: [f64; 4] = [0.6, 0.25, 0.1, 0.05];
 /// Probability of another remark after an answer.
 const SECOND_THOUGHT: f64 = 0.06;
 
+/// Wordings of one question that people know.
+const WORDINGS: u64 = 4;
+
 const VERBS: [&str; 5] = ["get me", "bring me", "please get me", "i want", "hand me"];
 const YES: [&str; 5] = ["yes", "yeah", "yes it is", "yes please", "sure"];
 const NO: [&str; 4] = ["no", "nope", "no it is not", "no it isn't"];
@@ -74,7 +77,8 @@ impl Person {
         let lower = question.to_lowercase();
         for (k, attribute) in self.scene.attributes().iter().enumerate() {
             let k = AttributeId::from(k);
-            let is_worded = lower.contains(&self.scene.phrase(Question::Which(k)).to_lowercase());
+            let wording = |n| self.scene.phrase_variant(Question::Which(k), n, 1).to_lowercase();
+            let is_worded = (0..WORDINGS).any(|n| lower.contains(&wording(n)));
             let is_named = std::iter::once(&attribute.name).chain(&attribute.synonyms);
             if is_worded || is_named.into_iter().any(|name| lower.contains(&name.to_lowercase())) {
                 return Asked::Which(k);
@@ -243,13 +247,18 @@ mod tests {
         for (k, attribute) in scene.attributes().iter().enumerate() {
             let k = AttributeId::from(k);
             for v in (0..attribute.values.len()).map(ValueId::from) {
-                let words = scene.phrase(Question::Attribute(k, v));
-                assert_eq!(person.understand(&words), Asked::Whether(k, v), "{words}");
-                let words = format!("I do not know \"red\" here. {words}");
+                let question = Question::Attribute(k, v);
+                for (n, presentation) in (0..WORDINGS).flat_map(|n| (1..5).map(move |p| (n, p))) {
+                    let words = scene.phrase_variant(question, n, presentation);
+                    assert_eq!(person.understand(&words), Asked::Whether(k, v), "{words}");
+                }
+                let words = format!("I do not know \"red\" here. {}", scene.phrase(question));
                 assert_eq!(person.understand(&words), Asked::Whether(k, v), "{words}");
             }
-            let words = scene.phrase(Question::Which(k));
-            assert_eq!(person.understand(&words), Asked::Which(k), "{words}");
+            for n in 0..WORDINGS {
+                let words = scene.phrase_variant(Question::Which(k), n, 1);
+                assert_eq!(person.understand(&words), Asked::Which(k), "{words}");
+            }
         }
         assert_eq!(person.understand("Which bowl would you like?"), Asked::Open);
     }
