@@ -22,6 +22,8 @@ LAYOUT = os.path.join(os.path.dirname(os.path.abspath(__file__)),
 AFFIRMATIVE = {"yes", "yeah", "sure", "yup", "yep"}
 NEGATIVE = {"no", "nope", "not", "nah", "other"}
 YES, NO, INFORM = 1, 2, 0
+# The question of a reading that answers none, as in `shared/protocol`.
+NO_QUESTION = 255
 WORDS = re.compile(r"[^\W_]+(?:[-'][^\W_]+)*")
 
 
@@ -33,6 +35,8 @@ class Scene:
         named = lambda value: value if isinstance(value, str) else value["name"]
         values = {a["name"]: [named(v) for v in a["values"]] for a in scene["attributes"]}
         words = dict.fromkeys(value for of in values.values() for value in of)
+        self.words, self.values = list(words), values
+        self.objects = [thing["name"] for thing in scene["objects"]]
         self.phrases = [(WORDS.findall(word.lower()), number) for number, word in enumerate(words)]
         self.phrases.sort(key=lambda phrase: -len(phrase[0]))
         self.key = self._key(values, scene["objects"])
@@ -54,45 +58,72 @@ class Scene:
         return fnv1a(b"".join(parts))
 
     def read(self, text):
-        """The words that were said, by number, and yes, no or neither."""
-        said = WORDS.findall(text.lower())
+        """The words that were said, each as its number and its blank-separated word's place, and
+        yes, no or neither."""
+        found = list(WORDS.finditer(text.lower()))
+        said = [match.group() for match in found]
+        places = [len(text[:match.start()].split(" ")) - 1 for match in found]
         base, at = [], 0
         while at < len(said):
             fits = (p for p in self.phrases if p[0] and said[at:at + len(p[0])] == p[0])
             phrase, word = next(fits, ([None], None))
+            base += [] if word is None else [(word, places[at])]
             at += len(phrase)
-            base += [] if word is None else [word]
         yes, no = (not words.isdisjoint(said) for words in (AFFIRMATIVE, NEGATIVE))
         return base, 0 if yes == no else YES if yes else NO
 
 
-def observe(layout, scene, utterance):
-    """The observation of an utterance."""
+def hypotheses(utterance):
+    """What was heard: text, weight, and the doubt of each blank-separated word."""
+    text = bytes(utterance.text.bytes)[:utterance.text.len]
+    for heard in utterance.hypotheses[:utterance.hypothesis_count]:
+        words = text[heard.start:heard.start + heard.len].decode()
+        yield words, heard.weight, [1.0 - sure / 255 for sure in heard.confidence]
+
+
+def empty(layout, scene, utterance):
+    """The observation of an utterance, but for what it says."""
     observation = layout.structs["Observation"]()
     for field, _ in observation._fields_:
-        # What both messages have is handed on: which utterance, which question, which gesture.
+        # What both messages have is handed on: which utterance, which questions, which gesture.
         if field != "reserved" and hasattr(utterance, field):
             setattr(observation, field, getattr(utterance, field))
     observation.scene_key = scene.key
     observation.grounded_ns = time.monotonic_ns()
-    text = bytes(utterance.text.bytes)[:utterance.text.len]
-    spans = [(h.start, h.len, h.weight)
-             for h in utterance.hypotheses[:utterance.hypothesis_count]]
-    if not spans and utterance.gesture.present:
-        spans = [(0, 0, 1.0)]
-    observation.reading_count = len(spans)
-    for reading, (start, length, weight) in zip(observation.readings, spans):
-        base, response = scene.read(text[start:start + length].decode())
-        base = base[:len(reading.base)]
-        reading.weight, reading.response, reading.intent = weight, response, INFORM
-        reading.base_count = len(base)
-        reading.base[:len(base)] = base
     return observation
 
 
-def main():
+def places(utterance):
+    """Each question that the utterance may answer, by its place, and none."""
+    return [*range(utterance.asked_count), NO_QUESTION]
+
+
+def observe(layout, scene, utterance):
+    """The observation of an utterance: each hypothesis for each question and for none. What words
+    say to a question this reader does not ask, so the readings differ in their question alone."""
+    observation = empty(layout, scene, utterance)
+    heard = list(hypotheses(utterance))
+    readings = [(place, *said) for place in places(utterance) for said in heard]
+    if not heard and utterance.gesture.present:
+        # Somebody points and says nothing: one reading, without a word.
+        readings = [(NO_QUESTION, "", 1.0, [])]
+    observation.reading_count = len(readings)
+    for reading, (place, text, weight, doubts) in zip(observation.readings, readings):
+        base, response = scene.read(text)
+        base = base[:len(reading.base)]
+        reading.question, reading.weight = place, weight
+        reading.response, reading.intent = response, INFORM
+        reading.base_count = len(base)
+        for n, (word, at) in enumerate(base):
+            reading.base[n] = word
+            reading.base_doubt[n] = doubts[at] if at < len(doubts) else 0.0
+    return observation
+
+
+def serve(observe_one):
+    """Runs as the service: an observation for every utterance, until told to end."""
     bond = Bond()
-    layout = Layout(sys.argv[1] if len(sys.argv) > 1 else LAYOUT)
+    layout = Layout(LAYOUT)
     bus = Bus(layout, "grounding")
     with open(os.path.join(bus.root, "run", "settings.toml"), "rb") as snapshot:
         scene = Scene(tomllib.load(snapshot)["scene"]["text"])
@@ -111,11 +142,11 @@ def main():
             if not bond.ends():
                 raise
         for utterance in bus.receive(utterances):
-            bus.send(observations, observe(layout, scene, utterance))
+            bus.send(observations, observe_one(layout, scene, utterance, bond))
             bell.notify()
         bond.beat()
     bond.say("STOPPING=1\n")
 
 
 if __name__ == "__main__":
-    main()
+    serve(lambda layout, scene, utterance, _: observe(layout, scene, utterance))

@@ -1,5 +1,6 @@
 //! The reader on whole utterances: the public set, our own table, and any text at all.
 
+mod dress;
 mod readings;
 mod table;
 
