@@ -120,7 +120,7 @@ pub enum Verb {
     /// Look for what is missing on this machine, and tell the cure.
     ///
     /// It looks at programs, the configuration, folders, shared memory, what killed groups have
-    /// left, the recogniser and the voice.
+    /// left, the recogniser, the voice and the microphone.
     Doctor(ConfigArgs),
     /// Read test cases, one JSON object a line, and print the belief after each.
     Belief(BeliefArgs),

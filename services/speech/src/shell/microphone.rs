@@ -40,7 +40,11 @@ impl MicrophoneDevice {
         }
         let inbox = inbox.clone();
         let sink = Box::new(move |event| hand_over(&inbox, event));
-        Self(Ok(Microphone::start(options(settings), Arc::clone(own_voice), sink)))
+        Self(Ok(Microphone::start(
+            MicrophoneOptions::of(&settings.speech),
+            Arc::clone(own_voice),
+            sink,
+        )))
     }
 
     /// Listens for one utterance.
@@ -74,18 +78,6 @@ fn hand_over(inbox: &DeviceSender<In>, event: MicrophoneEvent) -> Result<(), Mic
         Err(In::Live(live)) => Err(MicrophoneEvent::Live(live)),
         Err(In::Microphone(status)) => Err(MicrophoneEvent::Status(status)),
         Ok(()) | Err(_) => Ok(()),
-    }
-}
-
-fn options(settings: &Settings) -> MicrophoneOptions {
-    let microphone = &settings.speech.microphone;
-    let defaults = MicrophoneOptions::hands_free();
-    MicrophoneOptions {
-        programs: microphone.command.clone().map_or(defaults.programs, |own| vec![own]),
-        hands_free: microphone.mode == MicrophoneMode::HandsFree,
-        barge_in: microphone.barge_in,
-        segmenter: segmenter(settings),
-        ..defaults
     }
 }
 

@@ -54,6 +54,7 @@ pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>
     if let Ok(settings) = &settings {
         findings.push(sound::recogniser(settings));
         findings.push(sound::voice(settings));
+        findings.push(sound::microphone(settings));
     }
     for finding in &findings {
         if out.is_json() {

@@ -43,6 +43,23 @@ pub struct MicrophoneOptions {
 }
 
 impl MicrophoneOptions {
+    /// What the settings ask for.
+    pub fn of(speech: &settings::Speech) -> Self {
+        let microphone = &speech.microphone;
+        let defaults = Self::hands_free();
+        Self {
+            programs: microphone.command.clone().map_or(defaults.programs, |own| vec![own]),
+            hands_free: microphone.mode == settings::MicrophoneMode::HandsFree,
+            barge_in: microphone.barge_in,
+            segmenter: SegmenterOptions {
+                closing_pause_s: speech.closing_pause.as_secs_f64(),
+                longest_s: speech.spoken_max.as_secs_f64(),
+                ..SegmenterOptions::default()
+            },
+            ..defaults
+        }
+    }
+
     /// A microphone that listens all the time through the first program that works.
     pub fn hands_free() -> Self {
         Self {

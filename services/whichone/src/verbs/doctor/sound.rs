@@ -2,9 +2,16 @@
 
 use std::env;
 use std::path::PathBuf;
+use std::sync::{Arc, mpsc};
+use std::time::{Duration, Instant};
 
-use settings::{Recogniser, Settings, Voice};
+use node::Span;
+use settings::{MicrophoneMode, Recogniser, Settings, Voice};
+use speech::devices::microphone::{
+    Microphone, MicrophoneEvent, MicrophoneOptions, MicrophoneState,
+};
 use speech::devices::recogniser::{PocketSphinx, PocketSphinxOptions};
+use speech::devices::stream::OwnVoice;
 use speech::devices::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
 
 use super::{Finding, good, poor};
@@ -67,4 +74,45 @@ pub(super) fn voice(settings: &Settings) -> Finding {
         }
         _ => poor(WHAT, "it broke down; questions are shown and not heard"),
     }
+}
+
+/// How long a microphone may take to give sound.
+const MICROPHONE_PATIENCE: Duration = Duration::from_secs(3);
+
+/// Records for a moment as the speech service does.
+pub(super) fn microphone(settings: &Settings) -> Finding {
+    const WHAT: &str = "microphone";
+    if settings.speech.microphone.mode == MicrophoneMode::Off {
+        return good(WHAT, "switched off (speech.microphone.mode)");
+    }
+    let options = MicrophoneOptions { hands_free: true, ..MicrophoneOptions::of(&settings.speech) };
+    let programs = options.programs.len();
+    let (send, events) = mpsc::channel();
+    let sink = move |event| {
+        // Nobody listens once it is known how the microphone is.
+        let _ = send.send(event);
+        Ok(())
+    };
+    let own_voice = Arc::new(OwnVoice::new(Span::from_ms(0)));
+    let _microphone = Microphone::start(options, own_voice, Box::new(sink));
+    let (until, mut failed) = (Instant::now() + MICROPHONE_PATIENCE, Vec::new());
+    while failed.len() < programs {
+        let patience = until.saturating_duration_since(Instant::now());
+        match events.recv_timeout(patience) {
+            Ok(MicrophoneEvent::Status(status)) => match status.state {
+                MicrophoneState::Listening => {
+                    return good(WHAT, format!("{} records", status.note));
+                }
+                MicrophoneState::Broken => failed.push(status.note),
+                _ => {}
+            },
+            Ok(MicrophoneEvent::Live(_)) => {}
+            Err(_) => {
+                failed.push("the program gives no sound".to_owned());
+                break;
+            }
+        }
+    }
+    let why = failed.join("; ");
+    poor(WHAT, format!("{why}; connect one, or name a program in speech.microphone.command"))
 }
