@@ -45,7 +45,7 @@ pub struct Gate {
 }
 
 impl Gate {
-    /// The threshold that lets less than 1 % of other talk in.
+    /// The default; `docs/speech.md` tells what it lets in and what it turns away.
     pub const THRESHOLD: f32 = 0.25;
 
     /// A gate for the scene; `threshold` from 0 (let everything in) to 1.
