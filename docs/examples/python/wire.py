@@ -15,6 +15,7 @@ import time
 import iceoryx2 as iox2
 
 INTEGERS = {"u8": ctypes.c_uint8, "u16": ctypes.c_uint16, "u32": ctypes.c_uint32,
+            "i16": ctypes.c_int16,
             "u64": ctypes.c_uint64, "i32": ctypes.c_int32, "f32": ctypes.c_float,
             "f64": ctypes.c_double}
 BEAT_S = 0.2
