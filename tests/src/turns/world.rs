@@ -228,11 +228,13 @@ impl<'a> World<'a> {
         Span::from_s(least + (most - least) * self.rng.uniform())
     }
 
-    /// Gives the sound of an utterance to the robot.
+    /// Gives what the client's recogniser made of an utterance to the robot, with its time.
     fn hand_in(&mut self, n: usize) {
-        let onset_ns = self.said[n].0.onset.ns();
-        let injection =
-            Injection { key: key(n), onset_ns, end_ns: 0, sound: Sound::Wav(n.to_string()) };
+        let said = &self.said[n].0;
+        let hypotheses = vec![(said.text.clone(), 1.0, Vec::new())];
+        let (onset_ns, sound) = (said.onset.ns(), Sound::Transcript { hypotheses });
+        let end_ns = said.end.ns();
+        let injection = Injection { key: key(n), onset_ns, end_ns, sound };
         self.to_speech.push(speech::In::Injection(injection));
     }
 
@@ -269,13 +271,10 @@ impl<'a> World<'a> {
                 speech::Out::Speak(line) => self.speak(&line),
                 speech::Out::Hush => self.fall_silent(),
                 speech::Out::Recognise(sound, what) => {
-                    let (utterance, pause) = match what {
-                        ToRecognise::File(path) => (path.parse().expect("its number"), STEP),
-                        ToRecognise::Speech(_) => {
-                            ((sound - LIVE_FROM) as usize, self.recogniser_s())
-                        }
-                    };
-                    self.working.push(Working { at: self.now + pause, sound, utterance });
+                    debug_assert!(matches!(what, ToRecognise::Speech(_)), "nobody gives files");
+                    let utterance = (sound - LIVE_FROM) as usize;
+                    let at = self.now + self.recogniser_s();
+                    self.working.push(Working { at, sound, utterance });
                 }
                 speech::Out::Motion(_) | speech::Out::Hearing(_) => {}
                 speech::Out::Talk(..) => unreachable!("nobody asks for the microphone"),
