@@ -15,7 +15,6 @@ import time
 import iceoryx2 as iox2
 
 INTEGERS = {"u8": ctypes.c_uint8, "u16": ctypes.c_uint16, "u32": ctypes.c_uint32,
-            "i16": ctypes.c_int16,
             "u64": ctypes.c_uint64, "i32": ctypes.c_int32, "f32": ctypes.c_float,
             "f64": ctypes.c_double}
 BEAT_S = 0.2
@@ -70,7 +69,9 @@ class Layout:
             text = {"_fields_": [("len", ctypes.c_uint32), ("bytes", ctypes.c_uint8 * (length - 4))]}
             return type("FixedText", (ctypes.Structure,), text)
         # The structs' own names on the wire leave the prefix out.
-        return INTEGERS.get(kind) or self.structs[kind.removeprefix("Wire")]
+        known = INTEGERS.get(kind) or self.structs.get(kind.removeprefix("Wire"))
+        # What no service here reads, as sound, stays bytes.
+        return known or ctypes.c_uint8 * length
 
 
 class Bus:
