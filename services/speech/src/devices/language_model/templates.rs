@@ -233,7 +233,7 @@ pub(super) const SHAPES: &[(u32, &[&str])] = &[
     (
         2,
         &[
-            "what {attribute} is it",
+            "what {attribute}s do you have",
             "what are my options",
             "which ones are there",
             "which one",

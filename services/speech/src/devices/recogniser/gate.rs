@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use language::{Language, Reader};
-use scene::{Intent, Question, Reading, Response, Scene, WordId};
+use scene::{Intent, ObjectId, Question, Reading, Response, Scene, WordId};
 
 use super::Hypothesis;
 use crate::devices::language_model::scene_sentences;
@@ -34,6 +34,11 @@ pub enum RejectReason {
     },
 }
 
+/// Share of a meaning in the scene's words alone from which it is taken whatever else was heard.
+const PLAIN: f32 = 0.5;
+/// A yes or no says something only where something was asked.
+const ANY_QUESTION: Question = Question::Point(ObjectId(0));
+
 /// Turns away speech that is not about the scene.
 ///
 /// The language model knows the scene's sentences and common words of other talk; what is said
@@ -62,7 +67,7 @@ impl Gate {
             return Outcome::Rejected { text: String::new(), reason };
         };
         let score = self.score(&hypotheses);
-        if score >= self.threshold {
+        if score >= self.threshold || self.plain_content(&hypotheses) >= PLAIN {
             return Outcome::Accepted(hypotheses);
         }
         let reason = RejectReason::NotForTheRobot { score };
@@ -91,17 +96,38 @@ impl Gate {
         of_scene / all.max(1.0)
     }
 
+    /// The share of the weightiest meaning with content that is said in the scene's words alone. A
+    /// short answer is plain even where what it might have been instead is other talk: "yes", or
+    /// else "years".
+    fn plain_content(&self, hypotheses: &[Hypothesis]) -> f32 {
+        let total: f32 = hypotheses.iter().map(|h| h.confidence).sum();
+        let plain = hypotheses.iter().filter(|hypothesis| self.share(hypothesis) >= 1.0);
+        let with_content =
+            self.meanings(plain, ANY_QUESTION).into_iter().filter(|(m, _)| m.has_content());
+        with_content.map(|(_, weight)| weight).fold(0.0, f32::max) / total.max(f32::MIN_POSITIVE)
+    }
+
     /// The largest sum of the weights of hypotheses that mean the same.
     fn weightiest_meaning(&self, hypotheses: &[Hypothesis]) -> f32 {
+        let meanings = self.meanings(hypotheses.iter(), Question::None);
+        meanings.iter().map(|(_, weight)| *weight).fold(0.0, f32::max)
+    }
+
+    /// What the hypotheses mean as answers to `question`, with the sum of weights for each meaning.
+    fn meanings<'h>(
+        &self,
+        hypotheses: impl Iterator<Item = &'h Hypothesis>,
+        question: Question,
+    ) -> Vec<(Meaning, f32)> {
         let mut meanings: Vec<(Meaning, f32)> = Vec::new();
         for hypothesis in hypotheses {
-            let meaning = Meaning::of(self.reader.read(&hypothesis.text, Question::None).reading);
+            let meaning = Meaning::of(self.reader.read(&hypothesis.text, question).reading);
             match meanings.iter_mut().find(|(known, _)| *known == meaning) {
                 Some((_, weight)) => *weight += hypothesis.confidence,
                 None => meanings.push((meaning, hypothesis.confidence)),
             }
         }
-        meanings.iter().map(|(_, weight)| *weight).fold(0.0, f32::max)
+        meanings
     }
 }
 
@@ -122,6 +148,14 @@ impl Meaning {
             response: reading.response,
             intent: reading.intent,
         }
+    }
+
+    /// Whether it says something about an object, or answers.
+    fn has_content(&self) -> bool {
+        self.intent == Intent::Inform
+            && (!self.base.is_empty()
+                || !self.excluded.is_empty()
+                || self.response != Response::None)
     }
 }
 
@@ -164,6 +198,16 @@ mod tests {
         let same = gate.score(&heard(&[("the white one", 0.5), ("a white bowl", 0.5)]));
         let other = gate.score(&heard(&[("the white one", 0.5), ("the clear one", 0.5)]));
         assert!((same - 1.0).abs() < 1e-6 && (other - 0.5).abs() < 1e-6, "{same} {other}");
+    }
+
+    #[test]
+    fn a_short_answer_passes_though_it_sounds_like_other_talk() {
+        let gate = Gate::new(&bowls(), Gate::THRESHOLD);
+        let answer = heard(&[("yes", 0.7), ("years", 0.3)]);
+        assert!(gate.score(&answer) < Gate::THRESHOLD);
+        assert!(matches!(gate.judge(answer), Outcome::Accepted(_)));
+        let other = heard(&[("years", 0.6), ("yes", 0.4)]);
+        assert!(matches!(gate.judge(other), Outcome::Rejected { .. }));
     }
 
     #[test]
