@@ -27,6 +27,8 @@ pub struct Speech {
     /// The program, with its arguments, that turns audio into words; there if `recogniser` is
     /// [`Recogniser::Command`].
     pub recogniser_command: Option<Vec<String>>,
+    /// The model file of whisper.cpp; there if `recogniser` is [`Recogniser::Whisper`].
+    pub whisper_model: Option<PathBuf>,
     /// Folder of the recogniser's acoustic model; found by itself where nothing is said.
     pub model_dir: Option<PathBuf>,
     /// How much speech must be about the scene to be taken as meant for the robot, 0 … 1.
@@ -94,6 +96,8 @@ pub enum Recogniser {
     PocketSphinx,
     /// A program of the operator's.
     Command,
+    /// whisper.cpp with a model file of the operator's, in builds that have it.
+    Whisper,
     /// None: typed text only.
     None,
 }
@@ -115,6 +119,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
             ("auto", Recogniser::Auto),
             ("pocketsphinx", Recogniser::PocketSphinx),
             ("command", Recogniser::Command),
+            ("whisper", Recogniser::Whisper),
             ("none", Recogniser::None),
         ],
     );
@@ -127,6 +132,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
         player: f.optional_command("player"),
         recogniser,
         recogniser_command: recogniser_command(f, recogniser),
+        whisper_model: whisper_model(f, recogniser),
         model_dir: absolute(f, "model_dir"),
         accept_score_min: f.number("accept_score_min", 0.0..=1.0),
         closing_pause: Duration::from_millis(f.whole("closing_pause_ms", 100..=5000)),
@@ -193,6 +199,15 @@ fn recogniser_command(f: &mut Fields<'_>, recogniser: Recogniser) -> Option<Vec<
         f.problem("recogniser", "`command` needs a recogniser_command", cure);
     }
     command
+}
+
+fn whisper_model(f: &mut Fields<'_>, recogniser: Recogniser) -> Option<PathBuf> {
+    let model = absolute(f, "whisper_model");
+    if recogniser == Recogniser::Whisper && model.is_none() {
+        let cure = "write `whisper_model = \"/path/to/ggml-model.bin\"`";
+        f.problem("recogniser", "`whisper` needs a whisper_model", cure);
+    }
+    model
 }
 
 /// The services run in other folders than the one where this was written, so it must be absolute.

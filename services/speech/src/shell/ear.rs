@@ -6,7 +6,7 @@ use crate::devices::ear::{
     Ear, EarEvent, EarOptions, EarState as Hearing, Segment as Heard, Sound,
 };
 use crate::devices::recogniser::{
-    Backend, CommandOptions, Hypothesis as Decoded, Outcome, PocketSphinxOptions,
+    Backend, CommandOptions, Hypothesis as Decoded, Outcome, PocketSphinxOptions, WhisperOptions,
 };
 use crate::devices::vad::SegmenterOptions;
 use crate::{Hypothesis, In, Recognised, Segment, ToRecognise};
@@ -70,6 +70,10 @@ fn backend(speech: &settings::Speech, work: &Path) -> Backend {
     if speech.recogniser == settings::Recogniser::Command {
         let command = speech.recogniser_command.clone().unwrap_or_default();
         return Backend::Command(CommandOptions::new(command));
+    }
+    if speech.recogniser == settings::Recogniser::Whisper {
+        let model = speech.whisper_model.clone().unwrap_or_default();
+        return Backend::Whisper(WhisperOptions::new(model));
     }
     let options = PocketSphinxOptions::debian(work.join("recogniser"));
     let model = speech.model_dir.clone().unwrap_or_else(|| options.model.clone());

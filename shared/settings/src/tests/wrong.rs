@@ -211,6 +211,18 @@ fn values_that_contradict_each_other() {
         ],
     );
     check(
+        "speech.toml",
+        "recogniser = 'whisper'",
+        &[
+            "speech.toml: recogniser: `whisper` needs a whisper_model (write `whisper_model = \"/path/to/ggml-model.bin\"`)",
+        ],
+    );
+    check(
+        "speech.toml",
+        "recogniser = 'whisper'\nwhisper_model = 'ggml-model.bin'",
+        &["speech.toml: whisper_model: is not an absolute path (write it from `/` on)"],
+    );
+    check(
         "group.toml",
         "restart.backoff_max_ms = 50",
         &[

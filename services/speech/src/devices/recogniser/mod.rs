@@ -6,6 +6,7 @@ mod ffi;
 mod gate;
 mod pocketsphinx;
 mod unavailable;
+mod whisper;
 
 use std::ops::Range;
 
@@ -15,6 +16,7 @@ pub use command::{Command, CommandOptions};
 pub use gate::{Gate, Outcome, RejectReason};
 pub use pocketsphinx::{PocketSphinx, PocketSphinxOptions};
 pub use unavailable::RecogniserUnavailable;
+pub use whisper::WhisperOptions;
 
 /// One way to understand an utterance.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +65,8 @@ pub enum Backend {
     PocketSphinx(PocketSphinxOptions),
     /// A program of the operator's.
     Command(CommandOptions),
+    /// whisper.cpp, in builds that have it.
+    Whisper(WhisperOptions),
 }
 
 impl Backend {
@@ -81,6 +85,7 @@ impl Backend {
                 (Box::new(recogniser), unpronounceable)
             }
             Self::Command(options) => (Box::new(Command::open(options.clone())?), Vec::new()),
+            Self::Whisper(options) => (options.open(scene)?, Vec::new()),
         })
     }
 }

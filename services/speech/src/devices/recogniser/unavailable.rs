@@ -42,4 +42,18 @@ pub enum RecogniserUnavailable {
         /// Why not.
         reason: String,
     },
+    /// whisper.cpp is asked for and not part of this build.
+    #[error(
+        "speech.toml: recogniser: `whisper` is not part of this build \
+         (build with `--features speech/whisper`, or WHICHONE_FEATURES=speech/whisper scripts/run; or use `command`)"
+    )]
+    WhisperNotBuilt,
+    /// The model file is missing, damaged or of another kind.
+    #[error("{} cannot be used: {reason} (set speech.whisper_model to a model of whisper.cpp, ggml-….bin)", path.display())]
+    WhisperModel {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        reason: String,
+    },
 }

@@ -10,7 +10,7 @@ use settings::{MicrophoneMode, Recogniser, Settings, Voice};
 use speech::devices::microphone::{
     Microphone, MicrophoneEvent, MicrophoneOptions, MicrophoneState,
 };
-use speech::devices::recogniser::{PocketSphinx, PocketSphinxOptions};
+use speech::devices::recogniser::{PocketSphinx, PocketSphinxOptions, WhisperOptions};
 use speech::devices::stream::OwnVoice;
 use speech::devices::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
 
@@ -37,6 +37,14 @@ pub(super) fn recogniser(settings: &Settings) -> Finding {
     const WHAT: &str = "recogniser";
     if settings.speech.recogniser == Recogniser::None {
         return good(WHAT, "switched off (speech.recogniser)");
+    }
+    if settings.speech.recogniser == Recogniser::Whisper {
+        let options =
+            WhisperOptions::new(settings.speech.whisper_model.clone().unwrap_or_default());
+        return match options.open(&settings.scene) {
+            Ok(_) => good(WHAT, format!("whisper.cpp with {}", options.model.display())),
+            Err(error) => poor(WHAT, format!("{error}; without it only typed words are heard")),
+        };
     }
     let work = Work::new("recogniser");
     let defaults = PocketSphinxOptions::debian(&work.0);
