@@ -1,23 +1,27 @@
 //! Hearing: each utterance accepted once, numbered without a gap, and sent until it is applied.
 
+mod piece;
+mod told;
+
 use crate::devices::microphone::MicrophoneStatus;
-use crate::listening::{Listened, Listening};
+use crate::listening::Listening;
 use crate::live::{Began, Live};
 use crate::mouth::Mouth;
-use crate::record::{Accepted, Hypothesis, Record, Said};
-use crate::said::{Content, in_words};
+use crate::record::{Accepted, Hypothesis, Record};
+use crate::said::Content;
 use crate::transcript;
 use crate::{Config, Fx, Out, Recognised, Segment, ToRecognise};
 use node::{Span, Time};
+use piece::Piece;
 use protocol::outbox::Outbox;
 use protocol::{
-    Activity, AppliedMark, AskedQuestion, EarState, FixedText, Hearing, Injection, MotionCommand,
-    MotionOrder, Receipt, ReceiptStatus, RequestKey, Sound, Source, Utterance, UtteranceSeq,
-    topics,
+    Activity, AppliedMark, EarState, FixedText, Hearing, Injection, MotionCommand, MotionOrder,
+    Receipt, ReceiptStatus, RequestKey, Sound, Source, UtteranceSeq, topics,
 };
 use scene::{Intent, Question};
 use std::collections::VecDeque;
 use std::ops::RangeInclusive;
+use told::{receipt, utterance};
 
 /// Utterances that wait to be applied at a time; beyond it people are asked to wait.
 const WAITING_MAX: usize = 256;
@@ -388,110 +392,9 @@ impl Ears {
     }
 }
 
-/// A piece of a sound.
-#[derive(Clone, Copy)]
-struct Piece {
-    key: RequestKey,
-    segment: (u32, u32),
-    source: Source,
-    /// Begin and end, where anything was heard.
-    span: (Time, Time),
-    snr_db: f32,
-}
-
-impl Piece {
-    /// Text, or whatever else comes whole.
-    fn whole(key: RequestKey, span: (Time, Time)) -> Self {
-        Self { key, segment: (0, 1), source: Source::Text, span, snr_db: 0.0 }
-    }
-
-    /// A client's stream as such.
-    fn of_stream(key: RequestKey) -> Self {
-        let nothing = (Time(0), Time(0));
-        Self { source: Source::Microphone, ..Self::whole(key, nothing) }
-    }
-
-    /// Piece `number` of `count` of a sound; of a live one that is a piece itself all there is.
-    fn of(listened: &Listened, number: u32, count: u32) -> Self {
-        let segment = listened.segment.unwrap_or((number, count));
-        let span = (listened.onset, listened.end.unwrap_or(Time(0)));
-        Self { key: listened.key, segment, source: listened.source, span, snr_db: 0.0 }
-    }
-
-    /// The piece with what was measured. Of a live sound the times are known, those in a recording
-    /// count from its beginning.
-    fn cut(self, segment: &Segment, now: Time) -> Self {
-        let at = |s: f64| (self.span.0 + Span::from_s(s)).min(now);
-        let recorded = (at(segment.span_s.0), at(segment.span_s.1));
-        let span = if self.span.1 == Time(0) { recorded } else { self.span };
-        Self { span, snr_db: segment.snr_db, ..self }
-    }
-}
-
 fn keep<T>(queue: &mut VecDeque<T>, item: T) {
     if queue.len() >= ANSWERED_MAX {
         queue.pop_front();
     }
     queue.push_back(item);
-}
-
-fn receipt(accepted: &Accepted) -> Receipt {
-    let best = accepted.hypotheses.first();
-    let text = best.map_or("", |best| best.text.as_str());
-    let total: f64 = accepted.hypotheses.iter().map(|heard| heard.weight).sum();
-    let confidence = best.map_or(1.0, |best| best.weight / total);
-    Receipt {
-        key: accepted.key.0,
-        seq: accepted.seq.0,
-        segment: accepted.segment.0,
-        segments: accepted.segment.1,
-        onset_ns: accepted.onset.ns(),
-        end_ns: accepted.end.ns(),
-        confidence: confidence as f32,
-        snr_db: accepted.snr_db,
-        status: ReceiptStatus::Accepted.code(),
-        source: accepted.source,
-        note: FixedText::truncated(&in_words(text, accepted.gesture)),
-        ..Receipt::default()
-    }
-}
-
-fn utterance(accepted: &Accepted) -> Utterance {
-    let mut utterance = Utterance {
-        seq: accepted.seq.0,
-        gesture: accepted.gesture.into(),
-        onset_ns: accepted.onset.ns(),
-        end_ns: accepted.end.ns(),
-        accepted_ns: accepted.accepted.ns(),
-        source: accepted.source,
-        ..Utterance::default()
-    };
-    let asked: Vec<AskedQuestion> = accepted.asked.iter().map(asked_question).collect();
-    utterance.set_asked(&asked);
-    let heard: Vec<protocol::Hypothesis<'_>> = (accepted.hypotheses.iter())
-        .map(|Hypothesis { text, weight, confidence }| {
-            let confidence = confidence.clone();
-            protocol::Hypothesis { text, weight: *weight, confidence }
-        })
-        .collect();
-    if utterance.set_hypotheses(&heard).is_err() {
-        // The best one fits (it was checked when it was accepted); the others are a refinement.
-        let best = heard.get(..1).unwrap_or_default();
-        let fitted = utterance.set_hypotheses(best);
-        debug_assert!(fitted.is_ok(), "an accepted utterance fits");
-    }
-    utterance
-}
-
-fn asked_question(said: &Said) -> AskedQuestion {
-    AskedQuestion {
-        prompt: said.prompt.0,
-        scene: said.scene_key,
-        began_ns: said.started.ns(),
-        ended_ns: if said.whole || said.ended > said.started { said.ended.ns() } else { 0 },
-        question: said.question.into(),
-        presentation: said.presentation,
-        whole: u8::from(said.whole),
-        ..AskedQuestion::default()
-    }
 }

@@ -118,10 +118,7 @@ impl<'a> Speaker<'a> {
             "place" => self.place(),
             "value" => self.any_value().map(|(_, v)| self.form(v)),
             "noun" => Some(self.scene.noun().to_owned()),
-            _ => {
-                let attributes = self.scene.attributes();
-                self.random.pick(attributes).map(|attribute| attribute.name.clone())
-            }
+            _ => None,
         }
     }
 

@@ -3,7 +3,7 @@
 
 /// Sentence shapes by weight. Slots: `{np}` a noun phrase ("the small bowl in the cabinet"),
 /// `{one}` a short one ("the white one"), `{is}` what follows "it is", `{place}` a place, `{value}`
-/// a bare value, `{noun}` what the objects are called, `{attribute}` an attribute's name.
+/// a bare value, `{noun}` what the objects are called.
 pub(super) const SHAPES: &[(u32, &[&str])] = &[
     // Requests.
     (30, &["get me {np}"]),
@@ -233,7 +233,6 @@ pub(super) const SHAPES: &[(u32, &[&str])] = &[
     (
         2,
         &[
-            "what {attribute}s do you have",
             "what are my options",
             "which ones are there",
             "which one",
