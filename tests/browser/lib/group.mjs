@@ -1,0 +1,95 @@
+// A process group for one test: its own name, home, shared memory and port.
+
+import { mkdtemp, readdir, readFile, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { ROOT, whichone } from "./program.mjs";
+import { until } from "./until.mjs";
+
+/** A running group. */
+export class Group {
+  /** @param {string} home @param {string} name */
+  constructor(home, name) {
+    this.home = home;
+    this.name = name;
+    this.url = "";
+  }
+
+  /**
+   * Starts a group with the profile for tests and waits until it is ready.
+   * @param {string[]} settings `key=value` each
+   */
+  static async up(settings = []) {
+    const home = await mkdtemp(join(tmpdir(), "wb"));
+    const group = new Group(home, `b${process.pid}-${home.slice(-6).toLowerCase()}`);
+    const up = ["up", "--detach", "--wait", "ready", "--timeout", "40", "--profile", "ci"];
+    const sets = settings.flatMap((setting) => ["--set", setting]);
+    await group.must(...up, "--config", join(ROOT, "config"), ...sets);
+    group.url = (await until("the console's address", () => group.address())).trim();
+    return group;
+  }
+
+  /** The console's address, as the group's own file tells it; nothing while there is none. */
+  async address() {
+    const files = await readdir(this.home, { recursive: true });
+    const file = files.find((path) => path.endsWith("console.url"));
+    return file && readFile(join(this.home, file), "utf8");
+  }
+
+  /** Runs `whichone WORDS…` for this group. @param {string[]} words */
+  call(...words) {
+    return whichone(words, { WHICHONE_HOME: this.home, WHICHONE_GROUP: this.name });
+  }
+
+  /** As `call`, for what must succeed; its output. @param {string[]} words */
+  async must(...words) {
+    const ended = await this.call(...words);
+    if (ended.code === 0) return ended.stdout;
+    const logs = await this.logs();
+    throw new Error(`whichone ${words.join(" ")}: ${ended.code}\n${ended.stderr}\n${logs}`);
+  }
+
+  /** As `must`, read as JSON. @param {string[]} words */
+  async json(...words) {
+    return JSON.parse(await this.must(...words, "--json"));
+  }
+
+  /** Everything that the console shows, from its own interface. */
+  async state() {
+    const response = await fetch(new URL("/api/state", this.url));
+    return response.json();
+  }
+
+  /** What the supervisor says of one service. @param {string} name */
+  async service(name) {
+    const ended = await this.call("status", "--json");
+    return JSON.parse(ended.stdout).services.find((service) => service.name === name);
+  }
+
+  /** Kills a service and waits until it is back. @param {string} name */
+  async killAndWait(name) {
+    const { pid, incarnation } = await this.service(name);
+    process.kill(pid, "SIGKILL");
+    await until(`${name} to come back`, async () => {
+      const now = await this.service(name);
+      return now.incarnation > incarnation && now.actual === "ready";
+    });
+  }
+
+  /** The ends of the logs, for a test that failed. */
+  async logs() {
+    const files = await readdir(this.home, { recursive: true });
+    const tail = async (file) => {
+      const text = await readFile(join(this.home, file), "utf8");
+      return `--- ${file}\n${text.split("\n").slice(-20).join("\n")}`;
+    };
+    const logs = await Promise.all(files.filter((file) => file.endsWith(".log")).map(tail));
+    return logs.join("\n");
+  }
+
+  /** Stops the group and takes its home away. */
+  async down() {
+    await this.call("down");
+    await rm(this.home, { recursive: true, force: true });
+  }
+}

@@ -1,0 +1,29 @@
+import { tmpdir } from "node:os";
+import { defineConfig } from "@playwright/test";
+import { CHROMIUM, CHROMIUM_FLAGS } from "./lib/chromium.mjs";
+import { TARGET } from "./lib/program.mjs";
+
+// Each test starts a group and a browser of its own; two at a time fill two cores.
+export default defineConfig({
+  testDir: "specs",
+  outputDir: `${TARGET}/browser/results`,
+  timeout: 120_000,
+  expect: { timeout: 20_000 },
+  fullyParallel: true,
+  workers: Number(process.env.WHICHONE_BROWSER_WORKERS ?? 2),
+  retries: 0,
+  forbidOnly: true,
+  reporter: [["list"]],
+  use: {
+    browserName: "chromium",
+    headless: true,
+    locale: "en-US",
+    trace: "retain-on-failure",
+    screenshot: "only-on-failure",
+    launchOptions: {
+      executablePath: CHROMIUM,
+      args: CHROMIUM_FLAGS,
+      env: { ...process.env, TMPDIR: tmpdir() },
+    },
+  },
+});
