@@ -126,6 +126,9 @@ pub const ACTIVITY: Topic = Topic {
 };
 /// Speech to clients.
 pub const HEARING: Topic = topic::<Hearing>("speech/hearing", Some(Service::Speech));
+/// Speech to clients, some three a second while somebody speaks.
+pub const PARTIAL: Topic =
+    Topic { buffer: WINDOW, ..topic::<Partial>("speech/partial", Some(Service::Speech)) };
 /// Grounding to policy.
 pub const OBSERVATION: Topic = Topic {
     readers: &[Service::Policy],
@@ -253,7 +256,7 @@ pub mod robot {
 
 /// Every topic that the group's services and clients share; those of [`robot`] are only used with a
 /// robot behind them.
-pub const ALL: [Topic; 15] = [
+pub const ALL: [Topic; 16] = [
     INJECTION,
     AUDIO,
     RECEIPT,
@@ -261,6 +264,7 @@ pub const ALL: [Topic; 15] = [
     PRESENTED,
     ACTIVITY,
     HEARING,
+    PARTIAL,
     OBSERVATION,
     MARK,
     ACT,

@@ -49,6 +49,7 @@ fn layout() -> String {
     describe::<protocol::Presented>(&mut text);
     describe::<protocol::Activity>(&mut text);
     describe::<protocol::Hearing>(&mut text);
+    describe::<protocol::Partial>(&mut text);
     describe::<protocol::AudioChunk>(&mut text);
     describe::<protocol::Receipt>(&mut text);
     describe::<protocol::ArmStatus>(&mut text);
@@ -104,6 +105,7 @@ fn no_struct_has_padding() {
     assert_without_padding::<protocol::Presented>();
     assert_without_padding::<protocol::Activity>();
     assert_without_padding::<protocol::Hearing>();
+    assert_without_padding::<protocol::Partial>();
     assert_without_padding::<protocol::AudioChunk>();
     assert_without_padding::<protocol::Receipt>();
     assert_without_padding::<protocol::ArmStatus>();

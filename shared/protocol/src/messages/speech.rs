@@ -111,6 +111,34 @@ wire_struct! {
     }
 }
 
+wire_struct! {
+    /// What an utterance that is being spoken has come to so far; the receipt tells what it was in the
+    /// end. Speech to clients.
+    Partial = "Partial" {
+        /// [`RequestKey`] that the utterance's receipt will have.
+        stream: [u8; 16],
+        /// When the person began to speak.
+        onset_ns: u64,
+        /// Rises with every message of this incarnation.
+        number: u64,
+        /// The `segment` that the utterance's receipt will have.
+        segment: u32,
+        /// 1 where the utterance has its result; the text is empty then.
+        over: u8,
+        /// Zero.
+        reserved: [u8; 3],
+        /// The words so far; empty until there are any.
+        text: FixedText<500>,
+    }
+}
+
+impl Partial {
+    /// The stream or request that the utterance belongs to.
+    pub fn request(&self) -> RequestKey {
+        RequestKey(self.stream)
+    }
+}
+
 wire_enum! {
     /// What became of an injection.
     ReceiptStatus {

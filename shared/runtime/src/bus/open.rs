@@ -99,6 +99,7 @@ fn keep(bus: &Bus, topic: &Topic) -> Result<Box<dyn std::fmt::Debug>, BusError> 
         Presented,
         Activity,
         Hearing,
+        Partial,
         AudioChunk,
         Observation,
         AppliedMark,
