@@ -187,7 +187,7 @@ impl World {
                     self.orders.push((self.now, order.clone()));
                     to_robot.push(Event::Message(hears(order)));
                 }
-                Out::Joints(_) | Out::World(_) => {}
+                Out::Joints(_) | Out::World(_) | Out::Trajectory(_) => {}
             }
         }
         self.pass_robot(to_robot);

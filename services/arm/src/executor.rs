@@ -2,7 +2,7 @@
 
 use crate::driver::{ArmDriver, Command, Fault, Fingers};
 use kinematics::{Limb, Trajectory};
-use protocol::{Hindrance, PickId, PickPhase};
+use protocol::{Hindrance, MotionPhase, PickId, PickPhase};
 use scene::ObjectId;
 use std::collections::VecDeque;
 
@@ -31,32 +31,12 @@ pub(crate) struct Program {
 /// One motion of the arm and its fingers.
 #[derive(Clone, Debug)]
 pub(crate) struct Step {
-    pub(crate) kind: StepKind,
+    /// What it is for.
+    pub(crate) kind: MotionPhase,
     /// The phase that has to be durable before the step begins, if it belongs to a pick.
     pub(crate) phase: Option<PickPhase>,
     pub(crate) motion: Trajectory,
     pub(crate) fingers: Fingers,
-}
-
-/// What a step is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum StepKind {
-    /// Away from what the arm touches, straight up.
-    Clear,
-    /// To above the object and straight down to it.
-    Approach,
-    /// The fingers close.
-    Close,
-    /// Straight up with the object.
-    Lift,
-    /// To where the person takes the object.
-    HandOver,
-    /// The fingers open.
-    Release,
-    /// To where the gripper's axis passes through an object.
-    Aim,
-    /// Back to rest.
-    Return,
 }
 
 /// What the arm does.
@@ -77,11 +57,18 @@ pub(crate) enum Progress {
     /// The time was used up.
     Under,
     /// A step ended with so many seconds left; the next one has not begun.
-    Ended(StepKind, f64),
+    Ended(MotionPhase, f64),
     /// A halt ended.
     Halted,
     /// A motion did not end as it should have; nothing is being done any more.
     Failed(Fault),
+}
+
+impl Program {
+    /// Simulated seconds that its steps take.
+    pub(crate) fn duration_s(&self) -> f64 {
+        self.steps.iter().map(|step| step.motion.duration_s()).sum()
+    }
 }
 
 impl Executor {
@@ -170,10 +157,21 @@ impl Executor {
         }
     }
 
+    /// Steps of the program that are not over.
+    pub(crate) fn steps_left(&self) -> usize {
+        self.program().map_or(0, |program| program.steps.len())
+    }
+
+    /// Simulated seconds until the program ends.
+    pub(crate) fn seconds_left(&self) -> f64 {
+        let Self::Running { program, t_s, .. } = self else { return 0.0 };
+        (program.duration_s() - t_s).max(0.0)
+    }
+
     /// Simulated seconds until the object is handed over.
     pub(crate) fn seconds_to_hand_over(&self) -> f64 {
         let Self::Running { program, t_s, .. } = self else { return 0.0 };
-        let before = program.steps.iter().take_while(|step| step.kind != StepKind::Return);
+        let before = program.steps.iter().take_while(|step| step.kind != MotionPhase::Return);
         let total: f64 = before.map(|step| step.motion.duration_s()).sum();
         (total - t_s).max(0.0)
     }

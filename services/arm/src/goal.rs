@@ -126,7 +126,7 @@ impl ArmNode {
     }
 
     fn start(&mut self, program: Program) {
-        let seconds: f64 = program.steps.iter().map(|step| step.motion.duration_s()).sum();
+        let seconds = program.duration_s();
         let steps: Vec<String> = program
             .steps
             .iter()
@@ -138,6 +138,12 @@ impl ArmNode {
         if purpose != Purpose::Return {
             self.setbacks.from_rest = None;
         }
+        let object = match purpose {
+            Purpose::Pick(_) => self.state.open_pick().map(|pick| pick.object),
+            Purpose::Aim(object) => Some(object),
+            Purpose::Return => None,
+        };
+        self.course.begin(&program, object, &self.config.arm);
         self.executor.start(program);
     }
 

@@ -6,6 +6,7 @@
 //! commits between two ticks and calls at most one tick between two commits; that is what "once
 //! durable" rests on: a phase is recorded in one tick and its motion begins in a later one.
 
+mod course;
 mod driver;
 mod executor;
 mod goal;
@@ -27,11 +28,14 @@ pub use driver::{
     Told,
 };
 
+use course::Course;
 use executor::Executor;
 use goal::Setbacks;
 use node::{Effects, Event, Node, NodeError, Span, Time};
 use orders::StandingAct;
-use protocol::{ArmStatus, Hindrance, JointStates, MotionCommand, RobotAct, WorldView};
+use protocol::{
+    ArmStatus, Hindrance, JointStates, MotionCommand, RobotAct, TrajectoryView, WorldView,
+};
 use publish::{Facts, Publisher};
 use scene::{ObjectId, Scene};
 use state::{ArmState, Cause, Record};
@@ -57,6 +61,8 @@ pub enum Out {
     Joints(Box<JointStates>),
     /// To clients: where the objects are.
     World(Box<WorldView>),
+    /// To clients: which way the gripper is going.
+    Trajectory(Box<TrajectoryView>),
     /// To the robot, where there is one: what it is to do.
     Robot(Order),
 }
@@ -80,6 +86,7 @@ pub struct ArmNode {
     driver: Box<dyn ArmDriver>,
     executor: Executor,
     publisher: Publisher,
+    course: Course,
     act: StandingAct,
     /// What the gripper aims at, standing still.
     aimed: Option<ObjectId>,
@@ -155,6 +162,7 @@ impl ArmNode {
         Self {
             world: World::new(&config.arm.robot, &config.scene),
             publisher: Publisher::new(&config.arm),
+            course: Course::default(),
             state: settled.unwrap_or(state),
             driver,
             executor: Executor::default(),
@@ -220,6 +228,9 @@ impl ArmNode {
             hindrance: self.driver.hindrance(),
         };
         self.publisher.tick(&facts, now, fx);
+        if let Some(view) = self.course.news(&self.executor, now) {
+            fx.publish(Out::Trajectory(Box::new(view)));
+        }
     }
 
     /// Has the state be remembered, with the joints where they are now.

@@ -1,12 +1,12 @@
 //! Time passes: the program goes on, and the pick with it from phase to phase.
 
 use crate::driver::Fault;
-use crate::executor::{Progress, Purpose, StepKind};
+use crate::executor::{Progress, Purpose};
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
 use kinematics::Limb;
 use node::{Span, Time};
-use protocol::{PickOutcome, PickPhase};
+use protocol::{MotionPhase, PickOutcome, PickPhase};
 
 /// Longest stretch of a motion that is made up for at once. A process that was suspended goes on
 /// from where it was, as a robot does whose controller was silent.
@@ -138,18 +138,18 @@ impl ArmNode {
         self.record(Cause::Ended, now, fx);
     }
 
-    fn ended(&mut self, kind: StepKind, purpose: Option<Purpose>, now: Time, fx: &mut Fx) {
+    fn ended(&mut self, kind: MotionPhase, purpose: Option<Purpose>, now: Time, fx: &mut Fx) {
         match (kind, purpose) {
-            (StepKind::Release, Some(Purpose::Pick(_))) => {
+            (MotionPhase::Release, Some(Purpose::Pick(_))) => {
                 self.state.gone.extend(self.state.held.take().map(|held| held.object));
                 self.executor.change_purpose(Purpose::Return);
                 self.end(PickOutcome::Delivered, now, fx);
             }
-            (StepKind::Aim, Some(Purpose::Aim(object))) => {
+            (MotionPhase::Aim, Some(Purpose::Aim(object))) => {
                 self.aimed = Some(object);
                 self.record(Cause::Moved, now, fx);
             }
-            (StepKind::Return, _) => {
+            (MotionPhase::Return, _) => {
                 self.urgent = true;
                 self.rest(now, fx);
             }

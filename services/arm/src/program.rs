@@ -1,7 +1,7 @@
 //! Turns what is to be done into programs, from wherever the arm stands.
 
 use crate::driver::{Fingers, Grip, Measured};
-use crate::executor::{Program, Purpose, Step, StepKind};
+use crate::executor::{Program, Purpose, Step};
 use crate::state::{ArmState, Held, side};
 use crate::world::{World, from_array};
 use dialogue::Rng;
@@ -11,7 +11,7 @@ use kinematics::{
 };
 use nalgebra::Translation3;
 use protocol::pick::Pick;
-use protocol::{PickId, PickPhase};
+use protocol::{MotionPhase, PickId, PickPhase};
 use scene::ObjectId;
 use settings::Grasps;
 use std::collections::VecDeque;
@@ -98,7 +98,7 @@ impl Planner<'_> {
     /// Opens the fingers where the gripper is.
     pub(crate) fn release(&self, pick: PickId, held: &Held) -> Program {
         let steps = VecDeque::from([Step {
-            kind: StepKind::Release,
+            kind: MotionPhase::Release,
             phase: Some(PickPhase::Holding),
             ..self.opening(held.limb)
         }]);
@@ -115,7 +115,7 @@ impl Planner<'_> {
         self.refuse_other(plan.limb())?;
         let mut steps = start.steps;
         steps.push_back(Step {
-            kind: StepKind::Aim,
+            kind: MotionPhase::Aim,
             phase: None,
             motion: plan.timeline.stages()[0].motion.clone(),
             fingers: Fingers::Open(0.0),
@@ -207,7 +207,7 @@ impl Planner<'_> {
         let q = &self.measured.posture.joints[side(limb)];
         let motion = Trajectory::hold(q, seconds, &self.limits(limb));
         let fingers = Fingers::Open(self.settings.open_width_m);
-        Step { kind: StepKind::Clear, phase: None, motion, fingers }
+        Step { kind: MotionPhase::Clear, phase: None, motion, fingers }
     }
 }
 
@@ -237,7 +237,7 @@ impl Planner<'_> {
             let fingers = if holds { Fingers::Stay } else { opening.fingers };
             *arms.of_mut(limb) = up.end();
             steps.extend((!holds && opening.motion.duration_s() > 0.0).then_some(opening));
-            steps.push_back(Step { kind: StepKind::Clear, phase: None, motion: up, fingers });
+            steps.push_back(Step { kind: MotionPhase::Clear, phase: None, motion: up, fingers });
         }
         // What it touches even so cannot be kept clear of; it is left by the way there is.
         let shape = ArmShape::at(self.robot.arm(limb), arms.of(limb));
@@ -273,12 +273,12 @@ impl Planner<'_> {
         let (_, width_m) = stage.width_m;
         let (grip, open) = (Fingers::Grip(self.grip(width_m)), Fingers::Open(width_m));
         let (kind, phase, fingers) = match stage.phase {
-            PickStage::Approach => (StepKind::Approach, PickPhase::Moving, open),
-            PickStage::Close => (StepKind::Close, PickPhase::Closing, grip),
-            PickStage::Lift => (StepKind::Lift, PickPhase::Holding, grip),
-            PickStage::HandOver => (StepKind::HandOver, PickPhase::Holding, grip),
-            PickStage::Release => (StepKind::Release, PickPhase::Holding, open),
-            PickStage::Return => (StepKind::Return, PickPhase::Done, open),
+            PickStage::Approach => (MotionPhase::Approach, PickPhase::Moving, open),
+            PickStage::Close => (MotionPhase::Close, PickPhase::Closing, grip),
+            PickStage::Lift => (MotionPhase::Lift, PickPhase::Holding, grip),
+            PickStage::HandOver => (MotionPhase::HandOver, PickPhase::Holding, grip),
+            PickStage::Release => (MotionPhase::Release, PickPhase::Holding, open),
+            PickStage::Return => (MotionPhase::Return, PickPhase::Done, open),
         };
         let phase = Some(phase).filter(|phase| *phase != PickPhase::Done);
         Step { kind, phase, motion: stage.motion.clone(), fingers }

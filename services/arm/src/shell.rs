@@ -1,7 +1,9 @@
 //! The arm's topics and configuration.
 
 use crate::{ArmNode, Config, In, Out};
-use protocol::{ArmStatus, JointStates, MotionCommand, RobotAct, Service, WorldView, topics};
+use protocol::{
+    ArmStatus, JointStates, MotionCommand, RobotAct, Service, TrajectoryView, WorldView, topics,
+};
 use robot::RobotTopics;
 use runtime::bus::{EncodedWriter, PortError, Reader, Writer};
 use runtime::driver::{Context, Program, Shell};
@@ -35,6 +37,7 @@ pub struct ArmShell {
     status: Writer<ArmStatus>,
     joints: Writer<JointStates>,
     world: EncodedWriter<WorldView>,
+    trajectory: EncodedWriter<TrajectoryView>,
     /// The robot's own topics, where there is a robot.
     robot: Option<RobotTopics>,
 }
@@ -49,6 +52,7 @@ impl Shell<ArmNode> for ArmShell {
             status: bus.writer(&topics::STATUS)?,
             joints: bus.writer(&topics::JOINTS)?,
             world: bus.encoded_writer(&topics::WORLD)?,
+            trajectory: bus.encoded_writer(&topics::TRAJECTORY)?,
             robot: robot.transpose()?,
         })
     }
@@ -64,6 +68,7 @@ impl Shell<ArmNode> for ArmShell {
             Out::Status(status) => self.status.send(&status),
             Out::Joints(joints) => self.joints.send(&joints),
             Out::World(world) => self.world.send(&world),
+            Out::Trajectory(trajectory) => self.trajectory.send(&trajectory),
             Out::Robot(order) => self.robot.iter().try_for_each(|robot| robot.send(&order)),
         }
     }

@@ -188,3 +188,64 @@ pub struct WorldView {
     pub grippers: [[f64; 7]; 2],
 }
 encoded!(WorldView, "WorldView", "at_ns:u64 objects[?[f64;7]] held?u16 grippers[[f64;7];2]");
+
+/// Points of a trajectory that are told at most.
+pub const TRAJECTORY_POINTS_MAX: usize = 256;
+
+/// The way that a gripper is planned to take in the motion under way. Arm to clients; no phases
+/// while nothing moves by plan.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct TrajectoryView {
+    /// [`crate::InteractionId`] of the pick that the motion is for, 0 for none.
+    pub interaction: u64,
+    /// Attempt of that pick.
+    pub attempt: u32,
+    /// The object that is fetched or pointed at.
+    pub object: Option<u16>,
+    /// The limb that moves: 0 left, 1 right.
+    pub limb: u8,
+    /// When the motion began, monotonic clock. Told anew with each phase, so that what has delayed
+    /// the motion moves this on.
+    pub began_ns: u64,
+    /// The phases in order, over or not; at most [`TRAJECTORY_POINTS_MAX`] points in all.
+    pub phases: Vec<PhaseWay>,
+}
+encoded!(
+    TrajectoryView,
+    "TrajectoryView",
+    "interaction:u64 attempt:u32 object?u16 limb:u8 began_ns:u64 phases[PhaseWay]; \
+     PhaseWay(phase{Clear,Approach,Close,Lift,HandOver,Release,Aim,Return} points_m[[f64;3]] t_s[f64])"
+);
+
+/// The gripper's way in one phase.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PhaseWay {
+    /// What the phase is for.
+    pub phase: MotionPhase,
+    /// Where the point between the finger tips is, metres, frame `base`.
+    pub points_m: Vec<[f64; 3]>,
+    /// When it is there, seconds since the motion began; as many as there are points.
+    pub t_s: Vec<f64>,
+}
+
+/// What a part of a motion is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MotionPhase {
+    /// Away from what the arm touches, straight up; or a pause while the fingers open.
+    Clear,
+    /// To above the object and straight down to it.
+    Approach,
+    /// The fingers close.
+    Close,
+    /// Straight up with the object.
+    Lift,
+    /// To where the person takes the object.
+    HandOver,
+    /// The fingers open.
+    Release,
+    /// To where the gripper's axis passes through an object.
+    Aim,
+    /// Back to rest.
+    Return,
+}

@@ -158,6 +158,8 @@ pub const JOINTS: Topic =
     Topic { buffer: WINDOW, ..topic::<JointStates>("arm/joints", Some(Service::Arm)) };
 /// Arm to clients.
 pub const WORLD: Topic = topic::<WorldView>("arm/world", Some(Service::Arm));
+/// Arm to clients, when a motion begins, enters its next phase, or ends.
+pub const TRAJECTORY: Topic = topic::<TrajectoryView>("arm/trajectory", Some(Service::Arm));
 /// Speech and clients to arm, past the dialogue.
 pub const MOTION: Topic = Topic {
     readers: &[Service::Arm],
@@ -256,7 +258,7 @@ pub mod robot {
 
 /// Every topic that the group's services and clients share; those of [`robot`] are only used with a
 /// robot behind them.
-pub const ALL: [Topic; 16] = [
+pub const ALL: [Topic; 17] = [
     INJECTION,
     AUDIO,
     RECEIPT,
@@ -272,5 +274,6 @@ pub const ALL: [Topic; 16] = [
     STATUS,
     JOINTS,
     WORLD,
+    TRAJECTORY,
     MOTION,
 ];

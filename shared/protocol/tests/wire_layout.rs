@@ -69,6 +69,7 @@ fn layout() -> String {
     describe::<protocol::Injection>(&mut text);
     describe::<protocol::PolicyView>(&mut text);
     describe::<protocol::WorldView>(&mut text);
+    describe::<protocol::TrajectoryView>(&mut text);
     text
 }
 

@@ -1,5 +1,6 @@
 //! The arm in a simulated process on a robot that outlives it.
 
+mod course;
 mod fetch;
 mod grasp;
 mod kills;
@@ -17,7 +18,7 @@ use kinematics::{Joints, Limb};
 use node::{Effects, Event, Node, Span, Time};
 use protocol::{
     ActKind, ArmStatus, InteractionId, JointStates, MotionCommand, MotionOrder, PickId,
-    PickOutcome, PickPhase, RobotAct, WorldView,
+    PickOutcome, PickPhase, RobotAct, TrajectoryView, WorldView,
 };
 use robot::Robot;
 use scene::{ObjectId, Question};
@@ -100,6 +101,7 @@ struct Machine {
     joints: Vec<JointStates>,
     statuses: Vec<ArmStatus>,
     worlds: Vec<WorldView>,
+    courses: Vec<TrajectoryView>,
 }
 
 impl Machine {
@@ -120,6 +122,7 @@ impl Machine {
             joints: Vec::new(),
             statuses: Vec::new(),
             worlds: Vec::new(),
+            courses: Vec::new(),
         };
         machine.pass(vec![Event::Started], None);
         machine
@@ -165,6 +168,7 @@ impl Machine {
                 Out::Status(status) => self.statuses.push(status),
                 Out::Joints(joints) => self.joints.push(*joints),
                 Out::World(world) => self.worlds.push(*world),
+                Out::Trajectory(course) => self.courses.push(*course),
                 Out::Robot(order) => panic!("a model is told nothing: {order:?}"),
             }
         }
