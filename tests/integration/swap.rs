@@ -28,6 +28,22 @@ fn grounding_is_swapped_under_traffic() {
 }
 
 #[test]
+fn the_planner_is_swapped_between_dialogues_and_its_decisions_fold_again() {
+    let group = Group::up(&[]);
+    let policy = program("whichone-policy").display().to_string();
+    for planner in ["never-ask", "entropy"] {
+        let ended = swap(&group, "policy", &[&policy, "--planner", planner]);
+        assert_eq!(ended.code, Some(0), "{ended:?}");
+        assert_eq!(group.dialogue()["planner"], planner);
+        assert_eq!(group.fetch("the big metal bowl", "metal2")["object"], "metal2");
+        group.verify_journals();
+    }
+    group.must(&["restart", "policy", "--original"]);
+    assert_eq!(group.dialogue()["planner"], "lookahead");
+    group.down();
+}
+
+#[test]
 fn a_service_that_does_not_become_ready_gives_way_to_the_old_one() {
     let group = Group::up(&["group.services.grounding.start_deadline_s=1.0"]);
     for command in [&["/bin/sleep", "60"][..], &["/bin/false"], &["/no/such/program"]] {

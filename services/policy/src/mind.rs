@@ -98,6 +98,11 @@ impl Mind {
         &self.scene
     }
 
+    /// The name of the planner that decides.
+    pub fn planner(&self) -> &'static str {
+        self.planner.name()
+    }
+
     /// How turns are taken.
     pub fn turns(&self) -> Turns {
         self.turns

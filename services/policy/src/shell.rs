@@ -13,21 +13,41 @@ use runtime::lifecycle::Environment;
 use scene::{Fnv1a, Scene};
 use settings::{Section, Settings};
 
-/// The policy as a program.
+/// The policy as a program. `--planner NAME` overrides the setting, so that a group can be swapped
+/// from one planner to another while it runs.
 #[derive(Debug)]
 pub struct PolicyProgram;
 
 impl Program for PolicyProgram {
     const SERVICE: Service = Service::Policy;
     const RECORD: Option<&'static str> = Some("policy/3");
-    const ABOUT: &'static str = "keeps the belief over the objects and decides what to ask or do";
+    const ABOUT: &'static str = "keeps the belief over the objects and decides what to ask or do \
+                                 [--planner NAME]";
     type Node = PolicyNode;
     type Shell = PolicyShell;
 
     fn config(environment: &Environment, settings: &Settings) -> Result<Mind, Failure> {
-        let mut mind = mind(settings)?;
+        let mut mind = match planner(&environment.arguments)? {
+            Some(planner) => mind_with(settings, planner)?,
+            None => mind(settings)?,
+        };
         kept::work_ahead(&mut mind, &environment.paths.policies());
         Ok(mind)
+    }
+}
+
+/// The planner that the arguments name, if they do.
+fn planner(arguments: &[String]) -> Result<Option<&str>, Failure> {
+    match arguments {
+        [] => Ok(None),
+        [flag, name] if flag == "--planner" => match dialogue::registry::planner(name) {
+            Ok(_) => Ok(Some(name)),
+            Err(error) => Err(Failure::new(Exit::Usage, format!("--planner: {error}"))),
+        },
+        other => {
+            let what = format!("{other:?}: only --planner NAME is known");
+            Err(Failure::new(Exit::Usage, what))
+        }
     }
 }
 
@@ -36,8 +56,26 @@ impl Program for PolicyProgram {
 /// # Errors
 /// A planner that does not exist.
 pub fn mind(settings: &Settings) -> Result<Mind, Failure> {
+    mind_with(settings, &settings.dialogue.planner)
+}
+
+/// The mind that made the decisions under the key of `settings_key`: that of the settings, or the
+/// same with another planner, which may have been swapped in. That of the settings where the key is
+/// of neither.
+///
+/// # Errors
+/// A planner that does not exist.
+pub fn mind_of_key(settings: &Settings, settings_key: u64) -> Result<Mind, Failure> {
+    let mut known = dialogue::registry::names().into_iter();
+    let planner = known.find(|planner| key(settings, planner) == settings_key);
+    mind_with(settings, planner.unwrap_or(&settings.dialogue.planner))
+}
+
+/// The mind that the settings describe, with that planner in place of theirs.
+fn mind_with(settings: &Settings, planner: &str) -> Result<Mind, Failure> {
     let dialogue = &settings.dialogue;
-    let planner = dialogue::registry::planner(&dialogue.planner)
+    let key = key(settings, planner);
+    let planner = dialogue::registry::planner(planner)
         .map_err(|e| Failure::new(Exit::Config, format!("dialogue.planner: {e}")))?;
     let gesture = dialogue.gesture;
     let assumptions = Assumptions {
@@ -50,7 +88,7 @@ pub fn mind(settings: &Settings) -> Result<Mind, Failure> {
         gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
     };
     let (scene, turns) = (settings.scene.clone(), turns(settings));
-    Ok(Mind::new(scene, assumptions, planner, turns, key(settings)))
+    Ok(Mind::new(scene, assumptions, planner, turns, key))
 }
 
 /// Which of the scene's words are misheard for one another.
@@ -59,9 +97,12 @@ fn confusion(scene: &Scene) -> Result<Confusion, Failure> {
         .map_err(|e| Failure::new(Exit::Invariant, format!("words by sound: {e}")))
 }
 
-/// Identity of all that the mind decides by.
-fn key(settings: &Settings) -> u64 {
+/// Identity of all that the mind decides by: the settings, with that planner.
+pub(crate) fn key(settings: &Settings, planner: &str) -> u64 {
     let mut hash = Fnv1a::new();
+    if planner != settings.dialogue.planner {
+        hash.text(planner);
+    }
     hash.text(&settings.section_text(Section::Dialogue));
     hash.text(settings.scene_text());
     if settings.durations.is_some() {
@@ -108,6 +149,26 @@ impl Shell<PolicyNode> for PolicyShell {
             Out::Mark(mark) => self.mark.send(&mark),
             Out::Act(act) => self.act.send(&act),
             Out::View(view) => self.view.send(&view),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(words: &[&str]) -> Vec<String> {
+        words.iter().map(|word| (*word).to_owned()).collect()
+    }
+
+    #[test]
+    fn the_planner_may_be_named_on_the_command_line() {
+        assert_eq!(planner(&[]).unwrap(), None);
+        assert_eq!(planner(&words(&["--planner", "entropy"])).unwrap(), Some("entropy"));
+        for wrong in [&["--planner"][..], &["--planner", "greedy"], &["--language", "paper"]] {
+            let failure = planner(&words(wrong)).unwrap_err();
+            assert_eq!(failure.exit, Exit::Usage, "{wrong:?}");
+            assert!(failure.to_string().contains("planner"), "{failure}");
         }
     }
 }

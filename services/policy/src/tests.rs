@@ -275,6 +275,18 @@ fn random_cause(
     heard(*seq, prompt, reading)
 }
 
+/// What a planner that was swapped in has decided folds again, though the settings name another.
+#[test]
+fn decisions_of_a_planner_swapped_in_fold_again_with_it() {
+    let settings = settings();
+    let swapped_in = |key| shell::mind_of_key(&settings, key).unwrap().planner();
+    assert_eq!(swapped_in(mind().key()), "lookahead");
+    assert_eq!(swapped_in(1), "lookahead", "a key of other settings");
+    let key = shell::key(&settings, "always-ask");
+    assert_ne!(key, mind().key());
+    assert_eq!(swapped_in(key), "always-ask");
+}
+
 #[test]
 fn only_the_ordered_pick_s_end_ends_the_interaction() {
     let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();

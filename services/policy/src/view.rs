@@ -53,6 +53,7 @@ pub(crate) fn view(mind: &Mind, state: &State, refused: u64) -> PolicyView {
         utterances: open.map(utterances).or(state.ended.as_ref().map(latest)).unwrap_or_default(),
         last: state.ended.clone(),
         refused,
+        planner: mind.planner().to_owned(),
     }
 }
 

@@ -111,6 +111,8 @@ pub struct PolicyView {
     pub last: Option<Ended>,
     /// Observations refused because they made no sense.
     pub refused: u64,
+    /// The planner that decides, by its name.
+    pub planner: String,
 }
 encoded!(
     PolicyView,
@@ -118,7 +120,7 @@ encoded!(
     "scene_key:u64 applied:u64 interaction:u64 belief[f64] absent:f64 person?(f64,f64) question \
      prompt:u64 text decision value:f64 alternatives[(str,f64)] expected_questions:f64 \
      bounds?(f64,f64) questions:u32 utterances(u64,u64) \
-     last?Ended refused:u64; \
+     last?Ended refused:u64 planner; \
      Ended(interaction:u64 object?u16 name?str outcome questions:u32 seconds:f64 utterances(u64,u64))"
 );
 

@@ -59,7 +59,8 @@ pub(super) fn journal(paths: &GroupPaths, args: &JournalArgs, out: &mut Output<'
         ("speech", true) => verify(&path, out, speech::verify),
         ("policy", true) => {
             let settings = place::settings_in_force(paths, &args.config)?;
-            let mut mind = ::policy::shell::mind(&settings)?;
+            let latest = policy::settings_key(&read(&path)?);
+            let mut mind = ::policy::shell::mind_of_key(&settings, latest)?;
             verify(&path, out, |parts| policy::verify(&mut mind, parts))
         }
         (_, true) => verify(&path, out, arm::verify),

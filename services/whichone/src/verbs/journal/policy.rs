@@ -51,6 +51,11 @@ fn reasons(act: &Act) -> String {
     format!("; {value}, {questions:.1} questions to come{before}{}", others.join(", "))
 }
 
+/// The key of the settings that the latest record was decided under; 0 of none.
+pub(super) fn settings_key(part: &Part<Record>) -> u64 {
+    part.reading.records.last().map_or(0, |record| record.state.settings_key)
+}
+
 /// Every utterance applied once and in order, every belief a distribution, no interaction with two
 /// deliveries, and every state the one that follows, bit for bit.
 pub(super) fn verify(mind: &mut Mind, parts: &[Part<Record>]) -> Result<Vec<String>, Broken> {

@@ -143,6 +143,7 @@ fn dialogue(scene: &Scene, seen: &Seen) -> Option<Json> {
         "question": question,
         "text": view.text,
         "value": view.value,
+        "planner": view.planner,
         "bounds": view.bounds,
         "alternatives": view.alternatives,
         "questions": view.questions,
