@@ -1,0 +1,40 @@
+// @ts-check
+import { s } from "./dom.js";
+
+/** Outlines of 24 × 24 units. */
+const PATHS = {
+  ear: "M7 9a5 5 0 0 1 10 0c0 3.4-3 4-3.6 6.6-.4 1.9-1.4 3.4-3.4 3.4-1.8 0-3-1.2-3-3M10 9.5a2.2 2.2 0 0 1 4.2-.8",
+  speak: "M4 9.5v5h3.5L12 18V6L7.5 9.5zM15.5 9a4.2 4.2 0 0 1 0 6M18 6.5a7.8 7.8 0 0 1 0 11",
+  think: "M6 12h.01M12 12h.01M18 12h.01",
+  arm: "M5 20h7M8.5 20v-4.5M8.5 15.5 6 9l8-4 3.5 3M6 9a1.6 1.6 0 1 0 0-.1M17.5 8l3-.5M17.5 8l.5 3",
+  stop: "M8.3 3.5h7.4l4.8 4.8v7.4l-4.8 4.8H8.3l-4.8-4.8V8.3zM9 12h6",
+  down: "M12 3.5 21 19.5H3zM12 10v4.5M12 17.2v.01",
+  person:
+    "M12 11.5a3.7 3.7 0 1 0 0-7.4 3.7 3.7 0 0 0 0 7.4zM4.8 20c.6-3.8 3.5-5.7 7.2-5.7s6.6 1.9 7.2 5.7",
+  eye: "M2.5 12S6 5.5 12 5.5 21.5 12 21.5 12 18 18.5 12 18.5 2.5 12 2.5 12zM12 14.8a2.8 2.8 0 1 0 0-5.6 2.8 2.8 0 0 0 0 5.6z",
+  send: "M5 12h13M12.5 6l6 6-6 6",
+  undo: "M5 9h9a5 5 0 0 1 0 10H8M8.5 5.5 5 9l3.5 3.5",
+  again: "M19.5 12a7.5 7.5 0 1 1-2.4-5.5M17.5 2.5v4.3h-4.3",
+  sun: "M12 16a4 4 0 1 0 0-8 4 4 0 0 0 0 8zM12 2.5v2.5M12 19v2.5M2.5 12H5M19 12h2.5M5.3 5.3 7 7M17 17l1.7 1.7M18.7 5.3 17 7M7 17l-1.7 1.7",
+  moon: "M19.5 14.5A8 8 0 0 1 9.5 4.5a8 8 0 1 0 10 10z",
+  auto: "M12 3.5a8.5 8.5 0 1 0 0 17zM12 3.5a8.5 8.5 0 0 1 0 17",
+  help: "M9.2 9.2a2.9 2.9 0 1 1 4.3 2.5c-.9.5-1.5 1-1.5 2.1M12 17.2v.01M12 21a9 9 0 1 0 0-18 9 9 0 0 0 0 18z",
+  hand: "M8 12V6.2a1.4 1.4 0 0 1 2.8 0V11M10.8 10.5V4.9a1.4 1.4 0 0 1 2.8 0V11M13.6 10.8V6.2a1.4 1.4 0 0 1 2.8 0v7.6c0 4-2.2 6.7-5.8 6.7-3 0-4.4-1.6-6.2-5.1-.9-1.8.9-3 2.2-1.6L8 15.5",
+  check: "M5 12.5l4.5 4.5L19 7.5",
+  play: "M8 5.5v13l10.5-6.5z",
+  close: "M6 6l12 12M18 6 6 18",
+};
+
+/**
+ * A small drawing in the colour of the text around it; hidden from screen readers.
+ * @param {keyof typeof PATHS} name
+ * @param {number} [size] pixels
+ */
+export function icon(name, size = 20) {
+  const frame = { viewBox: "0 0 24 24", width: size, height: size, "aria-hidden": "true" };
+  return s(
+    "svg",
+    { ...frame, class: "icon", fill: "none", stroke: "currentColor", "stroke-width": 2 },
+    s("path", { d: PATHS[name], "stroke-linecap": "round", "stroke-linejoin": "round" }),
+  );
+}

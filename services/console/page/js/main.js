@@ -1,0 +1,79 @@
+// @ts-check
+
+import { sessionId } from "./link/session.js";
+import { connect } from "./link.js";
+import { keep, Store } from "./store.js";
+import { chooseLanguage, loadStrings, t, translate } from "./strings.js";
+import { mountActions } from "./views/actions.js";
+import { mountAlarm } from "./views/alarm.js";
+import { mountCards } from "./views/cards.js";
+import { mountControl } from "./views/control.js";
+import { mountLatency } from "./views/latency.js";
+import { mountPart } from "./views/part.js";
+import { mountQuestion } from "./views/question.js";
+import { mountSay } from "./views/say.js";
+import { mountServices } from "./views/services.js";
+import { mountTabs } from "./views/tabs.js";
+import { mountTools } from "./views/tools.js";
+import { mountTranscript } from "./views/transcript.js";
+import { mountTurn } from "./views/turn.js";
+
+const LANGUAGE = "whichone.language";
+
+/** @param {string} id @returns {HTMLElement} */
+const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
+const store = new Store();
+const link = connect({
+  session: sessionId(stored("sessionStorage")),
+  role: wishedRole(location.search),
+  lastLine: () => store.lastLine,
+});
+keep(store, link);
+
+const kept = stored("localStorage")?.getItem(LANGUAGE) ?? null;
+await loadStrings(chooseLanguage(location.search, kept, navigator.languages));
+translate(document);
+
+const context = { link, store, t };
+mountActions(at("actions"), context);
+mountAlarm(at("alarm"), at("polite"), context);
+mountTurn(at("turn"), context);
+mountQuestion(at("question"), context);
+mountCards(at("cards"), context);
+mountTranscript(at("transcript"), context);
+mountSay(at("say"), context);
+mountControl(at("control"), context);
+mountTools(at("tools"), context);
+mountTabs(at("tabs"), at("page"), context);
+mountServices(at("services"), context);
+mountLatency(at("latency"), context);
+store.subscribe("welcome", ({ group }) => {
+  at("group").textContent = group;
+  document.title = `whichone · ${group}`;
+});
+document.documentElement.dataset.ready = "";
+
+mountPart(at("voice"), () => import("./voice/index.js"), "mountVoice", context);
+afterPaint(() => mountPart(at("arm"), () => import("./arm/index.js"), "mountArm", context));
+
+/** What is heavy waits until the page has been seen. */
+function afterPaint(f) {
+  const idle = globalThis.requestIdleCallback ?? ((g) => setTimeout(g, 200));
+  requestAnimationFrame(() => setTimeout(() => idle(f, { timeout: 1_000 }), 0));
+}
+
+/** @param {string} search */
+function wishedRole(search) {
+  const role = new URLSearchParams(search).get("role");
+  return role === "viewer" || role === "screen" ? role : "operator";
+}
+
+/** @param {"localStorage"|"sessionStorage"} name @returns {Storage|null} */
+function stored(name) {
+  try {
+    return globalThis[name];
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,75 @@
+// @ts-check
+/** By how much an object must be more probable than another to come before it. */
+const MARGIN = 0.02;
+
+/**
+ * The order of the cards: by probability, but a card only overtakes others that it leaves behind by
+ * a margin, so that small changes move nothing.
+ * @param {number[]} before objects in the order that is shown now
+ * @param {number[]} belief probability of each object
+ * @returns {number[]} objects in the order to show
+ */
+export function rank(before, belief) {
+  const kept = before.filter((object) => object < belief.length);
+  const shown = new Set(kept);
+  const all = [...kept, ...[...belief.keys()].filter((object) => !shown.has(object))];
+  /** @type {number[]} */
+  const order = [];
+  for (const object of all) {
+    const place = order.findIndex((other) => belief[object] > belief[other] + MARGIN);
+    if (place < 0) order.push(object);
+    else order.splice(place, 0, object);
+  }
+  return order;
+}
+
+/**
+ * Which cards are shown, where there are too many: the first ones and those that matter in any case.
+ * @param {number[]} order
+ * @param {number[]} belief
+ * @param {number} most
+ * @param {Set<number>} pinned objects that are shown wherever they stand
+ * @returns {{shown: number[], others: number, rest: number}} `rest`: the others' probability together
+ */
+export function likely(order, belief, most, pinned) {
+  if (order.length <= most + 1) return { shown: order, others: 0, rest: 0 };
+  const places = Math.max(1, most - order.slice(most).filter((one) => pinned.has(one)).length);
+  const shown = order.filter((object, place) => place < places || pinned.has(object));
+  const among = new Set(shown);
+  const left = order.filter((object) => !among.has(object));
+  const rest = left.reduce((sum, object) => sum + (belief[object] ?? 0), 0);
+  return { shown, others: left.length, rest };
+}
+
+/**
+ * A probability as a share that is read off easily: never "100 %" or "0 %" where it is not.
+ * @param {number} p
+ * @returns {{sign: ""|"<"|">", share: number}}
+ */
+export function readable(p) {
+  if (p > 0 && p < 0.005) return { sign: "<", share: 0.01 };
+  if (p < 1 && p > 0.995) return { sign: ">", share: 0.99 };
+  return { sign: "", share: Math.round(p * 100) / 100 };
+}
+
+/**
+ * What marks an object at the moment.
+ * @param {any} scene
+ * @param {{dialogue: any, arm: any, world: any}} now
+ * @returns {Map<number, "held"|"picking"|"pointed"|"delivered">}
+ */
+export function marks(scene, { dialogue, arm, world }) {
+  const found = new Map();
+  const place = (name) => scene.objects.findIndex((object) => object.name === name);
+  world?.objects?.forEach((pose, object) => {
+    if (pose === null) found.set(object, "delivered");
+  });
+  const pointed = dialogue?.question?.type === "point" ? place(dialogue.question.object) : -1;
+  if (pointed >= 0) found.set(pointed, "pointed");
+  const underWay = arm?.object && !["idle", "done"].includes(arm.phase);
+  const picked = underWay ? place(arm.object) : -1;
+  if (picked >= 0) found.set(picked, arm.phase === "holding" ? "held" : "picking");
+  const held = typeof world?.held === "string" ? place(world.held) : world?.held;
+  if (Number.isInteger(held) && held >= 0) found.set(held, "held");
+  return found;
+}

@@ -1,0 +1,52 @@
+// @ts-check
+/**
+ * @typedef {object} Banner
+ * @property {string} key of the words: `turn.KEY`, with `turn.KEY.more` below
+ * @property {"person"|"robot"|"arm"|"stopped"|"down"|"idle"} tone
+ * @property {string} icon
+ */
+
+/** What each state of the turn looks like. @type {Record<string, [string, Banner["tone"], string]>} */
+const STATES = {
+  idle: ["idle", "person", "ear"],
+  listening: ["listening", "person", "ear"],
+  hearing: ["hearing", "person", "ear"],
+  asked: ["asked", "person", "ear"],
+  understanding: ["understanding", "robot", "think"],
+  speaking: ["speaking", "robot", "speak"],
+  moving: ["moving", "arm", "arm"],
+  stopped: ["stopped", "stopped", "stop"],
+  down: ["down", "down", "down"],
+};
+
+/**
+ * Whose turn it is, in one sign. Without a connection nothing else is known.
+ * @param {{state: string}|undefined} link
+ * @param {{state: string}|undefined} turn
+ * @param {{stopped?: boolean}|undefined} arm a stop outranks whose turn it is
+ * @returns {Banner}
+ */
+export function banner(link, turn, arm) {
+  if (link?.state === "replaced") return { key: "replaced", tone: "down", icon: "down" };
+  if (link?.state !== "up") {
+    const key = link?.state === "connecting" && !turn ? "connecting" : "offline";
+    return { key, tone: "down", icon: "down" };
+  }
+  if (!turn) return { key: "connecting", tone: "idle", icon: "think" };
+  const stopped = arm?.stopped === true && turn.state !== "down";
+  const [key, tone, icon] = STATES[stopped ? "stopped" : turn.state] ?? STATES.idle;
+  return { key, tone, icon };
+}
+
+/**
+ * Whether this page may act, and who does.
+ * @param {{operator: string|null, name?: string, asked_by?: string|null}|undefined} control
+ * @param {{viewer: string}|undefined} welcome
+ * @returns {"mine"|"asked"|"free"|"theirs"|"unknown"} `asked`: I asked for it and wait
+ */
+export function whoControls(control, welcome) {
+  if (!control || !welcome) return "unknown";
+  if (control.operator === welcome.viewer) return "mine";
+  if (control.operator === null) return "free";
+  return control.asked_by === welcome.viewer ? "asked" : "theirs";
+}

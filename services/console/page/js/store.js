@@ -1,0 +1,89 @@
+// @ts-check
+import { mergeLines } from "./model/lines.js";
+
+/**
+ * What the page knows. Sections are those of the server's `state`, and of the page itself: `lines`
+ * (transcript, oldest first), `partial`, `link` (status), `welcome`.
+ */
+export class Store {
+  /** @type {Map<string, any>} */
+  #sections = new Map();
+  /** @type {Map<string, Set<(value: any, section: string) => void>>} */
+  #subscribers = new Map();
+
+  /**
+   * @param {string} section
+   * @returns {any} undefined before it is known
+   */
+  get(section) {
+    return this.#sections.get(section);
+  }
+
+  /**
+   * Replaces a section whole.
+   * @param {string} section
+   * @param {any} value
+   */
+  set(section, value) {
+    this.#sections.set(section, value);
+    for (const f of this.#subscribers.get(section) ?? []) f(value, section);
+  }
+
+  /**
+   * Takes in the parts of a `state` frame: all first, then the subscribers, so that none of them
+   * sees half of it.
+   * @param {Record<string, any>} parts
+   */
+  apply(parts) {
+    const entries = Object.entries(parts);
+    for (const [section, value] of entries) this.#sections.set(section, value);
+    for (const [section, value] of entries) {
+      for (const f of this.#subscribers.get(section) ?? []) f(value, section);
+    }
+  }
+
+  /**
+   * Takes in transcript lines.
+   * @param {{id: number}[]} lines
+   */
+  addLines(lines) {
+    this.set("lines", mergeLines(this.get("lines") ?? [], lines));
+  }
+
+  /** The newest transcript line that is known, 0 for none. */
+  get lastLine() {
+    return this.get("lines")?.at(-1)?.id ?? 0;
+  }
+
+  /**
+   * Calls `f` with the section's value, now if it is known and at each change.
+   * @param {string|string[]} sections
+   * @param {(value: any, section: string) => void} f
+   * @returns {() => void} stops it
+   */
+  subscribe(sections, f) {
+    const names = Array.isArray(sections) ? sections : [sections];
+    for (const name of names) {
+      if (!this.#subscribers.has(name)) this.#subscribers.set(name, new Set());
+      this.#subscribers.get(name)?.add(f);
+      if (this.#sections.has(name)) f(this.#sections.get(name), name);
+    }
+    return () => {
+      for (const name of names) this.#subscribers.get(name)?.delete(f);
+    };
+  }
+}
+
+/**
+ * Has a link's messages kept by a store.
+ * @param {Store} store
+ * @param {{on: (what: string, f: (message: any) => void) => void, status: object}} link
+ */
+export function keep(store, link) {
+  link.on("state", (parts) => store.apply(parts));
+  link.on("lines", (lines) => store.addLines(lines));
+  link.on("partial", (partial) => store.set("partial", partial));
+  link.on("welcome", (welcome) => store.set("welcome", welcome));
+  link.on("status", (status) => store.set("link", status));
+  store.set("link", link.status);
+}

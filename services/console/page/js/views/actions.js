@@ -1,0 +1,98 @@
+// @ts-check
+import { eachFrame, h, setAttribute, setText } from "../dom.js";
+import { icon } from "../icons.js";
+import { escapeStops, stopper } from "../stop.js";
+import { attempt, reason, tell } from "./attempt.js";
+
+/** A press so soon after the stop is not meant for what the button has become, milliseconds. */
+const LATCH_MS = 800;
+/** How long the button asks whether motion may go on, milliseconds. */
+const ASK_MS = 6_000;
+
+/**
+ * The stop. It acts when it is touched, before anything is drawn; what it becomes, resume, wants two
+ * separate presses.
+ * @param {HTMLElement} element
+ * @param {{link: any, store: any, t: (key: string, args?: object) => string}} context
+ */
+export function mountActions(element, context) {
+  const { store, link, t } = context;
+  const words = h("span", { class: "stop-words" });
+  const hint = h("span", { class: "stop-hint" });
+  const mark = h("span", { class: "stop-mark" }, icon("stop", 34));
+  const text = h("span", { class: "stop-text" }, words, hint);
+  const button = h("button", { type: "button", id: "stop", class: "stop" }, mark, text);
+  element.append(button);
+
+  const press = stopper(context, (error) => tell(reason(/** @type {any} */ (error), t)));
+  let pressedAt = Number.NEGATIVE_INFINITY;
+  let askedAt = null;
+  let asking = 0;
+  let escapedAt = null;
+
+  const mode = () => {
+    if (!store.get("arm")?.stopped) return "stop";
+    return askedAt === null ? "resume" : "confirm";
+  };
+  const stop = () => {
+    press();
+    pressedAt = performance.now();
+    askedAt = null;
+    draw();
+  };
+  const resume = () => {
+    const now = performance.now();
+    if (now - pressedAt < LATCH_MS || (askedAt !== null && now - askedAt < LATCH_MS / 2)) return;
+    clearTimeout(asking);
+    if (askedAt === null) {
+      askedAt = now;
+      asking = setTimeout(forget, ASK_MS);
+    } else {
+      askedAt = null;
+      attempt(link.do("resume"), context);
+    }
+    draw();
+  };
+  const forget = () => {
+    askedAt = null;
+    draw();
+  };
+
+  button.addEventListener("pointerdown", (event) => {
+    if (event.button === 0 && mode() === "stop") stop();
+  });
+  button.addEventListener("keydown", (event) => {
+    const pressed = event.key === "Enter" || event.key === " ";
+    if (pressed && mode() === "stop" && !event.repeat) stop();
+    if (pressed && event.repeat) event.preventDefault();
+  });
+  button.addEventListener("click", () => {
+    if (mode() !== "stop") resume();
+    else if (performance.now() - pressedAt > LATCH_MS) stop();
+  });
+  const onEscape = (event) => {
+    if (event.key !== "Escape" || event.isComposing) return;
+    const now = performance.now();
+    const moving = store.get("arm")?.moving === true;
+    if (escapeStops(escapedAt, now, moving)) stop();
+    escapedAt = now;
+  };
+  addEventListener("keydown", onEscape, { capture: true });
+
+  const draw = eachFrame(() => {
+    const is = mode();
+    const sending = store.get("stop")?.state === "sent" && is === "stop";
+    const down = store.get("link")?.state !== "up";
+    setAttribute(button, "data-mode", is);
+    setAttribute(button, "data-down", down);
+    setText(words, t(sending ? "stop.sending" : `stop.${is}`));
+    const moving = store.get("arm")?.moving === true;
+    const keys = t(moving ? "stop.key_moving" : "stop.key");
+    setText(hint, down ? t("stop.down") : is === "stop" ? keys : t(`stop.${is}.more`));
+    const drawn = is === "stop" ? "stop" : "play";
+    if (mark.dataset.icon !== drawn) mark.replaceChildren(icon(drawn, 34));
+    mark.dataset.icon = drawn;
+  });
+  store.subscribe(["arm", "stop", "link"], draw);
+  draw();
+}

@@ -1,0 +1,62 @@
+// @ts-check
+import { h, setText } from "../dom.js";
+import { icon } from "../icons.js";
+import { banner } from "../model/turn.js";
+
+/** A connection that is back sooner is not worth a word, milliseconds. */
+const GRACE_MS = 1_200;
+
+/**
+ * What must be noticed at once: no connection, a stop, a stop that was not delivered. And, politely,
+ * what the robot says.
+ * @param {HTMLElement} element a region that interrupts
+ * @param {HTMLElement} polite a region that waits
+ * @param {{link: any, store: any, t: (key: string, args?: object) => string}} context
+ */
+export function mountAlarm(element, polite, { link, store, t }) {
+  const text = h("p", { class: "alarm-text" });
+  const act = h("button", { type: "button", class: "alarm-act", onclick: () => link.reconnect() });
+  const bar = h("div", { class: "alarm-bar", hidden: true }, icon("down", 22), text, act);
+  element.append(bar);
+  let timer = 0;
+  let shown = "";
+
+  const show = (key) => {
+    shown = key;
+    bar.hidden = key === "";
+    if (key === "") return;
+    setText(text, t(`alarm.${key}`));
+    setText(act, t(key === "replaced" ? "alarm.use_here" : "alarm.again"));
+    act.hidden = !["offline", "replaced", "undelivered"].includes(key);
+  };
+  const look = () => {
+    clearTimeout(timer);
+    const state = store.get("link")?.state;
+    const stop = store.get("stop")?.state;
+    if (state === "replaced") return show("replaced");
+    if (state !== "up") {
+      if (stop === "undelivered") return show("undelivered");
+      if (shown !== "offline") timer = setTimeout(() => show("offline"), GRACE_MS);
+      return;
+    }
+    const arm = store.get("arm");
+    const key = stop === "undelivered" ? "unconfirmed" : arm?.stopped ? "stopped" : "";
+    if (key !== shown) show(key);
+  };
+  store.subscribe(["link", "stop", "arm"], look);
+  look();
+
+  let turn = "";
+  store.subscribe(["turn", "link"], () => {
+    const { key, tone } = banner(store.get("link"), store.get("turn"), store.get("arm"));
+    if (key === turn || tone === "down") return;
+    turn = key;
+    if (tone === "arm" || key === "idle") setText(polite, t(`turn.${key}`));
+  });
+  let heard = Number.POSITIVE_INFINITY;
+  store.subscribe("lines", (lines) => {
+    const last = lines.at(-1);
+    if (last && last.id > heard && last.who === "robot") setText(polite, last.text);
+    heard = last?.id ?? 0;
+  });
+}

@@ -1,0 +1,42 @@
+// @ts-check
+import { h } from "../dom.js";
+
+/** How long a message stays, milliseconds. */
+const STAY_MS = 7_000;
+
+/**
+ * Waits for something that was asked of the server; if it fails, says why.
+ * @template T
+ * @param {Promise<T>} promise
+ * @param {{t: (key: string) => string}} context
+ * @returns {Promise<T|null>} null: it failed
+ */
+export async function attempt(promise, { t }) {
+  try {
+    return await promise;
+  } catch (error) {
+    tell(reason(/** @type {any} */ (error), t));
+    return null;
+  }
+}
+
+/**
+ * Why something failed, in a sentence.
+ * @param {{code?: string, message: string}} error
+ * @param {(key: string) => string} t
+ */
+export function reason(error, t) {
+  return error.code && error.code !== "refused" ? t(`failed.${error.code}`) : error.message;
+}
+
+/**
+ * Shows a sentence for some seconds.
+ * @param {string} text
+ */
+export function tell(text) {
+  const old = document.querySelector(".toast");
+  old?.remove();
+  const toast = h("div", { class: "toast", role: "alert", text });
+  document.body.append(toast);
+  setTimeout(() => toast.remove(), STAY_MS);
+}

@@ -1,0 +1,101 @@
+// @ts-check
+import { calm, eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
+import { likely, marks, rank, readable } from "../model/ranking.js";
+import { makeCard, updateCard } from "./card.js";
+
+/** Most cards that are shown before somebody asks for all of them. */
+const MOST = 12;
+/** Most cards that are shown at all. */
+const ALL_MOST = 150;
+
+/**
+ * The objects with what the robot believes, the likely ones first.
+ * @param {HTMLElement} element
+ * @param {{store: any, t: any}} context
+ */
+export function mountCards(element, { store, t }) {
+  const list = h("ol", { class: "card-list" });
+  const absent = h("p", { class: "absent", hidden: true });
+  const more = h("button", { type: "button", class: "more", hidden: true });
+  const empty = h("p", { class: "empty" });
+  element.append(list, absent, more, empty);
+  let order = [];
+  let stands = "";
+  let sceneKey = null;
+  let all = false;
+  more.addEventListener("click", () => {
+    all = !all;
+    draw();
+  });
+
+  const draw = eachFrame(() => {
+    const scene = store.get("scene");
+    const dialogue = store.get("dialogue");
+    empty.hidden = Boolean(scene?.objects.length);
+    setText(empty, t("objects.none"));
+    if (!scene) return;
+    if (scene.key !== sceneKey) {
+      keyed(list, [], String, () => h("li"));
+      order = [];
+      sceneKey = scene.key;
+    }
+    const belief = scene.objects.map((_, i) => dialogue?.belief?.[i] ?? 0);
+    const now = { dialogue, arm: store.get("arm"), world: store.get("world") };
+    const marked = marks(scene, now);
+    order = rank(order, belief);
+    const pinned = new Set([...marked].filter(([, mark]) => mark !== "delivered").map(([i]) => i));
+    const { shown, others, rest } = likely(order, belief, all ? ALL_MOST : MOST, pinned);
+    const best = belief.reduce((top, p) => Math.max(top, p), 0);
+    const items = shown.map((i) => ({
+      index: i,
+      object: scene.objects[i],
+      p: belief[i],
+      mark: marked.get(i) ?? null,
+      leads: best > 1.5 / belief.length && belief[i] >= best - 1e-9,
+    }));
+    setAttribute(list, "data-density", density(items.length));
+    const asked = askedValue(dialogue);
+    const make = (item) => makeCard(item, scene, t);
+    const update = (node, item) => updateCard(node, item, asked, t);
+    const change = () => keyed(list, items, (item) => item.index, make, update);
+    const standing = shown.join();
+    if (standing === stands || calm()) change();
+    else glide(list, change);
+    stands = standing;
+    more.hidden = others === 0 && !all;
+    const args = { n: others, share: t.percent(rest, 1) };
+    setText(more, all && others === 0 ? t("objects.fewer") : t("objects.more", args));
+    absent.hidden = !(dialogue?.absent > 0);
+    const { sign, share } = readable(dialogue?.absent ?? 0);
+    setText(absent, t("objects.absent", { share: sign + t.percent(share) }));
+  });
+  store.subscribe(["scene", "dialogue", "arm", "world"], draw);
+  draw();
+}
+
+function density(n) {
+  if (n <= 6) return "roomy";
+  return n <= 10 ? "medium" : "dense";
+}
+
+/** The value that the standing question is about. */
+function askedValue(dialogue) {
+  const question = dialogue?.decision === "ask" ? dialogue.question : null;
+  if (question?.type === "attr") return { attribute: question.attribute, value: question.value };
+  return question?.type === "which" ? { attribute: question.attribute, value: null } : null;
+}
+
+/** Changes the list; cards that stand elsewhere then glide there. All is read before it is written. */
+function glide(list, change) {
+  const tops = new Map([...list.children].map((node) => [node, node.offsetTop]));
+  change();
+  const moves = [...list.children].map((node) => [node, (tops.get(node) ?? NaN) - node.offsetTop]);
+  for (const [node, by] of moves) {
+    if (!by) continue;
+    const from = { transform: `translateY(${by}px)` };
+    node.animate([from, { transform: "none" }], {
+      duration: 450,
+      easing: "cubic-bezier(.3,.8,.3,1)",
+    });
+  }
+}

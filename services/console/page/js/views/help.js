@@ -1,0 +1,136 @@
+// @ts-check
+import { h } from "../dom.js";
+import { icon } from "../icons.js";
+import { answers } from "../model/reasons.js";
+import { LANGUAGES } from "../strings.js";
+import { attempt } from "./attempt.js";
+
+const KEPT = "whichone.keys";
+
+/**
+ * The dialog that explains the keys, and the keys themselves.
+ * @param {{store: any, link: any, t: any}} context
+ * @returns {() => void} opens the dialog
+ */
+export function mountHelp(context) {
+  const { t } = context;
+  let single = read() !== "off";
+  const toggle = h("input", { type: "checkbox", id: "keys-on" });
+  toggle.checked = single;
+  toggle.addEventListener("change", () => {
+    single = toggle.checked;
+    write(single ? "on" : "off");
+  });
+  const close = { type: "button", class: "tool", "aria-label": t("help.close") };
+  const dialog = h(
+    "dialog",
+    { class: "help", "aria-labelledby": "help-title" },
+    h(
+      "div",
+      { class: "help-head" },
+      h("h2", { id: "help-title", text: t("help.title") }),
+      h("button", { ...close, onclick: () => dialog.close() }, icon("close", 22)),
+    ),
+    h("p", { text: t("help.stop") }),
+    keys(t),
+    h(
+      "p",
+      { class: "help-option" },
+      toggle,
+      h("label", { for: "keys-on", text: t("help.single") }),
+    ),
+    languages(t),
+  );
+  document.body.append(dialog);
+  const open = () => dialog.open || dialog.showModal();
+  addEventListener("keydown", (event) => {
+    if (!single || event.defaultPrevented || event.repeat) return;
+    if (event.ctrlKey || event.metaKey || event.altKey || typing(event.target) || dialog.open)
+      return;
+    act(event, context, open);
+  });
+  return open;
+}
+
+function keys(t) {
+  const rows = [
+    [["Esc", "Esc"], "keys.stop"],
+    [["Esc"], "keys.stop_moving"],
+    [["/"], "keys.say"],
+    [[t("keys.yes_key")], "keys.yes"],
+    [[t("keys.no_key")], "keys.no"],
+    [["?"], "keys.help"],
+  ];
+  return h(
+    "dl",
+    { class: "keys" },
+    ...rows.map(([names, what]) =>
+      h(
+        "div",
+        {},
+        h("dt", {}, ...names.map((name) => h("kbd", { text: name }))),
+        h("dd", { text: t(what) }),
+      ),
+    ),
+  );
+}
+
+function languages(t) {
+  const address = (code) => {
+    const query = new URLSearchParams(location.search);
+    query.set("lang", code);
+    return `?${query}`;
+  };
+  const names = { en: "English", de: "Deutsch" };
+  const link = (code) =>
+    h("a", {
+      href: address(code),
+      lang: code,
+      text: names[code] ?? code,
+      "aria-current": code === t.language() ? "true" : null,
+      onclick: () => write(code, "whichone.language"),
+    });
+  return h(
+    "p",
+    { class: "languages" },
+    h("span", { text: t("help.language") }),
+    ...LANGUAGES.map(link),
+  );
+}
+
+/** What a key does by itself, outside of text fields. */
+function act(event, { link, store, t }, open) {
+  const key = event.key.toLowerCase();
+  const given = answers(store.get("dialogue"), store.get("scene"));
+  const say = (text) => attempt(link.do("say", { text, source: "typed" }), { t });
+  const yesNo = given.length === 2 && given[0].text === "yes";
+  if (key === "?") open();
+  else if (key === "/") document.getElementById("say-text")?.focus();
+  else if (yesNo && key === t("keys.yes_key").toLowerCase()) say("yes");
+  else if (yesNo && key === t("keys.no_key").toLowerCase()) say("no");
+  else return;
+  event.preventDefault();
+}
+
+function typing(target) {
+  return (
+    target instanceof HTMLElement &&
+    (target.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName))
+  );
+}
+
+function read() {
+  try {
+    return localStorage.getItem(KEPT);
+  } catch {
+    return null;
+  }
+}
+
+function write(value, key = KEPT) {
+  try {
+    localStorage.setItem(key, value);
+  } catch {
+    // Not kept, in a private window.
+  }
+}

@@ -1,0 +1,48 @@
+// @ts-check
+import { h } from "../dom.js";
+
+/** A hypothesis as sure as that needs no figure. */
+const SURE = 0.995;
+
+/**
+ * A line of the conversation.
+ * @param {any} line
+ * @param {any} t
+ * @returns {HTMLElement}
+ */
+export function makeLine(line, t) {
+  const speaker = h("span", { class: "hidden", text: `${t(`who.${line.who}`)}: ` });
+  const text = line.text || t("talk.nothing");
+  const words = h("p", { class: "words" }, speaker, text);
+  const notes = [...understood(line, t), ...circumstances(line, t)];
+  const clock = line.clock ? h("time", { class: "clock", text: line.clock }) : null;
+  const below = h("p", { class: "notes" }, ...notes, clock);
+  return h("div", { class: "line", "data-who": line.who }, words, below);
+}
+
+/** What was understood, each hypothesis a chip with its weight. */
+function understood(line, t) {
+  const all = line.understood ?? [];
+  return all.slice(0, 5).map(({ text, weight }) => {
+    const share = all.length > 1 || weight < SURE ? ` ${t.percent(weight)}` : "";
+    const label = h("span", { class: "hidden", text: `${t("line.understood")} ` });
+    return h("span", { class: "chip" }, label, text, share && h("b", { text: share }));
+  });
+}
+
+function circumstances(line, t) {
+  const notes = [];
+  if (line.who === "unmeant")
+    notes.push(h("span", { class: "note strong", text: t("line.unmeant") }));
+  if (line.answers) {
+    notes.push(h("span", { class: "note", text: t("line.answers", { question: line.answers }) }));
+  }
+  if (typeof line.confidence === "number") {
+    const share = t.percent(line.confidence);
+    notes.push(h("span", { class: "note", text: t("line.confidence", { share }) }));
+  }
+  if (line.who === "person" && line.source && line.source !== "typed") {
+    notes.push(h("span", { class: "note", text: t(`source.${line.source}`) }));
+  }
+  return notes;
+}

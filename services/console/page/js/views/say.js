@@ -1,0 +1,78 @@
+// @ts-check
+import { eachFrame, h, setAttribute } from "../dom.js";
+import { icon } from "../icons.js";
+import { whoControls } from "../model/turn.js";
+import { reason } from "./attempt.js";
+
+/** Longest text, characters. */
+const TEXT_MAX = 500;
+
+/**
+ * The line for typing. What was refused comes back into it, with the reason.
+ * @param {HTMLElement} element
+ * @param {{link: any, store: any, t: any}} context
+ */
+export function mountSay(element, { link, store, t }) {
+  const input = h("input", {
+    id: "say-text",
+    type: "text",
+    maxlength: TEXT_MAX,
+    autocomplete: "off",
+    autocapitalize: "sentences",
+    enterkeyhint: "send",
+    "aria-label": t("say.label"),
+    "aria-describedby": "say-note",
+  });
+  const send = h(
+    "button",
+    { type: "submit", class: "send", "aria-label": t("say.send") },
+    icon("send"),
+  );
+  const note = h("p", { id: "say-note", class: "say-note", role: "status" });
+  const form = h("form", { class: "say" }, input, send);
+  element.append(form, note);
+  let beganAt = null;
+
+  input.addEventListener("input", () => {
+    note.textContent = "";
+    if (input.value === "") beganAt = null;
+    else beganAt ??= performance.now();
+  });
+  form.addEventListener("submit", async (event) => {
+    event.preventDefault();
+    const text = input.value.trim();
+    if (!text) return;
+    const began = beganAt ?? performance.now();
+    input.value = "";
+    beganAt = null;
+    note.textContent = "";
+    try {
+      await ready();
+      const times = { began_ms: link.toServer(began), ended_ms: link.serverNow() };
+      await link.do("say", { text, source: "typed", ...times });
+    } catch (error) {
+      if (input.value === "") input.value = text;
+      note.textContent = reason(/** @type {any} */ (error), t);
+    }
+  });
+
+  /** Who types where nobody is in control takes it. */
+  async function ready() {
+    if (whoControls(store.get("control"), store.get("welcome")) === "free") {
+      await link.do("take_control");
+    }
+  }
+
+  const draw = eachFrame(() => {
+    const who = whoControls(store.get("control"), store.get("welcome"));
+    const watching = who === "theirs" || who === "asked";
+    const up = store.get("link")?.state === "up";
+    input.disabled = watching;
+    send.disabled = watching || !up;
+    const noun = store.get("scene")?.noun ?? t("say.thing");
+    const words = watching ? t("say.watching") : t("say.placeholder", { noun });
+    setAttribute(input, "placeholder", words);
+  });
+  store.subscribe(["control", "welcome", "link", "scene"], draw);
+  draw();
+}

@@ -1,0 +1,70 @@
+// @ts-check
+import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
+import { makeLine } from "./line.js";
+
+/** So near to its end the transcript follows what is added, pixels. */
+const NEAR_PX = 80;
+
+/**
+ * The conversation, with what was understood of each utterance, and what is being said right now.
+ * @param {HTMLElement} element
+ * @param {{store: any, t: any}} context
+ */
+export function mountTranscript(element, { store, t }) {
+  const log = { class: "lines", role: "log", "aria-live": "off", "aria-label": t("talk.log") };
+  const list = h("div", { ...log, tabindex: 0 });
+  const empty = h("p", { class: "empty", text: t("talk.empty") });
+  const words = h("p", { class: "words" });
+  const live = h("div", { class: "line partial", "data-who": "person", hidden: true }, words);
+  const newer = h("button", {
+    type: "button",
+    class: "newer",
+    text: t("talk.newer"),
+    hidden: true,
+  });
+  const place = h("div", {});
+  list.append(empty, place, live);
+  element.append(list, newer);
+  let follows = true;
+
+  list.addEventListener(
+    "scroll",
+    () => {
+      follows = list.scrollHeight - list.scrollTop - list.clientHeight < NEAR_PX;
+      if (follows) newer.hidden = true;
+    },
+    { passive: true },
+  );
+  newer.addEventListener("click", () => toEnd());
+  function toEnd() {
+    follows = true;
+    newer.hidden = true;
+    list.scrollTop = list.scrollHeight;
+  }
+  new ResizeObserver(() => follows && toEnd()).observe(list);
+
+  /** A line that came again is another object: it is made anew. */
+  const versions = new WeakMap();
+  let version = 0;
+  const key = (line) => {
+    if (!versions.has(line)) versions.set(line, `${line.id}.${++version}`);
+    return versions.get(line);
+  };
+
+  let last = 0;
+  const draw = eachFrame(() => {
+    const lines = store.get("lines") ?? [];
+    const partial = store.get("partial");
+    empty.hidden = lines.length > 0 || Boolean(partial?.text);
+    keyed(place, lines, key, (line) => makeLine(line, t));
+    live.hidden = !partial?.text;
+    setText(words, partial?.text ?? "");
+    const newest = lines.at(-1)?.id ?? 0;
+    if (follows) toEnd();
+    else if (newest > last) newer.hidden = false;
+    last = newest;
+    setAttribute(element, "data-empty", lines.length === 0);
+  });
+  store.subscribe(["lines", "partial"], draw);
+  draw();
+}

@@ -1,0 +1,29 @@
+// @ts-check
+import { eachFrame, h, setAttribute, setText } from "../dom.js";
+import { icon } from "../icons.js";
+import { banner } from "../model/turn.js";
+
+/**
+ * The sign that says whose turn it is.
+ * @param {HTMLElement} element
+ * @param {{store: any, t: (key: string) => string}} context
+ */
+export function mountTurn(element, { store, t }) {
+  const lamp = h("span", { class: "turn-lamp" });
+  const words = h("strong", { class: "turn-words" });
+  const more = h("span", { class: "turn-more" });
+  element.append(lamp, h("span", { class: "turn-text" }, words, more));
+  let drawn = "";
+
+  const draw = eachFrame(() => {
+    const now = banner(store.get("link"), store.get("turn"), store.get("arm"));
+    setAttribute(element, "data-tone", now.tone);
+    setAttribute(element, "data-state", now.key);
+    setText(words, t(`turn.${now.key}`));
+    setText(more, t(`turn.${now.key}.more`));
+    if (drawn !== now.icon) lamp.replaceChildren(icon(/** @type {any} */ (now.icon), 26));
+    drawn = now.icon;
+  });
+  store.subscribe(["link", "turn", "arm"], draw);
+  draw();
+}
