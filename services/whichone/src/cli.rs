@@ -18,7 +18,7 @@ pub use group::{
     CheckArgs, ConfigArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, SwapArgs,
     UpArgs, WaitFor,
 };
-pub use study::{ALL as STUDY_ALL, Preset, StudyArgs};
+pub use study::{ALL as STUDY_ALL, Preset, ReportArgs, StudyArgs, StudyVerb};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, CompletionsArgs, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
 
@@ -130,9 +130,9 @@ pub enum Verb {
     Plan(PlanArgs),
     /// Print a scene's decision problem for other programs.
     Export(ExportArgs),
-    /// Have simulated people ask for objects, and compare the policies.
+    /// Compare the policies: with simulated people, or report what real ones have given.
     ///
-    /// It prints, per policy and kind of people, how often the wanted object is brought, with how
+    /// With simulated people it prints, per policy and kind of people, how often the wanted object is brought, with how
     /// many questions, in how many seconds, and what that is worth, each with its 95 % interval.
     /// The same seed gives the same table, byte for byte, on any number of threads.
     Study(StudyArgs),

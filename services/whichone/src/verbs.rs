@@ -2,7 +2,7 @@
 
 use protocol::MotionOrder;
 
-use crate::cli::{ArmArgs, Awaited, Cli, Verb};
+use crate::cli::{ArmArgs, Awaited, Cli, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
 use crate::trouble::{Outcome, Trouble};
@@ -78,7 +78,10 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
             batch::plan(&mut planning::decider(&args)?, batch::open(&args.input)?, out)
         }
         Verb::Export(args) => export::export(&args, out),
-        Verb::Study(args) => study::study(&args, out),
+        Verb::Study(args) => match &args.verb {
+            Some(StudyVerb::Report(report)) => study::report(&paths()?, report, out),
+            None => study::study(&args, out),
+        },
         Verb::Arm(args) => arm::arm(&args, out),
         Verb::Fk(args) => batch::fk(&described_arm(&args)?, batch::open(&args.input)?, out),
         Verb::Ik(args) => {

@@ -155,3 +155,77 @@ fn a_folder_that_cannot_be_written_is_named() {
     assert_eq!(ended.status.code(), Some(74));
     assert!(String::from_utf8_lossy(&ended.stderr).contains("/dev/null/study"));
 }
+
+/// The journal of somebody who has done one interaction with each of two policies: the first was
+/// right after ten seconds, the second wrong after six.
+fn journal(id: &str) -> String {
+    let drawn = |step: u32| {
+        format!(
+            r#"{{"at":2,"event":"drawn","step":{step},"object":"white","label":"white bowl","scene":"bowls","scene_key":"00","among":["white"]}}"#
+        )
+    };
+    let heard = r#"{"at":3,"event":"heard","seq":1,"source":"typed","onset_ms":1000.0,"accepted_ms":3000.0}"#;
+    let ended = |verdict: &str, object: &str, seconds: f64| {
+        format!(
+            r#"{{"at":4,"event":"ended","verdict":"{verdict}","interaction":1,"object":"{object}","questions":2,"seconds":{seconds},"ended_ms":9.0}}"#
+        )
+    };
+    let begun = format!(
+        r#"{{"at":1,"event":"begun","version":1,"participant":"{id}","session":"s","seed":1,"plan":[{{"policy":"lookahead","practice":false}},{{"policy":"entropy","practice":false}}],"protocol":{{"title":"Two policies","consent":"","instructions":["Ask."],"interactions":1,"warmup":0,"objects":"uniform","design":"within","policies":["lookahead","entropy"],"order":"latin","seconds_max":60.0,"show_belief":false,"keep_words":false,"questionnaire":[{{"id":"quick","text":"It was quick.","kind":"likert","points":5,"required":true}}]}},"group":"lab","software":"1"}}"#
+    );
+    let started = r#"{"at":2,"event":"started","after":0}"#.to_owned();
+    let lines = [
+        begun,
+        drawn(0),
+        started.clone(),
+        heard.to_owned(),
+        ended("right", "white", 8.0),
+        drawn(1),
+        started,
+        heard.to_owned(),
+        ended("wrong", "clear", 4.0),
+        r#"{"at":5,"event":"questioned"}"#.to_owned(),
+        r#"{"at":6,"event":"answered","answers":{"quick":4}}"#.to_owned(),
+        r#"{"at":7,"event":"finished"}"#.to_owned(),
+    ];
+    lines.join("\n") + "\n"
+}
+
+#[test]
+fn a_study_with_people_is_reported_from_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    for id in ["AAAAAA", "CCCCCC"] {
+        std::fs::write(folder.path().join(format!("{id}.jsonl")), journal(id)).unwrap();
+    }
+    let (data, out) = (folder.path().to_str().unwrap(), folder.path().join("out"));
+    let ended = study(&["report", data, "--json", "--out", out.to_str().unwrap()]);
+    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    let json: Value = serde_json::from_slice(&ended.stdout).unwrap();
+    assert_eq!(json["participants"]["complete"], 2);
+    assert_eq!(json["all"]["interactions"], 4);
+    assert_eq!(json["policies"][0]["success"], 1.0);
+    assert_eq!(json["paired"][0]["seconds"]["mean"], -4.0);
+    let written: Vec<String> = files(&out).into_iter().map(|(name, _)| name).collect();
+    for name in ["interactions.csv", "participants.csv", "dictionary.csv", "success.svg"] {
+        assert!(written.iter().any(|found| found == name), "{name}: {written:?}");
+    }
+    let table = String::from_utf8(study(&["report", data]).stdout).unwrap();
+    for word in ["Two policies", "2 complete", "entropy less lookahead", "It was quick."] {
+        assert!(table.contains(word), "{word}: {table}");
+    }
+}
+
+#[test]
+fn data_that_is_missing_or_damaged_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().to_str().unwrap();
+    let ended = study(&["report", data]);
+    assert_eq!(ended.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&ended.stderr).contains("holds no data"));
+    let damaged = journal("AAAAAA").replacen("started", "stared", 1);
+    std::fs::write(folder.path().join("AAAAAA.jsonl"), damaged).unwrap();
+    let ended = study(&["report", data]);
+    let told = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert_eq!(ended.status.code(), Some(74), "{told}");
+    assert!(told.contains("AAAAAA.jsonl: line 3") && told.contains("restore"), "{told}");
+}

@@ -22,12 +22,13 @@
 //! the pages of one batch in any order before the sync, and a hole in an unacknowledged batch must
 //! not look like corruption.
 //!
-//! Errors do not name the file; the caller knows it.
+//! Errors do not name the file; the caller knows it. What people are to read is kept as [`lines`].
 
 mod error;
 mod file;
 mod frame;
 mod header;
+pub mod lines;
 mod lock;
 mod rotate;
 mod scan;

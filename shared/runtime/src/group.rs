@@ -170,6 +170,11 @@ impl GroupPaths {
         self.root.join("policies")
     }
 
+    /// The data of studies with people, where no other folder is set; never deleted.
+    pub fn study(&self) -> PathBuf {
+        self.root.join("study")
+    }
+
     /// A service's journal.
     pub fn journal_file(&self, service: &str) -> PathBuf {
         self.journal().join(format!("{service}.journal"))

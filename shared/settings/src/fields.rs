@@ -3,6 +3,7 @@
 
 use std::fmt::Display;
 use std::ops::RangeInclusive;
+use std::path::PathBuf;
 use std::time::Duration;
 
 use toml::Value;
@@ -95,6 +96,16 @@ impl<'a> Fields<'a> {
         }
     }
 
+    /// A path that may be absent. The services run in other folders than the one where it was
+    /// written, so it must be absolute.
+    pub(crate) fn absolute(&mut self, key: &'static str) -> Option<PathBuf> {
+        let path = PathBuf::from(self.optional_text(key)?);
+        if !path.is_absolute() {
+            self.problem(key, "is not an absolute path", "write it from `/` on");
+        }
+        Some(path)
+    }
+
     /// A list of texts that say something.
     pub(crate) fn texts(&mut self, key: &'static str) -> Vec<String> {
         let value = self.value(key);
@@ -173,6 +184,39 @@ impl<'a> Fields<'a> {
                     self.report.add(source.problem(&path, what, cure));
                 }
             }
+        }
+        all
+    }
+
+    /// A list of tables, each read like a table of the settings over `defaults`, TOML. The list is
+    /// one value: a layer that has it replaces it whole.
+    pub(crate) fn list<T>(
+        &mut self,
+        key: &'static str,
+        defaults: &str,
+        mut read: impl FnMut(&mut Fields<'_>) -> T,
+    ) -> Vec<T> {
+        let cure = format!("write a table `[[{key}]]` for each");
+        let Value::Array(items) = self.value(key) else {
+            return self.other_type(key, "a list of tables", &cure);
+        };
+        let source = self.table.source_of(&[key]).clone();
+        let mut all = Vec::new();
+        for (n, item) in items.iter().enumerate() {
+            let Value::Table(values) = item else {
+                return self.other_type(key, "a list of tables alone", &cure);
+            };
+            let mut table = Table::parse(defaults, &source, self.report)
+                .unwrap_or_else(|| panic!("the defaults of {key} are TOML"));
+            let leaf = |(name, value): (&String, &Value)| {
+                (name.clone(), Node::Leaf(value.clone(), source.clone()))
+            };
+            let over = Table { entries: values.iter().map(leaf).collect(), source: source.clone() };
+            let mut path = self.path_of(&format!("{key}[{}]", n + 1));
+            table.merge(over, &mut path, self.report);
+            let mut fields = Fields::new(&table, path, self.report);
+            all.push(read(&mut fields));
+            fields.finish();
         }
         all
     }

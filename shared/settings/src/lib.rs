@@ -27,6 +27,7 @@ mod scene_file;
 mod services;
 mod snapshot;
 mod speech;
+mod study;
 mod text_file;
 
 #[cfg(test)]
@@ -47,6 +48,7 @@ pub use crate::resolved::{Origin, Section};
 pub use crate::services::{BUILT_IN, OPTIONAL, Restart, Service};
 pub use crate::snapshot::SNAPSHOT_FILE;
 pub use crate::speech::{Microphone, MicrophoneMode, Recogniser, Speech, Voice};
+pub use crate::study::Study;
 
 use crate::resolved::Resolved;
 
@@ -61,6 +63,8 @@ pub struct Settings {
     pub speech: Speech,
     /// Moving.
     pub arm: Arm,
+    /// A study with people.
+    pub study: Study,
     /// The objects and the words for them. Every object has a place that the arm can reach.
     pub scene: Scene,
     /// Seconds of every question and pick, where the robot's own are what its questions cost

@@ -15,7 +15,9 @@ use crate::resolved::{self, Resolved, Section};
 use crate::robot_files::{self, RobotFiles};
 use crate::scene_file;
 use crate::text_file::TextFile;
-use crate::{Settings, arm, dialogue, durations, gesture, group, nearest, reach, services, speech};
+use crate::{
+    Settings, arm, dialogue, durations, gesture, group, nearest, reach, services, speech, study,
+};
 
 pub(crate) fn load(
     dir: &Path,
@@ -82,6 +84,7 @@ pub(crate) fn check(
     let dialogue = fields.table("dialogue", dialogue::read);
     let speech = fields.table("speech", speech::read);
     let (mut arm, arm_is_sound) = fields.table("arm", |f| (arm::read(f), f.is_sound()));
+    let study = fields.table("study", |f| study::read(f, &dialogue.planner));
     fields.finish();
     let Files { scene: file, robot: robot_files } = files;
     let robot = robot_files.as_ref().and_then(|files| robot_files::read(files, &mut report));
@@ -106,7 +109,7 @@ pub(crate) fn check(
             Basis::Files => durations::find(&scene, &file, (&dialogue, &speech, &arm), &mut report),
         };
         let resolved = Resolved { tree, scene: file, robot };
-        Settings { group, dialogue, speech, arm, scene, durations, resolved }
+        Settings { group, dialogue, speech, arm, study, scene, durations, resolved }
     });
     report.verdict(settings)
 }

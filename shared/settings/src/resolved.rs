@@ -16,11 +16,13 @@ pub enum Section {
     Speech,
     /// `arm.toml`
     Arm,
+    /// `study.toml`
+    Study,
 }
 
 impl Section {
     /// Every section.
-    pub const ALL: [Self; 4] = [Self::Group, Self::Dialogue, Self::Speech, Self::Arm];
+    pub const ALL: [Self; 5] = [Self::Group, Self::Dialogue, Self::Speech, Self::Arm, Self::Study];
 
     /// Its name: the first part of its keys.
     pub fn name(self) -> &'static str {
@@ -29,6 +31,7 @@ impl Section {
             Self::Dialogue => "dialogue",
             Self::Speech => "speech",
             Self::Arm => "arm",
+            Self::Study => "study",
         }
     }
 
@@ -44,6 +47,7 @@ impl Section {
             Self::Dialogue => include_str!("../../../config/dialogue.toml"),
             Self::Speech => include_str!("../../../config/speech.toml"),
             Self::Arm => include_str!("../../../config/arm.toml"),
+            Self::Study => include_str!("../../../config/study.toml"),
         }
     }
 }

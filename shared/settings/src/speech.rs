@@ -128,18 +128,18 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
         voice_name: voice_name(f, voice),
         voice_words_per_minute: f.whole("voice_words_per_minute", 80..=450),
         voice_command: voice_command(f, voice),
-        voice_dir: absolute(f, "voice_dir"),
+        voice_dir: f.absolute("voice_dir"),
         player: f.optional_command("player"),
         recogniser,
         recogniser_command: recogniser_command(f, recogniser),
         whisper_model: whisper_model(f, recogniser),
-        model_dir: absolute(f, "model_dir"),
+        model_dir: f.absolute("model_dir"),
         accept_score_min: f.number("accept_score_min", 0.0..=1.0),
         closing_pause: Duration::from_millis(f.whole("closing_pause_ms", 100..=5000)),
         spoken_max: f.seconds("spoken_s_max", 2.0..=60.0),
         utterance_bytes_max: f.whole("utterance_bytes_max", 16..=UTTERANCE_BYTES_MAX) as usize,
         recording_max: f.seconds("recording_s_max", 1.0..=600.0),
-        watch_dir: absolute(f, "watch_dir"),
+        watch_dir: f.absolute("watch_dir"),
         microphone: f.table("microphone", microphone),
     }
 }
@@ -202,19 +202,10 @@ fn recogniser_command(f: &mut Fields<'_>, recogniser: Recogniser) -> Option<Vec<
 }
 
 fn whisper_model(f: &mut Fields<'_>, recogniser: Recogniser) -> Option<PathBuf> {
-    let model = absolute(f, "whisper_model");
+    let model = f.absolute("whisper_model");
     if recogniser == Recogniser::Whisper && model.is_none() {
         let cure = "write `whisper_model = \"/path/to/ggml-model.bin\"`";
         f.problem("recogniser", "`whisper` needs a whisper_model", cure);
     }
     model
-}
-
-/// The services run in other folders than the one where this was written, so it must be absolute.
-fn absolute(f: &mut Fields<'_>, key: &'static str) -> Option<PathBuf> {
-    let dir = PathBuf::from(f.optional_text(key)?);
-    if !dir.is_absolute() {
-        f.problem(key, "is not an absolute path", "write it from `/` on");
-    }
-    Some(dir)
 }

@@ -66,6 +66,7 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
         "speech" => &[Section::Speech, Section::Dialogue],
         "grounding" | "policy" => &[Section::Dialogue],
         "arm" => &[Section::Arm],
+        "console" => &[Section::Speech, Section::Dialogue, Section::Arm, Section::Study],
         _ => &[Section::Speech, Section::Dialogue, Section::Arm],
     };
     let texts = sections.iter().map(|&section| settings.section_text(section));

@@ -4,14 +4,19 @@ use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
-use clap::{Args, ValueEnum};
+use clap::{Args, Subcommand, ValueEnum};
 use study::UserKind;
 
 use super::batch::ProblemArgs;
+use super::group::ConfigArgs;
 
 /// Arguments of `study`.
 #[derive(Clone, Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct StudyArgs {
+    /// What to do in place of a study with simulated people.
+    #[command(subcommand)]
+    pub verb: Option<StudyVerb>,
     /// The scene: a file, TOML or JSON, or the name of one of the configuration's. A preset brings
     /// its own.
     #[arg(long, value_name = "FILE", required_unless_present = "preset")]
@@ -86,4 +91,29 @@ fn policies() -> PossibleValuesParser {
 
 fn users() -> PossibleValuesParser {
     UserKind::ALL.map(|(name, _)| name).into()
+}
+
+/// What there is beside simulated people.
+#[derive(Clone, Debug, Subcommand)]
+pub enum StudyVerb {
+    /// Tell what a study with people has given.
+    ///
+    /// People take part on the console's page /study. Per policy it prints how often the desired
+    /// object was handed over, in how many seconds, and with how many questions, each with its 95 %
+    /// interval; and the differences within those who met several.
+    Report(ReportArgs),
+}
+
+/// Arguments of `study report`.
+#[derive(Clone, Debug, Args)]
+pub struct ReportArgs {
+    /// Folder of the data; that of the group where none is named.
+    pub folder: Option<PathBuf>,
+    /// Write interactions.csv, participants.csv, dictionary.csv, study.json, report.json and plots into
+    /// this folder.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// The configuration that names the data's folder.
+    #[command(flatten)]
+    pub config: ConfigArgs,
 }

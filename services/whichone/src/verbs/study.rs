@@ -14,6 +14,7 @@ use crate::trouble::{Outcome, Trouble};
 mod board;
 mod design;
 mod house;
+mod people;
 mod plot;
 mod progress;
 mod report;
@@ -21,10 +22,12 @@ mod run;
 mod seconds;
 mod table;
 
+pub(super) use people::report;
+
 use design::Row;
 use house::House;
 
-/// Conducts the study that is asked for.
+/// Conducts the study with simulated people that is asked for.
 ///
 /// # Errors
 /// What is asked for is wrong, or a file cannot be written.

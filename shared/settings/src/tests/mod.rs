@@ -4,6 +4,7 @@ mod layering;
 mod reach;
 mod robots;
 mod snapshot;
+mod study;
 mod wrong;
 
 use std::fs;

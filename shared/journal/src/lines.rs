@@ -1,0 +1,140 @@
+//! Files of text lines that are only ever appended to: for what people and their programs read.
+//!
+//! Invariant: what [`Lines::append`] has acknowledged is on the disk. A crash may leave the beginning
+//! of one more line, without its end; who reads leaves that out.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// A file of lines, open for its only writer.
+#[derive(Debug)]
+pub struct Lines {
+    file: File,
+    bytes: u64,
+}
+
+impl Lines {
+    /// A new file. The folder is made where there is none, and both are on the disk afterwards.
+    ///
+    /// # Errors
+    /// It exists already, or cannot be written.
+    pub fn create(path: &Path) -> io::Result<Self> {
+        let folder = path.parent().unwrap_or(Path::new("."));
+        fs::create_dir_all(folder)?;
+        let file = OpenOptions::new().append(true).create_new(true).open(path)?;
+        File::open(folder)?.sync_all()?;
+        Ok(Self { file, bytes: 0 })
+    }
+
+    /// An existing file and its whole lines. What follows their last end was never acknowledged and
+    /// is cut off.
+    ///
+    /// # Errors
+    /// It cannot be read or written, or is no UTF-8.
+    pub fn open(path: &Path) -> io::Result<(Self, String)> {
+        let mut file = OpenOptions::new().read(true).append(true).open(path)?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        bytes.truncate(bytes.iter().rposition(|byte| *byte == b'\n').map_or(0, |end| end + 1));
+        file.set_len(bytes.len() as u64)?;
+        let lines = Self { file, bytes: bytes.len() as u64 };
+        let text =
+            String::from_utf8(bytes).map_err(|e| io::Error::new(ErrorKind::InvalidData, e))?;
+        Ok((lines, text))
+    }
+
+    /// Appends whole lines, all or none, and waits until they are on the disk.
+    ///
+    /// # Errors
+    /// They cannot be written.
+    ///
+    /// # Panics
+    /// Where `lines` does not end with the end of a line: a bug.
+    pub fn append(&mut self, lines: &str) -> io::Result<()> {
+        assert!(lines.ends_with('\n'), "only whole lines are appended");
+        let written = self.file.write_all(lines.as_bytes()).and_then(|()| self.file.sync_data());
+        if let Err(error) = written {
+            // The next line must not follow upon half of this one.
+            self.file.set_len(self.bytes)?;
+            return Err(error);
+        }
+        self.bytes += lines.len() as u64;
+        Ok(())
+    }
+}
+
+/// Puts `lines` in the place of a file's content: readers see the one or the other, whatever happens.
+///
+/// # Errors
+/// It cannot be written.
+pub fn replace(path: &Path, lines: &str) -> io::Result<()> {
+    let beside = path.with_extension("new");
+    let mut file = File::create(&beside)?;
+    file.write_all(lines.as_bytes())?;
+    file.sync_all()?;
+    fs::rename(&beside, path)?;
+    File::open(path.parent().unwrap_or(Path::new(".")))?.sync_all()
+}
+
+/// The files with that ending in a folder, by name, with their texts; none where there is no folder.
+///
+/// # Errors
+/// The file that cannot be read, and why.
+pub fn read_folder(
+    folder: &Path,
+    ending: &str,
+) -> Result<Vec<(PathBuf, String)>, (PathBuf, io::Error)> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries.map_err(|error| (folder.to_owned(), error))?,
+    };
+    let mut files: Vec<PathBuf> = entries
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|found| found == ending))
+        .collect();
+    files.sort();
+    let read = |path: PathBuf| match fs::read_to_string(&path) {
+        Ok(text) => Ok((path, text)),
+        Err(error) => Err((path, error)),
+    };
+    files.into_iter().map(read).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_appended_is_there_again_and_a_torn_line_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deep/A.jsonl");
+        let mut lines = Lines::create(&path).unwrap();
+        lines.append("one\ntwo\n").unwrap();
+        assert_eq!(Lines::create(&path).unwrap_err().kind(), ErrorKind::AlreadyExists);
+        fs::OpenOptions::new().append(true).open(&path).unwrap().write_all(b"thr").unwrap();
+        let (mut lines, text) = Lines::open(&path).unwrap();
+        assert_eq!(text, "one\ntwo\n");
+        lines.append("four\n").unwrap();
+        let files = read_folder(path.parent().unwrap(), "jsonl").unwrap();
+        assert_eq!(files, [(path.clone(), "one\ntwo\nfour\n".to_owned())]);
+        replace(&path, "gone\n").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "gone\n");
+        assert_eq!(read_folder(path.parent().unwrap(), "jsonl").unwrap().len(), 1);
+    }
+
+    #[test]
+    fn a_folder_that_is_not_there_has_no_files() {
+        assert!(read_folder(Path::new("/no/such/folder"), "jsonl").unwrap().is_empty());
+    }
+
+    #[test]
+    fn a_file_that_is_no_text_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("A.jsonl");
+        fs::write(&path, b"\xff\n").unwrap();
+        assert_eq!(Lines::open(&path).unwrap_err().kind(), ErrorKind::InvalidData);
+        assert_eq!(read_folder(folder.path(), "jsonl").unwrap_err().0, path);
+    }
+}

@@ -1,0 +1,134 @@
+//! What a questionnaire asks, and which answers it takes.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value as Json;
+
+/// Most characters of an answer in the participant's own words.
+const TEXT_MAX: usize = 2000;
+
+/// A question of the questionnaire.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Item {
+    /// Its name in the data: letters, digits and `_`.
+    pub id: String,
+    /// What the participant reads.
+    pub text: String,
+    /// Which answers there are.
+    pub kind: Kind,
+    /// What a [`Kind::Choice`] offers; empty for others.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub options: Vec<String>,
+    /// What the least value of a [`Kind::Likert`] stands for.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub low: String,
+    /// What its greatest value stands for.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub high: String,
+    /// How many values it has.
+    #[serde(default)]
+    pub points: u8,
+    /// Whether it must be answered.
+    pub required: bool,
+}
+
+/// The kinds of answers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A whole number from 1 to `points`.
+    Likert,
+    /// One of `options`.
+    Choice,
+    /// A number.
+    Number,
+    /// Own words.
+    Text,
+}
+
+impl Item {
+    /// The answer as it is kept: none where nothing was answered.
+    ///
+    /// # Errors
+    /// A sentence for the participant: what the item needs.
+    pub fn check(&self, answer: &Json) -> Result<Option<Json>, String> {
+        let empty = match answer {
+            Json::Null => true,
+            Json::String(text) => text.trim().is_empty(),
+            _ => false,
+        };
+        if empty {
+            return if self.required { Err(self.refusal("needs an answer")) } else { Ok(None) };
+        }
+        match (self.kind, answer) {
+            (Kind::Likert, Json::Number(number)) => match number.as_u64() {
+                Some(n) if (1..=u64::from(self.points)).contains(&n) => Ok(Some(n.into())),
+                _ => Err(self.refusal(&format!("takes a whole number from 1 to {}", self.points))),
+            },
+            (Kind::Choice, Json::String(choice)) if self.options.contains(choice) => {
+                Ok(Some(choice.as_str().into()))
+            }
+            (Kind::Choice, _) => {
+                Err(self.refusal(&format!("takes one of {}", self.options.join(", "))))
+            }
+            (Kind::Number, Json::Number(number)) => Ok(Some(Json::Number(number.clone()))),
+            (Kind::Text, Json::String(text)) if text.chars().count() <= TEXT_MAX => {
+                Ok(Some(text.trim().into()))
+            }
+            (Kind::Text, _) => {
+                Err(self.refusal(&format!("takes a text of at most {TEXT_MAX} characters")))
+            }
+            (Kind::Likert | Kind::Number, _) => Err(self.refusal("takes a number")),
+        }
+    }
+
+    fn refusal(&self, what: &str) -> String {
+        format!("“{}” {what}.", self.text)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn item(kind: Kind, required: bool) -> Item {
+        Item {
+            id: "q".to_owned(),
+            text: "How was it?".to_owned(),
+            kind,
+            options: vec!["good".to_owned(), "bad".to_owned()],
+            low: String::new(),
+            high: String::new(),
+            points: 7,
+            required,
+        }
+    }
+
+    #[test]
+    fn each_kind_takes_its_own_answers_alone() {
+        let cases = [
+            (Kind::Likert, json!(7), json!(8)),
+            (Kind::Likert, json!(1), json!(1.5)),
+            (Kind::Likert, json!(2), json!("2")),
+            (Kind::Choice, json!("bad"), json!("worse")),
+            (Kind::Number, json!(-2.5), json!("many")),
+            (Kind::Text, json!("fine"), json!(3)),
+            (Kind::Text, json!("x".repeat(2000)), json!("x".repeat(2001))),
+        ];
+        for (kind, good, bad) in cases {
+            assert_eq!(item(kind, true).check(&good), Ok(Some(good)), "{kind:?}");
+            let refusal = item(kind, true).check(&bad).unwrap_err();
+            assert!(refusal.contains("How was it?"), "{refusal}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_required_may_stay_open() {
+        for nothing in [Json::Null, json!("  ")] {
+            for kind in [Kind::Likert, Kind::Choice, Kind::Number, Kind::Text] {
+                assert_eq!(item(kind, false).check(&nothing), Ok(None));
+                assert!(item(kind, true).check(&nothing).is_err());
+            }
+        }
+    }
+}

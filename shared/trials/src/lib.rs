@@ -1,0 +1,49 @@
+//! Studies with people: what was agreed, what happened, and what it adds up to.
+//!
+//! A participant's data is a journal: one JSON object a line, only ever appended to. Everything else
+//! is a fold of it ([`Participant`]), so that the page that conducts the study, the export and the
+//! report of the command line cannot disagree, and a program that is killed goes on where it was.
+//!
+//! This crate is pure: no IO, no clock, no threads.
+//!
+//! | what | where |
+//! |---|---|
+//! | what a lab has decided: texts, design, questionnaire | `protocol.rs`, `item.rs` |
+//! | which policy when, and which object | `plan.rs` |
+//! | what can happen, as lines of a journal | `event.rs` |
+//! | a participant and one interaction, folded | `participant.rs`, `trial.rs` |
+//! | rows for statistics programs, and what their columns mean | `rows.rs`, `dictionary.rs` |
+//! | success, seconds and questions by policy, with intervals | `report.rs`, `paired.rs` |
+//! | the same as pictures | `pictures.rs` |
+
+mod dictionary;
+mod event;
+mod item;
+mod paired;
+mod participant;
+mod pictures;
+mod plan;
+mod protocol;
+mod report;
+mod rows;
+mod stamp;
+#[cfg(test)]
+mod testing;
+#[cfg(test)]
+mod tests;
+mod trial;
+
+pub use dictionary::{Column, INTERACTIONS, PARTICIPANTS, dictionary};
+pub use event::{
+    Begun, Drawn, Entry, Event, FILE_ENDING, Fault, FormatError, Source, VERSION, parse,
+};
+pub use item::{Item, Kind};
+pub use paired::{Paired, paired};
+pub use participant::{Participant, Stage, Status, people};
+pub use pictures::pictures;
+pub use plan::{Counts, Step, draw, new_id, plan};
+pub use protocol::{Design, Objects, Order, Protocol};
+pub use report::{Answers, Group, Report, report};
+pub use rows::{Tables, tables, to_json};
+pub use stamp::utc;
+pub use trial::{End, Trial, Verdict};
