@@ -17,8 +17,8 @@ const PROBE_MS = 1_200;
 const DEADLINE_MS = 10_000;
 /** The server closes with it when another page uses the same session. */
 const REPLACED = 4001;
-/** The server closes with it when it wants the token first. */
-const LOGIN = 4401;
+/** After so many attempts the page asks whether the server wants its token first. */
+const ATTEMPTS = 2;
 
 /**
  * @typedef {object} Status
@@ -39,6 +39,7 @@ const LOGIN = 4401;
  * @param {string} [options.name] what it is called towards the other viewers
  * @param {() => number} [options.lastLine] the newest transcript line that the page has
  * @param {(parts: object) => void} [options.onState] the same as `on("state", …)`
+ * @param {() => void} [options.refused] when it cannot connect: by default looks for the login page
  * @param {typeof WebSocket} [options.socket] for tests
  * @param {() => number} [options.now] page time, for tests
  * @returns {Link}
@@ -65,7 +66,13 @@ class Link {
   #status;
 
   constructor(options) {
-    this.#options = { role: "operator", name: "", lastLine: () => 0, ...options };
+    this.#options = {
+      role: "operator",
+      name: "",
+      lastLine: () => 0,
+      refused: askForToken,
+      ...options,
+    };
     this.#now = options.now ?? (() => performance.now());
     this.#status = {
       state: "connecting",
@@ -227,8 +234,8 @@ class Link {
     if (socket !== this.#socket) return;
     this.#drop();
     if (code === REPLACED) return this.#tell({ state: "replaced", retryAt: null });
-    if (code === LOGIN && typeof location !== "undefined") location.assign("/login");
     const attempt = this.#status.attempt + 1;
+    if (attempt === ATTEMPTS) this.#options.refused();
     const wait = backoffMs(attempt, Math.random());
     this.#retry = setTimeout(() => this.#open(), wait);
     this.#tell({ state: "down", attempt, retryAt: this.#now() + wait });
@@ -292,4 +299,14 @@ class Link {
 function ownUrl() {
   const scheme = location.protocol === "https:" ? "wss:" : "ws:";
   return `${scheme}//${location.host}/ws`;
+}
+
+/** A server that wants its token refuses sockets without a reason; a page's request tells. */
+async function askForToken() {
+  try {
+    const answer = await fetch("/api/state", { method: "HEAD", cache: "no-store" });
+    if (answer.status === 401) location.assign("/login");
+  } catch {
+    // Nobody is there: that is what the page says anyway.
+  }
 }

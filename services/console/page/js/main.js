@@ -1,5 +1,6 @@
 // @ts-check
 
+import { keptLanguage, tabStorage } from "./kept.js";
 import { sessionId } from "./link/session.js";
 import { connect } from "./link.js";
 import { keep, Store } from "./store.js";
@@ -8,31 +9,27 @@ import { mountActions } from "./views/actions.js";
 import { mountAlarm } from "./views/alarm.js";
 import { mountCards } from "./views/cards.js";
 import { mountControl } from "./views/control.js";
-import { mountLatency } from "./views/latency.js";
+import { mountHealth } from "./views/health.js";
 import { mountPart } from "./views/part.js";
 import { mountQuestion } from "./views/question.js";
 import { mountSay } from "./views/say.js";
-import { mountServices } from "./views/services.js";
 import { mountTabs } from "./views/tabs.js";
 import { mountTools } from "./views/tools.js";
 import { mountTranscript } from "./views/transcript.js";
 import { mountTurn } from "./views/turn.js";
-
-const LANGUAGE = "whichone.language";
 
 /** @param {string} id @returns {HTMLElement} */
 const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
 const store = new Store();
 const link = connect({
-  session: sessionId(stored("sessionStorage")),
+  session: sessionId(tabStorage()),
   role: wishedRole(location.search),
   lastLine: () => store.lastLine,
 });
 keep(store, link);
 
-const kept = stored("localStorage")?.getItem(LANGUAGE) ?? null;
-await loadStrings(chooseLanguage(location.search, kept, navigator.languages));
+await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.languages));
 translate(document);
 
 const context = { link, store, t };
@@ -46,8 +43,7 @@ mountSay(at("say"), context);
 mountControl(at("control"), context);
 mountTools(at("tools"), context);
 mountTabs(at("tabs"), at("page"), context);
-mountServices(at("services"), context);
-mountLatency(at("latency"), context);
+mountHealth(at("health"), context);
 store.subscribe("welcome", ({ group }) => {
   at("group").textContent = group;
   document.title = `whichone · ${group}`;
@@ -67,13 +63,4 @@ function afterPaint(f) {
 function wishedRole(search) {
   const role = new URLSearchParams(search).get("role");
   return role === "viewer" || role === "screen" ? role : "operator";
-}
-
-/** @param {"localStorage"|"sessionStorage"} name @returns {Storage|null} */
-function stored(name) {
-  try {
-    return globalThis[name];
-  } catch {
-    return null;
-  }
 }

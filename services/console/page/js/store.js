@@ -50,6 +50,16 @@ export class Store {
     this.set("lines", mergeLines(this.get("lines") ?? [], lines));
   }
 
+  /**
+   * A server that keeps fewer lines than the page has seen is another one: its transcript starts
+   * anew.
+   * @param {number|undefined} firstLine number of the first line that the server keeps, 0 for none
+   */
+  resume(firstLine) {
+    const lost = firstLine === 0 || (firstLine ?? 0) > this.lastLine + 1;
+    if (lost && this.lastLine > 0) this.set("lines", []);
+  }
+
   /** The newest transcript line that is known, 0 for none. */
   get lastLine() {
     return this.get("lines")?.at(-1)?.id ?? 0;
@@ -83,7 +93,10 @@ export function keep(store, link) {
   link.on("state", (parts) => store.apply(parts));
   link.on("lines", (lines) => store.addLines(lines));
   link.on("partial", (partial) => store.set("partial", partial));
-  link.on("welcome", (welcome) => store.set("welcome", welcome));
+  link.on("welcome", (welcome) => {
+    store.resume(welcome.first_line);
+    store.set("welcome", welcome);
+  });
   link.on("status", (status) => store.set("link", status));
   store.set("link", link.status);
 }

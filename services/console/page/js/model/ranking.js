@@ -73,3 +73,20 @@ export function marks(scene, { dialogue, arm, world }) {
   if (Number.isInteger(held) && held >= 0) found.set(held, "held");
   return found;
 }
+
+/** Least heights of a card, pixels: with all its words, with them closely set. */
+const ROOMY_PX = 80;
+const MEDIUM_PX = 66;
+
+/**
+ * How closely cards are set.
+ * @param {number} cards
+ * @param {number|null} heightPx the height for all of them; null: as much as they want
+ * @returns {"roomy"|"medium"|"dense"} dense: one line each
+ */
+export function density(cards, heightPx) {
+  if (heightPx === null) return cards <= 7 ? "medium" : "dense";
+  const each = heightPx / Math.max(1, cards);
+  if (each >= ROOMY_PX) return "roomy";
+  return each >= MEDIUM_PX ? "medium" : "dense";
+}

@@ -1,12 +1,15 @@
 // @ts-check
 import { calm, eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
-import { likely, marks, rank, readable } from "../model/ranking.js";
+import { density, likely, marks, rank, readable } from "../model/ranking.js";
 import { makeCard, updateCard } from "./card.js";
 
 /** Most cards that are shown before somebody asks for all of them. */
 const MOST = 12;
 /** Most cards that are shown at all. */
 const ALL_MOST = 150;
+/** Where the page fills the window and does not scroll. */
+const FIXED =
+  "(min-width: 1101px) and (min-height: 640px), (max-width: 640px) and (min-height: 560px)";
 
 /**
  * The objects with what the robot believes, the likely ones first.
@@ -27,6 +30,16 @@ export function mountCards(element, { store, t }) {
     all = !all;
     draw();
   });
+
+  /** The height that there is for the cards, where the page does not scroll. */
+  let height = null;
+  const fixed = matchMedia(FIXED);
+  new ResizeObserver(() => {
+    const now = fixed.matches ? element.clientHeight : null;
+    if (now === height) return;
+    height = now;
+    draw();
+  }).observe(element);
 
   const draw = eachFrame(() => {
     const scene = store.get("scene");
@@ -53,7 +66,7 @@ export function mountCards(element, { store, t }) {
       mark: marked.get(i) ?? null,
       leads: best > 1.5 / belief.length && belief[i] >= best - 1e-9,
     }));
-    setAttribute(list, "data-density", density(items.length));
+    setAttribute(list, "data-density", density(items.length, height));
     const asked = askedValue(dialogue);
     const make = (item) => makeCard(item, scene, t);
     const update = (node, item) => updateCard(node, item, asked, t);
@@ -71,11 +84,6 @@ export function mountCards(element, { store, t }) {
   });
   store.subscribe(["scene", "dialogue", "arm", "world"], draw);
   draw();
-}
-
-function density(n) {
-  if (n <= 6) return "roomy";
-  return n <= 10 ? "medium" : "dense";
 }
 
 /** The value that the standing question is about. */

@@ -2,52 +2,58 @@
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
 import { whoControls } from "../model/turn.js";
+import { myPages } from "../mypages.js";
 import { attempt } from "./attempt.js";
 
 /**
  * Who is in control, how many watch, and how to take control or give it away.
  * @param {HTMLElement} element
- * @param {{link: any, store: any, t: (key: string, args?: object) => string}} context
+ * @param {{link: any, store: any, t: any}} context
  */
 export function mountControl(element, context) {
   const { link, store, t } = context;
+  const pages = myPages(context);
   const who = h("span", { class: "control-who" });
-  const mark = h("span", { class: "control-mark" }, icon("person", 18));
   const viewers = h("span", { class: "control-viewers" });
-  const take = button("control.take", () => attempt(link.do("take_control"), context));
-  const give = button("control.give", () =>
-    attempt(link.do("give_control", { viewer: store.get("control")?.asked_by }), context),
-  );
-  const keepIt = button("control.keep", () => attempt(link.do("keep_control"), context));
-  const release = button("control.release", () =>
-    attempt(link.do("give_control", { viewer: null }), context),
-  );
-  element.append(
-    mark,
-    h("span", { class: "control-text" }, who, viewers),
-    take,
-    give,
-    keepIt,
-    release,
-  );
+  const take = button(() => {
+    if (pages.isMine(store.get("control")?.operator ?? null)) pages.fetch();
+    else attempt(link.do("take_control"), context);
+  });
+  const give = button(() => {
+    attempt(link.do("give_control", { viewer: store.get("control")?.asked_by }), context);
+  });
+  const keep = button(() => attempt(link.do("keep_control"), context));
+  setText(give, t("control.give"));
+  setText(keep, t("control.keep"));
+  const mark = h("span", { class: "control-mark" }, icon("person", 18));
+  element.append(mark, h("span", { class: "control-text" }, who, viewers), take, give, keep);
 
-  function button(key, onclick) {
-    return h("button", { type: "button", class: "small", text: t(key), hidden: true, onclick });
+  function button(onclick) {
+    return h("button", { type: "button", class: "small", hidden: true, onclick });
   }
 
+  let tick = 0;
   const draw = eachFrame(() => {
+    clearTimeout(tick);
     const control = store.get("control");
-    const mine = whoControls(control, store.get("welcome"));
-    const asked = mine === "mine" && control.asked_by ? control.asked_by : null;
+    const is = whoControls(control, store.get("welcome"));
+    const elsewhere = is === "theirs" && pages.isMine(control.operator);
+    const asked = is === "mine" && control.asked_by ? control.asked_by : null;
     const name = control?.name || control?.operator || "";
-    setAttribute(element, "data-who", mine);
-    setText(who, asked ? t("control.asks", { viewer: asked }) : t(`control.${mine}`, { name }));
+    setAttribute(element, "data-who", is);
+    const key = elsewhere ? "elsewhere" : is;
+    setText(who, asked ? t("control.asks", { viewer: asked }) : t(`control.${key}`, { name }));
+    const left = control?.expires_ms
+      ? Math.ceil((control.expires_ms - link.serverNow()) / 1000)
+      : 0;
     const n = control?.viewers ?? 0;
-    setText(viewers, control ? t("control.viewers", { n }) : "");
-    take.hidden = mine !== "free" && mine !== "theirs";
-    setText(take, t(mine === "theirs" ? "control.ask" : "control.take"));
-    give.hidden = keepIt.hidden = !asked;
-    release.hidden = mine !== "mine" || asked !== null || n < 2;
+    const soon = (asked || is === "asked") && left > 0;
+    if (soon) tick = setTimeout(draw, 500);
+    const below = soon ? t("control.in", { s: left }) : t("control.viewers", { n });
+    setText(viewers, control ? below : "");
+    take.hidden = is !== "free" && is !== "theirs";
+    setText(take, t(elsewhere ? "control.here" : is === "theirs" ? "control.ask" : "control.take"));
+    give.hidden = keep.hidden = !asked;
   });
   store.subscribe(["control", "welcome", "link"], draw);
   draw();

@@ -1,11 +1,10 @@
 // @ts-check
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
+import { keep, recall } from "../kept.js";
 import { answers } from "../model/reasons.js";
 import { LANGUAGES } from "../strings.js";
 import { attempt } from "./attempt.js";
-
-const KEPT = "whichone.keys";
 
 /**
  * The dialog that explains the keys, and the keys themselves.
@@ -14,12 +13,12 @@ const KEPT = "whichone.keys";
  */
 export function mountHelp(context) {
   const { t } = context;
-  let single = read() !== "off";
+  let single = recall("keys") !== "off";
   const toggle = h("input", { type: "checkbox", id: "keys-on" });
   toggle.checked = single;
   toggle.addEventListener("change", () => {
     single = toggle.checked;
-    write(single ? "on" : "off");
+    keep("keys", single ? null : "off");
   });
   const close = { type: "button", class: "tool", "aria-label": t("help.close") };
   const dialog = h(
@@ -88,7 +87,7 @@ function languages(t) {
       lang: code,
       text: names[code] ?? code,
       "aria-current": code === t.language() ? "true" : null,
-      onclick: () => write(code, "whichone.language"),
+      onclick: () => keep("language", code),
     });
   return h(
     "p",
@@ -117,20 +116,4 @@ function typing(target) {
     target instanceof HTMLElement &&
     (target.isContentEditable || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName))
   );
-}
-
-function read() {
-  try {
-    return localStorage.getItem(KEPT);
-  } catch {
-    return null;
-  }
-}
-
-function write(value, key = KEPT) {
-  try {
-    localStorage.setItem(key, value);
-  } catch {
-    // Not kept, in a private window.
-  }
 }

@@ -16,7 +16,7 @@ export function makeLine(line, t) {
   const words = h("p", { class: "words" }, speaker, text);
   const notes = [...understood(line, t), ...circumstances(line, t)];
   const clock = line.clock ? h("time", { class: "clock", text: line.clock }) : null;
-  const below = h("p", { class: "notes" }, ...notes, clock);
+  const below = notes.length || clock ? h("p", { class: "notes" }, ...notes, clock) : null;
   return h("div", { class: "line", "data-who": line.who }, words, below);
 }
 
@@ -37,7 +37,7 @@ function circumstances(line, t) {
   if (line.answers) {
     notes.push(h("span", { class: "note", text: t("line.answers", { question: line.answers }) }));
   }
-  if (typeof line.confidence === "number") {
+  if (typeof line.confidence === "number" && line.source !== "typed") {
     const share = t.percent(line.confidence);
     notes.push(h("span", { class: "note", text: t("line.confidence", { share }) }));
   }

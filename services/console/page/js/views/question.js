@@ -21,22 +21,17 @@ export function mountQuestion(element, context) {
   const quick = h("div", { class: "quick" });
   const notThat = correction("not_that", "undo");
   const startOver = correction("start_over", "again");
-  const row = h(
-    "div",
-    { class: "question-row" },
-    quick,
-    h("div", { class: "correct" }, notThat, startOver),
-  );
+  const correct = h("div", { class: "correct" }, notThat, startOver);
   const why = h("div", { class: "why" });
-  element.append(kicker, words, row, why);
+  element.append(h("div", { class: "question-top" }, kicker, correct), words, quick, why);
   mountWhy(why, context);
 
   function correction(verb, drawing) {
     const press = () => attempt(link.do(verb), context);
     return h(
       "button",
-      { type: "button", id: verb, onclick: press },
-      icon(drawing, 18),
+      { type: "button", class: "small", id: verb, onclick: press },
+      icon(drawing, 17),
       t(`act.${verb}`),
     );
   }
@@ -60,12 +55,12 @@ export function mountQuestion(element, context) {
     keyed(quick, mine ? answers(dialogue, scene) : [], (item) => item.text, answer);
     const open = mine && dialogue?.interaction > 0;
     notThat.disabled = startOver.disabled = !open;
-    if (fresh && dialogue?.prompt !== prompt) await_voice(dialogue?.prompt ?? null);
+    if (fresh && dialogue?.prompt !== prompt) awaitVoice(dialogue?.prompt ?? null);
     const heard = store.get("speech")?.speaking?.prompt === dialogue?.prompt;
     if (heard) reveal();
   });
 
-  function await_voice(next) {
+  function awaitVoice(next) {
     prompt = next;
     clearTimeout(timer);
     const speaking = store.get("speech")?.speaking;

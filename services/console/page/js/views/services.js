@@ -1,6 +1,7 @@
 // @ts-check
 import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
+import { tone } from "../model/health.js";
 import { whoControls } from "../model/turn.js";
 import { attempt } from "./attempt.js";
 
@@ -47,9 +48,4 @@ export function mountServices(element, context) {
   });
   store.subscribe(["services", "control", "welcome"], draw);
   draw();
-}
-
-function tone(state) {
-  if (state === "ready" || state === "running" || state === "up") return "good";
-  return ["failed", "held", "dead", "down", "stopped"].includes(state) ? "bad" : "busy";
 }

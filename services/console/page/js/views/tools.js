@@ -1,6 +1,7 @@
 // @ts-check
 import { h, setAttribute } from "../dom.js";
 import { icon } from "../icons.js";
+import { keep } from "../kept.js";
 import { mountHelp } from "./help.js";
 
 const THEMES = ["auto", "light", "dark"];
@@ -29,7 +30,7 @@ export function mountTools(element, context) {
     chosen = THEMES[(THEMES.indexOf(chosen) + 1) % THEMES.length];
     if (chosen === "auto") delete document.documentElement.dataset.theme;
     else document.documentElement.dataset.theme = chosen;
-    remember(chosen);
+    keep("theme", chosen === "auto" ? null : chosen);
     show();
   });
   const show = () => {
@@ -39,13 +40,4 @@ export function mountTools(element, context) {
     theme.replaceChildren(icon(DRAWINGS[chosen], 22));
   };
   show();
-}
-
-function remember(theme) {
-  try {
-    if (theme === "auto") localStorage.removeItem("whichone.theme");
-    else localStorage.setItem("whichone.theme", theme);
-  } catch {
-    // Not kept, in a private window.
-  }
 }

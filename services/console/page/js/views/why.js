@@ -5,21 +5,27 @@ import { proof, ranked, toCome } from "../model/reasons.js";
 /** Where there is room, the reasons are shown from the beginning. */
 const ROOMY = "(min-width: 1024px) and (min-height: 700px)";
 
+const ONE_DIGIT = { maximumFractionDigits: 1, minimumFractionDigits: 1 };
+/** Most actions that are compared. */
+const ACTIONS_MAX = 4;
+
 /**
  * Why the robot does what it does: what else it could do, and what each is worth.
  * @param {HTMLElement} element
  * @param {{store: any, t: any}} context
  */
 export function mountWhy(element, { store, t }) {
-  const summary = h("summary", {});
-  const sentence = h("p", { class: "why-sentence" });
+  const title = h("span", { class: "why-title" });
+  const sentence = h("span", { class: "why-sentence" });
+  const summary = h("summary", {}, title, " ", sentence);
   const list = h("ol", { class: "why-list" });
   const proven = h("p", { class: "why-proof" });
-  const body = h("div", { class: "why-body" }, sentence, list, proven);
+  const body = h("div", { class: "why-body" }, list, proven);
   const details = h("details", {}, summary, body);
   details.open = matchMedia(ROOMY).matches;
   element.append(details);
 
+  const figure = (value) => t.number(value, ONE_DIGIT).replace("-", "−");
   const words = (action) => t(`action.${action.kind}`, { text: action.text });
   const make = () => {
     const bar = h("span", { class: "why-bar" }, h("i", {}));
@@ -30,7 +36,7 @@ export function mountWhy(element, { store, t }) {
     const [name, bar, value] = node.children;
     setText(name, words(item.action));
     bar.firstElementChild.style.setProperty("transform", `scaleX(${item.length.toFixed(4)})`);
-    setText(value, t.number(item.value, { maximumFractionDigits: 1, minimumFractionDigits: 1 }));
+    setText(value, figure(item.value));
     setAttribute(node, "data-chosen", item.chosen);
     setAttribute(node, "aria-current", item.chosen ? "true" : null);
   };
@@ -40,14 +46,15 @@ export function mountWhy(element, { store, t }) {
     const shown = dialogue?.interaction > 0 && (dialogue.alternatives?.length ?? 0) > 0;
     details.hidden = !shown;
     if (!shown) return;
-    setText(summary, t(dialogue.decision === "ask" ? "why.question" : "why.action"));
+    setText(title, t(dialogue.decision === "ask" ? "why.question" : "why.action"));
     const { key, args } = toCome(dialogue.expected_questions);
-    setText(sentence, `${t(key, args)} ${t("why.points")}`);
-    const items = ranked(dialogue, store.get("scene"), store.get("arm")?.object);
+    setText(sentence, t(key, args));
+    const aim = store.get("arm")?.object;
+    const items = ranked(dialogue, store.get("scene"), aim).slice(0, ACTIONS_MAX);
     keyed(list, items, (item) => `${item.action.kind} ${item.action.text}`, make, update);
     const known = proof(dialogue.value, dialogue.bounds);
-    proven.hidden = !known;
-    if (known) setText(proven, t(known.key, known.args));
+    const sure = known ? `${t(known.key, known.args)} ` : "";
+    setText(proven, sure + t("why.points"));
   });
   store.subscribe(["dialogue", "scene"], draw);
   draw();

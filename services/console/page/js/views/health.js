@@ -1,0 +1,40 @@
+// @ts-check
+import { eachFrame, h, setAttribute, setText } from "../dom.js";
+import { health } from "../model/health.js";
+import { mountLatency } from "./latency.js";
+import { mountServices } from "./services.js";
+
+/** Where there is room, or nothing else beside, all of it is shown from the beginning. */
+const ROOMY = "(min-height: 1000px), (max-width: 1100px)";
+
+/**
+ * In a line how the group is doing; opened, its services and how soon it answers.
+ * @param {HTMLElement} element
+ * @param {{link: any, store: any, t: any}} context
+ */
+export function mountHealth(element, context) {
+  const { store, t } = context;
+  const lamp = h("span", { class: "service-lamp", "aria-hidden": "true" });
+  const words = h("span", { class: "health-words" });
+  const answer = h("span", { class: "health-answer" });
+  const services = h("div", { class: "services" });
+  const latency = h("div", { class: "latency" });
+  const summary = h("summary", {}, lamp, words, answer);
+  const details = h("details", { class: "health" }, summary, services, latency);
+  details.open = matchMedia(ROOMY).matches;
+  element.append(details);
+  mountServices(services, context);
+  mountLatency(latency, context);
+
+  const draw = eachFrame(() => {
+    const now = health(store.get("services"));
+    setAttribute(summary, "data-state", now.tone);
+    setText(words, t(now.key, now.args));
+    const total = store.get("latency")?.p50?.total_ms;
+    const options = { minimumFractionDigits: 1, maximumFractionDigits: 1 };
+    const known = typeof total === "number" && store.get("latency").count > 0;
+    setText(answer, known ? t("health.answers", { s: t.number(total / 1000, options) }) : "");
+  });
+  store.subscribe(["services", "latency"], draw);
+  draw();
+}
