@@ -17,6 +17,7 @@ import { mountTabs } from "./views/tabs.js";
 import { mountTools } from "./views/tools.js";
 import { mountTranscript } from "./views/transcript.js";
 import { mountTurn } from "./views/turn.js";
+import { mountWhy } from "./views/why.js";
 
 /** @param {string} id @returns {HTMLElement} */
 const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
@@ -37,6 +38,7 @@ mountActions(at("actions"), context);
 mountAlarm(at("alarm"), at("polite"), context);
 mountTurn(at("turn"), context);
 mountQuestion(at("question"), context);
+mountWhy(at("why"), context);
 mountCards(at("cards"), context);
 mountTranscript(at("transcript"), context);
 mountSay(at("say"), context);

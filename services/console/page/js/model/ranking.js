@@ -1,6 +1,6 @@
 // @ts-check
 /** By how much an object must be more probable than another to come before it. */
-const MARGIN = 0.02;
+const MARGIN = 0.004;
 
 /**
  * The order of the cards: by probability, but a card only overtakes others that it leaves behind by

@@ -24,6 +24,8 @@ export function mountAlarm(element, polite, { link, store, t }) {
   const show = (key) => {
     shown = key;
     bar.hidden = key === "";
+    // The sign and the button show a stop to the eye; to the ear it is said here.
+    bar.classList.toggle("hidden", key === "stopped");
     if (key === "") return;
     setText(text, t(`alarm.${key}`));
     setText(act, t(key === "replaced" ? "alarm.use_here" : "alarm.again"));

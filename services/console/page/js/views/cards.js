@@ -22,6 +22,10 @@ export function mountCards(element, { store, t }) {
   const more = h("button", { type: "button", class: "more", hidden: true });
   const empty = h("p", { class: "empty" });
   element.append(list, absent, more, empty);
+  // The cards scroll: also by keys.
+  element.tabIndex = 0;
+  element.setAttribute("role", "group");
+  element.setAttribute("aria-labelledby", "objects-heading");
   let order = [];
   let stands = "";
   let sceneKey = null;

@@ -4,13 +4,12 @@ import { icon } from "../icons.js";
 import { answers } from "../model/reasons.js";
 import { whoControls } from "../model/turn.js";
 import { attempt } from "./attempt.js";
-import { mountWhy } from "./why.js";
 
 /** A question shows without its voice after this time: there may be none. */
 const VOICE_MS = 1_500;
 
 /**
- * What the robot asks or says now, in large type; answers and corrections with one press; and why.
+ * What the robot asks or says now, in large type; answers and corrections with one press.
  * @param {HTMLElement} element
  * @param {{link: any, store: any, t: (key: string, args?: object) => string}} context
  */
@@ -22,9 +21,7 @@ export function mountQuestion(element, context) {
   const notThat = correction("not_that", "undo");
   const startOver = correction("start_over", "again");
   const correct = h("div", { class: "correct" }, notThat, startOver);
-  const why = h("div", { class: "why" });
-  element.append(h("div", { class: "question-top" }, kicker, correct), words, quick, why);
-  mountWhy(why, context);
+  element.append(kicker, words, h("div", { class: "question-row" }, quick, correct));
 
   function correction(verb, drawing) {
     const press = () => attempt(link.do(verb), context);

@@ -2,9 +2,6 @@
 import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { proof, ranked, toCome } from "../model/reasons.js";
 
-/** Where there is room, the reasons are shown from the beginning. */
-const ROOMY = "(min-width: 1024px) and (min-height: 700px)";
-
 const ONE_DIGIT = { maximumFractionDigits: 1, minimumFractionDigits: 1 };
 /** Most actions that are compared. */
 const ACTIONS_MAX = 4;
@@ -15,15 +12,11 @@ const ACTIONS_MAX = 4;
  * @param {{store: any, t: any}} context
  */
 export function mountWhy(element, { store, t }) {
-  const title = h("span", { class: "why-title" });
-  const sentence = h("span", { class: "why-sentence" });
-  const summary = h("summary", {}, title, " ", sentence);
+  const title = h("h2", { id: "why-heading" });
+  const sentence = h("p", { class: "why-sentence" });
   const list = h("ol", { class: "why-list" });
   const proven = h("p", { class: "why-proof" });
-  const body = h("div", { class: "why-body" }, list, proven);
-  const details = h("details", {}, summary, body);
-  details.open = matchMedia(ROOMY).matches;
-  element.append(details);
+  element.append(title, sentence, list, proven);
 
   const figure = (value) => t.number(value, ONE_DIGIT).replace("-", "−");
   const words = (action) => t(`action.${action.kind}`, { text: action.text });
@@ -35,6 +28,7 @@ export function mountWhy(element, { store, t }) {
   const update = (node, item) => {
     const [name, bar, value] = node.children;
     setText(name, words(item.action));
+    setAttribute(name, "title", words(item.action));
     bar.firstElementChild.style.setProperty("transform", `scaleX(${item.length.toFixed(4)})`);
     setText(value, figure(item.value));
     setAttribute(node, "data-chosen", item.chosen);
@@ -44,8 +38,12 @@ export function mountWhy(element, { store, t }) {
   const draw = eachFrame(() => {
     const dialogue = store.get("dialogue");
     const shown = dialogue?.interaction > 0 && (dialogue.alternatives?.length ?? 0) > 0;
-    details.hidden = !shown;
-    if (!shown) return;
+    list.hidden = proven.hidden = !shown;
+    if (!shown) {
+      setText(title, t("why.idle"));
+      setText(sentence, t("why.idle.more"));
+      return;
+    }
     setText(title, t(dialogue.decision === "ask" ? "why.question" : "why.action"));
     const { key, args } = toCome(dialogue.expected_questions);
     setText(sentence, t(key, args));

@@ -1,0 +1,71 @@
+import assert from "node:assert/strict";
+import { describe, it } from "node:test";
+import { LINES_MAX, mergeLines } from "../../../services/console/page/js/model/lines.js";
+import { Store } from "../../../services/console/page/js/store.js";
+
+const lines = (...ids) => ids.map((id) => ({ id, text: `line ${id}` }));
+const ids = (list) => list.map((line) => line.id);
+
+describe("the transcript", () => {
+  it("appends, replaces and sorts by id", () => {
+    const known = mergeLines([], lines(1, 2, 3));
+    assert.deepEqual(ids(mergeLines(known, lines(4, 5))), [1, 2, 3, 4, 5]);
+    const again = mergeLines(known, [{ id: 2, text: "understood" }]);
+    assert.deepEqual(ids(again), [1, 2, 3]);
+    assert.equal(again[1].text, "understood");
+    assert.equal(again[0], known[0], "what has not changed stays the same object");
+    assert.deepEqual(ids(mergeLines(known, lines(9, 5))), [1, 2, 3, 5, 9]);
+    assert.equal(mergeLines(known, []), known);
+  });
+
+  it("keeps the latest, and no more than the server", () => {
+    const many = Array.from({ length: 500 }, (_, i) => ({ id: i + 1 }));
+    const kept = mergeLines([], many);
+    assert.equal(kept.length, LINES_MAX);
+    assert.equal(kept.at(-1).id, 500);
+    assert.equal(mergeLines(kept, [{ id: 1 }]).length, LINES_MAX);
+  });
+});
+
+describe("the store", () => {
+  it("tells subscribers at once and at each change, until they leave", () => {
+    const store = new Store();
+    store.set("turn", 1);
+    const heard = [];
+    const leave = store.subscribe(["turn", "arm"], (value, section) =>
+      heard.push([section, value]),
+    );
+    store.apply({ arm: 2, scene: 3 });
+    leave();
+    store.set("turn", 4);
+    assert.deepEqual(heard, [
+      ["turn", 1],
+      ["arm", 2],
+    ]);
+    assert.equal(store.get("scene"), 3);
+    assert.equal(store.get("nothing"), undefined);
+  });
+
+  it("shows nobody half of a frame", () => {
+    const store = new Store();
+    store.apply({ scene: "old", dialogue: "old" });
+    const seen = [];
+    store.subscribe("scene", () => seen.push([store.get("scene"), store.get("dialogue")]));
+    store.apply({ scene: "new", dialogue: "new" });
+    assert.deepEqual(seen.at(-1), ["new", "new"]);
+  });
+
+  it("begins the transcript anew with a server that has another one", () => {
+    const store = new Store();
+    store.addLines(lines(1, 2, 3));
+    store.resume(1);
+    assert.equal(store.lastLine, 3, "the same one goes on");
+    store.resume(undefined);
+    assert.equal(store.lastLine, 3);
+    store.resume(0);
+    assert.equal(store.lastLine, 0, "a new group has no lines yet");
+    store.addLines(lines(4));
+    store.resume(90);
+    assert.equal(store.lastLine, 0, "lines between were missed: all of them come again");
+  });
+});

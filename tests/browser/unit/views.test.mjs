@@ -1,0 +1,335 @@
+import assert from "node:assert/strict";
+import { describe, it } from "node:test";
+import { drawingOf } from "../../../services/console/page/js/model/drawing.js";
+import { health } from "../../../services/console/page/js/model/health.js";
+import {
+  density,
+  likely,
+  marks,
+  rank,
+  readable,
+} from "../../../services/console/page/js/model/ranking.js";
+import {
+  answers,
+  proof,
+  ranked,
+  readAction,
+  toCome,
+} from "../../../services/console/page/js/model/reasons.js";
+import { banner, whoControls } from "../../../services/console/page/js/model/turn.js";
+import { escapeStops, stopper } from "../../../services/console/page/js/stop.js";
+import { Store } from "../../../services/console/page/js/store.js";
+
+const SCENE = {
+  noun: "bowl",
+  attributes: [{ name: "color", values: [{ name: "clear", spoken: "see-through" }] }],
+  objects: [
+    { name: "white", label: "white bowl" },
+    { name: "clear", label: "clear bowl" },
+    { name: "metal", label: "metal bowl" },
+  ],
+};
+
+describe("the order of the cards", () => {
+  it("is by probability, and of equals that of the scene", () => {
+    assert.deepEqual(rank([], [0.2, 0.5, 0.2, 0.1]), [1, 0, 2, 3]);
+    assert.deepEqual(rank([], [0.25, 0.25, 0.25, 0.25]), [0, 1, 2, 3]);
+  });
+
+  it("does not change for a hair", () => {
+    assert.deepEqual(rank([0, 1], [0.499, 0.501]), [0, 1]);
+    assert.deepEqual(rank([0, 1], [0.4, 0.6]), [1, 0]);
+  });
+
+  it("does not go wrong by many hairs", () => {
+    const belief = Array.from({ length: 50 }, (_, i) => 0.003 * i);
+    const order = rank(rank([], belief), belief);
+    for (let i = 1; i < order.length; i++) {
+      assert.ok(belief[order[i]] <= belief[order[i - 1]] + 0.004 + 1e-12);
+    }
+    assert.equal(new Set(order).size, 50);
+  });
+
+  it("follows objects that come and go", () => {
+    assert.deepEqual(rank([3, 1, 0, 2], [0.5, 0.5]), [1, 0]);
+    assert.deepEqual(rank([0], [0.1, 0.9]), [1, 0]);
+  });
+});
+
+describe("many objects", () => {
+  const belief = Array.from({ length: 100 }, () => 0.01);
+  const order = [...belief.keys()];
+
+  it("are cut to the likely ones, with what the others weigh", () => {
+    const { shown, others, rest } = likely(order, belief, 12, new Set());
+    assert.equal(shown.length, 12);
+    assert.equal(others, 88);
+    assert.ok(Math.abs(rest - 0.88) < 1e-9);
+  });
+
+  it("always show those that matter", () => {
+    const { shown, others } = likely(order, belief, 12, new Set([99, 50]));
+    assert.equal(shown.length, 12);
+    assert.ok(shown.includes(99) && shown.includes(50));
+    assert.equal(others, 88);
+  });
+
+  it("are not cut for one more", () => {
+    assert.equal(likely(order.slice(0, 13), belief, 12, new Set()).others, 0);
+  });
+
+  it("are set closely", () => {
+    assert.equal(density(6, 600), "roomy");
+    assert.equal(density(6, 420), "medium");
+    assert.equal(density(6, 300), "dense");
+    assert.equal(density(20, null), "dense");
+    assert.equal(density(0, 300), "roomy");
+  });
+});
+
+describe("a probability", () => {
+  it("is never rounded to certainty", () => {
+    assert.deepEqual(readable(0.9999), { sign: ">", share: 0.99 });
+    assert.deepEqual(readable(0.0001), { sign: "<", share: 0.01 });
+    assert.deepEqual(readable(1), { sign: "", share: 1 });
+    assert.deepEqual(readable(0), { sign: "", share: 0 });
+    assert.deepEqual(readable(0.456), { sign: "", share: 0.46 });
+  });
+});
+
+describe("marks on objects", () => {
+  const of = (now) => [...marks(SCENE, { dialogue: null, arm: null, world: null, ...now })];
+
+  it("tell what is pointed at, fetched, held and handed over", () => {
+    const dialogue = { question: { type: "point", object: "metal" } };
+    assert.deepEqual(of({ dialogue }), [[2, "pointed"]]);
+    assert.deepEqual(of({ arm: { object: "clear", phase: "moving" } }), [[1, "picking"]]);
+    assert.deepEqual(of({ arm: { object: "clear", phase: "holding" } }), [[1, "held"]]);
+    assert.deepEqual(of({ arm: { object: "clear", phase: "done" } }), []);
+    assert.deepEqual(of({ world: { objects: [[0], null, [0]], held: 0 } }), [
+      [1, "delivered"],
+      [0, "held"],
+    ]);
+    assert.deepEqual(of({ arm: { object: "gone", phase: "moving" } }), []);
+  });
+});
+
+describe("reasons", () => {
+  const dialogue = {
+    decision: "ask",
+    text: "Sorry: is it big?",
+    question_about: { text: "Is it big?" },
+    value: 41,
+    belief: [0.1, 0.8, 0.1],
+    alternatives: [
+      { action: "pick clear", value: -9 },
+      { action: "ask: Is it white?", value: 40 },
+      { action: "wait", value: 41 },
+    ],
+  };
+
+  it("read actions with the labels of objects", () => {
+    assert.deepEqual(readAction("pick clear", SCENE), { kind: "pick", text: "clear bowl" });
+    assert.deepEqual(readAction("pick gone", SCENE), { kind: "pick", text: "gone" });
+    assert.deepEqual(readAction("ask: Is it x?", SCENE), { kind: "ask", text: "Is it x?" });
+    assert.equal(readAction("conclude that it is not here", SCENE).kind, "absent");
+    assert.deepEqual(readAction("dance", SCENE), { kind: "other", text: "dance" });
+  });
+
+  it("are the best first, the chosen one before its equals, with bars of their worth", () => {
+    const rows = ranked(dialogue, SCENE);
+    const texts = rows.map((row) => row.action.text || row.action.kind);
+    assert.deepEqual(texts, ["Is it big?", "wait", "Is it white?", "clear bowl"]);
+    assert.deepEqual(
+      rows.map((row) => row.chosen),
+      [true, false, false, false],
+    );
+    assert.equal(rows[0].length, 1);
+    assert.ok(rows[3].length > 0 && rows[3].length < 0.1);
+    assert.ok(rows.every((row, i) => i === 0 || row.length <= rows[i - 1].length));
+  });
+
+  it("of a pick name what is picked", () => {
+    const picks = { ...dialogue, decision: "pick", alternatives: [] };
+    assert.equal(ranked(picks, SCENE)[0].action.text, "clear bowl");
+    assert.equal(ranked(picks, SCENE, "metal")[0].action.text, "metal bowl");
+    assert.equal(ranked(picks, SCENE)[0].length, 1);
+  });
+
+  it("say what is proven", () => {
+    assert.equal(proof(41, null), null);
+    assert.deepEqual(proof(41.2, [41.19, 41.21]), { key: "why.proven", args: { value: 41.2 } });
+    assert.deepEqual(proof(30, [28.04, 33.06]), {
+      key: "why.bounded",
+      args: { low: 28, high: 33.1 },
+    });
+  });
+
+  it("say how many questions are to come", () => {
+    assert.equal(toCome(0).key, "why.none");
+    assert.equal(toCome(Number.NaN).key, "why.none");
+    assert.deepEqual(toCome(1.234), { key: "why.expected", args: { n: 1.2 } });
+  });
+});
+
+describe("answers with one press", () => {
+  const of = (question, decision = "ask") =>
+    answers({ decision, question }, SCENE).map((a) => a.text);
+
+  it("fit the question", () => {
+    assert.deepEqual(of({ type: "attr" }), ["yes", "no"]);
+    assert.deepEqual(of({ type: "point" }), ["yes", "no"]);
+    assert.deepEqual(of({ type: "which", attribute: "color" }), ["see-through"]);
+    assert.deepEqual(of({ type: "which", attribute: "gone" }), []);
+    assert.deepEqual(of({ type: "attr" }, "pick"), []);
+    assert.deepEqual(of(null), []);
+    assert.deepEqual(answers(undefined, SCENE), []);
+  });
+});
+
+describe("the sign of the turn", () => {
+  const up = { state: "up" };
+
+  it("knows nothing without a connection", () => {
+    assert.equal(banner({ state: "down" }, { state: "asked" }, undefined).key, "offline");
+    assert.equal(banner({ state: "connecting" }, undefined, undefined).key, "connecting");
+    assert.equal(banner({ state: "connecting" }, { state: "asked" }, undefined).key, "offline");
+    assert.equal(banner({ state: "replaced" }, { state: "asked" }, undefined).key, "replaced");
+    assert.equal(banner(up, undefined, undefined).key, "connecting");
+  });
+
+  it("shows each state, and a stop before any of them", () => {
+    for (const state of ["idle", "listening", "hearing", "asked", "understanding", "speaking"]) {
+      assert.equal(banner(up, { state }, {}).key, state);
+      assert.equal(banner(up, { state }, { stopped: true }).key, "stopped");
+    }
+    assert.equal(banner(up, { state: "down" }, { stopped: true }).key, "down");
+    assert.equal(banner(up, { state: "unheard of" }, {}).key, "idle");
+  });
+
+  it("tells who is in control", () => {
+    const me = { viewer: "v1" };
+    assert.equal(whoControls(undefined, me), "unknown");
+    assert.equal(whoControls({ operator: "v1" }, me), "mine");
+    assert.equal(whoControls({ operator: null }, me), "free");
+    assert.equal(whoControls({ operator: "v2" }, me), "theirs");
+    assert.equal(whoControls({ operator: "v2", asked_by: "v1" }, me), "asked");
+  });
+});
+
+describe("how an object is drawn", () => {
+  const of = (attributes, noun = "thing", size = undefined) =>
+    drawingOf({ attributes, size }, noun);
+
+  it("follows its words", () => {
+    const bowl = of({ color: "clear", material: "plastic", size: "big" }, "bowl");
+    assert.deepEqual([bowl.form, bowl.finish, bowl.scale], ["bowl", "glass", 1]);
+    assert.equal(of({ kind: "wrench", color: "red" }, "tool").form, "wrench");
+    assert.equal(of({ color: "metallic", size: "small" }, "bowl").finish, "shiny");
+    assert.notEqual(of({ color: "red" }).fill, of({ color: "blue" }).fill);
+    assert.equal(of({ kind: "coffee mug" }).form, "cup");
+    assert.equal(of({}, "blocks").form, "box");
+  });
+
+  it("falls back on its size, and on a box", () => {
+    assert.equal(of({}, "thing", [0.2, 0.02, 0.02]).form, "rod");
+    assert.equal(of({}, "thing", [0.05, 0.05, 0.2]).form, "can");
+    assert.equal(of({}, "thing", [0.2, 0.2, 0.02]).form, "plate");
+    assert.equal(of({ shape: "round" }).form, "ball");
+    assert.equal(of({ colour: "octarine" }).form, "box");
+    assert.equal(of({ constructor: "toString" }).form, "box");
+  });
+});
+
+describe("health in a line", () => {
+  const of = (...states) => health(states.map((state, i) => ({ name: `s${i}`, state })));
+
+  it("names the gravest", () => {
+    assert.deepEqual(of("ready", "ready"), { tone: "good", key: "health.good", args: { n: 2 } });
+    assert.equal(of("ready", "starting").args.names, "s1");
+    assert.deepEqual(of("held", "starting").args, { names: "s0", n: 1 });
+    assert.equal(of().key, "services.none");
+    assert.equal(health(undefined).tone, "busy");
+  });
+});
+
+describe("stop", () => {
+  /** A link that the test plays. */
+  function play(isUp) {
+    const heard = {};
+    const link = {
+      isUp,
+      sent: [],
+      reconnects: 0,
+      on: (what, f) => {
+        heard[what] = f;
+      },
+      reconnect: () => {
+        link.reconnects += 1;
+      },
+      do: (verb) => {
+        const error = (code) => Object.assign(new Error(code), { code });
+        if (!link.isUp) return Promise.reject(error("down"));
+        return new Promise((resolve, reject) => {
+          link.sent.push({ verb, ok: resolve, fail: (code) => reject(error(code)) });
+        });
+      },
+      come: () => {
+        link.isUp = true;
+        heard.status({ state: "up" });
+      },
+    };
+    const store = new Store();
+    const refusals = [];
+    const press = stopper({ link, store }, (error) => refusals.push(error.code));
+    return { link, press, refusals, state: () => store.get("stop").state };
+  }
+
+  it("is sent in the same moment, and quiet when it is confirmed", async () => {
+    const { link, press, state } = play(true);
+    const pressed = press();
+    assert.deepEqual([link.sent.length, state()], [1, "sent"]);
+    link.sent[0].ok({});
+    await pressed;
+    assert.equal(state(), "idle");
+    link.come();
+    assert.equal(link.sent.length, 1, "it is not sent twice");
+  });
+
+  it("says that it was not delivered, and is sent when the connection is back", async () => {
+    const { link, press, state } = play(false);
+    await press();
+    assert.equal(state(), "undelivered");
+    link.come();
+    assert.deepEqual([link.sent.length, state()], [1, "sent"]);
+    link.sent[0].ok({});
+    await new Promise(setImmediate);
+    assert.equal(state(), "idle");
+  });
+
+  it("connects again where no answer comes", async () => {
+    const { link, press, state } = play(true);
+    const pressed = press();
+    link.sent[0].fail("late");
+    await pressed;
+    assert.deepEqual([link.reconnects, state()], [1, "undelivered"]);
+    link.come();
+    assert.equal(link.sent.length, 2);
+  });
+
+  it("tells a refusal, and does not repeat it", async () => {
+    const { link, press, refusals, state } = play(true);
+    const pressed = press();
+    link.sent[0].fail("refused");
+    await pressed;
+    link.come();
+    assert.deepEqual([refusals, state(), link.sent.length], [["refused"], "idle", 1]);
+  });
+
+  it("is two presses of Escape, or one while the arm moves", () => {
+    assert.equal(escapeStops(null, 1_000, false), false);
+    assert.equal(escapeStops(600, 1_000, false), true);
+    assert.equal(escapeStops(0, 1_000, false), false);
+    assert.equal(escapeStops(null, 1_000, true), true);
+  });
+});
