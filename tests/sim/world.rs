@@ -243,6 +243,7 @@ impl World {
                 }
                 speech::Out::Hush => self.voice = None,
                 speech::Out::Hearing(_) => {}
+                speech::Out::Partial(_) | speech::Out::Overhear(..) | speech::Out::Expect(..) => {}
                 speech::Out::Recognise(..) | speech::Out::Talk(..) => {
                     unreachable!("the person types")
                 }

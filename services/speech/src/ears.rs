@@ -1,5 +1,6 @@
 //! Hearing: each utterance accepted once, numbered without a gap, and sent until it is applied.
 
+mod partials;
 mod piece;
 mod told;
 
@@ -12,6 +13,7 @@ use crate::said::Content;
 use crate::transcript;
 use crate::{Config, Fx, Out, Recognised, Segment, ToRecognise};
 use node::{Span, Time};
+use partials::Partials;
 use piece::Piece;
 use protocol::outbox::Outbox;
 use protocol::{
@@ -43,6 +45,7 @@ pub(crate) struct Ears {
     listening: Listening,
     state: EarState,
     hearing: Hearing,
+    partials: Partials,
     /// Clients' streams that are over and of which something is still being recognised: utterances
     /// and samples lost.
     over: Vec<(RequestKey, u32, u64)>,
@@ -60,6 +63,7 @@ impl Ears {
             listening: Listening::default(),
             state: EarState::Loading,
             hearing: Hearing::default(),
+            partials: Partials::default(),
             over: Vec::new(),
             marked: false,
         }
@@ -129,6 +133,12 @@ impl Ears {
     /// What a live source has to tell.
     pub(crate) fn live(&mut self, live: Live, now: Time, fx: &mut Fx) {
         match live {
+            Live::SoFar { sound, samples } => {
+                return self.partials.overhear(&self.listening, sound, samples, fx);
+            }
+            Live::Paused { sound, cut } => {
+                return self.partials.expect(&self.listening, sound, cut, fx);
+            }
             Live::Began(began) => self.began(&began, now),
             Live::Ended { sound, cut } => {
                 let span = (cut.onset.min(now), cut.end.min(now));
@@ -176,6 +186,11 @@ impl Ears {
         }
     }
 
+    /// What the recogniser makes of a sound that is being spoken.
+    pub(crate) fn so_far(&mut self, sound: u64, text: &str, fx: &mut Fx) {
+        self.partials.told(&self.listening, sound, text, fx);
+    }
+
     /// How the microphone is.
     pub(crate) fn set_microphone(&mut self, status: &MicrophoneStatus, fx: &mut Fx) {
         self.hearing.microphone = status.state.code();
@@ -205,6 +220,7 @@ impl Ears {
         fx: &mut Fx,
     ) {
         let Some(listened) = self.listening.remove(recognised.sound) else { return };
+        self.partials.over(&listened, fx);
         match recognised.segments {
             Ok(segments) if segments.is_empty() => {
                 self.refuse(Piece::of(&listened, 0, 1), "no speech in it", fx);

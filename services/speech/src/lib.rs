@@ -24,8 +24,8 @@ use live::Live;
 use mouth::Mouth;
 use node::{Effects, Event, Node, NodeError, Span, Time};
 use protocol::{
-    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MotionCommand, Presented,
-    PromptId, Receipt, RobotAct, Utterance,
+    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MotionCommand, Partial,
+    Presented, PromptId, Receipt, RobotAct, Utterance,
 };
 use record::Record;
 
@@ -51,6 +51,13 @@ pub enum In {
     Microphone(MicrophoneStatus),
     /// From the recogniser.
     Recognised(Recognised),
+    /// From the recogniser: what is being said.
+    SoFar {
+        /// The sound's number.
+        sound: u64,
+        /// The words so far.
+        text: String,
+    },
     /// From the recogniser: whether it works.
     Ear(EarState),
     /// From the voice.
@@ -72,6 +79,12 @@ pub enum Out {
     Motion(MotionCommand),
     /// To clients: how well the robot hears.
     Hearing(Hearing),
+    /// To clients: what is being said.
+    Partial(Box<Partial>),
+    /// To the recogniser: the next samples of what is being said.
+    Overhear(u64, Vec<i16>),
+    /// To the recogniser: perhaps this is all that will be said.
+    Expect(u64, Cut),
     /// To the recogniser: what is said in this? The number comes back with the answer.
     Recognise(u64, ToRecognise),
     /// To the microphone: listen for one utterance, for so long at most. The number comes back with
@@ -232,6 +245,7 @@ impl SpeechNode {
                 }
                 self.ears.live(live, now, fx);
             }
+            In::SoFar { sound, text } => self.ears.so_far(sound, &text, fx),
             In::Microphone(status) => self.ears.set_microphone(&status, fx),
             In::Ear(state) => self.ears.set_state(state, fx),
             In::Mark(mark) => {

@@ -63,6 +63,11 @@ impl Listening {
         found.map(|sound| (sound.onset, sound.end) = (onset, Some(end))).is_some()
     }
 
+    /// A sound that is being spoken.
+    pub(crate) fn spoken(&self, sound: u64) -> Option<&Listened> {
+        self.sounds.get(&sound).filter(|sound| sound.end.is_none())
+    }
+
     /// There is a result.
     pub(crate) fn remove(&mut self, sound: u64) -> Option<Listened> {
         self.sounds.remove(&sound)

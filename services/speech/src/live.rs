@@ -12,6 +12,20 @@ use crate::devices::stream::Cut;
 pub enum Live {
     /// Somebody began to speak.
     Began(Began),
+    /// What was said since this was told last. May be missing.
+    SoFar {
+        /// The utterance.
+        sound: u64,
+        /// One channel at 16 kHz.
+        samples: Vec<i16>,
+    },
+    /// Who speaks has paused: perhaps this is all, and then its end tells the same. May be missing.
+    Paused {
+        /// The utterance.
+        sound: u64,
+        /// What was heard so far.
+        cut: Cut,
+    },
     /// Whoever spoke has ended; the sound is to be decoded.
     Ended {
         /// The utterance.
@@ -35,6 +49,13 @@ pub enum Live {
         /// Samples of it that were lost on their way.
         lost: u64,
     },
+}
+
+impl Live {
+    /// Whether the service does as well without it.
+    pub fn is_hint(&self) -> bool {
+        matches!(self, Self::SoFar { .. } | Self::Paused { .. })
+    }
 }
 
 /// The beginning of an utterance.

@@ -12,8 +12,8 @@ use crossbeam_channel::Receiver;
 use language::{Language, Reader as TextReader};
 use node::Span;
 use protocol::{
-    Activity, AppliedMark, ArmStatus, AudioChunk, Hearing, Injection, MotionCommand, Presented,
-    Receipt, RobotAct, Service, Utterance, topics,
+    Activity, AppliedMark, ArmStatus, AudioChunk, Hearing, Injection, MotionCommand, Partial,
+    Presented, Receipt, RobotAct, Service, Utterance, topics,
 };
 use runtime::bus::{EncodedReader, PortError, Reader, Writer};
 use runtime::device::DeviceSender;
@@ -66,6 +66,7 @@ pub struct SpeechShell {
     activity: Writer<Activity>,
     motion: Writer<MotionCommand>,
     hearing: Writer<Hearing>,
+    partials: Writer<Partial>,
     ear: EarDevice,
     microphone: MicrophoneDevice,
     streams: ClientStreams,
@@ -103,6 +104,7 @@ impl Shell<SpeechNode> for SpeechShell {
             activity: bus.writer(&topics::ACTIVITY)?,
             motion: bus.writer(&topics::MOTION)?,
             hearing: bus.writer(&topics::HEARING)?,
+            partials: bus.writer(&topics::PARTIAL)?,
             ear: EarDevice::start(settings, &work, inbox),
             microphone: MicrophoneDevice::start(settings, &own_voice, inbox),
             streams: microphone::streams(settings, &own_voice, inbox),
@@ -136,6 +138,15 @@ impl Shell<SpeechNode> for SpeechShell {
             Out::Activity(message) => self.activity.send(&message),
             Out::Motion(message) => self.motion.send(&message),
             Out::Hearing(message) => self.hearing.send(&message),
+            Out::Partial(message) => self.partials.send(&message),
+            Out::Overhear(sound, samples) => {
+                self.ear.overhear(sound, samples);
+                Ok(())
+            }
+            Out::Expect(sound, cut) => {
+                self.ear.expect(sound, cut);
+                Ok(())
+            }
             Out::Recognise(sound, what) => {
                 if let Err(reason) = self.ear.recognise(sound, what) {
                     tracing::warn!(reason, "a sound was not listened to");

@@ -305,3 +305,39 @@ fn who_asks_to_talk_is_listened_to_and_told_where_nobody_spoke() {
     assert!(told(&outputs));
     assert!(told(&speech.take(0.1, talk(5.0))), "and so is its answer");
 }
+
+fn partials(outputs: &[Out]) -> Vec<(&str, u8)> {
+    let partial = |out: &'_ Out| matches!(out, Out::Partial(_));
+    let told = outputs.iter().filter(|out| partial(out)).map(|out| match out {
+        Out::Partial(partial) => (partial.text.as_str().unwrap(), partial.over),
+        _ => unreachable!(),
+    });
+    told.collect()
+}
+
+#[test]
+fn what_is_being_said_is_told_until_it_has_its_result() {
+    let mut speech = Speech::new();
+    let onset = speech.now;
+    let so_far = |text: &str| In::SoFar { sound: SOUND, text: text.to_owned() };
+    assert!(partials(&speech.take(0.1, so_far("nobody"))).is_empty(), "nobody has begun");
+    speech.take(0.1, began(onset));
+    let piece = In::Live(Live::SoFar { sound: SOUND, samples: vec![0; 5_600] });
+    let outputs = speech.take(0.3, piece.clone());
+    assert!(matches!(outputs[..], [Out::Overhear(SOUND, _)]), "{outputs:?}");
+    let In::Live(Live::Ended { cut, .. }) = ended(onset) else { unreachable!() };
+    let outputs = speech.take(0.1, In::Live(Live::Paused { sound: SOUND, cut }));
+    assert!(matches!(outputs[..], [Out::Expect(SOUND, _)]), "{outputs:?}");
+    let outputs = speech.take(0.1, so_far("the white"));
+    let Some(Out::Partial(partial)) = outputs.first() else { panic!("{outputs:?}") };
+    assert_eq!((partial.onset_ns, partial.request()), (onset.ns(), RequestKey([7; 16])));
+    assert_eq!(partials(&outputs), [("the white", 0)]);
+    speech.take(0.1, ended(onset));
+    assert!(
+        partials(&speech.take(0.1, so_far("the whites"))).is_empty(),
+        "it waits for the result"
+    );
+    assert!(speech.take(0.0, piece).is_empty());
+    assert_eq!(partials(&speech.take(0.1, nothing())), [("", 1)]);
+    assert!(speech.records.is_empty(), "none of it is kept");
+}

@@ -15,12 +15,12 @@ use std::time::Instant;
 pub(super) struct Heard {
     /// Where the detector put the voice, samples.
     pub(super) speech: Range<usize>,
-    /// Where it knew that the voice was over, samples.
-    pub(super) known_at: usize,
+    /// Where it took the voice for over, in doubt, so that decoding began, samples.
+    pub(super) decoded_at: usize,
     /// Best first, as the gate lets them pass or not.
     pub(super) hypotheses: Vec<Hypothesis>,
     pub(super) accepted: bool,
-    /// Seconds from the closing of the segment to the hypotheses, by the clock and of processor.
+    /// Seconds from there to the hypotheses, by the clock and of processor.
     pub(super) took_s: (f64, f64),
 }
 
@@ -46,18 +46,18 @@ impl Listener {
         events.extend(segmenter.finish());
         let ends = events.into_iter().filter_map(|event| match event {
             SegmentEvent::End { range, speech } => Some((range, speech)),
-            SegmentEvent::Onset { .. } => None,
+            SegmentEvent::Onset { .. } | SegmentEvent::Pause { .. } => None,
         });
         ends.map(|(range, speech)| self.decode(&clip.samples, range, speech)).collect()
     }
 
     fn decode(&mut self, samples: &[i16], range: Range<usize>, speech: Range<usize>) -> Heard {
         let (started, cpu_s) = (Instant::now(), thread_s());
-        let known_at = range.end;
+        let decoded_at = range.end;
         let voice = speech.start - range.start..speech.end - range.start;
         let hypotheses = self.recogniser.recognise(&samples[range], voice).unwrap_or_default();
         let accepted = matches!(self.gate.judge(hypotheses.clone()), Outcome::Accepted(_));
         let took_s = (started.elapsed().as_secs_f64(), thread_s() - cpu_s);
-        Heard { speech, known_at, hypotheses, accepted, took_s }
+        Heard { speech, decoded_at, hypotheses, accepted, took_s }
     }
 }

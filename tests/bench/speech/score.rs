@@ -164,11 +164,13 @@ impl Timing {
         let (Some(first), Some(last)) = (heard.first(), heard.last()) else {
             return Self { onset_s: f64::NAN, release_s: f64::NAN, delay_s: f64::NAN };
         };
-        let known_s = late(last.known_at, clip.speech.end);
+        // Decoding goes on while the pause does; the result is told at the pause's end at the soonest.
+        let release_s = late(last.speech.end, clip.speech.end);
+        let decoded_s = late(last.decoded_at, clip.speech.end) + last.took_s.0;
         Self {
             onset_s: late(first.speech.start, clip.speech.start),
-            release_s: late(last.speech.end, clip.speech.end),
-            delay_s: known_s - pause_s + last.took_s.0,
+            release_s,
+            delay_s: release_s.max(decoded_s - pause_s),
         }
     }
 }

@@ -276,7 +276,11 @@ impl<'a> World<'a> {
                     let at = self.now + self.recogniser_s();
                     self.working.push(Working { at, sound, utterance });
                 }
-                speech::Out::Motion(_) | speech::Out::Hearing(_) => {}
+                speech::Out::Motion(_)
+                | speech::Out::Hearing(_)
+                | speech::Out::Partial(_)
+                | speech::Out::Overhear(..)
+                | speech::Out::Expect(..) => {}
                 speech::Out::Talk(..) => unreachable!("nobody asks for the microphone"),
             }
         }

@@ -212,6 +212,8 @@ impl Open {
                 let tenth = (first as f64 / 1_600.0 + before).max(0.0) as u32;
                 Some(self.began(onset, tenth, duplex))
             }
+            StreamEvent::SoFar(samples) => self.sound.map(|sound| Live::SoFar { sound, samples }),
+            StreamEvent::Paused(cut) => self.sound.map(|sound| Live::Paused { sound, cut }),
             StreamEvent::Ended(cut) => self.sound.take().map(|sound| Live::Ended { sound, cut }),
         });
         told.collect()
@@ -234,7 +236,7 @@ impl Open {
     fn break_off(&mut self) -> Vec<Live> {
         let ended = self.listener.finish().into_iter().filter_map(|event| match event {
             StreamEvent::Ended(cut) => self.sound.take().map(|sound| Live::Ended { sound, cut }),
-            StreamEvent::Began(_) => None,
+            _ => None,
         });
         ended.collect()
     }

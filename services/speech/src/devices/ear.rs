@@ -2,9 +2,9 @@
 //! own.
 //!
 //! Invariant: every sound that is taken yields exactly one `Heard` or `Failed`, in order; the
-//! thread is there at once, the recogniser follows when it has loaded.
+//! thread is there at once, the recogniser follows when it has loaded. What is said of an utterance
+//! while it lasts, and what is decoded before its end is certain, delays none of them.
 
-use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -13,12 +13,13 @@ use std::thread::{self, JoinHandle};
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded, unbounded};
 use scene::Scene;
 
-use crate::devices::audio::{read_wav, seconds};
-use crate::devices::recogniser::{
-    Backend, Gate, Outcome, PocketSphinxOptions, RecogniseError, Recogniser,
-};
+use crate::devices::recogniser::{Backend, Gate, Outcome, PocketSphinxOptions, Recogniser};
 use crate::devices::stream::Cut;
-use crate::devices::vad::{SegmentEvent, Segmenter, SegmenterOptions};
+use crate::devices::vad::SegmenterOptions;
+use listener::{Early, Listener};
+
+mod listener;
+mod preview;
 
 /// What the ear is made of.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,6 +93,14 @@ pub struct Segment {
 pub enum EarEvent {
     /// Its state, whenever it changes; [`EarState::Loading`] first of all.
     State(EarState),
+    /// The words of an utterance that is being spoken, as far as it has come. There may be one after
+    /// the result.
+    SoFar {
+        /// The sound.
+        id: u64,
+        /// The words.
+        text: String,
+    },
     /// A sound was listened to. Without segments nobody spoke in it.
     Heard {
         /// The sound.
@@ -121,10 +130,14 @@ pub enum HearError {
 
 /// Sounds that may wait.
 pub const SOUNDS_MAX: usize = 8;
+/// Pauses that may wait to be taken for ends.
+const HINTS_MAX: usize = 4;
 
 /// The ear's thread. Dropping it ends the thread after the segment that is being decoded.
 pub struct Ear {
     sounds: Option<Sender<(u64, Sound)>>,
+    hints: Option<Sender<(u64, Cut)>>,
+    pieces: Option<Sender<(u64, Vec<i16>)>>,
     closed: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -145,6 +158,8 @@ impl Ear {
         longest_s: f64,
     ) -> (Self, Receiver<EarEvent>) {
         let (sounds, taken) = bounded(SOUNDS_MAX);
+        let (hints, hinted) = bounded(HINTS_MAX);
+        let (pieces, overheard) = bounded(preview::PIECES_MAX);
         let (events, happened) = unbounded();
         let closed = Arc::new(AtomicBool::new(false));
         let listener_closed = Arc::clone(&closed);
@@ -158,10 +173,32 @@ impl Ear {
                 Err(reason) => (Err(reason.clone()), EarState::Off { reason }),
             };
             let _ = events.send(EarEvent::State(state));
-            let closed = listener_closed;
-            Listener { recogniser, gate, segmenter, longest_s, closed }.run(&taken, &events);
+            let preview = recogniser.as_ref().ok().and_then(|recogniser| recogniser.preview());
+            let told = events.clone();
+            let preview =
+                preview.map(|open| thread::spawn(move || preview::run(open, &overheard, &told)));
+            let (closed, early) = (listener_closed, Early::default());
+            let listener = Listener { recogniser, gate, segmenter, longest_s, closed, early };
+            listener.run(&taken, &hinted, &events);
+            // A thread that panicked has told so already.
+            let _ = preview.map(JoinHandle::join);
         });
-        (Self { sounds: Some(sounds), closed, thread: Some(thread) }, happened)
+        let (sounds, hints, pieces) = (Some(sounds), Some(hints), Some(pieces));
+        (Self { sounds, hints, pieces, closed, thread: Some(thread) }, happened)
+    }
+
+    /// Who speaks has paused: perhaps this is all of sound `id`. A recogniser that is quick decodes it
+    /// now where it has nothing else to do, and answers without decoding where [`Self::hear`] hands
+    /// over the same samples.
+    pub fn expect(&self, id: u64, cut: Cut) {
+        // One for which there is no room is decoded when it is certain.
+        let _ = self.hints.as_ref().map(|hints| hints.try_send((id, cut)));
+    }
+
+    /// Who speaks has come so far with sound `id`: its next samples.
+    pub fn overhear(&self, id: u64, samples: Vec<i16>) {
+        // What there is no room for is missing from what is told meanwhile, and not from the result.
+        let _ = self.pieces.as_ref().map(|pieces| pieces.try_send((id, samples)));
     }
 
     /// Listens to a sound after those that wait. `id` names it in the events.
@@ -180,7 +217,7 @@ impl Ear {
 impl Drop for Ear {
     fn drop(&mut self) {
         self.closed.store(true, Ordering::SeqCst);
-        self.sounds = None;
+        (self.sounds, self.hints, self.pieces) = (None, None, None);
         if let Some(thread) = self.thread.take() {
             // A thread that panicked has told so already.
             let _ = thread.join();
@@ -190,93 +227,6 @@ impl Drop for Ear {
 
 /// A recogniser and the words that it cannot know, or why there is none.
 type Opened = Result<(Box<dyn Recogniser>, Vec<String>), String>;
-
-/// The thread's side.
-struct Listener {
-    recogniser: Result<Box<dyn Recogniser>, String>,
-    gate: Gate,
-    segmenter: SegmenterOptions,
-    longest_s: f64,
-    closed: Arc<AtomicBool>,
-}
-
-impl Listener {
-    fn run(mut self, sounds: &Receiver<(u64, Sound)>, events: &Sender<EarEvent>) {
-        for (id, sound) in sounds {
-            if self.closed.load(Ordering::SeqCst) {
-                return;
-            }
-            let event = match self.listen(sound) {
-                Ok(segments) => EarEvent::Heard { id, segments },
-                Err(error) => EarEvent::Failed { id, error },
-            };
-            if events.send(event).is_err() {
-                return;
-            }
-        }
-    }
-
-    fn listen(&mut self, sound: Sound) -> Result<Vec<Segment>, String> {
-        let recogniser = match &mut self.recogniser {
-            Ok(recogniser) => recogniser.as_mut(),
-            Err(reason) => return Err(format!("speech recognition is off: {reason}")),
-        };
-        let samples = match sound {
-            Sound::File(path) => read_wav(&path, self.longest_s).map_err(|e| e.to_string())?,
-            Sound::Samples(samples) => samples,
-            Sound::Speech(Cut { samples, speech, .. }) => {
-                let whole = 0..samples.len();
-                let segment = segment(recogniser, &self.gate, &samples, whole, &speech);
-                return Ok(vec![segment.map_err(|e| e.to_string())?]);
-            }
-        };
-        let mut segmenter = Segmenter::new(self.segmenter.clone());
-        let mut events = segmenter.push(&samples);
-        events.extend(segmenter.finish());
-        let mut segments = Vec::new();
-        for event in events {
-            let SegmentEvent::End { range, speech } = event else { continue };
-            if self.closed.load(Ordering::SeqCst) {
-                break;
-            }
-            let segment = segment(recogniser, &self.gate, &samples, range, &speech);
-            segments.push(segment.map_err(|e| e.to_string())?);
-        }
-        Ok(segments)
-    }
-}
-
-fn segment(
-    recogniser: &mut dyn Recogniser,
-    gate: &Gate,
-    samples: &[i16],
-    range: Range<usize>,
-    speech: &Range<usize>,
-) -> Result<Segment, RecogniseError> {
-    let snr_db = snr_db(samples, &range, speech);
-    let voice = speech.start - range.start..speech.end - range.start;
-    let hypotheses = recogniser.recognise(&samples[range], voice)?;
-    let (onset_s, end_s) = (seconds(speech.start), seconds(speech.end));
-    Ok(Segment { onset_s, end_s, snr_db, outcome: gate.judge(hypotheses) })
-}
-
-/// Power of the speech over that of what lies around it in the segment. The detector's edges are
-/// some 50 ms wide; what is as near to the speech counts as neither.
-fn snr_db(samples: &[i16], range: &Range<usize>, speech: &Range<usize>) -> f32 {
-    const EDGE: usize = 1_600;
-    const MOST_DB: f64 = 60.0;
-    let power = |parts: [&[i16]; 2]| {
-        let len = parts.iter().map(|part| part.len()).sum::<usize>().max(1) as f64;
-        let squares = parts.into_iter().flatten().map(|&s| f64::from(s) * f64::from(s));
-        squares.sum::<f64>() / len
-    };
-    let before = range.start..speech.start.saturating_sub(EDGE).max(range.start);
-    let behind = (speech.end + EDGE).min(range.end)..range.end;
-    // Half a step of the samples' scale: digital silence.
-    let noise = power([&samples[before], &samples[behind]]).max(0.25);
-    let signal = (power([&samples[speech.clone()], &[]]) - noise).max(noise);
-    (10.0 * (signal / noise).log10()).min(MOST_DB) as f32
-}
 
 #[cfg(test)]
 mod tests;

@@ -25,6 +25,9 @@ pub struct SegmenterOptions {
     /// Sound before the onset that belongs to the segment, seconds: soft first consonants lie
     /// before the detector's onset.
     pub pre_roll_s: f64,
+    /// Sound behind the speech that belongs to the segment, seconds. What the pause holds beyond it is
+    /// not decoded, so that decoding can begin before the pause is over.
+    pub post_roll_s: f64,
     /// Longest speech in a segment, seconds; what follows becomes the next segment.
     pub longest_s: f64,
 }
@@ -36,6 +39,7 @@ impl Default for SegmenterOptions {
             opening_frames: 3,
             closing_pause_s: 0.5,
             pre_roll_s: 0.5,
+            post_roll_s: 0.2,
             longest_s: 15.0,
         }
     }
@@ -49,9 +53,17 @@ pub enum SegmentEvent {
         /// First sample of the speech, counted from the stream's start.
         at_sample: usize,
     },
+    /// Nobody has spoken for as long as the segment reaches behind the speech. If nobody goes on,
+    /// its end will tell the same range and speech.
+    Pause {
+        /// The samples to decode.
+        range: Range<usize>,
+        /// The speech itself.
+        speech: Range<usize>,
+    },
     /// The speech is over.
     End {
-        /// The samples to decode: the speech with the sound before it and the pause behind it.
+        /// The samples to decode: the speech with the sound before and behind it.
         range: Range<usize>,
         /// The speech itself.
         speech: Range<usize>,
@@ -96,7 +108,8 @@ impl Segmenter {
             let end = track.at + self.rest.len();
             // Speech that goes on in the last frame may go on in the samples behind it.
             let speech_end = if open.speech_end == track.at { end } else { open.speech_end };
-            events.push(open.end(speech_end, end));
+            let (range, speech) = open.cut(speech_end, end, &self.options);
+            events.push(SegmentEvent::End { range, speech });
         }
         self.rest.clear();
         self.detector.reset();
@@ -127,8 +140,14 @@ struct Open {
 }
 
 impl Open {
-    fn end(&self, speech_end: usize, end: usize) -> SegmentEvent {
-        SegmentEvent::End { range: self.start..end, speech: self.onset..speech_end }
+    /// What to decode at sample `at`, and the speech in it.
+    fn cut(
+        &self,
+        speech_end: usize,
+        at: usize,
+        options: &SegmenterOptions,
+    ) -> (Range<usize>, Range<usize>) {
+        (self.start..at.min(speech_end + post_roll(options)), self.onset..speech_end)
     }
 }
 
@@ -150,11 +169,14 @@ impl Track {
                 }
                 let paused = self.at - open.speech_end >= samples(options.closing_pause_s);
                 let full = self.at - open.onset >= samples(options.longest_s);
+                let (range, speech) = open.cut(open.speech_end, self.at, options);
                 if paused || full {
-                    events.push(open.end(open.speech_end, self.at));
-                    self.free_from = self.at;
+                    self.free_from = range.end;
                     self.streak = 0;
                     self.open = None;
+                    events.push(SegmentEvent::End { range, speech });
+                } else if self.at - open.speech_end == post_roll(options) {
+                    events.push(SegmentEvent::Pause { range, speech });
                 }
             }
         }
@@ -163,6 +185,11 @@ impl Track {
 
 fn samples(seconds: f64) -> usize {
     (seconds * f64::from(RATE_HZ)) as usize
+}
+
+/// How far a segment reaches behind its speech: whole frames, one at least.
+fn post_roll(options: &SegmenterOptions) -> usize {
+    samples(options.post_roll_s).div_ceil(FRAME).max(1) * FRAME
 }
 
 #[cfg(test)]
@@ -185,6 +212,7 @@ mod tests {
         SegmenterOptions {
             closing_pause_s: 2.0 * frame_s,
             pre_roll_s: frame_s,
+            post_roll_s: 2.0 * frame_s,
             longest_s: 8.0 * frame_s,
             ..SegmenterOptions::default()
         }
@@ -203,6 +231,33 @@ mod tests {
     fn three_frames_open_and_a_pause_closes() {
         let events = track("..####.#..", &short());
         assert_eq!(events, [onset(2), end(1..10, 2..8)]);
+    }
+
+    #[test]
+    fn a_pause_is_told_with_what_its_end_will_tell_unless_somebody_goes_on() {
+        let frame_s = FRAME as f64 / f64::from(RATE_HZ);
+        let closing_pause_s = 4.0 * frame_s;
+        let options = SegmenterOptions {
+            closing_pause_s,
+            post_roll_s: 2.0 * frame_s,
+            longest_s: 1.0,
+            ..short()
+        };
+        let events = track(".####.##..#....###....", &options);
+        let pause = |range, speech| match end(range, speech) {
+            SegmentEvent::End { range, speech } => SegmentEvent::Pause { range, speech },
+            event => event,
+        };
+        let expected = [
+            onset(1),
+            pause(0..10, 1..8),
+            pause(0..13, 1..11),
+            end(0..13, 1..11),
+            onset(15),
+            pause(14..20, 15..18),
+            end(14..20, 15..18),
+        ];
+        assert_eq!(events, expected);
     }
 
     #[test]
@@ -226,7 +281,7 @@ mod tests {
         (events.iter())
             .filter_map(|e| match e {
                 SegmentEvent::End { speech, .. } => Some(speech.clone()),
-                SegmentEvent::Onset { .. } => None,
+                SegmentEvent::Onset { .. } | SegmentEvent::Pause { .. } => None,
             })
             .collect()
     }

@@ -8,6 +8,7 @@ use crate::devices::ear::{
 use crate::devices::recogniser::{
     Backend, CommandOptions, Hypothesis as Decoded, Outcome, PocketSphinxOptions, WhisperOptions,
 };
+use crate::devices::stream::Cut;
 use crate::devices::vad::SegmenterOptions;
 use crate::{Hypothesis, In, Recognised, Segment, ToRecognise};
 use protocol::EarState;
@@ -37,6 +38,20 @@ impl EarDevice {
         let ear =
             self.0.as_ref().ok_or("speech recognition is switched off (speech.recogniser)")?;
         ear.hear(sound, take(what)).map_err(|error| error.to_string())
+    }
+
+    /// Takes what somebody is saying.
+    pub(super) fn overhear(&self, sound: u64, samples: Vec<i16>) {
+        if let Some(ear) = &self.0 {
+            ear.overhear(sound, samples);
+        }
+    }
+
+    /// Takes what somebody has perhaps said in full.
+    pub(super) fn expect(&self, sound: u64, cut: Cut) {
+        if let Some(ear) = &self.0 {
+            ear.expect(sound, cut);
+        }
     }
 }
 
@@ -83,6 +98,7 @@ fn backend(speech: &settings::Speech, work: &Path) -> Backend {
 fn heard(event: EarEvent) -> In {
     match event {
         EarEvent::State(state) => In::Ear(hearing(&state)),
+        EarEvent::SoFar { id, text } => In::SoFar { sound: id, text },
         EarEvent::Heard { id, segments } => {
             let segments = segments.into_iter().map(measured).collect();
             In::Recognised(Recognised { sound: id, segments: Ok(segments) })

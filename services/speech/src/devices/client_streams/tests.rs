@@ -67,10 +67,14 @@ impl Client {
         self.streams.take(&chunk);
     }
 
+    /// What comes next, hints left out.
     fn live(&self) -> Live {
-        match self.told.recv_timeout(Duration::from_secs(20)).unwrap() {
-            MicrophoneEvent::Live(live) => live,
-            MicrophoneEvent::Status(status) => panic!("{status:?}"),
+        loop {
+            match self.told.recv_timeout(Duration::from_secs(20)).unwrap() {
+                MicrophoneEvent::Live(live) if live.is_hint() => {}
+                MicrophoneEvent::Live(live) => return live,
+                MicrophoneEvent::Status(status) => panic!("{status:?}"),
+            }
         }
     }
 }

@@ -1,8 +1,11 @@
 use std::time::{Duration, Instant};
 
+use super::listener::snr_db;
 use super::*;
+use crate::devices::recogniser::RecogniseError;
 use crate::devices::recogniser::{Hypothesis, RejectReason};
 use crate::devices::testing::{self, bowls};
+use std::ops::Range;
 
 const PATIENCE: Duration = Duration::from_secs(20);
 
@@ -156,4 +159,108 @@ fn noise_is_measured_around_the_speech() {
     assert!((snr - 10.0 * 99_f32.log10()).abs() < 0.1, "{snr}");
     assert_eq!(snr_db(&samples, &speech, &speech), 60.0);
     assert_eq!(snr_db(&[0; 1_000], &(0..1_000), &(200..800)), 0.0);
+}
+
+/// Tells how often it was asked, and waits for leave each time.
+struct Slow {
+    asked: Sender<usize>,
+    leave: Receiver<()>,
+    quick: bool,
+}
+
+impl Recogniser for Slow {
+    fn recognise(
+        &mut self,
+        pcm: &[i16],
+        _: Range<usize>,
+    ) -> Result<Vec<Hypothesis>, RecogniseError> {
+        self.asked.send(pcm.len()).unwrap();
+        self.leave.recv_timeout(PATIENCE).unwrap();
+        let text = format!("white {}", pcm.len());
+        Ok(vec![Hypothesis { text, confidence: 1.0, words: Vec::new() }])
+    }
+
+    fn is_quick(&self) -> bool {
+        self.quick
+    }
+}
+
+fn slow(quick: bool) -> (Ear, Receiver<EarEvent>, Receiver<usize>, Sender<()>) {
+    let ((asked, was_asked), (go, leave)) = (unbounded(), unbounded());
+    let (ear, events) =
+        ear(move || Ok((Box::new(Slow { asked, leave, quick }) as Box<_>, Vec::new())));
+    next(&events);
+    (ear, events, was_asked, go)
+}
+
+fn cut(len: usize) -> Cut {
+    let at = node::Time(0);
+    Cut { onset: at, end: at, samples: vec![7; len], speech: 0..len }
+}
+
+fn text_of(event: &EarEvent) -> (u64, String) {
+    match event {
+        EarEvent::SoFar { id, text } => (*id, text.clone()),
+        EarEvent::Heard { id, segments } => match &segments[0].outcome {
+            Outcome::Accepted(heard) => (*id, heard[0].text.clone()),
+            Outcome::Rejected { text, .. } => (*id, text.clone()),
+        },
+        event => panic!("{event:?}"),
+    }
+}
+
+#[test]
+fn what_was_decoded_in_the_pause_is_not_decoded_again() {
+    let (ear, events, asked, go) = slow(true);
+    ear.expect(1, cut(1_000));
+    assert_eq!(asked.recv_timeout(PATIENCE), Ok(1_000));
+    ear.hear(1, Sound::Speech(cut(1_000))).unwrap();
+    go.send(()).unwrap();
+    assert_eq!(text_of(&next(&events)), (1, "white 1000".to_owned()));
+    let heard = next(&events);
+    assert!(matches!(heard, EarEvent::Heard { id: 1, .. }) && asked.is_empty(), "{heard:?}");
+    ear.expect(1, cut(1_000));
+    ear.hear(2, Sound::Speech(cut(1_000))).unwrap();
+    go.send(()).unwrap();
+    assert!(matches!(next(&events), EarEvent::Heard { id: 2, .. }));
+    assert_eq!(asked.try_iter().collect::<Vec<_>>(), [1_000], "a hint that is late is left out");
+}
+
+#[test]
+fn who_goes_on_after_a_pause_is_decoded_as_a_whole() {
+    let (ear, events, asked, go) = slow(true);
+    ear.expect(1, cut(1_000));
+    assert_eq!(asked.recv_timeout(PATIENCE), Ok(1_000));
+    let mut other = cut(1_000);
+    other.samples[500] = 8;
+    ear.hear(1, Sound::Speech(other)).unwrap();
+    go.send(()).unwrap();
+    go.send(()).unwrap();
+    assert_eq!(text_of(&next(&events)), (1, "white 1000".to_owned()));
+    assert!(matches!(next(&events), EarEvent::Heard { id: 1, .. }));
+    assert_eq!(asked.try_iter().count(), 1, "one sample is another");
+}
+
+#[test]
+fn what_is_certain_comes_before_what_is_not() {
+    let (ear, events, asked, go) = slow(true);
+    ear.hear(1, Sound::Speech(cut(1_000))).unwrap();
+    assert_eq!(asked.recv_timeout(PATIENCE), Ok(1_000));
+    ear.expect(2, cut(2_000));
+    ear.expect(2, cut(3_000));
+    ear.hear(3, Sound::Speech(cut(4_000))).unwrap();
+    (0..3).for_each(|_| go.send(()).unwrap());
+    let ids: Vec<u64> = (0..3).map(|_| text_of(&next(&events)).0).collect();
+    assert_eq!(ids, [1, 3, 2]);
+    assert_eq!(asked.try_iter().collect::<Vec<_>>(), [4_000, 3_000], "of hints the newest");
+}
+
+#[test]
+fn a_recogniser_that_is_not_quick_waits_for_the_end() {
+    let (ear, events, asked, go) = slow(false);
+    ear.expect(1, cut(1_000));
+    ear.hear(2, Sound::Speech(cut(2_000))).unwrap();
+    go.send(()).unwrap();
+    assert!(matches!(next(&events), EarEvent::Heard { id: 2, .. }));
+    assert_eq!(asked.try_iter().collect::<Vec<_>>(), [2_000]);
 }

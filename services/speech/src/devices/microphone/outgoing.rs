@@ -37,6 +37,8 @@ impl Outgoing {
         match &event {
             // The next one tells more.
             MicrophoneEvent::Status(_) if !self.waiting.is_empty() => return,
+            // It helps only while it is new.
+            MicrophoneEvent::Live(live) if live.is_hint() && !self.waiting.is_empty() => return,
             MicrophoneEvent::Live(Live::Began(began)) if full => {
                 self.left_out = Some(began.sound);
                 self.dropped += 1;

@@ -64,8 +64,8 @@ impl Heard {
 
     fn live(&self) -> Live {
         self.next("an utterance", |event| match event {
-            MicrophoneEvent::Live(live) => Some(live),
-            MicrophoneEvent::Status(_) => None,
+            MicrophoneEvent::Live(live) if !live.is_hint() => Some(live),
+            MicrophoneEvent::Live(_) | MicrophoneEvent::Status(_) => None,
         })
     }
 

@@ -187,6 +187,14 @@ impl Worker {
                     interrupts: self.options.barge_in || talking.is_some(),
                 }));
             }
+            StreamEvent::SoFar(samples) => {
+                let Some(sound) = self.open else { return };
+                self.send(Live::SoFar { sound, samples });
+            }
+            StreamEvent::Paused(cut) => {
+                let Some(sound) = self.open else { return };
+                self.send(Live::Paused { sound, cut });
+            }
             StreamEvent::Ended(cut) => {
                 let Some(sound) = self.open.take() else { return };
                 self.talking.take_if(|talking| talking.sound == sound);

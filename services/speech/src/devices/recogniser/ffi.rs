@@ -96,6 +96,17 @@ pub(super) struct DecoderFiles<'a> {
     pub(super) language_model: &'a Path,
     /// Where the library's own messages of the opening go.
     pub(super) log: &'a Path,
+    /// How often the sound is gone through.
+    pub(super) passes: Passes,
+}
+
+/// How often a decoder goes through the sound of an utterance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Passes {
+    /// Three times, each with what the one before has found.
+    All,
+    /// Once, while it comes in.
+    First,
 }
 
 /// A hypothesis of the library's: its text and its logarithm (natural, not normalised).
@@ -129,6 +140,7 @@ impl Decoder {
         let path = |p: &Path| CString::new(p.as_os_str().as_encoded_bytes()).ok();
         let (hmm, dict) = (path(files.acoustic_model)?, path(files.dictionary)?);
         let (lm, log) = (path(files.language_model)?, path(files.log)?);
+        let more_passes = if files.passes == Passes::All { c"yes" } else { c"no" };
         let _log = MESSAGE_LOG.write().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the strings are NUL-terminated and outlive the calls, which copy them. The
         // variadic list is pairs of strings ended by a null pointer, as `cmd_ln_init` demands; it
@@ -147,6 +159,10 @@ impl Decoder {
                 dict.as_ptr(),
                 c"-lm".as_ptr(),
                 lm.as_ptr(),
+                c"-fwdflat".as_ptr(),
+                more_passes.as_ptr(),
+                c"-bestpath".as_ptr(),
+                more_passes.as_ptr(),
                 ptr::null::<c_char>(),
             );
             let decoder = (library.ps_init)(config);
@@ -183,6 +199,38 @@ impl Decoder {
             return Some(Decoded::default());
         }
         Some(Decoded { best: self.best(), n_best: self.n_best(n_best_max) })
+    }
+
+    /// Begins an utterance whose sound comes in pieces; one that is going on is given up. `None`: the
+    /// library reported a failure.
+    pub(super) fn begin(&mut self) -> Option<()> {
+        let _log = MESSAGE_LOG.read().unwrap_or_else(PoisonError::into_inner);
+        let (lib, ps) = (&self.library, self.decoder.as_ptr());
+        // SAFETY: `ps` is alive until `drop`. Ending an utterance that was not begun is refused
+        // without an effect, and so the answer to it does not matter.
+        let failed = unsafe {
+            (lib.ps_end_utt)(ps);
+            (lib.ps_start_stream)(ps) < 0 || (lib.ps_start_utt)(ps) < 0
+        };
+        (!failed).then_some(())
+    }
+
+    /// Takes the next piece of an utterance that was begun. Returns the words of the best path so
+    /// far, fillers left out; `None`: the library reported a failure.
+    pub(super) fn hear(&mut self, pcm: &[i16]) -> Option<String> {
+        let _log = MESSAGE_LOG.read().unwrap_or_else(PoisonError::into_inner);
+        let (lib, ps) = (&self.library, self.decoder.as_ptr());
+        let mut score = 0;
+        // SAFETY: `ps` is alive until `drop`. The samples are only read, and only during the call. A
+        // hypothesis may be asked for at any time; it is null where there is none yet, and else
+        // lives until the next call and is copied at once.
+        unsafe {
+            if (lib.ps_process_raw)(ps, pcm.as_ptr(), pcm.len(), 0, 0) < 0 {
+                return None;
+            }
+            let text = (lib.ps_get_hyp)(ps, &raw mut score);
+            Some(if text.is_null() { String::new() } else { text_of(text) })
+        }
     }
 
     /// The words of the best path.

@@ -5,6 +5,7 @@ mod command;
 mod ffi;
 mod gate;
 mod pocketsphinx;
+mod scene_files;
 mod unavailable;
 mod whisper;
 
@@ -56,6 +57,36 @@ pub trait Recogniser: Send {
         pcm: &[i16],
         speech: Range<usize>,
     ) -> Result<Vec<Hypothesis>, RecogniseError>;
+
+    /// Whether decoding costs so little that it may begin while it is not certain that nothing more
+    /// will be said.
+    fn is_quick(&self) -> bool {
+        false
+    }
+
+    /// What opens a recogniser of the same words for utterances that are still being spoken, if
+    /// there is one. It may be called on another thread.
+    fn preview(&self) -> Option<PreviewOpener> {
+        None
+    }
+}
+
+/// Opens a [`Preview`]; none where it cannot be had, which has been logged then.
+pub type PreviewOpener = Box<dyn FnOnce() -> Option<Box<dyn Preview>> + Send>;
+
+/// Tells roughly what is being said while it is being said.
+pub trait Preview: Send {
+    /// A new utterance begins; one that is going on is given up.
+    ///
+    /// # Errors
+    /// If the backend fails.
+    fn begin(&mut self) -> Result<(), RecogniseError>;
+
+    /// Takes the next samples, 16 kHz mono. Returns the words so far, separated by blanks.
+    ///
+    /// # Errors
+    /// If the backend fails on these samples.
+    fn hear(&mut self, pcm: &[i16]) -> Result<String, RecogniseError>;
 }
 
 /// What turns samples into words.

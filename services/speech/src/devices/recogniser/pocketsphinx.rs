@@ -7,11 +7,13 @@ use std::path::{Path, PathBuf};
 use scene::Scene;
 
 use super::agreement::hypotheses;
-use super::ffi::{Decoded, Decoder, DecoderFiles, Library};
-use super::{Hypothesis, RecogniseError, Recogniser, RecogniserUnavailable};
+use super::ffi::{Decoded, Decoder, DecoderFiles, Library, Passes};
+use super::scene_files::SceneFiles;
+use super::{
+    Hypothesis, Preview, PreviewOpener, RecogniseError, Recogniser, RecogniserUnavailable,
+};
 use crate::devices::audio::{denoised, with_noise_floor};
-use crate::devices::language_model::{Trigram, Weights, common_words, scene_sentences};
-use crate::devices::pronunciation::{EspeakSpelling, Pronunciations};
+use crate::devices::language_model::Weights;
 
 /// Where the recogniser's parts are, and what of it can be set.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +48,50 @@ pub struct PocketSphinx {
     decoder: Decoder,
     n_best_max: usize,
     unpronounceable: Vec<String>,
+    files: Files,
+}
+
+/// What decoders are opened with.
+#[derive(Clone)]
+struct Files {
+    library: PathBuf,
+    acoustic_model: PathBuf,
+    dictionary: PathBuf,
+    language_model: PathBuf,
+    work: PathBuf,
+}
+
+impl Files {
+    fn library(&self) -> Result<Library, RecogniserUnavailable> {
+        Library::open(&self.library).map_err(|error| RecogniserUnavailable::Library {
+            file: self.library.clone(),
+            reason: reason(&error),
+        })
+    }
+
+    /// Where the library's messages go.
+    fn log(&self, passes: Passes) -> PathBuf {
+        self.work.join(match passes {
+            Passes::All => "pocketsphinx.log",
+            Passes::First => "preview.log",
+        })
+    }
+
+    fn open(&self, passes: Passes) -> Result<Decoder, RecogniserUnavailable> {
+        let library = self.library()?;
+        let log = self.log(passes);
+        fs::write(&log, "")
+            .map_err(|source| RecogniserUnavailable::Work { path: log.clone(), source })?;
+        let files = DecoderFiles {
+            acoustic_model: &self.acoustic_model,
+            dictionary: &self.dictionary,
+            language_model: &self.language_model,
+            log: &log,
+            passes,
+        };
+        Decoder::open(library, &files)
+            .ok_or_else(|| RecogniserUnavailable::Refused { reason: complaints(&log) })
+    }
 }
 
 impl PocketSphinx {
@@ -58,32 +104,32 @@ impl PocketSphinx {
         scene: &Scene,
         options: &PocketSphinxOptions,
     ) -> Result<Self, RecogniserUnavailable> {
-        let library = Library::open(&options.library).map_err(|error| {
-            RecogniserUnavailable::Library { file: options.library.clone(), reason: reason(&error) }
-        })?;
-        let acoustic_model = options.model.join("en-us");
+        // The library comes first: where it is missing, its package brings the rest.
+        let files = Files {
+            library: options.library.clone(),
+            acoustic_model: options.model.join("en-us"),
+            dictionary: PathBuf::new(),
+            language_model: PathBuf::new(),
+            work: options.work.clone(),
+        };
+        files.library()?;
         // The library may end the process over a missing file, so each is looked for first.
         for file in ["mdef", "means", "variances", "transition_matrices", "sendump", "feat.params"]
         {
-            readable(&acoustic_model.join(file))?;
+            readable(&files.acoustic_model.join(file))?;
         }
-        let dictionary = read(&options.model.join("cmudict-en-us.dict"))?;
-        let model = Trigram::train(&scene_sentences(scene), common_words(), options.weights);
-        let spoken = Pronunciations::collect(model.vocabulary(), &dictionary, &EspeakSpelling);
-        let log = options.work.join("pocketsphinx.log");
-        if let Some(reason) = last_words(&log) {
+        let pronouncing = options.model.join("cmudict-en-us.dict");
+        let scene = SceneFiles::get(scene, options.weights, &pronouncing, &options.work)?;
+        if let Some(reason) = last_words(&files.log(Passes::All)) {
+            scene.forget();
             return Err(RecogniserUnavailable::Refused { reason });
         }
-        let files = DecoderFiles {
-            acoustic_model: &acoustic_model,
-            dictionary: &write(&options.work, "scene.dict", &spoken.to_text())?,
-            language_model: &write(&options.work, "scene.lm", &model.to_arpa())?,
-            log: &write(&options.work, "pocketsphinx.log", "")?,
-        };
-        let decoder = Decoder::open(library, &files)
-            .ok_or_else(|| RecogniserUnavailable::Refused { reason: complaints(&log) })?;
-        let unpronounceable = spoken.missing().to_vec();
-        Ok(Self { decoder, n_best_max: options.n_best_max, unpronounceable })
+        let SceneFiles { dictionary, language_model, .. } = &scene;
+        let (dictionary, language_model) = (dictionary.clone(), language_model.clone());
+        let files = Files { dictionary, language_model, ..files };
+        let decoder = files.open(Passes::All).inspect_err(|_| scene.forget())?;
+        let unpronounceable = scene.unpronounceable;
+        Ok(Self { decoder, n_best_max: options.n_best_max, unpronounceable, files })
     }
 
     /// Words of the scene that cannot be recognised because nothing tells how they sound.
@@ -106,6 +152,44 @@ impl Recogniser for PocketSphinx {
         let decoded = self.decoder.decode(&pcm, PATHS_MAX).ok_or(RecogniseError::Failed)?;
         Ok(heard(&decoded, self.n_best_max))
     }
+
+    fn is_quick(&self) -> bool {
+        true
+    }
+
+    fn preview(&self) -> Option<PreviewOpener> {
+        let files = self.files.clone();
+        Some(Box::new(move || match files.open(Passes::First) {
+            Ok(decoder) => Some(Box::new(Rough { decoder, heard: Vec::new() }) as Box<dyn Preview>),
+            Err(error) => {
+                tracing::warn!(%error, "no transcript while somebody speaks");
+                None
+            }
+        }))
+    }
+}
+
+/// A decoder that goes through the sound once while it comes in: less sure than one that has heard
+/// the whole.
+struct Rough {
+    decoder: Decoder,
+    heard: Vec<i16>,
+}
+
+impl Preview for Rough {
+    fn begin(&mut self) -> Result<(), RecogniseError> {
+        self.heard.clear();
+        self.decoder.begin().ok_or(RecogniseError::Failed)
+    }
+
+    fn hear(&mut self, pcm: &[i16]) -> Result<String, RecogniseError> {
+        let known = self.heard.len();
+        self.heard.extend_from_slice(pcm);
+        // How much noise it lacks can be told better the more was heard.
+        let new = &with_noise_floor(&self.heard)[known..];
+        let text = self.decoder.hear(new).ok_or(RecogniseError::Failed)?;
+        Ok(plain(&text))
+    }
 }
 
 /// What a path's score is divided by before it becomes a weight: path scores are far too sure of
@@ -114,16 +198,20 @@ impl Recogniser for PocketSphinx {
 const SCORE_SCALE: f64 = 20.0;
 
 fn heard(decoded: &Decoded, at_most: usize) -> Vec<Hypothesis> {
-    let words_of = |text: &str| text.split(' ').filter_map(spelling).collect::<Vec<_>>().join(" ");
     let mut paths: Vec<(String, f64)> =
-        decoded.n_best.iter().map(|path| (words_of(&path.text), path.ln_score)).collect();
+        decoded.n_best.iter().map(|path| (plain(&path.text), path.ln_score)).collect();
     // The best path may lie outside the paths that were looked at; it is the best all the same.
-    let best = words_of(&decoded.best.join(" "));
+    let best = plain(&decoded.best.join(" "));
     if paths.iter().all(|(text, _)| *text != best) {
         let top = paths.iter().map(|(_, score)| *score).reduce(f64::max).unwrap_or(0.0);
         paths.insert(0, (best, top));
     }
     hypotheses(&paths, SCORE_SCALE, at_most)
+}
+
+/// The words without marks and fillers.
+fn plain(text: &str) -> String {
+    text.split(' ').filter_map(spelling).collect::<Vec<_>>().join(" ")
 }
 
 /// The word without its pronunciation mark; `None` for silence, noise and the sentence's ends.
@@ -139,20 +227,6 @@ fn readable(path: &Path) -> Result<(), RecogniserUnavailable> {
     match fs::File::open(path) {
         Ok(_) => Ok(()),
         Err(source) => Err(RecogniserUnavailable::Model { path: path.to_owned(), source }),
-    }
-}
-
-fn read(path: &Path) -> Result<String, RecogniserUnavailable> {
-    fs::read_to_string(path)
-        .map_err(|source| RecogniserUnavailable::Model { path: path.to_owned(), source })
-}
-
-fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, RecogniserUnavailable> {
-    let path = folder.join(name);
-    let written = fs::create_dir_all(folder).and_then(|()| fs::write(&path, text));
-    match written {
-        Ok(()) => Ok(path),
-        Err(source) => Err(RecogniserUnavailable::Work { path, source }),
     }
 }
 

@@ -217,6 +217,29 @@ struct TestEar {
     gate: Gate,
 }
 
+/// What a preview makes of a sound that comes in pieces: the words after each.
+fn previewed(preview: &mut dyn Preview, pcm: &[i16]) -> Vec<String> {
+    preview.begin().unwrap();
+    let mut told: Vec<String> =
+        pcm.chunks(5_600).map(|piece| preview.hear(piece).unwrap()).collect();
+    told.dedup();
+    told
+}
+
+#[test]
+fn what_is_being_said_is_told_while_it_comes_in() {
+    let Some(world) = World::new() else { return };
+    let ear = world.ear(&bowls());
+    let mut preview = ear.recogniser.preview().unwrap()().unwrap();
+    for voice in [world.human(), "espeak-ng"] {
+        let pcm = world.say(voice, "bring me the big metal bowl from the cabinet");
+        let told = previewed(preview.as_mut(), &pcm);
+        assert!(told.len() > 3, "{told:?}");
+        let last = told.last().unwrap();
+        assert!(last.contains("metal bowl") || last.contains("cabinet"), "{voice}: {told:?}");
+    }
+}
+
 impl TestEar {
     fn hear(&mut self, pcm: &[i16]) -> Outcome {
         let hypotheses = self.recognise(pcm).unwrap();

@@ -94,7 +94,7 @@ mod tests {
             StreamEvent::Ended(cut) => {
                 Some((cut.onset.since(s(0.0)).s(), cut.end.since(s(0.0)).s()))
             }
-            StreamEvent::Began(_) => None,
+            _ => None,
         });
         spans.collect()
     }

@@ -1,7 +1,9 @@
 //! A live stream of sound, cut into utterances while it comes in.
 //!
 //! Invariant: every [`StreamEvent::Began`] is followed by exactly one [`StreamEvent::Ended`], at
-//! the latest when the stream ends; what is kept is bounded by the longest utterance.
+//! the latest when the stream ends, and what lies between is about that utterance; a
+//! [`StreamEvent::Paused`] after which nobody goes on holds the very cut of the end. What is kept is
+//! bounded by the longest utterance.
 
 mod clock;
 mod half_duplex;
@@ -23,6 +25,9 @@ use crate::devices::vad::{SegmentEvent, Segmenter, SegmenterOptions};
 /// third frame of speech, and a frame may be incomplete.
 const UNDECIDED: usize = 8 * 256;
 
+/// Sound of an utterance that is told while it lasts, in pieces of this many samples: 350 ms.
+const PIECE: usize = 5_600;
+
 /// An utterance cut out of a stream, with the quiet around it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cut {
@@ -41,6 +46,11 @@ pub struct Cut {
 pub enum StreamEvent {
     /// Somebody began to speak at this time.
     Began(Time),
+    /// Who speaks has come so far: the samples since the last such event, from the quiet before the
+    /// voice on.
+    SoFar(Vec<i16>),
+    /// Who speaks has paused; perhaps this is all.
+    Paused(Cut),
     /// Whoever spoke has ended.
     Ended(Cut),
 }
@@ -55,7 +65,8 @@ pub struct Stream {
     first: usize,
     /// The number of a sample, and its time.
     anchor: (usize, Time),
-    is_open: bool,
+    /// While somebody speaks, the number of the first sample that was not told yet.
+    open: Option<usize>,
 }
 
 impl Stream {
@@ -63,19 +74,12 @@ impl Stream {
     pub fn new(options: SegmenterOptions) -> Self {
         let pre_roll = (options.pre_roll_s * f64::from(RATE_HZ)) as usize;
         let segmenter = Segmenter::new(options);
-        Self {
-            segmenter,
-            pre_roll,
-            kept: Vec::new(),
-            first: 0,
-            anchor: (0, Time(0)),
-            is_open: false,
-        }
+        Self { segmenter, pre_roll, kept: Vec::new(), first: 0, anchor: (0, Time(0)), open: None }
     }
 
     /// Whether somebody is speaking.
     pub fn is_open(&self) -> bool {
-        self.is_open
+        self.open.is_some()
     }
 
     /// Takes the next samples, the first of which was taken at `at`.
@@ -83,8 +87,9 @@ impl Stream {
         self.anchor = (self.first + self.kept.len(), at);
         self.kept.extend_from_slice(samples);
         let found = self.segmenter.push(samples);
-        let events = self.told(found);
-        if !self.is_open {
+        let mut events = self.told(found);
+        events.extend(self.so_far());
+        if !self.is_open() {
             let spare = self.kept.len().saturating_sub(self.pre_roll + UNDECIDED);
             self.kept.drain(..spare);
             self.first += spare;
@@ -102,6 +107,16 @@ impl Stream {
         events
     }
 
+    /// What was said since this was told last.
+    fn so_far(&mut self) -> Vec<StreamEvent> {
+        let Some(from) = &mut self.open else { return Vec::new() };
+        let untold = &self.kept[(*from - self.first).min(self.kept.len())..];
+        let pieces = untold.chunks_exact(PIECE);
+        let events: Vec<_> = pieces.map(|piece| StreamEvent::SoFar(piece.to_vec())).collect();
+        *from += events.len() * PIECE;
+        events
+    }
+
     fn told(&mut self, found: Vec<SegmentEvent>) -> Vec<StreamEvent> {
         found.into_iter().map(|event| self.event(event)).collect()
     }
@@ -109,21 +124,26 @@ impl Stream {
     fn event(&mut self, event: SegmentEvent) -> StreamEvent {
         match event {
             SegmentEvent::Onset { at_sample } => {
-                self.is_open = true;
+                self.open = Some(at_sample.saturating_sub(self.pre_roll).max(self.first));
                 StreamEvent::Began(self.time(at_sample))
             }
+            SegmentEvent::Pause { range, speech } => StreamEvent::Paused(self.cut(range, speech)),
             SegmentEvent::End { range, speech } => {
-                self.is_open = false;
-                let kept = |sample: usize| sample.saturating_sub(self.first).min(self.kept.len());
-                let samples = self.kept[kept(range.start)..kept(range.end)].to_vec();
-                let inside = |sample: usize| (kept(sample) - kept(range.start)).min(samples.len());
-                StreamEvent::Ended(Cut {
-                    onset: self.time(speech.start),
-                    end: self.time(speech.end),
-                    speech: inside(speech.start)..inside(speech.end),
-                    samples,
-                })
+                self.open = None;
+                StreamEvent::Ended(self.cut(range, speech))
             }
+        }
+    }
+
+    fn cut(&self, range: Range<usize>, speech: Range<usize>) -> Cut {
+        let kept = |sample: usize| sample.saturating_sub(self.first).min(self.kept.len());
+        let samples = self.kept[kept(range.start)..kept(range.end)].to_vec();
+        let inside = |sample: usize| (kept(sample) - kept(range.start)).min(samples.len());
+        Cut {
+            onset: self.time(speech.start),
+            end: self.time(speech.end),
+            speech: inside(speech.start)..inside(speech.end),
+            samples,
         }
     }
 
@@ -156,6 +176,12 @@ mod tests {
         events
     }
 
+    /// Without what is told while an utterance lasts.
+    fn edges(events: Vec<StreamEvent>) -> Vec<StreamEvent> {
+        let is_edge = |e: &StreamEvent| matches!(e, StreamEvent::Began(_) | StreamEvent::Ended(_));
+        events.into_iter().filter(is_edge).collect()
+    }
+
     fn near(time: Time, ms: u64) -> bool {
         time.ns().abs_diff((BEGAN + ms) * MS) < 200 * MS
     }
@@ -164,7 +190,7 @@ mod tests {
     fn each_utterance_begins_and_ends_at_its_time_with_its_sound() {
         let sound = sound();
         let mut stream = Stream::new(SegmenterOptions::default());
-        let events = run(&mut stream, &sound, 320);
+        let events = edges(run(&mut stream, &sound, 320));
         let [
             StreamEvent::Began(first),
             StreamEvent::Ended(a),
@@ -188,7 +214,7 @@ mod tests {
     #[test]
     fn pieces_of_any_length_tell_alike() {
         let sound = sound();
-        let run = |piece| run(&mut Stream::new(SegmenterOptions::default()), &sound, piece);
+        let run = |piece| edges(run(&mut Stream::new(SegmenterOptions::default()), &sound, piece));
         let expected = run(320);
         for piece in [33, 256, 1_600, sound.len()] {
             assert_eq!(run(piece), expected, "pieces of {piece}");
@@ -198,14 +224,48 @@ mod tests {
     #[test]
     fn a_stream_that_ends_in_the_middle_of_a_word_ends_the_utterance_once() {
         let mut stream = Stream::new(SegmenterOptions::default());
-        let events = run(&mut stream, &sound()[..24_000], 320);
+        let events = edges(run(&mut stream, &sound()[..24_000], 320));
         assert!(matches!(events.as_slice(), [StreamEvent::Began(_)]), "{events:?}");
         assert!(stream.is_open());
         let events = stream.finish();
         let [StreamEvent::Ended(cut)] = events.as_slice() else { panic!("{events:?}") };
         assert!(near(cut.end, 1_500), "{:?}", cut.end);
         assert!(!stream.is_open() && stream.finish().is_empty());
-        assert_eq!(run(&mut stream, &sound(), 320).len(), 4, "and is as new");
+        assert_eq!(edges(run(&mut stream, &sound(), 320)).len(), 4, "and is as new");
+    }
+
+    #[test]
+    fn a_pause_after_which_nobody_goes_on_holds_the_cut_of_the_end() {
+        let pause = vec![0; 5_000];
+        let sound = [sound()[..30_000].to_vec(), pause, voice(0.5), vec![0; 16_000]].concat();
+        let events = run(&mut Stream::new(SegmenterOptions::default()), &sound, 320);
+        let cuts = events.iter().filter_map(|event| match event {
+            StreamEvent::Paused(cut) | StreamEvent::Ended(cut) => Some(cut),
+            _ => None,
+        });
+        let [first, second, end] = cuts.collect::<Vec<_>>()[..] else { panic!("{events:?}") };
+        assert_eq!(second, end, "the very cut");
+        assert_eq!(first.onset, end.onset);
+        assert!(first.samples.len() < end.samples.len(), "somebody went on after the first pause");
+    }
+
+    #[test]
+    fn what_is_told_while_somebody_speaks_is_the_sound_from_before_the_voice_on() {
+        let sound = sound();
+        for piece in [320, 4_000, sound.len()] {
+            let events =
+                run(&mut Stream::new(SegmenterOptions::default()), &sound[..50_000], piece);
+            let told = events.iter().filter_map(|event| match event {
+                StreamEvent::SoFar(samples) => Some(samples.clone()),
+                _ => None,
+            });
+            let told: Vec<i16> = told.flatten().collect();
+            let StreamEvent::Began(at) = events[0] else { panic!("{events:?}") };
+            let onset = (at.since(Time(BEGAN * MS)).0 / 62_500) as usize;
+            let expected = &sound[onset - 8_000..];
+            assert!(told.len() >= 11_200 || piece > 16_000, "{} samples", told.len());
+            assert!(told == expected[..told.len()], "the very samples");
+        }
     }
 
     #[test]
