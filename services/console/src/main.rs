@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    runtime::exit::Exit::Ok.code()
+    console::service::run()
 }

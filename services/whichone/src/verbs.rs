@@ -13,6 +13,7 @@ mod await_pick;
 mod chat;
 mod check;
 mod completions;
+mod console;
 mod conversation;
 mod doctor;
 mod export;

@@ -7,6 +7,7 @@ use crate::bus::{
 };
 use crate::clock;
 use crate::group::GroupPaths;
+use crate::lifecycle::Environment;
 use node::{Span, Time};
 use protocol::{
     ArmStatus, Epoch, Injection, MotionCommand, MotionOrder, PolicyView, Receipt, RequestKey,
@@ -61,6 +62,16 @@ impl Client {
         let epoch = Epoch(epoch.trim().parse().map_err(|_| none())?);
         let bus = Bus::open(paths, "client", Identity { epoch, ..Identity::default() })?;
         Ok(Self { bus })
+    }
+
+    /// Joins the group as one of its services that writes no topic of its own: the console.
+    ///
+    /// # Errors
+    /// The group's shared memory cannot be opened.
+    pub fn of_service(environment: &Environment, name: &str) -> Result<Self, BusError> {
+        let Environment { paths, epoch, incarnation, .. } = environment;
+        let identity = Identity { epoch: *epoch, incarnation: *incarnation };
+        Ok(Self { bus: Bus::open(paths, name, identity)? })
     }
 
     /// The group's shared memory, for other topics.

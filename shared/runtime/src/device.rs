@@ -56,12 +56,12 @@ pub struct DeviceReceiver<T> {
 
 impl<T> DeviceReceiver<T> {
     /// Readable while something waits.
-    pub(crate) fn fd(&self) -> BorrowedFd<'_> {
+    pub fn fd(&self) -> BorrowedFd<'_> {
         self.wake.as_fd()
     }
 
     /// Resets the wake-up; call before taking, so that nothing is slept over.
-    pub(crate) fn clear(&self) {
+    pub fn clear(&self) {
         let _ = rustix::io::read(&self.wake, &mut [0_u8; 8]);
     }
 

@@ -13,10 +13,8 @@ use crate::logging;
 use journal::{Header, Journal, JournalOpenError};
 use node::{Effects, Event, Node, Span, Time};
 use protocol::Service;
-use rustix::event::{PollFd, PollFlags, poll};
 use serde::{Serialize, de::DeserializeOwned};
 use settings::Settings;
-use std::os::fd::BorrowedFd;
 use std::process::ExitCode;
 
 /// Events of one pass; what is left waits for the next, so that beats and signals are not held up.
@@ -209,17 +207,7 @@ impl<P: Program> Loop<P> {
             .into_iter()
             .flatten()
             .fold(now + LOOK_EVERY, Time::min);
-        let sleep = until.since(now);
-        let timeout = rustix::time::Timespec {
-            tv_sec: (sleep.0 / 1_000_000_000) as i64,
-            tv_nsec: (sleep.0 % 1_000_000_000) as i64,
-        };
-        let fds: Vec<BorrowedFd<'_>> =
-            [self.ear.fd(), self.inbox.fd()].into_iter().chain(self.lifecycle.fds()).collect();
-        let mut polled: Vec<PollFd<'_>> =
-            fds.iter().map(|fd| PollFd::new(fd, PollFlags::IN)).collect();
-        // Interrupted by a signal or not: the pass looks at everything.
-        let _ = poll(&mut polled, Some(&timeout));
+        self.lifecycle.wait(&[self.ear.fd(), self.inbox.fd()], until.since(now));
     }
 
     /// Feeds everything that waits to the node.

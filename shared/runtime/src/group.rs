@@ -205,6 +205,11 @@ impl GroupPaths {
         self.run().join("control.sock")
     }
 
+    /// The address of the console, while it serves one.
+    pub fn console_url(&self) -> PathBuf {
+        self.run().join("console.url")
+    }
+
     /// Where one incarnation of a service sends its notifications.
     pub fn notify_socket(&self, service: &str, incarnation: u32) -> PathBuf {
         self.run().join(format!("n-{service}-{incarnation}"))

@@ -118,31 +118,45 @@ impl Lifecycle {
     }
 
     /// Descriptors to be polled: signals, and the lifeline where there is one.
-    pub(crate) fn fds(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
+    fn fds(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
         std::iter::once(self.signals.as_fd()).chain(self.lifeline.as_ref().map(AsFd::as_fd))
     }
 
+    /// Sleeps until one of `also` can be read, a signal or the supervisor's end comes, or `longest`
+    /// has passed.
+    pub fn wait(&self, also: &[BorrowedFd<'_>], longest: Span) {
+        let timeout = rustix::time::Timespec {
+            tv_sec: (longest.0 / 1_000_000_000) as i64,
+            tv_nsec: (longest.0 % 1_000_000_000) as i64,
+        };
+        let fds: Vec<BorrowedFd<'_>> = also.iter().copied().chain(self.fds()).collect();
+        let mut polled: Vec<PollFd<'_>> =
+            fds.iter().map(|fd| PollFd::new(fd, PollFlags::IN)).collect();
+        // Interrupted by a signal or not: whoever waits looks at everything then.
+        let _ = poll(&mut polled, Some(&timeout));
+    }
+
     /// Whether the service has been told to end.
-    pub(crate) fn told_to_end(&mut self) -> bool {
+    pub fn told_to_end(&mut self) -> bool {
         let mut byte = [0_u8; 16];
         let signalled = std::io::Read::read(&mut self.signals, &mut byte).is_ok_and(|n| n > 0);
         signalled || self.lifeline.as_ref().is_some_and(orphaned)
     }
 
     /// Tells the supervisor that the service does its work.
-    pub(crate) fn ready(&mut self) {
+    pub fn ready(&mut self) {
         let version = concat!("X_VERSION=", env!("CARGO_PKG_VERSION"));
         self.notifier.say(&[NotifyState::Custom(version), NotifyState::Ready]);
     }
 
     /// Tells the supervisor that the service has begun to end.
-    pub(crate) fn stopping(&mut self) {
+    pub fn stopping(&mut self) {
         self.notifier.say(&[NotifyState::Stopping]);
     }
 
     /// Beats where a beat is due. Called by the main loop after a full pass and by nobody else, so
     /// that a beat means that work is being done.
-    pub(crate) fn beat(&mut self, now: Time, pending_since: Option<Time>) {
+    pub fn beat(&mut self, now: Time, pending_since: Option<Time>) {
         if self.last_beat.is_some_and(|last| now < last + self.beat_every) {
             return;
         }
@@ -153,7 +167,7 @@ impl Lifecycle {
     }
 
     /// When the next beat is due.
-    pub(crate) fn next_beat(&self, now: Time) -> Time {
+    pub fn next_beat(&self, now: Time) -> Time {
         self.last_beat.map_or(now, |last| last + self.beat_every)
     }
 }

@@ -9,6 +9,7 @@
 //! snapshot; services read only that, so that editing a file changes nothing until it is asked for.
 
 mod arm;
+mod console;
 mod dialogue;
 mod durations;
 mod fields;
@@ -33,12 +34,13 @@ mod text_file;
 #[cfg(test)]
 mod tests;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ::dialogue::Durations;
 use scene::Scene;
 
 pub use crate::arm::{Arm, Baxter, Driver, Grasps, Simulated};
+pub use crate::console::Console;
 pub use crate::dialogue::{CostsFrom, Dialogue, Turns};
 pub use crate::gesture::Gesture;
 pub use crate::group::{Group, Log, RestartLimits};
@@ -65,6 +67,8 @@ pub struct Settings {
     pub arm: Arm,
     /// A study with people.
     pub study: Study,
+    /// The operator's page.
+    pub console: Console,
     /// The objects and the words for them. Every object has a place that the arm can reach.
     pub scene: Scene,
     /// Seconds of every question and pick, where the robot's own are what its questions cost
@@ -96,6 +100,19 @@ impl Settings {
     /// The scene file as it was read.
     pub fn scene_text(&self) -> &str {
         &self.resolved.scene.text
+    }
+
+    /// The robot's description as it was read: links, joints, limits and shapes (URDF).
+    pub fn robot_urdf(&self) -> &str {
+        &self.resolved.robot.urdf.text
+    }
+
+    /// Where the sound of the robot's latest sentences is kept, if anywhere: where the operator says,
+    /// else in the group's run folder `run` if there is a console that plays it elsewhere.
+    pub fn voice_dir(&self, run: &Path) -> Option<PathBuf> {
+        let has_console = self.group.services.iter().any(|service| service.name == "console");
+        let own = has_console.then(|| run.join("said"));
+        self.speech.voice_dir.clone().or(own)
     }
 
     /// Every value with the file that it came from, in the order of the files.

@@ -16,7 +16,8 @@ use crate::robot_files::{self, RobotFiles};
 use crate::scene_file;
 use crate::text_file::TextFile;
 use crate::{
-    Settings, arm, dialogue, durations, gesture, group, nearest, reach, services, speech, study,
+    Settings, arm, console, dialogue, durations, gesture, group, nearest, reach, services, speech,
+    study,
 };
 
 pub(crate) fn load(
@@ -85,6 +86,7 @@ pub(crate) fn check(
     let speech = fields.table("speech", speech::read);
     let (mut arm, arm_is_sound) = fields.table("arm", |f| (arm::read(f), f.is_sound()));
     let study = fields.table("study", |f| study::read(f, &dialogue.planner));
+    let console = fields.table("console", console::read);
     fields.finish();
     let Files { scene: file, robot: robot_files } = files;
     let robot = robot_files.as_ref().and_then(|files| robot_files::read(files, &mut report));
@@ -109,7 +111,7 @@ pub(crate) fn check(
             Basis::Files => durations::find(&scene, &file, (&dialogue, &speech, &arm), &mut report),
         };
         let resolved = Resolved { tree, scene: file, robot };
-        Settings { group, dialogue, speech, arm, study, scene, durations, resolved }
+        Settings { group, dialogue, speech, arm, study, console, scene, durations, resolved }
     });
     report.verdict(settings)
 }

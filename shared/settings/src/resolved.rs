@@ -18,11 +18,14 @@ pub enum Section {
     Arm,
     /// `study.toml`
     Study,
+    /// `console.toml`
+    Console,
 }
 
 impl Section {
     /// Every section.
-    pub const ALL: [Self; 5] = [Self::Group, Self::Dialogue, Self::Speech, Self::Arm, Self::Study];
+    pub const ALL: [Self; 6] =
+        [Self::Group, Self::Dialogue, Self::Speech, Self::Arm, Self::Console, Self::Study];
 
     /// Its name: the first part of its keys.
     pub fn name(self) -> &'static str {
@@ -32,6 +35,7 @@ impl Section {
             Self::Speech => "speech",
             Self::Arm => "arm",
             Self::Study => "study",
+            Self::Console => "console",
         }
     }
 
@@ -48,6 +52,7 @@ impl Section {
             Self::Speech => include_str!("../../../config/speech.toml"),
             Self::Arm => include_str!("../../../config/arm.toml"),
             Self::Study => include_str!("../../../config/study.toml"),
+            Self::Console => include_str!("../../../config/console.toml"),
         }
     }
 }

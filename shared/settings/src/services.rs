@@ -8,7 +8,7 @@ use crate::nearest;
 use crate::problems::Report;
 
 /// The services that every group has, in the order in which they are listed.
-pub const BUILT_IN: [&str; 4] = ["speech", "grounding", "policy", "arm"];
+pub const BUILT_IN: [&str; 5] = ["speech", "grounding", "policy", "arm", "console"];
 
 /// The services that a group may have beside those and whose programs come with them: the simulated
 /// Baxter.

@@ -17,7 +17,8 @@ pub struct Speech {
     /// Program that speaks under [`Voice::Command`], with its arguments, in which `{text}` and `{wav}`
     /// stand for the text and the file to write.
     pub voice_command: Option<Vec<String>>,
-    /// Folder in which the sound of the latest sentences is kept, if in any.
+    /// Folder in which the sound of the latest sentences is kept, if the operator names one
+    /// ([`Settings::voice_dir`](crate::Settings::voice_dir)).
     pub voice_dir: Option<PathBuf>,
     /// Program, with its arguments before the file, that plays a WAV file; found by itself where
     /// nothing is said. `none` plays nothing for as long as it would take.

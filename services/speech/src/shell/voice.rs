@@ -21,7 +21,9 @@ impl VoiceDevice {
         own_voice: Arc<OwnVoice>,
         inbox: &DeviceSender<In>,
     ) -> Self {
-        let (voice, events) = Voice::start(VoiceOptions::of(&settings.speech, &work.join("voice")));
+        let usual = VoiceOptions::of(&settings.speech, &work.join("voice"));
+        let options = VoiceOptions { kept: settings.voice_dir(work), ..usual };
+        let (voice, events) = Voice::start(options);
         let inbox = inbox.clone();
         let is_aloud = AtomicBool::new(false);
         super::forward("voice", events, move |event| {

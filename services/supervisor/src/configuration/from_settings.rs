@@ -66,11 +66,11 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
         "speech" => &[Section::Speech, Section::Dialogue],
         "grounding" | "policy" => &[Section::Dialogue],
         "arm" => &[Section::Arm],
-        "console" => &[Section::Speech, Section::Dialogue, Section::Arm, Section::Study],
+        "console" => &Section::ALL[1..],
         _ => &[Section::Speech, Section::Dialogue, Section::Arm],
     };
     let texts = sections.iter().map(|&section| settings.section_text(section));
-    let decides = !matches!(name, "speech" | "grounding" | "arm");
+    let decides = !matches!(name, "speech" | "grounding" | "arm" | "console");
     let durations = decides.then(|| settings.durations_text());
     texts.chain([settings.scene_text().to_owned()]).chain(durations).collect()
 }

@@ -9,7 +9,7 @@ use supervisor::machine::{Actual, Wanted};
 use supervisor::status::{GroupStatus, ServiceStatus};
 
 use super::operate::{Unanswered, status_of};
-use super::{hearing, words};
+use super::{console, hearing, words};
 use crate::output::{Ink, Output, Style, table};
 use crate::trouble::Outcome;
 
@@ -23,10 +23,12 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     let hearing = hearing::look(paths);
     if out.is_json() {
         let mut json = serde_json::to_value(&status).unwrap_or_default();
+        json["console"] = console::url(paths).into();
         json["hearing"] = hearing.as_ref().map(hearing::to_json).into();
         out.json(&json)?;
     } else {
         let mut lines = lines(&status, out.style());
+        lines.extend(console::url(paths).map(|url| format!("console {url}")));
         lines.extend(hearing.map(|hearing| hearing::line(&hearing, out.style())));
         for line in lines {
             out.line(line)?;

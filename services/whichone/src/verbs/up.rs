@@ -7,7 +7,7 @@ use runtime::group::GroupPaths;
 use supervisor::control::{CallError, Request};
 use supervisor::launch::{self, Options};
 
-use super::{operate, place};
+use super::{console, operate, place};
 use crate::cli::{ConfigArgs, UpArgs, WaitFor};
 use crate::output::{Output, note};
 use crate::trouble::{Outcome, Trouble};
@@ -31,10 +31,15 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
     };
     let status = operate::status_of(paths)?;
     if out.is_json() {
-        out.json(&status)?;
+        let mut json = serde_json::to_value(&status).unwrap_or_default();
+        json["console"] = console::url(paths).into();
+        out.json(&json)?;
     } else {
         let pid = status.supervisor_pid;
         out.line(format_args!("group {name} is up (supervisor {pid}): {ready}"))?;
+        if let Some(url) = console::url(paths) {
+            out.line(format_args!("console: {url}"))?;
+        }
     }
     Ok(Exit::Ok)
 }

@@ -51,7 +51,9 @@ fn the_defaults_are_what_the_documentation_says() {
     let Settings { group, dialogue, speech, arm, .. } = Folder::new(&[]).load(None, &[]).unwrap();
     let names: Vec<_> = group.services.iter().map(|service| service.name.as_str()).collect();
     assert_eq!(names, BUILT_IN);
-    let [speech_service, grounding, _, arm_service] = &group.services[..] else { unreachable!() };
+    let [speech_service, grounding, _, arm_service, _] = &group.services[..] else {
+        unreachable!()
+    };
     assert_eq!(grounding.watchdog, Some(Duration::from_secs(3)));
     assert_eq!(grounding.stop_deadline, Duration::from_secs(5));
     assert_eq!(grounding.start_deadline, Duration::from_secs(10));
@@ -127,11 +129,11 @@ fn services_can_be_added_and_keep_their_order() {
     )]);
     let services = folder.load(None, &[]).unwrap().group.services;
     let names: Vec<_> = services.iter().map(|service| service.name.as_str()).collect();
-    assert_eq!(names, ["speech", "grounding", "policy", "arm", "zoom", "camera"]);
+    assert_eq!(names, ["speech", "grounding", "policy", "arm", "console", "zoom", "camera"]);
     assert_eq!(services[1].command, Some(vec!["python3".into(), "grounding.py".into()]));
-    assert_eq!(services[4].after, ["arm", "camera"]);
-    assert_eq!(services[4].watchdog, Some(Duration::from_secs(3)));
-    assert_eq!((services[5].restart, services[5].nice), (Restart::Never, -3));
+    assert_eq!(services[5].after, ["arm", "camera"]);
+    assert_eq!(services[5].watchdog, Some(Duration::from_secs(3)));
+    assert_eq!((services[6].restart, services[6].nice), (Restart::Never, -3));
 }
 
 #[test]

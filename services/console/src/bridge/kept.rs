@@ -1,0 +1,51 @@
+//! The transcript on its way to the console that is started after this one.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use node::{Span, Time};
+
+use crate::picture::Line;
+
+/// Shortest time between two writes.
+const WRITE_EVERY: Span = Span::from_ms(500);
+
+/// A file with the latest lines, in the group's run folder: gone with the group.
+#[derive(Debug)]
+pub(super) struct Kept {
+    path: PathBuf,
+    written: Time,
+    is_due: bool,
+}
+
+impl Kept {
+    pub(super) fn in_folder(run: &Path) -> Self {
+        Self { path: run.join("console.lines"), written: Time(0), is_due: false }
+    }
+
+    /// The lines that the console before this one has left. A file that makes no sense is none.
+    pub(super) fn read(&self) -> Vec<Line> {
+        let text = fs::read_to_string(&self.path).unwrap_or_default();
+        text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
+    }
+
+    /// Something has changed.
+    pub(super) fn note(&mut self) {
+        self.is_due = true;
+    }
+
+    /// Writes the lines if they have changed and it is time.
+    pub(super) fn write<'a>(&mut self, lines: impl Iterator<Item = &'a Line>, now: Time) {
+        if !self.is_due || now < self.written + WRITE_EVERY {
+            return;
+        }
+        (self.written, self.is_due) = (now, false);
+        let text: String = lines.map(|line| line.to_text() + "\n").collect();
+        let new = self.path.with_extension("new");
+        // Readers see the old lines or the new ones.
+        let written = fs::write(&new, text).and_then(|()| fs::rename(&new, &self.path));
+        if let Err(error) = written {
+            tracing::debug!(%error, "transcript not kept");
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Orders to the motion stop, on their way to the arm.
+
+use node::{Span, Time};
+use protocol::{ArmStatus, MotionCommand, MotionOrder};
+use runtime::bus::Writer;
+use serde_json::json;
+
+use crate::hub::Hub;
+use crate::hub::command::Motion;
+
+/// How often an order that is not obeyed yet is given again.
+const RESEND_EVERY: Span = Span::from_ms(50);
+/// How long it is waited for.
+const PATIENCE: Span = Span::from_ms(5_000);
+/// Orders that wait at a time; the latest holds.
+const ORDERS_MAX: usize = 64;
+
+/// Orders that the arm has not confirmed.
+#[derive(Debug, Default)]
+pub(super) struct Motions {
+    waiting: Vec<Motion>,
+    latest: Option<Latest>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Latest {
+    stop: bool,
+    given: Time,
+    sent: Time,
+}
+
+impl Motions {
+    /// Gives an order, at once.
+    pub(super) fn order(
+        &mut self,
+        motion: Motion,
+        writer: &Writer<MotionCommand>,
+        hub: &Hub,
+        now: Time,
+    ) {
+        // Who wanted something else is overruled by the latest.
+        let overruled = |waiting: &Motion| waiting.stop != motion.stop;
+        for old in self.waiting.extract_if(.., |waiting| overruled(waiting)) {
+            hub.answer(old.viewer, old.id, Err("overruled by another order".to_owned()));
+        }
+        if self.waiting.len() < ORDERS_MAX {
+            self.waiting.push(motion);
+        }
+        let latest = Latest { stop: motion.stop, given: now, sent: now };
+        self.latest = Some(latest);
+        send(latest, writer);
+    }
+
+    pub(super) fn is_waiting(&self) -> bool {
+        self.latest.is_some()
+    }
+
+    /// The arm has said something since the order.
+    pub(super) fn confirm(&mut self, status: &ArmStatus, hub: &Hub) {
+        let Some(latest) = self.latest else { return };
+        if (status.stopped != 0) == latest.stop {
+            self.latest = None;
+            for motion in self.waiting.drain(..) {
+                hub.answer(motion.viewer, motion.id, Ok(json!({ "stopped": latest.stop })));
+            }
+        }
+    }
+
+    /// Gives the order again until it is obeyed, or gives up.
+    pub(super) fn pass(&mut self, writer: &Writer<MotionCommand>, hub: &Hub, now: Time) {
+        let Some(latest) = &mut self.latest else { return };
+        if now >= latest.given + PATIENCE {
+            let why =
+                "the arm does not answer; use its emergency stop and see the list of services";
+            for motion in self.waiting.drain(..) {
+                hub.answer(motion.viewer, motion.id, Err(why.to_owned()));
+            }
+            self.latest = None;
+        } else if now >= latest.sent + RESEND_EVERY {
+            latest.sent = now;
+            send(*latest, writer);
+        }
+    }
+}
+
+/// The time of giving stays: the arm ignores what is older than the last that it obeyed.
+fn send(latest: Latest, writer: &Writer<MotionCommand>) {
+    let order = if latest.stop { MotionOrder::Stop } else { MotionOrder::Resume };
+    let command = MotionCommand {
+        given_ns: latest.given.ns(),
+        order: order.code(),
+        ..MotionCommand::default()
+    };
+    if let Err(error) = writer.send(&command) {
+        tracing::warn!(%error, "order to the motion stop not sent yet");
+    }
+}

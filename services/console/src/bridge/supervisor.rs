@@ -1,0 +1,58 @@
+//! What the supervisor knows, asked on a thread of its own: it may take its time to answer.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use crossbeam_channel::{Receiver, RecvTimeoutError};
+use runtime::device::DeviceSender;
+use runtime::group::GroupPaths;
+use serde_json::Value as Json;
+use supervisor::control::{Reply, Request, call};
+
+use crate::hub::ViewerId;
+use crate::hub::command::Command;
+use crate::server::App;
+
+/// How often the supervisor is asked.
+const ASK_EVERY: Duration = Duration::from_secs(1);
+/// How long it may take to answer.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// A restart that a viewer asks for.
+pub(crate) type Restart = (ViewerId, u64, String);
+
+/// Asks for the group's status every second, and for restarts as they come, until nobody can ask for
+/// them any more.
+pub(crate) fn watch(
+    paths: &GroupPaths,
+    app: &Arc<App>,
+    restarts: Receiver<Restart>,
+    main_loop: DeviceSender<Command>,
+) -> std::io::Result<()> {
+    let (socket, hub) = (paths.control_socket(), Arc::downgrade(app));
+    let ask = move || loop {
+        let status = match call(&socket, &Request::Status, PATIENCE) {
+            Ok(Reply::Status(status)) => Ok(status),
+            Ok(other) => Err(format!("{other:?}")),
+            Err(error) => Err(error.to_string()),
+        };
+        // A full inbox will hear of it a second later.
+        let _ = main_loop.offer(Command::Group(status));
+        match restarts.recv_timeout(ASK_EVERY) {
+            Ok((viewer, id, service)) => {
+                let restart = Request::Restart { service, original: false, wait_ms: 0 };
+                let outcome = match call(&socket, &restart, PATIENCE) {
+                    Ok(Reply::Done { message }) => Ok(serde_json::json!({ "message": message })),
+                    Ok(Reply::Refused(refusal)) => Err(refusal.message),
+                    Ok(_) => Ok(Json::Null),
+                    Err(error) => Err(error.to_string()),
+                };
+                let Some(app) = hub.upgrade() else { return };
+                app.hub.answer(viewer, id, outcome);
+            }
+            Err(RecvTimeoutError::Timeout) if hub.strong_count() > 0 => {}
+            Err(_) => return,
+        }
+    };
+    std::thread::Builder::new().name("supervisor".into()).spawn(ask).map(drop)
+}

@@ -1,0 +1,247 @@
+//! Who is in control: one viewer at a time, and how control changes hands.
+//!
+//! Pure: times come from outside.
+
+use node::{Span, Time};
+
+use super::ViewerId;
+
+/// How long control waits for a page that is being loaded again.
+pub const RELOAD: Span = Span::from_ms(15_000);
+
+/// Who holds control, and who asks for it.
+#[derive(Clone, Debug)]
+pub struct Lease {
+    holder: Option<Holder>,
+    asked: Option<Asked>,
+    handover: Span,
+}
+
+#[derive(Clone, Debug)]
+struct Holder {
+    viewer: ViewerId,
+    session: String,
+    /// When its connection was lost.
+    away: Option<Time>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Asked {
+    by: ViewerId,
+    until: Time,
+}
+
+/// What became of a wish for control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taken {
+    /// It has control.
+    Granted,
+    /// The operator is asked; it gets control then, if it is not kept.
+    Asked(Time),
+}
+
+impl Lease {
+    /// Nobody in control; `handover` is how long an operator has to answer.
+    pub fn new(handover: Span) -> Self {
+        Self { holder: None, asked: None, handover }
+    }
+
+    /// The operator; one whose page is being loaded again still is.
+    pub fn operator(&self) -> Option<ViewerId> {
+        self.holder.as_ref().map(|holder| holder.viewer)
+    }
+
+    /// Who asks for control, and when it gets it.
+    pub fn asked(&self) -> Option<(ViewerId, Time)> {
+        self.asked.map(|asked| (asked.by, asked.until))
+    }
+
+    /// Whether the viewer is in control.
+    pub fn holds(&self, viewer: ViewerId) -> bool {
+        self.operator() == Some(viewer)
+    }
+
+    /// A viewer has come. The session that had control goes on with it; whoever `wants` it gets it
+    /// if nobody has it.
+    pub fn joined(&mut self, viewer: ViewerId, session: &str, wants: bool) {
+        match &mut self.holder {
+            Some(holder) if holder.session == session => {
+                (holder.viewer, holder.away) = (viewer, None);
+            }
+            Some(_) => {}
+            None if wants => self.grant(viewer, session),
+            None => {}
+        }
+    }
+
+    /// A viewer has gone.
+    pub fn left(&mut self, viewer: ViewerId, now: Time) {
+        if self.asked.is_some_and(|asked| asked.by == viewer) {
+            self.asked = None;
+        }
+        if let Some(holder) = self.holder.as_mut().filter(|holder| holder.viewer == viewer) {
+            holder.away = Some(now);
+        }
+    }
+
+    /// A viewer wishes for control.
+    ///
+    /// # Errors
+    /// Somebody else has asked before.
+    pub fn take(
+        &mut self,
+        viewer: ViewerId,
+        session: &str,
+        now: Time,
+    ) -> Result<Taken, &'static str> {
+        if self.holder.is_none() {
+            self.grant(viewer, session);
+        }
+        if self.holds(viewer) {
+            return Ok(Taken::Granted);
+        }
+        match self.asked {
+            Some(asked) if asked.by != viewer => Err("somebody else has asked; try again soon"),
+            Some(asked) => Ok(Taken::Asked(asked.until)),
+            None => {
+                let until = now + self.handover;
+                self.asked = Some(Asked { by: viewer, until });
+                Ok(Taken::Asked(until))
+            }
+        }
+    }
+
+    /// The operator gives control to another viewer.
+    pub fn give(&mut self, viewer: ViewerId, session: &str) {
+        self.grant(viewer, session);
+    }
+
+    /// The operator keeps control.
+    pub fn keep(&mut self) {
+        self.asked = None;
+    }
+
+    /// When something happens by itself.
+    pub fn deadline(&self) -> Option<Time> {
+        let away = self.holder.as_ref().and_then(|holder| holder.away).map(|away| away + RELOAD);
+        self.asked.map(|asked| asked.until).into_iter().chain(away).min()
+    }
+
+    /// Time has passed. `session` tells the session of a viewer. Whether anything has changed.
+    pub fn tick(&mut self, now: Time, session: impl Fn(ViewerId) -> Option<String>) -> bool {
+        if self.deadline().is_none_or(|deadline| now < deadline) {
+            return false;
+        }
+        self.holder = None;
+        if let Some(asked) = self.asked.take()
+            && let Some(session) = session(asked.by)
+        {
+            self.grant(asked.by, &session);
+        }
+        true
+    }
+
+    fn grant(&mut self, viewer: ViewerId, session: &str) {
+        self.holder = Some(Holder { viewer, session: session.to_owned(), away: None });
+        self.asked = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: ViewerId = ViewerId(1);
+    const B: ViewerId = ViewerId(2);
+    const C: ViewerId = ViewerId(3);
+
+    fn at(s: u64) -> Time {
+        Time(s * 1_000_000_000)
+    }
+
+    fn lease() -> Lease {
+        let mut lease = Lease::new(Span::from_ms(10_000));
+        lease.joined(A, "a", true);
+        lease.joined(B, "b", true);
+        lease
+    }
+
+    fn pass(lease: &mut Lease, s: u64) -> bool {
+        lease.tick(at(s), |viewer| Some(format!("{viewer}")))
+    }
+
+    #[test]
+    fn the_first_wish_gets_it() {
+        let mut lease = Lease::new(Span::from_ms(10_000));
+        lease.joined(C, "c", false);
+        assert_eq!(lease.operator(), None, "who only looks is not asked to act");
+        lease.joined(A, "a", true);
+        lease.joined(B, "b", true);
+        assert!(lease.holds(A) && !lease.holds(B));
+    }
+
+    #[test]
+    fn a_page_that_is_loaded_again_keeps_it() {
+        let mut lease = lease();
+        lease.left(A, at(1));
+        assert!(!pass(&mut lease, 15));
+        lease.joined(C, "a", false);
+        assert!(lease.holds(C) && !pass(&mut lease, 60));
+        // The old connection is noticed to be dead only after the new one has come.
+        lease.left(A, at(61));
+        assert!(lease.holds(C) && lease.deadline().is_none());
+    }
+
+    #[test]
+    fn one_that_stays_away_loses_it() {
+        let mut lease = lease();
+        lease.left(A, at(1));
+        assert!(pass(&mut lease, 16));
+        assert_eq!(lease.operator(), None);
+        assert_eq!(lease.take(B, "b", at(17)), Ok(Taken::Granted));
+    }
+
+    #[test]
+    fn the_operator_is_asked_and_may_give_or_keep() {
+        let mut lease = lease();
+        assert_eq!(lease.take(B, "b", at(1)), Ok(Taken::Asked(at(11))));
+        assert_eq!(
+            lease.take(B, "b", at(5)),
+            Ok(Taken::Asked(at(11))),
+            "asking again changes nothing"
+        );
+        assert!(lease.take(C, "c", at(2)).is_err());
+        lease.keep();
+        assert!(lease.holds(A) && lease.asked().is_none());
+        assert_eq!(lease.take(C, "c", at(3)), Ok(Taken::Asked(at(13))));
+        lease.give(C, "c");
+        assert!(lease.holds(C) && lease.asked().is_none());
+    }
+
+    #[test]
+    fn without_an_answer_it_goes_over() {
+        let mut lease = lease();
+        assert_eq!(lease.take(B, "b", at(1)), Ok(Taken::Asked(at(11))));
+        assert!(!pass(&mut lease, 10));
+        assert!(pass(&mut lease, 11));
+        assert!(lease.holds(B) && lease.deadline().is_none());
+    }
+
+    #[test]
+    fn who_asked_and_left_gets_nothing() {
+        let mut lease = lease();
+        assert!(lease.take(B, "b", at(1)).is_ok());
+        lease.left(B, at(2));
+        assert!(!pass(&mut lease, 12));
+        assert!(lease.holds(A));
+    }
+
+    #[test]
+    fn an_absent_operator_is_not_waited_for_longer_than_a_reload() {
+        let mut lease = lease();
+        lease.left(A, at(0));
+        assert_eq!(lease.take(B, "b", at(9)), Ok(Taken::Asked(at(19))));
+        assert!(pass(&mut lease, 15));
+        assert!(lease.holds(B));
+    }
+}

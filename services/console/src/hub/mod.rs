@@ -1,0 +1,324 @@
+//! What bridge and server share: the board, the viewers, who is in control, and the ways to the main
+//! loop.
+
+pub mod board;
+pub mod command;
+pub mod lease;
+mod viewers;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use node::{Span, Time};
+use runtime::device::DeviceSender;
+use serde_json::{Value as Json, json};
+use tokio::sync::{mpsc, watch};
+
+use crate::server::metrics::Metrics;
+use board::Board;
+use command::{Command, Motion, Verb};
+use lease::{Lease, Taken};
+pub use viewers::Role;
+use viewers::Viewers;
+
+/// A viewer's number, in a page `v3`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct ViewerId(pub u64);
+
+impl std::fmt::Display for ViewerId {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "v{}", self.0)
+    }
+}
+
+impl std::str::FromStr for ViewerId {
+    type Err = std::num::ParseIntError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        text.strip_prefix('v').unwrap_or_default().parse().map(Self)
+    }
+}
+
+/// What goes from the hub to the main loop and to the supervisor.
+#[derive(Debug)]
+pub struct Ways {
+    /// To the main loop.
+    pub commands: DeviceSender<Command>,
+    /// To the main loop, before everything else.
+    pub motions: DeviceSender<Motion>,
+    /// To the thread that talks to the supervisor: restarts that viewers ask for.
+    pub restarts: crossbeam_channel::Sender<(ViewerId, u64, String)>,
+}
+
+/// What bridge and server share.
+#[derive(Debug)]
+pub struct Hub {
+    /// What everybody may see.
+    pub board: Board,
+    /// What is counted.
+    pub metrics: Metrics,
+    ways: Ways,
+    control: Mutex<Control>,
+    viewers_max: usize,
+    ending: watch::Sender<bool>,
+    /// Beats of the web server's tasks.
+    progress: AtomicU64,
+    /// When the main loop was last well, nanoseconds.
+    alive: AtomicU64,
+}
+
+#[derive(Debug)]
+struct Control {
+    viewers: Viewers,
+    lease: Lease,
+}
+
+impl Hub {
+    /// A hub without viewers.
+    pub fn new(ways: Ways, viewers_max: usize, handover: Span) -> Self {
+        let control = Control { viewers: Viewers::default(), lease: Lease::new(handover) };
+        let hub = Self {
+            board: Board::default(),
+            metrics: Metrics::default(),
+            ways,
+            control: Mutex::new(control),
+            viewers_max,
+            ending: watch::Sender::new(false),
+            progress: AtomicU64::new(0),
+            alive: AtomicU64::new(0),
+        };
+        hub.show(&hub.control());
+        hub
+    }
+
+    /// A page has come: its number, and what is sent to it alone.
+    ///
+    /// # Errors
+    /// As many pages are open as there may be.
+    pub fn join(
+        &self,
+        name: &str,
+        session: &str,
+        role: Role,
+    ) -> Result<(ViewerId, mpsc::Receiver<String>), String> {
+        let mut control = self.control();
+        if control.viewers.len() >= self.viewers_max {
+            let most = self.viewers_max;
+            return Err(format!(
+                "{most} pages are open already; close one, or raise console.viewers_max"
+            ));
+        }
+        let (viewer, letters) = control.viewers.add(name.to_owned(), session.to_owned(), role);
+        control.lease.joined(viewer, session, role == Role::Operator);
+        self.show(&control);
+        Ok((viewer, letters))
+    }
+
+    /// A page has gone.
+    pub fn leave(&self, viewer: ViewerId, now: Time) {
+        let mut control = self.control();
+        control.viewers.remove(viewer);
+        control.lease.left(viewer, now);
+        self.show(&control);
+        drop(control);
+        // Whoever streams is missed by the silence too.
+        let _ = self.ways.commands.offer(Command::Left(viewer));
+    }
+
+    /// Pages that are open.
+    pub fn viewers(&self) -> usize {
+        self.control().viewers.len()
+    }
+
+    /// Lets time pass for who is in control.
+    pub fn tick(&self, now: Time) {
+        let mut control = self.control();
+        let Control { viewers, lease } = &mut *control;
+        if lease.tick(now, |viewer| viewers.session(viewer)) {
+            self.show(&control);
+        }
+    }
+
+    /// Sends a frame to one viewer; one that does not read is shut out.
+    pub fn send(&self, viewer: ViewerId, frame: String) {
+        let mut control = self.control();
+        let Some(there) = control.viewers.get(viewer) else { return };
+        if let Err(mpsc::error::TrySendError::Full(_)) = there.mailbox.try_send(frame) {
+            self.metrics.dropped.inc();
+            tracing::warn!(%viewer, "shut out: it does not read its answers");
+            control.viewers.remove(viewer);
+        }
+    }
+
+    /// Answers what a viewer has asked for.
+    pub fn answer(&self, viewer: ViewerId, id: u64, outcome: Result<Json, String>) {
+        let mut frame = json!({ "t": "done", "id": id, "ok": outcome.is_ok() });
+        match outcome {
+            Ok(Json::Object(more)) => {
+                if let Some(frame) = frame.as_object_mut() {
+                    frame.extend(more);
+                }
+            }
+            Ok(_) => {}
+            Err(error) => frame["error"] = error.into(),
+        }
+        self.send(viewer, frame.to_string());
+    }
+
+    /// Asks the bridge for something; the answer comes by [`Hub::answer`].
+    pub fn ask(&self, viewer: ViewerId, id: u64, verb: Verb) {
+        if let Err(why) = self.must_hold(viewer) {
+            return self.answer(viewer, id, Err(why));
+        }
+        if self.ways.commands.offer(Command::Do(viewer, id, verb)).is_err() {
+            self.answer(viewer, id, Err("the console is busy; try again".to_owned()));
+        }
+    }
+
+    /// Stops the arm, for whoever asks; lets it go on, for the operator.
+    pub fn motion(&self, viewer: ViewerId, id: u64, stop: bool) {
+        if let Err(why) = self.must_hold(viewer)
+            && !stop
+        {
+            return self.answer(viewer, id, Err(why));
+        }
+        if self.ways.motions.offer(Motion { viewer, id, stop }).is_err() {
+            self.answer(viewer, id, Err("the console is busy; use the emergency stop".to_owned()));
+        }
+    }
+
+    /// Has a service started anew.
+    pub fn restart(&self, viewer: ViewerId, id: u64, service: String) {
+        if let Err(why) = self.must_hold(viewer) {
+            return self.answer(viewer, id, Err(why));
+        }
+        if self.ways.restarts.try_send((viewer, id, service)).is_err() {
+            self.answer(viewer, id, Err("the supervisor is busy; try again".to_owned()));
+        }
+    }
+
+    /// Hands on sound of the operator's; anybody else's is refused.
+    ///
+    /// # Errors
+    /// Why it is not taken.
+    pub fn sound(&self, viewer: ViewerId, frame: crate::voice::PcmFrame) -> Result<(), String> {
+        self.must_hold(viewer)?;
+        let offered = self.ways.commands.offer(Command::Sound(viewer, frame));
+        offered.map_err(|_| "sound was lost: the console is busy".to_owned())
+    }
+
+    /// A viewer wishes for control.
+    pub fn take_control(&self, viewer: ViewerId, id: u64, now: Time) {
+        let mut control = self.control();
+        let Control { viewers, lease } = &mut *control;
+        let taken = match viewers.get(viewer) {
+            Some(there) if there.role != Role::Screen => lease.take(viewer, &there.session, now),
+            Some(_) => Err("a screen only shows; open the console's own page to take control"),
+            None => return,
+        };
+        self.show(&control);
+        drop(control);
+        let told = taken.map(|taken| match taken {
+            Taken::Granted => json!({ "granted": true }),
+            Taken::Asked(until) => json!({ "granted": false, "expires_ms": ms(until) }),
+        });
+        self.answer(viewer, id, told.map_err(str::to_owned));
+    }
+
+    /// The operator hands control to another viewer.
+    pub fn give_control(&self, viewer: ViewerId, id: u64, to: ViewerId) {
+        let given = self.change(viewer, |viewers, lease| {
+            let there = viewers.get(to).filter(|there| there.role != Role::Screen);
+            let there = there.ok_or_else(|| format!("{to} is not there, or only a screen"))?;
+            lease.give(to, &there.session);
+            Ok(())
+        });
+        self.answer(viewer, id, given);
+    }
+
+    /// The operator keeps control although somebody asks for it.
+    pub fn keep_control(&self, viewer: ViewerId, id: u64) {
+        let kept = self.change(viewer, |_, lease| {
+            lease.keep();
+            Ok(())
+        });
+        self.answer(viewer, id, kept);
+    }
+
+    fn change(
+        &self,
+        viewer: ViewerId,
+        change: impl FnOnce(&Viewers, &mut Lease) -> Result<(), String>,
+    ) -> Result<Json, String> {
+        self.must_hold(viewer)?;
+        let mut control = self.control();
+        let Control { viewers, lease } = &mut *control;
+        change(viewers, lease)?;
+        self.show(&control);
+        Ok(Json::Null)
+    }
+
+    fn must_hold(&self, viewer: ViewerId) -> Result<(), String> {
+        match self.control().lease.operator() {
+            Some(operator) if operator == viewer => Ok(()),
+            Some(operator) => Err(format!("{operator} is in control; ask for it first")),
+            None => Err("nobody is in control; take it first".to_owned()),
+        }
+    }
+
+    /// The server is told to end.
+    pub fn end(&self) {
+        self.ending.send_replace(true);
+    }
+
+    /// Tells when the server is to end.
+    pub fn ending(&self) -> watch::Receiver<bool> {
+        self.ending.subscribe()
+    }
+
+    /// The web server's tasks make progress.
+    pub fn advance(&self) {
+        self.progress.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// How far the web server's tasks have come.
+    pub fn progress(&self) -> u64 {
+        self.progress.load(Ordering::Relaxed)
+    }
+
+    /// The main loop was well at this time.
+    pub fn alive(&self, now: Time) {
+        self.alive.store(now.ns(), Ordering::Relaxed);
+    }
+
+    /// When the main loop was last well.
+    pub fn alive_at(&self) -> Time {
+        Time(self.alive.load(Ordering::Relaxed))
+    }
+
+    fn show(&self, control: &Control) {
+        let Control { viewers, lease } = control;
+        let operator = lease.operator();
+        let name = operator.and_then(|operator| viewers.get(operator)).map(|there| &there.name);
+        let asked = lease.asked();
+        let section = json!({
+            "operator": operator.map(|operator| operator.to_string()),
+            "name": name,
+            "viewers": viewers.len(),
+            "asked_by": asked.map(|(by, _)| by.to_string()),
+            "expires_ms": asked.map(|(_, until)| ms(until)),
+        });
+        self.board.section("control", &section.to_string());
+        self.metrics.viewers.set(viewers.len() as i64);
+    }
+
+    fn control(&self) -> MutexGuard<'_, Control> {
+        // A lease is changed in one step: what a panic has left behind is whole.
+        self.control.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Milliseconds of the monotonic clock, as pages know it.
+pub fn ms(at: Time) -> f64 {
+    at.ns() as f64 / 1e6
+}

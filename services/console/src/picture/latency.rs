@@ -1,0 +1,213 @@
+//! How long an answer takes: from the end of an utterance to its text, to its meaning, to a decision,
+//! to the first sound.
+
+use std::collections::VecDeque;
+
+use protocol::{Observation, Presented, Receipt, RobotAct};
+use serde_json::{Value as Json, json};
+
+/// Answers over which the percentiles are taken.
+const KEPT: usize = 500;
+/// Utterances that wait for their answer.
+const OPEN_MAX: usize = 32;
+
+/// One answer, milliseconds each stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stages {
+    /// From the end of the utterance to its text.
+    pub heard: f64,
+    /// From the text to what it may mean.
+    pub understood: f64,
+    /// From the meaning to a decision.
+    pub decided: f64,
+    /// From the decision to the first sound.
+    pub spoken: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+/// The latest answers.
+#[derive(Clone, Debug, Default)]
+pub struct Latency {
+    open: VecDeque<Open>,
+    done: VecDeque<Stages>,
+    count: u64,
+    news: Vec<Stages>,
+}
+
+/// An utterance on its way, nanoseconds; 0 for what is not known yet.
+#[derive(Clone, Copy, Debug, Default)]
+struct Open {
+    seq: u64,
+    end: u64,
+    accepted: u64,
+    grounded: u64,
+    prompt: u64,
+    decided: u64,
+}
+
+impl Latency {
+    /// An utterance was accepted.
+    pub(super) fn heard(&mut self, receipt: &Receipt) {
+        if receipt.seq > 0 && receipt.end_ns > 0 {
+            self.open(receipt.seq).into_iter().for_each(|open| open.end = receipt.end_ns);
+        }
+    }
+
+    /// It was understood.
+    pub(super) fn understood(&mut self, observation: &Observation) {
+        if let Some(open) = self.open(observation.seq) {
+            (open.accepted, open.grounded) = (observation.accepted_ns, observation.grounded_ns);
+        }
+    }
+
+    /// Something was decided about it.
+    pub(super) fn decided(&mut self, act: &RobotAct) {
+        let open = self.open.iter_mut().find(|open| open.seq == act.utterance);
+        if let Some(open) = open.filter(|open| open.prompt == 0 && act.presentation == 1) {
+            (open.prompt, open.decided) = (act.prompt, act.decided_ns);
+        }
+    }
+
+    /// The robot speaks.
+    pub(super) fn presented(&mut self, presented: &Presented) {
+        if presented.prompt == 0 || presented.presentation != 1 {
+            return;
+        }
+        let prompt = presented.prompt;
+        let Some(at) = self.open.iter().position(|open| open.prompt == prompt) else { return };
+        let open = self.open.remove(at).unwrap_or_default();
+        // What was said before it is not answered any more.
+        self.open.retain(|other| other.seq > open.seq);
+        self.finish(&open, presented.started_ns);
+    }
+
+    fn finish(&mut self, open: &Open, started: u64) {
+        let marks = [open.end, open.accepted, open.grounded, open.decided, started];
+        if marks[0] == 0 || !marks.is_sorted() {
+            return;
+        }
+        let ms = |from: usize| (marks[from + 1] - marks[from]) as f64 / 1e6;
+        let total = (started - open.end) as f64 / 1e6;
+        let stages =
+            Stages { heard: ms(0), understood: ms(1), decided: ms(2), spoken: ms(3), total };
+        if self.done.len() == KEPT {
+            self.done.pop_front();
+        }
+        self.done.push_back(stages);
+        self.count += 1;
+        self.news.push(stages);
+    }
+
+    /// Answers since this was asked last.
+    pub fn take_news(&mut self) -> Vec<Stages> {
+        std::mem::take(&mut self.news)
+    }
+
+    /// The latest utterances, not those that were answered long ago.
+    fn open(&mut self, seq: u64) -> Option<&mut Open> {
+        if let Some(at) = self.open.iter().position(|open| open.seq == seq) {
+            return self.open.get_mut(at);
+        }
+        if self.open.len() == OPEN_MAX {
+            self.open.pop_front();
+        }
+        self.open.push_back(Open { seq, ..Open::default() });
+        self.open.back_mut()
+    }
+
+    /// The section.
+    pub(super) fn section(&self) -> Json {
+        let quantile = |q: f64| self.quantiles(q).map(|stages| stages.to_json());
+        json!({
+            "last": self.done.back().map(|stages| stages.to_json()),
+            "p50": quantile(0.5),
+            "p99": quantile(0.99),
+            "count": self.count,
+        })
+    }
+
+    /// The quantile of each stage by itself.
+    fn quantiles(&self, q: f64) -> Option<Stages> {
+        let of = |stage: fn(&Stages) -> f64| {
+            let mut all: Vec<f64> = self.done.iter().map(stage).collect();
+            all.sort_by(f64::total_cmp);
+            let last = all.len().checked_sub(1)?;
+            all.get((last as f64 * q).round() as usize).copied()
+        };
+        Some(Stages {
+            heard: of(|s| s.heard)?,
+            understood: of(|s| s.understood)?,
+            decided: of(|s| s.decided)?,
+            spoken: of(|s| s.spoken)?,
+            total: of(|s| s.total)?,
+        })
+    }
+}
+
+impl Stages {
+    fn to_json(self) -> Json {
+        let round = |ms: f64| (ms * 10.0).round() / 10.0;
+        json!({
+            "heard_ms": round(self.heard),
+            "understood_ms": round(self.understood),
+            "decided_ms": round(self.decided),
+            "spoken_ms": round(self.spoken),
+            "total_ms": round(self.total),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answer(latency: &mut Latency, seq: u64, ms: [u64; 5]) {
+        let ns = ms.map(|ms| ms * 1_000_000);
+        latency.heard(&Receipt { seq, end_ns: ns[0], ..Receipt::default() });
+        let (accepted_ns, grounded_ns) = (ns[1], ns[2]);
+        let understood = Observation { seq, accepted_ns, grounded_ns, ..Observation::default() };
+        latency.understood(&understood);
+        let decided_ns = ns[3];
+        let (prompt, presentation) = (seq + 100, 1);
+        let act =
+            RobotAct { utterance: seq, prompt, presentation, decided_ns, ..RobotAct::default() };
+        latency.decided(&act);
+        let presented =
+            Presented { prompt, presentation, started_ns: ns[4], ..Presented::default() };
+        latency.presented(&presented);
+        latency.presented(&presented);
+    }
+
+    #[test]
+    fn each_stage_is_told_once() {
+        let mut latency = Latency::default();
+        answer(&mut latency, 1, [100, 700, 705, 725, 745]);
+        let expected =
+            Stages { heard: 600.0, understood: 5.0, decided: 20.0, spoken: 20.0, total: 645.0 };
+        assert_eq!(latency.take_news(), [expected]);
+        assert_eq!(latency.section()["count"], 1);
+        assert_eq!(latency.section()["p99"]["total_ms"], 645.0);
+    }
+
+    #[test]
+    fn what_does_not_fit_together_is_left_out() {
+        let mut latency = Latency::default();
+        answer(&mut latency, 1, [100, 90, 705, 725, 745]);
+        answer(&mut latency, 2, [0, 90, 705, 725, 745]);
+        assert_eq!(latency.section()["count"], 0);
+        assert_eq!(latency.section()["last"], Json::Null);
+    }
+
+    #[test]
+    fn percentiles_are_over_the_latest_five_hundred() {
+        let mut latency = Latency::default();
+        (1..=1_000).for_each(|n| answer(&mut latency, n, [1, 2, 3, 4, 4 + n]));
+        assert_eq!(latency.section()["p50"]["spoken_ms"], 751.0);
+        assert_eq!(latency.section()["p99"]["spoken_ms"], 995.0);
+        assert_eq!(latency.section()["count"], 1_000);
+        (2_000..3_000)
+            .for_each(|seq| latency.heard(&Receipt { seq, end_ns: 1, ..Receipt::default() }));
+        assert_eq!(latency.open.len(), OPEN_MAX);
+    }
+}

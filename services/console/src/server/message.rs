@@ -1,0 +1,262 @@
+//! What pages say: text frames with JSON, checked key by key.
+
+use node::Time;
+use serde_json::Value as Json;
+
+use crate::hub::command::{Verb, Words};
+use crate::hub::{Role, ViewerId};
+
+/// Longest frame that a page may send, bytes.
+pub const FRAME_BYTES_MAX: usize = 64 << 10;
+/// The version of this protocol.
+pub const PROTOCOL: u64 = 1;
+/// Other wordings that a browser's recogniser may offer.
+const ALTERNATIVES_MAX: usize = 5;
+/// How long ago something may have been said, milliseconds.
+const OLDEST_MS: f64 = 120_000.0;
+
+/// The first message of a page.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hello {
+    /// Kept by the page through its reloads.
+    pub session: String,
+    /// What the person at the page is called.
+    pub name: String,
+    /// The last line of the transcript that the page has.
+    pub last_line: u64,
+    /// What it wishes to be.
+    pub role: Role,
+}
+
+/// A later message of a page.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Message {
+    /// To be answered at once, with the page's own time.
+    Ping(Json),
+    /// Something to be done, under a number.
+    Do(u64, Do),
+    /// A verb that makes no sense, under a number.
+    Wrong(u64, String),
+}
+
+/// Something to be done.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Do {
+    /// The dialogue's and the study's.
+    Ask(Verb),
+    /// Stop the arm, or let it go on.
+    Motion(bool),
+    /// Take control.
+    Take,
+    /// Give control to another viewer.
+    Give(ViewerId),
+    /// Keep control.
+    Keep,
+    /// Start a service anew.
+    Restart(String),
+}
+
+/// Reads the first message.
+///
+/// # Errors
+/// What keeps it from being one.
+pub fn hello(text: &str) -> Result<Hello, String> {
+    let json = object(text)?;
+    if json["t"] != "hello" {
+        return Err("the first message is a hello".to_owned());
+    }
+    if json["protocol"] != PROTOCOL {
+        let theirs = &json["protocol"];
+        return Err(format!(
+            "the page speaks protocol {theirs}, this console {PROTOCOL}; load the page again"
+        ));
+    }
+    let session = json["session"].as_str().unwrap_or_default();
+    if session.len() != 32 || !session.bytes().all(|b| b.is_ascii_hexdigit()) {
+        return Err("session: expected 32 hexadecimal digits".to_owned());
+    }
+    let name: String = json["name"].as_str().unwrap_or_default().chars().take(40).collect();
+    let role = match json["role"].as_str() {
+        Some("operator") => Role::Operator,
+        Some("viewer") | None => Role::Viewer,
+        Some("screen") => Role::Screen,
+        Some(other) => {
+            return Err(format!("role: `{other}` is not one of operator, viewer, screen"));
+        }
+    };
+    let last_line = json["last_line"].as_u64().unwrap_or(0);
+    Ok(Hello { session: session.to_owned(), name, last_line, role })
+}
+
+/// Reads a later message; `now` bounds the times in it.
+///
+/// # Errors
+/// What keeps it from being one.
+pub fn message(text: &str, now: Time) -> Result<Message, String> {
+    let json = object(text)?;
+    match json["t"].as_str() {
+        Some("ping") if json["at"].is_number() => Ok(Message::Ping(json["at"].clone())),
+        Some("ping") => Err("at: expected a number".to_owned()),
+        Some("do") => {
+            let id = json["id"].as_u64().ok_or("id: expected a whole number from 0 on")?;
+            Ok(match what(&json, now) {
+                Ok(what) => Message::Do(id, what),
+                Err(why) => Message::Wrong(id, why),
+            })
+        }
+        Some("hello") => Err("a hello comes first, and once".to_owned()),
+        Some(other) => Err(format!("t: `{other}` is not one of ping, do")),
+        None => Err("t: expected a text".to_owned()),
+    }
+}
+
+fn object(text: &str) -> Result<Json, String> {
+    let json: Json = serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
+    if json.is_object() { Ok(json) } else { Err("expected an object".to_owned()) }
+}
+
+fn what(json: &Json, now: Time) -> Result<Do, String> {
+    let verb = json["do"].as_str().ok_or("do: expected a text")?;
+    Ok(match verb {
+        "say" => Do::Ask(Verb::Say(words(json, now)?)),
+        "not_that" => Do::Ask(Verb::NotThat),
+        "start_over" => Do::Ask(Verb::StartOver),
+        "stop" => Do::Motion(true),
+        "resume" => Do::Motion(false),
+        "take_control" => Do::Take,
+        "keep_control" => Do::Keep,
+        "give_control" => {
+            let viewer = json["viewer"].as_str().and_then(|viewer| viewer.parse().ok());
+            Do::Give(viewer.ok_or("viewer: expected a viewer, e.g. \"v3\"")?)
+        }
+        "restart_service" => {
+            let service = json["service"].as_str().filter(|name| !name.is_empty());
+            Do::Restart(service.ok_or("service: expected a service's name")?.to_owned())
+        }
+        _ => match verb.strip_prefix("study.") {
+            Some(verb) => Do::Ask(Verb::Study(verb.to_owned(), json.clone())),
+            None => return Err(format!("do: `{verb}` is nothing that this console does")),
+        },
+    })
+}
+
+fn words(json: &Json, now: Time) -> Result<Words, String> {
+    let text = json["text"].as_str().ok_or("text: expected a text")?.trim();
+    if text.is_empty() {
+        return Err("text: there are no words in it".to_owned());
+    }
+    let spoken = match json["source"].as_str() {
+        Some("browser") => true,
+        Some("typed") | None => false,
+        Some(other) => return Err(format!("source: `{other}` is not one of typed, browser")),
+    };
+    let (began, ended) = (moment(json, "began_ms", now)?, moment(json, "ended_ms", now)?);
+    if let (Some(began), Some(ended)) = (began, ended)
+        && ended < began
+    {
+        return Err("ended_ms: lies before began_ms".to_owned());
+    }
+    Ok(Words { text: text.to_owned(), alternatives: alternatives(json)?, spoken, began, ended })
+}
+
+/// A time of the last minutes; one that is a little ahead is now.
+fn moment(json: &Json, key: &str, now: Time) -> Result<Option<Time>, String> {
+    let value = &json[key];
+    if value.is_null() {
+        return Ok(None);
+    }
+    let now_ms = crate::hub::ms(now);
+    let recent = value.as_f64().filter(|ms| (now_ms - OLDEST_MS..now_ms + 1_000.0).contains(ms));
+    let ms = recent.ok_or_else(|| {
+        format!(
+            "{key}: expected a time of the last two minutes by the server's clock, milliseconds"
+        )
+    })?;
+    Ok(Some(Time((ms * 1e6) as u64).min(now)))
+}
+
+fn alternatives(json: &Json) -> Result<Vec<(String, f64)>, String> {
+    const WRONG: &str = "alternatives: expected up to 5 of {text, weight above 0}";
+    let given = match &json["alternatives"] {
+        Json::Null => return Ok(Vec::new()),
+        Json::Array(given) if given.len() <= ALTERNATIVES_MAX => given,
+        _ => return Err(WRONG.to_owned()),
+    };
+    let one = |json: &Json| {
+        let text = json["text"].as_str()?.trim();
+        let weight = json["weight"].as_f64().filter(|w| w.is_finite() && *w > 0.0)?;
+        (!text.is_empty()).then(|| (text.to_owned(), weight))
+    };
+    given.iter().map(one).collect::<Option<_>>().ok_or_else(|| WRONG.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    const NOW: Time = Time(1_000_000_000_000);
+
+    fn read(json: Json) -> Result<Message, String> {
+        message(&json.to_string(), NOW)
+    }
+
+    fn wrong(json: Json) -> String {
+        match read(json) {
+            Ok(Message::Wrong(3, why)) => why,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_hello_is_read_and_checked() {
+        let session = "0123456789abcdef0123456789ABCDEF";
+        let good = json!({"t": "hello", "protocol": 1, "session": session, "name": "Ada",
+                          "last_line": 7, "role": "operator"});
+        let read = hello(&good.to_string()).unwrap();
+        assert_eq!((read.last_line, read.role, read.name.as_str()), (7, Role::Operator, "Ada"));
+        for (key, bad) in [
+            ("t", json!("do")),
+            ("protocol", json!(2)),
+            ("session", json!("short")),
+            ("role", json!("king")),
+        ] {
+            let mut json = good.clone();
+            json[key] = bad;
+            assert!(hello(&json.to_string()).is_err(), "{key}");
+        }
+    }
+
+    #[test]
+    fn words_come_with_their_times() {
+        let json = json!({"t": "do", "id": 3, "do": "say", "text": " the red one ",
+                          "began_ms": 999_000.5, "ended_ms": 1_000_200.0, "source": "browser",
+                          "alternatives": [{"text": "the bed one", "weight": 0.2}]});
+        let Ok(Message::Do(3, Do::Ask(Verb::Say(words)))) = read(json) else { panic!() };
+        assert_eq!(words.text, "the red one");
+        assert_eq!(words.began, Some(Time(999_000_500_000)));
+        assert_eq!(words.ended, Some(NOW), "a little ahead is now");
+        assert!(words.spoken && words.alternatives == [("the bed one".to_owned(), 0.2)]);
+    }
+
+    #[test]
+    fn what_makes_no_sense_is_told_under_its_number() {
+        let say = |key: &str, value: Json| {
+            let mut json = json!({"t": "do", "id": 3, "do": "say", "text": "a"});
+            json[key] = value;
+            wrong(json)
+        };
+        assert!(say("text", json!("  ")).contains("no words"));
+        assert!(say("began_ms", json!(5)).contains("two minutes"));
+        assert!(say("began_ms", json!("x")).contains("began_ms"));
+        assert!(say("source", json!("radio")).contains("radio"));
+        assert!(say("alternatives", json!([{"text": "b", "weight": 0}])).contains("weight"));
+        assert!(wrong(json!({"t": "do", "id": 3, "do": "dance"})).contains("dance"));
+        assert!(
+            wrong(json!({"t": "do", "id": 3, "do": "give_control", "viewer": 1})).contains("v3")
+        );
+        for bad in ["", "[]", "{}", "{\"t\":\"do\"}", "{\"t\":\"do\",\"id\":-1}", "\u{0}"] {
+            assert!(message(bad, NOW).is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! What is counted, as Prometheus reads it.
+
+use prometheus_client::encoding::text::encode;
+use prometheus_client::metrics::counter::Counter;
+use prometheus_client::metrics::gauge::Gauge;
+use prometheus_client::metrics::histogram::{Histogram, exponential_buckets};
+use prometheus_client::registry::Registry;
+
+/// Everything that is counted.
+#[derive(Clone, Debug)]
+pub struct Metrics {
+    /// Pages that are open.
+    pub viewers: Gauge,
+    /// Pages shut out because they did not read.
+    pub dropped: Counter,
+    /// Frames sent to pages.
+    pub frames: Counter,
+    /// Bytes of these frames.
+    pub bytes: Counter,
+    /// Seconds from the end of an utterance to the first sound of the answer.
+    pub latency: Histogram,
+    /// Seconds that the main loop takes for one pass.
+    pub pass: Histogram,
+}
+
+impl Default for Metrics {
+    fn default() -> Self {
+        Self {
+            viewers: Gauge::default(),
+            dropped: Counter::default(),
+            frames: Counter::default(),
+            bytes: Counter::default(),
+            latency: Histogram::new(exponential_buckets(0.01, 2.0, 12)),
+            pass: Histogram::new(exponential_buckets(0.000_01, 4.0, 10)),
+        }
+    }
+}
+
+impl Metrics {
+    /// The text that Prometheus fetches.
+    pub fn text(&self) -> String {
+        let mut registry = Registry::with_prefix("whichone_console");
+        registry.register("viewers", "Pages that are open", self.viewers.clone());
+        let dropped = "Pages shut out because they did not read";
+        registry.register("viewers_dropped", dropped, self.dropped.clone());
+        registry.register("frames", "Frames sent to pages", self.frames.clone());
+        registry.register("bytes", "Bytes of frames sent to pages", self.bytes.clone());
+        let latency = "From the end of an utterance to the first sound of the answer";
+        registry.register("answer_seconds", latency, self.latency.clone());
+        let pass = "One pass of the main loop";
+        registry.register("pass_seconds", pass, self.pass.clone());
+        let mut text = String::new();
+        // Writing into a string cannot fail.
+        let _ = encode(&mut text, &registry);
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counters_are_told_under_their_names() {
+        let metrics = Metrics::default();
+        metrics.viewers.set(3);
+        metrics.frames.inc_by(2);
+        metrics.latency.observe(0.5);
+        let text = metrics.text();
+        for line in [
+            "whichone_console_viewers 3",
+            "whichone_console_frames_total 2",
+            "whichone_console_answer_seconds_count 1",
+        ] {
+            assert!(text.lines().any(|told| told == line), "{line} in\n{text}");
+        }
+    }
+}

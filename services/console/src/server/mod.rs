@@ -1,0 +1,121 @@
+//! The web server: the page's files, the sockets, and what programs ask for.
+
+mod access;
+mod assets;
+mod headers;
+pub mod listen;
+mod login;
+pub mod message;
+pub mod metrics;
+pub mod routes;
+mod socket;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::Router;
+use axum::body::Body;
+use axum::extract::{Request, State};
+use axum::http::{Method, Response, StatusCode, header};
+use axum::middleware::{self, Next};
+use axum::response::{IntoResponse, Redirect};
+use axum::routing::{get, post};
+use serde_json::Value as Json;
+use tokio::net::TcpListener;
+
+use crate::hub::Hub;
+pub use access::Access;
+
+/// How often the server shows that its tasks make progress.
+const PROGRESS_EVERY: Duration = Duration::from_millis(100);
+
+/// What the server serves.
+#[derive(Debug)]
+pub struct App {
+    /// What it shares with the main loop.
+    pub hub: Hub,
+    /// Who may come in.
+    pub access: Access,
+    /// The group's name.
+    pub group: String,
+    /// What a page is told at its beginning.
+    pub settings: Json,
+    /// The robot's description (URDF).
+    pub urdf: String,
+    /// Where the sound of the robot's sentences lies.
+    pub voice_dir: Option<PathBuf>,
+}
+
+/// Serves at a listener until the hub is told to end.
+///
+/// # Errors
+/// The listener fails.
+pub async fn serve(listener: TcpListener, app: Arc<App>) -> std::io::Result<()> {
+    let mut ending = app.hub.ending();
+    let beating = Arc::clone(&app);
+    let progress = tokio::spawn(async move {
+        let mut beat = tokio::time::interval(PROGRESS_EVERY);
+        loop {
+            beat.tick().await;
+            beating.hub.advance();
+            beating.hub.tick(runtime::clock::now());
+        }
+    });
+    let served = axum::serve(listener, router(app))
+        .with_graceful_shutdown(async move {
+            // Where nobody can tell it to end any more, it is time to end.
+            let _ = ending.wait_for(|ending| *ending).await;
+        })
+        .await;
+    progress.abort();
+    served
+}
+
+fn router(app: Arc<App>) -> Router {
+    Router::new()
+        .route("/ws", get(routes::socket))
+        .route("/api/state", get(routes::state))
+        .route("/metrics", get(routes::metrics))
+        .route("/robot.urdf", get(routes::urdf))
+        .route("/voice/{line}", get(routes::voice))
+        .merge(crate::study::routes())
+        .fallback(routes::asset)
+        .layer(middleware::from_fn_with_state(Arc::clone(&app), admit))
+        // What comes below is open to whoever has not said the token yet.
+        .route("/healthz", get(routes::health))
+        .route("/login", post(login::login))
+        .layer(middleware::from_fn_with_state(Arc::clone(&app), address))
+        .with_state(app)
+}
+
+/// Lets in who knows the token; others see the login page, its style, and nothing else.
+async fn admit(State(app): State<Arc<App>>, request: Request, next: Next) -> Response<Body> {
+    let path = request.uri().path();
+    let is_for_login = path == "/login" || path == "/css/login.css";
+    if is_for_login || app.access.is_known(request.headers()) {
+        return next.run(request).await;
+    }
+    let wants_page = request
+        .headers()
+        .get(header::ACCEPT)
+        .is_some_and(|accepts| accepts.to_str().is_ok_and(|accepts| accepts.contains("text/html")));
+    if wants_page && request.method() == Method::GET {
+        return Redirect::to("/login").into_response();
+    }
+    (StatusCode::UNAUTHORIZED, "say the token: Authorization: Bearer TOKEN\n").into_response()
+}
+
+/// Turns away what is not addressed to this console, and adds what every answer says.
+async fn address(State(app): State<Arc<App>>, request: Request, next: Next) -> Response<Body> {
+    let host = request.headers().get(header::HOST);
+    let host = host.and_then(|host| host.to_str().ok()).map(str::to_owned);
+    let mut response = if app.access.is_addressed(request.headers()) {
+        next.run(request).await
+    } else {
+        let why = "this console serves its own machine; use http://localhost and its port\n";
+        (StatusCode::MISDIRECTED_REQUEST, why).into_response()
+    };
+    headers::secure(response.headers_mut(), host.as_deref());
+    response
+}

@@ -1,0 +1,122 @@
+//! The answers to single requests.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use axum::body::Body;
+use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::{Path, State};
+use axum::http::{HeaderMap, Method, Response, StatusCode, Uri, header};
+use axum::response::IntoResponse;
+use node::Span;
+use runtime::clock;
+
+use super::message::FRAME_BYTES_MAX;
+use super::{Access, App, assets, socket as sockets};
+
+/// Longest silence of the main loop in which the console is well.
+const WELL: Span = Span::from_ms(3_000);
+/// Largest sound of a sentence, bytes: minutes.
+const SOUND_MAX: u64 = 16 << 20;
+
+pub(super) async fn socket(
+    State(app): State<Arc<App>>,
+    headers: HeaderMap,
+    upgrade: WebSocketUpgrade,
+) -> Response<Body> {
+    if !Access::is_own(&headers) {
+        let why = "only the console's own pages may open its socket\n";
+        return (StatusCode::FORBIDDEN, why).into_response();
+    }
+    upgrade
+        .max_message_size(FRAME_BYTES_MAX)
+        .max_frame_size(FRAME_BYTES_MAX)
+        .on_upgrade(move |socket| sockets::serve(socket, app))
+}
+
+pub(super) async fn state(State(app): State<Arc<App>>) -> Response<Body> {
+    let json = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
+    (json, app.hub.board.all()).into_response()
+}
+
+pub(super) async fn metrics(State(app): State<Arc<App>>) -> Response<Body> {
+    let kind = "application/openmetrics-text; version=1.0.0; charset=utf-8";
+    ([(header::CONTENT_TYPE, kind)], app.hub.metrics.text()).into_response()
+}
+
+pub(super) async fn health(State(app): State<Arc<App>>) -> Response<Body> {
+    let silent = clock::now().since(app.hub.alive_at());
+    match silent > WELL {
+        true => (StatusCode::SERVICE_UNAVAILABLE, "the main loop stands still\n").into_response(),
+        false => (StatusCode::OK, "ready\n").into_response(),
+    }
+}
+
+pub(super) async fn urdf(State(app): State<Arc<App>>) -> Response<Body> {
+    let kind = [(header::CONTENT_TYPE, "application/xml"), (header::CACHE_CONTROL, "no-cache")];
+    (kind, app.urdf.clone()).into_response()
+}
+
+/// The sound of a sentence of the robot's.
+pub(super) async fn voice(State(app): State<Arc<App>>, Path(line): Path<String>) -> Response<Body> {
+    let none = || (StatusCode::NOT_FOUND, "no such sentence is kept\n").into_response();
+    let Some(file) = app.voice_dir.as_deref().and_then(|folder| sound_file(folder, &line)) else {
+        return none();
+    };
+    let read = tokio::task::spawn_blocking(move || {
+        let small = std::fs::metadata(&file).is_ok_and(|file| file.len() <= SOUND_MAX);
+        small.then(|| std::fs::read(file).ok()).flatten()
+    });
+    match read.await {
+        Ok(Some(sound)) => {
+            let kind = [(header::CONTENT_TYPE, "audio/wav"), (header::CACHE_CONTROL, "no-cache")];
+            (kind, sound).into_response()
+        }
+        _ => none(),
+    }
+}
+
+/// The file of a sentence, `line-PROMPT-PRESENTATION.wav` and nothing else.
+pub fn sound_file(folder: &std::path::Path, line: &str) -> Option<PathBuf> {
+    let numbers = line.strip_prefix("line-")?.strip_suffix(".wav")?;
+    let (prompt, presentation) = numbers.split_once('-')?;
+    let number = |text: &str| {
+        (1..=20).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit())
+    };
+    (number(prompt) && number(presentation)).then(|| folder.join(line))
+}
+
+pub(super) async fn asset(method: Method, uri: Uri, headers: HeaderMap) -> Response<Body> {
+    if method != Method::GET && method != Method::HEAD {
+        return StatusCode::METHOD_NOT_ALLOWED.into_response();
+    }
+    match assets::find(uri.path()) {
+        Some(asset) => asset.respond(&headers),
+        None => (StatusCode::NOT_FOUND, "there is no such page\n").into_response(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path as FilePath;
+
+    #[test]
+    fn only_sentences_are_files() {
+        let folder = FilePath::new("/f");
+        assert_eq!(sound_file(folder, "line-12-1.wav"), Some(PathBuf::from("/f/line-12-1.wav")));
+        for bad in [
+            "line-1.wav",
+            "line-1-2",
+            "line--1.wav",
+            "line-1-2-3.wav",
+            "line-a-1.wav",
+            "../line-1-1.wav",
+            "line-../1-1.wav",
+            "line-1-1.wav/..",
+            "",
+        ] {
+            assert_eq!(sound_file(folder, bad), None, "{bad}");
+        }
+    }
+}

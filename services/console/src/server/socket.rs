@@ -1,0 +1,203 @@
+//! One page's socket: what it says goes to the hub, what is new on the board goes to it.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::extract::ws::{CloseFrame, Message as Frame, WebSocket, close_code};
+use futures_util::stream::{SplitSink, SplitStream};
+use futures_util::{SinkExt, StreamExt};
+use runtime::clock;
+use serde_json::json;
+use tokio::sync::mpsc;
+use tokio::time::{Instant, interval_at, timeout};
+
+use super::App;
+use super::message::{self, Do, Hello, Message, PROTOCOL};
+use crate::hub::board::Cursor;
+use crate::hub::{Hub, ViewerId, ms};
+use crate::voice::PcmFrame;
+
+/// How long a page has for its first message.
+const HELLO_PATIENCE: Duration = Duration::from_secs(10);
+/// How long a frame may wait for a page that does not read.
+const READ_PATIENCE: Duration = Duration::from_secs(10);
+/// A page that says nothing for this long, not even that it is there, is gone.
+const SILENCE_MAX: Duration = Duration::from_secs(60);
+/// How often a page is asked whether it is there.
+const PROBE_EVERY: Duration = Duration::from_secs(20);
+
+type Out = SplitSink<WebSocket, Frame>;
+type In = SplitStream<WebSocket>;
+
+/// Serves one page until it goes, does not read, or the console ends.
+pub(super) async fn serve(socket: WebSocket, app: Arc<App>) {
+    let (mut out, mut into) = socket.split();
+    let hello = match first(&mut into).await {
+        Ok(hello) => hello,
+        Err(why) => return refuse(&mut out, close_code::POLICY, &why).await,
+    };
+    let Hello { session, name, last_line, role } = hello;
+    let (viewer, letters) = match app.hub.join(&name, &session, role) {
+        Ok(joined) => joined,
+        Err(why) => return refuse(&mut out, close_code::AGAIN, &why).await,
+    };
+    tracing::info!(%viewer, ?role, "a page has come");
+    let ended = tokio::select! {
+        ended = write(&mut out, letters, viewer, last_line, &app) => ended,
+        ended = read(&mut into, viewer, &app.hub) => ended,
+    };
+    app.hub.leave(viewer, clock::now());
+    tracing::info!(%viewer, "a page has gone: {ended}");
+    let (code, reason) = match ended {
+        Ended::Console => (close_code::AWAY, "the console ends"),
+        Ended::Slow => {
+            app.hub.metrics.dropped.inc();
+            (close_code::POLICY, "the page did not read for 10 s")
+        }
+        Ended::Page => (close_code::NORMAL, ""),
+    };
+    close(&mut out, code, reason).await;
+}
+
+/// Why a socket has ended.
+#[derive(Clone, Copy, Debug)]
+enum Ended {
+    Page,
+    Slow,
+    Console,
+}
+
+impl std::fmt::Display for Ended {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Page => "it was closed",
+            Self::Slow => "it did not read",
+            Self::Console => "the console ends",
+        })
+    }
+}
+
+async fn first(into: &mut In) -> Result<Hello, String> {
+    let said = timeout(HELLO_PATIENCE, into.next()).await;
+    match said.map_err(|_| "no hello within 10 s")? {
+        Some(Ok(Frame::Text(text))) => message::hello(&text),
+        _ => Err("the first message is a hello".to_owned()),
+    }
+}
+
+async fn refuse(out: &mut Out, code: u16, why: &str) {
+    let told = json!({ "t": "error", "error": why }).to_string();
+    let _ = timeout(READ_PATIENCE, out.send(Frame::Text(told.into()))).await;
+    close(out, code, why).await;
+}
+
+async fn close(out: &mut Out, code: u16, reason: &str) {
+    // A reason may have 123 bytes.
+    let end = (0..=reason.len().min(120)).rev().find(|end| reason.is_char_boundary(*end));
+    let reason = reason[..end.unwrap_or(0)].to_owned();
+    let frame = Frame::Close(Some(CloseFrame { code, reason: reason.into() }));
+    // The other side may be gone already.
+    let _ = timeout(Duration::from_secs(1), out.send(frame)).await;
+}
+
+async fn write(
+    out: &mut Out,
+    mut letters: mpsc::Receiver<String>,
+    viewer: ViewerId,
+    last_line: u64,
+    app: &App,
+) -> Ended {
+    let hub = &app.hub;
+    let (mut changed, mut ending) = (hub.board.watch(), hub.ending());
+    let mut cursor = Cursor::after_line(last_line);
+    let mut probe = interval_at(Instant::now() + PROBE_EVERY, PROBE_EVERY);
+    let mut frames = vec![Frame::Text(welcome(viewer, app).into())];
+    loop {
+        let news = hub.board.news(&mut cursor);
+        frames.extend(news.into_iter().map(|text| Frame::Text(text.into())));
+        for frame in frames.drain(..) {
+            if let Err(ended) = send(out, frame, hub).await {
+                return ended;
+            }
+        }
+        tokio::select! {
+            changed = changed.changed() => if changed.is_err() { return Ended::Console },
+            _ = ending.wait_for(|ending| *ending) => return Ended::Console,
+            letter = letters.recv() => match letter {
+                Some(letter) => frames.push(Frame::Text(letter.into())),
+                None => return Ended::Slow,
+            },
+            _ = probe.tick() => frames.push(Frame::Ping(Vec::new().into())),
+        }
+    }
+}
+
+async fn send(out: &mut Out, frame: Frame, hub: &Hub) -> Result<(), Ended> {
+    let bytes = match &frame {
+        Frame::Text(text) => text.len(),
+        _ => 0,
+    };
+    match timeout(READ_PATIENCE, out.send(frame)).await {
+        Ok(Ok(())) => {
+            hub.metrics.frames.inc();
+            hub.metrics.bytes.inc_by(bytes as u64);
+            Ok(())
+        }
+        Ok(Err(_)) => Err(Ended::Page),
+        Err(_) => Err(Ended::Slow),
+    }
+}
+
+fn welcome(viewer: ViewerId, app: &App) -> String {
+    json!({
+        "t": "welcome",
+        "protocol": PROTOCOL,
+        "viewer": viewer.to_string(),
+        "version": env!("CARGO_PKG_VERSION"),
+        "group": app.group,
+        "server_ms": ms(clock::now()),
+        "first_line": app.hub.board.first_line(),
+        "settings": app.settings,
+    })
+    .to_string()
+}
+
+async fn read(into: &mut In, viewer: ViewerId, hub: &Hub) -> Ended {
+    loop {
+        match timeout(SILENCE_MAX, into.next()).await {
+            Ok(Some(Ok(Frame::Text(text)))) => text_frame(&text, viewer, hub),
+            Ok(Some(Ok(Frame::Binary(bytes)))) => {
+                let taken = PcmFrame::read(&bytes).and_then(|frame| hub.sound(viewer, frame));
+                if let Err(why) = taken {
+                    error(viewer, hub, &why);
+                }
+            }
+            Ok(Some(Ok(Frame::Ping(_) | Frame::Pong(_)))) => {}
+            Ok(Some(Ok(Frame::Close(_)) | Err(_)) | None) | Err(_) => return Ended::Page,
+        }
+    }
+}
+
+fn text_frame(text: &str, viewer: ViewerId, hub: &Hub) {
+    let now = clock::now();
+    match message::message(text, now) {
+        Ok(Message::Ping(at)) => {
+            let pong = json!({ "t": "pong", "at": at, "server_ms": ms(now) });
+            hub.send(viewer, pong.to_string());
+        }
+        Ok(Message::Do(id, what)) => match what {
+            Do::Ask(verb) => hub.ask(viewer, id, verb),
+            Do::Motion(stop) => hub.motion(viewer, id, stop),
+            Do::Take => hub.take_control(viewer, id, now),
+            Do::Give(to) => hub.give_control(viewer, id, to),
+            Do::Keep => hub.keep_control(viewer, id),
+            Do::Restart(service) => hub.restart(viewer, id, service),
+        },
+        Ok(Message::Wrong(id, why)) => hub.answer(viewer, id, Err(why)),
+        Err(why) => error(viewer, hub, &why),
+    }
+}
+
+fn error(viewer: ViewerId, hub: &Hub, why: &str) {
+    hub.send(viewer, json!({ "t": "error", "error": why }).to_string());
+}
