@@ -9,7 +9,7 @@ const MOST = 12;
 const ALL_MOST = 150;
 /** Where the page fills the window and does not scroll. */
 const FIXED =
-  "(min-width: 1101px) and (min-height: 640px), (max-width: 640px) and (min-height: 560px)";
+  "(min-width: 1101px) and (min-height: 640px), (max-width: 640px) and (min-height: 700px), (min-width: 641px) and (max-width: 1100px)";
 
 /**
  * The objects with what the robot believes, the likely ones first.

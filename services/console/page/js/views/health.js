@@ -1,6 +1,7 @@
 // @ts-check
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
 import { health } from "../model/health.js";
+import { duration } from "./duration.js";
 import { mountLatency } from "./latency.js";
 import { mountServices } from "./services.js";
 
@@ -31,9 +32,8 @@ export function mountHealth(element, context) {
     setAttribute(summary, "data-state", now.tone);
     setText(words, t(now.key, now.args));
     const total = store.get("latency")?.p50?.total_ms;
-    const options = { minimumFractionDigits: 1, maximumFractionDigits: 1 };
     const known = typeof total === "number" && store.get("latency").count > 0;
-    setText(answer, known ? t("health.answers", { s: t.number(total / 1000, options) }) : "");
+    setText(answer, known ? t("health.answers", { time: duration(total, t) }) : "");
   });
   store.subscribe(["services", "latency"], draw);
   draw();

@@ -1,5 +1,6 @@
 // @ts-check
 import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
+import { duration } from "./duration.js";
 
 /** The stages of an answer, in their order. */
 const STAGES = ["heard", "understood", "decided", "spoken"];
@@ -14,11 +15,7 @@ export function mountLatency(element, { store, t }) {
   const bar = h("div", { class: "latency-bar", "aria-hidden": "true" });
   const list = h("dl", { class: "latency-list" });
   element.append(title, bar, list);
-  const time = (ms) => {
-    if (typeof ms !== "number") return "–";
-    if (ms >= 1000) return t("unit.s", { x: t.number(ms / 1000, { maximumFractionDigits: 2 }) });
-    return t("unit.ms", { x: t.number(ms, { maximumFractionDigits: ms < 10 ? 1 : 0 }) });
-  };
+  const time = (ms) => duration(ms, t);
 
   const draw = eachFrame(() => {
     const latency = store.get("latency");

@@ -51,6 +51,7 @@ export function mountQuestion(element, context) {
     const mine = whoControls(store.get("control"), store.get("welcome")) === "mine";
     keyed(quick, mine ? answers(dialogue, scene) : [], (item) => item.text, answer);
     const open = mine && dialogue?.interaction > 0;
+    correct.hidden = !mine;
     notThat.disabled = startOver.disabled = !open;
     if (fresh && dialogue?.prompt !== prompt) awaitVoice(dialogue?.prompt ?? null);
     const heard = store.get("speech")?.speaking?.prompt === dialogue?.prompt;
