@@ -39,6 +39,16 @@ impl AudioStream {
         })
     }
 
+    /// Names the stream in receipts and in what is told while somebody speaks.
+    pub fn key(&self) -> RequestKey {
+        self.key
+    }
+
+    /// Leaves out samples that were lost before they came here: the robot hears silence.
+    pub fn skip(&mut self, samples: u64) {
+        self.samples = self.samples.saturating_add(samples);
+    }
+
     /// Sets the flags of what is sent from now on, e.g. when a key is pressed or released.
     pub fn set_flags(&mut self, flags: u8) {
         self.flags = flags & !AudioChunk::END;
@@ -77,7 +87,7 @@ impl AudioStream {
         };
         chunk.samples.0[..samples.len()].copy_from_slice(samples);
         self.number += 1;
-        self.samples += samples.len() as u64;
+        self.samples = self.samples.saturating_add(samples.len() as u64);
         self.chunks.send(&chunk)
     }
 

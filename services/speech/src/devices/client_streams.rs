@@ -188,7 +188,7 @@ impl Open {
         let held = chunk.is(AudioChunk::HELD);
         let released = std::mem::replace(&mut self.is_held, held) && !held;
         let gap = chunk.first_sample - self.next;
-        self.lost += gap;
+        self.lost = self.lost.saturating_add(gap);
         if gap > GAP_MAX || released {
             told.extend(self.break_off());
         }
@@ -199,7 +199,7 @@ impl Open {
             told.extend(self.hear(shifted(at, -(gap as i64)), &silence, self.next, duplex));
         }
         told.extend(self.hear(at, sound, chunk.first_sample, duplex));
-        self.next = chunk.first_sample + sound.len() as u64;
+        self.next = chunk.first_sample.saturating_add(sound.len() as u64);
         told
     }
 

@@ -1,0 +1,55 @@
+// @ts-check
+const KEY = "whichone.voice";
+
+/**
+ * What a person chose about voice.
+ * @typedef {object} Choices
+ * @property {"robot"|"browser"} engine who recognises
+ * @property {boolean} headset the robot's voice does not reach the microphone
+ * @property {boolean} echoCancellation
+ * @property {boolean} noiseSuppression
+ * @property {boolean} autoGainControl
+ */
+
+/**
+ * The robot takes out noise itself, and what a browser takes out of a voice is missing to it; echo
+ * only the browser can take out, since it knows what it plays.
+ * @type {Choices}
+ */
+export const DEFAULTS = {
+  engine: "robot",
+  headset: false,
+  echoCancellation: true,
+  noiseSuppression: false,
+  autoGainControl: true,
+};
+
+/** @param {Storage|null} storage @returns {Choices} */
+export function kept(storage) {
+  const choices = { ...DEFAULTS };
+  try {
+    const found = JSON.parse(storage?.getItem(KEY) ?? "{}");
+    for (const name of Object.keys(DEFAULTS)) {
+      if (typeof found?.[name] === typeof DEFAULTS[name]) choices[name] = found[name];
+    }
+  } catch {
+    // What somebody else wrote there is no choice.
+  }
+  if (choices.engine !== "browser") choices.engine = "robot";
+  return choices;
+}
+
+/** @param {Storage|null} storage @param {Choices} choices */
+export function keep(storage, choices) {
+  storage?.setItem(KEY, JSON.stringify(choices));
+}
+
+/**
+ * Whether a person may interrupt the robot by speaking: its voice is not in the microphone.
+ * @param {Choices} choices
+ * @param {MediaTrackSettings} measured what the browser does, not what was wished
+ * @param {boolean} muted whether the robot is silent on this page; then it may sound elsewhere
+ */
+export function isEchoFree(choices, measured, muted) {
+  return choices.headset || (measured.echoCancellation === true && !muted);
+}

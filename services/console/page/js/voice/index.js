@@ -1,0 +1,63 @@
+// @ts-check
+import { eachFrame } from "../dom.js";
+import { keep, kept } from "./choices.js";
+import { bindPress } from "./keys.js";
+import { playback as makePlayback } from "./playback.js";
+import { recognitionOf } from "./recognition.js";
+import { sign } from "./sign.js";
+import { Talk } from "./talk.js";
+import { build, show } from "./view.js";
+
+export { playback, REPLY } from "./playback.js";
+
+/**
+ * Voice both ways: a button to talk with, and the robot's voice.
+ * @param {HTMLElement} element
+ * @param {{link: any, store: any, t: any}} context
+ * @returns {{talk: Talk, playback: ReturnType<typeof makePlayback>}}
+ */
+export function mountVoice(element, { link, store, t }) {
+  const storage = stored();
+  let draw = () => {};
+  const tell = () => draw();
+  const playback = makePlayback({ link, store, storage, tell });
+  const talk = new Talk({ link, store, playback, choices: kept(storage), tell });
+  const view = build(element, {
+    t,
+    hasBrowser: recognitionOf() !== null,
+    choices: talk.choices,
+    choose: (change) => {
+      talk.choose(change);
+      keep(storage, talk.choices);
+    },
+    toggle: (what) => {
+      if (what === "handsFree") talk.setHandsFree(!talk.handsFree);
+      else if (what === "sound") playback.mute(!playback.muted);
+      else if (what === "close") talk.close();
+      else playback.unlock();
+    },
+  });
+  bindPress(view.talk, (event) => talk.press(event));
+  draw = eachFrame(() => {
+    const { talks, latched, handsFree, isOpening, isOpen } = talk;
+    const up = store.get("link")?.state === "up";
+    const turn = store.get("turn")?.state;
+    const standing = talk.standing();
+    const known = { up, turn, talks, latched, handsFree, isOpening, isOpen, standing };
+    show(view, { sign: sign(known), talk, playback, t });
+  });
+  store.subscribe(["link", "turn", "speech", "welcome"], tell);
+  // A page that nobody sees hears nobody.
+  addEventListener("pagehide", () => talk.close());
+  draw();
+  return { talk, playback };
+}
+
+/** @returns {Storage|null} */
+function stored() {
+  try {
+    return localStorage;
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,176 @@
+// @ts-check
+import { keyOf, offsetS, plan } from "./schedule.js";
+
+/** Remembers that the robot is not to be heard here. */
+const MUTED = "whichone.voice.muted";
+/** Sounds that are kept: a question is often asked again. */
+const KEPT_MAX = 8;
+/** Name of the measure from the end of what a person said to the first sound of the answer. */
+export const REPLY = "voice:reply";
+
+/**
+ * Plays what the robot says.
+ * @param {{link: any, store: any, storage: Storage|null, tell: () => void}} context `tell` is called
+ *   when `locked`, `muted` or `sounds` has changed
+ */
+export function playback({ link, store, storage, tell }) {
+  return new Playback(link, store, storage, tell);
+}
+
+class Playback {
+  #link;
+  #store;
+  #storage;
+  #tell;
+  /** @type {AudioContext|null} */
+  #context = null;
+  /** @type {Map<string, Promise<AudioBuffer>>} */
+  #sounds = new Map();
+  /** @type {{key: string, source: AudioBufferSourceNode|null}} */
+  #playing = { key: "", source: null };
+  #hushed = "";
+  #muted;
+  /** Page time at which the person had last ended, and whether a reply to it was measured. */
+  #endedAt = NaN;
+
+  constructor(link, store, storage, tell) {
+    this.#link = link;
+    this.#store = store;
+    this.#storage = storage;
+    this.#tell = tell;
+    this.#muted = storage?.getItem(MUTED) === "yes";
+    store.subscribe("speech", () => this.#look());
+    for (const event of ["pointerdown", "keydown"]) {
+      document.addEventListener(event, () => this.unlock(), { capture: true });
+    }
+  }
+
+  get muted() {
+    return this.#muted;
+  }
+
+  /** Whether the browser keeps it silent until the person does something on the page. */
+  get locked() {
+    return !this.#muted && this.#context?.state === "suspended" && this.#wanted() !== null;
+  }
+
+  /** Whether the robot is to be heard just now. */
+  get sounds() {
+    return this.#playing.source !== null;
+  }
+
+  /** @param {boolean} muted */
+  mute(muted) {
+    this.#muted = muted;
+    this.#storage?.setItem(MUTED, muted ? "yes" : "no");
+    this.#look();
+    this.#tell();
+  }
+
+  /** The person speaks: the robot is silent here at once, and stays so for what it was saying. */
+  hush() {
+    this.#hushed = keyOf(this.#store.get("speech")?.speaking);
+    this.#look();
+  }
+
+  /** To be called when the person does something: browsers are silent before that. */
+  unlock() {
+    if (this.#context?.state !== "suspended") return;
+    this.#context.resume().then(
+      () => this.#look(),
+      () => {},
+    );
+  }
+
+  /** A person has ended at this page time: what sounds next is the answer to it. */
+  heard(endedAt) {
+    this.#endedAt = endedAt;
+  }
+
+  #wanted() {
+    const speaking = this.#store.get("speech")?.speaking;
+    const { key: playing } = this.#playing;
+    return plan({ speaking, playing, hushed: this.#hushed, muted: this.#muted }).start;
+  }
+
+  #look() {
+    const speaking = this.#store.get("speech")?.speaking;
+    const { key: playing } = this.#playing;
+    const { stop, start } = plan({ speaking, playing, hushed: this.#hushed, muted: this.#muted });
+    if (stop) this.#stop();
+    if (start) void this.#start(start);
+  }
+
+  #stop() {
+    const { source } = this.#playing;
+    this.#playing = { key: "", source: null };
+    source?.stop();
+    this.#tell();
+  }
+
+  async #start(speaking) {
+    const key = keyOf(speaking);
+    this.#playing = { key, source: null };
+    try {
+      this.#context ??= new AudioContext();
+      const context = this.#context;
+      const sound = await this.#sound(speaking.url);
+      if (context.state === "suspended") await Promise.race([context.resume(), shortly()]);
+      if (this.#playing.key !== key) return;
+      const offset = offsetS(speaking.began_ms, this.#link.serverNow(), sound.duration);
+      if (context.state !== "running" || offset === null) {
+        this.#playing = { key: "", source: null };
+        return;
+      }
+      const source = new AudioBufferSourceNode(context, { buffer: sound });
+      source.connect(context.destination);
+      source.onended = () => {
+        if (this.#playing.source !== source) return;
+        // The key stays: it is not to begin again while the robot's clock catches up.
+        this.#playing.source = null;
+        this.#tell();
+      };
+      this.#playing.source = source;
+      source.start(0, offset);
+      this.#measure(context);
+    } catch (error) {
+      console.warn(`${speaking.url}: ${error}`);
+    } finally {
+      this.#tell();
+    }
+  }
+
+  /** @param {string} url @returns {Promise<AudioBuffer>} */
+  #sound(url) {
+    const known = this.#sounds.get(url);
+    if (known) return known;
+    const sound = load(/** @type {AudioContext} */ (this.#context), url);
+    sound.catch(() => this.#sounds.delete(url));
+    this.#sounds.set(url, sound);
+    const [oldest] = this.#sounds.keys();
+    if (this.#sounds.size > KEPT_MAX) this.#sounds.delete(oldest);
+    return sound;
+  }
+
+  /** From the end of what the person said to the first sound that leaves the loudspeaker. */
+  #measure(context) {
+    const start = this.#endedAt;
+    this.#endedAt = NaN;
+    const end = performance.now() + (context.baseLatency + (context.outputLatency || 0)) * 1_000;
+    if (!(end > start)) return;
+    const { duration } = performance.measure(REPLY, { start: Math.max(0, start), end });
+    document.documentElement.dataset.voiceReplyMs = duration.toFixed(0);
+  }
+}
+
+/** @param {AudioContext} context @param {string} url */
+async function load(context, url) {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+  return context.decodeAudioData(await response.arrayBuffer());
+}
+
+/** A browser that waits for the person never answers. */
+function shortly() {
+  return new Promise((resolve) => setTimeout(resolve, 60));
+}
