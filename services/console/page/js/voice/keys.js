@@ -1,4 +1,6 @@
 // @ts-check
+import { recall } from "../kept.js";
+
 /** Where the space bar means something else. */
 const OWN_SPACE =
   "input, textarea, select, button, a[href], summary, label, [contenteditable], [role], dialog";
@@ -60,6 +62,8 @@ function hasModifier(event) {
 
 /** @param {EventTarget|null} target */
 function isTaken(target) {
+  // Who has switched the keys off has switched off this one, too.
+  if (recall("keys") === "off") return true;
   if (document.querySelector("dialog[open]")) return true;
   return target instanceof Element && target.closest(OWN_SPACE) !== null;
 }

@@ -22,12 +22,10 @@ export function utterance(told) {
   if (!best) return null;
   // Without a number of their own the others share what the best one leaves.
   const rest = (1 - (best[1] || 0.7)) / Math.max(1, others.length);
-  const alternatives = others
-    .slice(0, ALTERNATIVES_MAX)
-    .map(([text, confidence]) => ({
-      text,
-      weight: Math.min(0.99, Math.max(0.01, confidence || rest)),
-    }));
+  const alternatives = others.slice(0, ALTERNATIVES_MAX).map(([text, confidence]) => ({
+    text,
+    weight: Math.min(0.99, Math.max(0.01, confidence || rest)),
+  }));
   return alternatives.length ? { text: best[0], alternatives } : { text: best[0] };
 }
 

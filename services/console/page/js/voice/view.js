@@ -2,6 +2,7 @@
 import { h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
 import { microphone } from "./icon.js";
+import { settingsDialog } from "./settings.js";
 import { meterShare } from "./sound.js";
 
 /**
@@ -16,7 +17,13 @@ export function build(element, { t, hasBrowser, toggle, choose, choices }) {
   const meter = h("span", { class: "voice-meter", "aria-hidden": "true" }, h("span", {}));
   const text = h("span", { class: "voice-text" }, words, more);
   const lamp = h("span", { class: "voice-lamp" }, microphone(26));
-  const talk = h("button", { type: "button", class: "voice-talk" }, lamp, text, meter);
+  const talk = h(
+    "button",
+    { type: "button", class: "voice-talk", "aria-keyshortcuts": "Space" },
+    lamp,
+    text,
+    meter,
+  );
   const handsFree = switchButton("ear", t("voice.handsfree"), () => toggle("handsFree"));
   const sound = switchButton("speak", t("voice.sound"), () => toggle("sound"));
   const unlock = h(
@@ -35,9 +42,22 @@ export function build(element, { t, hasBrowser, toggle, choose, choices }) {
   open.append(off);
   const note = h("p", { class: "voice-note", role: "status" });
   const fault = h("p", { class: "voice-fault", role: "alert" });
-  const settings = settingsOf({ t, hasBrowser, choose, choices });
+  const settings = settingsDialog({ t, hasBrowser, choose, choices });
+  const adjust = h("button", {
+    type: "button",
+    class: "voice-adjust",
+    text: t("voice.settings"),
+    onclick: () => settings.showModal(),
+  });
   const row = h("div", { class: "voice-row" }, talk, handsFree, sound);
-  element.replaceChildren(row, unlock, fault, note, open, settings);
+  document.body.append(settings);
+  element.replaceChildren(
+    row,
+    unlock,
+    fault,
+    note,
+    h("div", { class: "voice-foot" }, adjust, open),
+  );
   return { talk, words, more, meter, handsFree, sound, unlock, open, note, fault };
 }
 
@@ -70,51 +90,4 @@ export function show(view, { sign, talk, playback, t }) {
 function switchButton(name, label, onclick) {
   const properties = { type: "button", class: "voice-switch", "aria-label": label, title: label };
   return h("button", { ...properties, onclick }, icon(name, 22));
-}
-
-function settingsOf({ t, hasBrowser, choose, choices }) {
-  const box = (name) => {
-    const change = (event) => choose({ [name]: event.target.checked });
-    const input = h("input", { type: "checkbox", checked: choices[name], onchange: change });
-    const words = h("span", {}, h("span", { text: t(`voice.set.${name}`) }));
-    words.append(h("small", { text: t(`voice.set.${name}.more`) }));
-    return h("label", { class: "voice-choice" }, input, words);
-  };
-  const engine = (name, disabled) => {
-    const change = () => choose({ engine: name });
-    const checked = choices.engine === name;
-    const input = h("input", {
-      type: "radio",
-      name: "voice-engine",
-      value: name,
-      checked,
-      disabled,
-      onchange: change,
-    });
-    const words = h("span", {}, h("span", { text: t(`voice.engine.${name}`) }));
-    const more = disabled ? "voice.engine.none" : `voice.engine.${name}.more`;
-    words.append(h("small", { text: t(more) }));
-    return h("label", { class: "voice-choice" }, input, words);
-  };
-  return h(
-    "details",
-    { class: "voice-settings" },
-    h("summary", { text: t("voice.settings") }),
-    h(
-      "fieldset",
-      {},
-      h("legend", { text: t("voice.engine") }),
-      engine("robot", false),
-      engine("browser", !hasBrowser),
-    ),
-    h(
-      "fieldset",
-      {},
-      h("legend", { text: t("voice.microphone") }),
-      box("headset"),
-      box("echoCancellation"),
-      box("noiseSuppression"),
-      box("autoGainControl"),
-    ),
-  );
 }
