@@ -175,7 +175,8 @@ impl Bridge {
             self.newest_joints = Some(joints);
         }
         for partial in all(&self.ports.partials) {
-            let (stream, frame) = picture::partial(&partial, None);
+            let number = self.voice.stream_of(partial.request()).map(|(_, number)| number);
+            let (stream, frame) = picture::partial(&partial, number);
             self.hub().board.partial(&stream, frame);
         }
     }

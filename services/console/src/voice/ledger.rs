@@ -58,7 +58,8 @@ impl Ledger {
 
     /// The streams of a viewer that go on, but for one.
     pub(super) fn others(&self, (viewer, number): Name) -> Vec<Name> {
-        let other = |entry: &&Entry| !entry.ends && entry.name.0 == viewer && entry.name.1 != number;
+        let other =
+            |entry: &&Entry| !entry.ends && entry.name.0 == viewer && entry.name.1 != number;
         self.0.iter().filter(other).map(|entry| entry.name).collect()
     }
 

@@ -20,7 +20,13 @@ impl Times {
     /// When sample `number`, the first of `count`, was taken: as `claimed`, if that can be. Sound that
     /// would be of the future, or older than three seconds, and a clock that jumps while the samples
     /// go on, are put right by the samples before, else by when this arrived.
-    pub(super) fn taken(&mut self, claimed: Time, number: u64, count: usize, arrived: Time) -> Time {
+    pub(super) fn taken(
+        &mut self,
+        claimed: Time,
+        number: u64,
+        count: usize,
+        arrived: Time,
+    ) -> Time {
         let latest = Time(arrived.ns().saturating_sub(count as u64 * SAMPLE_NS));
         let earliest = Time(arrived.ns().saturating_sub(OLDEST.0));
         let can_be = |time: Time| (earliest..=latest).contains(&time);
