@@ -1,0 +1,114 @@
+// @ts-check
+import {
+  NoToneMapping,
+  PCFShadowMap,
+  Vector2,
+  WebGLRenderer,
+} from "../../vendor/three/build/three.module.js";
+import { Fineness } from "./figures.js";
+import { studio } from "./room.js";
+
+/**
+ * How finely a moving picture is drawn, finest first: pixels of the picture per pixel of the page,
+ * the shadow's size, and whether the robot mirrors the room.
+ */
+const FINENESS = [
+  { ratio: 2, shadow: 2048, rich: true },
+  { ratio: 1, shadow: 1024, rich: true },
+  { ratio: 1, shadow: 1024, rich: false },
+  { ratio: 0.75, shadow: 512, rich: false },
+  { ratio: 0.6, shadow: 512, rich: false },
+  { ratio: 0.45, shadow: 256, rich: false },
+];
+/** Where drawing is done by the processor, it begins with this one. */
+const FIRST_IN_SOFTWARE = 3;
+/** Names of renderers that have no graphics card. */
+const SOFTWARE = /swiftshader|llvmpipe|softpipe|basic render|software/i;
+/** Pixels of the picture per pixel of the page at most. */
+const RATIO_MAX = 2;
+
+/** Draws a scene as finely as this machine can while it moves, and finely when it stands. */
+export class Painter {
+  #fineness;
+  #isSoftware;
+  #mirrored = null;
+  #size = { width: 0, height: 0 };
+  #isOdd = false;
+
+  /** @param {HTMLCanvasElement} canvas */
+  constructor(canvas) {
+    this.#isSoftware = SOFTWARE.test(rendererName());
+    this.#fineness = new Fineness(FINENESS.length, this.#isSoftware ? FIRST_IN_SOFTWARE : 0);
+    this.renderer = new WebGLRenderer({ canvas, alpha: true, antialias: !this.#isSoftware });
+    this.renderer.toneMapping = NoToneMapping;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = PCFShadowMap;
+  }
+
+  /** Pixels of the picture per pixel of the page while it moves. */
+  get ratio() {
+    return Math.min(FINENESS[this.#fineness.level].ratio, window.devicePixelRatio || 1);
+  }
+
+  /** What shiny things mirror, once `light` was called. */
+  get mirrored() {
+    return this.#mirrored?.texture ?? null;
+  }
+
+  /** @param {{width: number, height: number}} size pixels of the page */
+  setSize(size) {
+    this.#size = size;
+  }
+
+  /** Makes what shiny things mirror anew. @param {boolean} dark */
+  light(dark) {
+    this.#mirrored?.dispose();
+    this.#mirrored = studio(this.renderer, dark);
+  }
+
+  /**
+   * Draws.
+   * @param {{scene: any, camera: any, room: any, robot: any}} what
+   * @param {"still"|"moving"|"changed"} how a still picture is drawn finely; one that has changed
+   *   once, and one that moves, quickly
+   */
+  draw({ scene, camera, room, robot }, how) {
+    const { ratio, shadow, rich } = FINENESS[how === "still" ? 0 : this.#fineness.level];
+    room.setShadow(shadow);
+    robot?.setRich(rich);
+    scene.environment = rich ? this.mirrored : null;
+    this.#resize(how === "still" ? this.#finest() : Math.min(ratio, this.#finest()));
+    // Without a graphics card the shadows of what moves follow at half the rate.
+    this.#isOdd = !this.#isOdd;
+    this.renderer.shadowMap.autoUpdate = rich;
+    this.renderer.shadowMap.needsUpdate = this.#isOdd || how !== "moving";
+    this.renderer.render(scene, camera);
+  }
+
+  /** Takes how long a frame of motion took. @param {number} intervalMs */
+  learn(intervalMs) {
+    this.#fineness.add(intervalMs);
+  }
+
+  /** Without a graphics card edges are smoothed by drawing what stands twice as large. */
+  #finest() {
+    return this.#isSoftware ? RATIO_MAX : Math.min(window.devicePixelRatio || 1, RATIO_MAX);
+  }
+
+  #resize(ratio) {
+    const { width, height } = this.#size;
+    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
+    const { x, y } = this.renderer.getSize(new Vector2());
+    if (x !== width || y !== height) this.renderer.setSize(width, height, false);
+  }
+}
+
+/** What draws: a graphics card, or a program in its place. */
+function rendererName() {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  if (!gl) throw new Error("no WebGL");
+  const info = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  gl.getExtension("WEBGL_lose_context")?.loseContext();
+  return String(name);
+}

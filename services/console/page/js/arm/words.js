@@ -1,0 +1,78 @@
+// @ts-check
+/** Ends of a pick that the picture says in words. */
+const OUTCOMES = ["delivered", "unreachable", "interrupted", "cancelled", "missed", "blocked"];
+
+/**
+ * What the arm does, in one sentence.
+ * @param {any} arm section `arm`
+ * @param {any} scene section `scene`
+ * @param {any} trajectory section `trajectory`
+ * @param {(key: string, args?: object) => string} t
+ * @returns {string}
+ */
+export function armWords(arm, scene, trajectory, t) {
+  if (!arm) return t("arm.unknown");
+  const object = labelOf(arm.object, scene) ?? t("arm.object");
+  if (arm.stopped) return t("arm.stopped");
+  const hindrance = arm.hindrance && arm.hindrance !== "none" ? arm.hindrance : null;
+  if (hindrance) return t("arm.hindered", { what: t(`arm.hindrance.${hindrance}`) });
+  if (arm.phase && arm.phase !== "idle" && arm.phase !== "done") {
+    const what = t(`arm.phase.${arm.phase}`, { object });
+    const n = Math.round(arm.remaining_s ?? 0);
+    return n > 0 ? t("arm.with_time", { what, n }) : what;
+  }
+  if (arm.aimed) return t("arm.aimed");
+  if (arm.moving) return t(trajectory && !trajectory.pick ? "arm.moving" : "arm.returning");
+  if (arm.phase === "done" && OUTCOMES.includes(arm.outcome)) {
+    return t(`arm.outcome.${arm.outcome}`, { object });
+  }
+  return t("arm.resting");
+}
+
+/**
+ * Short words for an object.
+ * @param {string|number|null|undefined} object its name, or its place in the scene
+ * @param {any} scene section `scene`
+ */
+export function labelOf(object, scene) {
+  const index = indexOf(object, scene);
+  return index === null ? null : (scene.objects[index].label ?? scene.objects[index].name);
+}
+
+/**
+ * The place of an object in the scene.
+ * @param {string|number|null|undefined} object its name, or its place
+ * @param {any} scene section `scene`
+ * @returns {number|null}
+ */
+export function indexOf(object, scene) {
+  if (object === null || object === undefined || !scene) return null;
+  const index = scene.objects.findIndex(({ name }) => name === object);
+  if (index >= 0) return index;
+  return typeof object === "number" && object < scene.objects.length ? object : null;
+}
+
+/**
+ * What the dialogue says of each object.
+ * @param {any} dialogue section `dialogue`
+ * @param {any} scene section `scene`
+ * @returns {{belief: number|null, best: boolean, asked: boolean}[]} in the scene's order
+ */
+export function thoughtsOf(dialogue, scene) {
+  const belief = dialogue?.belief ?? [];
+  const most = Math.max(...belief, 0);
+  const even = belief.length ? 1.02 / belief.length : 1;
+  const about = dialogue?.question ? dialogue.question_about : null;
+  const asked = indexOf(about?.object, scene);
+  return (scene?.objects ?? []).map((object, n) => ({
+    belief: belief[n] ?? null,
+    // While all are equally likely, none is the likeliest.
+    best: belief[n] !== undefined && belief[n] === most && most > even,
+    asked: n === asked || isAsked(object, about),
+  }));
+}
+
+function isAsked(object, about) {
+  if (!about?.attribute || about.value === undefined || about.value === null) return false;
+  return object.attributes?.[about.attribute] === about.value;
+}
