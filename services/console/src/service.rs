@@ -23,7 +23,7 @@ use crate::bridge::{self, Bridge, Inbox};
 use crate::hub::command::{Command, Motion};
 use crate::hub::{Hub, Ways};
 use crate::server::{self, Access, App, listen};
-use crate::study::Study;
+use crate::study::{self, Study};
 
 /// Threads of the web server.
 const WORKERS: usize = 2;
@@ -77,7 +77,7 @@ fn serve(arguments: Vec<String>) -> Result<(), Failure> {
     let (to_motions, motions) = device::channel::<Motion>().map_err(failed("inbox"))?;
     let (to_restarts, restarts) = crossbeam_channel::bounded(RESTARTS_MAX);
     let ways = Ways { commands: to_commands.clone(), motions: to_motions, restarts: to_restarts };
-    let study = Study::new(&settings);
+    let study = Study::new(&settings, &environment.paths)?;
     let handover = Span::from_s(settings.console.handover.as_secs_f64());
     let app = Arc::new(App {
         hub: Hub::new(ways, settings.console.viewers_max, handover),
@@ -93,6 +93,7 @@ fn serve(arguments: Vec<String>) -> Result<(), Failure> {
         }),
         urdf: settings.robot_urdf().to_owned(),
         voice_dir: settings.voice_dir(&environment.paths.run()),
+        study_dir: study::folder(&settings, &environment.paths),
     });
     bridge::supervisor::watch(&environment.paths, &app, restarts, to_commands)
         .map_err(failed("supervisor's thread"))?;

@@ -167,7 +167,7 @@ fn journal(id: &str) -> String {
     let heard = r#"{"at":3,"event":"heard","seq":1,"source":"typed","onset_ms":1000.0,"accepted_ms":3000.0}"#;
     let ended = |verdict: &str, object: &str, seconds: f64| {
         format!(
-            r#"{{"at":4,"event":"ended","verdict":"{verdict}","interaction":1,"object":"{object}","questions":2,"seconds":{seconds},"ended_ms":9.0}}"#
+            r#"{{"at":4,"event":"ended","verdict":"{verdict}","interaction":1,"object":"{object}","questions":2,"utterances":1,"seconds":{seconds},"ended_ms":9.0}}"#
         )
     };
     let begun = format!(

@@ -74,8 +74,6 @@ pub enum Event {
     },
     /// The robot decided which object to fetch.
     Decided {
-        /// Its name.
-        object: String,
         /// When.
         decided_ms: f64,
     },
@@ -90,6 +88,8 @@ pub enum Event {
         object: Option<String>,
         /// Questions asked, repetitions not counted, as the robot reckons.
         questions: u32,
+        /// Utterances, as the robot reckons.
+        utterances: u32,
         /// From the first utterance's acceptance to the end, as the robot reckons, seconds; none
         /// where the robot did not end it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -184,8 +184,8 @@ pub enum Fault {
     Scene,
     /// The policy could not be switched, or decides by another planner.
     Planner,
-    /// The robot was started anew and knows nothing of the interaction.
-    Restarted,
+    /// The robot was started anew, or the console was away for so long that its end was missed.
+    Missed,
     /// The experimenter said so.
     Experimenter,
 }

@@ -134,7 +134,7 @@ fn row(person: &Participant, n: usize, number: Option<u32>, trial: &Trial) -> Ve
         json!(trial.talk_seconds().map(thousandths)),
         json!(trial.questions()),
         json!(trial.repeats()),
-        json!(trial.said.len()),
+        json!(trial.utterances()),
         json!(trial.said_by(Source::Typed)),
         json!(trial.said_by(Source::Voice)),
         json!(interaction),

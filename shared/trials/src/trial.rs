@@ -56,6 +56,8 @@ pub enum End {
         object: Option<String>,
         /// Questions, repetitions not counted.
         questions: u32,
+        /// Utterances, as the robot reckons.
+        utterances: u32,
         /// Seconds from the first acceptance to the end, as the robot reckons.
         seconds: Option<f64>,
         /// Monotonic milliseconds.
@@ -110,8 +112,8 @@ pub struct Trial {
     pub said: Vec<Said>,
     /// What was asked.
     pub asked: Vec<Question>,
-    /// The object decided on, and when.
-    pub decided: Option<(String, f64)>,
+    /// When the robot decided which object to fetch, monotonic milliseconds.
+    pub decided_ms: Option<f64>,
     /// Its end.
     pub end: Option<End>,
     /// How often page or console were gone meanwhile.
@@ -130,7 +132,7 @@ impl Trial {
             after: 0,
             said: Vec::new(),
             asked: Vec::new(),
-            decided: None,
+            decided_ms: None,
             end: None,
             resumed: 0,
         }
@@ -148,16 +150,23 @@ impl Trial {
                 self.said.push(Said { seq: *seq, source: *source, onset_ms, accepted_ms, words });
             }
             Event::Asked { prompt, presentation, words } => self.ask(*prompt, *presentation, words),
-            Event::Decided { object, decided_ms } => {
-                self.decided = Some((object.clone(), *decided_ms));
-            }
-            Event::Ended { verdict, interaction, object, questions, seconds, ended_ms } => {
+            Event::Decided { decided_ms } => self.decided_ms = Some(*decided_ms),
+            Event::Ended {
+                verdict,
+                interaction,
+                object,
+                questions,
+                utterances,
+                seconds,
+                ended_ms,
+            } => {
                 self.ended_at = Some(at);
                 self.end = Some(End::Verdict {
                     verdict: *verdict,
                     interaction: *interaction,
                     object: object.clone(),
                     questions: *questions,
+                    utterances: *utterances,
                     seconds: *seconds,
                     ended_ms: *ended_ms,
                 });
@@ -217,8 +226,8 @@ impl Trial {
 
     /// Seconds from the first sound or key to the decision which object to fetch.
     pub fn talk_seconds(&self) -> Option<f64> {
-        let (said, decided) = (self.said.first()?, self.decided.as_ref()?);
-        Some((decided.1 - said.onset_ms).max(0.0) / 1e3)
+        let (said, decided_ms) = (self.said.first()?, self.decided_ms?);
+        Some((decided_ms - said.onset_ms).max(0.0) / 1e3)
     }
 
     /// Questions asked, repetitions not counted.
@@ -226,6 +235,15 @@ impl Trial {
         match &self.end {
             Some(End::Verdict { questions, .. }) => *questions,
             _ => u32::try_from(self.asked.len()).unwrap_or(u32::MAX),
+        }
+    }
+
+    /// What was said: as the robot reckons, or as the console has heard where that is more.
+    pub fn utterances(&self) -> u32 {
+        let heard = u32::try_from(self.said.len()).unwrap_or(u32::MAX);
+        match &self.end {
+            Some(End::Verdict { utterances, .. }) => heard.max(*utterances),
+            _ => heard,
         }
     }
 

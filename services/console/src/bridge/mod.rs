@@ -258,7 +258,7 @@ impl Bridge {
 
     fn show(&mut self, now: Now) {
         let sections = self.picture.sections(now);
-        let study = self.study.section(now).map(|study| ("study", study));
+        let study = self.study.section(&self.picture, now).map(|study| ("study", study));
         for (name, value) in sections.into_iter().chain(study) {
             self.hub().board.section(name, &Json::to_string(&value));
         }

@@ -116,6 +116,11 @@ impl Picture {
         self.arm.as_ref()
     }
 
+    /// What the supervisor said of the group, once it did.
+    pub fn group(&self) -> Option<&GroupStatus> {
+        self.group.as_ref()
+    }
+
     /// The latest turn.
     pub fn turn(&self) -> Option<&Turn> {
         self.turn.as_ref()

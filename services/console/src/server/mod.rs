@@ -45,6 +45,8 @@ pub struct App {
     pub urdf: String,
     /// Where the sound of the robot's sentences lies.
     pub voice_dir: Option<PathBuf>,
+    /// Where the data of studies lies.
+    pub study_dir: PathBuf,
 }
 
 /// Serves at a listener until the hub is told to end.

@@ -1,0 +1,70 @@
+//! What the study serves over HTTP: the data and the results, read from its files each time.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use axum::Router;
+use axum::extract::{Path, State};
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use journal::lines;
+use trials::{FILE_ENDING, Participant};
+
+use crate::server::App;
+
+/// Everything below `/study/`.
+pub fn routes() -> Router<Arc<App>> {
+    Router::new().route("/study/{file}", get(file))
+}
+
+async fn file(State(app): State<Arc<App>>, Path(name): Path<String>) -> Response {
+    let folder = app.study_dir.clone();
+    let answer = tokio::task::spawn_blocking(move || serve(folder, &name)).await;
+    answer.unwrap_or_else(|_| StatusCode::INTERNAL_SERVER_ERROR.into_response())
+}
+
+fn serve(folder: PathBuf, name: &str) -> Response {
+    let people = match read(folder) {
+        Ok(people) => people,
+        Err(why) => return (StatusCode::INTERNAL_SERVER_ERROR, why + "\n").into_response(),
+    };
+    let csv = |text: String| download(name, "text/csv; charset=utf-8", text);
+    match name {
+        "export.csv" | "interactions.csv" => csv(trials::tables(&people).interactions),
+        "participants.csv" => csv(trials::tables(&people).participants),
+        "dictionary.csv" => csv(trials::tables(&people).dictionary),
+        "export.json" => {
+            download(name, "application/json", format!("{:#}\n", trials::to_json(&people)))
+        }
+        "report.json" => {
+            let report = trials::report(&people).to_json();
+            ([(header::CONTENT_TYPE, "application/json")], report.to_string()).into_response()
+        }
+        _ => picture(&people, name),
+    }
+}
+
+fn picture(people: &[Participant], name: &str) -> Response {
+    let pictures = trials::pictures(&trials::report(people));
+    let wanted = name.strip_suffix(".svg");
+    let found = pictures.into_iter().find(|(name, _)| Some(*name) == wanted);
+    match found {
+        Some((_, canvas)) => {
+            ([(header::CONTENT_TYPE, "image/svg+xml")], plot::svg(&canvas)).into_response()
+        }
+        None => (StatusCode::NOT_FOUND, "the study has no such file\n").into_response(),
+    }
+}
+
+fn read(folder: PathBuf) -> Result<Vec<Participant>, String> {
+    let files = lines::read_folder(&folder, FILE_ENDING)
+        .map_err(|(path, error)| format!("{}: {error}", path.display()))?;
+    trials::people(files).map_err(|(path, error)| format!("{}: {error}", path.display()))
+}
+
+fn download(name: &str, kind: &'static str, text: String) -> Response {
+    let name = format!("attachment; filename=\"{name}\"");
+    let heads = [(header::CONTENT_TYPE, kind.to_owned()), (header::CONTENT_DISPOSITION, name)];
+    (heads, text).into_response()
+}

@@ -1,0 +1,198 @@
+//! What the study makes of what it sees: how the running interaction goes, and what it wants of the
+//! robot. Pure.
+
+use protocol::{Ended, Outcome, PolicyView};
+use trials::{Event, Fault, Participant, Source, Stage, Trial, Verdict};
+
+use super::desk::Desk;
+use super::seen::{Hindrance, Seen};
+
+/// Utterances and questions of an interaction that are written down.
+const LINES_MAX: usize = 500;
+
+/// What the study wants of the robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Wish {
+    /// What stands is to be called off.
+    Cancel,
+    /// The policy is to decide by that planner.
+    Switch(String),
+    /// The policy is to be given its configured planner back, after that participant.
+    Restore(String),
+}
+
+/// Something that was said.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Said {
+    /// By the participant.
+    Heard {
+        /// The utterance's number.
+        seq: u64,
+        /// By which way.
+        source: Source,
+        /// When it began; 0 where that is not known.
+        onset_ms: f64,
+        /// The words.
+        words: String,
+    },
+    /// By the robot.
+    Asked {
+        /// The question's number.
+        prompt: u64,
+        /// How often it was asked before, and once.
+        presentation: u32,
+        /// The words.
+        words: String,
+    },
+}
+
+impl Desk {
+    /// The running interaction.
+    fn running(&self) -> Option<(&Participant, &Trial)> {
+        let person = self.active().filter(|person| person.stage == Stage::Running)?;
+        Some((person, person.trial()?))
+    }
+
+    /// What follows from something that was said.
+    pub(super) fn said(&self, said: &Said, seen: &Seen<'_>) -> Option<(String, Event)> {
+        let (person, trial) = self.running()?;
+        if trial.said.len() + trial.asked.len() >= LINES_MAX {
+            return None;
+        }
+        let kept = |words: &str| person.begun.protocol.keep_words.then(|| words.to_owned());
+        let event = match said {
+            Said::Heard { seq, source, onset_ms, words } => {
+                let onset_ms = if *onset_ms > 0.0 { *onset_ms } else { seen.ms };
+                let (seq, source, accepted_ms) = (*seq, *source, seen.ms);
+                Event::Heard { seq, source, onset_ms, accepted_ms, words: kept(words) }
+            }
+            Said::Asked { prompt, presentation, words } => {
+                let (prompt, presentation) = (*prompt, *presentation);
+                Event::Asked { prompt, presentation, words: kept(words) }
+            }
+        };
+        Some((person.id().to_owned(), event))
+    }
+
+    /// What follows from what is seen; ask again once it is written down.
+    pub(super) fn look(&mut self, seen: &Seen<'_>, fault_ms: f64) -> Option<(String, Event)> {
+        match seen.missing {
+            None => self.missing_since = None,
+            Some(_) => _ = self.missing_since.get_or_insert(seen.ms),
+        }
+        let away_ms = self.missing_since.map_or(0.0, |since| seen.ms - since);
+        let (person, trial) = self.running()?;
+        let event = spoilt(trial, seen, away_ms > fault_ms)
+            .or_else(|| ended(trial, seen))
+            .or_else(|| too_long(trial, seen, person.begun.protocol.seconds_max))
+            .or_else(|| decided(trial, seen));
+        Some((person.id().to_owned(), event?))
+    }
+
+    /// What the study wants of the robot just now.
+    pub(super) fn wish(&self, seen: &Seen<'_>) -> Option<Wish> {
+        let view = seen.view?;
+        let owes = |person: &&Participant| person.stage.is_final() && person.switched.is_some();
+        if let Some(person) = self.people().iter().find(owes) {
+            return Some(Wish::Restore(person.id().to_owned()));
+        }
+        let Some(person) = self.active() else { return self.left_standing(view) };
+        let trial = person.trial()?;
+        match person.stage {
+            Stage::Drawn => match seen.hindrance(&trial.step.policy) {
+                Some(Hindrance::Busy) if view.interaction != 0 => Some(Wish::Cancel),
+                Some(Hindrance::Planner) if view.interaction != 0 => Some(Wish::Cancel),
+                Some(Hindrance::Planner) => Some(Wish::Switch(trial.step.policy.clone())),
+                _ => None,
+            },
+            Stage::Over if view.interaction != 0 => Some(Wish::Cancel),
+            _ => None,
+        }
+    }
+
+    /// The interaction of somebody who went away in the middle.
+    fn left_standing(&self, view: &PolicyView) -> Option<Wish> {
+        let trial = self.people().last()?.trial()?;
+        let left = trial.end.is_none() && trial.started_at.is_some();
+        (left && view.interaction == trial.after + 1).then_some(Wish::Cancel)
+    }
+}
+
+fn spoilt(trial: &Trial, seen: &Seen<'_>, is_away: bool) -> Option<Event> {
+    let fault = |fault, why: String| Some(Event::Faulted { fault, why });
+    if is_away {
+        let name = seen.missing.unwrap_or_default();
+        return fault(Fault::Service, format!("the service {name} was away for too long"));
+    }
+    if seen.scene_key() != trial.drawn.scene_key {
+        return fault(Fault::Scene, "the scene was changed".to_owned());
+    }
+    let view = seen.view?;
+    if view.planner != trial.step.policy {
+        return fault(Fault::Planner, format!("the policy decides by {}", view.planner));
+    }
+    let latest = seen.latest_interaction();
+    let ended = view.last.as_ref().map_or(0, |last| last.interaction);
+    if latest < trial.after {
+        return fault(Fault::Missed, "the robot was started afresh".to_owned());
+    }
+    if ended > trial.after + 1 {
+        return fault(Fault::Missed, "the console was away as it ended".to_owned());
+    }
+    None
+}
+
+/// The robot has ended it.
+fn ended(trial: &Trial, seen: &Seen<'_>) -> Option<Event> {
+    let last = seen.view?.last.as_ref().filter(|last| last.interaction == trial.after + 1)?;
+    let verdict = match last.outcome {
+        Outcome::Delivered if last.name.as_ref() == Some(&trial.drawn.object) => Verdict::Right,
+        Outcome::Delivered => Verdict::Wrong,
+        Outcome::Failed => Verdict::Failed,
+        Outcome::Cancelled => Verdict::Cancelled,
+        Outcome::Abandoned => Verdict::Abandoned,
+        Outcome::NotHere => Verdict::NotHere,
+        Outcome::SceneChanged => {
+            let why = "the scene was changed".to_owned();
+            return Some(Event::Faulted { fault: Fault::Scene, why });
+        }
+    };
+    Some(Event::Ended {
+        verdict,
+        interaction: last.interaction,
+        object: last.name.clone(),
+        questions: last.questions,
+        utterances: utterances(last),
+        seconds: Some(last.seconds),
+        ended_ms: seen.ms,
+    })
+}
+
+fn utterances(last: &Ended) -> u32 {
+    let (first, latest) = last.utterances;
+    u32::try_from(latest.saturating_sub(first) + 1).unwrap_or(u32::MAX)
+}
+
+/// It lasts longer than it may: from the first utterance, or from the start where nothing was said.
+fn too_long(trial: &Trial, seen: &Seen<'_>, seconds_max: f64) -> Option<Event> {
+    let waited_ms = match trial.said.first() {
+        Some(said) => seen.ms - said.onset_ms,
+        None => seen.at.saturating_sub(trial.started_at?) as f64,
+    };
+    let view = seen.view.filter(|view| view.interaction == trial.after + 1);
+    (waited_ms > 1e3 * seconds_max).then(|| Event::Ended {
+        verdict: Verdict::TooLong,
+        interaction: view.map_or(0, |view| view.interaction),
+        object: None,
+        questions: view.map_or(0, |view| view.questions),
+        utterances: 0,
+        seconds: None,
+        ended_ms: seen.ms,
+    })
+}
+
+fn decided(trial: &Trial, seen: &Seen<'_>) -> Option<Event> {
+    let view = seen.view.filter(|view| view.interaction == trial.after + 1)?;
+    let is_new = trial.decided_ms.is_none() && view.decision == "pick";
+    is_new.then_some(Event::Decided { decided_ms: seen.ms })
+}
