@@ -26,6 +26,7 @@ export function mountActions(element, context) {
 
   const press = stopper(context, (error) => tell(reason(/** @type {any} */ (error), t)));
   let pressedAt = Number.NEGATIVE_INFINITY;
+  const touch = matchMedia("(hover: none)");
   let askedAt = null;
   let asking = 0;
   let escapedAt = null;
@@ -87,7 +88,7 @@ export function mountActions(element, context) {
     setAttribute(button, "data-down", down);
     setText(words, t(sending ? "stop.sending" : `stop.${is}`));
     const moving = store.get("arm")?.moving === true;
-    const keys = t(moving ? "stop.key_moving" : "stop.key");
+    const keys = touch.matches ? t("stop.touch") : t(moving ? "stop.key_moving" : "stop.key");
     setText(hint, down ? t("stop.down") : is === "stop" ? keys : t(`stop.${is}.more`));
     const drawn = is === "stop" ? "stop" : "play";
     if (mark.dataset.icon !== drawn) mark.replaceChildren(icon(drawn, 34));
