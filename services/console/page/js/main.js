@@ -19,18 +19,24 @@ import { mountTranscript } from "./views/transcript.js";
 import { mountTurn } from "./views/turn.js";
 import { mountWhy } from "./views/why.js";
 
+/** How long the page's words wait for the language that the console is set to, milliseconds. */
+const WELCOME_MS = 400;
+
 /** @param {string} id @returns {HTMLElement} */
 const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
 const store = new Store();
+const role = wishedRole(location.search);
+document.documentElement.dataset.role = role;
 const link = connect({
   session: sessionId(tabStorage()),
-  role: wishedRole(location.search),
+  role,
   lastLine: () => store.lastLine,
 });
 keep(store, link);
 
-await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.languages));
+const wished = [await setLanguage(), ...navigator.languages];
+await loadStrings(chooseLanguage(location.search, keptLanguage(), wished));
 translate(document);
 
 const context = { link, store, t };
@@ -59,6 +65,14 @@ afterPaint(() => mountPart(at("arm"), () => import("./arm/index.js"), "mountArm"
 function afterPaint(f) {
   const idle = globalThis.requestIdleCallback ?? ((g) => setTimeout(g, 200));
   requestAnimationFrame(() => setTimeout(() => idle(f, { timeout: 1_000 }), 0));
+}
+
+/** The language that the console is set to, if it says so soon enough. */
+function setLanguage() {
+  return new Promise((resolve) => {
+    setTimeout(() => resolve(""), WELCOME_MS);
+    link.on("welcome", ({ settings }) => resolve(settings?.language ?? ""));
+  });
 }
 
 /** @param {string} search */

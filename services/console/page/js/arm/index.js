@@ -21,17 +21,22 @@ export function mountArm(element, { link, store, t }) {
     parts.canvas.setAttribute("aria-label", words);
   };
   store.subscribe(["arm", "scene", "trajectory"], say);
+  store.subscribe("arm", (arm) => {
+    element.dataset.stopped = String(Boolean(arm?.stopped));
+    parts.badge.hidden = !arm?.stopped;
+  });
   say();
   let view;
   try {
     view = new ArmView(parts.canvas, parts.stage, link, new Overlay(parts.labels, t));
   } catch {
     element.dataset.state = "words";
+    for (const button of parts.buttons) button.hidden = true;
     parts.notice.textContent = t("arm.no_webgl");
     return;
   }
   Object.assign(element, { armView: view });
-  follow(view, element, parts, store, link);
+  follow(view, store, link);
   watch(view, parts, t);
   fetchRobot(view, element, parts, link, t);
 }
@@ -56,6 +61,7 @@ function build(element, t) {
   labels.setAttribute("aria-label", t("arm.objects"));
   const notice = make("p", "arm-notice", t("arm.loading"));
   const badge = make("p", "arm-badge", t("arm.badge"));
+  badge.hidden = true;
   const caption = make("p", "arm-caption");
   caption.id = "arm-caption";
   const stage = make("div", "arm-stage", canvas, labels, badge, notice);
@@ -81,7 +87,7 @@ function build(element, t) {
 }
 
 /** Has the view follow the server. */
-function follow(view, element, { badge }, store, link) {
+function follow(view, store, link) {
   const think = () => view.setThoughts(thoughtsOf(store.get("dialogue"), store.get("scene")));
   store.subscribe("scene", (scene) => {
     view.setScene(scene);
@@ -92,8 +98,6 @@ function follow(view, element, { badge }, store, link) {
   store.subscribe("trajectory", (trajectory) => view.setTrajectory(trajectory));
   store.subscribe("arm", (arm) => {
     view.setArm(arm);
-    element.dataset.stopped = String(Boolean(arm?.stopped));
-    badge.hidden = !arm?.stopped;
   });
   link.on("joints", (message) => view.setJoints(message));
 }
