@@ -1,0 +1,62 @@
+// The page for everybody: axe-core finds nothing, in each theme, size and state.
+
+import { expectAccessible } from "../lib/axe.mjs";
+import { t } from "../lib/strings.mjs";
+import { nextDecision, question, type } from "../lib/talk.mjs";
+import { expect, test } from "../lib/test.mjs";
+
+const SIZES = { desktop: { width: 1440, height: 900 }, phone: { width: 390, height: 844 } };
+const THEMES = /** @type {const} */ (["light", "dark"]);
+
+for (const [size, viewport] of Object.entries(SIZES)) {
+  for (const colorScheme of THEMES) {
+    test.describe(`${size}, ${colorScheme}`, () => {
+      test.use({ viewport, colorScheme, provoked: ["WebSocket connection", "404"] });
+
+      test("a dialogue, a stop and a lost link", async ({ console: page, group }) => {
+        await expect(page.getByText(t("control.mine"))).toBeAttached();
+        await expectAccessible(page);
+
+        await type(page, "get me the bowl");
+        const { text } = await nextDecision(group, 0);
+        await expect(question(page)).toContainText(text);
+        await expectAccessible(page);
+
+        await page.keyboard.press("Escape");
+        await page.keyboard.press("Escape");
+        await expect(page.getByRole("button", { name: t("stop.resume") })).toBeVisible();
+        await expectAccessible(page);
+
+        await group.must("stop", "console");
+        await expect(page.getByText(t("alarm.offline"))).toBeVisible();
+        await expectAccessible(page);
+      });
+
+      test("help, and the pages around it", async ({ console: page, group }) => {
+        await page.getByRole("button", { name: t("help.open") }).click();
+        await expect(page.getByRole("dialog", { name: t("help.title") })).toBeVisible();
+        await expectAccessible(page);
+        for (const path of ["/nowhere", "/login"]) {
+          await page.goto(new URL(path, group.url).href);
+          await expectAccessible(page);
+        }
+      });
+    });
+  }
+}
+
+test("the whole page can be reached and used by keyboard", async ({ console: page }) => {
+  await expect(page.getByText(t("control.mine"))).toBeAttached();
+  await page.keyboard.press("Tab");
+  await expect(page.getByRole("link", { name: t("skip") })).toBeFocused();
+  await page.keyboard.press("Enter");
+  await page.keyboard.type("the clear bowl");
+  await page.keyboard.press("Enter");
+  await expect(page.getByRole("log", { name: t("talk.log") })).toContainText("the clear bowl");
+});
+
+test("nothing is cut off at 320 pixels", async ({ console: page }) => {
+  await page.setViewportSize({ width: 320, height: 640 });
+  const wide = () => page.evaluate(() => document.documentElement.scrollWidth);
+  await expect.poll(wide).toBeLessThanOrEqual(320);
+});

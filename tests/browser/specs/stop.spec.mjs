@@ -1,0 +1,57 @@
+// The motion stop.
+
+import { t } from "../lib/strings.mjs";
+import { answerUntilPicked, expectDelivered, type } from "../lib/talk.mjs";
+import { expect, test } from "../lib/test.mjs";
+
+const stopped = async (group) => (await group.state()).arm.stopped;
+const stop = (page) => page.getByRole("button", { name: t("stop.stop") });
+
+test.describe("while the arm moves", () => {
+  // A pick that lasts long enough to be stopped by a person.
+  test.use({ settings: ["arm.time_scale=1"] });
+
+  test("one press stops it, two resume it, and the bowl still comes", async ({
+    console: page,
+    group,
+  }) => {
+    await type(page, "get me the clear bowl");
+    await answerUntilPicked(page, group, "clear");
+    await expect.poll(async () => (await group.state()).arm.moving).toBe(true);
+    await page.keyboard.press("Escape");
+    await expect.poll(() => stopped(group)).toBe(true);
+    await expect(page.getByRole("alert").filter({ hasText: t("alarm.stopped") })).toBeVisible();
+    await expect.poll(async () => (await group.state()).arm.moving).toBe(false);
+
+    await page.getByRole("button", { name: t("stop.resume") }).click();
+    expect(await stopped(group), "one press does not move the arm").toBe(true);
+    await page.getByRole("button", { name: t("stop.confirm") }).click();
+    await expect.poll(() => stopped(group)).toBe(false);
+    await expectDelivered(page, group, "clear");
+  });
+});
+
+test("it works from the text field, by keyboard alone", async ({ console: page, group }) => {
+  await page.getByRole("textbox", { name: t("say.label") }).focus();
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("Escape");
+  await expect.poll(() => stopped(group)).toBe(true);
+});
+
+test("it works while the page is busy", async ({ console: page, group }) => {
+  await expect(stop(page)).toBeEnabled();
+  const box = await stop(page).boundingBox();
+  // Work that leaves the page hardly any time, for as long as the test lasts.
+  await page.evaluate(() => {
+    const spin = () => {
+      const end = performance.now() + 150;
+      while (performance.now() < end);
+      setTimeout(spin, 0);
+    };
+    spin();
+  });
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await expect.poll(() => stopped(group)).toBe(true);
+  await page.mouse.up();
+});

@@ -1,0 +1,33 @@
+// A whole interaction by typing.
+
+import { t } from "../lib/strings.mjs";
+import { answerUntilPicked, expectDelivered, question, transcript, type } from "../lib/talk.mjs";
+import { expect, test } from "../lib/test.mjs";
+
+test("a person gets the right bowl by typing", async ({ console: page, group }) => {
+  await type(page, "get me the bowl");
+  const questions = await answerUntilPicked(page, group, "metal2");
+  await expectDelivered(page, group, "metal2");
+  expect(questions).toBeLessThanOrEqual(4);
+  await expect(transcript(page).getByText(t("line.understood")).first()).toBeVisible();
+});
+
+test("the belief's bars follow the words", async ({ console: page, group }) => {
+  const bars = page.getByRole("meter");
+  await expect(bars).toHaveCount(6);
+  await type(page, "the clear bowl");
+  await expect(question(page)).not.toContainText(t("question.idle", { noun: "bowl" }));
+  const { scene, dialogue } = await group.state();
+  const clear = scene.objects.findIndex((object) => object.name === "clear");
+  const bar = page.getByRole("meter", { name: scene.objects[clear].label });
+  await expect(bar).toHaveAttribute(
+    "aria-valuenow",
+    String(Math.round(100 * dialogue.belief[clear])),
+  );
+});
+
+test("words that are refused are explained", async ({ console: page }) => {
+  await page.getByRole("textbox", { name: t("say.label") }).fill("x".repeat(5000));
+  await page.keyboard.press("Enter");
+  await expect(page.getByRole("alert").filter({ hasText: /bytes|long/ })).toBeVisible();
+});

@@ -1,0 +1,41 @@
+// Two people look at the same robot.
+
+import { t } from "../lib/strings.mjs";
+import { answerUntilPicked, expectDelivered, transcript, type } from "../lib/talk.mjs";
+import { expect, test } from "../lib/test.mjs";
+
+test("one talks, the other watches, and control is handed over", async ({
+  console: first,
+  group,
+  browser,
+}) => {
+  await expect(first.getByText(t("control.mine"))).toBeVisible();
+  const context = await browser.newContext();
+  const second = await context.newPage();
+  await second.goto(group.url);
+  await expect(second.getByRole("textbox", { name: t("say.label") })).toBeDisabled();
+
+  await type(first, "get me the bowl");
+  await expect(transcript(second)).toContainText("get me the bowl");
+
+  await second.getByRole("button", { name: t("control.ask") }).click();
+  await first.getByRole("button", { name: t("control.give") }).click();
+  await expect(second.getByText(t("control.mine"))).toBeVisible();
+  await expect(first.getByRole("textbox", { name: t("say.label") })).toBeDisabled();
+
+  await answerUntilPicked(second, group, "white3");
+  await expectDelivered(second, group, "white3");
+  await expect(transcript(first)).toContainText(/delivered/i);
+  await context.close();
+});
+
+test("whoever only watches can stop the robot", async ({ console: first, group, browser }) => {
+  await expect(first.getByText(t("control.mine"))).toBeVisible();
+  const context = await browser.newContext();
+  const second = await context.newPage();
+  await second.goto(group.url);
+  await second.getByRole("button", { name: t("stop.stop") }).click();
+  await expect.poll(async () => (await group.state()).arm.stopped).toBe(true);
+  await expect(first.getByRole("alert").filter({ hasText: t("alarm.stopped") })).toBeVisible();
+  await context.close();
+});
