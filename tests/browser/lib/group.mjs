@@ -23,7 +23,9 @@ export class Group {
     const home = await mkdtemp(join(tmpdir(), "wb"));
     const group = new Group(home, `b${process.pid}-${home.slice(-6).toLowerCase()}`);
     const up = ["up", "--detach", "--wait", "ready", "--timeout", "40", "--profile", "ci"];
-    const sets = settings.flatMap((setting) => ["--set", setting]);
+    // A busy machine's browser may take its time to answer.
+    const patient = ["dialogue.turns.response_window_s=20.0", ...settings];
+    const sets = patient.flatMap((setting) => ["--set", setting]);
     await group.must(...up, "--config", join(ROOT, "config"), ...sets);
     group.url = (await until("the console's address", () => group.address())).trim();
     return group;

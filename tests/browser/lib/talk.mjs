@@ -12,6 +12,7 @@ import { until } from "./until.mjs";
  */
 export async function type(page, text) {
   await page.getByRole("textbox", { name: t("say.label") }).fill(text);
+  await expect(page.getByRole("button", { name: t("say.send") })).toBeEnabled();
   await page.keyboard.press("Enter");
   await expect(transcript(page)).toContainText(text);
 }
@@ -65,5 +66,5 @@ export async function answerUntilPicked(page, group, name) {
 export async function expectDelivered(page, group, name) {
   const last = await until("the hand-over", async () => (await group.state()).dialogue.last);
   expect(last).toMatchObject({ object: name, outcome: "delivered" });
-  await expect(transcript(page)).toContainText(/delivered/i);
+  await expect(question(page)).toContainText(t("last.delivered.other").split(":")[0]);
 }

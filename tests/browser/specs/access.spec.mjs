@@ -11,7 +11,11 @@ const THEMES = /** @type {const} */ (["light", "dark"]);
 for (const [size, viewport] of Object.entries(SIZES)) {
   for (const colorScheme of THEMES) {
     test.describe(`${size}, ${colorScheme}`, () => {
-      test.use({ viewport, colorScheme, provoked: ["WebSocket connection", "404"] });
+      test.use({
+        viewport,
+        colorScheme,
+        provoked: ["WebSocket connection", "ERR_CONNECTION_REFUSED", "404"],
+      });
 
       test("a dialogue, a stop and a lost link", async ({ console: page, group }) => {
         await expect(page.getByText(t("control.mine"))).toBeAttached();
