@@ -23,24 +23,25 @@ export function mountAlarm(element, polite, { link, store, t }) {
 
   const show = (key) => {
     shown = key;
+    setText(text, key && t(`alarm.${key}`));
     bar.hidden = key === "";
     // The sign and the button show a stop to the eye; to the ear it is said here.
     bar.classList.toggle("hidden", key === "stopped");
     if (key === "") return;
-    setText(text, t(`alarm.${key}`));
     setText(act, t(key === "replaced" ? "alarm.use_here" : "alarm.again"));
     act.hidden = !["offline", "replaced", "undelivered"].includes(key);
   };
   const look = () => {
-    clearTimeout(timer);
     const state = store.get("link")?.state;
     const stop = store.get("stop")?.state;
     if (state === "replaced") return show("replaced");
     if (state !== "up") {
       if (stop === "undelivered") return show("undelivered");
-      if (shown !== "offline") timer = setTimeout(() => show("offline"), GRACE_MS);
+      timer ||= setTimeout(() => show("offline"), GRACE_MS);
       return;
     }
+    clearTimeout(timer);
+    timer = 0;
     const arm = store.get("arm");
     const key = stop === "undelivered" ? "unconfirmed" : arm?.stopped ? "stopped" : "";
     if (key !== shown) show(key);

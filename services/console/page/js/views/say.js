@@ -66,13 +66,12 @@ export function mountSay(element, { link, store, t }) {
   const draw = eachFrame(() => {
     const who = whoControls(store.get("control"), store.get("welcome"));
     const watching = who === "theirs" || who === "asked";
-    const up = store.get("link")?.state === "up";
     input.disabled = watching;
-    send.disabled = watching || !up;
+    send.disabled = watching;
     const noun = store.get("scene")?.noun ?? t("say.thing");
     const words = watching ? t("say.watching") : t("say.placeholder", { noun });
     setAttribute(input, "placeholder", words);
   });
-  store.subscribe(["control", "welcome", "link", "scene"], draw);
+  store.subscribe(["control", "welcome", "scene"], draw);
   draw();
 }
