@@ -6,7 +6,7 @@ import { mountLatency } from "./latency.js";
 import { mountServices } from "./services.js";
 
 /** Where there is room, or nothing else beside, all of it is shown from the beginning. */
-const ROOMY = "(min-height: 1000px), (max-width: 1100px)";
+const ROOMY = "(min-height: 1300px), (max-width: 1100px)";
 
 /**
  * In a line how the group is doing; opened, its services and how soon it answers.
