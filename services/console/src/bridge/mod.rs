@@ -1,6 +1,7 @@
 //! The main loop's work: what arrives on the topics is folded into the picture, what viewers ask for
 //! is carried out, and what has changed is pinned on the board.
 
+mod correcting;
 mod kept;
 mod motion;
 mod ports;
@@ -12,7 +13,7 @@ use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use node::{Span, Time};
-use protocol::{Injection, JointStates, MotionCommand, PickPhase, topics};
+use protocol::{Injection, JointStates, MotionCommand, topics};
 use runtime::bus::{EncodedWriter, Writer};
 use runtime::client::Client;
 use runtime::clock;
@@ -29,6 +30,7 @@ use crate::server::App;
 use crate::server::routes::sound_file;
 use crate::study::Study;
 use crate::voice::Voice;
+use correcting::{Correction, Then};
 use kept::Kept;
 use motion::Motions;
 use ports::{Ports, all, quiet};
@@ -54,6 +56,8 @@ pub struct Bridge {
     voice: Voice,
     study: Study,
     saying: Saying,
+    /// What is to be said once a pick was given up.
+    then: Option<Then>,
     motions: Motions,
     kept: Kept,
     voice_dir: Option<PathBuf>,
@@ -94,6 +98,7 @@ impl Bridge {
             voice: Voice::default(),
             study,
             saying: Saying::default(),
+            then: None,
             motions: Motions::default(),
             kept,
             voice_dir: app.voice_dir.clone(),
@@ -224,23 +229,33 @@ impl Bridge {
 
     /// Says something to the robot, for a viewer or for the study.
     fn say(&mut self, viewer: Option<(ViewerId, u64)>, verb: Verb, now: Now) -> Result<(), String> {
-        let typed = |text: &str| Words {
-            text: text.to_owned(),
-            alternatives: Vec::new(),
-            spoken: false,
-            began: None,
-            ended: None,
-        };
         let words = match verb {
             Verb::Say(words) => words,
-            Verb::NotThat => typed(NOT_THAT),
-            Verb::StartOver => typed(START_OVER),
+            Verb::NotThat | Verb::StartOver => {
+                let (view, arm) = (self.picture.view(), self.picture.arm());
+                let Correction { now, then } = match verb {
+                    Verb::NotThat => correcting::not_that(self.picture.scene(), view, arm)?,
+                    _ => correcting::start_over(view)?,
+                };
+                self.then = then;
+                typed(now)
+            }
             Verb::Study(..) => return Err("a study does not ask itself".to_owned()),
         };
         self.saying.add(viewer, words, now.at)
     }
 
     fn go_on(&mut self, now: Now) {
+        let due =
+            self.then.as_ref().zip(self.picture.view()).and_then(|(then, view)| then.due(view));
+        if let Some(words) = due {
+            self.then = None;
+            words.into_iter().for_each(|words| {
+                if let Err(why) = self.saying.add(None, typed(&words), now.at) {
+                    tracing::warn!(why, "a correction was not said to its end");
+                }
+            });
+        }
         self.saying.pass(&self.injections, &self.app.hub, now.at);
         self.motions.pass(&self.motion, &self.app.hub, now.at);
         for (viewer, frame) in self.voice.pass(&self.client, now.at) {
@@ -288,18 +303,12 @@ impl Bridge {
             self.hub().board.joints(picture::joints(&newest));
         }
     }
-
-    /// Whether the arm is fetching something.
-    pub fn is_fetching(&self) -> bool {
-        let done = [PickPhase::Idle.code(), PickPhase::Done.code()];
-        self.picture.arm().is_some_and(|arm| !done.contains(&arm.phase))
-    }
 }
 
-/// Words that mean "not that one" whatever stands.
-const NOT_THAT: &str = "no, not that one";
-/// Words that begin the dialogue anew.
-const START_OVER: &str = "start over";
+fn typed(text: &str) -> Words {
+    let alternatives = Vec::new();
+    Words { text: text.to_owned(), alternatives, spoken: false, began: None, ended: None }
+}
 
 /// Both clocks.
 pub(crate) fn now() -> Now {

@@ -13,7 +13,7 @@ use crate::hub::{Hub, ViewerId};
 /// How often words without an answer are sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);
 /// How long an answer is waited for.
-const PATIENCE: Span = Span::from_ms(10_000);
+const PATIENCE: Span = Span::from_ms(8_000);
 /// Words on their way at a time.
 const WORDS_MAX: usize = 32;
 

@@ -18,8 +18,8 @@ use crate::server::metrics::Metrics;
 use board::Board;
 use command::{Command, Motion, Verb};
 use lease::{Lease, Taken};
-pub use viewers::Role;
 use viewers::Viewers;
+pub use viewers::{Letter, Role};
 
 /// A viewer's number, in a page `v3`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -100,9 +100,10 @@ impl Hub {
         name: &str,
         session: &str,
         role: Role,
-    ) -> Result<(ViewerId, mpsc::Receiver<String>), String> {
+    ) -> Result<(ViewerId, mpsc::Receiver<Letter>), String> {
         let mut control = self.control();
-        if control.viewers.len() >= self.viewers_max {
+        let known = control.viewers.has_session(session);
+        if !known && control.viewers.len() >= self.viewers_max {
             let most = self.viewers_max;
             return Err(format!(
                 "{most} pages are open already; close one, or raise console.viewers_max"
@@ -143,7 +144,9 @@ impl Hub {
     pub fn send(&self, viewer: ViewerId, frame: String) {
         let mut control = self.control();
         let Some(there) = control.viewers.get(viewer) else { return };
-        if let Err(mpsc::error::TrySendError::Full(_)) = there.mailbox.try_send(frame) {
+        if let Err(mpsc::error::TrySendError::Full(_)) =
+            there.mailbox.try_send(Letter::Frame(frame))
+        {
             self.metrics.dropped.inc();
             tracing::warn!(%viewer, "shut out: it does not read its answers");
             control.viewers.remove(viewer);

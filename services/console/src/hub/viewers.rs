@@ -6,6 +6,15 @@ use tokio::sync::mpsc;
 
 use super::ViewerId;
 
+/// What is put into a viewer's mailbox.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Letter {
+    /// A frame for its page.
+    Frame(String),
+    /// The same page is open anew somewhere else; this one ends.
+    Replaced,
+}
+
 /// Answers that wait for a viewer to read them. One that has more does not read.
 const MAILBOX: usize = 64;
 
@@ -32,7 +41,7 @@ pub(super) struct Viewer {
     pub(super) name: String,
     pub(super) session: String,
     pub(super) role: Role,
-    pub(super) mailbox: mpsc::Sender<String>,
+    pub(super) mailbox: mpsc::Sender<Letter>,
 }
 
 impl Viewers {
@@ -41,11 +50,25 @@ impl Viewers {
         name: String,
         session: String,
         role: Role,
-    ) -> (ViewerId, mpsc::Receiver<String>) {
+    ) -> (ViewerId, mpsc::Receiver<Letter>) {
+        self.replace(&session);
         self.last += 1;
         let (mailbox, letters) = mpsc::channel(MAILBOX);
         self.open.insert(ViewerId(self.last), Viewer { name, session, role, mailbox });
         (ViewerId(self.last), letters)
+    }
+
+    /// Ends what is still open of a session that comes anew: an old connection that nobody has seen
+    /// break, or a page that was doubled.
+    fn replace(&mut self, session: &str) {
+        self.open.retain(|_, open| {
+            let replaced = open.session == session;
+            if replaced {
+                // A full mailbox is closed with its owner all the same.
+                let _ = open.mailbox.try_send(Letter::Replaced);
+            }
+            !replaced
+        });
     }
 
     /// Forgets a viewer; its socket ends once it has no mailbox.
@@ -59,6 +82,10 @@ impl Viewers {
 
     pub(super) fn session(&self, viewer: ViewerId) -> Option<String> {
         self.get(viewer).map(|viewer| viewer.session.clone())
+    }
+
+    pub(super) fn has_session(&self, session: &str) -> bool {
+        self.open.values().any(|viewer| viewer.session == session)
     }
 
     pub(super) fn len(&self) -> usize {

@@ -29,6 +29,12 @@ pub(super) fn find(path: &str) -> Option<&'static Asset> {
     ALL.binary_search_by(|asset| asset.path.cmp(path)).ok().map(|at| &ALL[at])
 }
 
+/// Whether a file is given to whoever has not said the token: what the login page is made of.
+pub(super) fn is_open(path: &str) -> bool {
+    let folders = ["/css/", "/js/", "/strings/"];
+    path == "/login" || path == "/icon.svg" || folders.iter().any(|folder| path.starts_with(folder))
+}
+
 impl Asset {
     /// The answer to a request with these headers.
     pub(super) fn respond(&self, asked: &HeaderMap) -> Response<Body> {

@@ -91,11 +91,10 @@ fn router(app: Arc<App>) -> Router {
         .with_state(app)
 }
 
-/// Lets in who knows the token; others see the login page, its style, and nothing else.
+/// Lets in who knows the token; others get the files that the login page is made of, which hold
+/// nothing of this robot.
 async fn admit(State(app): State<Arc<App>>, request: Request, next: Next) -> Response<Body> {
-    let path = request.uri().path();
-    let is_for_login = path == "/login" || path == "/css/login.css";
-    if is_for_login || app.access.is_known(request.headers()) {
+    if assets::is_open(request.uri().path()) || app.access.is_known(request.headers()) {
         return next.run(request).await;
     }
     let wants_page = request

@@ -92,8 +92,20 @@ pub(super) async fn asset(method: Method, uri: Uri, headers: HeaderMap) -> Respo
     }
     match assets::find(uri.path()) {
         Some(asset) => asset.respond(&headers),
-        None => (StatusCode::NOT_FOUND, "there is no such page\n").into_response(),
+        None => missing(&headers),
     }
+}
+
+fn missing(headers: &HeaderMap) -> Response<Body> {
+    let accepts = headers.get(header::ACCEPT).and_then(|accepts| accepts.to_str().ok());
+    let page =
+        assets::find("/404.html").filter(|_| accepts.is_some_and(|a| a.contains("text/html")));
+    let plain = || (StatusCode::NOT_FOUND, "there is no such page\n").into_response();
+    page.map_or_else(plain, |page| {
+        let mut response = page.respond(&HeaderMap::new());
+        *response.status_mut() = StatusCode::NOT_FOUND;
+        response
+    })
 }
 
 #[cfg(test)]

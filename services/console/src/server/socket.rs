@@ -14,7 +14,7 @@ use tokio::time::{Instant, interval_at, timeout};
 use super::App;
 use super::message::{self, Do, Hello, Message, PROTOCOL};
 use crate::hub::board::Cursor;
-use crate::hub::{Hub, ViewerId, ms};
+use crate::hub::{Hub, Letter, ViewerId, ms};
 use crate::voice::PcmFrame;
 
 /// How long a page has for its first message.
@@ -23,6 +23,8 @@ const HELLO_PATIENCE: Duration = Duration::from_secs(10);
 const READ_PATIENCE: Duration = Duration::from_secs(10);
 /// A page that says nothing for this long, not even that it is there, is gone.
 const SILENCE_MAX: Duration = Duration::from_secs(60);
+/// The code that tells a page that it was replaced by another one of its session.
+const REPLACED: u16 = 4001;
 /// How often a page is asked whether it is there.
 const PROBE_EVERY: Duration = Duration::from_secs(20);
 
@@ -54,6 +56,7 @@ pub(super) async fn serve(socket: WebSocket, app: Arc<App>) {
             app.hub.metrics.dropped.inc();
             (close_code::POLICY, "the page did not read for 10 s")
         }
+        Ended::Replaced => (REPLACED, "the same page is open somewhere else"),
         Ended::Page => (close_code::NORMAL, ""),
     };
     close(&mut out, code, reason).await;
@@ -63,6 +66,7 @@ pub(super) async fn serve(socket: WebSocket, app: Arc<App>) {
 #[derive(Clone, Copy, Debug)]
 enum Ended {
     Page,
+    Replaced,
     Slow,
     Console,
 }
@@ -71,6 +75,7 @@ impl std::fmt::Display for Ended {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Page => "it was closed",
+            Self::Replaced => "it is open anew",
             Self::Slow => "it did not read",
             Self::Console => "the console ends",
         })
@@ -102,7 +107,7 @@ async fn close(out: &mut Out, code: u16, reason: &str) {
 
 async fn write(
     out: &mut Out,
-    mut letters: mpsc::Receiver<String>,
+    mut letters: mpsc::Receiver<Letter>,
     viewer: ViewerId,
     last_line: u64,
     app: &App,
@@ -124,7 +129,8 @@ async fn write(
             changed = changed.changed() => if changed.is_err() { return Ended::Console },
             _ = ending.wait_for(|ending| *ending) => return Ended::Console,
             letter = letters.recv() => match letter {
-                Some(letter) => frames.push(Frame::Text(letter.into())),
+                Some(Letter::Frame(frame)) => frames.push(Frame::Text(frame.into())),
+                Some(Letter::Replaced) => return Ended::Replaced,
                 None => return Ended::Slow,
             },
             _ = probe.tick() => frames.push(Frame::Ping(Vec::new().into())),
