@@ -7,6 +7,7 @@ mod absence;
 mod batch;
 mod changes;
 mod config;
+mod console;
 mod dialogues;
 mod export;
 mod gestures;

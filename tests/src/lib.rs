@@ -2,6 +2,7 @@
 //! command line that their users would type; reducers in simulated processes; people who speak.
 
 mod command;
+pub mod console;
 mod group;
 mod host;
 pub mod spoken;

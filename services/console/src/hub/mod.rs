@@ -147,7 +147,6 @@ impl Hub {
         if let Err(mpsc::error::TrySendError::Full(_)) =
             there.mailbox.try_send(Letter::Frame(frame))
         {
-            self.metrics.dropped.inc();
             tracing::warn!(%viewer, "shut out: it does not read its answers");
             control.viewers.remove(viewer);
         }

@@ -1,0 +1,418 @@
+//! The console as pages see it: real groups, real sockets.
+
+use std::net::TcpListener;
+
+use rustix::process::Signal;
+use serde_json::{Value as Json, json};
+use tungstenite::Message;
+use whichone_tests::console::{Page, Visitor, http};
+use whichone_tests::{Group, wait_for};
+
+fn ok(done: &Json) -> bool {
+    assert!(done["ok"].as_bool().is_some(), "{done}");
+    done["ok"] == true
+}
+
+fn why(done: &Json) -> &str {
+    done["error"].as_str().unwrap_or_else(|| panic!("{done}"))
+}
+
+fn stands(page: &mut Page) -> Json {
+    page.until_part("dialogue", |dialogue| dialogue["decision"] == "ask")
+}
+
+/// Answers what is asked as somebody who wants the object, until the outcome is told.
+fn converse(page: &mut Page, object: &str) -> Json {
+    let mut answered = 0;
+    loop {
+        let seen = page.until("question or outcome", |page| {
+            let (dialogue, turn) = (page.parts.get("dialogue")?, page.parts.get("turn")?);
+            let over = dialogue["interaction"] == 0 && !dialogue["last"].is_null();
+            let asked = turn["state"] == "asked" && dialogue["prompt"].as_u64() > Some(answered);
+            (over || asked).then(|| dialogue.clone())
+        });
+        if seen["interaction"] == 0 {
+            return seen["last"].clone();
+        }
+        answered = seen["prompt"].as_u64().unwrap_or_default();
+        let about = &seen["question_about"];
+        let objects = page.parts["scene"]["objects"].as_array().unwrap();
+        let wanted = objects.iter().find(|one| one["name"] == object).unwrap();
+        let of = wanted["attributes"][about["attribute"].as_str().unwrap_or_default()].clone();
+        let text = match (&about["value"], &about["object"]) {
+            (Json::String(value), _) => if of == **value { "yes" } else { "no" }.to_owned(),
+            (_, Json::String(pointed)) => if pointed == object { "yes" } else { "no" }.to_owned(),
+            _ => of.as_str().unwrap_or("I do not know").to_owned(),
+        };
+        assert!(ok(&page.ask("say", &json!({ "text": text }))), "{text}");
+    }
+}
+
+#[test]
+fn a_dialogue_is_followed_from_the_request_to_the_hand_over() {
+    let group = Group::up(&[]);
+    let mut page = group.page(&Visitor::operator(1));
+    assert_eq!(page.welcome["protocol"], 1);
+    page.until_part("turn", |turn| turn["state"] == "idle");
+    let said = page.ask("say", &json!({ "text": "get me the bowl" }));
+    assert!(ok(&said) && said["seq"] == 1, "{said}");
+    let dialogue = stands(&mut page);
+    assert_eq!(dialogue["belief"].as_array().unwrap().len(), 6);
+    assert!(!dialogue["alternatives"].as_array().unwrap().is_empty(), "{dialogue}");
+    let last = converse(&mut page, "metal2");
+    assert_eq!((&last["outcome"], &last["object"]), (&json!("delivered"), &json!("metal2")));
+    let person = page.until_line("what was understood", |line| {
+        line["who"] == "person" && line["answers"].is_string() && line["understood"].is_array()
+    });
+    let meaning = person["understood"][0]["text"].as_str().unwrap();
+    assert!(["yes", "no"].iter().any(|word| meaning.contains(word)), "{person}");
+    page.until_line("the robot's question", |line| {
+        line["who"] == "robot" && line["question"].is_object()
+    });
+    let outcome = page.until_line("the outcome", |line| line["outcome"] == "delivered");
+    assert!(outcome["text"].as_str().unwrap().contains("big metallic bowl"), "{outcome}");
+    page.until_part("latency", |latency| {
+        latency["count"].as_u64() > Some(1) && latency["p99"]["total_ms"].as_f64() > Some(0.0)
+    });
+    page.until_part("world", |world| world["objects"].as_array().unwrap()[4].is_null());
+    assert!(
+        page.told
+            .iter()
+            .any(|told| told["t"] == "joints" && told["q"].as_array().unwrap().len() == 17)
+    );
+    let (status, _, body) = http(&group.console(), "GET", "/api/state", &[], "");
+    let state: Json = serde_json::from_str(&body).unwrap();
+    assert_eq!((status, &state["dialogue"]["last"]["object"]), (200, &json!("metal2")));
+    drop(page);
+    group.down();
+}
+
+#[test]
+fn not_that_denies_whatever_is_meant() {
+    let group = Group::up(&["arm.time_scale=2.0"]);
+    let mut page = group.page(&Visitor::operator(1));
+    page.until_part("dialogue", |dialogue| dialogue["interaction"] == 0);
+    assert!(why(&page.ask("not_that", &Json::Null)).contains("nothing"));
+    assert!(ok(&page.ask("say", &json!({ "text": "get me the bowl" }))));
+    let asked = stands(&mut page);
+    let value = asked["question_about"]["value"].as_str().unwrap().to_owned();
+    assert!(ok(&page.ask("not_that", &Json::Null)));
+    let line = page.until_line("the denial", |line| line["answers"].is_string());
+    assert_eq!((&line["text"], &line["understood"][0]["text"]), (&json!("no"), &json!("no")));
+    page.until_part("dialogue", |dialogue| dialogue["question_about"]["value"] != value.as_str());
+    // The evidence goes; the request stays.
+    assert!(ok(&page.ask("start_over", &Json::Null)));
+    page.until_part("dialogue", |dialogue| {
+        let belief = dialogue["belief"].as_array().unwrap();
+        dialogue["decision"] == "ask" && belief.iter().all(|p| *p == belief[0])
+    });
+    assert!(ok(&page.ask("say", &json!({ "text": "the clear bowl" }))));
+    page.until_part("arm", |arm| arm["phase"] == "moving");
+    assert!(ok(&page.ask("not_that", &Json::Null)));
+    page.until_line("the end of the pick", |line| line["outcome"] == "cancelled");
+    let line = page.until_line("what is wanted then", |line| {
+        line["text"] == "another bowl, not the clear bowl" && line["understood"].is_array()
+    });
+    assert_eq!(line["understood"][0]["text"], "not clear");
+    page.until_part("dialogue", |dialogue| {
+        dialogue["interaction"] == 2 && dialogue["belief"][5].as_f64() < Some(0.01)
+    });
+    drop(page);
+    group.down();
+}
+
+#[test]
+fn one_is_in_control_and_hands_it_over() {
+    let group = Group::up(&["console.handover_s=2.0"]);
+    let mut first = group.page(&Visitor::operator(1));
+    let mut second = group.page(&Visitor::operator(2));
+    let operator = |page: &Page| page.viewer();
+    second.until_part("control", |control| control["operator"] == operator(&first));
+    assert!(why(&second.ask("say", &json!({ "text": "the clear bowl" }))).contains("in control"));
+    let taken = second.ask("take_control", &Json::Null);
+    assert!(ok(&taken) && taken["granted"] == false, "{taken}");
+    first.until_part("control", |control| control["asked_by"] == operator(&second));
+    assert!(ok(&first.ask("keep_control", &Json::Null)));
+    second.until_part("control", |control| control["asked_by"].is_null());
+    assert!(ok(&second.ask("take_control", &Json::Null)));
+    assert!(ok(&first.ask("give_control", &json!({ "viewer": operator(&second) }))));
+    second.until_part("control", |control| control["operator"] == operator(&second));
+    assert!(ok(&second.ask("say", &json!({ "text": "hello" }))));
+    // Nobody answers: it goes over by itself.
+    assert!(ok(&first.ask("take_control", &Json::Null)));
+    first.until_part("control", |control| control["operator"] == operator(&first));
+    assert!(why(&second.ask("restart_service", &json!({ "service": "arm" }))).contains("control"));
+    assert!(ok(&first.ask("restart_service", &json!({ "service": "grounding" }))));
+    first.until_line("grounding to be back", |line| {
+        line["text"].as_str().unwrap().starts_with("grounding is back")
+    });
+    assert!(!ok(&first.ask("restart_service", &json!({ "service": "nobody" }))));
+    drop((first, second));
+    group.down();
+}
+
+#[test]
+fn a_page_that_is_loaded_again_goes_on() {
+    let group = Group::up(&[]);
+    let mut page = group.page(&Visitor::operator(1));
+    assert!(ok(&page.ask("say", &json!({ "text": "get me the bowl" }))));
+    page.until_line("the question", |line| line["who"] == "robot");
+    let last_line = page.last_line();
+    let again = Visitor { role: "viewer", last_line, ..Visitor::operator(1) };
+    let mut second = group.page(&again);
+    assert_eq!(page.until("the old page's end", |page| page.closed.clone()).0, 4001);
+    second.until_part("control", |control| control["operator"] == second_name(&second.welcome));
+    assert!(ok(&second.ask("say", &json!({ "text": "the white one" }))));
+    second.until_line("the new line", |line| line["text"] == "the white one");
+    let old = second.lines.iter().filter(|line| line["id"].as_u64() <= Some(last_line)).count();
+    assert_eq!(old, 0, "{:?}", second.lines);
+    drop((page, second));
+    group.down();
+}
+
+fn second_name(welcome: &Json) -> Json {
+    welcome["viewer"].clone()
+}
+
+#[test]
+fn anybody_may_stop_the_arm() {
+    let group = Group::up(&["arm.time_scale=1.0"]);
+    let mut operator = group.page(&Visitor::operator(1));
+    let mut viewer = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
+    assert!(ok(&operator.ask("say", &json!({ "text": "the clear bowl" }))));
+    viewer.until_part("arm", |arm| arm["moving"] == true && arm["phase"] == "moving");
+    let stopped = viewer.ask("stop", &Json::Null);
+    assert!(ok(&stopped) && stopped["stopped"] == true, "{stopped}");
+    viewer.until_part("turn", |turn| turn["state"] == "stopped");
+    viewer.until_part("arm", |arm| arm["stopped"] == true && arm["moving"] == false);
+    assert!(why(&viewer.ask("resume", &Json::Null)).contains("control"));
+    assert!(ok(&operator.ask("resume", &Json::Null)));
+    operator.until_part("turn", |turn| turn["state"] == "moving");
+    operator.until_line("the stop", |line| line["text"] == "The arm was stopped");
+    drop((operator, viewer));
+    group.down();
+}
+
+#[test]
+fn what_makes_no_sense_is_told_and_harms_nobody() {
+    let group = Group::up(&[]);
+    let place = group.console();
+    let mut page = group.page(&Visitor::operator(1));
+    for bad in ["", "null", "{\"t\":\"dance\"}", "{\"t\":\"do\"}", "{\"t\":\"hello\"}", "\u{1F916}"]
+    {
+        page.told.clear();
+        page.send_raw(Message::Text(bad.into()));
+        page.until("an error", |page| page.told.iter().any(|t| t["t"] == "error").then_some(()));
+    }
+    page.told.clear();
+    page.send_raw(Message::Binary(vec![9; 7].into()));
+    page.until("an error", |page| page.told.iter().any(|t| t["t"] == "error").then_some(()));
+    assert!(why(&page.ask("fly", &Json::Null)).contains("fly"));
+    assert!(why(&page.ask("say", &json!({ "text": "" }))).contains("words"));
+    assert!(why(&page.ask("say", &json!({ "text": "a", "began_ms": -1 }))).contains("began_ms"));
+    page.send(&json!({ "t": "ping", "at": 12.5 }));
+    page.until("a pong", |page| {
+        page.told.iter().any(|t| t["t"] == "pong" && t["at"] == 12.5).then_some(())
+    });
+    page.send_raw(Message::Text("x".repeat(65 << 10).into()));
+    page.until("the end of a page that sends too much", |page| page.closed.clone());
+    let mut mute = Page::connect(&place, &Visitor::operator(3)).unwrap();
+    mute.send(&json!({ "t": "ping", "at": 1 }));
+    mute.until("the end of a page without a hello", |page| page.closed.clone());
+    for (path, status) in [
+        ("/", 200),
+        ("/healthz", 200),
+        ("/metrics", 200),
+        ("/robot.urdf", 200),
+        ("/strings/en.json", 200),
+        ("/nowhere", 404),
+        ("/../Cargo.toml", 404),
+        ("/voice/line-1-1.wav", 404),
+        ("/voice/..%2f..%2fsettings.toml", 404),
+    ] {
+        assert_eq!(http(&place, "GET", path, &[], "").0, status, "{path}");
+    }
+    assert_eq!(http(&place, "POST", "/", &[], "").0, 405);
+    let mut page = group.page(&Visitor::operator(1));
+    assert!(ok(&page.ask("say", &json!({ "text": "the clear bowl" }))), "all goes on");
+    drop((page, mute));
+    group.down();
+}
+
+#[test]
+fn only_pages_of_its_own_come_in() {
+    let group = Group::up(&[]);
+    let place = group.console();
+    let foreign = |name, value: &str| Visitor {
+        headers: vec![(name, value.to_owned())],
+        ..Visitor::operator(1)
+    };
+    for origin in ["http://evil.example", "null", "http://127.0.0.1:1"] {
+        let refused = Page::connect(&place, &foreign("origin", origin)).unwrap_err();
+        assert!(refused.contains("403"), "{refused}");
+    }
+    // A name of another site's that leads to this machine.
+    assert_eq!(http(&place, "GET", "/api/state", &["Host: evil.example"], "").0, 421);
+    let (_, head, _) = http(&place, "GET", "/", &[], "");
+    assert!(head.to_lowercase().contains("content-security-policy: default-src 'self'"), "{head}");
+    group.down();
+}
+
+#[test]
+fn a_token_keeps_others_out() {
+    let group = Group::up(&["console.token=open-sesame-123"]);
+    let place = group.console();
+    let html = "Accept: text/html";
+    assert_eq!(http(&place, "GET", "/api/state", &[], "").0, 401);
+    let (status, head, _) = http(&place, "GET", "/", &[html], "");
+    assert!(status == 303 && head.contains("/login"), "{head}");
+    assert_eq!(http(&place, "GET", "/login", &[html], "").0, 200);
+    assert_eq!(http(&place, "GET", "/healthz", &[], "").0, 200);
+    assert!(Page::connect(&place, &Visitor::operator(1)).unwrap_err().contains("401"));
+    let own = format!("Origin: http://{place}");
+    let wrong = http(&place, "POST", "/login", &[&own], "token=guess");
+    assert!(wrong.1.contains("/login?wrong") && !wrong.1.to_lowercase().contains("set-cookie"));
+    assert_eq!(http(&place, "POST", "/login", &[], "token=open-sesame-123").0, 403);
+    let (status, head, _) = http(&place, "POST", "/login", &[&own], "token=open-sesame-123");
+    assert_eq!(status, 303, "{head}");
+    let head = head.to_lowercase();
+    let (_, cookie) = head.split_once("set-cookie: ").unwrap_or_else(|| panic!("{head}"));
+    let cookie = cookie.split(';').next().unwrap().to_owned();
+    let visitor = Visitor { headers: vec![("cookie", cookie)], ..Visitor::operator(1) };
+    drop(group.page(&visitor));
+    let bearer = ["Authorization: Bearer open-sesame-123"];
+    assert_eq!(http(&place, "GET", "/api/state", &bearer, "").0, 200);
+    group.down();
+}
+
+#[test]
+fn beyond_this_machine_it_wants_a_token() {
+    let mut group = Group::new();
+    let refused = group.start(&["console.listen=0.0.0.0:0"]);
+    assert_eq!(refused.code, Some(78), "{refused:?}");
+    for word in ["console.listen", "token", "127.0.0.1"] {
+        assert!(refused.stderr.contains(word), "{word}: {}", refused.stderr);
+    }
+}
+
+#[test]
+fn a_taken_port_makes_room_and_only_so_many_may_look() {
+    let taken = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = taken.local_addr().unwrap().port();
+    let listen = format!("console.listen=127.0.0.1:{port}");
+    let group = Group::up(&[&listen, "console.viewers_max=2"]);
+    let place = group.console();
+    assert!(!place.ends_with(&format!(":{port}")), "{place}");
+    let log = std::fs::read_to_string(group.paths().log_file("console")).unwrap();
+    assert!(log.contains("another port was taken"), "{log}");
+    assert_eq!(group.status()["console"], format!("http://{place}/"));
+    let (_first, _second) = (group.page(&Visitor::operator(1)), group.page(&Visitor::operator(2)));
+    let refused = Page::open(&place, &Visitor::operator(3)).unwrap_err();
+    assert!(refused.contains("viewers_max"), "{refused}");
+    drop(group.page(&Visitor::operator(2)));
+    group.down();
+}
+
+#[test]
+fn a_console_that_is_killed_is_back_at_its_place() {
+    let group = Group::up(&[]);
+    let place = group.console();
+    let mut page = group.page(&Visitor::operator(1));
+    assert!(ok(&page.ask("say", &json!({ "text": "get me the bowl" }))));
+    page.until_line("the question", |line| line["who"] == "robot");
+    let (lines, first_line) = (page.lines.clone(), page.welcome["first_line"].clone());
+    // What was said is kept some time after it was shown.
+    let kept = group.paths().run().join("console.lines");
+    wait_for("the transcript to be kept", 5.0, || {
+        let text = std::fs::read_to_string(&kept).ok()?;
+        (text.lines().count() >= lines.len()).then_some(())
+    });
+    let before = group.incarnation("console");
+    group.signal("console", Signal::KILL);
+    page.until("the end of the socket", |page| page.closed.clone());
+    group.wait_for_restart("console", before);
+    assert_eq!(group.console(), place);
+    let again = Visitor { last_line: page.last_line(), ..Visitor::operator(1) };
+    let mut page = group.page(&again);
+    assert_eq!(converse(&mut page, "white2")["object"], "white2");
+    let known = lines.last().unwrap()["id"].as_u64();
+    assert!(page.lines.iter().all(|line| line["id"].as_u64() > known), "{:?}", page.lines);
+    assert!(first_line.as_u64() <= page.welcome["first_line"].as_u64());
+    let mut all = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
+    let first = lines[0].clone();
+    all.until_line("the first line", |line| {
+        line["text"] == first["text"] && line["id"] == first["id"]
+    });
+    drop((page, all));
+    group.verify_journals();
+    group.down();
+}
+
+#[test]
+fn the_page_looks_on_while_services_die() {
+    let group = Group::up(&[]);
+    let mut page = group.page(&Visitor::operator(1));
+    for (service, object) in
+        [("speech", "white"), ("grounding", "metal"), ("policy", "clear"), ("arm", "white3")]
+    {
+        assert!(ok(&page.ask("say", &json!({ "text": "get me the bowl" }))));
+        stands(&mut page);
+        let before = page.last_line();
+        group.signal(service, Signal::KILL);
+        page.until_line(&format!("{service} to be back"), |line| {
+            let text = line["text"].as_str().unwrap();
+            line["id"].as_u64() > Some(before) && text.starts_with(&format!("{service} is back"))
+        });
+        let last = converse(&mut page, object);
+        assert_eq!((&last["outcome"], &last["object"]), (&json!("delivered"), &json!(object)));
+        page.until_part("dialogue", |dialogue| dialogue["interaction"] == 0);
+    }
+    assert!(page.closed.is_none());
+    drop(page);
+    group.verify_journals();
+    group.down();
+}
+
+#[test]
+fn one_that_does_not_read_is_shut_out_and_others_go_on() {
+    let group = Group::up(&["arm.joint_rate_hz=200.0"]);
+    let mut deaf = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
+    let mut page = group.page(&Visitor::operator(1));
+    let dropped = || {
+        let (_, _, text) = http(&group.console(), "GET", "/metrics", &[], "");
+        let line =
+            text.lines().find(|line| line.starts_with("whichone_console_viewers_dropped_total"));
+        line.is_some_and(|line| !line.ends_with(" 0"))
+    };
+    // It asks and never reads the answers.
+    let ping = json!({ "t": "ping", "at": 1.0, "more": "" }).to_string();
+    wait_for("a page that does not read to be shut out", 60.0, || {
+        (0..200).for_each(|_| deaf.send_raw(Message::Text(ping.clone().into())));
+        page.look();
+        dropped().then_some(())
+    });
+    page.until_part("control", |control| control["viewers"] == 1);
+    assert!(ok(&page.ask("say", &json!({ "text": "get me the bowl" }))));
+    assert_eq!(converse(&mut page, "white")["object"], "white");
+    drop((page, deaf));
+    group.down();
+}
+
+#[test]
+fn the_console_is_swapped_for_itself() {
+    let group = Group::up(&[]);
+    let place = group.console();
+    let program = whichone_tests::program("whichone-console").display().to_string();
+    group.must(&["swap", "console", "--", &program]);
+    assert_eq!(group.console(), place);
+    let mut page = group.page(&Visitor::operator(1));
+    page.until_part("services", |services| {
+        let mut all = services.as_array().unwrap().iter();
+        all.any(|service| service["name"] == "console" && service["swapped"].is_string())
+    });
+    drop(page);
+    group.must(&["stop", "console"]);
+    group.say("get me the bowl");
+    assert_eq!(group.await_pick(Some("clear"))["object"], "clear", "nobody needs the console");
+    group.down();
+}

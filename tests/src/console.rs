@@ -1,0 +1,261 @@
+//! A page without a browser: a socket of the console's, and what it was told.
+
+use crate::{Group, wait_for};
+use serde_json::{Map, Value as Json, json};
+use std::io::{ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
+use tungstenite::client::IntoClientRequest;
+use tungstenite::http::HeaderValue;
+use tungstenite::{Message, WebSocket, client};
+
+/// How long one look at the socket waits.
+const LOOK: Duration = Duration::from_millis(20);
+/// How long something is waited for.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// An open page.
+#[derive(Debug)]
+pub struct Page {
+    socket: WebSocket<TcpStream>,
+    /// What the console said at the beginning.
+    pub welcome: Json,
+    /// The sections as they are now.
+    pub parts: Map<String, Json>,
+    /// The transcript, by number.
+    pub lines: Vec<Json>,
+    /// Everything else that was told, oldest first.
+    pub told: Vec<Json>,
+    /// Frames that came.
+    pub frames: u64,
+    /// Why the console has closed it: code and reason.
+    pub closed: Option<(u16, String)>,
+    next: u64,
+}
+
+/// How a page says who it is.
+#[derive(Clone, Debug)]
+pub struct Visitor<'a> {
+    /// 32 hexadecimal digits.
+    pub session: String,
+    /// `operator`, `viewer` or `screen`.
+    pub role: &'a str,
+    /// The last line that it has.
+    pub last_line: u64,
+    /// More headers of the request.
+    pub headers: Vec<(&'static str, String)>,
+}
+
+impl Visitor<'_> {
+    /// One who wishes for control, in a session of this number.
+    pub fn operator(number: u32) -> Self {
+        let session = format!("{number:032x}");
+        Self { session, role: "operator", last_line: 0, headers: Vec::new() }
+    }
+}
+
+impl Group {
+    /// The address of the console, `127.0.0.1:PORT`.
+    pub fn console(&self) -> String {
+        wait_for("the console's address", 10.0, || {
+            let url = std::fs::read_to_string(self.paths().console_url()).ok()?;
+            Some(url.trim().strip_prefix("http://")?.trim_end_matches('/').to_owned())
+        })
+    }
+
+    /// Opens a page.
+    pub fn page(&self, visitor: &Visitor<'_>) -> Page {
+        wait_for("the console's welcome", 20.0, || Page::open(&self.console(), visitor).ok())
+    }
+}
+
+/// One request over HTTP: status, headers and body as text. The request has these further lines.
+///
+/// # Panics
+/// Where nobody answers.
+pub fn http(
+    place: &str,
+    method: &str,
+    path: &str,
+    more: &[&str],
+    body: &str,
+) -> (u16, String, String) {
+    let mut stream = TcpStream::connect(place).expect("the console listens");
+    stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
+    let host = if more.iter().any(|line| line.starts_with("Host:")) { "" } else { place };
+    let host = if host.is_empty() { String::new() } else { format!("Host: {host}\r\n") };
+    let more: String = more.iter().map(|line| format!("{line}\r\n")).collect();
+    let length = body.len();
+    write!(
+        stream,
+        "{method} {path} HTTP/1.1\r\n{host}{more}Content-Length: {length}\r\nConnection: close\r\n\r\n{body}"
+    )
+    .expect("the console reads");
+    let mut bytes = Vec::new();
+    let _ = stream.read_to_end(&mut bytes);
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let (head, body) = text.split_once("\r\n\r\n").unwrap_or((&text, ""));
+    let status = head.split(' ').nth(1).and_then(|code| code.parse().ok());
+    (status.unwrap_or_else(|| panic!("{head}")), head.to_owned(), body.to_owned())
+}
+
+impl Page {
+    /// Opens a page at `127.0.0.1:PORT` and waits for its welcome.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn open(place: &str, visitor: &Visitor<'_>) -> Result<Self, String> {
+        let mut page = Self::connect(place, visitor)?;
+        let Visitor { session, role, last_line, .. } = visitor;
+        page.send(&json!({ "t": "hello", "protocol": 1, "session": session, "name": "test",
+                           "last_line": last_line, "role": role }));
+        let until = Instant::now() + PATIENCE;
+        while page.welcome.is_null() {
+            page.look();
+            if let Some((code, why)) = &page.closed {
+                return Err(format!("{code} {why}"));
+            }
+            if Instant::now() > until {
+                return Err("no welcome".to_owned());
+            }
+        }
+        Ok(page)
+    }
+
+    /// Opens a socket and says nothing.
+    ///
+    /// # Errors
+    /// The console refuses.
+    pub fn connect(place: &str, visitor: &Visitor<'_>) -> Result<Self, String> {
+        let text = |error: &dyn std::fmt::Display| error.to_string();
+        let stream = TcpStream::connect(place).map_err(|e| text(&e))?;
+        stream.set_read_timeout(Some(PATIENCE)).map_err(|e| text(&e))?;
+        stream.set_write_timeout(Some(Duration::from_secs(1))).map_err(|e| text(&e))?;
+        let mut request = format!("ws://{place}/ws").into_client_request().map_err(|e| text(&e))?;
+        let headers = request.headers_mut();
+        let origin = HeaderValue::from_str(&format!("http://{place}")).map_err(|e| text(&e))?;
+        headers.insert("origin", origin);
+        for (name, value) in &visitor.headers {
+            headers.insert(*name, HeaderValue::from_str(value).map_err(|e| text(&e))?);
+        }
+        let (socket, _) = client(request, stream).map_err(|e| text(&e))?;
+        socket.get_ref().set_read_timeout(Some(LOOK)).map_err(|e| text(&e))?;
+        Ok(Self {
+            socket,
+            welcome: Json::Null,
+            parts: Map::new(),
+            lines: Vec::new(),
+            told: Vec::new(),
+            frames: 0,
+            closed: None,
+            next: 0,
+        })
+    }
+
+    /// Says something.
+    pub fn send(&mut self, message: &Json) {
+        self.send_raw(Message::Text(message.to_string().into()));
+    }
+
+    /// Sends any frame.
+    pub fn send_raw(&mut self, frame: Message) {
+        if self.socket.send(frame).is_err() {
+            self.closed.get_or_insert((0, "it does not read".to_owned()));
+        }
+    }
+
+    /// Takes in what has come, waiting a moment for the first of it.
+    pub fn look(&mut self) {
+        match self.socket.read() {
+            Ok(Message::Text(text)) => {
+                self.frames += 1;
+                self.hear(serde_json::from_str(&text).expect("frames are JSON"));
+            }
+            Ok(Message::Close(frame)) => {
+                let told = frame.map(|frame| (frame.code.into(), frame.reason.to_string()));
+                self.closed = Some(told.unwrap_or_default());
+            }
+            Ok(_) => {}
+            Err(tungstenite::Error::Io(error))
+                if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
+            Err(error) => {
+                self.closed.get_or_insert((0, error.to_string()));
+                std::thread::sleep(LOOK);
+            }
+        }
+    }
+
+    fn hear(&mut self, message: Json) {
+        match message["t"].as_str() {
+            Some("welcome") => self.welcome = message,
+            Some("state") => {
+                let parts = message["parts"].as_object().expect("parts");
+                self.parts.extend(parts.clone());
+            }
+            Some("lines") => {
+                for line in message["lines"].as_array().expect("lines") {
+                    self.lines.retain(|known| known["id"] != line["id"]);
+                    self.lines.push(line.clone());
+                }
+                self.lines.sort_by_key(|line| line["id"].as_u64());
+            }
+            _ => self.told.push(message),
+        }
+    }
+
+    /// Looks until `found` gives something.
+    ///
+    /// # Panics
+    /// Where it does not.
+    pub fn until<R>(&mut self, what: &str, mut found: impl FnMut(&Self) -> Option<R>) -> R {
+        let until = Instant::now() + PATIENCE;
+        loop {
+            if let Some(found) = found(self) {
+                return found;
+            }
+            let Self { parts, lines, told, closed, .. } = self;
+            assert!(
+                Instant::now() < until,
+                "no {what} within {PATIENCE:?}\n{parts:?}\n{lines:?}\n{told:?}\n{closed:?}"
+            );
+            self.look();
+        }
+    }
+
+    /// Looks until the section `part` is as `is` says.
+    pub fn until_part(&mut self, part: &str, is: impl Fn(&Json) -> bool) -> Json {
+        self.until(part, |page| page.parts.get(part).filter(|value| is(value)).cloned())
+    }
+
+    /// Looks until there is a line that is as `is` says.
+    pub fn until_line(&mut self, what: &str, is: impl Fn(&Json) -> bool) -> Json {
+        self.until(what, |page| page.lines.iter().find(|line| is(line)).cloned())
+    }
+
+    /// Has something done, and waits for its answer.
+    pub fn ask(&mut self, verb: &str, more: &Json) -> Json {
+        let id = self.begin(verb, more);
+        self.until(verb, |page| page.told.iter().find(|told| told["id"] == id).cloned())
+    }
+
+    /// Has something done.
+    pub fn begin(&mut self, verb: &str, more: &Json) -> u64 {
+        self.next += 1;
+        let mut message = json!({ "t": "do", "id": self.next, "do": verb });
+        if let (Some(message), Some(more)) = (message.as_object_mut(), more.as_object()) {
+            message.extend(more.clone());
+        }
+        self.send(&message);
+        self.next
+    }
+
+    /// Its number: `v3`.
+    pub fn viewer(&self) -> String {
+        self.welcome["viewer"].as_str().unwrap_or_default().to_owned()
+    }
+
+    /// The last line that it has.
+    pub fn last_line(&self) -> u64 {
+        self.lines.last().and_then(|line| line["id"].as_u64()).unwrap_or(0)
+    }
+}
