@@ -23,18 +23,28 @@ fn stands(page: &mut Page) -> Json {
 
 /// Answers what is asked as somebody who wants the object, until the outcome is told.
 fn converse(page: &mut Page, object: &str) -> Json {
-    let mut answered = 0;
+    let over = |dialogue: &Json| dialogue["interaction"] == 0 && !dialogue["last"].is_null();
+    answer_until(page, object, over)["last"].clone()
+}
+
+/// Answers what is asked as somebody who wants the object, until the dialogue is as `over` says.
+fn answer_until(page: &mut Page, object: &str, over: impl Fn(&Json) -> bool) -> Json {
+    let (mut answered, mut said) = (None, 0);
     loop {
-        let seen = page.until("question or outcome", |page| {
+        let (seen, asked) = page.until("question or end", |page| {
             let (dialogue, turn) = (page.parts.get("dialogue")?, page.parts.get("turn")?);
-            let over = dialogue["interaction"] == 0 && !dialogue["last"].is_null();
-            let asked = turn["state"] == "asked" && dialogue["prompt"].as_u64() > Some(answered);
-            (over || asked).then(|| dialogue.clone())
+            let speaking = &page.parts.get("speech")?["speaking"];
+            let asked = (speaking["prompt"].as_u64(), speaking["presentation"].as_u64());
+            let is_asked = turn["state"] == "asked"
+                && dialogue["prompt"].as_u64() == asked.0
+                && dialogue["applied"].as_u64() >= Some(said)
+                && answered != Some(asked);
+            (over(dialogue) || is_asked).then(|| (dialogue.clone(), asked))
         });
-        if seen["interaction"] == 0 {
-            return seen["last"].clone();
+        if over(&seen) {
+            return seen;
         }
-        answered = seen["prompt"].as_u64().unwrap_or_default();
+        answered = Some(asked);
         let about = &seen["question_about"];
         let objects = page.parts["scene"]["objects"].as_array().unwrap();
         let wanted = objects.iter().find(|one| one["name"] == object).unwrap();
@@ -44,8 +54,17 @@ fn converse(page: &mut Page, object: &str) -> Json {
             (_, Json::String(pointed)) => if pointed == object { "yes" } else { "no" }.to_owned(),
             _ => of.as_str().unwrap_or("I do not know").to_owned(),
         };
-        assert!(ok(&page.ask("say", &json!({ "text": text }))), "{text}");
+        let done = page.ask("say", &json!({ "text": text }));
+        assert!(ok(&done), "{text}: {done}");
+        said = done["seq"].as_u64().unwrap();
     }
+}
+
+/// Asks for the clear bowl until the robot is sure.
+fn have_it_fetch(page: &mut Page) {
+    let said = page.ask("say", &json!({ "text": "the clear bowl" }))["seq"].as_u64();
+    page.until_part("dialogue", |dialogue| dialogue["applied"].as_u64() >= said);
+    answer_until(page, "clear", |dialogue| dialogue["decision"] == "pick");
 }
 
 #[test]
@@ -106,7 +125,7 @@ fn not_that_denies_whatever_is_meant() {
         let belief = dialogue["belief"].as_array().unwrap();
         dialogue["decision"] == "ask" && belief.iter().all(|p| *p == belief[0])
     });
-    assert!(ok(&page.ask("say", &json!({ "text": "the clear bowl" }))));
+    have_it_fetch(&mut page);
     page.until_part("arm", |arm| arm["phase"] == "moving");
     assert!(ok(&page.ask("not_that", &Json::Null)));
     page.until_line("the end of the pick", |line| line["outcome"] == "cancelled");
@@ -126,21 +145,21 @@ fn one_is_in_control_and_hands_it_over() {
     let group = Group::up(&["console.handover_s=2.0"]);
     let mut first = group.page(&Visitor::operator(1));
     let mut second = group.page(&Visitor::operator(2));
-    let operator = |page: &Page| page.viewer();
-    second.until_part("control", |control| control["operator"] == operator(&first));
+    let (one, other) = (first.viewer(), second.viewer());
+    second.until_part("control", |control| control["operator"] == one.as_str());
     assert!(why(&second.ask("say", &json!({ "text": "the clear bowl" }))).contains("in control"));
     let taken = second.ask("take_control", &Json::Null);
     assert!(ok(&taken) && taken["granted"] == false, "{taken}");
-    first.until_part("control", |control| control["asked_by"] == operator(&second));
+    first.until_part("control", |control| control["asked_by"] == other.as_str());
     assert!(ok(&first.ask("keep_control", &Json::Null)));
     second.until_part("control", |control| control["asked_by"].is_null());
     assert!(ok(&second.ask("take_control", &Json::Null)));
-    assert!(ok(&first.ask("give_control", &json!({ "viewer": operator(&second) }))));
-    second.until_part("control", |control| control["operator"] == operator(&second));
+    assert!(ok(&first.ask("give_control", &json!({ "viewer": other }))));
+    second.until_part("control", |control| control["operator"] == other.as_str());
     assert!(ok(&second.ask("say", &json!({ "text": "hello" }))));
     // Nobody answers: it goes over by itself.
     assert!(ok(&first.ask("take_control", &Json::Null)));
-    first.until_part("control", |control| control["operator"] == operator(&first));
+    first.until_part("control", |control| control["operator"] == one.as_str());
     assert!(why(&second.ask("restart_service", &json!({ "service": "arm" }))).contains("control"));
     assert!(ok(&first.ask("restart_service", &json!({ "service": "grounding" }))));
     first.until_line("grounding to be back", |line| {
@@ -161,7 +180,8 @@ fn a_page_that_is_loaded_again_goes_on() {
     let again = Visitor { role: "viewer", last_line, ..Visitor::operator(1) };
     let mut second = group.page(&again);
     assert_eq!(page.until("the old page's end", |page| page.closed.clone()).0, 4001);
-    second.until_part("control", |control| control["operator"] == second_name(&second.welcome));
+    let viewer = second.viewer();
+    second.until_part("control", |control| control["operator"] == viewer.as_str());
     assert!(ok(&second.ask("say", &json!({ "text": "the white one" }))));
     second.until_line("the new line", |line| line["text"] == "the white one");
     let old = second.lines.iter().filter(|line| line["id"].as_u64() <= Some(last_line)).count();
@@ -170,16 +190,12 @@ fn a_page_that_is_loaded_again_goes_on() {
     group.down();
 }
 
-fn second_name(welcome: &Json) -> Json {
-    welcome["viewer"].clone()
-}
-
 #[test]
 fn anybody_may_stop_the_arm() {
     let group = Group::up(&["arm.time_scale=1.0"]);
     let mut operator = group.page(&Visitor::operator(1));
     let mut viewer = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
-    assert!(ok(&operator.ask("say", &json!({ "text": "the clear bowl" }))));
+    have_it_fetch(&mut operator);
     viewer.until_part("arm", |arm| arm["moving"] == true && arm["phase"] == "moving");
     let stopped = viewer.ask("stop", &Json::Null);
     assert!(ok(&stopped) && stopped["stopped"] == true, "{stopped}");

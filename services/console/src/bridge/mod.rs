@@ -138,17 +138,18 @@ impl Bridge {
         }
     }
 
-    /// What is pending is looked at before the view, so that the view is the newer of the two.
+    /// Causes before effects, as far as one look can tell: utterances, what was understood, what was
+    /// decided, what is said. What is pending comes before the view, which is the newer of the two.
     fn take_in(&mut self, now: Now) {
-        for act in all(&self.ports.acts) {
-            self.picture.see_act(&act);
-        }
         for receipt in all(&self.ports.receipts) {
             self.saying.answered(&receipt, &self.app.hub);
             self.picture.see_receipt(&receipt, now);
         }
         for observation in all(&self.ports.observations) {
             self.picture.see_observation(&observation);
+        }
+        for act in all(&self.ports.acts) {
+            self.picture.see_act(&act);
         }
         if let Some(activity) = quiet(self.ports.activity.latest()) {
             self.picture.see_activity(activity);

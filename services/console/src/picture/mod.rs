@@ -208,7 +208,9 @@ impl Picture {
     /// What was understood.
     pub fn see_observation(&mut self, observation: &Observation) {
         self.latency.understood(observation);
-        if let Some(understood) = understood::read(&self.scene, observation, &self.prompts) {
+        let open = self.view.as_ref().map_or(0, |view| view.interaction);
+        let understood = understood::read(&self.scene, observation, &self.prompts, open);
+        if let Some(understood) = understood {
             self.transcript.understood(observation.seq, understood);
         }
     }

@@ -23,6 +23,7 @@ pub(super) struct Prompt {
     pub(super) presentation: u32,
     pub(super) question: Question,
     pub(super) scene_key: u64,
+    pub(super) interaction: u64,
     pub(super) text: String,
 }
 
@@ -43,6 +44,7 @@ impl Prompts {
             presentation: act.presentation,
             question: if asks { question } else { Question::None },
             scene_key: act.scene_key,
+            interaction: act.interaction,
             text: text.to_owned(),
         });
     }

@@ -18,18 +18,25 @@ pub(super) struct Understood {
     pub(super) answers: Option<String>,
 }
 
-/// What was understood; none where it speaks of another scene or makes no sense.
+/// What was understood while `interaction` was open; none where it speaks of another scene or makes no sense.
 pub(super) fn read(
     scene: &Scene,
     observation: &Observation,
     prompts: &Prompts,
+    interaction: u64,
 ) -> Option<Understood> {
     if observation.scene_key != scene.key() {
         return None;
     }
     let all = observation.interpretations(scene.words().len()).ok()?;
     let asked = observation.asked().ok()?;
+    // What was asked in another interaction is answered no more.
+    let stands = |asked: &AskedQuestion| {
+        let prompt = prompts.find(asked.prompt, asked.presentation);
+        prompt.is_none_or(|prompt| prompt.interaction == interaction)
+    };
     let answered = answered(&all, asked, observation.onset_ns);
+    let answered = answered.filter(|at| asked.get(*at).is_some_and(stands));
     let mut meant: Vec<&Interpretation> = all
         .iter()
         .filter(|meant| meant.question == answered && meant.weight >= WEIGHT_MIN)

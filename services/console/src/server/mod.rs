@@ -20,7 +20,7 @@ use axum::extract::{Request, State};
 use axum::http::{Method, Response, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Redirect};
-use axum::routing::{get, post};
+use axum::routing::get;
 use serde_json::Value as Json;
 use tokio::net::TcpListener;
 
@@ -86,7 +86,7 @@ fn router(app: Arc<App>) -> Router {
         .layer(middleware::from_fn_with_state(Arc::clone(&app), admit))
         // What comes below is open to whoever has not said the token yet.
         .route("/healthz", get(routes::health))
-        .route("/login", post(login::login))
+        .route("/login", get(routes::asset).post(login::login))
         .layer(middleware::from_fn_with_state(Arc::clone(&app), address))
         .with_state(app)
 }
