@@ -1,4 +1,5 @@
 // @ts-check
+import { icon } from "../icons.js";
 import { VIEWS } from "./cameras.js";
 import { Overlay } from "./overlay.js";
 import { ArmView } from "./view.js";
@@ -69,21 +70,39 @@ function build(element, t) {
   stage.setAttribute("role", "group");
   stage.setAttribute("aria-label", t("arm.stage"));
   stage.setAttribute("aria-describedby", caption.id);
-  const buttons = VIEWS.map((name) => {
-    const button = /** @type {HTMLButtonElement} */ (
-      make("button", "arm-button", t(`arm.view.${name}`))
-    );
-    button.type = "button";
-    button.dataset.view = name;
-    return button;
-  });
+  const buttons = VIEWS.map((name) => tool(name, t(`arm.view.${name}`)));
+  if (document.fullscreenEnabled) {
+    const wide = tool("wide", t("arm.wide"));
+    wide.addEventListener("click", () => toggleFullScreen(stage));
+    buttons.push(wide);
+  }
   const tools = make("div", "arm-tools", ...buttons);
   tools.setAttribute("role", "group");
   tools.setAttribute("aria-label", t("arm.views"));
-  element.replaceChildren(stage, make("div", "arm-foot", caption, tools));
+  stage.append(tools);
+  element.replaceChildren(stage, caption);
   element.classList.add("arm-view");
   element.dataset.state = "loading";
   return { canvas, labels, notice, badge, caption, stage, buttons };
+}
+
+const ICONS = { start: "again", person: "eye", above: "above", wide: "wide" };
+
+/** @param {string} name @param {string} label */
+function tool(name, label) {
+  const button = document.createElement("button");
+  Object.assign(button, { type: "button", className: "arm-button", title: label });
+  button.setAttribute("aria-label", label);
+  button.dataset.view = name;
+  button.append(icon(/** @type {any} */ (ICONS[name]), 18));
+  return button;
+}
+
+/** @param {HTMLElement} stage */
+function toggleFullScreen(stage) {
+  const change = document.fullscreenElement ? document.exitFullscreen() : stage.requestFullscreen();
+  // A browser may refuse; the picture stays as it is.
+  change.catch(() => {});
 }
 
 /** Has the view follow the server. */
@@ -113,7 +132,7 @@ function watch(view, { stage, canvas, notice, buttons }, t) {
   new MutationObserver(theme).observe(document.documentElement, { attributes: true });
   theme();
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
-  for (const button of buttons) {
+  for (const button of buttons.filter(({ dataset }) => VIEWS.includes(dataset.view ?? ""))) {
     button.addEventListener("click", () => view.look(button.dataset.view, calm.matches));
   }
   canvas.addEventListener("webglcontextlost", () => {

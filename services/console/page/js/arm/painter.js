@@ -9,16 +9,16 @@ import { Fineness } from "./figures.js";
 import { studio } from "./room.js";
 
 /**
- * How finely a moving picture is drawn, finest first: pixels of the picture per pixel of the page,
- * the shadow's size, and whether the robot mirrors the room.
+ * How finely a moving picture is drawn, finest first: how many pixels it has at most, how many its
+ * shadows have along a side, and whether the robot mirrors the room.
  */
 const FINENESS = [
-  { ratio: 2, shadow: 2048, rich: true },
-  { ratio: 1, shadow: 1024, rich: true },
-  { ratio: 1, shadow: 1024, rich: false },
-  { ratio: 0.75, shadow: 512, rich: false },
-  { ratio: 0.6, shadow: 512, rich: false },
-  { ratio: 0.45, shadow: 256, rich: false },
+  { pixels: 8e6, shadow: 2048, rich: true },
+  { pixels: 2e6, shadow: 1024, rich: true },
+  { pixels: 1e6, shadow: 1024, rich: false },
+  { pixels: 4e5, shadow: 512, rich: false },
+  { pixels: 2.4e5, shadow: 512, rich: false },
+  { pixels: 1.4e5, shadow: 256, rich: false },
 ];
 /** Where drawing is done by the processor, it begins with this one. */
 const FIRST_IN_SOFTWARE = 3;
@@ -47,7 +47,10 @@ export class Painter {
 
   /** Pixels of the picture per pixel of the page while it moves. */
   get ratio() {
-    return Math.min(FINENESS[this.#fineness.level].ratio, window.devicePixelRatio || 1);
+    const { width, height } = this.#size;
+    const { pixels } = FINENESS[this.#fineness.level];
+    const screen = Math.min(window.devicePixelRatio || 1, RATIO_MAX);
+    return Math.min(Math.sqrt(pixels / Math.max(width * height, 1)), screen);
   }
 
   /** What shiny things mirror, once `light` was called. */
@@ -73,11 +76,11 @@ export class Painter {
    *   once, and one that moves, quickly
    */
   draw({ scene, camera, room, robot }, how) {
-    const { ratio, shadow, rich } = FINENESS[how === "still" ? 0 : this.#fineness.level];
+    const { shadow, rich } = FINENESS[how === "still" ? 0 : this.#fineness.level];
     room.setShadow(shadow);
     robot?.setRich(rich);
     scene.environment = rich ? this.mirrored : null;
-    this.#resize(how === "still" ? this.#finest() : Math.min(ratio, this.#finest()));
+    this.#resize(how === "still" ? this.#finest() : this.ratio);
     // Without a graphics card the shadows of what moves follow at half the rate.
     this.#isOdd = !this.#isOdd;
     this.renderer.shadowMap.autoUpdate = rich;

@@ -33,9 +33,9 @@ export class RobotModel {
     this.object = loader.parse(description);
     this.#rich = new MeshStandardMaterial({ vertexColors: true, roughness: 0.42, metalness: 0.12 });
     this.#plain = new MeshLambertMaterial({ vertexColors: true });
-    for (const link of Object.values(this.object.links)) {
-      const mesh = dress(link, this.object, this.#rich);
-      if (mesh) this.#meshes.push(mesh);
+    this.object.updateMatrixWorld(true);
+    for (const [carrier, bodies] of bodiesOf(this.object)) {
+      this.#meshes.push(dress(carrier, bodies, this.#rich));
     }
     const limbs = LIMBS.map((limb) => limbJoints(this.object, limb));
     this.#setters = JOINT_NAMES.map((name) => setter(this.object, limbs, name));
@@ -128,18 +128,34 @@ function fingersOf(robot, limb, side) {
   return fingers;
 }
 
-/** Puts a link's bodies on it: what is drawn of it, or where that is in files, the room it takes. */
-function dress(link, robot, material) {
-  const bodies = (kind) => children(link.urdfNode, kind).map((node) => bodyOf(node, robot));
-  const visual = bodies("visual");
-  let seen = visual.filter((body) => body !== null);
-  if (seen.length === 0 && visual.length > 0)
-    seen = bodies("collision").filter((body) => body !== null);
-  if (seen.length === 0) return null;
-  const mesh = new Mesh(merged(seen), material);
+/** All bodies by the link that carries them: what moves together is drawn in one call. */
+function bodiesOf(robot) {
+  const found = new Map();
+  for (const link of Object.values(robot.links)) {
+    let carrier = link;
+    while (carrier.parent?.jointType === "fixed") carrier = carrier.parent.parent;
+    const onto = carrier.matrixWorld.clone().invert().multiply(link.matrixWorld);
+    const bodies = seenOf(link, robot);
+    for (const { matrix } of bodies) matrix.premultiply(onto);
+    if (bodies.length > 0) found.set(carrier, [...(found.get(carrier) ?? []), ...bodies]);
+  }
+  return found;
+}
+
+/** What is drawn of a link, or where all of that is in files, the room that it takes. */
+function seenOf(link, robot) {
+  const bodies = (kind) =>
+    children(link.urdfNode, kind).flatMap((node) => bodyOf(node, robot) ?? []);
+  const seen = bodies("visual");
+  const isDrawn = children(link.urdfNode, "visual").length > 0;
+  return seen.length === 0 && isDrawn ? bodies("collision") : seen;
+}
+
+function dress(link, bodies, material) {
+  const mesh = new Mesh(merged(bodies), material);
   mesh.castShadow = true;
   mesh.receiveShadow = true;
-  mesh.userData.bodies = seen.length;
+  mesh.userData.bodies = bodies.length;
   link.add(mesh);
   return mesh;
 }

@@ -236,16 +236,20 @@ export class ArmView {
       held: this.#things.held,
       trajectory: this.#course.isShown,
       view: this.#view,
+      eye: this.#camera.position.toArray(),
+      frames: this.#painter.renderer.info.render.frame,
     };
   }
 
-  /** Where a link would be at other joint positions, for tests. */
-  forward(q, grip, link) {
-    if (!this.#robot) return null;
-    this.#robot.pose(q, grip);
-    const place = this.#robot.placeOf(link);
+  /**
+   * Where a link would be at other joint positions, for tests.
+   * @param {Record<string, number>} joints radians, by the description's names
+   * @param {string} link
+   */
+  forward(joints, link) {
+    this.#robot?.object.setJointValues(joints);
     this.request();
-    return place;
+    return this.#robot?.placeOf(link) ?? null;
   }
 
   #draw(at) {
