@@ -79,10 +79,26 @@ export async function loadStrings(language) {
   document.documentElement.lang = language;
 }
 
-/** @param {string} code @returns {Promise<Record<string, string>>} */
+/** A console that is just being started anew is asked again so often. */
+const TRIES = 4;
+/** And after this time, milliseconds. */
+const TRY_AGAIN_MS = 400;
+
+/**
+ * Without its words the page still works, stop first of all: it shows their keys then.
+ * @param {string} code
+ * @returns {Promise<Record<string, string>>}
+ */
 async function table(code) {
-  const answer = await fetch(`/strings/${code}.json`);
-  return answer.ok ? await answer.json() : {};
+  for (let attempt = 1; attempt <= TRIES; attempt++) {
+    try {
+      const answer = await fetch(`/strings/${code}.json`);
+      return answer.ok ? await answer.json() : {};
+    } catch {
+      await new Promise((resolve) => setTimeout(resolve, TRY_AGAIN_MS));
+    }
+  }
+  return {};
 }
 
 const ATTRIBUTES = { t: "", tLabel: "aria-label", tTitle: "title", tPlaceholder: "placeholder" };
