@@ -18,6 +18,15 @@ describe("the transcript", () => {
     assert.equal(mergeLines(known, []), known);
   });
 
+  it("gives way to another one that counts from 1 again", () => {
+    const timed = (...pairs) => pairs.map(([id, at_ms]) => ({ id, at_ms }));
+    const known = timed([7, 100], [8, 90], [9, 120]);
+    assert.deepEqual(ids(mergeLines(known, timed([8, 90], [10, 130]))), [7, 8, 9, 10]);
+    assert.deepEqual(ids(mergeLines(known, timed([1, 500]))), [1], "an early number, but later");
+    assert.deepEqual(ids(mergeLines(known, timed([8, 500], [9, 510]))), [8, 9], "other lines");
+    assert.deepEqual(ids(mergeLines(known, timed([6, 80]))), [6, 7, 8, 9], "one from before");
+  });
+
   it("keeps the latest, and no more than the server", () => {
     const many = Array.from({ length: 500 }, (_, i) => ({ id: i + 1 }));
     const kept = mergeLines([], many);
@@ -53,6 +62,13 @@ describe("the store", () => {
     store.subscribe("scene", () => seen.push([store.get("scene"), store.get("dialogue")]));
     store.apply({ scene: "new", dialogue: "new" });
     assert.deepEqual(seen.at(-1), ["new", "new"]);
+  });
+
+  it("has the last lines told once more after a lost connection", () => {
+    const store = new Store();
+    assert.equal(store.resumeAfter, 0);
+    store.addLines(Array.from({ length: 40 }, (_, i) => ({ id: i + 1 })));
+    assert.equal(store.resumeAfter, 30);
   });
 
   it("begins the transcript anew with a server that has another one", () => {

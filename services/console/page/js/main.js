@@ -31,7 +31,7 @@ document.documentElement.dataset.role = role;
 const link = connect({
   session: sessionId(tabStorage()),
   role,
-  lastLine: () => store.lastLine,
+  lastLine: () => store.resumeAfter,
 });
 keep(store, link);
 

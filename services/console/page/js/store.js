@@ -1,6 +1,9 @@
 // @ts-check
 import { mergeLines } from "./model/lines.js";
 
+/** Lines that are asked for once more after a lost connection. */
+const OVERLAP = 10;
+
 /**
  * What the page knows. Sections are those of the server's `state`, and of the page itself: `lines`
  * (transcript, oldest first), `partial`, `link` (status), `welcome`.
@@ -58,6 +61,11 @@ export class Store {
   resume(firstLine) {
     const lost = firstLine === 0 || (firstLine ?? 0) > this.lastLine + 1;
     if (lost && this.lastLine > 0) this.set("lines", []);
+  }
+
+  /** The line after which a server goes on: the last few may have changed meanwhile. */
+  get resumeAfter() {
+    return Math.max(0, this.lastLine - OVERLAP);
   }
 
   /** The newest transcript line that is known, 0 for none. */

@@ -15,9 +15,17 @@ export function makeLine(line, t) {
   const text = line.text || t("talk.nothing");
   const words = h("p", { class: "words" }, speaker, text);
   const notes = [...understood(line, t), ...circumstances(line, t)];
-  const clock = line.clock ? h("time", { class: "clock", text: line.clock }) : null;
+  const time = clockOf(line, t.language());
+  const clock = time ? h("time", { class: "clock", text: time }) : null;
   const below = notes.length || clock ? h("p", { class: "notes" }, ...notes, clock) : null;
   return h("div", { class: "line", "data-who": line.who }, words, below);
+}
+
+/** The time of day, where this page is. */
+function clockOf(line, language) {
+  if (typeof line.unix_ms !== "number") return line.clock;
+  const form = { hour: "2-digit", minute: "2-digit", second: "2-digit", hourCycle: "h23" };
+  return new Date(line.unix_ms).toLocaleTimeString(language, form);
 }
 
 /** What was understood, each hypothesis a chip with its weight. */
