@@ -78,15 +78,19 @@ export class Overlay {
    * @param {number} held which object is in the gripper, -1 for none
    */
   mark(thoughts, held) {
+    let isOther = false;
     for (const [n, label] of this.#labels.entries()) {
       const { belief = null, best = false, asked = false } = thoughts[n] ?? {};
       const percent = belief === null ? "" : ` ${Math.round(100 * belief)} %`;
+      const mark = n === held ? "held" : asked ? "asked" : best ? "best" : "";
       label.weight = (n === held ? 4 : 0) + (asked ? 2 : 0) + (best ? 1 : 0) + (belief ?? 0);
-      label.node.dataset.mark = n === held ? "held" : asked ? "asked" : best ? "best" : "";
       label.node.dataset.faint = String(belief !== null && belief < 0.02 && n !== held);
-      if (label.share.textContent !== percent) label.share.textContent = percent;
+      if (label.share.textContent === percent && label.node.dataset.mark === mark) continue;
+      label.share.textContent = percent;
+      label.node.dataset.mark = mark;
+      isOther = true;
     }
-    this.measure();
+    if (isOther) this.measure();
   }
 
   /** Takes the sizes of all labels anew. */

@@ -172,6 +172,7 @@ export class ArmView {
     this.#camera.aspect = width / height;
     this.#camera.updateProjectionMatrix();
     this.#painter.setSize(this.#size);
+    this.overlay.measure();
     if (!this.controls.isMoved) this.look(this.#view, true);
     this.request();
   }

@@ -1,0 +1,179 @@
+// The arm in 3D.
+
+import { readFile } from "node:fs/promises";
+import { join } from "node:path";
+import { expectAccessible } from "../lib/axe.mjs";
+import { ROOT } from "../lib/program.mjs";
+import { t } from "../lib/strings.mjs";
+import { answerUntilPicked, expectDelivered, type } from "../lib/talk.mjs";
+import { expect, test } from "../lib/test.mjs";
+
+const arm = (page) => page.locator("#arm");
+const shown = (page) => arm(page).evaluate((element) => element.armView?.shown() ?? null);
+const distance = (a, b) => Math.hypot(...a.map((value, k) => value - b[k]));
+const file = (path) => readFile(join(ROOT, path), "utf8");
+
+async function drawn(page) {
+  await expect(arm(page)).toHaveAttribute("data-state", "ready", { timeout: 60_000 });
+}
+
+/** The `joints` messages that the page gets from now on. */
+async function listen(page) {
+  const messages = [];
+  page.on("websocket", (socket) =>
+    socket.on("framereceived", ({ payload }) => {
+      if (typeof payload !== "string" || !payload.includes('"joints"')) return;
+      const message = JSON.parse(payload);
+      if (message.t === "joints") messages.push(message);
+    }),
+  );
+  await page.reload();
+  return messages;
+}
+
+test("the robot is drawn whole, and every object stands where the scene has it", async ({
+  console: page,
+  group,
+}) => {
+  await drawn(page);
+  const { robot, bodies, objects, held } = await shown(page);
+  const description = await file("config/robots/baxter.urdf");
+  expect(robot).toBe("baxter");
+  expect(bodies).toBe(description.match(/<visual>/g).length);
+  const { scene } = await group.state();
+  expect(objects).toHaveLength(scene.objects.length);
+  for (const [n, object] of scene.objects.entries()) {
+    expect(distance(objects[n], object.xyz), object.name).toBeLessThan(0.001);
+  }
+  expect(held).toBe(-1);
+  await expect(page.locator(".arm-caption")).toHaveText(t("arm.resting"));
+  await expectAccessible(page);
+});
+
+test("its kinematics are those of the reference", async ({ console: page }) => {
+  await drawn(page);
+  for (const limb of ["left", "right"]) {
+    const [head, ...rows] = (await file(`tests/fixtures/baxter/fk_reference_${limb}.csv`))
+      .trim()
+      .split("\n")
+      .map((line) => line.split(","));
+    const names = head.slice(0, 7).map((name) => name.replace("q_", `${limb}_`));
+    const column = head.indexOf("gripper_electric_x");
+    const cases = rows.map((row) => ({
+      joints: Object.fromEntries(names.map((name, n) => [name, Number(row[n])])),
+      place: row.slice(column, column + 3).map(Number),
+    }));
+    const places = await arm(page).evaluate(
+      (element, [link, postures]) => postures.map((q) => element.armView.forward(q, link)),
+      [`${limb}_gripper`, cases.map(({ joints }) => joints)],
+    );
+    for (const [n, { place }] of cases.entries()) {
+      expect(distance(places[n], place), `${limb} ${n}`).toBeLessThan(1e-5);
+    }
+  }
+});
+
+test("a picture in which nothing happens is not drawn again, and the keyboard turns it", async ({
+  console: page,
+}) => {
+  await drawn(page);
+  await page.evaluate(() => document.fonts.ready);
+  const frames = async () => (await shown(page)).frames;
+  const after = (count) =>
+    page.evaluate(async (n) => {
+      for (; n > 0; n--) await new Promise((done) => requestAnimationFrame(done));
+    }, count);
+  let before = -1;
+  await expect
+    .poll(async () => {
+      const last = before;
+      await after(60);
+      before = await frames();
+      return before - last;
+    })
+    .toBe(0);
+
+  const { eye } = await shown(page);
+  await page.locator(".arm-stage").focus();
+  await page.keyboard.press("ArrowRight");
+  await expect.poll(async () => distance((await shown(page)).eye, eye)).toBeGreaterThan(0.1);
+  await page.getByRole("button", { name: t("arm.view.start") }).click();
+  await expect.poll(async () => distance((await shown(page)).eye, eye)).toBeLessThan(0.001);
+});
+
+test.describe("a pick", () => {
+  // In real time, so that there is something to see.
+  test.use({ settings: ["arm.time_scale=1"] });
+
+  test("is followed from the order to the hand-over", async ({ console: page, group }) => {
+    const messages = await listen(page);
+    await drawn(page);
+    await type(page, "the big clear bowl");
+    await answerUntilPicked(page, group, "clear");
+    await expect.poll(async () => (await shown(page)).trajectory).toBe(true);
+    await expect.poll(async () => (await shown(page)).held, { timeout: 30_000 }).not.toBe(-1);
+
+    const { scene } = await group.state();
+    const { held } = await shown(page);
+    expect(scene.objects[held].name).toBe("clear");
+    const way = [];
+    while ((await shown(page)).held === held) {
+      const { grippers, objects, joints } = await shown(page);
+      const apart = Math.min(...grippers.map((gripper) => distance(gripper, objects[held])));
+      way.push({ apart, at: objects[held], joints, heard: messages.length });
+    }
+    expect(distance(way[0].at, way.at(-1).at), "it was carried").toBeGreaterThan(0.2);
+    const apart = way.map((moment) => moment.apart);
+    expect(Math.max(...apart) - Math.min(...apart), "by the gripper").toBeLessThan(0.002);
+    // What was drawn lies between messages that had come.
+    for (const { joints, heard } of way) {
+      const near = messages.slice(Math.max(heard - 60, 0), heard + 2);
+      for (const [name, n] of [
+        ["left_e1", 3],
+        ["right_e1", 10],
+      ]) {
+        const values = near.map(({ q }) => q[n]);
+        expect(joints[name]).toBeGreaterThanOrEqual(Math.min(...values) - 1e-6);
+        expect(joints[name]).toBeLessThanOrEqual(Math.max(...values) + 1e-6);
+      }
+    }
+    await expectDelivered(page, group, "clear");
+    await expect.poll(async () => (await shown(page)).trajectory).toBe(false);
+    const figures = await arm(page).evaluate((element) => element.armView.stats());
+    expect(figures.count).toBeGreaterThan(0);
+    test.info().annotations.push({ type: "picture", description: JSON.stringify(figures) });
+  });
+
+  test("that is stopped is seen to be", async ({ console: page, group }) => {
+    await drawn(page);
+    await type(page, "the big clear bowl");
+    await answerUntilPicked(page, group, "clear");
+    await expect.poll(async () => (await shown(page)).trajectory).toBe(true);
+    await page.keyboard.press("Escape");
+    await expect(page.locator(".arm-badge")).toBeVisible();
+    await expect(page.locator(".arm-caption")).toHaveText(t("arm.stopped"));
+    await expect.poll(async () => (await shown(page)).trajectory).toBe(false);
+    await expect.poll(async () => (await group.state()).arm.moving).toBe(false);
+    const still = await shown(page);
+    const { world } = await group.state();
+    for (const n of [0, 1]) {
+      const tip = world.grippers[n].slice(0, 3);
+      await expect
+        .poll(async () => distance((await shown(page)).grippers[n], tip))
+        .toBeLessThan(0.002);
+    }
+    expect(still.held).toBe(-1);
+  });
+});
+
+test.describe("a browser without WebGL", () => {
+  test("says in words what the arm does", async ({ page, group, watched }) => {
+    void watched;
+    await page.addInitScript(() => {
+      HTMLCanvasElement.prototype.getContext = () => null;
+    });
+    await page.goto(group.url);
+    await expect(page.locator(".arm-notice")).toHaveText(t("arm.no_webgl"));
+    await expect(page.locator(".arm-caption")).toHaveText(t("arm.resting"));
+  });
+});
