@@ -3,12 +3,13 @@
 //! other solvers; how fast the group starts and recovers, how long an utterance
 //! takes to become a decision and where the time goes, what it costs when nothing happens, how
 //! steadily joint states come, how much of spoken sentences is understood, how turns are taken in
-//! simulated time, and how dialogues by voice end.
+//! simulated time, what many open pages cost the console, and how dialogues by voice end.
 //!
 //! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
 //! test rests on one.
 
 mod arm;
+mod console;
 mod core;
 mod idle;
 mod jitter;
@@ -71,6 +72,9 @@ fn measure(options: &Options, report: &mut Report) {
     }
     if options.wants("--turns") {
         turns::measure(report, options);
+    }
+    if options.wants("--console") {
+        console::measure(report, options);
     }
     if options.wants("--spoken") {
         spoken::measure(report, options);

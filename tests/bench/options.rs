@@ -11,14 +11,18 @@ Parts; all of them where none is named:
   --joints       only how steadily joint states come
   --speech       only spoken input: what is understood of spoken sentences, how late
   --turns        only turn-taking in simulated time: answers late, early, overlapping, doubled
+  --console      only the console: many pages while dialogues run
   --spoken       only dialogues by voice with the real group, in real time
 
   --dialogues N  dialogues of --turns (500) and, in each noise, of --spoken (60; 6 among all parts)
   --seed S       seed of these dialogues (1)
+  --viewers N    pages of --console (20)
+  --minutes N    how long they look on (10; 1 among all parts or with --quick)
   --groups N     groups that hold spoken dialogues at a time (3)
 ";
 
-const PARTS: [&str; 6] = ["--core", "--kinematics", "--joints", "--speech", "--turns", "--spoken"];
+const PARTS: [&str; 7] =
+    ["--core", "--kinematics", "--joints", "--speech", "--turns", "--spoken", "--console"];
 
 /// What the command line says.
 pub(crate) struct Options {
@@ -27,6 +31,8 @@ pub(crate) struct Options {
     pub(crate) dialogues: Option<u64>,
     pub(crate) seed: u64,
     pub(crate) groups: usize,
+    pub(crate) viewers: usize,
+    pub(crate) minutes: Option<u64>,
 }
 
 impl Options {
@@ -35,11 +41,13 @@ impl Options {
         let dialogues = number(&mut words, "--dialogues")?;
         let seed = number(&mut words, "--seed")?.unwrap_or(1);
         let groups = number(&mut words, "--groups")?.unwrap_or(3) as usize;
+        let viewers = number(&mut words, "--viewers")?.unwrap_or(20) as usize;
+        let minutes = number(&mut words, "--minutes")?;
         let quick = words.iter().any(|word| word == "--quick");
         words.retain(|word| word != "--quick");
         match words.iter().find(|word| !PARTS.contains(&word.as_str())) {
             Some(unknown) => Err(format!("{unknown} is no option")),
-            None => Ok(Self { parts: words, quick, dialogues, seed, groups }),
+            None => Ok(Self { parts: words, quick, dialogues, seed, groups, viewers, minutes }),
         }
     }
 

@@ -21,50 +21,11 @@ fn stands(page: &mut Page) -> Json {
     page.until_part("dialogue", |dialogue| dialogue["decision"] == "ask")
 }
 
-/// Answers what is asked as somebody who wants the object, until the outcome is told.
-fn converse(page: &mut Page, object: &str) -> Json {
-    let over = |dialogue: &Json| dialogue["interaction"] == 0 && !dialogue["last"].is_null();
-    answer_until(page, object, over)["last"].clone()
-}
-
-/// Answers what is asked as somebody who wants the object, until the dialogue is as `over` says.
-fn answer_until(page: &mut Page, object: &str, over: impl Fn(&Json) -> bool) -> Json {
-    let (mut answered, mut said) = (None, 0);
-    loop {
-        let (seen, asked) = page.until("question or end", |page| {
-            let (dialogue, turn) = (page.parts.get("dialogue")?, page.parts.get("turn")?);
-            let speaking = &page.parts.get("speech")?["speaking"];
-            let asked = (speaking["prompt"].as_u64(), speaking["presentation"].as_u64());
-            let is_asked = turn["state"] == "asked"
-                && dialogue["prompt"].as_u64() == asked.0
-                && dialogue["applied"].as_u64() >= Some(said)
-                && answered != Some(asked);
-            (over(dialogue) || is_asked).then(|| (dialogue.clone(), asked))
-        });
-        if over(&seen) {
-            return seen;
-        }
-        answered = Some(asked);
-        let about = &seen["question_about"];
-        let objects = page.parts["scene"]["objects"].as_array().unwrap();
-        let wanted = objects.iter().find(|one| one["name"] == object).unwrap();
-        let of = wanted["attributes"][about["attribute"].as_str().unwrap_or_default()].clone();
-        let text = match (&about["value"], &about["object"]) {
-            (Json::String(value), _) => if of == **value { "yes" } else { "no" }.to_owned(),
-            (_, Json::String(pointed)) => if pointed == object { "yes" } else { "no" }.to_owned(),
-            _ => of.as_str().unwrap_or("I do not know").to_owned(),
-        };
-        let done = page.ask("say", &json!({ "text": text }));
-        assert!(ok(&done), "{text}: {done}");
-        said = done["seq"].as_u64().unwrap();
-    }
-}
-
 /// Asks for the clear bowl until the robot is sure.
 fn have_it_fetch(page: &mut Page) {
     let said = page.ask("say", &json!({ "text": "the clear bowl" }))["seq"].as_u64();
     page.until_part("dialogue", |dialogue| dialogue["applied"].as_u64() >= said);
-    answer_until(page, "clear", |dialogue| dialogue["decision"] == "pick");
+    page.answer_until("clear", |dialogue| dialogue["decision"] == "pick");
 }
 
 #[test]
@@ -78,7 +39,7 @@ fn a_dialogue_is_followed_from_the_request_to_the_hand_over() {
     let dialogue = stands(&mut page);
     assert_eq!(dialogue["belief"].as_array().unwrap().len(), 6);
     assert!(!dialogue["alternatives"].as_array().unwrap().is_empty(), "{dialogue}");
-    let last = converse(&mut page, "metal2");
+    let last = page.converse("metal2");
     assert_eq!((&last["outcome"], &last["object"]), (&json!("delivered"), &json!("metal2")));
     let person = page.until_line("what was understood", |line| {
         line["who"] == "person" && line["answers"].is_string() && line["understood"].is_array()
@@ -350,7 +311,7 @@ fn a_console_that_is_killed_is_back_at_its_place() {
     assert_eq!(group.console(), place);
     let again = Visitor { last_line: page.last_line(), ..Visitor::operator(1) };
     let mut page = group.page(&again);
-    assert_eq!(converse(&mut page, "white2")["object"], "white2");
+    assert_eq!(page.converse("white2")["object"], "white2");
     let known = lines.last().unwrap()["id"].as_u64();
     assert!(page.lines.iter().all(|line| line["id"].as_u64() > known), "{:?}", page.lines);
     assert!(first_line.as_u64() <= page.welcome["first_line"].as_u64());
@@ -379,7 +340,7 @@ fn the_page_looks_on_while_services_die() {
             let text = line["text"].as_str().unwrap();
             line["id"].as_u64() > Some(before) && text.starts_with(&format!("{service} is back"))
         });
-        let last = converse(&mut page, object);
+        let last = page.converse(object);
         assert_eq!((&last["outcome"], &last["object"]), (&json!("delivered"), &json!(object)));
         page.until_part("dialogue", |dialogue| dialogue["interaction"] == 0);
     }
@@ -409,7 +370,7 @@ fn one_that_does_not_read_is_shut_out_and_others_go_on() {
     });
     page.until_part("control", |control| control["viewers"] == 1);
     assert!(ok(&page.ask("say", &json!({ "text": "get me the bowl" }))));
-    assert_eq!(converse(&mut page, "white")["object"], "white");
+    assert_eq!(page.converse("white")["object"], "white");
     drop((page, deaf));
     group.down();
 }

@@ -258,4 +258,55 @@ impl Page {
     pub fn last_line(&self) -> u64 {
         self.lines.last().and_then(|line| line["id"].as_u64()).unwrap_or(0)
     }
+
+    /// Answers what is asked as somebody who wants the object, until the interaction has ended; how.
+    ///
+    /// # Panics
+    /// Where it does not come to an end.
+    pub fn converse(&mut self, object: &str) -> Json {
+        let over = |dialogue: &Json| dialogue["interaction"] == 0 && !dialogue["last"].is_null();
+        self.answer_until(object, over)["last"].clone()
+    }
+
+    /// Answers what is asked as somebody who wants the object, until the dialogue is as `over` says.
+    ///
+    /// # Panics
+    /// Where it never is.
+    pub fn answer_until(&mut self, object: &str, over: impl Fn(&Json) -> bool) -> Json {
+        let (mut answered, mut said) = (None, 0);
+        loop {
+            let (seen, asked) = self.until("question or end", |page| {
+                let (dialogue, turn) = (page.parts.get("dialogue")?, page.parts.get("turn")?);
+                let speaking = &page.parts.get("speech")?["speaking"];
+                let asked = (speaking["prompt"].as_u64(), speaking["presentation"].as_u64());
+                let is_asked = turn["state"] == "asked"
+                    && dialogue["prompt"].as_u64() == asked.0
+                    && dialogue["applied"].as_u64() >= Some(said)
+                    && answered != Some(asked);
+                (over(dialogue) || is_asked).then(|| (dialogue.clone(), asked))
+            });
+            if over(&seen) {
+                return seen;
+            }
+            answered = Some(asked);
+            let text = self.answer_for(&seen["question_about"], object);
+            let done = self.ask("say", &json!({ "text": text }));
+            assert!(done["ok"] == true, "{text}: {done}");
+            said = done["seq"].as_u64().unwrap_or(said);
+        }
+    }
+
+    /// What somebody who wants the object says to a question.
+    fn answer_for(&self, about: &Json, object: &str) -> String {
+        let objects = self.parts["scene"]["objects"].as_array().into_iter().flatten();
+        let wanted = objects.into_iter().find(|one| one["name"] == object);
+        let attribute = about["attribute"].as_str().unwrap_or_default();
+        let value = wanted.map_or(Json::Null, |one| one["attributes"][attribute].clone());
+        let yes = |is: bool| if is { "yes" } else { "no" }.to_owned();
+        match (&about["value"], &about["object"]) {
+            (Json::String(asked), _) => yes(value == *asked.as_str()),
+            (_, Json::String(pointed)) => yes(pointed == object),
+            _ => value.as_str().unwrap_or("I do not know").to_owned(),
+        }
+    }
 }

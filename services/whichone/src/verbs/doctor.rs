@@ -2,6 +2,7 @@
 
 use std::env;
 use std::fs;
+use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 
 use runtime::admin;
@@ -11,7 +12,7 @@ use serde::Serialize;
 use settings::{BUILT_IN, Settings};
 use supervisor::launch;
 
-use super::{leftovers, place, up, words};
+use super::{console, leftovers, place, up, words};
 use crate::cli::ConfigArgs;
 use crate::output::{Ink, Output, Style};
 use crate::trouble::Outcome;
@@ -52,6 +53,7 @@ pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>
         left_behind(paths),
     ];
     if let Ok(settings) = &settings {
+        findings.push(page(paths, settings));
         findings.push(sound::recogniser(settings));
         findings.push(sound::voice(settings));
         findings.push(sound::microphone(settings));
@@ -101,6 +103,22 @@ fn programs() -> Finding {
     }
     let cure = "build all of them: cargo build --release --workspace";
     bad("programs", format!("{} has no {}; {cure}", folder.display(), missing.join(", ")))
+}
+
+/// Where the page is, or whether it has its port.
+fn page(paths: &GroupPaths, settings: &Settings) -> Finding {
+    const WHAT: &str = "console";
+    if let Some(url) = console::url(paths) {
+        return good(WHAT, format!("served at {url}"));
+    }
+    let wanted = settings.console.listen;
+    match TcpListener::bind(wanted) {
+        Ok(_) => good(WHAT, format!("{wanted} is free")),
+        Err(error) => {
+            let cure = "one of the 15 ports behind it will be taken, or set console.listen";
+            poor(WHAT, format!("{wanted}: {error}; {cure}"))
+        }
+    }
 }
 
 /// Whether the groups' folder can be written.
