@@ -71,6 +71,15 @@ export function mountActions(element, context) {
     if (mode() !== "stop") resume();
     else if (performance.now() - pressedAt > LATCH_MS) stop();
   });
+  // A dialog dims the page, but not the stop: pressing where it is seen stops, and shows the page.
+  const onBackdrop = (event) => {
+    const dialog = event.target;
+    if (!(dialog instanceof HTMLDialogElement) || mode() !== "stop") return;
+    if (isAt(dialog, event) || !isAt(button, event)) return;
+    stop();
+    dialog.close();
+  };
+  addEventListener("pointerdown", onBackdrop, { capture: true });
   const onEscape = (event) => {
     if (event.key !== "Escape" || event.isComposing) return;
     const now = performance.now();
@@ -96,4 +105,10 @@ export function mountActions(element, context) {
   });
   store.subscribe(["arm", "stop", "link"], draw);
   draw();
+}
+
+/** Whether a pointer is on an element, whatever lies between. */
+function isAt(element, { clientX, clientY }) {
+  const { left, right, top, bottom } = element.getBoundingClientRect();
+  return clientX >= left && clientX <= right && clientY >= top && clientY <= bottom;
 }
