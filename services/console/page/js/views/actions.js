@@ -9,6 +9,11 @@ const LATCH_MS = 800;
 /** How long the button asks whether motion may go on, milliseconds. */
 const ASK_MS = 6_000;
 
+/** Two signs of one press of a key come within this time, milliseconds. */
+const SAME_MS = 80;
+/** What leaves the full screen so soon after another key or a press was that one, milliseconds. */
+const ASIDE_MS = 600;
+
 /**
  * The stop. It acts when it is touched, before anything is drawn; what it becomes, resume, wants two
  * separate presses.
@@ -30,6 +35,7 @@ export function mountActions(element, context) {
   let askedAt = null;
   let asking = 0;
   let escapedAt = null;
+  let otherAt = Number.NEGATIVE_INFINITY;
 
   const mode = () => {
     if (!store.get("arm")?.stopped) return "stop";
@@ -80,14 +86,32 @@ export function mountActions(element, context) {
     dialog.close();
   };
   addEventListener("pointerdown", onBackdrop, { capture: true });
-  const onEscape = (event) => {
-    if (event.key !== "Escape" || event.isComposing) return;
+  const countEscape = () => {
     const now = performance.now();
-    const moving = store.get("arm")?.moving === true;
-    if (escapeStops(escapedAt, now, moving)) stop();
+    if (escapedAt !== null && now - escapedAt < SAME_MS) return;
+    if (escapeStops(escapedAt, now, store.get("arm")?.moving === true)) stop();
     escapedAt = now;
   };
-  addEventListener("keydown", onEscape, { capture: true });
+  const onKey = (event) => {
+    if (event.key === "Escape" && !event.isComposing) countEscape();
+    else otherAt = performance.now();
+  };
+  const onFullScreen = () => {
+    const full = document.fullscreenElement;
+    (full ?? element).append(button);
+    button.classList.toggle("floats", full !== null);
+    // The browser keeps the key that leaves the full screen to itself.
+    if (!full && performance.now() - otherAt > ASIDE_MS) countEscape();
+  };
+  addEventListener("keydown", onKey, { capture: true });
+  addEventListener(
+    "pointerdown",
+    () => {
+      otherAt = performance.now();
+    },
+    { capture: true },
+  );
+  document.addEventListener("fullscreenchange", onFullScreen);
 
   const draw = eachFrame(() => {
     const is = mode();
