@@ -6,6 +6,9 @@ pub mod command;
 pub mod lease;
 mod viewers;
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

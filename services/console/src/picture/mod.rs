@@ -15,6 +15,9 @@ mod transcript;
 mod turn;
 mod understood;
 
+#[cfg(test)]
+mod tests;
+
 use ::scene::Scene;
 use node::Time;
 use protocol::{

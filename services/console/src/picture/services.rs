@@ -64,3 +64,43 @@ pub(super) fn missing(group: &GroupStatus) -> Option<&ServiceStatus> {
     let mut needed = group.services.iter().filter(|service| NEEDED.contains(&&*service.name));
     needed.find(|service| service.actual != Actual::Ready)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn group(services: &[(&str, &str, u32)]) -> GroupStatus {
+        let services: Vec<Json> = services
+            .iter()
+            .map(|(name, actual, incarnation)| {
+                json!({ "name": name, "wanted": "up", "actual": actual, "incarnation": incarnation,
+                        "restarts": incarnation.saturating_sub(1) })
+            })
+            .collect();
+        let group = json!({
+            "name": "lab", "state": "ready", "supervisor_pid": 7, "version": "0", "epoch": 1,
+            "uptime_s": 1.0, "scene": "bowls", "config": "/c", "strays_killed": 0,
+            "services": services,
+        });
+        serde_json::from_value(group).unwrap()
+    }
+
+    fn told(before: &GroupStatus, after: &GroupStatus) -> Vec<(String, bool)> {
+        turns(Some(before), after).into_iter().map(|(s, back)| (s.name.clone(), back)).collect()
+    }
+
+    #[test]
+    fn who_is_lost_and_who_is_back() {
+        let well = group(&[("arm", "ready", 1), ("policy", "ready", 1)]);
+        let lost = group(&[("arm", "backoff", 1), ("policy", "ready", 1)]);
+        let back = group(&[("arm", "ready", 2), ("policy", "ready", 1)]);
+        assert!(told(&well, &well).is_empty() && turns(None, &lost).is_empty());
+        assert_eq!(told(&well, &lost), [("arm".to_owned(), false)]);
+        assert_eq!(told(&lost, &back), [("arm".to_owned(), true)]);
+        assert_eq!(told(&well, &back), [("arm".to_owned(), true)], "both between two looks");
+        let begins = group(&[("arm", "starting", 1), ("policy", "ready", 1)]);
+        assert!(told(&begins, &well).is_empty(), "a first start is no news");
+        assert_eq!(missing(&lost).map(|service| service.name.as_str()), Some("arm"));
+        assert!(missing(&well).is_none());
+    }
+}
