@@ -56,6 +56,11 @@ impl Desk {
         Self { protocol, group, people, missing_since: None }
     }
 
+    /// What holds for who comes next.
+    pub(super) fn protocol(&self) -> &Protocol {
+        &self.protocol
+    }
+
     /// Everybody, in the order in which they came.
     pub(super) fn people(&self) -> &[Participant] {
         &self.people

@@ -11,6 +11,7 @@ pub(super) fn section(desk: &Desk, seen: &Seen<'_>, trouble: Option<&str>) -> Js
     let counting = desk.people().iter().filter(|person| person.status().counts());
     let of = |status: Status| desk.people().iter().filter(|p| p.status() == status).count();
     json!({
+        "title": desk.protocol().title,
         "active": desk.active().map(|person| participant(person, seen)),
         "last": desk.people().last().filter(|p| p.stage.is_final()).map(|p| participant(p, seen)),
         "participants": desk.people().len(),
@@ -53,7 +54,12 @@ fn of_trial(person: &Participant, trial: &Trial, seen: &Seen<'_>) -> Json {
         Some(End::Fault(_, why)) => (Some("fault"), Some(why)),
         None => (None, None),
     };
+    let picked = match &trial.end {
+        Some(End::Verdict { object, .. }) => object.as_ref(),
+        _ => None,
+    };
     json!({
+        "picked": picked,
         "number": (!trial.step.practice).then_some(number),
         "practice": trial.step.practice,
         "policy": trial.step.policy,
