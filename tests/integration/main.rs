@@ -8,6 +8,7 @@ mod batch;
 mod changes;
 mod config;
 mod console;
+mod console_study;
 mod dialogues;
 mod export;
 mod gestures;

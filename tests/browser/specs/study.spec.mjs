@@ -1,0 +1,122 @@
+// A participant takes part, from the welcome to the file that a lab reads; keyboard only.
+
+import { expectAccessible } from "../lib/axe.mjs";
+import { t } from "../lib/strings.mjs";
+import { expect, test } from "../lib/test.mjs";
+
+test.use({ settings: ["study.enabled=true", "study.consent=I agree to take part.", "study.title=Bowls"] });
+
+/** Waits for a screen of the participant's page. */
+const screen = (page, name) => expect(page.locator("body")).toHaveAttribute("data-screen", name);
+
+/** Presses a button as somebody without a mouse does. */
+async function press(page, key) {
+  const button = page.getByRole("button", { name: t(key), exact: true });
+  await expect(button).toBeEnabled();
+  await button.focus();
+  await page.keyboard.press("Enter");
+}
+
+/** One interaction: the card, the start, a request, and a truthful person's answers. */
+async function interact(page, group) {
+  await screen(page, "drawn");
+  const desired = await page.locator("#screen [data-object]").getAttribute("data-object");
+  await press(page, "study.start");
+  await screen(page, "running");
+  await page.getByRole("textbox", { name: t("say.label") }).fill("get me the bowl");
+  await page.keyboard.press("Enter");
+  await group.call("await", "pick", "--answer-as", desired ?? "", "--timeout", "50");
+  await screen(page, "over");
+  await expect(page.getByText(t("study.outcome.right"))).toBeVisible();
+  return desired;
+}
+
+test("three interactions, a reload, the questionnaire and the export", async ({
+  page,
+  group,
+  watched,
+}) => {
+  void watched;
+  await page.goto(new URL("/study", group.url).href);
+  await press(page, "study.begin");
+  await screen(page, "consent");
+  await page.getByRole("checkbox", { name: t("study.agree") }).focus();
+  await page.keyboard.press("Space");
+  await press(page, "study.continue");
+  await screen(page, "instructions");
+  await expectAccessible(page);
+  await press(page, "study.continue");
+
+  const desired = [];
+  for (const number of [1, 2, 3]) {
+    await expect(page.getByText(t("study.progress", { n: number, total: 3 }))).toBeVisible();
+    desired.push(await interact(page, group));
+    if (number === 2) await page.reload();
+    await press(page, number < 3 ? "study.next" : "study.continue");
+  }
+
+  await screen(page, "questionnaire");
+  await expectAccessible(page);
+  await press(page, "study.send");
+  await expect(page.getByText(t("study.missing.other", { n: 4 }))).toBeVisible();
+  for (const scale of await page.locator(".study-form fieldset").all()) {
+    await scale.getByRole("radio", { name: "4", exact: true }).focus();
+    await page.keyboard.press("Space");
+  }
+  await page.locator(".study-form textarea").fill("=1+1, “fine”");
+  await press(page, "study.send");
+  await screen(page, "thanks");
+
+  await page.goto(new URL("/results", group.url).href);
+  await expect(page.getByRole("cell", { name: "100%" })).toBeVisible();
+  await expect(page.getByRole("img", { name: t("study.picture.success") })).toBeVisible();
+  await expectAccessible(page);
+  const download = page.waitForEvent("download");
+  await page.getByRole("link", { name: t("study.files.interactions") }).click();
+  const rows = await read(await (await download).createReadStream());
+  expect(rows.map((row) => [row.desired, row.outcome, row.number])).toEqual(
+    desired.map((object, n) => [object, "right", String(n + 1)]),
+  );
+  const report = await group.json("study", "report");
+  expect(report.all).toMatchObject({ interactions: 3, success: 1 });
+  expect(report.questionnaire[3].mean.mean).toBe(4);
+});
+
+/** The rows of a table without quotes, by column. */
+async function read(stream) {
+  let text = "";
+  for await (const part of stream) text += part;
+  const [heads, ...lines] = text.trim().split("\n");
+  const names = heads.split(",");
+  return lines.map((line) => {
+    const cells = line.split(",");
+    return Object.fromEntries(names.map((name, n) => [name, cells[n]]));
+  });
+}
+
+test("a second participant waits, and the first one withdraws", async ({
+  page,
+  group,
+  browser,
+  watched,
+}) => {
+  void watched;
+  const place = new URL("/study", group.url).href;
+  await page.goto(place);
+  await press(page, "study.begin");
+  await screen(page, "consent");
+
+  const elsewhere = await browser.newContext({ locale: "en-US" });
+  const other = await elsewhere.newPage();
+  await other.goto(place);
+  await screen(other, "busy");
+  await expectAccessible(other);
+
+  await press(page, "study.withdraw");
+  await expectAccessible(page);
+  await press(page, "study.withdraw.delete");
+  await screen(page, "withdrawn");
+  await expect(page.getByText(t("study.deleted.more"))).toBeVisible();
+  await screen(other, "welcome");
+  await elsewhere.close();
+});
