@@ -2,8 +2,8 @@
 
 use rustix::process::Signal;
 use serde_json::{Value as Json, json};
-use whichone_tests::console::{Page, Visitor, http};
 use whichone_tests::Group;
+use whichone_tests::console::{Page, Visitor, http};
 
 /// The secret of the participant's page.
 const PAGE: &str = "00112233445566778899aabbccddeeff";
@@ -84,7 +84,11 @@ fn table(group: &Group, file: &str) -> Vec<std::collections::BTreeMap<String, St
     let mut lines = text.lines();
     let heads: Vec<&str> = lines.next().expect("heads").split(',').collect();
     let row = |line: &str| {
-        heads.iter().map(|head| (*head).to_owned()).zip(line.split(',').map(str::to_owned)).collect()
+        heads
+            .iter()
+            .map(|head| (*head).to_owned())
+            .zip(line.split(',').map(str::to_owned))
+            .collect()
     };
     lines.map(row).collect()
 }
@@ -135,12 +139,15 @@ fn a_participant_takes_part_and_the_files_say_what_happened() {
     }
     let people = table(&group, "participants.csv");
     assert_eq!((&*people[0]["status"], &*people[0]["q_again"]), ("complete", "4"));
-    let report = report(&group);
-    assert_eq!(report["participants"]["complete"], 1);
-    assert_eq!((&report["all"]["interactions"], &report["all"]["success"]), (&json!(3), &json!(1.0)));
+    let results = report(&group);
+    assert_eq!(results["participants"]["complete"], 1);
+    assert_eq!(
+        (&results["all"]["interactions"], &results["all"]["success"]),
+        (&json!(3), &json!(1.0))
+    );
     let (_, _, served) = http(&group.console(), "GET", "/study/report.json", &[], "");
     let served: Json = serde_json::from_str(&served).expect("JSON");
-    assert_eq!(served, report, "page and command line reckon alike");
+    assert_eq!(served, results, "page and command line reckon alike");
     let (status, head, _) = http(&group.console(), "GET", "/study/success.svg", &[], "");
     assert!(status == 200 && head.contains("image/svg+xml"), "{head}");
 
