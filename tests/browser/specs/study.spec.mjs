@@ -4,7 +4,9 @@ import { expectAccessible } from "../lib/axe.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
 
-test.use({ settings: ["study.enabled=true", "study.consent=I agree to take part.", "study.title=Bowls"] });
+test.use({
+  settings: ["study.enabled=true", "study.consent=I agree to take part.", "study.title=Bowls"],
+});
 
 /** Waits for a screen of the participant's page. */
 const screen = (page, name) => expect(page.locator("body")).toHaveAttribute("data-screen", name);
