@@ -117,8 +117,8 @@ test.describe("a pick", () => {
     const { held } = await shown(page);
     expect(scene.objects[held].name).toBe("clear");
     const way = [];
-    while ((await shown(page)).held === held) {
-      const { grippers, objects, joints } = await shown(page);
+    for (let now = await shown(page); now.held === held; now = await shown(page)) {
+      const { grippers, objects, joints } = now;
       const apart = Math.min(...grippers.map((gripper) => distance(gripper, objects[held])));
       way.push({ apart, at: objects[held], joints, heard: messages.length });
     }
@@ -127,7 +127,7 @@ test.describe("a pick", () => {
     expect(Math.max(...apart) - Math.min(...apart), "by the gripper").toBeLessThan(0.002);
     // What was drawn lies between messages that had come.
     for (const { joints, heard } of way) {
-      const near = messages.slice(Math.max(heard - 60, 0), heard + 2);
+      const near = messages.slice(Math.max(heard - 60, 0), heard + 15);
       for (const [name, n] of [
         ["left_e1", 3],
         ["right_e1", 10],

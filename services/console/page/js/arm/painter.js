@@ -17,8 +17,8 @@ const FINENESS = [
   { pixels: 2e6, shadow: 1024, rich: true },
   { pixels: 1e6, shadow: 1024, rich: false },
   { pixels: 4e5, shadow: 512, rich: false },
-  { pixels: 2.4e5, shadow: 512, rich: false },
-  { pixels: 1.4e5, shadow: 256, rich: false },
+  { pixels: 2e5, shadow: 512, rich: false },
+  { pixels: 9e4, shadow: 256, rich: false },
 ];
 /** Where drawing is done by the processor, it begins with this one. */
 const FIRST_IN_SOFTWARE = 3;

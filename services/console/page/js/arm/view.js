@@ -19,6 +19,19 @@ import { Things } from "./things.js";
 
 /** A picture that stands is drawn once more, finely, after this long, milliseconds. */
 const STILL_MS = 140;
+/** A way too small to be seen. */
+const SPECK = {
+  phases: [
+    {
+      name: "clear",
+      points: [
+        [0, 0, 0],
+        [0.003, 0, 0],
+      ],
+      t_s: [0, 1],
+    },
+  ],
+};
 /** The picture goes on for so long after the last new joints: the next ones may be late. */
 const LINGER_MS = 250;
 
@@ -41,6 +54,7 @@ export class ArmView {
   #frame = 0;
   #still = 0;
   #painter;
+  #isWarm = false;
   #arm = null;
   #last = { at: 0, changed: true, fresh: Number.NEGATIVE_INFINITY };
   #figures = { frames: new Rolling(), work: new Rolling(), late: new Rolling() };
@@ -60,7 +74,10 @@ export class ArmView {
     this.#camera.up.set(0, 0, 1);
     this.#scene.add(this.#room.object, this.#things.object, this.#course.object);
     this.controls = new CameraControls(this.#camera, stage, canvas, () => this.request());
-    canvas.addEventListener("webglcontextrestored", () => this.#mirror());
+    canvas.addEventListener("webglcontextrestored", () => {
+      this.#isWarm = false;
+      this.#mirror();
+    });
     document.addEventListener("visibilitychange", () => this.request());
     this.#mirror();
   }
@@ -274,7 +291,16 @@ export class ArmView {
 
   #drawFinely() {
     if (this.#frame) return;
+    if (!this.#isWarm && this.#robot) this.#warm();
     this.#paint("still");
+  }
+
+  /** Has everything be made that a motion needs, so that the first one does not stutter. */
+  #warm() {
+    this.#isWarm = true;
+    this.#course.show(SPECK);
+    this.#paint("moving");
+    this.#course.show(this.#trajectory);
   }
 
   #paint(how) {
