@@ -1,0 +1,165 @@
+// Talking with the robot: through the page's microphone to the recogniser, and its questions back.
+
+import { answer } from "../lib/person.mjs";
+import { expect, test } from "../lib/test.mjs";
+import { until } from "../lib/until.mjs";
+import { ALOUD, giveMicrophone, hears, holdAndSpeak, speak } from "../lib/voice.mjs";
+
+test.use({ settings: ALOUD });
+
+/** The robot's next move that is no more the one of before. */
+const next = (group, before) =>
+  until("the robot's move", async () => {
+    const { dialogue, turn } = await group.state();
+    if (dialogue.last?.interaction) return dialogue;
+    const asked = dialogue.decision === "ask" && turn.state === "asked";
+    return asked && dialogue.prompt !== before && dialogue;
+  });
+
+test("a spoken request and spoken answers get the right bowl", async ({ page, group, watched }) => {
+  void watched;
+  await giveMicrophone(page);
+  await page.goto(group.url);
+  await hears(group);
+  await holdAndSpeak(page, "get me the small white bowl");
+  const { scene } = await group.state();
+  const wanted = scene.objects.find(({ name }) => name === "white2");
+  let dialogue = await next(group, 0);
+  while (!dialogue.last?.interaction) {
+    await holdAndSpeak(page, answer(dialogue.question, wanted));
+    dialogue = await next(group, dialogue.prompt);
+  }
+  expect(dialogue.last).toMatchObject({ object: "white2", outcome: "delivered" });
+  const replies = await page.evaluate(() =>
+    performance.getEntriesByName("voice:reply").map(({ duration }) => duration),
+  );
+  expect(replies.length).toBeGreaterThan(0);
+  console.log("end of speech to first sound, ms:", replies.map(Math.round).join(" "));
+  await expect(page.locator("#transcript")).toContainText("small white bowl");
+});
+
+test("who presses and speaks breaks the robot's sentence off", async ({ page, group, watched }) => {
+  void watched;
+  await giveMicrophone(page);
+  await page.goto(group.url);
+  await hears(group);
+  await page.locator("#say-text").fill("get me the bowl");
+  await page.keyboard.press("Enter");
+  const said = () => group.state().then(({ speech }) => speech.speaking);
+  const line = await until("the robot to speak", async () => {
+    const speaking = await said();
+    return speaking?.state === "speaking" && speaking;
+  });
+  await holdAndSpeak(page, "the small white bowl on the counter");
+  const { state } = await until("the sentence's end", async () => {
+    const now = await said();
+    return (now.prompt !== line.prompt || now.state !== "speaking") && now;
+  });
+  const lines = await group.state();
+  expect(["interrupted", "speaking", "ended"]).toContain(state);
+  expect(lines.dialogue.applied).toBeGreaterThan(0);
+});
+
+test("the space bar talks, but not while somebody writes", async ({ page, group, watched }) => {
+  void watched;
+  await giveMicrophone(page);
+  await page.goto(group.url);
+  await hears(group);
+  const button = page.locator(".voice-talk");
+  await page.locator("#say-text").focus();
+  await page.keyboard.press("Space");
+  await expect(button).toHaveAttribute("aria-pressed", "false");
+  await page.locator("h1").click();
+  await page.keyboard.down("Space");
+  await expect(button).toHaveAttribute("data-state", "talking");
+  await speak(page, "get me the small white bowl");
+  await page.keyboard.up("Space");
+  await expect(button).toHaveAttribute("aria-pressed", "false");
+  await expect(page.locator("#transcript")).toContainText("bowl");
+});
+
+test("what cannot be is told in words with the cure", async ({ page, group, watched }) => {
+  void watched;
+  await page.addInitScript(() => {
+    navigator.mediaDevices.getUserMedia = () =>
+      Promise.reject(new DOMException("no", window.fault ?? "NotAllowedError"));
+    window.SpeechRecognition = class {
+      start() {
+        setTimeout(() => {
+          this.onerror({ error: "network" });
+          this.onend();
+        }, 10);
+      }
+      stop() {}
+      abort() {}
+    };
+  });
+  await page.goto(group.url);
+  await hears(group);
+  const button = page.locator(".voice-talk");
+  const fault = page.getByRole("alert").filter({ hasText: "icrophone" });
+  await button.click();
+  await expect(fault).toContainText("Allow it");
+  await page.evaluate(() => {
+    window.fault = "NotFoundError";
+  });
+  await button.click();
+  await expect(fault).toContainText("Plug one in");
+  await page.getByRole("button", { name: "Voice settings" }).click();
+  await page.getByRole("radio", { name: /This browser/ }).check();
+  await page.keyboard.press("Escape");
+  await button.click();
+  await expect(page.locator(".voice-fault")).toContainText("over the internet");
+});
+
+test("a browser's own words are taken with the time at which they began", async ({
+  page,
+  group,
+  watched,
+}) => {
+  void watched;
+  await page.addInitScript(() => {
+    window.SpeechRecognition = class {
+      start() {
+        const result = Object.assign([{ transcript: "the clear bowl", confidence: 0.9 }], {
+          isFinal: true,
+        });
+        setTimeout(() => this.onspeechstart(), 50);
+        setTimeout(() => this.onresult({ resultIndex: 0, results: [result] }), 400);
+      }
+      stop() {
+        setTimeout(() => this.onend(), 10);
+      }
+      abort() {}
+    };
+    localStorage.setItem("whichone.voice", JSON.stringify({ engine: "browser" }));
+  });
+  await page.goto(group.url);
+  await page.locator(".voice-talk").click();
+  await expect(page.locator("#transcript")).toContainText("the clear bowl");
+  await page.locator(".voice-talk").click();
+});
+
+test("the robot's voice is switched off and stays off", async ({ page, group, watched }) => {
+  void watched;
+  await page.goto(group.url);
+  const sound = page.getByRole("button", { name: "Hear the robot here" });
+  await expect(sound).toHaveAttribute("aria-pressed", "true");
+  await sound.click();
+  await expect(sound).toHaveAttribute("aria-pressed", "false");
+  await page.reload();
+  await expect(sound).toHaveAttribute("aria-pressed", "false");
+});
+
+test.describe("a robot without a recogniser", () => {
+  test.use({ settings: [...ALOUD, "speech.recogniser=none"] });
+
+  test("says what to install", async ({ page, group, watched }) => {
+    void watched;
+    await page.goto(group.url);
+    const button = page.locator(".voice-talk");
+    await expect(button).toContainText("does not work here");
+    await button.click();
+    await expect(page.locator(".voice-fault")).toContainText("libpocketsphinx3");
+  });
+});
