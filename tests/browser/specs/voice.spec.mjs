@@ -1,5 +1,6 @@
 // Talking with the robot: through the page's microphone to the recogniser, and its questions back.
 
+import { expectAccessible } from "../lib/axe.mjs";
 import { answer } from "../lib/person.mjs";
 import { expect, test } from "../lib/test.mjs";
 import { until } from "../lib/until.mjs";
@@ -38,26 +39,37 @@ test("a spoken request and spoken answers get the right bowl", async ({ page, gr
   await expect(page.locator("#transcript")).toContainText("small white bowl");
 });
 
-test("who presses and speaks breaks the robot's sentence off", async ({ page, group, watched }) => {
-  void watched;
-  await giveMicrophone(page);
-  await page.goto(group.url);
-  await hears(group);
-  await page.locator("#say-text").fill("get me the bowl");
-  await page.keyboard.press("Enter");
-  const said = () => group.state().then(({ speech }) => speech.speaking);
-  const line = await until("the robot to speak", async () => {
-    const speaking = await said();
-    return speaking?.state === "speaking" && speaking;
+test.describe("while the robot speaks slowly", () => {
+  test.use({ settings: [...ALOUD, "speech.voice_words_per_minute=80"] });
+
+  test("who presses silences it here at once, and who speaks breaks its sentence off", async ({
+    page,
+    group,
+    watched,
+  }) => {
+    void watched;
+    const states = [];
+    page.on("websocket", (socket) => {
+      socket.on("framereceived", ({ payload }) => {
+        const speaking = JSON.parse(String(payload)).parts?.speech?.speaking;
+        if (speaking) states.push(`${speaking.prompt} ${speaking.state}`);
+      });
+    });
+    await giveMicrophone(page);
+    await page.goto(group.url);
+    await hears(group);
+    await page.locator("#say-text").fill("get me the bowl");
+    await page.keyboard.press("Enter");
+    const sound = page.getByRole("button", { name: "Hear the robot here" });
+    await expect(sound).toHaveAttribute("data-sounding");
+    await page.locator(".voice-talk").hover();
+    await page.mouse.down();
+    await expect(sound).not.toHaveAttribute("data-sounding");
+    await expect(page.locator(".voice-talk")).toHaveAttribute("data-state", /talking|hearing/);
+    await speak(page, "the small white bowl on the counter");
+    await page.mouse.up();
+    await until("the end of the sentence", () => states.includes("1 interrupted"));
   });
-  await holdAndSpeak(page, "the small white bowl on the counter");
-  const { state } = await until("the sentence's end", async () => {
-    const now = await said();
-    return (now.prompt !== line.prompt || now.state !== "speaking") && now;
-  });
-  const lines = await group.state();
-  expect(["interrupted", "speaking", "ended"]).toContain(state);
-  expect(lines.dialogue.applied).toBeGreaterThan(0);
 });
 
 test("the space bar talks, but not while somebody writes", async ({ page, group, watched }) => {
@@ -162,4 +174,17 @@ test.describe("a robot without a recogniser", () => {
     await button.click();
     await expect(page.locator(".voice-fault")).toContainText("libpocketsphinx3");
   });
+});
+
+test("its settings are there for everybody", async ({ page, group, watched }) => {
+  void watched;
+  await page.goto(group.url);
+  await page.getByRole("button", { name: "Voice settings" }).click();
+  await expect(page.getByRole("radio", { name: /The robot/ })).toBeChecked();
+  await expectAccessible(page);
+  await page.getByRole("checkbox", { name: /headset/ }).check();
+  await page.keyboard.press("Escape");
+  await page.reload();
+  await page.getByRole("button", { name: "Voice settings" }).click();
+  await expect(page.getByRole("checkbox", { name: /headset/ })).toBeChecked();
 });

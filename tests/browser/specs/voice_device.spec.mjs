@@ -2,14 +2,15 @@
 
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { CHROMIUM_FLAGS, microphoneOf } from "../lib/chromium.mjs";
+import { CHROMIUM, CHROMIUM_FLAGS, microphoneOf } from "../lib/chromium.mjs";
 import { expect, test } from "../lib/test.mjs";
 import { ALOUD, hears, quiet, say, writeWav } from "../lib/voice.mjs";
 
 const wav = join(tmpdir(), `whichone-voice-${process.pid}.wav`);
 
 test.use({ settings: ALOUD });
-test.use({ launchOptions: { args: [...CHROMIUM_FLAGS, ...microphoneOf(wav)] } });
+const args = [...CHROMIUM_FLAGS, ...microphoneOf(wav)];
+test.use({ launchOptions: { executablePath: CHROMIUM, args } });
 
 test("is heard hands-free, word for word while somebody speaks", async ({ page, group }) => {
   const request = await say("get me the small white bowl");

@@ -79,6 +79,7 @@ export function show(view, { sign, talk, playback, t }) {
   view.talk.disabled = sign.disabled;
   setAttribute(view.handsFree, "aria-pressed", String(talk.handsFree));
   setAttribute(view.sound, "aria-pressed", String(!playback.muted));
+  setAttribute(view.sound, "data-sounding", playback.sounds);
   view.meter.style.setProperty("--level", meterShare(talk.levelDb).toFixed(2));
   view.unlock.hidden = !playback.locked;
   view.open.hidden = !talk.isOpen || talk.talks || talk.handsFree;

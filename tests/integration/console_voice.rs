@@ -1,0 +1,262 @@
+//! Voice through the console: sound over a socket, and what becomes of it.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value as Json, json};
+use speech::devices::audio::read_wav;
+use tungstenite::Message;
+use whichone_tests::console::{Page, Visitor};
+use whichone_tests::{Group, wait_for};
+
+use crate::speech::{can_speak, spoken};
+
+const END: u8 = 1;
+const HELD: u8 = 2;
+const ECHO_FREE: u8 = 4;
+/// Samples of a frame: 50 ms.
+const PIECE: usize = 800;
+/// Every sentence takes as long as it would sound.
+const ALOUD: [&str; 2] = ["speech.voice=espeak-ng", "speech.player=[\"none\"]"];
+
+/// A stream of a page that sends it in real time.
+struct Stream {
+    number: u32,
+    sent: u64,
+    began: Instant,
+    /// The server's time at which it began, milliseconds.
+    began_ms: f64,
+}
+
+impl Stream {
+    fn begin(page: &mut Page, number: u32) -> Self {
+        page.send(&json!({ "t": "ping", "at": number }));
+        let pong = page.until("a pong", |page| {
+            page.told.iter().find(|told| told["t"] == "pong" && told["at"] == number).cloned()
+        });
+        let began_ms = pong["server_ms"].as_f64().unwrap();
+        Self { number, sent: 0, began: Instant::now(), began_ms }
+    }
+
+    fn ms(&self, sample: u64) -> f64 {
+        self.began_ms + sample as f64 / 16.0
+    }
+
+    /// Sends samples as they are taken, with the times that `clock` makes of the right ones.
+    fn send(&mut self, page: &mut Page, flags: u8, samples: &[i16], clock: impl Fn(f64) -> f64) {
+        for piece in samples.chunks(PIECE) {
+            let taken_ms = clock(self.ms(self.sent));
+            page.send_raw(frame(self.number, flags, taken_ms, self.sent, piece));
+            self.sent += piece.len() as u64;
+            let until = self.began + Duration::from_secs_f64(self.sent as f64 / 16_000.0);
+            std::thread::sleep(until.saturating_duration_since(Instant::now()));
+        }
+    }
+
+    fn end(&self, page: &mut Page, flags: u8) {
+        page.send_raw(frame(self.number, flags | END, self.ms(self.sent), self.sent, &[]));
+    }
+}
+
+fn frame(stream: u32, flags: u8, taken_ms: f64, before: u64, samples: &[i16]) -> Message {
+    let mut bytes = vec![1, flags, 0, 0];
+    bytes.extend(stream.to_le_bytes());
+    bytes.extend(taken_ms.to_le_bytes());
+    bytes.extend(before.to_le_bytes());
+    samples.iter().for_each(|sample| bytes.extend(sample.to_le_bytes()));
+    Message::Binary(bytes.into())
+}
+
+/// The words with a fifth of a second of quiet before them and `behind_s` behind.
+fn said(text: &str, behind_s: f64) -> Vec<i16> {
+    let folder = tempfile::tempdir().unwrap();
+    let words = read_wav(Path::new(&spoken(text, folder.path())), 20.0).unwrap();
+    [vec![0; 3_200], words, vec![0; (behind_s * 16_000.0) as usize]].concat()
+}
+
+/// A group that hears, and a page that is in control of it.
+fn listening(settings: &[&str]) -> (Group, Page) {
+    let group = Group::up(settings);
+    let mut page = group.page(&Visitor::operator(1));
+    page.until_part("speech", |speech| speech["hearing"]["ear"] == "ready");
+    page.until_part("turn", |turn| turn["state"] != "down");
+    (group, page)
+}
+
+fn receipt(page: &mut Page, stream: u32, status: &str) -> Json {
+    let is = |told: &&Json| {
+        told["t"] == "receipt" && told["stream"] == stream && told["status"] == status
+    };
+    page.until(status, |page| page.told.iter().find(is).cloned())
+}
+
+#[test]
+fn a_held_stream_is_one_utterance_with_its_times_and_its_words_while_it_is_spoken() {
+    if !can_speak() {
+        return;
+    }
+    let (group, mut page) = listening(&[]);
+    let mut stream = Stream::begin(&mut page, 7);
+    stream.send(&mut page, HELD, &said("get me the small white bowl", 0.3), |ms| ms);
+    stream.end(&mut page, HELD);
+    let accepted = receipt(&mut page, 7, "accepted");
+    assert!(accepted["text"].as_str().unwrap().contains("white bowl"), "{accepted}");
+    let onset = accepted["onset_ms"].as_f64().unwrap() - stream.began_ms;
+    let ended = accepted["ended_ms"].as_f64().unwrap() - stream.began_ms;
+    assert!((100.0..400.0).contains(&onset), "{onset} ms behind the beginning");
+    assert!(ended > onset + 1_000.0 && ended <= stream.ms(stream.sent) - stream.began_ms + 1.0);
+    let over = receipt(&mut page, 7, "over");
+    assert_eq!((&over["utterances"], &over["text"]), (&json!(1), &json!("")));
+    page.until("words while somebody speaks", |page| {
+        let told = |told: &&Json| told["t"] == "partial" && told["text"] != "";
+        page.told.iter().find(told).map(|_| ())
+    });
+    page.until_line("what was understood", |line| {
+        line["source"] == "stream" && line["understood"].is_array()
+    });
+    drop(page);
+    group.down();
+}
+
+#[test]
+fn an_answer_counts_for_the_question_that_was_heard() {
+    if !can_speak() {
+        return;
+    }
+    let (group, mut page) = listening(&ALOUD);
+    page.ask("say", &json!({ "text": "get me the bowl" }));
+    let asked = page.until("a question said to its end", |page| {
+        let (dialogue, turn) = (page.parts.get("dialogue")?, page.parts.get("turn")?);
+        (turn["state"] == "asked" && dialogue["decision"] == "ask").then(|| dialogue.clone())
+    });
+    let mut stream = Stream::begin(&mut page, 1);
+    stream.send(&mut page, ECHO_FREE, &said("no", 0.8), |ms| ms);
+    stream.end(&mut page, ECHO_FREE);
+    receipt(&mut page, 1, "accepted");
+    let line = page.until_line("the answer", |line| line["answers"].is_string());
+    assert_eq!((&line["source"], &line["answers"]), (&json!("stream"), &asked["text"]));
+    page.until_part("dialogue", |dialogue| {
+        dialogue["decision"] == "ask" && dialogue["text"] != asked["text"]
+    });
+    drop(page);
+    group.down();
+}
+
+#[test]
+fn who_speaks_with_the_key_held_breaks_the_robots_sentence_off() {
+    if !can_speak() {
+        return;
+    }
+    let slow = ["speech.voice_words_per_minute=80", ALOUD[0], ALOUD[1]];
+    let (group, mut page) = listening(&slow);
+    page.ask("say", &json!({ "text": "get me the bowl" }));
+    let speaking = page.until_part("speech", |speech| speech["speaking"]["state"] == "speaking");
+    let prompt = speaking["speaking"]["prompt"].clone();
+    let mut stream = Stream::begin(&mut page, 1);
+    stream.send(&mut page, HELD, &said("the small white bowl on the counter", 0.3), |ms| ms);
+    stream.end(&mut page, HELD);
+    receipt(&mut page, 1, "accepted");
+    let broken = |line: &Json| line["prompt"] == prompt && line["state"] == "interrupted";
+    let told = page.until("the sentence to be broken off", |page| {
+        let speaking = &page.parts.get("speech")?["speaking"];
+        (broken(speaking) || speaking["prompt"] != prompt).then(|| speaking.clone())
+    });
+    assert!(told["state"] != "ended" || told["prompt"] != prompt, "{told}");
+    drop(page);
+    group.down();
+}
+
+#[test]
+fn a_viewer_who_vanishes_in_the_middle_of_a_word_has_said_what_came() {
+    if !can_speak() {
+        return;
+    }
+    let (group, mut page) = listening(&[]);
+    let mut watcher = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
+    let mut stream = Stream::begin(&mut page, 3);
+    let words = said("get me the small white bowl", 0.0);
+    stream.send(&mut page, HELD, &words[..words.len() - 8_000], |ms| ms);
+    watcher.until_part("turn", |turn| turn["state"] == "hearing");
+    drop(page);
+    let line = watcher.until_line("what was said", |line| line["source"] == "stream");
+    assert!(["person", "unmeant"].contains(&line["who"].as_str().unwrap()), "{line}");
+    watcher.until_part("turn", |turn| turn["state"] != "hearing");
+    watcher.until_part("control", |control| control["operator"].is_null());
+    drop(watcher);
+    group.down();
+}
+
+#[test]
+fn only_the_operators_voice_is_let_in() {
+    if !can_speak() {
+        return;
+    }
+    let (group, mut page) = listening(&[]);
+    let mut other = group.page(&Visitor::operator(2));
+    other.send_raw(frame(1, HELD, 0.0, 0, &[0; PIECE]));
+    let refused = other.until("a refusal", |page| {
+        page.told.iter().find(|told| told["t"] == "error").cloned()
+    });
+    assert!(refused["error"].as_str().unwrap().contains("control"), "{refused}");
+    let mut stream = Stream::begin(&mut page, 1);
+    stream.send(&mut page, HELD, &said("the clear bowl", 0.3), |ms| ms);
+    stream.end(&mut page, HELD);
+    receipt(&mut page, 1, "accepted");
+    other.until_line("what the operator said", |line| line["who"] == "person");
+    assert!(!other.told.iter().any(|told| told["t"] == "receipt"), "it is the operator's");
+    drop((page, other));
+    group.down();
+}
+
+#[test]
+fn frames_that_lie_about_counts_and_times_do_no_harm() {
+    if !can_speak() {
+        return;
+    }
+    let (group, mut page) = listening(&[]);
+    // Hours ago, of the future, no time at all, of a length that cannot be.
+    page.send_raw(frame(1, HELD, f64::NAN, 0, &[0; PIECE]));
+    page.send_raw(frame(1, HELD, 5.0, u64::MAX, &[0; PIECE]));
+    page.send_raw(frame(2, HELD, 1e300, u64::MAX - 10_000, &[0; PIECE]));
+    page.send_raw(frame(2, HELD, 1e300, u64::MAX - 9_000, &[0; PIECE]));
+    page.send_raw(Message::Binary(vec![1, 2, 3].into()));
+    page.send_raw(frame(3, HELD, 5.0, 0, &[0; 1_601]));
+    let errors = |page: &Page| page.told.iter().filter(|told| told["t"] == "error").count();
+    page.until("four refusals", |page| (errors(page) >= 4).then_some(()));
+    page.send_raw(frame(2, END, 0.0, 0, &[]));
+    for (number, clock) in [(4, -3_600_000.0), (5, 3_600_000.0)] {
+        let mut stream = Stream::begin(&mut page, number);
+        let words = said("get me the small white bowl", 0.3);
+        stream.send(&mut page, HELD, &words, |ms| (ms + clock).max(0.0));
+        stream.end(&mut page, HELD);
+        let accepted = receipt(&mut page, number, "accepted");
+        let onset = accepted["onset_ms"].as_f64().unwrap() - stream.began_ms;
+        assert!((0.0..3_000.0).contains(&onset), "{onset} ms behind the beginning");
+    }
+    drop(page);
+    group.down();
+}
+
+#[test]
+fn a_stream_outlives_the_service_that_hears_it() {
+    if !can_speak() {
+        return;
+    }
+    let (group, mut page) = listening(&[]);
+    let mut stream = Stream::begin(&mut page, 1);
+    stream.send(&mut page, HELD, &[0; 8_000], |ms| ms);
+    let before = group.incarnation("speech");
+    group.signal("speech", rustix::process::Signal::KILL);
+    group.wait_for_restart("speech", before);
+    wait_for("the recogniser", 20.0, || {
+        (group.status()["hearing"]["ear"] == "ready").then_some(())
+    });
+    let mut stream = Stream::begin(&mut page, 2);
+    stream.send(&mut page, HELD, &said("get me the small white bowl", 0.3), |ms| ms);
+    stream.end(&mut page, HELD);
+    receipt(&mut page, 1, "over");
+    receipt(&mut page, 2, "accepted");
+    receipt(&mut page, 2, "over");
+    drop(page);
+    group.down();
+}
