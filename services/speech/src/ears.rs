@@ -165,11 +165,13 @@ impl Ears {
 
     /// A client's stream is over. It is told so once everything said in it has its result.
     fn stream_over(&mut self, stream: RequestKey, utterances: u32, lost: u64, fx: &mut Fx) {
-        if self.over.len() >= STREAMS_MAX {
-            self.over.remove(0);
+        // Clients repeat the end until they are told; what is said behind the first tells less.
+        if self.over.iter().all(|(key, ..)| *key != stream) {
+            if self.over.len() >= STREAMS_MAX {
+                self.over.remove(0);
+            }
+            self.over.push((stream, utterances, lost));
         }
-        self.over.retain(|(key, ..)| *key != stream);
-        self.over.push((stream, utterances, lost));
         self.tell_streams_over(fx);
     }
 

@@ -341,3 +341,21 @@ fn what_is_being_said_is_told_until_it_has_its_result() {
     assert_eq!(partials(&speech.take(0.1, nothing())), [("", 1)]);
     assert!(speech.records.is_empty(), "none of it is kept");
 }
+
+#[test]
+fn the_end_of_a_stream_that_is_told_again_tells_what_it_told_first() {
+    let mut speech = Speech::new();
+    let (onset, stream) = (speech.now, RequestKey([7; 16]));
+    speech.take(0.1, began(onset));
+    speech.take(0.4, ended(onset));
+    for utterances in [1, 0] {
+        let over = In::Live(Live::Over { stream, utterances, lost: 0 });
+        assert!(speech.take(0.1, over).iter().all(|out| !matches!(out, Out::Receipt(_))));
+    }
+    let outputs = speech.take(0.2, nothing());
+    let over = outputs.iter().find_map(|out| match out {
+        Out::Receipt(receipt) if receipt.segment == u32::MAX => Some(receipt.segments),
+        _ => None,
+    });
+    assert_eq!(over, Some(1));
+}
