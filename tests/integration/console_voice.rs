@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use serde_json::{Value as Json, json};
 use speech::devices::audio::read_wav;
 use tungstenite::Message;
+use whichone_tests::Group;
 use whichone_tests::console::{Page, Visitor};
-use whichone_tests::{Group, wait_for};
 
 use crate::speech::{can_speak, spoken};
 
@@ -194,9 +194,8 @@ fn only_the_operators_voice_is_let_in() {
     let (group, mut page) = listening(&[]);
     let mut other = group.page(&Visitor::operator(2));
     other.send_raw(frame(1, HELD, 0.0, 0, &[0; PIECE]));
-    let refused = other.until("a refusal", |page| {
-        page.told.iter().find(|told| told["t"] == "error").cloned()
-    });
+    let refused = other
+        .until("a refusal", |page| page.told.iter().find(|told| told["t"] == "error").cloned());
     assert!(refused["error"].as_str().unwrap().contains("control"), "{refused}");
     let mut stream = Stream::begin(&mut page, 1);
     stream.send(&mut page, HELD, &said("the clear bowl", 0.3), |ms| ms);
@@ -248,9 +247,7 @@ fn a_stream_outlives_the_service_that_hears_it() {
     let before = group.incarnation("speech");
     group.signal("speech", rustix::process::Signal::KILL);
     group.wait_for_restart("speech", before);
-    wait_for("the recogniser", 20.0, || {
-        (group.status()["hearing"]["ear"] == "ready").then_some(())
-    });
+    page.until_part("speech", |speech| speech["hearing"]["ear"] == "ready");
     let mut stream = Stream::begin(&mut page, 2);
     stream.send(&mut page, HELD, &said("get me the small white bowl", 0.3), |ms| ms);
     stream.end(&mut page, HELD);

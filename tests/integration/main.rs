@@ -9,6 +9,7 @@ mod changes;
 mod config;
 mod console;
 mod console_study;
+mod console_voice;
 mod dialogues;
 mod export;
 mod gestures;
