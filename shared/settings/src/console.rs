@@ -56,7 +56,11 @@ fn token(f: &mut Fields<'_>) -> Option<String> {
     let fits = (12..=200).contains(&token.len()) && token.chars().all(|c| c.is_ascii_graphic());
     if !fits {
         let cure = "use 12 to 200 letters, digits and signs without blanks";
-        f.problem("token", "is too short to keep anybody out, or holds a blank", cure);
+        f.problem(
+            "token",
+            "is too short to keep anybody out, too long, or holds a blank or an accent",
+            cure,
+        );
     }
     Some(token)
 }

@@ -1,5 +1,6 @@
 //! Configuration folders as people write them, right and wrong.
 
+mod console;
 mod layering;
 mod reach;
 mod robots;
