@@ -117,7 +117,8 @@ impl Study {
     ) -> Result<Json, String> {
         let cure = "set study.enabled, and reload the group";
         let study = self.0.as_mut().ok_or_else(|| format!("there is no study: {cure}"))?;
-        study.verb(verb, arguments, &seen_in(picture, now))
+        let seen = study.seen(picture, now);
+        study.verb(verb, arguments, &seen)
     }
 
     /// Something has happened.
@@ -133,7 +134,7 @@ impl Study {
             }
             _ => None,
         };
-        let seen = seen_in(picture, now);
+        let seen = study.seen(picture, now);
         if let Some((id, event)) = said.and_then(|said| study.desk.said(&said, &seen)) {
             study.note(&id, vec![event], now.unix_ms);
         }
@@ -142,7 +143,7 @@ impl Study {
     /// Time has passed: what the study wants the dialogue to do, as a viewer would.
     pub fn pass(&mut self, picture: &Picture, now: Now) -> Vec<Verb> {
         let Some(study) = &mut self.0 else { return Vec::new() };
-        let seen = seen_in(picture, now);
+        let seen = study.seen(picture, now);
         study.take_results(now.unix_ms);
         if let Some((id, event)) = study.desk.look(&seen, study.fault_ms) {
             study.note(&id, vec![event], now.unix_ms);
@@ -153,7 +154,7 @@ impl Study {
     /// The section `study`; none while it is as it was.
     pub fn section(&mut self, picture: &Picture, now: Now) -> Option<Json> {
         let study = self.0.as_mut()?;
-        let seen = seen_in(picture, now);
+        let seen = study.seen(picture, now);
         let section = section::section(&study.desk, &seen, study.trouble.as_deref());
         let text = section.to_string();
         (study.shown.as_ref() != Some(&text)).then(|| {
@@ -164,6 +165,18 @@ impl Study {
 }
 
 impl Running {
+    fn seen<'a>(&self, picture: &'a Picture, now: Now) -> Seen<'a> {
+        Seen {
+            at: now.unix_ms,
+            ms: ms(now.at),
+            scene: picture.scene(),
+            view: picture.view(),
+            missing: seen::missing(picture.group()),
+            arm_is_busy: seen::arm_is_busy(picture.arm()),
+            is_switching: self.switcher.is_busy() || self.desk.owing().is_some(),
+        }
+    }
+
     fn verb(&mut self, verb: &str, arguments: &Json, seen: &Seen<'_>) -> Result<Json, String> {
         let page = request::page(arguments)?;
         if verb == "find" {
@@ -244,17 +257,6 @@ impl Running {
         }
         self.switcher.order(wish);
         Vec::new()
-    }
-}
-
-fn seen_in(picture: &Picture, now: Now) -> Seen<'_> {
-    Seen {
-        at: now.unix_ms,
-        ms: ms(now.at),
-        scene: picture.scene(),
-        view: picture.view(),
-        missing: seen::missing(picture.group()),
-        arm_is_busy: seen::arm_is_busy(picture.arm()),
     }
 }
 

@@ -23,6 +23,8 @@ pub(super) struct Seen<'a> {
     pub(super) missing: Option<&'a str>,
     /// Whether the arm moves or is stopped.
     pub(super) arm_is_busy: bool,
+    /// Whether the policy is being switched, or still to be given back.
+    pub(super) is_switching: bool,
 }
 
 /// Why an interaction cannot begin yet.
@@ -55,7 +57,7 @@ impl Seen<'_> {
         }
         let Some(view) = self.view else { return Some(Hindrance::Service("policy".to_owned())) };
         match () {
-            () if view.planner != planner => Some(Hindrance::Planner),
+            () if view.planner != planner || self.is_switching => Some(Hindrance::Planner),
             () if view.interaction != 0 || self.arm_is_busy => Some(Hindrance::Busy),
             () => None,
         }

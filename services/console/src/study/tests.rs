@@ -79,6 +79,7 @@ impl World {
             view: Some(&self.view),
             missing: self.missing,
             arm_is_busy: false,
+            is_switching: self.desk.owing().is_some(),
         }
     }
 
@@ -119,6 +120,7 @@ impl World {
             view: Some(&view),
             missing,
             arm_is_busy: false,
+            is_switching: false,
         };
         while let Some((id, event)) = self.desk.look(&seen, FAULT_MS) {
             self.write(&id, vec![event]);
@@ -287,6 +289,25 @@ fn nothing_begins_before_the_robot_is_ready_and_what_stands_is_called_off() {
     world.ask(&Ask::Start).unwrap();
     let trial = world.desk.active().unwrap().trial().unwrap();
     assert_eq!((trial.after, world.stage()), (7, Some(Stage::Running)));
+}
+
+/// The policy of the one before is given back first: else it would go in the middle of an interaction.
+#[test]
+fn the_next_participant_waits_until_the_policy_is_given_back() {
+    let mut world = World::new(Protocol { warmup: 0, ..protocol() });
+    let id = world.ask(&Ask::Begin).unwrap();
+    world.write(&id, vec![Event::Switched { planner: "lookahead".to_owned() }]);
+    world.ask(&Ask::Withdraw(false)).unwrap();
+    let next = "e".repeat(32);
+    for ask in [Ask::Begin, Ask::Consent, Ask::Next] {
+        world.ask_as(&next, &ask).unwrap();
+    }
+    let trial = world.desk.active().unwrap().trial().unwrap();
+    world.view.planner = trial.step.policy.clone();
+    assert!(world.ask_as(&next, &Ask::Start).is_err());
+    assert_eq!(world.desk.wish(&world.seen()), Some(Wish::Restore(id)));
+    world.grant();
+    world.ask_as(&next, &Ask::Start).unwrap();
 }
 
 /// A participant who has just begun an interaction.

@@ -92,8 +92,7 @@ impl Desk {
     /// What the study wants of the robot just now.
     pub(super) fn wish(&self, seen: &Seen<'_>) -> Option<Wish> {
         let view = seen.view?;
-        let owes = |person: &&Participant| person.stage.is_final() && person.switched.is_some();
-        if let Some(person) = self.people().iter().find(owes) {
+        if let Some(person) = self.owing() {
             return Some(Wish::Restore(person.id().to_owned()));
         }
         let Some(person) = self.active() else { return self.left_standing(view) };
@@ -102,12 +101,19 @@ impl Desk {
             Stage::Drawn => match seen.hindrance(&trial.step.policy) {
                 Some(Hindrance::Busy) if view.interaction != 0 => Some(Wish::Cancel),
                 Some(Hindrance::Planner) if view.interaction != 0 => Some(Wish::Cancel),
+                Some(Hindrance::Planner) if view.planner == trial.step.policy => None,
                 Some(Hindrance::Planner) => Some(Wish::Switch(trial.step.policy.clone())),
                 _ => None,
             },
             Stage::Over if view.interaction != 0 => Some(Wish::Cancel),
             _ => None,
         }
+    }
+
+    /// Somebody who has ended, and for whom the policy was switched and not yet given back.
+    pub(super) fn owing(&self) -> Option<&Participant> {
+        let owes = |person: &&Participant| person.stage.is_final() && person.switched.is_some();
+        self.people().iter().find(owes)
     }
 
     /// The interaction of somebody who went away in the middle.
