@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use whichone_tests::Group;
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
-const SERVICES: [&str; 4] = ["speech", "grounding", "policy", "arm"];
+const SERVICES: [&str; 5] = ["speech", "grounding", "policy", "arm", "console"];
 
 /// When to stop, and the seed.
 struct Plan {

@@ -163,8 +163,8 @@ impl Bridge {
         if let Some(hearing) = quiet(self.ports.hearing.latest()) {
             self.picture.see_hearing(hearing);
         }
-        for status in all(&self.ports.statuses) {
-            self.motions.confirm(&status, &self.app.hub);
+        for (status, sent) in self.ports.stamped_statuses() {
+            self.motions.confirm(&status, sent, &self.app.hub);
             self.picture.see_arm(status, now);
         }
         if let Some(world) = quiet(self.ports.worlds.latest()) {

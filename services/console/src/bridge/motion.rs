@@ -55,9 +55,9 @@ impl Motions {
         self.latest.is_some()
     }
 
-    /// The arm has said something since the order.
-    pub(super) fn confirm(&mut self, status: &ArmStatus, hub: &Hub) {
-        let Some(latest) = self.latest else { return };
+    /// The arm has said something at `sent`. What it said before the order is no answer to it.
+    pub(super) fn confirm(&mut self, status: &ArmStatus, sent: Time, hub: &Hub) {
+        let Some(latest) = self.latest.filter(|latest| sent >= latest.given) else { return };
         if (status.stopped != 0) == latest.stop {
             self.latest = None;
             for motion in self.waiting.drain(..) {

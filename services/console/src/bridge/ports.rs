@@ -1,5 +1,6 @@
 //! The topics that the console reads.
 
+use node::Time;
 use protocol::{
     Activity, ArmStatus, Hearing, JointStates, Observation, Partial, PolicyView, Presented,
     Receipt, RobotAct, TrajectoryView, WorldView, topics,
@@ -39,6 +40,18 @@ impl Ports {
             trajectories: bus.encoded_reader(&topics::TRAJECTORY)?,
             joints: bus.reader(&topics::JOINTS)?,
         })
+    }
+}
+
+impl Ports {
+    /// What the arm has said, and when.
+    pub(super) fn stamped_statuses(&self) -> Vec<(ArmStatus, Time)> {
+        let mut statuses = Vec::new();
+        let drained = self
+            .statuses
+            .drain_stamped(|status, stamp| statuses.push((*status, Time(stamp.sent_ns))));
+        quiet(drained.map(Some));
+        statuses
     }
 }
 
