@@ -75,6 +75,8 @@ fn not_that_denies_whatever_is_meant() {
     assert!(why(&page.ask("not_that", &Json::Null)).contains("nothing"));
     assert!(ok(&page.ask("say", &json!({ "text": "get me the bowl" }))));
     let asked = stands(&mut page);
+    // A question that has not begun to be said is not answered.
+    page.until_part("turn", |turn| turn["state"] == "asked");
     let value = asked["question_about"]["value"].as_str().unwrap().to_owned();
     assert!(ok(&page.ask("not_that", &Json::Null)));
     let line = page.until_line("the denial", |line| line["answers"].is_string());
