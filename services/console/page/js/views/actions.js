@@ -9,7 +9,7 @@ const LATCH_MS = 800;
 /** How long the button asks whether motion may go on, milliseconds. */
 const ASK_MS = 6_000;
 
-/** Two signs of one press of a key come within this time, milliseconds. */
+/** A press of Escape and the end of the full screen within this time are one, milliseconds. */
 const SAME_MS = 80;
 /** What leaves the full screen so soon after another key or a press was that one, milliseconds. */
 const ASIDE_MS = 600;
@@ -45,7 +45,7 @@ export function mountActions(element, context) {
     press();
     pressedAt = performance.now();
     askedAt = null;
-    draw();
+    show();
   };
   const resume = () => {
     const now = performance.now();
@@ -58,7 +58,7 @@ export function mountActions(element, context) {
       askedAt = null;
       attempt(link.do("resume"), context);
     }
-    draw();
+    show();
   };
   const forget = () => {
     askedAt = null;
@@ -86,22 +86,21 @@ export function mountActions(element, context) {
     dialog.close();
   };
   addEventListener("pointerdown", onBackdrop, { capture: true });
-  const countEscape = () => {
-    const now = performance.now();
-    if (escapedAt !== null && now - escapedAt < SAME_MS) return;
+  const countEscape = (now) => {
     if (escapeStops(escapedAt, now, store.get("arm")?.moving === true)) stop();
     escapedAt = now;
   };
   const onKey = (event) => {
-    if (event.key === "Escape" && !event.isComposing) countEscape();
-    else otherAt = performance.now();
+    if (event.key === "Escape" && !event.isComposing) countEscape(event.timeStamp);
+    else otherAt = event.timeStamp;
   };
-  const onFullScreen = () => {
+  const onFullScreen = ({ timeStamp }) => {
     const full = document.fullscreenElement;
     (full ?? element).append(button);
     button.classList.toggle("floats", full !== null);
-    // The browser keeps the key that leaves the full screen to itself.
-    if (!full && performance.now() - otherAt > ASIDE_MS) countEscape();
+    // Most browsers keep the key that leaves the full screen to themselves.
+    const known = escapedAt !== null && timeStamp - escapedAt < SAME_MS;
+    if (!full && !known && timeStamp - otherAt > ASIDE_MS) countEscape(timeStamp);
   };
   addEventListener("keydown", onKey, { capture: true });
   addEventListener(
@@ -113,7 +112,7 @@ export function mountActions(element, context) {
   );
   document.addEventListener("fullscreenchange", onFullScreen);
 
-  const draw = eachFrame(() => {
+  const show = () => {
     const is = mode();
     const sending = store.get("stop")?.state === "sent" && is === "stop";
     const down = store.get("link")?.state !== "up";
@@ -126,7 +125,8 @@ export function mountActions(element, context) {
     const drawn = is === "stop" ? "stop" : "play";
     if (mark.dataset.icon !== drawn) mark.replaceChildren(icon(drawn, 34));
     mark.dataset.icon = drawn;
-  });
+  };
+  const draw = eachFrame(show);
   store.subscribe(["arm", "stop", "link"], draw);
   draw();
 }
