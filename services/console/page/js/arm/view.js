@@ -34,6 +34,8 @@ const SPECK = {
 };
 /** The picture goes on for so long after the last new joints: the next ones may be late. */
 const LINGER_MS = 250;
+/** The same while the arm says that it moves. */
+const MOVING_MS = 2_000;
 
 /** The picture: a robot, its room, and what is known of both. Draws only when something changes. */
 export class ArmView {
@@ -172,7 +174,7 @@ export class ArmView {
   /** @param {{at_ms: number, q: number[], grip: number[]}} message */
   setJoints(message) {
     if (this.#joints.add(message, this.link.serverNow())) this.#last.fresh = performance.now();
-    if (performance.now() - this.#last.fresh < LINGER_MS) this.request();
+    if (this.#isFresh(performance.now())) this.request();
   }
 
   /** @param {boolean} dark */
@@ -277,7 +279,7 @@ export class ArmView {
     const sample = this.#joints.sample(this.link.toServer(begun));
     if (sample) this.#robot?.pose(sample.q, sample.grip);
     this.#scene.updateMatrixWorld();
-    const isMoving = sample !== null && (!sample.settled || begun - this.#last.fresh < LINGER_MS);
+    const isMoving = sample !== null && (!sample.settled || this.#isFresh(begun));
     const isBusy = [this.#things.step(at), this.controls.step(at), isMoving].some(Boolean);
     if (this.#trajectory?.began_ms != null && sample) {
       this.#course.passed((sample.atMs - this.#trajectory.began_ms) / 1000);
@@ -287,6 +289,11 @@ export class ArmView {
     this.#last.at = isBusy ? at : 0;
     if (isBusy) this.request();
     else this.#still = setTimeout(() => this.#drawFinely(), STILL_MS);
+  }
+
+  /** Whether the arm has moved of late, by messages that may come late on a slow machine. */
+  #isFresh(now) {
+    return now - this.#last.fresh < (this.#arm?.moving ? MOVING_MS : LINGER_MS);
   }
 
   #drawFinely() {
