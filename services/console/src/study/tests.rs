@@ -1,209 +1,16 @@
 //! The study's rules: every path of verbs and of what the robot does.
 
+mod world;
+
 use dialogue::Rng;
-use protocol::{Ended, Outcome, PolicyView};
+use protocol::Outcome;
 use scene::Scene;
 use serde_json::{Map, json};
-use trials::{
-    Design, Entry, Event, Item, Kind, Objects, Order, Participant, Protocol, Source, Stage, Status,
-    Verdict,
-};
+use trials::{Event, Participant, Protocol, Stage, Status, Verdict};
 
-use super::desk::{Ask, Desk, kept};
-use super::seen::Seen;
-use super::watch::{Said, Wish};
-
-const FAULT_MS: f64 = 10_000.0;
-const PAGE: &str = "0123456789abcdef0123456789abcdef";
-
-fn bowls() -> Scene {
-    let text = include_str!("../../../../config/scenes/bowls.toml");
-    Scene::from_toml("bowls.toml", text).unwrap_or_else(|problems| panic!("{problems:?}"))
-}
-
-fn protocol() -> Protocol {
-    let quick = Item {
-        id: "quick".to_owned(),
-        text: "It was quick.".to_owned(),
-        kind: Kind::Likert,
-        options: Vec::new(),
-        low: String::new(),
-        high: String::new(),
-        points: 5,
-        required: true,
-    };
-    Protocol {
-        title: "Bowls".to_owned(),
-        consent: "I agree.".to_owned(),
-        instructions: vec!["Ask for it.".to_owned()],
-        interactions: 2,
-        warmup: 1,
-        objects: Objects::Uniform,
-        design: Design::Within,
-        policies: vec!["lookahead".to_owned(), "entropy".to_owned()],
-        order: Order::Latin,
-        seconds_max: 60.0,
-        show_belief: false,
-        keep_words: false,
-        questionnaire: vec![quick],
-    }
-}
-
-/// A desk with its disk and a robot.
-struct World {
-    desk: Desk,
-    disk: Vec<(String, Vec<Entry>)>,
-    scene: Scene,
-    view: PolicyView,
-    missing: Option<&'static str>,
-    ms: f64,
-}
-
-impl World {
-    fn new(protocol: Protocol) -> Self {
-        let scene = bowls();
-        let view = PolicyView {
-            scene_key: scene.key(),
-            planner: "lookahead".to_owned(),
-            ..PolicyView::default()
-        };
-        let desk = Desk::new(protocol, "lab".to_owned(), Vec::new());
-        Self { desk, disk: Vec::new(), scene, view, missing: None, ms: 1e6 }
-    }
-
-    fn seen(&self) -> Seen<'_> {
-        Seen {
-            at: self.ms as u64,
-            ms: self.ms,
-            scene: &self.scene,
-            view: Some(&self.view),
-            missing: self.missing,
-            arm_is_busy: false,
-            is_switching: self.desk.owing().is_some(),
-        }
-    }
-
-    fn ask_as(&mut self, page: &str, ask: &Ask) -> Result<String, String> {
-        let seed = self.ms as u64;
-        let (id, events) = self.desk.ask(page, ask, &self.seen(), seed)?;
-        self.write(&id, events);
-        Ok(id)
-    }
-
-    fn ask(&mut self, ask: &Ask) -> Result<String, String> {
-        self.ask_as(PAGE, ask)
-    }
-
-    fn write(&mut self, id: &str, events: Vec<Event>) {
-        for event in events {
-            let entry = Entry { at: self.ms as u64, event };
-            if !self.disk.iter().any(|(known, _)| known == id) {
-                self.disk.push((id.to_owned(), Vec::new()));
-            }
-            let (_, file) = self.disk.iter_mut().find(|(known, _)| known == id).unwrap();
-            match (&entry.event, self.desk.people().iter().find(|p| p.id() == id)) {
-                (Event::Deleted, Some(person)) => *file = kept(person, &entry),
-                _ => file.push(entry.clone()),
-            }
-            self.desk.apply(id, &entry);
-        }
-    }
-
-    fn look(&mut self) {
-        let scene = self.scene.clone();
-        let view = self.view.clone();
-        let (ms, missing) = (self.ms, self.missing);
-        let seen = Seen {
-            at: ms as u64,
-            ms,
-            scene: &scene,
-            view: Some(&view),
-            missing,
-            arm_is_busy: false,
-            is_switching: false,
-        };
-        while let Some((id, event)) = self.desk.look(&seen, FAULT_MS) {
-            self.write(&id, vec![event]);
-        }
-    }
-
-    /// Does what the study wishes, as the robot and the supervisor do.
-    fn grant(&mut self) {
-        while let Some(wish) = self.desk.wish(&self.seen()) {
-            match wish {
-                Wish::Cancel => self.end(Outcome::Cancelled, None),
-                Wish::Switch(planner) => {
-                    let id = self.desk.active().expect("somebody").id().to_owned();
-                    self.write(&id, vec![Event::Switched { planner: planner.clone() }]);
-                    self.view.planner = planner;
-                }
-                Wish::Restore(id) => {
-                    self.view.planner = "lookahead".to_owned();
-                    self.write(&id, vec![Event::Restored]);
-                }
-            }
-        }
-    }
-
-    fn say(&mut self, seq: u64) {
-        if self.view.interaction == 0 {
-            let last = self.view.last.as_ref().map_or(0, |last| last.interaction);
-            self.view.interaction = last + 1;
-        }
-        let (source, onset_ms) = (Source::Typed, self.ms - 500.0);
-        let said = Said::Heard { seq, source, onset_ms, words: "the bowl".to_owned() };
-        if let Some((id, event)) = self.desk.said(&said, &self.seen()) {
-            self.write(&id, vec![event]);
-        }
-    }
-
-    fn end(&mut self, outcome: Outcome, name: Option<&str>) {
-        if self.view.interaction == 0 {
-            return;
-        }
-        let interaction = std::mem::take(&mut self.view.interaction);
-        self.view.last = Some(Ended {
-            interaction,
-            object: None,
-            name: name.map(str::to_owned),
-            outcome,
-            questions: 2,
-            seconds: 9.5,
-            utterances: (1, 3),
-        });
-    }
-
-    fn desired(&self) -> String {
-        let trial = self.desk.active().and_then(|person| person.trial().cloned());
-        trial.map_or(String::new(), |trial| trial.drawn.object)
-    }
-
-    fn stage(&self) -> Option<Stage> {
-        self.desk.of_page(PAGE).map(|person| person.stage)
-    }
-
-    /// What must hold after every step.
-    fn check(&self) {
-        let recovered: Vec<Participant> =
-            self.disk.iter().filter_map(|(_, entries)| Participant::fold(entries)).collect();
-        assert_eq!(recovered, self.desk.people(), "what is known is the fold of what is written");
-        for person in self.desk.people() {
-            let total = person.begun.plan.iter().filter(|step| !step.practice).count();
-            assert!(person.counted().count() <= total);
-            let mut steps = person.counted().map(|trial| trial.drawn.step);
-            let mut before = None;
-            assert!(steps.all(|step| before.replace(step).is_none_or(|b| b < step)), "in order");
-            let open = person.trials.iter().filter(|trial| trial.end.is_none()).count();
-            assert!(open <= 1, "one interaction at a time");
-            if person.status() == Status::Complete {
-                assert_eq!(person.counted().count(), total);
-                assert!(person.consented);
-            }
-        }
-        let taking_part = self.desk.people().iter().filter(|p| !p.stage.is_final()).count();
-        assert!(taking_part <= 1, "one participant at a time");
-    }
-}
+use super::desk::{Ask, Desk};
+use super::watch::Wish;
+use world::{FAULT_MS, PAGE, World, protocol};
 
 fn quick(points: u8) -> Map<String, serde_json::Value> {
     Map::from_iter([("quick".to_owned(), json!(points))])
@@ -509,14 +316,9 @@ fn random_step(world: &mut World, rng: &mut Rng, step: u64) {
             // Killed, and up again.
             let people = world.disk.iter().filter_map(|(_, entries)| Participant::fold(entries));
             let people = people.collect();
-            world.desk = Desk::new(world.desk_protocol(), "lab".to_owned(), people);
+            world.desk =
+                Desk::new(Protocol { interactions: 1, ..protocol() }, "lab".to_owned(), people);
         }
     }
     world.look();
-}
-
-impl World {
-    fn desk_protocol(&self) -> Protocol {
-        Protocol { interactions: 1, ..protocol() }
-    }
 }
