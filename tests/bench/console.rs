@@ -15,6 +15,15 @@ const SAMPLE_EVERY: Duration = Duration::from_secs(5);
 /// The bowls that are asked for, in turn.
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
 
+/// Ends the looking on, also where a dialogue has failed.
+struct Ends<'a>(&'a AtomicBool);
+
+impl Drop for Ends<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
 /// What one page has counted.
 #[derive(Default)]
 struct Counted {
@@ -38,8 +47,9 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         let pages: Vec<_> =
             pages.into_iter().map(|page| scope.spawn(move || look_on(page, over))).collect();
         let memory = scope.spawn(|| watch_memory(&group, over));
+        let ends = Ends(over);
         let dialogues = converse(&mut operator, length);
-        over.store(true, Ordering::Relaxed);
+        drop(ends);
         let counted: Vec<Counted> =
             pages.into_iter().map(|page| page.join().expect("a page looks to the end")).collect();
         (counted, memory.join().expect("memory is watched"), dialogues)
