@@ -17,7 +17,7 @@ const PHONE = { width: 390, height: 844 };
 const STUDY = ["study.enabled=true", "study.title=Asking for bowls"];
 
 const browser = await chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_FLAGS });
-const group = await Group.up(["arm.time_scale=1", ...STUDY]);
+const group = await Group.up(["arm.time_scale=1", ...STUDY], "kitchen");
 
 /** Opens a page of the console in a browser of this size and theme. */
 async function open(path, viewport, colorScheme) {

@@ -18,10 +18,12 @@ export class Group {
   /**
    * Starts a group with the profile for tests and waits until it is ready.
    * @param {string[]} settings `key=value` each
+   * @param {string} [name] what the group is called; one of its own where nothing is said
    */
-  static async up(settings = []) {
+  static async up(settings = [], name) {
     const home = await mkdtemp(join(tmpdir(), "wb"));
-    const group = new Group(home, `b${process.pid}-${home.slice(-6).toLowerCase()}`);
+    const own = `b${process.pid}-${home.slice(-6).toLowerCase()}`;
+    const group = new Group(home, name ?? own);
     const up = ["up", "--detach", "--wait", "ready", "--timeout", "40", "--profile", "ci"];
     // A busy machine's browser may take its time to answer.
     const patient = ["dialogue.turns.response_window_s=20.0", ...settings];
