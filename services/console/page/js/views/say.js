@@ -38,8 +38,18 @@ export function mountSay(element, { link, store, t }) {
     if (input.value === "") beganAt = null;
     else beganAt ??= performance.now();
   });
-  form.addEventListener("submit", async (event) => {
+  // Also where the button is off: then the reason is told.
+  input.addEventListener("keydown", (event) => {
+    if (event.key !== "Enter" || event.isComposing) return;
     event.preventDefault();
+    submit();
+  });
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    submit();
+  });
+
+  async function submit() {
     const text = input.value.trim();
     if (!text) return;
     const began = beganAt ?? performance.now();
@@ -54,7 +64,7 @@ export function mountSay(element, { link, store, t }) {
       if (input.value === "") input.value = text;
       note.textContent = reason(/** @type {any} */ (error), t);
     }
-  });
+  }
 
   /** Who types where nobody is in control takes it. */
   async function ready() {
@@ -67,11 +77,11 @@ export function mountSay(element, { link, store, t }) {
     const who = whoControls(store.get("control"), store.get("welcome"));
     const watching = who === "theirs" || who === "asked";
     input.disabled = watching;
-    send.disabled = watching;
+    send.disabled = watching || who === "unknown" || store.get("link")?.state !== "up";
     const noun = store.get("scene")?.noun ?? t("say.thing");
     const words = watching ? t("say.watching") : t("say.placeholder", { noun });
     setAttribute(input, "placeholder", words);
   });
-  store.subscribe(["control", "welcome", "scene"], draw);
+  store.subscribe(["control", "welcome", "link", "scene"], draw);
   draw();
 }
