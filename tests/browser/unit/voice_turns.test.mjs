@@ -72,6 +72,9 @@ test("it falls silent at once when it was broken off, replaced, hushed or muted"
   assert.ok(stops({ hushed: "4-1" }));
   assert.ok(stops({ muted: true }));
   assert.ok(stops({ speaking: null }));
+  const ended = { ...line, state: "ended", ended_ms: 1_000 };
+  assert.ok(stops({ speaking: ended, lengthS: 3 }), "it ended before its sound");
+  assert.ok(!stops({ speaking: ended, lengthS: 1.2 }));
   const next = { ...speaking, prompt: 5 };
   const replaced = plan({ ...silent, playing: "4-1", speaking: next });
   assert.deepEqual(replaced, { stop: true, start: next });

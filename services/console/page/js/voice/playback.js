@@ -96,7 +96,14 @@ class Playback {
   #look() {
     const speaking = this.#store.get("speech")?.speaking;
     const { key: playing } = this.#playing;
-    const { stop, start } = plan({ speaking, playing, hushed: this.#hushed, muted: this.#muted });
+    const lengthS = this.#playing.source?.buffer?.duration;
+    const { stop, start } = plan({
+      speaking,
+      playing,
+      lengthS,
+      hushed: this.#hushed,
+      muted: this.#muted,
+    });
     if (stop) this.#stop();
     if (start) void this.#start(start);
   }

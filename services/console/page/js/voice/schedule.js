@@ -1,10 +1,12 @@
 // @ts-check
+/** A sentence that ended so much before its sound was broken off, milliseconds. */
+const SHORT_MS = 400;
 /** A sound that is less late than this is played from its beginning, milliseconds. */
 const LATE_MS = 300;
 
 /**
  * @typedef {{prompt: number, presentation: number, url: string|null, began_ms: number,
- *   state: string}} Speaking
+ *   ended_ms?: number|null, state: string}} Speaking
  */
 
 /** @param {Speaking|null|undefined} speaking @returns {string} names one presentation of a prompt */
@@ -17,13 +19,16 @@ export function keyOf(speaking) {
  * @param {object} now
  * @param {Speaking|null|undefined} now.speaking
  * @param {string} now.playing what sounds, as `keyOf`; empty for nothing
+ * @param {number} [now.lengthS] how long that sound is
  * @param {string} now.hushed what is not to be heard: a person spoke over it
  * @param {boolean} now.muted
  * @returns {{stop: boolean, start: Speaking|null}} `stop` what sounds; `start` this
  */
-export function plan({ speaking, playing, hushed, muted }) {
+export function plan({ speaking, playing, lengthS = 0, hushed, muted }) {
   const key = keyOf(speaking);
-  const broken = speaking?.state === "interrupted" || speaking?.state === "silent";
+  const saidMs = (speaking?.ended_ms ?? Infinity) - (speaking?.began_ms ?? 0);
+  const short = playing === key && saidMs < lengthS * 1_000 - SHORT_MS;
+  const broken = short || speaking?.state === "interrupted" || speaking?.state === "silent";
   const wanted = !muted && key !== hushed && !broken;
   // What was said to its end may still sound here for a moment.
   const stop = playing !== "" && !(wanted && playing === key);
