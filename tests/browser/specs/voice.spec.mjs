@@ -66,8 +66,8 @@ test.describe("while the robot speaks at length", () => {
     await page.mouse.up();
     // Its sound would last more than half a minute.
     await until("the end of the sentence", async () => {
-      const { prompt, presentation, ended_ms } = (await group.state()).speech.speaking;
-      return prompt > 1 || presentation > 1 || ended_ms;
+      const { speaking } = (await group.state()).speech;
+      return speaking?.prompt !== 1 || speaking.presentation > 1 || speaking.ended_ms;
     });
   });
 });
