@@ -68,3 +68,18 @@ export async function expectDelivered(page, group, name) {
   expect(last).toMatchObject({ object: name, outcome: "delivered" });
   await expect(question(page)).toContainText(t("last.delivered.other").split(":")[0]);
 }
+
+/**
+ * Presses Escape twice, and again as a person would, until the stop button has become another: a page that
+ * is just being drawn on a slow machine takes the presses for two single ones.
+ * @param {import("@playwright/test").Page} page
+ */
+export async function stopByKey(page) {
+  await expect(async () => {
+    await page.keyboard.press("Escape");
+    await page.keyboard.press("Escape");
+    await expect(page.getByRole("button", { name: t("stop.resume") })).toBeVisible({
+      timeout: 2_000,
+    });
+  }).toPass();
+}

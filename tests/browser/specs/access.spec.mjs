@@ -2,7 +2,7 @@
 
 import { expectAccessible } from "../lib/axe.mjs";
 import { t } from "../lib/strings.mjs";
-import { nextDecision, question, type } from "../lib/talk.mjs";
+import { nextDecision, question, stopByKey, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
 
 const SIZES = { desktop: { width: 1440, height: 900 }, phone: { width: 390, height: 844 } };
@@ -26,9 +26,7 @@ for (const [size, viewport] of Object.entries(SIZES)) {
         await expect(question(page)).toContainText(text);
         await expectAccessible(page);
 
-        await page.keyboard.press("Escape");
-        await page.keyboard.press("Escape");
-        await expect(page.getByRole("button", { name: t("stop.resume") })).toBeVisible();
+        await stopByKey(page);
         await expectAccessible(page);
 
         await group.must("stop", "console");

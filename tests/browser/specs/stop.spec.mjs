@@ -1,7 +1,7 @@
 // The motion stop.
 
 import { t } from "../lib/strings.mjs";
-import { answerUntilPicked, expectDelivered, type } from "../lib/talk.mjs";
+import { answerUntilPicked, expectDelivered, stopByKey, type } from "../lib/talk.mjs";
 import { expect, test } from "../lib/test.mjs";
 
 const stopped = async (group) => (await group.state()).arm.stopped;
@@ -40,9 +40,8 @@ test.describe("while the arm moves", () => {
 
 test("it works from the text field, by keyboard alone", async ({ console: page, group }) => {
   await page.getByRole("textbox", { name: t("say.label") }).focus();
-  await page.keyboard.press("Escape");
-  await page.keyboard.press("Escape");
-  await expect.poll(() => stopped(group)).toBe(true);
+  await stopByKey(page);
+  expect(await stopped(group)).toBe(true);
 });
 
 test("it works while the page is busy", async ({ console: page, group }) => {
