@@ -79,6 +79,21 @@ pub struct ServiceStatus {
     pub cpu_s: Option<f64>,
 }
 
+impl ServiceStatus {
+    /// What it does, in one word for people.
+    pub fn state(&self) -> &'static str {
+        match self.actual {
+            Actual::Down if self.wanted == Wanted::Up => "waiting",
+            Actual::Down => "down",
+            Actual::Starting => "starting",
+            Actual::Ready => "ready",
+            Actual::Stopping => "stopping",
+            Actual::Backoff => "backoff",
+            Actual::Held => "held",
+        }
+    }
+}
+
 /// The end of an incarnation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LastExit {

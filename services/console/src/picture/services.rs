@@ -1,7 +1,7 @@
 //! The processes of the group.
 
 use serde_json::{Value as Json, json};
-use supervisor::machine::{Actual, Wanted};
+use supervisor::machine::Actual;
 use supervisor::status::{GroupStatus, ServiceStatus};
 
 /// The section.
@@ -12,7 +12,7 @@ pub(super) fn section(group: &GroupStatus) -> Json {
         let note: Vec<String> = notes.into_iter().flatten().collect();
         json!({
             "name": service.name,
-            "state": state(service),
+            "state": service.state(),
             "pid": service.pid,
             "incarnation": service.incarnation,
             "restarts": service.restarts,
@@ -23,18 +23,6 @@ pub(super) fn section(group: &GroupStatus) -> Json {
         })
     });
     services.collect()
-}
-
-fn state(service: &ServiceStatus) -> &'static str {
-    match service.actual {
-        Actual::Down if service.wanted == Wanted::Up => "waiting",
-        Actual::Down => "down",
-        Actual::Starting => "starting",
-        Actual::Ready => "ready",
-        Actual::Stopping => "stopping",
-        Actual::Backoff => "backoff",
-        Actual::Held => "held",
-    }
 }
 
 /// Services that were lost or have come back between two looks. One that was killed and came back

@@ -92,7 +92,7 @@ fn row(service: &ServiceStatus) -> Vec<String> {
     let age = |ms: Option<u64>| or_dash(ms.map(|ms| words::time(ms as f64 / 1e3)));
     vec![
         service.name.clone(),
-        state(service).to_owned(),
+        service.state().to_owned(),
         or_dash(service.pid.map(|pid| pid.to_string())),
         or_dash(service.uptime_s.map(words::time)),
         service.incarnation.to_string(),
@@ -101,18 +101,6 @@ fn row(service: &ServiceStatus) -> Vec<String> {
         or_dash(service.rss_kib.map(words::memory)),
         remarks(service),
     ]
-}
-
-fn state(service: &ServiceStatus) -> &'static str {
-    match service.actual {
-        Actual::Down if service.wanted == Wanted::Up => "waiting",
-        Actual::Down => "down",
-        Actual::Starting => "starting",
-        Actual::Ready => "ready",
-        Actual::Stopping => "stopping",
-        Actual::Backoff => "backoff",
-        Actual::Held => "held",
-    }
 }
 
 fn remarks(service: &ServiceStatus) -> String {
