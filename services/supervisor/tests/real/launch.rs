@@ -70,7 +70,7 @@ fn copy_scenes(to: &Path) {
 fn services() -> String {
     let fixture = fixture("fixture_service").display().to_string();
     let service = |name| format!("[services.{name}]\ncommand = [{fixture:?}, \"ready\"]\n");
-    ["speech", "grounding", "policy", "arm"].map(service).concat()
+    ["speech", "grounding", "policy", "arm", "console"].map(service).concat()
 }
 
 /// The session of a process, from the sixth field of its `stat`. Not `getsid`, whose wrapper
@@ -89,7 +89,7 @@ fn a_detached_group_comes_up_and_goes_down() {
     assert_eq!(status.state, GroupState::Ready);
     assert_eq!(status.scene, "bowls");
     let names: Vec<&str> = status.services.iter().map(|service| service.name.as_str()).collect();
-    assert_eq!(names, ["speech", "grounding", "policy", "arm"]);
+    assert_eq!(names, ["speech", "grounding", "policy", "arm", "console"]);
     assert_eq!(session_of(status.supervisor_pid), status.supervisor_pid, "a session of its own");
     let settings = home.paths.run().join(settings::SNAPSHOT_FILE);
     assert!(settings.exists());
@@ -122,9 +122,11 @@ fn a_reload_restarts_the_services_that_read_what_has_changed() {
     home.write("speech.toml", "# nothing but a remark\n");
     assert_eq!(reload(), Reply::Reloaded { restarted: vec![] });
     home.write("arm.toml", "time_scale = 7.0\n");
-    assert_eq!(reload(), Reply::Reloaded { restarted: vec!["arm".into()] });
+    // The console shows the robot that arm.toml names.
+    let readers = ["arm", "console"].map(str::to_owned).to_vec();
+    assert_eq!(reload(), Reply::Reloaded { restarted: readers });
     home.write("group.toml", &format!("scene = \"tools\"\n{}", services()));
-    let all = ["speech", "grounding", "policy", "arm"].map(str::to_owned).to_vec();
+    let all = ["speech", "grounding", "policy", "arm", "console"].map(str::to_owned).to_vec();
     assert_eq!(reload(), Reply::Reloaded { restarted: all });
     home.write("group.toml", "scene = \"nowhere\"\n");
     let Reply::Refused(refusal) = reload() else { panic!("not refused") };

@@ -65,7 +65,7 @@ fn the_defaults_are_what_the_documentation_says() {
         (&grounding.command, &speech_service.after),
         (&None, &vec!["grounding".to_owned(), "policy".to_owned(),])
     );
-    assert_eq!(arm_service.watchdog, Some(Duration::from_secs(1)));
+    assert_eq!(arm_service.watchdog, Some(Duration::from_secs(3)));
     assert_eq!(arm_service.stop_deadline, Duration::from_secs(15));
     assert_eq!((group.restart.exits_max, group.restart.window.as_secs()), (5, 60));
 
