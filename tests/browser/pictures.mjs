@@ -64,13 +64,13 @@ async function dialogue() {
   await phone.context().close();
 }
 
-/** A participant of a study, up to the first dialogue, and what the experimenter sees then. */
+/** A participant of a study, up to the first dialogue. */
 async function study() {
   const page = await open("/study", DESKTOP, "light");
   const next = async (name) => page.getByRole("button", { name: t(name) }).click();
-  await next("study.welcome.go");
+  await next("study.begin");
   await page.locator('body[data-screen="instructions"]').waitFor();
-  await next("study.instructions.go");
+  await next("study.continue");
   await page.locator("#start:not(:disabled)").waitFor();
   await take(page, "study");
   await page.context().close();

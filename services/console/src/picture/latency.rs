@@ -10,6 +10,9 @@ use serde_json::{Value as Json, json};
 const KEPT: usize = 500;
 /// Utterances that wait for their answer.
 const OPEN_MAX: usize = 32;
+/// Longest time from a meaning to what is decided about it, nanoseconds: the robot holds its tongue for ten
+/// seconds at most. A question that is put after a longer silence answers nothing.
+const DECIDED_NS_MAX: u64 = 11_000_000_000;
 
 /// One answer, milliseconds each stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -84,7 +87,8 @@ impl Latency {
 
     fn finish(&mut self, open: &Open, started: u64) {
         let marks = [open.end, open.accepted, open.grounded, open.decided, started];
-        if marks[0] == 0 || !marks.is_sorted() {
+        let is_late = open.decided.saturating_sub(open.grounded) > DECIDED_NS_MAX;
+        if marks[0] == 0 || !marks.is_sorted() || is_late {
             return;
         }
         let ms = |from: usize| (marks[from + 1] - marks[from]) as f64 / 1e6;
@@ -195,6 +199,7 @@ mod tests {
         let mut latency = Latency::default();
         answer(&mut latency, 1, [100, 90, 705, 725, 745]);
         answer(&mut latency, 2, [0, 90, 705, 725, 745]);
+        answer(&mut latency, 3, [100, 700, 705, 29_725, 29_745]);
         assert_eq!(latency.section()["count"], 0);
         assert_eq!(latency.section()["last"], Json::Null);
     }
