@@ -11,9 +11,9 @@ use node::{Span, Time};
 use runtime::client::Client;
 use runtime::clock;
 use runtime::device;
+use runtime::driver;
 use runtime::exit::{Exit, Failure};
 use runtime::lifecycle::{Environment, Lifecycle};
-use runtime::logging;
 use serde_json::json;
 use settings::{Recogniser, Settings, Voice};
 use tokio::net::TcpListener;
@@ -40,28 +40,8 @@ const RESTARTS_MAX: usize = 8;
 
 /// Runs the service until it is told to end.
 pub fn run() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    if arguments.iter().any(|a| a == "--help" || a == "-h") {
-        return help();
-    }
-    logging::init();
-    match serve(arguments) {
-        Ok(()) => Exit::Ok.code(),
-        Err(failure) => {
-            tracing::error!(exit = failure.exit as u8, "{failure}");
-            failure.exit.code()
-        }
-    }
-}
-
-fn help() -> ExitCode {
-    use std::io::Write;
-    let text = "whichone-console: serves the page from which a person talks to the robot and sees \
-                what it thinks\n\nStarted by the group's supervisor (whichone up); put your own in \
-                its place with:\n  whichone swap console -- COMMAND…\n";
-    // A closed pipe is the reader's choice.
-    let _ = std::io::stdout().write_all(text.as_bytes());
-    Exit::Ok.code()
+    let about = "serves the page from which a person talks to the robot and sees what it thinks";
+    driver::program("console", about, serve)
 }
 
 fn serve(arguments: Vec<String>) -> Result<(), Failure> {

@@ -86,12 +86,22 @@ pub struct Context<'a, In> {
 
 /// Runs the service until it is told to end.
 pub fn run<P: Program>() -> ExitCode {
+    program(P::SERVICE.name(), P::ABOUT, serve::<P>)
+}
+
+/// The outside of every service's program: `--help` with its name and what it is `about`, logs, and the
+/// exit code of how `serve`, which gets the arguments, has ended.
+pub fn program(
+    name: &str,
+    about: &str,
+    serve: impl FnOnce(Vec<String>) -> Result<(), Failure>,
+) -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     if arguments.iter().any(|a| a == "--help" || a == "-h") {
-        return help::<P>();
+        return help(name, about);
     }
     logging::init();
-    match serve::<P>(arguments) {
+    match serve(arguments) {
         Ok(()) => Exit::Ok.code(),
         Err(failure) => {
             tracing::error!(exit = failure.exit as u8, "{failure}");
@@ -100,13 +110,11 @@ pub fn run<P: Program>() -> ExitCode {
     }
 }
 
-fn help<P: Program>() -> ExitCode {
+fn help(name: &str, about: &str) -> ExitCode {
     use std::io::Write;
-    let name = P::SERVICE.name();
     let text = format!(
-        "whichone-{name}: {}\n\nStarted by the group's supervisor (whichone up); put your own in \
-         its place with:\n  whichone swap {name} -- COMMAND…\n",
-        P::ABOUT
+        "whichone-{name}: {about}\n\nStarted by the group's supervisor (whichone up); put your own in \
+         its place with:\n  whichone swap {name} -- COMMAND…\n"
     );
     // A closed pipe is the reader's choice.
     let _ = std::io::stdout().write_all(text.as_bytes());
