@@ -1,4 +1,4 @@
-// Takes the pictures of docs/pictures/console-*.png: the console as people see it, from a real group.
+// Takes docs/pictures/console-*.png and study-*.png: the console as people see it, from real groups.
 //
 //   node tests/browser/pictures.mjs [FOLDER]
 
@@ -6,6 +6,7 @@ import { join } from "node:path";
 import { chromium } from "@playwright/test";
 import { CHROMIUM, CHROMIUM_FLAGS } from "./lib/chromium.mjs";
 import { Group } from "./lib/group.mjs";
+import { finish, press, rate, request, screen } from "./lib/participant.mjs";
 import { ROOT } from "./lib/program.mjs";
 import { t } from "./lib/strings.mjs";
 import { answerUntilPicked, nextDecision, type } from "./lib/talk.mjs";
@@ -14,10 +15,19 @@ import { until } from "./lib/until.mjs";
 const FOLDER = process.argv[2] ?? join(ROOT, "docs/pictures");
 const DESKTOP = { width: 1440, height: 900 };
 const PHONE = { width: 390, height: 844 };
-const STUDY = ["study.enabled=true", "study.title=Asking for bowls"];
+const POLICIES = ["lookahead", "information-seeking"];
+/** Those of a participant, with each policy. */
+const INTERACTIONS = 2;
+const STUDY = [
+  "study.enabled=true",
+  "study.title=Asking for bowls",
+  `study.policies=${JSON.stringify(POLICIES)}`,
+  `study.interactions=${INTERACTIONS}`,
+];
 
 const browser = await chromium.launch({ executablePath: CHROMIUM, args: CHROMIUM_FLAGS });
-const group = await Group.up(["arm.time_scale=1", ...STUDY], "kitchen");
+/** @type {Group} */
+let group;
 
 /** Opens a page of the console in a browser of this size and theme. */
 async function open(path, viewport, colorScheme) {
@@ -33,7 +43,7 @@ async function take(page, name) {
     await document.fonts.ready;
     await Promise.all(document.getAnimations().map((animation) => animation.finished));
   });
-  await page.screenshot({ path: join(FOLDER, `console-${name}.png`) });
+  await page.screenshot({ path: join(FOLDER, `${name}.png`) });
 }
 
 const drawn = (page) => page.locator("#arm[data-state=ready]").waitFor({ timeout: 60_000 });
@@ -48,38 +58,76 @@ async function dialogue() {
   await phone.getByText(t("question.idle", { noun: "bowl" })).waitFor();
   await type(page, "get me the big bowl");
   await nextDecision(group, 0);
-  await take(page, "asks");
-  await take(phone, "phone");
+  await take(page, "console-asks");
+  await take(phone, "console-phone");
   await page.emulateMedia({ colorScheme: "dark" });
   await answerUntilPicked(page, group, "clear");
   await armIs("holding");
-  await take(page, "fetches");
+  await take(page, "console-fetches");
   await page.emulateMedia({ colorScheme: "light" });
   await page.keyboard.press("Escape");
   await page.getByRole("button", { name: t("stop.resume") }).waitFor();
-  await take(page, "stopped");
+  await take(page, "console-stopped");
   await group.must("resume-motion");
   await until("the hand-over", async () => (await group.state()).dialogue.last);
   await page.context().close();
   await phone.context().close();
 }
 
-/** A participant of a study, up to the first dialogue. */
+/** The participants of a study, one of them with a phone, and what is found out by them. */
 async function study() {
+  const people = [
+    { viewport: DESKTOP, theme: "light", mark: 4, picture: "console-study" },
+    { viewport: PHONE, theme: "dark", mark: 5, picture: "study-phone" },
+    { viewport: DESKTOP, theme: "light", mark: 3, picture: null },
+  ];
+  for (const { viewport, theme, mark, picture } of people) {
+    const page = await open("/study", viewport, theme);
+    await takePart(page, mark, picture);
+    await page.context().close();
+  }
   const page = await open("/study", DESKTOP, "light");
-  const next = async (name) => page.getByRole("button", { name: t(name) }).click();
-  await next("study.begin");
-  await page.locator('body[data-screen="instructions"]').waitFor();
-  await next("study.continue");
-  await page.locator("#start:not(:disabled)").waitFor();
-  await take(page, "study");
-  await page.context().close();
+  await press(page, "study.begin");
+  const results = await open("/results", DESKTOP, "light");
+  await results.getByRole("img", { name: t("study.picture.success") }).waitFor();
+  await take(results, "study-results");
+}
+
+/** From the welcome to the thanks; the picture is that of the first card, or of the first question. */
+async function takePart(page, mark, picture) {
+  await press(page, "study.begin");
+  await screen(page, "instructions");
+  await press(page, "study.continue");
+  for (let left = INTERACTIONS * POLICIES.length; left > 0; left -= 1) {
+    const first = left === INTERACTIONS * POLICIES.length ? picture : null;
+    await page.locator("#start:not(:disabled)").waitFor({ timeout: 60_000 });
+    if (first === "console-study") await take(page, first);
+    const desired = await request(page);
+    if (first === "study-phone") {
+      await nextDecision(group, 0);
+      await take(page, first);
+    }
+    await finish(page, group, desired);
+    await press(page, left > 1 ? "study.next" : "study.continue");
+  }
+  await screen(page, "questionnaire");
+  await rate(page, mark);
+  await press(page, "study.send");
+  await screen(page, "thanks");
+}
+
+async function inGroup(settings, show) {
+  group = await Group.up(settings, "kitchen");
+  try {
+    await show();
+  } finally {
+    await group.down();
+  }
 }
 
 try {
-  await dialogue();
-  await study();
+  await inGroup(["arm.time_scale=1"], dialogue);
+  await inGroup(STUDY, study);
 } finally {
   await browser.close();
-  await group.down();
 }

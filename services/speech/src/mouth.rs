@@ -20,6 +20,8 @@ pub(crate) struct Mouth {
     said: VecDeque<Said>,
     /// The latest prompt said to its end, question or not.
     last: Option<Said>,
+    /// The latest prompt that was broken off, until another one sounds.
+    broken: Option<Said>,
     saying: Option<Saying>,
     waiting: Option<Waiting>,
     /// Number of the last line given to the voice.
@@ -129,6 +131,7 @@ impl Mouth {
         if self.saying.is_some() {
             self.break_off(now, fx);
             fx.publish(Out::Hush);
+            self.send(fx);
         }
     }
 
@@ -153,8 +156,10 @@ impl Mouth {
     /// What has been said of a question so far may be answered all the same.
     fn break_off(&mut self, now: Time, fx: &mut Fx) {
         let so_far = self.saying.take().and_then(|saying| saying.so_far());
-        if let Some(said) = so_far.filter(|said| said.question != Question::None) {
-            self.keep(Said { ended: now, ..said }, fx);
+        let Some(said) = so_far.map(|said| Said { ended: now, ..said }) else { return };
+        self.broken = Some(said);
+        if said.question != Question::None {
+            self.keep(said, fx);
         }
     }
 
@@ -170,7 +175,10 @@ impl Mouth {
             return;
         };
         match event.what {
-            Spoken::Started => saying.started = Some(now),
+            Spoken::Started => {
+                saying.started = Some(now);
+                self.broken = None;
+            }
             Spoken::Interrupted => self.break_off(now, fx),
             Spoken::Ended => self.end(now, fx),
         }
@@ -179,6 +187,7 @@ impl Mouth {
 
     fn end(&mut self, now: Time, fx: &mut Fx) {
         if let Some(mut saying) = self.saying.take() {
+            self.broken = None;
             saying.started.get_or_insert(now);
             let whole = saying.so_far().map(|said| Said { ended: now, whole: true, ..said });
             whole.into_iter().for_each(|said| self.keep(said, fx));
@@ -187,23 +196,17 @@ impl Mouth {
 
     /// Tells the policy what is being said or was said last.
     pub(crate) fn send(&self, fx: &mut Fx) {
-        let presented = match (&self.saying, &self.last) {
-            (Some(Saying { words, started: Some(started), .. }), _) => Presented {
+        let presented = match (&self.saying, self.broken, self.last) {
+            (Some(Saying { words, started: Some(started), .. }), ..) => Presented {
                 prompt: words.prompt.0,
                 presentation: words.presentation,
                 started_ns: started.ns(),
                 state: Presentation::Speaking.code(),
                 ..Presented::default()
             },
-            (_, Some(said)) => Presented {
-                prompt: said.prompt.0,
-                presentation: said.presentation,
-                started_ns: said.started.ns(),
-                ended_ns: said.ended.ns(),
-                state: Presentation::Ended.code(),
-                ..Presented::default()
-            },
-            (_, None) => Presented::default(),
+            (_, Some(broken), _) => broken.presented(Presentation::Interrupted),
+            (_, _, Some(last)) => last.presented(Presentation::Ended),
+            (_, None, None) => Presented::default(),
         };
         fx.publish(Out::Presented(presented));
     }

@@ -1,7 +1,7 @@
 //! What the speech service must not forget.
 
 use node::Time;
-use protocol::{PromptId, RequestKey, UtteranceSeq};
+use protocol::{Presentation, Presented, PromptId, RequestKey, UtteranceSeq};
 use scene::Question;
 use serde::{Deserialize, Serialize};
 
@@ -77,4 +77,18 @@ pub struct Said {
     pub ended: Time,
     /// Whether it was said to its end.
     pub whole: bool,
+}
+
+impl Said {
+    /// As the policy and the console get it.
+    pub(crate) fn presented(&self, state: Presentation) -> Presented {
+        Presented {
+            prompt: self.prompt.0,
+            presentation: self.presentation,
+            started_ns: self.started.ns(),
+            ended_ns: self.ended.ns(),
+            state: state.code(),
+            ..Presented::default()
+        }
+    }
 }

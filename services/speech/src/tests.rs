@@ -179,10 +179,11 @@ fn who_interrupts_is_listened_to_and_the_question_is_said_again_if_it_stands() {
     assert!(outputs.iter().any(|out| matches!(out, Out::Hush)), "{outputs:?}");
     let Some(Record::Presented(broken)) = speech.records.last() else { panic!() };
     assert!(!broken.whole && broken.question == WHITE);
-    let told = outputs
-        .iter()
-        .any(|out| matches!(out, Out::Presented(p) if p.state == Presentation::Speaking.code()));
-    assert!(!told, "nobody heard it whole");
+    let told = outputs.iter().find_map(|out| match out {
+        Out::Presented(presented) => Some((presented.prompt, presented.state)),
+        _ => None,
+    });
+    assert_eq!(told, Some((7, Presentation::Interrupted.code())), "nobody heard it whole");
     assert!(spoken(&speech.take(0.1, ask(7))).is_none(), "the person still speaks");
     speech.take(0.5, ended(onset));
     let outputs = speech.take(0.5, nothing());

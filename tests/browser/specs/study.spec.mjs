@@ -1,37 +1,13 @@
 // A participant takes part, from the welcome to the file that a lab reads; keyboard only.
 
 import { expectAccessible } from "../lib/axe.mjs";
+import { finish, press, rate, request, screen } from "../lib/participant.mjs";
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";
 
 test.use({
   settings: ["study.enabled=true", "study.consent=I agree to take part.", "study.title=Bowls"],
 });
-
-/** Waits for a screen of the participant's page. */
-const screen = (page, name) => expect(page.locator("body")).toHaveAttribute("data-screen", name);
-
-/** Presses a button as somebody without a mouse does. */
-async function press(page, key) {
-  const button = page.getByRole("button", { name: t(key), exact: true });
-  await expect(button).toBeEnabled();
-  await button.focus();
-  await page.keyboard.press("Enter");
-}
-
-/** One interaction: the card, the start, a request, and a truthful person's answers. */
-async function interact(page, group) {
-  await screen(page, "drawn");
-  const desired = await page.locator("#screen [data-object]").getAttribute("data-object");
-  await press(page, "study.start");
-  await screen(page, "running");
-  await page.getByRole("textbox", { name: t("say.label") }).fill("get me the bowl");
-  await page.keyboard.press("Enter");
-  await group.call("await", "pick", "--answer-as", desired ?? "", "--timeout", "50");
-  await screen(page, "over");
-  await expect(page.getByText(t("study.outcome.right"))).toBeVisible();
-  return desired;
-}
 
 test("three interactions, a reload, the questionnaire and the export", async ({
   page,
@@ -52,7 +28,8 @@ test("three interactions, a reload, the questionnaire and the export", async ({
   const desired = [];
   for (const number of [1, 2, 3]) {
     await expect(page.getByText(t("study.progress", { n: number, total: 3 }))).toBeVisible();
-    desired.push(await interact(page, group));
+    desired.push(await request(page));
+    await finish(page, group, desired.at(-1));
     if (number === 2) await page.reload();
     await press(page, number < 3 ? "study.next" : "study.continue");
   }
@@ -61,10 +38,7 @@ test("three interactions, a reload, the questionnaire and the export", async ({
   await expectAccessible(page);
   await press(page, "study.send");
   await expect(page.getByText(t("study.missing.other", { n: 4 }))).toBeVisible();
-  for (const scale of await page.locator(".study-form fieldset").all()) {
-    await scale.getByRole("radio", { name: "4", exact: true }).focus();
-    await page.keyboard.press("Space");
-  }
+  await rate(page, 4);
   await page.locator(".study-form textarea").fill("=1+1, “fine”");
   await press(page, "study.send");
   await screen(page, "thanks");

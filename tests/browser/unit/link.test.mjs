@@ -148,6 +148,34 @@ describe("the link", () => {
     assert.equal(refused, 1);
   });
 
+  it("waits for a connection that comes back, and not for ever for one that does not", async () => {
+    mock.timers.enable({ apis: ["setTimeout", "setInterval", "Date"] });
+    const link = open();
+    const up = link.up(1_000);
+    const late = link.up(100);
+    mock.timers.tick(100);
+    await assert.rejects(late, { code: "down" });
+    welcome(Socket.made[0]);
+    await up;
+    await link.up(0);
+  });
+
+  it("does not take its own sleep for the server's silence", () => {
+    let now = 0;
+    const beats = mock.method(globalThis, "setInterval", () => 0);
+    const link = open({ now: () => now });
+    const [beat] = beats.mock.calls[0].arguments;
+    beats.mock.restore();
+    welcome(Socket.made[0]);
+    for (let asleep = 0; asleep < 5; asleep++) {
+      now += 20_000;
+      beat();
+      Socket.made[0].say({ t: "pong", at: now, server_ms: now });
+    }
+    assert.equal(link.isUp, true);
+    assert.equal(Socket.made.length, 1);
+  });
+
   it("notices a server that says nothing for six seconds", () => {
     mock.timers.enable({ apis: ["setTimeout", "setInterval", "Date"] });
     const link = open();

@@ -9,8 +9,11 @@ export { LinkError };
 const PROTOCOL = 1;
 /** Between two pings, milliseconds. */
 const PING_MS = 2_000;
-/** A server that is silent for longer is gone, milliseconds. */
-const SILENCE_MS = 6_000;
+/**
+ * A server that is silent for more pings than that is gone. Pings and not seconds: a page that was
+ * busy or asleep has not looked, and finds what came meanwhile when it does.
+ */
+const SILENT_PINGS = 3;
 /** How soon a connection must answer after the page was out of sight, milliseconds. */
 const PROBE_MS = 1_200;
 /** How long an answer is waited for, milliseconds. */
@@ -57,7 +60,7 @@ class Link {
   #listeners = new Map();
   /** @type {WebSocket|null} */
   #socket = null;
-  #heardAt = 0;
+  #silent = 0;
   #helloAt = 0;
   #retry = 0;
   #probe = 0;
@@ -127,6 +130,29 @@ class Link {
   }
 
   /**
+   * Waits until something said reaches the server: a connection that broke comes back by itself.
+   * @param {number} patienceMs
+   * @returns {Promise<void>} fails with a `LinkError`
+   */
+  async up(patienceMs) {
+    if (this.isUp) return;
+    await new Promise((resolve, reject) => {
+      const late = setTimeout(
+        () => end(new LinkError("down", "There is no connection.")),
+        patienceMs,
+      );
+      const stop = this.on("status", ({ state }) => state === "up" && end());
+      /** @param {LinkError} [error] */
+      const end = (error) => {
+        clearTimeout(late);
+        stop();
+        if (error) reject(error);
+        else resolve(undefined);
+      };
+    });
+  }
+
+  /**
    * Sends a binary frame.
    * @param {ArrayBuffer|ArrayBufferView<ArrayBuffer>} buffer
    * @returns {boolean} whether it was given to the connection
@@ -177,7 +203,7 @@ class Link {
     const socket = new Socket(this.#options.url ?? ownUrl());
     socket.binaryType = "arraybuffer";
     this.#socket = socket;
-    this.#heardAt = this.#now();
+    this.#silent = 0;
     socket.onopen = () => this.#hello();
     socket.onmessage = (event) => this.#hear(socket, event.data);
     socket.onclose = (event) => this.#lost(socket, event.code);
@@ -192,7 +218,7 @@ class Link {
 
   #hear(socket, data) {
     if (socket !== this.#socket || typeof data !== "string") return;
-    this.#heardAt = this.#now();
+    this.#silent = 0;
     let message;
     try {
       message = JSON.parse(data);
@@ -254,11 +280,9 @@ class Link {
 
   #tick() {
     if (!this.#socket) return;
-    if (this.#now() - this.#heardAt > SILENCE_MS) {
-      this.#lost(this.#socket, 0);
-    } else if (this.isUp) {
-      this.#ping();
-    }
+    this.#silent += 1;
+    if (this.#silent > SILENT_PINGS) this.#lost(this.#socket, 0);
+    else if (this.isUp) this.#ping();
   }
 
   #ping() {

@@ -117,9 +117,10 @@ impl Transcript {
         now: Now,
     ) -> bool {
         let said = (presented.prompt, presented.presentation);
-        let begun = [Presentation::Speaking.code(), Presentation::Ended.code()];
+        let has_begun =
+            Presentation::from_code(presented.state).is_ok_and(Presentation::has_begun);
         let is_known = self.lines.iter().any(|line| line.said == Some(said));
-        if is_known || !begun.contains(&presented.state) {
+        if is_known || !has_begun {
             return false;
         }
         let asks = prompt.question != Question::None

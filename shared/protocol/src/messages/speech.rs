@@ -20,6 +20,13 @@ wire_enum! {
     }
 }
 
+impl Presentation {
+    /// Whether somebody may have heard some of it.
+    pub fn has_begun(self) -> bool {
+        self != Self::Silent
+    }
+}
+
 wire_struct! {
     /// The latest prompt that was said. Speech to policy.
     Presented = "Presented" {

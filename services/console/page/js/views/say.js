@@ -6,6 +6,8 @@ import { reason } from "./attempt.js";
 
 /** Longest text, characters. */
 const TEXT_MAX = 500;
+/** What was typed waits so long for a connection that has just broken, milliseconds. */
+const OUTAGE_MS = 4_000;
 
 /**
  * The line for typing. What was refused comes back into it, with the reason.
@@ -57,6 +59,7 @@ export function mountSay(element, { link, store, t }) {
     beganAt = null;
     note.textContent = "";
     try {
+      await link.up(OUTAGE_MS);
       await ready();
       const times = { began_ms: link.toServer(began), ended_ms: link.serverNow() };
       await link.do("say", { text, source: "typed", ...times });

@@ -54,8 +54,8 @@ impl Seen {
     pub(in crate::verbs) fn words(&self) -> Option<(Said, &str)> {
         let view = self.view.as_ref()?;
         let Presented { prompt, presentation, state, .. } = self.presented;
-        let begun = [Presentation::Speaking.code(), Presentation::Ended.code()].contains(&state);
-        let latest = begun && prompt != 0 && prompt == view.prompt && !view.text.is_empty();
+        let has_begun = Presentation::from_code(state).is_ok_and(Presentation::has_begun);
+        let latest = has_begun && prompt != 0 && prompt == view.prompt && !view.text.is_empty();
         latest.then_some(((prompt, presentation), view.text.as_str()))
     }
 }
