@@ -117,8 +117,7 @@ impl Transcript {
         now: Now,
     ) -> bool {
         let said = (presented.prompt, presented.presentation);
-        let has_begun =
-            Presentation::from_code(presented.state).is_ok_and(Presentation::has_begun);
+        let has_begun = Presentation::from_code(presented.state).is_ok_and(Presentation::has_begun);
         let is_known = self.lines.iter().any(|line| line.said == Some(said));
         if is_known || !has_begun {
             return false;
