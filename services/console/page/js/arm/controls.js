@@ -2,16 +2,17 @@
 import { Spherical, Vector3 } from "../../vendor/three/build/three.module.js";
 import { OrbitControls } from "../../vendor/three/examples/jsm/controls/OrbitControls.js";
 
-/** Turn of one press of an arrow key, radians. */
-const TURN_RAD = 0.12;
-const ZOOM = 1.12;
+/** How near and how far the eye may be, metres. */
+const [NEAREST_M, FARTHEST_M] = [0.5, 9];
+/** How far from straight above the eye may be, radians: a little below the horizon. */
+const LOWEST_RAD = 1.62;
 /** How long the camera takes to another view, milliseconds. */
 const FLIGHT_MS = 700;
 /** Up is z; spherical coordinates of three have y up. */
 const UPRIGHT = (v) => new Vector3(v.x, v.z, -v.y);
 const LYING = (v) => new Vector3(v.x, -v.z, v.y);
 
-/** Orbiting the camera by mouse, touch and keyboard, and flying it to a view. */
+/** Orbiting the camera as a person has it done, and flying it to a view. */
 export class CameraControls {
   #orbit;
   /** @type {{from: any, to: any, at: number}|null} */
@@ -21,43 +22,31 @@ export class CameraControls {
 
   /**
    * @param {any} camera
-   * @param {HTMLElement} stage takes the keys
-   * @param {HTMLCanvasElement} canvas
+   * @param {import("./pointed.js").Pointed} pointed hears what is done to the picture
    * @param {() => void} changed
    */
-  constructor(camera, stage, canvas, changed) {
+  constructor(camera, pointed, changed) {
     this.camera = camera;
     this.changed = changed;
-    this.#orbit = new OrbitControls(camera, canvas);
+    this.#orbit = new OrbitControls(camera, /** @type {any} */ (pointed));
     Object.assign(this.#orbit, {
       enableDamping: false,
       enablePan: false,
-      minDistance: 0.5,
-      maxDistance: 9,
+      minDistance: NEAREST_M,
+      maxDistance: FARTHEST_M,
       minPolarAngle: 0.01,
-      maxPolarAngle: 1.62,
+      maxPolarAngle: LOWEST_RAD,
       rotateSpeed: 0.8,
     });
-    // A finger that moves up and down scrolls the page; to the side it turns the picture.
-    canvas.style.setProperty("touch-action", "pan-y");
     this.#orbit.addEventListener("change", changed);
-    this.#orbit.addEventListener("start", () => {
-      this.#flight = null;
-      this.isMoved = true;
-    });
-    stage.addEventListener("keydown", (event) => this.#key(event));
-    // The wheel scrolls the page until the picture was chosen.
-    const chosen = () => stage.contains(document.activeElement);
-    stage.addEventListener("wheel", (event) => chosen() || event.stopPropagation(), {
-      capture: true,
-    });
+    this.#orbit.addEventListener("start", () => this.#take());
   }
 
   /**
    * Goes to a view.
    * @param {import("./cameras.js").View} view
    * @param {boolean} atOnce without a flight
-   * @param {number} now page time, milliseconds
+   * @param {number} now milliseconds
    */
   go(view, atOnce, now) {
     const to = { eye: new Vector3(...view.eye), target: new Vector3(...view.target) };
@@ -74,7 +63,7 @@ export class CameraControls {
 
   /**
    * Carries a flight on.
-   * @param {number} now page time, milliseconds
+   * @param {number} now milliseconds
    * @returns {boolean} whether it goes on
    */
   step(now) {
@@ -96,8 +85,28 @@ export class CameraControls {
     return this.#flight !== null;
   }
 
-  dispose() {
-    this.#orbit.dispose();
+  /** Turns the picture. @param {number} theta to the side, radians @param {number} phi down */
+  turn(theta, phi) {
+    this.#take();
+    const { target } = this.#orbit;
+    const at = new Spherical().setFromVector3(UPRIGHT(this.camera.position.clone().sub(target)));
+    at.theta += theta;
+    at.phi = Math.min(Math.max(at.phi + phi, 0.02), LOWEST_RAD);
+    this.#set(target.clone().add(LYING(new Vector3().setFromSpherical(at))), target.clone());
+  }
+
+  /** Goes nearer or farther. @param {number} factor of the distance */
+  zoom(factor) {
+    this.#take();
+    const { target } = this.#orbit;
+    const way = this.camera.position.clone().sub(target).multiplyScalar(factor);
+    this.#set(target.clone().add(way.clampLength(NEAREST_M, FARTHEST_M)), target.clone());
+  }
+
+  /** From now on a person has the camera. */
+  #take() {
+    this.#flight = null;
+    this.isMoved = true;
   }
 
   #set(eye, target) {
@@ -105,37 +114,5 @@ export class CameraControls {
     this.#orbit.target.copy(target);
     this.#orbit.update();
     this.changed();
-  }
-
-  #key(event) {
-    const steps = {
-      ArrowLeft: () => this.#turn(-TURN_RAD, 0),
-      ArrowRight: () => this.#turn(TURN_RAD, 0),
-      ArrowUp: () => this.#turn(0, -TURN_RAD),
-      ArrowDown: () => this.#turn(0, TURN_RAD),
-      "+": () => this.#zoom(1 / ZOOM),
-      "=": () => this.#zoom(1 / ZOOM),
-      "-": () => this.#zoom(ZOOM),
-    };
-    if (event.ctrlKey || event.metaKey || event.altKey || !steps[event.key]) return;
-    event.preventDefault();
-    event.stopPropagation();
-    this.#flight = null;
-    this.isMoved = true;
-    steps[event.key]();
-  }
-
-  #turn(theta, phi) {
-    const { target } = this.#orbit;
-    const at = new Spherical().setFromVector3(UPRIGHT(this.camera.position.clone().sub(target)));
-    at.theta += theta;
-    at.phi = Math.min(Math.max(at.phi + phi, 0.02), 1.62);
-    this.#set(target.clone().add(LYING(new Vector3().setFromSpherical(at))), target.clone());
-  }
-
-  #zoom(factor) {
-    const { target } = this.#orbit;
-    const way = this.camera.position.clone().sub(target).multiplyScalar(factor).clampLength(0.5, 9);
-    this.#set(target.clone().add(way), target.clone());
   }
 }

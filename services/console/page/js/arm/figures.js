@@ -38,6 +38,42 @@ export class Rolling {
   }
 }
 
+/** What is measured of a picture that moves. */
+export class MotionFigures {
+  #frames = new Rolling();
+  #work = new Rolling();
+  #late = new Rolling();
+
+  /**
+   * @param {object} frame milliseconds each; what is null does not count
+   * @param {number|null} frame.interval since the frame before
+   * @param {number} frame.work that drawing took
+   * @param {number|null} frame.late from the state of the joints to the picture of it
+   */
+  add({ interval, work, late }) {
+    if (interval !== null) this.#frames.add(interval);
+    this.#work.add(work);
+    if (late !== null) this.#late.add(late);
+  }
+
+  /** Forgets everything. */
+  clear() {
+    for (const figures of [this.#frames, this.#work, this.#late]) figures.clear();
+  }
+
+  /** How many frames a second there are, how long each takes, and how old what it shows is. */
+  get all() {
+    const middle = this.#frames.quantile(0.5);
+    return {
+      fps: middle ? 1000 / middle : null,
+      frame_ms: this.#frames.spread,
+      work_ms: this.#work.spread,
+      state_to_picture_ms: this.#late.spread,
+      count: this.#frames.count,
+    };
+  }
+}
+
 /** Frames slower than this make the picture coarser, milliseconds. */
 const SLOW_MS = 19;
 /** Frames slower than this make it coarser sooner. */

@@ -50,11 +50,17 @@ function covers(a, b) {
 export class Overlay {
   /** @type {{node: HTMLElement, share: HTMLElement, width: number, height: number, weight: number}[]} */
   #labels = [];
+  /** @type {{belief: number|null, best: boolean, asked: boolean}[]} */
+  #thoughts = [];
+  /** Which object is in the gripper, -1 for none. */
+  #held = -1;
+  /** Where in the picture the objects are; null: not seen. @type {({x: number, y: number}|null)[]} */
+  #places = [];
+  #frame = { width: 0, height: 0 };
 
-  /** @param {HTMLElement} list @param {(key: string, args?: object) => string} t */
-  constructor(list, t) {
+  /** @param {HTMLElement} list */
+  constructor(list) {
     this.list = list;
-    this.t = t;
   }
 
   /** @param {any} scene section `scene` */
@@ -69,55 +75,75 @@ export class Overlay {
       node.append(text, share);
       return { node, share, width: 0, height: 0, weight: 0 };
     });
+    this.#places = [];
     this.list.replaceChildren(...this.#labels.map(({ node }) => node));
-    this.measure();
+    this.#measure();
+    this.#mark();
+  }
+
+  /** @param {{belief: number|null, best: boolean, asked: boolean}[]} thoughts */
+  setThoughts(thoughts) {
+    this.#thoughts = thoughts;
+    this.#mark();
+  }
+
+  /** @param {{width: number, height: number}} frame of the picture */
+  setSize(frame) {
+    this.#frame = frame;
+    this.#measure();
   }
 
   /**
-   * @param {{belief: number|null, best: boolean, asked: boolean}[]} thoughts
+   * Puts the labels over what they name.
+   * @param {({x: number, y: number}|null)[]} places in the picture; null: not seen
    * @param {number} held which object is in the gripper, -1 for none
    */
-  mark(thoughts, held) {
+  place(places, held) {
+    this.#places = places;
+    if (held === this.#held) return this.#place();
+    this.#held = held;
+    this.#mark();
+  }
+
+  #mark() {
     let isOther = false;
     for (const [n, label] of this.#labels.entries()) {
-      const { belief = null, best = false, asked = false } = thoughts[n] ?? {};
+      const { belief = null, best = false, asked = false } = this.#thoughts[n] ?? {};
+      const isHeld = n === this.#held;
       const percent = belief === null ? "" : ` ${Math.round(100 * belief)} %`;
-      const mark = n === held ? "held" : asked ? "asked" : best ? "best" : "";
-      label.weight = (n === held ? 4 : 0) + (asked ? 2 : 0) + (best ? 1 : 0) + (belief ?? 0);
-      label.node.dataset.faint = String(belief !== null && belief < 0.02 && n !== held);
+      const mark = isHeld ? "held" : asked ? "asked" : best ? "best" : "";
+      label.weight = (isHeld ? 4 : 0) + (asked ? 2 : 0) + (best ? 1 : 0) + (belief ?? 0);
+      label.node.dataset.faint = String(belief !== null && belief < 0.02 && !isHeld);
       if (label.share.textContent === percent && label.node.dataset.mark === mark) continue;
       label.share.textContent = percent;
       label.node.dataset.mark = mark;
       isOther = true;
     }
-    if (isOther) this.measure();
+    if (isOther) this.#measure();
+    else this.#place();
   }
 
   /** Takes the sizes of all labels anew. */
-  measure() {
+  #measure() {
     for (const label of this.#labels) {
       label.width = label.node.offsetWidth;
       label.height = label.node.offsetHeight;
     }
+    this.#place();
   }
 
-  /**
-   * Puts the labels over what they name.
-   * @param {(n: number) => {x: number, y: number}|null} placeOf in the picture; null: not seen
-   * @param {{width: number, height: number}} frame
-   */
-  place(placeOf, frame) {
-    const seen = this.#labels.map((label, n) => ({ label, at: placeOf(n) }));
+  #place() {
+    const seen = this.#labels.map((label, n) => ({ label, at: this.#places[n] ?? null }));
     const isWanted = ({ label, at }) =>
-      at !== null && (frame.width >= NARROW || label.node.dataset.mark);
+      at !== null && (this.#frame.width >= NARROW || label.node.dataset.mark);
     const shown = seen.filter(isWanted);
-    const wishes = shown.map(({ label, at }) => ({
+    const wishes = shown.map(({ label: { width, height, weight }, at }) => ({
       ...at,
-      width: label.width,
-      height: label.height,
-      weight: label.weight,
+      width,
+      height,
+      weight,
     }));
-    const places = placeLabels(/** @type {Wish[]} */ (wishes), frame);
+    const places = placeLabels(/** @type {Wish[]} */ (wishes), this.#frame);
     for (const entry of seen) if (!isWanted(entry)) entry.label.node.dataset.hidden = "true";
     for (const [n, { label }] of shown.entries()) {
       const at = places[n];

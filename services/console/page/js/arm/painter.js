@@ -26,16 +26,20 @@ const FIRST_IN_SOFTWARE = 3;
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|basic render|software/i;
 /** Pixels of the picture per pixel of the page at most. */
 const RATIO_MAX = 2;
+/** Strength of the light that the studio throws on everything. */
+const STUDIO_LIGHT = { light: 0.75, dark: 0.7 };
 
 /** Draws a scene as finely as this machine can while it moves, and finely when it stands. */
 export class Painter {
   #fineness;
   #isSoftware;
-  #mirrored = null;
-  #size = { width: 0, height: 0 };
+  /** What shiny things mirror, once it was needed. @type {{texture: any, dispose: () => void}|null} */
+  #studio = null;
+  #isDark = false;
+  #size = { width: 0, height: 0, screen: 1 };
   #isOdd = false;
 
-  /** @param {HTMLCanvasElement} canvas */
+  /** @param {HTMLCanvasElement|OffscreenCanvas} canvas */
   constructor(canvas) {
     this.#isSoftware = SOFTWARE.test(rendererName());
     this.#fineness = new Fineness(FINENESS.length, this.#isSoftware ? FIRST_IN_SOFTWARE : 0);
@@ -47,39 +51,42 @@ export class Painter {
 
   /** Pixels of the picture per pixel of the page while it moves. */
   get ratio() {
-    const { width, height } = this.#size;
+    const { width, height, screen } = this.#size;
     const { pixels } = FINENESS[this.#fineness.level];
-    const screen = Math.min(window.devicePixelRatio || 1, RATIO_MAX);
-    return Math.min(Math.sqrt(pixels / Math.max(width * height, 1)), screen);
+    return Math.min(Math.sqrt(pixels / Math.max(width * height, 1)), screen, RATIO_MAX);
   }
 
-  /** What shiny things mirror, once `light` was called. */
-  get mirrored() {
-    return this.#mirrored?.texture ?? null;
-  }
-
-  /** @param {{width: number, height: number}} size pixels of the page */
+  /**
+   * @param {{width: number, height: number, screen: number}} size pixels of the page, and pixels of
+   *   the screen per pixel of the page
+   */
   setSize(size) {
     this.#size = size;
   }
 
-  /** Makes what shiny things mirror anew. @param {boolean} dark */
+  /** Has what shiny things mirror be made anew when it is needed. @param {boolean} dark */
   light(dark) {
-    this.#mirrored?.dispose();
-    this.#mirrored = studio(this.renderer, dark);
+    this.#isDark = dark;
+    this.#studio?.dispose();
+    this.#studio = null;
   }
 
   /**
    * Draws.
-   * @param {{scene: any, camera: any, room: any, robot: any}} what
+   * @param {import("./tableau.js").Tableau} tableau
+   * @param {any} camera
    * @param {"still"|"moving"|"changed"} how a still picture is drawn finely; one that has changed
    *   once, and one that moves, quickly
    */
-  draw({ scene, camera, room, robot }, how) {
+  draw(tableau, camera, how) {
     const { shadow, rich } = FINENESS[how === "still" ? 0 : this.#fineness.level];
-    room.setShadow(shadow);
-    robot?.setRich(rich);
-    scene.environment = rich ? this.mirrored : null;
+    // To make it takes long without a graphics card: the first picture there does without.
+    if (rich) this.#studio ??= studio(this.renderer, this.#isDark);
+    const mirrored = this.#studio?.texture ?? null;
+    const { scene } = tableau;
+    scene.environment = rich ? mirrored : null;
+    scene.environmentIntensity = this.#isDark ? STUDIO_LIGHT.dark : STUDIO_LIGHT.light;
+    tableau.setFineness({ shadow, rich, mirrored });
     this.#resize(how === "still" ? this.#finest() : this.ratio);
     // Without a graphics card the shadows of what moves follow at half the rate.
     this.#isOdd = !this.#isOdd;
@@ -95,7 +102,7 @@ export class Painter {
 
   /** Without a graphics card edges are smoothed by drawing what stands twice as large. */
   #finest() {
-    return this.#isSoftware ? RATIO_MAX : Math.min(window.devicePixelRatio || 1, RATIO_MAX);
+    return this.#isSoftware ? RATIO_MAX : Math.min(this.#size.screen, RATIO_MAX);
   }
 
   #resize(ratio) {
@@ -108,7 +115,8 @@ export class Painter {
 
 /** What draws: a graphics card, or a program in its place. */
 function rendererName() {
-  const gl = document.createElement("canvas").getContext("webgl2");
+  const canvas = globalThis.document?.createElement("canvas") ?? new OffscreenCanvas(1, 1);
+  const gl = /** @type {any} */ (canvas.getContext("webgl2"));
   if (!gl) throw new Error("no WebGL");
   const info = gl.getExtension("WEBGL_debug_renderer_info");
   const name = gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER);

@@ -10,6 +10,7 @@ import {
 } from "../../vendor/three/build/three.module.js";
 import URDFLoader from "../../vendor/urdf-loader/src/URDFLoader.js";
 import { ball, box, capsule, cylinder, merged, poseMatrix } from "./bodies.js";
+import { TreeElement } from "./elements.js";
 import { fingerPosition, JOINT_NAMES, LIMB_JOINTS, LIMBS } from "./joints.js";
 
 /** How a robot is painted whose description gives no colours. */
@@ -25,12 +26,12 @@ export class RobotModel {
   /** Joints of the fingers of both grippers. @type {any[][]} */
   #fingers;
 
-  /** @param {string} description the robot's URDF */
+  /** @param {import("./elements.js").Tree} description the robot's URDF */
   constructor(description) {
     const loader = new URDFLoader();
     // What is seen is made here, so that each link is drawn in one call, and capsules too.
     loader.parseVisual = false;
-    this.object = loader.parse(description);
+    this.object = loader.parse(/** @type {any} */ (new TreeElement(description)));
     this.#rich = new MeshStandardMaterial({ vertexColors: true, roughness: 0.42, metalness: 0.12 });
     this.#plain = new MeshLambertMaterial({ vertexColors: true });
     this.object.updateMatrixWorld(true);
@@ -161,7 +162,7 @@ function dress(link, bodies, material) {
 }
 
 function bodyOf(node, robot) {
-  const shape = children(node, "geometry")[0]?.firstElementChild;
+  const shape = children(node, "geometry")[0]?.children[0];
   const geometry = shape && geometryOf(shape);
   if (!geometry) return null;
   const origin = children(node, "origin")[0];
@@ -197,7 +198,7 @@ function colourOf(node, robot) {
 }
 
 function children(node, name) {
-  return [...(node?.children ?? [])].filter((child) => child.nodeName === name);
+  return (node?.children ?? []).filter((child) => child.nodeName === name);
 }
 
 function numbers(node, name, otherwise) {
