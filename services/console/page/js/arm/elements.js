@@ -9,6 +9,7 @@ const CHILD_OF_JOINT = /^child\[link="(.*)"\]$/s;
 /** As much of an element as urdf-loader asks for; where the picture is drawn there is no DOM. */
 export class TreeElement {
   #attributes;
+  nodeName;
   /** @type {TreeElement[]} */
   children;
 
@@ -44,4 +45,5 @@ export class TreeElement {
 // The loader looks whether it was given a document or an element: workers have neither.
 globalThis.Document ??= /** @type {any} */ (class Document {});
 globalThis.Element ??= /** @type {any} */ (class Element {});
+// A field of the class's own, such as `nodeName`, covers what a real element has in its place.
 Object.setPrototypeOf(TreeElement.prototype, globalThis.Element.prototype);

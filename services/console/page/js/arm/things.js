@@ -130,6 +130,7 @@ class Thing {
   put(pose, now) {
     const { place, turn } = this.#to;
     pose.decompose(place, turn, new Vector3());
+    if (!this.#isPut) this.object.position.copy(place);
     const far = place.distanceTo(this.object.position) > PUT_M;
     const creeps = this.#isPut && far && (this.#frame || now >= this.#from.at + PUT_MS);
     if (creeps) {

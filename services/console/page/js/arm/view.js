@@ -32,6 +32,7 @@ export class ArmView {
   #isSeen = false;
   #isLost = false;
   #isWarm = false;
+  #isChanged = false;
   #frame = 0;
   /** @type {any} */
   #still = 0;
@@ -157,14 +158,28 @@ export class ArmView {
 
   /** Has a frame be drawn. */
   request() {
-    if (this.#frame || !this.#isSeen || this.#isLost || !this.#size.width) return;
+    this.#isChanged = true;
     clearTimeout(this.#still);
-    this.#frame = requestAnimationFrame((at) => this.#draw(at));
+    this.#drawSoon();
+  }
+
+  /** What is not drawn in a frame of the browser's may never be seen. */
+  #drawSoon() {
+    if (this.#frame || !this.#isShown) return;
+    this.#frame = requestAnimationFrame((at) => {
+      this.#frame = 0;
+      if (!this.#isShown) return;
+      if (this.#isChanged) this.#draw(at);
+      else this.#drawFinely();
+    });
+  }
+
+  get #isShown() {
+    return this.#isSeen && !this.#isLost && this.#size.width > 0;
   }
 
   #draw(at) {
-    this.#frame = 0;
-    if (!this.#isSeen || this.#isLost) return;
+    this.#isChanged = false;
     const begun = performance.now();
     const sample = this.joints.sample(this.#toServer(begun));
     const isMoving = sample !== null && (!sample.settled || this.#isFresh(begun));
@@ -173,11 +188,10 @@ export class ArmView {
     if (sample && isMoving) this.#measure(at, begun, sample);
     this.#last.frame = isBusy ? at : 0;
     if (isBusy) this.request();
-    else this.#still = setTimeout(() => this.#drawFinely(), STILL_MS);
+    else this.#still = setTimeout(() => this.#drawSoon(), STILL_MS);
   }
 
   #drawFinely() {
-    if (this.#frame || !this.#isSeen || this.#isLost) return;
     // What a motion needs is made before the first one, which so does not stutter.
     if (!this.#isWarm && this.tableau.robot) this.tableau.withSpeck(() => this.#paint("moving"));
     this.#isWarm ||= this.tableau.robot !== null;
