@@ -6,7 +6,7 @@ import {
   WebGLRenderer,
 } from "../../vendor/three/build/three.module.js";
 import { Fineness } from "./figures.js";
-import { studio } from "./room.js";
+import { studio } from "./studio.js";
 
 /**
  * How finely a moving picture is drawn, finest first: how many pixels it has at most, how many its
@@ -33,7 +33,7 @@ const STUDIO_LIGHT = { light: 0.75, dark: 0.7 };
 export class Painter {
   #fineness;
   #isSoftware;
-  /** What shiny things mirror, once it was needed. @type {{texture: any, dispose: () => void}|null} */
+  /** What shiny things mirror, once it was needed. @type {any} */
   #studio = null;
   #isDark = false;
   #size = { width: 0, height: 0, screen: 1 };
@@ -80,13 +80,11 @@ export class Painter {
    */
   draw(tableau, camera, how) {
     const { shadow, rich } = FINENESS[how === "still" ? 0 : this.#fineness.level];
-    // To make it takes long without a graphics card: the first picture there does without.
-    if (rich) this.#studio ??= studio(this.renderer, this.#isDark);
-    const mirrored = this.#studio?.texture ?? null;
+    this.#studio ??= studio(this.#isDark);
     const { scene } = tableau;
-    scene.environment = rich ? mirrored : null;
+    scene.environment = rich ? this.#studio : null;
     scene.environmentIntensity = this.#isDark ? STUDIO_LIGHT.dark : STUDIO_LIGHT.light;
-    tableau.setFineness({ shadow, rich, mirrored });
+    tableau.setFineness({ shadow, rich, mirrored: this.#studio });
     this.#resize(how === "still" ? this.#finest() : this.ratio);
     // Without a graphics card the shadows of what moves follow at half the rate.
     this.#isOdd = !this.#isOdd;

@@ -1,7 +1,5 @@
 // @ts-check
 import {
-  BackSide,
-  BoxGeometry,
   CircleGeometry,
   Color,
   DirectionalLight,
@@ -11,10 +9,7 @@ import {
   Mesh,
   MeshBasicMaterial,
   MeshLambertMaterial,
-  PMREMGenerator,
-  Scene,
   ShadowMaterial,
-  SphereGeometry,
 } from "../../vendor/three/build/three.module.js";
 import { box, cylinder, merged } from "./bodies.js";
 import { disc } from "./glow.js";
@@ -177,34 +172,4 @@ function furniture({ low, high, top }, table, ground) {
     })),
   );
   return [slab, ...legs];
-}
-
-/**
- * What shiny things mirror: a studio with a bright ceiling and two windows.
- * @param {any} renderer
- * @param {boolean} dark
- * @returns {{texture: any, dispose: () => void}}
- */
-export function studio(renderer, dark) {
-  const scene = new Scene();
-  const add = (geometry, colour, strength, place) => {
-    const material = new MeshBasicMaterial({ side: BackSide });
-    material.color.set(colour).multiplyScalar(strength);
-    const mesh = new Mesh(geometry, material);
-    if (place) mesh.position.set(...place);
-    scene.add(mesh);
-  };
-  add(new SphereGeometry(10, 16, 8), dark ? 0x394453 : 0xaab0b8, dark ? 0.55 : 0.9);
-  add(new BoxGeometry(5, 5, 0.1), 0xffffff, dark ? 5 : 6, [1, 0, 7]);
-  add(new BoxGeometry(0.1, 3, 4), 0xffffff, dark ? 4 : 4, [7, 4, 3]);
-  add(new BoxGeometry(3, 0.1, 3), 0xdde8ff, dark ? 3 : 2.5, [0, -7, 2]);
-  add(new BoxGeometry(20, 20, 0.1), dark ? 0x14171c : 0x8f8a82, 0.8, [0, 0, -4]);
-  const generator = new PMREMGenerator(renderer);
-  const target = generator.fromScene(scene, 0.03, 0.1, 20);
-  generator.dispose();
-  scene.traverse((node) => {
-    node.geometry?.dispose();
-    node.material?.dispose();
-  });
-  return target;
 }

@@ -123,7 +123,7 @@ export class Tableau {
    * @param {object} fineness
    * @param {number} fineness.shadow pixels of the shadows' picture along a side
    * @param {boolean} fineness.rich whether the robot mirrors the room
-   * @param {any} fineness.mirrored what shiny things mirror, null for nothing
+   * @param {any} fineness.mirrored what shiny things mirror, a texture
    */
   setFineness({ shadow, rich, mirrored }) {
     this.#room.setShadow(shadow);
