@@ -61,7 +61,7 @@ async function measure() {
   await giveMicrophone(page);
   await page.goto(group.url);
   await hears(group);
-  await page.locator("#arm[data-state=ready]").waitFor({ timeout: 60_000 });
+  await page.locator("#arm[data-picture=fine]").waitFor({ timeout: 60_000 });
   let right = 0;
   for (let n = 0; n < DIALOGUES; n += 1) {
     right += (await converse(page, BOWLS[n % BOWLS.length])) ? 1 : 0;

@@ -46,7 +46,7 @@ async function take(page, name) {
   await page.screenshot({ path: join(FOLDER, `${name}.png`) });
 }
 
-const drawn = (page) => page.locator("#arm[data-state=ready]").waitFor({ timeout: 60_000 });
+const drawn = (page) => page.locator("#arm[data-picture=fine]").waitFor({ timeout: 60_000 });
 const armIs = (phase) => until(phase, async () => (await group.state()).arm.phase === phase);
 
 /** A dialogue: its question on each size and theme, the arm on its way, the stop. */

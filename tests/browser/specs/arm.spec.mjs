@@ -2,7 +2,7 @@
 
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
-import { arm, distance, drawn, shown } from "../lib/arm.mjs";
+import { arm, distance, drawn, drawnFinely, shown } from "../lib/arm.mjs";
 import { expectAccessible } from "../lib/axe.mjs";
 import { ROOT } from "../lib/program.mjs";
 import { t } from "../lib/strings.mjs";
@@ -136,12 +136,12 @@ test("a picture in which nothing happens is not drawn again", async ({ console: 
 });
 
 test.describe("a pick", () => {
-  // In real time, so that there is something to see.
+  // In real time, so that there is something to see, and once everything is made that is drawn with.
   test.use({ settings: ["arm.time_scale=1"] });
 
   test("is followed from the order to the hand-over", async ({ console: page, group }) => {
     const messages = await listen(page);
-    await drawn(page);
+    await drawnFinely(page);
     await type(page, "the big clear bowl");
     await answerUntilPicked(page, group, "clear");
     await expect.poll(async () => (await shown(page)).trajectory).toBe(true);
@@ -179,7 +179,7 @@ test.describe("a pick", () => {
   });
 
   test("that is stopped is seen to be", async ({ console: page, group }) => {
-    await drawn(page);
+    await drawnFinely(page);
     await type(page, "the big clear bowl");
     await answerUntilPicked(page, group, "clear");
     await expect.poll(async () => (await shown(page)).trajectory).toBe(true);

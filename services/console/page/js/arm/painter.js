@@ -33,7 +33,7 @@ const STUDIO_LIGHT = { light: 0.75, dark: 0.7 };
 export class Painter {
   #fineness;
   #isSoftware;
-  /** What shiny things mirror, once it was needed. @type {any} */
+  /** What shiny things mirror, once something was drawn. @type {any} */
   #studio = null;
   #isDark = false;
   #size = { width: 0, height: 0, screen: 1 };
@@ -64,7 +64,7 @@ export class Painter {
     this.#size = size;
   }
 
-  /** Has what shiny things mirror be made anew when it is needed. @param {boolean} dark */
+  /** Has what shiny things mirror be made anew. @param {boolean} dark */
   light(dark) {
     this.#isDark = dark;
     this.#studio?.dispose();

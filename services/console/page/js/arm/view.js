@@ -1,9 +1,10 @@
 // @ts-check
-import { PerspectiveCamera, Vector3 } from "../../vendor/three/build/three.module.js";
+import { PerspectiveCamera } from "../../vendor/three/build/three.module.js";
 import { boundsOf, FIELD_DEG, viewOf } from "./cameras.js";
 import { CameraControls } from "./controls.js";
 import { MotionFigures } from "./figures.js";
 import { JointBuffer } from "./joints.js";
+import { labelPlaces } from "./labels.js";
 import { Painter } from "./painter.js";
 import { Pointed } from "./pointed.js";
 import { Tableau } from "./tableau.js";
@@ -14,8 +15,6 @@ const STILL_MS = 140;
 const LINGER_MS = 250;
 /** The same while the arm says that it moves. */
 const MOVING_MS = 2_000;
-/** How far above an object its label's foot is, metres. */
-const ABOVE_M = 0.02;
 
 /** The picture. Draws only when something changes and somebody can see it. */
 export class ArmView {
@@ -36,10 +35,10 @@ export class ArmView {
   #frame = 0;
   /** @type {any} */
   #still = 0;
-  /** When the last frame of a motion was, 0 for none, and when the arm has moved last. */
+  /** When the last frame of a motion was, 0 for none; when the arm has moved last. */
   #last = { frame: 0, fresh: Number.NEGATIVE_INFINITY };
   #size = { width: 0, height: 0 };
-  /** From the clock of all the browser's threads, `performance.timeOrigin + performance.now()`, to the server's. */
+  /** What the server's clock is ahead of `performance.timeOrigin + performance.now()`. */
   #clockMs = 0;
 
   /**
@@ -98,7 +97,8 @@ export class ArmView {
 
   /**
    * @param {{at_ms: number, q: number[], grip: number[]}} message
-   * @param {number} clockMs what the server's clock is ahead of that of the browser's threads
+   * @param {number} clockMs what the server's clock is ahead of the one that all threads of the
+   *   browser share: `performance.timeOrigin + performance.now()`
    */
   setJoints(message, clockMs) {
     this.#clockMs = clockMs;
@@ -131,7 +131,7 @@ export class ArmView {
     this.request();
   }
 
-  /** Something was done to the canvas. @param {string} type of the event @param {object} fields */
+  /** See `Pointed`. @param {string} type @param {object} fields */
   happen(type, fields) {
     this.#pointed.happen(type, fields);
   }
@@ -201,7 +201,7 @@ export class ArmView {
   #paint(how) {
     this.painter.draw(this.tableau, this.camera, how);
     const picture = {
-      labels: this.#labels(),
+      labels: labelPlaces(this.tableau.things, this.camera, this.#size),
       held: this.tableau.things.held,
       robot: this.tableau.robot !== null,
       fine: how === "still",
@@ -210,24 +210,6 @@ export class ArmView {
     if (said === this.#said) return;
     this.#said = said;
     this.#say({ picture });
-  }
-
-  /** Where in the picture the objects' labels belong, pixels of the page; null: not seen. */
-  #labels() {
-    const { things } = this.tableau;
-    const { width, height } = this.#size;
-    const point = new Vector3();
-    const rounded = (value) => Math.round(10 * value) / 10;
-    return Array.from({ length: things.count }, (_, n) => {
-      things.placeOf(n, point);
-      point.z += things.heightOf(n) / 2 + ABOVE_M;
-      point.project(this.camera);
-      if (point.z > 1) return null;
-      return {
-        x: rounded(((point.x + 1) / 2) * width),
-        y: rounded(((1 - point.y) / 2) * height),
-      };
-    });
   }
 
   #measure(at, begun, sample) {

@@ -1,0 +1,26 @@
+// @ts-check
+import { Vector3 } from "../../vendor/three/build/three.module.js";
+
+/** How far above an object its label's foot is, metres. */
+const ABOVE_M = 0.02;
+
+/**
+ * Where in the picture the objects' labels belong.
+ * @param {import("./things.js").Things} things
+ * @param {any} camera
+ * @param {{width: number, height: number}} size of the picture, pixels of the page
+ * @returns {({x: number, y: number}|null)[]} pixels of the page; null: not seen
+ */
+export function labelPlaces(things, camera, { width, height }) {
+  const point = new Vector3();
+  return Array.from({ length: things.count }, (_, n) => {
+    things.placeOf(n, point);
+    point.z += things.heightOf(n) / 2 + ABOVE_M;
+    point.project(camera);
+    if (point.z > 1) return null;
+    return { x: tenths(((point.x + 1) / 2) * width), y: tenths(((1 - point.y) / 2) * height) };
+  });
+}
+
+/** Nobody sees less, and what does not change need not be told. */
+const tenths = (pixels) => Math.round(10 * pixels) / 10;
