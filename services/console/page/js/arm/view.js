@@ -5,12 +5,11 @@ import { CameraControls } from "./controls.js";
 import { MotionFigures } from "./figures.js";
 import { JointBuffer } from "./joints.js";
 import { labelPlaces } from "./labels.js";
+import { Loop } from "./loop.js";
 import { Painter } from "./painter.js";
 import { Pointed } from "./pointed.js";
 import { Tableau } from "./tableau.js";
 
-/** A picture that stands is drawn once more, finely, after this long, milliseconds. */
-const STILL_MS = 140;
 /** The picture goes on for so long after the last new joints: the next ones may be late. */
 const LINGER_MS = 250;
 /** The same while the arm says that it moves. */
@@ -31,10 +30,11 @@ export class ArmView {
   #isSeen = false;
   #isLost = false;
   #isWarm = false;
-  #isChanged = false;
-  #frame = 0;
-  /** @type {any} */
-  #still = 0;
+  #loop = new Loop({
+    isShown: () => this.#isSeen && !this.#isLost && this.#size.width > 0,
+    draw: (at) => this.#draw(at),
+    drawFinely: () => this.#drawFinely(),
+  });
   /** When the last frame of a motion was, 0 for none; when the arm has moved last. */
   #last = { frame: 0, fresh: Number.NEGATIVE_INFINITY };
   #size = { width: 0, height: 0 };
@@ -67,7 +67,7 @@ export class ArmView {
   setScene(spec) {
     this.tableau.setScene(spec);
     this.#said = "";
-    if (!this.controls.isMoved) this.look(this.viewName, true);
+    this.#lookAgain();
     this.request();
   }
 
@@ -103,8 +103,13 @@ export class ArmView {
   setJoints(message, clockMs) {
     this.#clockMs = clockMs;
     const now = performance.now();
+    const isFirst = this.joints.latest === undefined;
     if (this.joints.add(message, this.#toServer(now))) this.#last.fresh = now;
     if (this.#isFresh(now)) this.request();
+    if (!isFirst) return;
+    // How far back the camera must be depends on where the arms are.
+    this.tableau.robot?.pose(message.q, message.grip);
+    this.#lookAgain();
   }
 
   /** @param {boolean} dark */
@@ -121,7 +126,7 @@ export class ArmView {
     this.camera.updateProjectionMatrix();
     this.painter.setSize(size);
     Object.assign(this.#pointed, { clientWidth: size.width, clientHeight: size.height });
-    if (!this.controls.isMoved) this.look(this.viewName, true);
+    this.#lookAgain();
     this.request();
   }
 
@@ -156,30 +161,18 @@ export class ArmView {
     this.controls.go(viewOf(name, box, width / height), atOnce, performance.now());
   }
 
+  /** What belongs into the picture is elsewhere; what a person chose to see is left. */
+  #lookAgain() {
+    if (!this.controls.isMoved) this.look(this.viewName, true);
+  }
+
   /** Has a frame be drawn. */
   request() {
-    this.#isChanged = true;
-    clearTimeout(this.#still);
-    this.#drawSoon();
+    this.#loop.request();
   }
 
-  /** What is not drawn in a frame of the browser's may never be seen. */
-  #drawSoon() {
-    if (this.#frame || !this.#isShown) return;
-    this.#frame = requestAnimationFrame((at) => {
-      this.#frame = 0;
-      if (!this.#isShown) return;
-      if (this.#isChanged) this.#draw(at);
-      else this.#drawFinely();
-    });
-  }
-
-  get #isShown() {
-    return this.#isSeen && !this.#isLost && this.#size.width > 0;
-  }
-
+  /** @param {number} at milliseconds @returns {boolean} whether anything goes on moving */
   #draw(at) {
-    this.#isChanged = false;
     const begun = performance.now();
     const sample = this.joints.sample(this.#toServer(begun));
     const isMoving = sample !== null && (!sample.settled || this.#isFresh(begun));
@@ -187,8 +180,7 @@ export class ArmView {
     this.#paint(isBusy ? "moving" : "changed");
     if (sample && isMoving) this.#measure(at, begun, sample);
     this.#last.frame = isBusy ? at : 0;
-    if (isBusy) this.request();
-    else this.#still = setTimeout(() => this.#drawSoon(), STILL_MS);
+    return isBusy;
   }
 
   #drawFinely() {
