@@ -10,7 +10,8 @@ import {
 /**
  * Pixels along a side of each picture of the studio, for ever rougher surfaces. The last one is for
  * light from all around. `PMREMGenerator` of three makes the same, but of 256 pixels, which takes
- * seconds where there is no graphics card, and bowls do not show them.
+ * seconds where there is no graphics card, and bowls do not show them. Whoever renews three looks
+ * whether it still keeps them as mipmaps of a cube.
  */
 const SIZES = [32, 16, 8];
 /** Directions from which light is gathered for each pixel of a rough picture. */
