@@ -89,7 +89,8 @@ function follow(picture, overlay, store, link) {
   store.subscribe("arm", (arm) => picture.tell("setArm", arm));
   link.on("joints", (message) => {
     // Threads count from instants of their own, which the browser tells on one clock.
-    picture.tell("setJoints", message, link.toServer(0) - performance.timeOrigin);
+    const clockMs = link.toServer(0) - performance.timeOrigin;
+    picture.tell("setJoints", message, link.serverNow(), clockMs);
   });
 }
 

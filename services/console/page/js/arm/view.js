@@ -97,14 +97,16 @@ export class ArmView {
 
   /**
    * @param {{at_ms: number, q: number[], grip: number[]}} message
+   * @param {number} arrivedMs server time at which the page got it: what waits here for a frame to be
+   *   drawn is there in time for the next one
    * @param {number} clockMs what the server's clock is ahead of the one that all threads of the
    *   browser share: `performance.timeOrigin + performance.now()`
    */
-  setJoints(message, clockMs) {
+  setJoints(message, arrivedMs, clockMs) {
     this.#clockMs = clockMs;
     const now = performance.now();
     const isFirst = this.joints.latest === undefined;
-    if (this.joints.add(message, this.#toServer(now))) this.#last.fresh = now;
+    if (this.joints.add(message, arrivedMs)) this.#last.fresh = now;
     if (this.#isFresh(now)) this.request();
     if (!isFirst) return;
     // How far back the camera must be depends on where the arms are.
