@@ -91,13 +91,14 @@ fn not_that_denies_whatever_is_meant() {
     have_it_fetch(&mut page);
     page.until_part("arm", |arm| arm["phase"] == "moving");
     assert!(ok(&page.ask("not_that", &Json::Null)));
-    page.until_line("the end of the pick", |line| line["outcome"] == "cancelled");
-    let line = page.until_line("what is wanted then", |line| {
-        line["text"] == "another bowl, not the clear bowl" && line["understood"].is_array()
+    let line = page.until_line("the denial", |line| {
+        line["text"] == "no, not that one" && line["understood"].is_array()
     });
-    assert_eq!(line["understood"][0]["text"], "not clear");
+    assert_eq!(line["understood"][0]["text"], "no");
+    // What was said before counts on, in the same interaction.
     page.until_part("dialogue", |dialogue| {
-        dialogue["interaction"] == 2 && dialogue["belief"][5].as_f64() < Some(0.01)
+        let goes_on = ["ask", "pick"].contains(&dialogue["decision"].as_str().unwrap());
+        goes_on && dialogue["interaction"] == 1 && dialogue["belief"][5].as_f64() < Some(0.5)
     });
     drop(page);
     group.down();

@@ -5,6 +5,7 @@ mod acts;
 mod addressed;
 mod ahead;
 mod anew;
+mod correct;
 mod inform;
 mod intents;
 mod pointing;
@@ -193,17 +194,22 @@ impl Mind {
         }
     }
 
-    fn end_pick(&self, state: &mut State, pick: PickId, outcome: PickOutcome, at: Time) {
+    fn end_pick(&mut self, state: &mut State, pick: PickId, outcome: PickOutcome, at: Time) {
         let ordered = state.open.as_ref().and_then(|open| open.pick);
         let Some((id, object)) = ordered else { return };
         let Some(outcome_here) = Outcome::of_pick(outcome) else { return };
         if id != pick {
             return;
         }
-        // Nobody gave the order up: the arm did, before it had grasped, because it was restarted
-        // with another scene.
-        if outcome == PickOutcome::Cancelled && state.act.kind == ActKind::Pick {
-            return order_again(state, at);
+        if outcome == PickOutcome::Cancelled {
+            // Nobody gave the order up: the arm did, before it had grasped, because it was restarted
+            // with another scene.
+            if state.act.kind == ActKind::Pick {
+                return order_again(state, at);
+            }
+            if state.open.as_ref().is_some_and(|open| open.corrected) {
+                return self.choose_another(state, at);
+            }
         }
         if outcome == PickOutcome::Delivered
             && let Some(open) = &state.open

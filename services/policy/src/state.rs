@@ -84,6 +84,11 @@ pub struct Interaction {
     pub pick: Option<(PickId, ObjectId)>,
     /// Name of the object that it picks.
     pub picked: String,
+    /// Picks ordered so far.
+    pub picks: u32,
+    /// Whether the ordered pick is called off for another object: then the interaction goes on when
+    /// the arm has left it.
+    pub corrected: bool,
 }
 
 /// A decision that waits: the person spoke on while the belief took in what was said before.

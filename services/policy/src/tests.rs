@@ -1,6 +1,7 @@
 //! The policy's rules, on the shipped six bowls.
 
 mod anew;
+mod correct;
 mod person;
 mod pointing;
 mod prior;
@@ -259,7 +260,15 @@ fn random_cause(
     seq: &mut u64,
 ) -> Cause {
     if let Some((pick, _)) = state.open.as_ref().and_then(|open| open.pick) {
-        return Cause::PickEnded { pick, outcome: PickOutcome::Delivered };
+        let outcome = match (rng.below(3), state.act.kind) {
+            (0, ActKind::Pick) => {
+                *seq += 1;
+                return heard(*seq, PromptId(0), answer(Response::No));
+            }
+            (_, ActKind::Cancel) => PickOutcome::Cancelled,
+            _ => PickOutcome::Delivered,
+        };
+        return Cause::PickEnded { pick, outcome };
     }
     if state.open.is_some() && rng.below(8) == 0 {
         return Cause::Silence;

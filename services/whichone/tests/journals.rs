@@ -27,7 +27,7 @@ impl Lab {
         let folder = self.0.path().join("lab/journal");
         std::fs::create_dir_all(&folder).expect("a folder");
         let header = Header {
-            record: "policy/3".into(),
+            record: "policy/4".into(),
             schema: 0,
             scene: 0,
             group: "lab".into(),

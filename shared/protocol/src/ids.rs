@@ -63,8 +63,8 @@ pub struct Incarnation(pub u32);
 pub struct PickId {
     /// The interaction that decided it.
     pub interaction: InteractionId,
-    /// 1 for the first attempt; another only where the one before ended without a grasp because the
-    /// scene was changed under it.
+    /// 1 for the first attempt; another only where the one before ended without a grasp, because the
+    /// scene was changed under it or the person wants another object.
     pub attempt: u32,
 }
 

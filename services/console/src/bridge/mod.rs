@@ -30,7 +30,6 @@ use crate::server::App;
 use crate::server::routes::sound_file;
 use crate::study::Study;
 use crate::voice::Voice;
-use correcting::{Correction, Then};
 use kept::Kept;
 use motion::Motions;
 use ports::{Ports, all, quiet};
@@ -56,8 +55,6 @@ pub struct Bridge {
     voice: Voice,
     study: Study,
     saying: Saying,
-    /// What is to be said once a pick was given up.
-    then: Option<Then>,
     motions: Motions,
     kept: Kept,
     voice_dir: Option<PathBuf>,
@@ -98,7 +95,6 @@ impl Bridge {
             voice: Voice::default(),
             study,
             saying: Saying::default(),
-            then: None,
             motions: Motions::default(),
             kept,
             voice_dir: app.voice_dir.clone(),
@@ -233,13 +229,11 @@ impl Bridge {
         let words = match verb {
             Verb::Say(words) => words,
             Verb::NotThat | Verb::StartOver => {
-                let (view, arm) = (self.picture.view(), self.picture.arm());
-                let Correction { now, then } = match verb {
-                    Verb::NotThat => correcting::not_that(self.picture.scene(), view, arm)?,
+                let view = self.picture.view();
+                typed(match verb {
+                    Verb::NotThat => correcting::not_that(view)?,
                     _ => correcting::start_over(view)?,
-                };
-                self.then = then;
-                typed(now)
+                })
             }
             Verb::Study(..) => return Err("a study does not ask itself".to_owned()),
         };
@@ -247,16 +241,6 @@ impl Bridge {
     }
 
     fn go_on(&mut self, now: Now) {
-        let due =
-            self.then.as_ref().zip(self.picture.view()).and_then(|(then, view)| then.due(view));
-        if let Some(words) = due {
-            self.then = None;
-            words.into_iter().for_each(|words| {
-                if let Err(why) = self.saying.add(None, typed(&words), now.at) {
-                    tracing::warn!(why, "a correction was not said to its end");
-                }
-            });
-        }
         self.saying.pass(&self.injections, &self.app.hub, now.at);
         self.motions.pass(&self.motion, &self.app.hub, now.at);
         for (viewer, frame) in self.voice.pass(&self.client, now.at) {

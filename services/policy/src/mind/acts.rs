@@ -69,7 +69,8 @@ pub(super) fn keep_words(reasons: Act, standing: &Act) -> Act {
 
 pub(super) fn pick(scene: &Scene, state: &mut State, object: ObjectId, reasons: Act) {
     let Some(open) = &mut state.open else { return };
-    let id = PickId { interaction: InteractionId(open.id.0), attempt: 1 };
+    open.picks += 1;
+    let id = PickId { interaction: InteractionId(open.id.0), attempt: open.picks };
     open.pick = Some((id, object));
     open.picked = scene.object(object).name.clone();
     state.last_prompt = state.last_prompt.next();
@@ -83,9 +84,27 @@ pub(super) fn pick(scene: &Scene, state: &mut State, object: ObjectId, reasons: 
 pub(super) fn order_again(state: &mut State, at: Time) {
     let Some(open) = &mut state.open else { return };
     let Some((id, object)) = open.pick else { return };
-    let pick = Some((PickId { attempt: id.attempt + 1, ..id }, object));
+    open.picks += 1;
+    let pick = Some((PickId { attempt: open.picks, ..id }, object));
     open.pick = pick;
     set(state, Act { pick, decided: at, ..state.act.clone() });
+}
+
+/// Has the arm leave what it was sent for, if it does not hold it yet.
+pub(super) fn call_off(state: &mut State, text: &str, at: Time) {
+    let Some(open) = &state.open else { return };
+    state.last_prompt = state.last_prompt.next();
+    let cancel = Act {
+        kind: ActKind::Cancel,
+        prompt: state.last_prompt,
+        presentation: 1,
+        pick: open.pick,
+        text: text.to_owned(),
+        utterance: state.applied,
+        decided: at,
+        ..Act::default()
+    };
+    set(state, cancel);
 }
 
 pub(super) fn say(state: &mut State, text: &str, at: Time) {

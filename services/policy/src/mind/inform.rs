@@ -1,6 +1,7 @@
 //! What an utterance says about the wanted object.
 
 use super::{Mind, posterior, words};
+use crate::evidence::Evidence;
 use crate::state::{Heard, Held, Interaction, State};
 use node::Time;
 use scene::{Reading, Response};
@@ -18,20 +19,25 @@ impl Mind {
         open.utterances.1 = heard.seq;
         open.silences = 0;
         if open.pick.is_some() {
-            return;
+            return self.reconsider(state, heard, at);
         }
         let to = self.addressed(state, heard);
         let Some(open) = &mut state.open else { return };
         let evidence = self.evidence(open, heard, &to);
-        let mut believed = posterior::of(open);
-        self.observe(&mut believed, &evidence);
-        posterior::store(believed, open);
-        open.keep(evidence);
+        self.take_in(open, evidence);
         self.note_answer(state, heard, &to);
         self.hold(state, heard, at);
         if !heard.more {
             self.decide_held(state, at);
         }
+    }
+
+    /// Has the belief follow what was said.
+    pub(super) fn take_in(&self, open: &mut Interaction, evidence: Evidence) {
+        let mut believed = posterior::of(open);
+        self.observe(&mut believed, &evidence);
+        posterior::store(believed, open);
+        open.keep(evidence);
     }
 
     /// Notes what the next decision rests on. While the person speaks on it waits.

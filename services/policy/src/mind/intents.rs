@@ -1,7 +1,8 @@
 //! What an utterance asks of the dialogue itself, before it says anything about an object.
 
-use super::{Mind, posterior, repeat, say, set, words};
-use crate::state::{Act, Heard, State};
+use super::acts::call_off;
+use super::{Mind, posterior, repeat, say, words};
+use crate::state::{Heard, State};
 use node::Time;
 use protocol::{ActKind, Outcome, UtteranceSeq};
 use scene::Intent;
@@ -49,22 +50,13 @@ impl Mind {
     }
 
     fn cancel(&self, state: &mut State, at: Time) {
-        let Some(open) = &state.open else { return };
+        let Some(open) = &mut state.open else { return };
+        // Whatever was wanted in place of what is being left, nothing is wanted now.
+        open.corrected = false;
         if open.pick.is_none() {
             self.close(state, Outcome::Cancelled, at, "All right.");
         } else if state.act.kind == ActKind::Pick {
-            state.last_prompt = state.last_prompt.next();
-            let cancel = Act {
-                kind: ActKind::Cancel,
-                prompt: state.last_prompt,
-                presentation: 1,
-                pick: open.pick,
-                text: "I will leave it, unless I already hold it.".to_owned(),
-                utterance: state.applied,
-                decided: at,
-                ..Act::default()
-            };
-            set(state, cancel);
+            call_off(state, "I will leave it, unless I already hold it.", at);
         }
     }
 

@@ -1,0 +1,140 @@
+//! What is said while the arm fetches.
+
+use super::{answer, at, belief, heard, mind, settings, typed};
+use crate::mind::Mind;
+use crate::state::{Cause, State};
+use protocol::{ActKind, Outcome, PickId, PickOutcome, PromptId};
+use scene::{Intent, ObjectId, Reading, Response};
+
+fn words(words: &[&str]) -> Reading {
+    let scene = settings().scene;
+    let base = words.iter().map(|word| scene.word_named(word).expect("a word of the scene"));
+    Reading { base: base.collect(), ..Reading::default() }
+}
+
+/// A state in which an object is fetched, and which.
+fn fetching(mind: &mut Mind) -> (State, PickId, ObjectId) {
+    let request = words(&["small", "white", "plastic", "dishwasher", "dishwasher", "dishwasher"]);
+    let state = mind.step(&mind.first(), &heard(1, PromptId(0), request), at(1));
+    let (pick, object) = state.act.pick.expect("sure enough to pick");
+    (state, pick, object)
+}
+
+fn left(pick: PickId) -> Cause {
+    Cause::PickEnded { pick, outcome: PickOutcome::Cancelled }
+}
+
+#[test]
+fn a_denial_calls_the_pick_off_and_what_was_said_before_still_counts() {
+    let mut mind = mind();
+    let (state, pick, object) = fetching(&mut mind);
+    let denied = mind.step(&state, &heard(2, PromptId(0), answer(Response::No)), at(2));
+    assert_eq!((denied.act.kind, denied.act.pick), (ActKind::Cancel, Some((pick, object))));
+    let after = mind.step(&denied, &left(pick), at(3));
+    let open = after.open.as_ref().expect("the interaction goes on");
+    assert_eq!((open.id, open.evidence.len()), (pick.interaction, 3));
+    let before = belief(&state)[object.index()];
+    assert!(belief(&after)[object.index()] < 0.5 * before, "{:?}", belief(&after));
+    // Small, white and plastic ones are still likelier than what was never spoken of.
+    let scene = settings().scene;
+    let name = |name: &str| scene.object_named(name).unwrap().index();
+    assert!(belief(&after)[name("white")] > belief(&after)[name("metal2")]);
+    if let Some((next, other)) = after.act.pick {
+        assert!(next > pick && other != object);
+    } else {
+        assert_eq!(after.act.kind, ActKind::Ask);
+    }
+}
+
+#[test]
+fn the_next_pick_has_a_key_of_its_own() {
+    let mut mind = mind();
+    let (state, pick, object) = fetching(&mut mind);
+    let wanted = Reading { response: Response::No, ..words(&["clear", "clear", "big", "clear"]) };
+    let denied = mind.step(&state, &heard(2, PromptId(0), wanted), at(2));
+    let mut after = mind.step(&denied, &left(pick), at(3));
+    if after.act.kind == ActKind::Ask {
+        let more = words(&["clear", "clear", "counter", "big"]);
+        after = mind.step(&after, &heard(3, PromptId(0), more), at(4));
+    }
+    let (next, other) = after.act.pick.expect("sure again");
+    assert_eq!((next.interaction, next.attempt), (pick.interaction, 2));
+    assert_ne!(other, object);
+    let delivered = Cause::PickEnded { pick: next, outcome: PickOutcome::Delivered };
+    let ended = mind.step(&after, &delivered, at(5)).ended.expect("it has ended");
+    assert_eq!((ended.object, ended.outcome), (Some(other.0), Outcome::Delivered));
+}
+
+#[test]
+fn an_object_ruled_out_in_words_is_denied_too() {
+    let mut mind = mind();
+    let (state, ..) = fetching(&mut mind);
+    let group = words(&["small", "white"]).base;
+    let not_this = Reading { excluded: vec![group], ..Reading::default() };
+    let denied = mind.step(&state, &heard(2, PromptId(0), not_this), at(2));
+    assert_eq!(denied.act.kind, ActKind::Cancel);
+    let group = words(&["clear"]).base;
+    let not_another = Reading { excluded: vec![group], ..Reading::default() };
+    let goes_on = mind.step(&state, &heard(2, PromptId(0), not_another), at(2));
+    assert_eq!(goes_on.act, state.act);
+}
+
+#[test]
+fn what_fits_and_what_is_about_something_else_leaves_the_arm_alone() {
+    let mut mind = mind();
+    let (state, ..) = fetching(&mut mind);
+    let readings = [
+        answer(Response::Yes),
+        words(&["white"]),
+        Reading { intent: Intent::None, ..Reading::default() },
+    ];
+    for reading in readings {
+        let after = mind.step(&state, &heard(2, PromptId(0), reading), at(2));
+        assert_eq!(after.act, state.act);
+        assert!(belief(&after).iter().zip(belief(&state)).all(|(a, b)| (a - b).abs() < 0.05));
+    }
+}
+
+#[test]
+fn words_that_make_it_unlikely_call_it_off_without_a_no() {
+    let mut mind = mind();
+    let (state, ..) = fetching(&mut mind);
+    let other =
+        words(&["clear", "clear", "clear", "counter", "counter", "counter", "big", "clear"]);
+    let after = mind.step(&state, &heard(2, PromptId(0), other), at(2));
+    assert_eq!(after.act.kind, ActKind::Cancel);
+}
+
+/// The arm was sent at second 1; a "no" that was spoken before is no word on what it fetches.
+#[test]
+fn a_no_from_before_the_robot_told_what_it_fetches_denies_nothing() {
+    let mut mind = mind();
+    let (state, ..) = fetching(&mut mind);
+    let mut late = typed(2, PromptId(0), answer(Response::No));
+    (late.typed, late.onset) = (false, at(0));
+    let after = mind.step(&state, &Cause::Utterance(late), at(2));
+    assert_eq!(after.act, state.act);
+}
+
+#[test]
+fn what_the_arm_holds_already_is_handed_over() {
+    let mut mind = mind();
+    let (state, pick, object) = fetching(&mut mind);
+    let denied = mind.step(&state, &heard(2, PromptId(0), answer(Response::No)), at(2));
+    let delivered = Cause::PickEnded { pick, outcome: PickOutcome::Delivered };
+    let ended = mind.step(&denied, &delivered, at(3)).ended.expect("it has ended");
+    assert_eq!((ended.object, ended.outcome), (Some(object.0), Outcome::Delivered));
+}
+
+#[test]
+fn who_wants_nothing_any_more_after_a_denial_gets_nothing() {
+    let mut mind = mind();
+    let (state, pick, _) = fetching(&mut mind);
+    let denied = mind.step(&state, &heard(2, PromptId(0), answer(Response::No)), at(2));
+    let never_mind = Reading { intent: Intent::Cancel, ..Reading::default() };
+    let withdrawn = mind.step(&denied, &heard(3, PromptId(0), never_mind), at(3));
+    assert_eq!(withdrawn.act, denied.act);
+    let ended = mind.step(&withdrawn, &left(pick), at(4));
+    assert!(ended.open.is_none());
+    assert_eq!(ended.ended.map(|ended| ended.outcome), Some(Outcome::Cancelled));
+}
