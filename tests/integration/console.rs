@@ -92,9 +92,9 @@ fn not_that_denies_whatever_is_meant() {
     page.until_part("arm", |arm| arm["phase"] == "moving");
     assert!(ok(&page.ask("not_that", &Json::Null)));
     let line = page.until_line("the denial", |line| {
-        line["text"] == "no, not that one" && line["understood"].is_array()
+        line["text"] == "no, not the clear bowl" && line["understood"].is_array()
     });
-    assert_eq!(line["understood"][0]["text"], "no");
+    assert_eq!(line["understood"][0]["text"], "no · not clear");
     // What was said before counts on, in the same interaction.
     page.until_part("dialogue", |dialogue| {
         let goes_on = ["ask", "pick"].contains(&dialogue["decision"].as_str().unwrap());

@@ -70,6 +70,27 @@ fn a_withdrawn_request_ends_the_interaction() {
 }
 
 #[test]
+fn who_sees_the_wrong_one_being_fetched_says_so_and_gets_the_right_one() {
+    let group = Group::up(&["arm.time_scale=4.0"]);
+    group.say("get me the white bowl on the counter");
+    let object = wait_for("the arm on its way", 30.0, || {
+        let dialogue = group.dialogue();
+        if dialogue["decision"] == "ask" {
+            group.say("yes");
+        }
+        let arm = group.arm();
+        (arm["phase"] == "moving").then(|| arm["object"].clone())
+    });
+    group.say("no, not that one, the clear one");
+    let outcome = group.await_pick(Some("clear"));
+    assert_eq!((&outcome["object"], &outcome["outcome"]), (&"clear".into(), &"delivered".into()));
+    assert_eq!(outcome["interaction"], 1, "it was one interaction: {outcome}");
+    assert_ne!(object, "clear");
+    group.verify_journals();
+    group.down();
+}
+
+#[test]
 fn talk_that_is_not_for_the_robot_begins_nothing() {
     let group = Group::up(&[]);
     group.say("what's the weather like today");

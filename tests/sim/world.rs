@@ -272,8 +272,10 @@ impl World {
                 }
                 policy::Out::Act(act) => {
                     self.check_durable(&act);
-                    let question = Question::try_from(act.question).expect("a question");
-                    self.person.announce(act.prompt, question, &self.scene, &self.model);
+                    if act.kind() == Ok(ActKind::Ask) {
+                        let question = Question::try_from(act.question).expect("a question");
+                        self.person.announce(act.prompt, question, &self.scene, &self.model);
+                    }
                     let (to_speech, to_arm) = (speech::In::Act(act.clone()), arm::In::Act(act));
                     self.inboxes.speech.extend(std::iter::repeat_n(to_speech, copies));
                     self.inboxes.arm.extend(std::iter::repeat_n(to_arm, copies));

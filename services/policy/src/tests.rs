@@ -263,7 +263,7 @@ fn random_cause(
         let outcome = match (rng.below(3), state.act.kind) {
             (0, ActKind::Pick) => {
                 *seq += 1;
-                return heard(*seq, PromptId(0), answer(Response::No));
+                return heard(*seq, state.act.prompt, answer(Response::No));
             }
             (_, ActKind::Cancel) => PickOutcome::Cancelled,
             _ => PickOutcome::Delivered,

@@ -1,8 +1,9 @@
 //! The state as others see it.
 
 use crate::mind::{Mind, questions};
-use crate::state::{Interaction, State};
+use crate::state::{Act, Interaction, State};
 use protocol::{ActKind, FixedText, PolicyView, RobotAct};
+use scene::Question;
 
 /// The standing decision on the wire.
 pub(crate) fn act(state: &State) -> RobotAct {
@@ -15,13 +16,21 @@ pub(crate) fn act(state: &State) -> RobotAct {
         prompt: act.prompt.0,
         presentation: act.presentation,
         kind: act.kind.code(),
-        question: act.question.into(),
+        question: asks(act).into(),
         object: act.pick.map_or(0, |(_, object)| object.0.into()),
         attempt: act.pick.map_or(0, |(pick, _)| pick.attempt),
         decided_ns: act.decided.ns(),
         utterance: act.utterance.0,
         text: FixedText::truncated(&act.text),
         ..RobotAct::default()
+    }
+}
+
+/// What the act's words can be answered as: "I will get the white bowl" is denied like "this one?".
+fn asks(act: &Act) -> Question {
+    match (act.kind, act.pick) {
+        (ActKind::Pick, Some((_, object))) => Question::Point(object),
+        _ => act.question,
     }
 }
 

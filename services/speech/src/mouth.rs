@@ -89,10 +89,12 @@ impl Mouth {
         if self.is_known(prompt, presentation) {
             return;
         }
-        let question = if kind == ActKind::Ask { question } else { Question::None };
+        let can_be_answered = matches!(kind, ActKind::Ask | ActKind::Pick);
+        let question = if can_be_answered { question } else { Question::None };
         let scene_key = act.scene_key;
         let words = Words { prompt, presentation, question, scene_key, text: text.to_owned() };
-        let aim_until = matches!(question, Question::Point(_)).then(|| now + AIM_PATIENCE);
+        let points = kind == ActKind::Ask && matches!(question, Question::Point(_));
+        let aim_until = points.then(|| now + AIM_PATIENCE);
         self.waiting = Some(Waiting { act: ActId(act.act), words, aim_until });
     }
 

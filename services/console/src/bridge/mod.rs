@@ -229,11 +229,11 @@ impl Bridge {
         let words = match verb {
             Verb::Say(words) => words,
             Verb::NotThat | Verb::StartOver => {
-                let view = self.picture.view();
-                typed(match verb {
-                    Verb::NotThat => correcting::not_that(view)?,
-                    _ => correcting::start_over(view)?,
-                })
+                let (view, arm) = (self.picture.view(), self.picture.arm());
+                match verb {
+                    Verb::NotThat => typed(&correcting::not_that(self.picture.scene(), view, arm)?),
+                    _ => typed(correcting::start_over(view)?),
+                }
             }
             Verb::Study(..) => return Err("a study does not ask itself".to_owned()),
         };

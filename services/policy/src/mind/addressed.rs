@@ -2,11 +2,11 @@
 
 use super::Mind;
 use crate::evidence::{Asked as InWords, Evidence, Said};
-use crate::state::{Asking, Heard, Interaction, State};
+use crate::state::{Asking, Heard, State};
 use dialogue::person::Reaction;
 use dialogue::{Addressed, Asked, Attribution, QUESTION_S};
 use node::{Span, Time};
-use protocol::ActKind;
+use protocol::{ActKind, PromptId};
 use scene::{Intent, Question, Reading};
 
 impl Mind {
@@ -48,7 +48,7 @@ impl Mind {
 
     /// What an utterance says about the wanted object: each interpretation with the weight of its
     /// question, equal ones together.
-    pub(super) fn evidence(&self, open: &Interaction, heard: &Heard, to: &Addressed) -> Evidence {
+    pub(super) fn evidence(&self, state: &State, heard: &Heard, to: &Addressed) -> Evidence {
         let mut meant: Vec<(f64, InWords, Said)> = Vec::new();
         for interpretation in &heard.meant {
             let share = interpretation.question.map_or(to.none, |at| to.questions[at]);
@@ -58,8 +58,7 @@ impl Mind {
             }
             // An answer to another interaction's question says nothing about this one's object.
             let prompt = interpretation.question.map(|at| heard.asked[at].prompt);
-            let asked = open.prompts.iter().find(|known| Some(known.id) == prompt);
-            let asked = asked.map_or(InWords::Nothing, |known| known.asked.clone());
+            let asked = prompt.and_then(|prompt| put_in_words(state, prompt)).unwrap_or_default();
             let said = Said::new(&self.scene, &content(&interpretation.reading));
             match meant.iter_mut().find(|(_, a, s)| (a, s) == (&asked, &said)) {
                 Some((sum, ..)) => *sum += weight,
@@ -118,15 +117,25 @@ fn content(reading: &Reading) -> Reading {
 
 /// A question of the open interaction as the person met it; none for another's.
 fn put(state: &State, asking: &Asking) -> Option<Asked> {
+    put_in_words(state, asking.prompt)?;
     let open = state.open.as_ref()?;
-    let prompt = open.prompts.iter().find(|prompt| prompt.id == asking.prompt)?;
+    let prompt = open.prompts.iter().find(|prompt| prompt.id == asking.prompt);
     Some(Asked {
         question: Question::None,
         began_s: seconds(asking.began),
         ended_s: asking.ended.map_or(seconds(asking.began) + QUESTION_S, seconds),
         whole: asking.whole,
-        answered_s: prompt.answered.map(seconds),
+        answered_s: prompt.and_then(|prompt| prompt.answered).map(seconds),
     })
+}
+
+/// What a prompt of the open interaction asks. That something is being fetched can be denied.
+fn put_in_words(state: &State, prompt: PromptId) -> Option<InWords> {
+    let open = state.open.as_ref()?;
+    if state.act.kind == ActKind::Pick && state.act.prompt == prompt {
+        return Some(InWords::Point(open.picked.clone()));
+    }
+    open.prompts.iter().find(|known| known.id == prompt).map(|known| known.asked.clone())
 }
 
 fn seconds(time: Time) -> f64 {
@@ -135,6 +144,6 @@ fn seconds(time: Time) -> f64 {
 
 /// The question that stands when the result arrives, as naive systems take it: the one asked last.
 fn pending(state: &State, asked: &[Asked]) -> Option<usize> {
-    let stands = state.act.kind == ActKind::Ask && !asked.is_empty();
+    let stands = matches!(state.act.kind, ActKind::Ask | ActKind::Pick) && !asked.is_empty();
     stands.then_some(0)
 }

@@ -13,24 +13,16 @@ use scene::{ObjectId, Response};
 const LIKELY: f64 = 0.5;
 
 impl Mind {
-    /// Takes in what was said while the arm fetches. "I will get the white bowl" asks nothing, but
-    /// whoever says "no" to it means that bowl.
-    pub(super) fn reconsider(&mut self, state: &mut State, heard: &Heard, at: Time) {
+    /// Takes in what was said while the arm fetches.
+    pub(super) fn reconsider(&self, state: &mut State, heard: &Heard, at: Time) {
         let to = self.addressed(state, heard);
-        let told = state.act.decided;
+        let evidence = self.evidence(state, heard, &to);
         let Some(open) = &mut state.open else { return };
         let Some((_, object)) = open.pick else { return };
-        let mut evidence = self.evidence(open, heard, &to);
-        let mut denied = None;
-        // What was said before the robot told what it fetches answers what was asked before.
-        if said_at(heard) >= told {
-            let that = Asked::Point(open.picked.clone());
-            evidence = as_answer_to(&that, evidence);
-            denied = self.denial(object, that, &evidence);
-        }
+        let denial = self.denial(object, &open.picked, &evidence);
+        let is_denied = denial.is_some();
         self.take_in(open, evidence);
-        let is_denied = denied.is_some();
-        denied.into_iter().for_each(|denial| self.take_in(open, denial));
+        denial.into_iter().for_each(|denial| self.take_in(open, denial));
         let is_unlikely = open.belief().probabilities()[object.index()] < LIKELY;
         if state.act.kind == ActKind::Pick && (is_denied || is_unlikely) {
             open.corrected = true;
@@ -41,18 +33,16 @@ impl Mind {
     /// The denial of `object` alone, where it is likely that there is one. It counts besides what it
     /// came with: nobody stops the robot on its way to the right object by a slip of the tongue, as
     /// may happen with the answer to a question.
-    fn denial(&self, object: ObjectId, that: Asked, evidence: &Evidence) -> Option<Evidence> {
-        let denies = |said: &Said| {
-            said.response == Response::No
+    fn denial(&self, object: ObjectId, name: &str, evidence: &Evidence) -> Option<Evidence> {
+        let that = Asked::Point(name.to_owned());
+        let denies = |asked: &Asked, said: &Said| {
+            (*asked == that && said.response == Response::No)
                 || said.excluded.iter().any(|group| self.describes(group, object))
         };
-        let all: f64 = evidence.meant.iter().map(|(weight, ..)| weight).sum();
-        let no: f64 = evidence
-            .meant
-            .iter()
-            .filter(|(.., said)| denies(said))
-            .map(|(weight, ..)| weight)
-            .sum();
+        let meant = evidence.meant.iter();
+        let weights = meant.map(|(weight, asked, said)| (*weight, denies(asked, said)));
+        let all: f64 = weights.clone().map(|(weight, _)| weight).sum();
+        let no: f64 = weights.filter(|(_, denies)| *denies).map(|(weight, _)| weight).sum();
         let alone = Said { response: Response::No, ..Said::default() };
         let meant = vec![(no, that, alone), (all - no, Asked::Nothing, Said::default())];
         (2.0 * no > all).then(|| Evidence { meant, ..Evidence::default() })
@@ -74,18 +64,4 @@ impl Mind {
         let utterance = open.utterances.1;
         self.decide(state, PromptId(0), "", utterance, at);
     }
-}
-
-/// When it was said: typed words are sent when they are complete.
-fn said_at(heard: &Heard) -> Time {
-    if heard.typed { heard.end } else { heard.onset }
-}
-
-/// The evidence with every yes and no as the answer to `asked`.
-fn as_answer_to(asked: &Asked, evidence: Evidence) -> Evidence {
-    let meant = evidence.meant.into_iter().map(|(weight, before, said)| {
-        let answers = said.response != Response::None;
-        (weight, if answers { asked.clone() } else { before }, said)
-    });
-    Evidence { meant: meant.collect(), ..evidence }
 }

@@ -22,8 +22,8 @@ impl Mind {
             return self.reconsider(state, heard, at);
         }
         let to = self.addressed(state, heard);
+        let evidence = self.evidence(state, heard, &to);
         let Some(open) = &mut state.open else { return };
-        let evidence = self.evidence(open, heard, &to);
         self.take_in(open, evidence);
         self.note_answer(state, heard, &to);
         self.hold(state, heard, at);

@@ -47,7 +47,7 @@ wire_struct! {
         kind: u8,
         /// Zero.
         reserved: [u8; 3],
-        /// The question of an `Ask`.
+        /// The question of an `Ask`; of a `Pick`, its object: that it is fetched can be denied.
         question: WireQuestion,
         /// [`ObjectId`] of a `Pick`.
         object: u32,
