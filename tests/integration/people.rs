@@ -71,7 +71,7 @@ fn a_withdrawn_request_ends_the_interaction() {
 
 #[test]
 fn who_sees_the_wrong_one_being_fetched_says_so_and_gets_the_right_one() {
-    let group = Group::up(&["arm.time_scale=4.0"]);
+    let group = Group::up(&["arm.time_scale=0.5"]);
     group.say("get me the white bowl on the counter");
     let object = wait_for("the arm on its way", 30.0, || {
         let dialogue = group.dialogue();
