@@ -38,18 +38,20 @@ export function mountVoice(element, { link, store, t }) {
     },
   });
   bindPress(view.talk, (event) => talk.press(event));
-  draw = eachFrame(() => {
+  const drawNow = () => {
     const { talks, latched, handsFree, isOpening, isOpen } = talk;
     const up = store.get("link")?.state === "up";
     const turn = store.get("turn")?.state;
     const standing = talk.standing();
     const known = { up, turn, talks, latched, handsFree, isOpening, isOpen, standing };
     show(view, { sign: sign(known), talk, playback, t });
-  });
+  };
+  draw = eachFrame(drawNow);
   store.subscribe(["link", "turn", "speech", "welcome"], tell);
   // A page that nobody sees hears nobody.
   addEventListener("pagehide", () => talk.close());
-  draw();
+  // At once: no button is without its words for as long as a frame.
+  drawNow();
   return { talk, playback };
 }
 
