@@ -106,7 +106,8 @@ pub(super) fn turn(facts: &Facts<'_>) -> Turn {
                 && presented.state == Presentation::Ended.code();
             if said { plain(Person, Asked) } else { plain(Robot, Understanding) }
         }
-        "pick" if open => plain(Arm, Moving),
+        // A pick that is called off is the arm's affair, too, until it has left the object.
+        "pick" | "cancel" if open => plain(Arm, Moving),
         _ if arm.is_some_and(|arm| arm.moving != 0) => plain(Arm, Moving),
         _ => {
             let listens = hearing
@@ -183,6 +184,8 @@ mod tests {
         assert_eq!(of(&asks, &ended, quiet, still), (Person, TurnState::Asked));
         let picks = view(1, "pick", 5);
         assert_eq!(of(&picks, &ended, quiet, still), (Arm, TurnState::Moving));
+        let leaves = view(1, "cancel", 6);
+        assert_eq!(of(&leaves, &ended, quiet, still), (Arm, TurnState::Moving));
         let moves = ArmStatus { phase: PickPhase::Holding.code(), moving: 1, ..still };
         assert_eq!(
             of(&picks, &said(5, Presentation::Ended), quiet, moves),
