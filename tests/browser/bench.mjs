@@ -11,7 +11,7 @@ import { Group } from "./lib/group.mjs";
 import { answer } from "./lib/person.mjs";
 import { TARGET } from "./lib/program.mjs";
 import { until } from "./lib/until.mjs";
-import { ALOUD, giveMicrophone, hears, holdAndSpeak } from "./lib/voice.mjs";
+import { ALOUD, giveMicrophone, hears, holdAndSpeak, saidLast } from "./lib/voice.mjs";
 
 const DIALOGUES = Number(process.argv[2] ?? 12);
 const BOWLS = ["white", "white2", "white3", "metal", "metal2", "clear"];
@@ -27,22 +27,25 @@ const browser = await chromium.launch({
 /** The robot's next question after `before`, or the end of the interaction. */
 const next = (before, interaction) =>
   until("the robot's move", async () => {
-    const { dialogue, turn } = await group.state();
-    if ((dialogue.last?.interaction ?? 0) > interaction) return dialogue;
-    return turn.state === "asked" && dialogue.prompt !== before && dialogue;
+    const state = await group.state();
+    const { dialogue, turn } = state;
+    const said = saidLast(state);
+    if ((dialogue.last?.interaction ?? 0) > interaction) return { ...dialogue, said };
+    return turn.state === "asked" && said !== before && { ...dialogue, said };
   });
 
 /** One spoken dialogue about an object; whether the right one came. */
 async function converse(page, name) {
-  const { scene, dialogue: before } = await group.state();
+  const before = await group.state();
+  const { scene } = before;
   const wanted = scene.objects.find((object) => object.name === name);
-  const interaction = before.last?.interaction ?? 0;
+  const interaction = before.dialogue.last?.interaction ?? 0;
   await holdAndSpeak(page, "get me the bowl");
-  let dialogue = await next(before.prompt, interaction);
+  let dialogue = await next(saidLast(before), interaction);
   for (let move = 0; (dialogue.last?.interaction ?? 0) === interaction; move += 1) {
     if (move === MOVES_MAX) return false;
     await holdAndSpeak(page, answer(dialogue.question, wanted));
-    dialogue = await next(dialogue.prompt, interaction);
+    dialogue = await next(dialogue.said, interaction);
   }
   return dialogue.last.object === name;
 }

@@ -21,6 +21,13 @@ export const hears = (group) =>
   until("the recogniser", async () => (await group.state()).speech?.hearing?.ear === "ready");
 
 /**
+ * What the robot said last, as a name: a question that is asked again is to be answered again.
+ * @param {{speech?: {speaking?: {prompt: number, presentation: number}|null}}} state
+ */
+export const saidLast = ({ speech }) =>
+  speech?.speaking ? `${speech.speaking.prompt}-${speech.speaking.presentation}` : "";
+
+/**
  * Says a text with flite, whose voice is cut from recordings of a person.
  * @param {string} text
  * @returns {Promise<Buffer>} samples of 16 bits, one channel, 16 kHz

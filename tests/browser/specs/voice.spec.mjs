@@ -4,17 +4,19 @@ import { expectAccessible } from "../lib/axe.mjs";
 import { answer } from "../lib/person.mjs";
 import { expect, test } from "../lib/test.mjs";
 import { until } from "../lib/until.mjs";
-import { ALOUD, giveMicrophone, hears, holdAndSpeak, speak } from "../lib/voice.mjs";
+import { ALOUD, giveMicrophone, hears, holdAndSpeak, saidLast, speak } from "../lib/voice.mjs";
 
 test.use({ settings: ALOUD });
 
 /** The robot's next move that is no more the one of before. */
 const next = (group, before) =>
   until("the robot's move", async () => {
-    const { dialogue, turn } = await group.state();
-    if (dialogue.last?.interaction) return dialogue;
+    const state = await group.state();
+    const { dialogue, turn } = state;
+    const said = saidLast(state);
+    if (dialogue.last?.interaction) return { ...dialogue, said };
     const asked = dialogue.decision === "ask" && turn.state === "asked";
-    return asked && dialogue.prompt !== before && dialogue;
+    return asked && said !== before && { ...dialogue, said };
   });
 
 test("a spoken request and spoken answers get the right bowl", async ({ page, group, watched }) => {
@@ -25,10 +27,10 @@ test("a spoken request and spoken answers get the right bowl", async ({ page, gr
   await holdAndSpeak(page, "get me the small white bowl");
   const { scene } = await group.state();
   const wanted = scene.objects.find(({ name }) => name === "white2");
-  let dialogue = await next(group, 0);
+  let dialogue = await next(group, "");
   while (!dialogue.last?.interaction) {
     await holdAndSpeak(page, answer(dialogue.question, wanted));
-    dialogue = await next(group, dialogue.prompt);
+    dialogue = await next(group, dialogue.said);
   }
   expect(dialogue.last).toMatchObject({ object: "white2", outcome: "delivered" });
   const replies = await page.evaluate(() =>
