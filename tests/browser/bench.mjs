@@ -6,6 +6,7 @@
 import { mkdir, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { chromium } from "@playwright/test";
+import { drawnFinely } from "./lib/arm.mjs";
 import { CHROMIUM, CHROMIUM_FLAGS } from "./lib/chromium.mjs";
 import { Group } from "./lib/group.mjs";
 import { answer } from "./lib/person.mjs";
@@ -64,7 +65,7 @@ async function measure() {
   await giveMicrophone(page);
   await page.goto(group.url);
   await hears(group);
-  await page.locator("#arm[data-picture=fine]").waitFor({ timeout: 60_000 });
+  await drawnFinely(page);
   let right = 0;
   for (let n = 0; n < DIALOGUES; n += 1) {
     right += (await converse(page, BOWLS[n % BOWLS.length])) ? 1 : 0;

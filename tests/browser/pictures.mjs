@@ -4,6 +4,7 @@
 
 import { join } from "node:path";
 import { chromium } from "@playwright/test";
+import { drawnFinely } from "./lib/arm.mjs";
 import { CHROMIUM, CHROMIUM_FLAGS } from "./lib/chromium.mjs";
 import { Group } from "./lib/group.mjs";
 import { finish, press, rate, request, screen } from "./lib/participant.mjs";
@@ -47,19 +48,18 @@ async function take(page, name) {
   await page.screenshot({ path: join(FOLDER, `${name}.png`) });
 }
 
-const drawn = (page) => page.locator("#arm[data-picture=fine]").waitFor({ timeout: 60_000 });
 const armIs = (phase) => until(phase, async () => (await group.state()).arm.phase === phase);
 
 /** A dialogue: its question on each size and theme, the arm on its way, the stop. */
 async function dialogue() {
   const page = await open("/", DESKTOP, "light");
   await page.getByText(t("control.mine")).waitFor();
-  await drawn(page);
+  await drawnFinely(page);
   const phone = await open("/", PHONE, "dark");
   await phone.getByText(t("question.idle", { noun: "bowl" })).waitFor();
   await type(page, "get me the big bowl");
   await nextDecision(group, 0);
-  await drawn(page);
+  await drawnFinely(page);
   await take(page, "console-asks");
   await take(phone, "console-phone");
   await page.emulateMedia({ colorScheme: "dark" });
@@ -69,7 +69,7 @@ async function dialogue() {
   await page.emulateMedia({ colorScheme: "light" });
   await page.keyboard.press("Escape");
   await page.getByRole("button", { name: t("stop.resume") }).waitFor();
-  await drawn(page);
+  await drawnFinely(page);
   await take(page, "console-stopped");
   await group.must("resume-motion");
   await until("the hand-over", async () => (await group.state()).dialogue.last);

@@ -18,7 +18,7 @@ export const screen = (page, name) =>
  */
 export async function press(page, key) {
   const button = page.getByRole("button", { name: t(key), exact: true });
-  await expect(button).toBeEnabled({ timeout: 40_000 });
+  await expect(button).toBeEnabled();
   await button.focus();
   await page.keyboard.press("Enter");
 }
