@@ -3,8 +3,8 @@
 
 use crate::options::Options;
 use crate::report::{Report, Table, percentile};
-use runtime::clock;
 use serde_json::{Value as Json, json};
+use service::clock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 use whichone_tests::Group;

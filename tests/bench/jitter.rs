@@ -3,9 +3,9 @@
 //! millisecond, measured at the same time on the same machine.
 
 use crate::report::{Report, percentile};
-use protocol::{JointStates, topics};
-use runtime::bus::Reader;
-use runtime::client::Client;
+use messages::{JointStates, topics};
+use service::bus::Reader;
+use service::client::Client;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;

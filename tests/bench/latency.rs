@@ -2,11 +2,11 @@
 
 use crate::peers::{SYNC, WAKE};
 use crate::report::{Report, percentile};
-use node::Span;
-use protocol::{Injection, Observation, Receipt, RobotAct, Sound, Utterance, topics};
-use runtime::bus::Reader;
-use runtime::client::Client;
-use runtime::clock;
+use messages::{Injection, Observation, Receipt, RobotAct, Sound, Utterance, topics};
+use service::Span;
+use service::bus::Reader;
+use service::client::Client;
+use service::clock;
 use std::time::Duration;
 use whichone_tests::{Group, wait_for};
 
@@ -52,7 +52,7 @@ struct Taps {
     observations: Reader<Observation>,
     acts: Reader<RobotAct>,
     receipts: Reader<Receipt>,
-    injections: runtime::bus::EncodedWriter<Injection>,
+    injections: service::bus::EncodedWriter<Injection>,
 }
 
 impl Taps {

@@ -1,7 +1,7 @@
 //! The table that is printed and written.
 
-use plot::Lines;
-pub(crate) use plot::Series;
+use evaluation::charts::Lines;
+pub(crate) use evaluation::charts::Series;
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -141,15 +141,15 @@ impl Plot {
             title: format!("Cost over the number of {}", self.over),
             x: self.over.to_owned(),
             y: "median, µs".to_owned(),
-            x_scale: plot::Scale::Logarithmic,
-            y_scale: plot::Scale::Logarithmic,
+            x_scale: evaluation::charts::Scale::Logarithmic,
+            y_scale: evaluation::charts::Scale::Logarithmic,
             series: self.series.clone(),
         };
         let chart = chart.draw(PLOT_SIZE).map_err(std::io::Error::other)?;
         let file = |ending: &str| -> PathBuf { folder.join(self.file).with_extension(ending) };
-        let svg = plot::svg(&chart);
+        let svg = evaluation::charts::svg(&chart);
         std::fs::write(file("svg"), svg)?;
-        let png = plot::png(&chart).map_err(std::io::Error::other)?;
+        let png = evaluation::charts::png(&chart).map_err(std::io::Error::other)?;
         std::fs::write(file("png"), png)
     }
 }

@@ -2,8 +2,8 @@
 //! robot's own voice without a sound card.
 
 use crate::speech::can_speak;
-use protocol::{Presentation, Presented, topics};
-use runtime::client::Client;
+use messages::{Presentation, Presented, topics};
+use service::client::Client;
 use whichone_tests::spoken::{Conditions, tally};
 use whichone_tests::{Group, wait_for};
 

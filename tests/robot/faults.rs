@@ -2,9 +2,9 @@
 
 use crate::world::World;
 use dialogue::Rng;
-use node::Span;
-use protocol::robot::DrillKind;
-use protocol::{Hindrance, MotionOrder, PickOutcome, PickPhase};
+use messages::robot::DrillKind;
+use messages::{Hindrance, MotionOrder, PickOutcome, PickPhase};
+use service::Span;
 
 #[test]
 fn joint_states_that_stay_away_halt_the_arm_until_they_are_back() {

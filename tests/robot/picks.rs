@@ -2,9 +2,9 @@
 
 use crate::world::World;
 use arm::Order;
-use node::Span;
-use protocol::robot::{Command, DrillKind};
-use protocol::{Hindrance, PickOutcome, PickPhase};
+use messages::robot::{Command, DrillKind};
+use messages::{Hindrance, PickOutcome, PickPhase};
+use service::Span;
 
 #[test]
 fn six_bowls_are_brought_one_after_another() {

@@ -2,16 +2,16 @@
 
 use crate::world::World;
 use arm::Order;
-use node::{Span, Time};
-use protocol::robot::DrillKind;
-use protocol::{Hindrance, MotionOrder, PickPhase};
+use messages::robot::DrillKind;
+use messages::{Hindrance, MotionOrder, PickPhase};
+use service::{Span, Time};
 
 /// Faster than this a joint moves, rad/s: ten deviations of the velocity's noise.
 const MOVES_RAD_S: f64 = 0.05;
 
 /// The first joint state from which on nothing moved.
 fn still_from(world: &World) -> Time {
-    let moves = |s: &&protocol::robot::JointState| s.velocity.iter().any(|v| v.abs() > MOVES_RAD_S);
+    let moves = |s: &&messages::robot::JointState| s.velocity.iter().any(|v| v.abs() > MOVES_RAD_S);
     let last = world.joint_states.iter().rev().find(moves).unwrap();
     Time(last.stamp_ns) + Span::from_ms(10)
 }

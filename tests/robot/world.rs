@@ -4,14 +4,14 @@ use arm::state::ArmState;
 use arm::{ArmNode, In, Order, Out, Told};
 use baxter::BaxterNode;
 use baxter::robot::Robot;
-use node::{Effects, Event, Node, Span, Time};
-use protocol::robot::{Drill, DrillKind, JointState};
-use protocol::{
+use config::Settings;
+use messages::robot::{Drill, DrillKind, JointState};
+use messages::{
     ActKind, ArmStatus, Hindrance, MotionCommand, MotionOrder, PickOutcome, PickPhase, RobotAct,
 };
-use runtime::driver::Program;
-use runtime::lifecycle::Environment;
-use settings::Settings;
+use service::lifecycle::Environment;
+use service::service_loop::Program;
+use service::{Effects, Event, Node, Span, Time};
 use std::path::Path;
 
 /// How often the world looks: finer than any deadline in it.
@@ -195,7 +195,8 @@ impl World {
 
     fn pass_robot(&mut self, events: Vec<Event<baxter::In>>) {
         let Some(node) = &mut self.robot else { return };
-        let held = |robot: &Robot| kinematics::Limb::BOTH.map(|l| robot.table().held(l).is_some());
+        let held =
+            |robot: &Robot| manipulation::Limb::BOTH.map(|l| robot.table().held(l).is_some());
         let before = held(node.robot());
         let mut effects = Effects::default();
         events.into_iter().for_each(|event| node.on(event, self.now, &mut effects));

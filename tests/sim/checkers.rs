@@ -1,8 +1,8 @@
 //! What must hold after any dialogue, read from the journals as an outsider would.
 
 use crate::world::World;
+use messages::{Outcome, PickOutcome, PickPhase};
 use policy::state::Cause;
-use protocol::{Outcome, PickOutcome, PickPhase};
 use speech::record::Record as Spoken;
 
 type Verdict = Result<(), String>;

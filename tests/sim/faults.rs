@@ -2,7 +2,7 @@
 //! nothing bad may happen, after that something good must.
 
 use dialogue::Rng;
-use node::{Span, Time};
+use service::{Span, Time};
 use whichone_tests::Crash;
 
 /// How often what goes wrong.

@@ -11,9 +11,9 @@ mod person;
 mod turns;
 mod world;
 
+use config::Settings;
 use faults::Faults;
 use person::Person;
-use settings::Settings;
 use whichone_tests::settings;
 use world::World;
 

@@ -3,9 +3,9 @@
 //! acknowledged.
 
 use dialogue::{Answer, Model};
-use node::{Span, Time};
-use protocol::{Injection, Presentation, Presented, Receipt, RequestKey, Sound};
+use messages::{Injection, Presentation, Presented, Receipt, RequestKey, Sound};
 use scene::{ObjectId, Question, Scene};
+use service::{Span, Time};
 
 const REACTION: Span = Span::from_ms(700);
 const RESEND: Span = Span::from_ms(250);

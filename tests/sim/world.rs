@@ -3,13 +3,13 @@
 use crate::faults::Faults;
 use crate::person::Person;
 use arm::ArmNode;
+use config::Settings;
 use dialogue::Model;
 use grounding::GroundingNode;
-use node::{Event, Node, Span, Time};
+use messages::{ActKind, Outcome, PolicyView};
 use policy::PolicyNode;
-use protocol::{ActKind, Outcome, PolicyView};
 use scene::{Question, Scene};
-use settings::Settings;
+use service::{Event, Node, Span, Time};
 use speech::{SpeechNode, Spoken, VoiceEvent};
 use whichone_tests::{Host, configured};
 
@@ -48,7 +48,7 @@ pub(crate) struct World {
 #[derive(Default)]
 struct Inboxes {
     speech: Vec<speech::In>,
-    grounding: Vec<Box<protocol::Utterance>>,
+    grounding: Vec<Box<messages::Utterance>>,
     policy: Vec<policy::In>,
     arm: Vec<arm::In>,
 }
@@ -252,7 +252,7 @@ impl World {
     }
 
     #[allow(clippy::vec_box, reason = "the node's own output type")]
-    fn route_grounding(&mut self, outputs: Vec<Box<protocol::Observation>>) {
+    fn route_grounding(&mut self, outputs: Vec<Box<messages::Observation>>) {
         for observation in outputs {
             for _ in 0..self.faults.copies(self.now) {
                 let message = policy::In::Observation(observation.clone());
@@ -297,7 +297,7 @@ impl World {
     }
 
     /// Whatever becomes visible must be durable already.
-    fn check_durable(&mut self, act: &protocol::RobotAct) {
+    fn check_durable(&mut self, act: &messages::RobotAct) {
         let durable = self.policy.journal().last().map_or(0, |record| record.state.act.id.0);
         if act.act > durable && act.kind != ActKind::Wait.code() {
             self.premature.push(format!("act {} before record {durable}", act.act));

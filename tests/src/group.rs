@@ -2,9 +2,9 @@
 
 use crate::command::{Ended, program, run};
 use crate::wait_for;
-use runtime::group::{ENV_HOME, GroupName, GroupPaths};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value;
+use service::group::{ENV_HOME, GroupName, GroupPaths};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -200,7 +200,7 @@ impl Group {
         self.must(&["down"]);
         self.is_up = false;
         assert!(!self.paths.run().exists(), "run/ is left: {:?}", self.paths.run());
-        let left = runtime::admin::leftovers(&self.paths);
+        let left = service::shm_cleanup::leftovers(&self.paths);
         assert!(left.is_empty(), "shared memory is left: {left:?}");
         let processes = self.processes();
         assert!(processes.is_empty(), "processes are left: {processes:?}");

@@ -1,9 +1,9 @@
 //! A node in a simulated process: it can die at any point between an event and the last of its
 //! effects, and comes back from what its journal had synced by then.
 
-use node::{Effects, Event, Node, Time};
-use runtime::lifecycle::Environment;
-use settings::Settings;
+use config::Settings;
+use service::lifecycle::Environment;
+use service::{Effects, Event, Node, Time};
 
 /// Where in a pass the process dies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +96,7 @@ where
 ///
 /// # Panics
 /// Where the settings give none.
-pub fn configured<P: runtime::driver::Program>(
+pub fn configured<P: service::service_loop::Program>(
     settings: &Settings,
 ) -> impl Fn() -> <P::Node as Node>::Config + use<P> {
     let settings = settings.clone();

@@ -12,7 +12,7 @@ pub use command::{Ended, program, run};
 pub use group::Group;
 pub use host::{Crash, Host, configured};
 
-use settings::Settings;
+use config::Settings;
 use std::path::Path;
 
 /// The shipped configuration with the profile for tests, and these settings over it.

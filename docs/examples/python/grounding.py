@@ -22,7 +22,7 @@ LAYOUT = os.path.join(os.path.dirname(os.path.abspath(__file__)),
 AFFIRMATIVE = {"yes", "yeah", "sure", "yup", "yep"}
 NEGATIVE = {"no", "nope", "not", "nah", "other"}
 YES, NO, INFORM = 1, 2, 0
-# The question of a reading that answers none, as in `shared/protocol`.
+# The question of a reading that answers none, as in `shared/messages`.
 NO_QUESTION = 255
 WORDS = re.compile(r"[^\W_]+(?:[-'][^\W_]+)*")
 

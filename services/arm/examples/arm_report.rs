@@ -5,11 +5,11 @@
 
 use arm::shell::ArmProgram;
 use arm::{ArmNode, In};
-use node::{Effects, Event, Node, Span, Time};
-use protocol::{ActKind, PickPhase, RobotAct};
-use runtime::driver::Program;
-use runtime::lifecycle::Environment;
-use settings::Settings;
+use config::Settings;
+use messages::{ActKind, PickPhase, RobotAct};
+use service::lifecycle::Environment;
+use service::service_loop::Program;
+use service::{Effects, Event, Node, Span, Time};
 use std::path::Path;
 use std::time::Instant;
 

@@ -2,10 +2,10 @@
 
 use crate::executor::{Executor, Program, Purpose};
 use crate::state::side;
-use kinematics::{Arm, Trajectory};
-use node::{Span, Time};
-use protocol::{PhaseWay, TRAJECTORY_POINTS_MAX, TrajectoryView};
+use manipulation::{Arm, Trajectory};
+use messages::{PhaseWay, TRAJECTORY_POINTS_MAX, TrajectoryView};
 use scene::ObjectId;
+use service::{Span, Time};
 
 /// Points of a moving phase at most: one each few centimetres of the longest way.
 const PHASE_POINTS_MAX: usize = 48;
@@ -26,12 +26,7 @@ pub(crate) struct Course {
 
 impl Course {
     /// A program begins, for `object` where it is for one.
-    pub(crate) fn begin(
-        &mut self,
-        program: &Program,
-        object: Option<ObjectId>,
-        arm: &settings::Arm,
-    ) {
+    pub(crate) fn begin(&mut self, program: &Program, object: Option<ObjectId>, arm: &config::Arm) {
         let pick = match program.purpose {
             Purpose::Pick(id) => Some(id),
             Purpose::Aim(_) | Purpose::Return => None,

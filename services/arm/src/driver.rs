@@ -7,13 +7,13 @@ pub use baxter::BaxterDriver;
 pub use kinematic::KinematicArm;
 
 use crate::state::{Posture, side};
-use kinematics::{Joints, Limb, Robot};
-use node::{Span, Time};
-use protocol::Hindrance;
-use protocol::robot::{
+use manipulation::{Joints, Limb, Robot};
+use messages::Hindrance;
+use messages::robot::{
     AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, JointCommand,
     JointState, JointTrajectoryPoint, SpeedRatio,
 };
+use service::{Span, Time};
 
 /// What moves. The executor commands it a hundred times a second and believes what it measures, so
 /// a driver of a real robot has the same two things to do: pass the set point on, and report what

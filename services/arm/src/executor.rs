@@ -1,8 +1,8 @@
 //! Carries programs out: which step the arm is in and how far, one program at a time.
 
 use crate::driver::{ArmDriver, Command, Fault, Fingers};
-use kinematics::{Limb, Trajectory};
-use protocol::{Hindrance, MotionPhase, PickId, PickPhase};
+use manipulation::{Limb, Trajectory};
+use messages::{Hindrance, MotionPhase, PickId, PickPhase};
 use scene::ObjectId;
 use std::collections::VecDeque;
 

@@ -5,10 +5,10 @@ use crate::executor::{Executor, Program, Purpose};
 use crate::program::{Planner, Refusal};
 use crate::recover::{Next, next};
 use crate::{ArmNode, Fx};
-use kinematics::Limb;
-use node::{Span, Time};
-use protocol::{Hindrance, PickOutcome, PickPhase};
+use manipulation::Limb;
+use messages::{Hindrance, PickOutcome, PickPhase};
 use scene::ObjectId;
+use service::{Span, Time};
 
 /// How long the arm stands where it finds no way to rest, before it looks for one again.
 const RETRY_EVERY: Span = Span::from_ms(5_000);

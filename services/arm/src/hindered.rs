@@ -2,9 +2,9 @@
 
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
-use kinematics::Limb;
-use node::Time;
-use protocol::{Hindrance, MotionOrder, PickPhase};
+use manipulation::Limb;
+use messages::{Hindrance, MotionOrder, PickPhase};
+use service::Time;
 
 impl ArmNode {
     /// Looks at the robot before anything is decided: whether it can move, and whether it moves as

@@ -31,13 +31,13 @@ pub use driver::{
 use course::Course;
 use executor::Executor;
 use goal::Setbacks;
-use node::{Effects, Event, Node, NodeError, Span, Time};
-use orders::StandingAct;
-use protocol::{
+use messages::{
     ArmStatus, Hindrance, JointStates, MotionCommand, RobotAct, TrajectoryView, WorldView,
 };
+use orders::StandingAct;
 use publish::{Facts, Publisher};
 use scene::{ObjectId, Scene};
+use service::{Effects, Event, Node, NodeError, Span, Time};
 use state::{ArmState, Cause, Record};
 use world::World;
 
@@ -73,7 +73,7 @@ type Fx = Effects<Out, Record>;
 #[derive(Clone, Debug)]
 pub struct Config {
     /// How it moves, and where it brings things.
-    pub arm: settings::Arm,
+    pub arm: config::Arm,
     /// The objects and their places.
     pub scene: Scene,
 }
@@ -114,8 +114,8 @@ impl Node for ArmNode {
     fn recover(config: Config, records: Vec<Record>) -> Result<Self, NodeError> {
         let state = recover::state(&config, records)?;
         let driver = match config.arm.driver {
-            settings::Driver::Kinematic => Box::new(KinematicArm::at(&state)) as Box<dyn ArmDriver>,
-            settings::Driver::Baxter => Box::new(BaxterDriver::new(&config.arm, &state)),
+            config::Driver::Kinematic => Box::new(KinematicArm::at(&state)) as Box<dyn ArmDriver>,
+            config::Driver::Baxter => Box::new(BaxterDriver::new(&config.arm, &state)),
         };
         Ok(Self::with_driver(config, state, driver))
     }

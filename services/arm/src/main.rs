@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    runtime::driver::run::<arm::shell::ArmProgram>()
+    service::service_loop::run::<arm::shell::ArmProgram>()
 }

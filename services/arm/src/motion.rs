@@ -4,9 +4,9 @@ use crate::driver::Fault;
 use crate::executor::{Progress, Purpose};
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
-use kinematics::Limb;
-use node::{Span, Time};
-use protocol::{MotionPhase, PickOutcome, PickPhase};
+use manipulation::Limb;
+use messages::{MotionPhase, PickOutcome, PickPhase};
+use service::{Span, Time};
 
 /// Longest stretch of a motion that is made up for at once. A process that was suspended goes on
 /// from where it was, as a robot does whose controller was silent.

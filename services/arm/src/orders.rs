@@ -2,12 +2,12 @@
 
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
-use node::Time;
-use protocol::pick::{Order, Pick, judge};
-use protocol::{
+use messages::pick::{Order, Pick, judge};
+use messages::{
     ActId, ActKind, MotionCommand, MotionOrder, PickId, PickOutcome, PickPhase, RobotAct,
 };
 use scene::{ObjectId, Question};
+use service::Time;
 
 /// What matters of the policy's latest act.
 #[derive(Clone, Copy, Debug, Default)]

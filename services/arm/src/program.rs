@@ -4,16 +4,16 @@ use crate::driver::{Fingers, Grip, Measured};
 use crate::executor::{Program, Purpose, Step};
 use crate::state::{ArmState, Held, side};
 use crate::world::{World, from_array};
+use config::Grasps;
 use dialogue::Rng;
-use kinematics::{
+use manipulation::{
     ArmShape, Arms, Cuboid, Limb, MotionLimits, PickPhase as PickStage, PlanError, PlanSettings,
     Robot, Stage, Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_return,
 };
+use messages::pick::Pick;
+use messages::{MotionPhase, PickId, PickPhase};
 use nalgebra::Translation3;
-use protocol::pick::Pick;
-use protocol::{MotionPhase, PickId, PickPhase};
 use scene::ObjectId;
-use settings::Grasps;
 use std::collections::VecDeque;
 
 /// Everything that a plan depends on.

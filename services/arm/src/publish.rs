@@ -5,9 +5,9 @@ use crate::executor::{Executor, Purpose};
 use crate::state::{ArmState, side};
 use crate::world::World;
 use crate::{Fx, Out};
-use kinematics::{JOINTS, Limb, gripper};
-use node::{Span, Time};
-use protocol::{ActId, ArmStatus, Hindrance, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates};
+use manipulation::{JOINTS, Limb, gripper};
+use messages::{ActId, ArmStatus, Hindrance, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates};
+use service::{Span, Time};
 
 /// How often the status is sent again while nothing changes.
 const STATUS_EVERY: Span = Span::from_ms(250);
@@ -40,7 +40,7 @@ pub(crate) struct Facts<'a> {
 }
 
 impl Publisher {
-    pub(crate) fn new(arm: &settings::Arm) -> Self {
+    pub(crate) fn new(arm: &config::Arm) -> Self {
         Self {
             sources: JOINT_STATE_NAMES.map(source),
             time_scale: arm.time_scale,

@@ -4,11 +4,11 @@
 
 use crate::Config;
 use crate::state::{ArmState, Record, side};
-use kinematics::Limb;
-use node::NodeError;
-use protocol::pick::Pick;
-use protocol::{PickOutcome, PickPhase};
+use manipulation::Limb;
+use messages::pick::Pick;
+use messages::{PickOutcome, PickPhase};
 use scene::Scene;
+use service::NodeError;
 
 /// How to go on with an open pick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,15 +1,15 @@
 //! The arm's topics and configuration.
 
 use crate::{ArmNode, Config, In, Out};
-use protocol::{
+use config::{Driver, Settings};
+use messages::{
     ArmStatus, JointStates, MotionCommand, RobotAct, Service, TrajectoryView, WorldView, topics,
 };
 use robot::RobotTopics;
-use runtime::bus::{EncodedWriter, PortError, Reader, Writer};
-use runtime::driver::{Context, Program, Shell};
-use runtime::exit::Failure;
-use runtime::lifecycle::Environment;
-use settings::{Driver, Settings};
+use service::bus::{EncodedWriter, PortError, Reader, Writer};
+use service::exit::Failure;
+use service::lifecycle::Environment;
+use service::service_loop::{Context, Program, Shell};
 
 mod robot;
 

@@ -1,12 +1,12 @@
 //! Everything that the arm must not forget. It is small, so each journal record holds it whole, and
 //! recovery reads one record.
 
-use kinematics::{Joints, Limb, Robot};
-use node::Time;
-use protocol::pick::Pick;
-use protocol::{MotionOrder, PickPhase};
+use manipulation::{Joints, Limb, Robot};
+use messages::pick::Pick;
+use messages::{MotionOrder, PickPhase};
 use scene::ObjectId;
 use serde::{Deserialize, Serialize};
+use service::Time;
 
 /// The arm's state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

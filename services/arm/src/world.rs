@@ -2,11 +2,11 @@
 
 use crate::driver::Measured;
 use crate::state::{ArmState, Held, side};
-use kinematics::{Cuboid, Limb, ObjectPose, Robot, attached_pose};
+use manipulation::{Cuboid, Limb, ObjectPose, Robot, attached_pose};
+use messages::WorldView;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
-use node::Time;
-use protocol::WorldView;
 use scene::{ObjectId, Placement, Scene};
+use service::Time;
 
 /// The objects' places in the scene.
 #[derive(Clone, Debug)]

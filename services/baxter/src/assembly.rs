@@ -1,6 +1,6 @@
 //! The robot as a whole: motors, faults and the red button.
 
-use protocol::robot::{AssemblyState, DrillKind, EstopButton};
+use messages::robot::{AssemblyState, DrillKind, EstopButton};
 use serde::{Deserialize, Serialize};
 
 /// `ESTOP_SOURCE_USER`.

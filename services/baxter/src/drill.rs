@@ -1,12 +1,12 @@
 //! Has something happen to a simulated robot that runs: for people and for tests.
 
-use node::Span;
-use protocol::robot::{Drill, DrillKind};
-use protocol::topics::robot;
-use runtime::bus::Writer;
-use runtime::client::{Client, random_key};
-use runtime::exit::{Exit, Failure};
-use runtime::group::{ENV_GROUP, GroupName, GroupPaths};
+use messages::robot::{Drill, DrillKind};
+use messages::topics::robot;
+use service::Span;
+use service::bus::Writer;
+use service::client::{Client, random_key};
+use service::exit::{Exit, Failure};
+use service::group::{ENV_GROUP, GroupName, GroupPaths};
 use std::process::ExitCode;
 
 /// How long and how often a drill is sent; one that comes twice happens once.
@@ -31,7 +31,7 @@ pub fn kind(word: &str) -> Option<DrillKind> {
 
 /// Sends the drill to the robot of the group that the environment names.
 pub fn run(kind: DrillKind, arguments: &[String]) -> ExitCode {
-    runtime::logging::init();
+    service::logging::init();
     match send(kind, arguments) {
         Ok(()) => Exit::Ok.code(),
         Err(failure) => {
@@ -43,7 +43,7 @@ pub fn run(kind: DrillKind, arguments: &[String]) -> ExitCode {
 
 fn send(kind: DrillKind, arguments: &[String]) -> Result<(), Failure> {
     let amount = amount(kind, arguments)?;
-    let usage = |e: runtime::group::GroupError| Failure::new(Exit::Usage, e.to_string());
+    let usage = |e: service::group::GroupError| Failure::new(Exit::Usage, e.to_string());
     let name = std::env::var(ENV_GROUP).unwrap_or_else(|_| GroupName::DEFAULT.to_owned());
     let name = GroupName::new(&name);
     let paths = GroupPaths::resolve(&name.map_err(usage)?).map_err(usage)?;
@@ -54,8 +54,8 @@ fn send(kind: DrillKind, arguments: &[String]) -> Result<(), Failure> {
     key.copy_from_slice(&random_key().0[..8]);
     let key = u64::from_le_bytes(key);
     let drill = Drill { key, amount, kind: kind.code(), ..Drill::default() };
-    let until = runtime::clock::now() + SENT_FOR;
-    while runtime::clock::now() < until {
+    let until = service::clock::now() + SENT_FOR;
+    while service::clock::now() < until {
         writer.send(&drill).map_err(|e| reached(&e))?;
         std::thread::sleep(SENT_EVERY);
     }

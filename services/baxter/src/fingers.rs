@@ -1,7 +1,7 @@
 //! One electric gripper.
 
-use kinematics::gripper::{self, DEAD_ZONE, STROKE_M, STROKE_S};
-use protocol::robot::{Command, EndEffectorCommand, EndEffectorState, Tristate};
+use manipulation::gripper::{self, DEAD_ZONE, STROKE_M, STROKE_S};
+use messages::robot::{Command, EndEffectorCommand, EndEffectorState, Tristate};
 use serde::{Deserialize, Serialize};
 
 /// Force of fingers that hold something, percent: the SDK's holding force.
@@ -139,8 +139,8 @@ impl Fingers {
             position: gripper::percent(self.width_m) as f32,
             force: if self.gripping { HOLDING_FORCE } else { 0.0 },
             command_sequence: *sequence,
-            command: protocol::FixedText::truncated(command),
-            command_sender: protocol::FixedText::truncated(sender),
+            command: messages::FixedText::truncated(command),
+            command_sender: messages::FixedText::truncated(sender),
         }
     }
 

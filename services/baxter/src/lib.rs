@@ -14,14 +14,14 @@ pub mod shell;
 pub mod table;
 mod tell;
 
-use kinematics::Limb;
-use node::{Effects, Event, Node, NodeError, Span, Time};
-use protocol::robot::{
+use manipulation::Limb;
+use messages::robot::{
     AssemblyState, Drill, EndEffectorCommand, EndEffectorProperties, EndEffectorState,
     EndpointState, JointCommand, JointState, JointTrajectoryPoint, SpeedRatio,
 };
 use robot::{Body, Robot};
 use scene::Scene;
+use service::{Effects, Event, Node, NodeError, Span, Time};
 
 /// What the robot is told.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,9 +57,9 @@ pub enum Out {
 #[derive(Clone, Debug)]
 pub struct Config {
     /// Its limbs.
-    pub robot: kinematics::Robot,
+    pub robot: manipulation::Robot,
     /// How its joints follow, and how it measures them.
-    pub simulated: settings::Simulated,
+    pub simulated: config::Simulated,
     /// How far objects stand from their places across the fingers, metres, standard deviation.
     pub grasp_error_m: f64,
     /// Whether people put back what they were given once the robot rests.

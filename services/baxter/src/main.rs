@@ -7,6 +7,6 @@ fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     match words.first().and_then(|word| baxter::drill::kind(word)) {
         Some(kind) => baxter::drill::run(kind, &words[1..]),
-        None => runtime::driver::run::<baxter::shell::BaxterProgram>(),
+        None => service::service_loop::run::<baxter::shell::BaxterProgram>(),
     }
 }

@@ -6,10 +6,10 @@ use crate::servo::{Servo, Target};
 use crate::table::{Table, Whereabouts};
 use crate::{Config, In, Out, tell};
 use dialogue::Rng;
-use kinematics::{Joints, Limb, gripper};
-use node::{Span, Time};
-use protocol::robot::{Drill, DrillKind, JointCommand, JointMode, JointTrajectoryPoint};
+use manipulation::{Joints, Limb, gripper};
+use messages::robot::{Drill, DrillKind, JointCommand, JointMode, JointTrajectoryPoint};
 use serde::{Deserialize, Serialize};
+use service::{Span, Time};
 use std::collections::VecDeque;
 
 /// Longest stretch of time that is made up for at once.

@@ -1,6 +1,6 @@
 //! One limb's joints and the controller behind them.
 
-use kinematics::{Joints, MotionLimits};
+use manipulation::{Joints, MotionLimits};
 
 /// Seconds without a command after which a limb holds the position that it has:
 /// `joint_command_timeout`.
@@ -132,7 +132,7 @@ impl Servo {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use kinematics::{Limb, Robot};
+    use manipulation::{Limb, Robot};
 
     /// A limb at rest, and where that is.
     fn resting(lag_s: f64) -> (Servo, Joints) {

@@ -2,18 +2,18 @@
 
 use crate::robot::side;
 use crate::{BaxterNode, Config, In, Out};
-use kinematics::Limb;
-use protocol::robot::{
+use config::Settings;
+use manipulation::Limb;
+use messages::robot::{
     AssemblyState, Drill, EndEffectorCommand, EndEffectorProperties, EndEffectorState,
     EndpointState, JointCommand, JointState, JointTrajectoryPoint, SpeedRatio,
 };
-use protocol::topics::robot;
-use protocol::{Service, Topic};
-use runtime::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
-use runtime::driver::{Context, Program, Shell};
-use runtime::exit::Failure;
-use runtime::lifecycle::Environment;
-use settings::Settings;
+use messages::topics::robot;
+use messages::{Service, Topic};
+use service::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
+use service::exit::Failure;
+use service::lifecycle::Environment;
+use service::service_loop::{Context, Program, Shell};
 
 /// The simulated robot as a program.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! The objects round the robot: where they stand, and what the fingers find.
 
-use kinematics::gripper;
-use kinematics::{Limb, ObjectPose};
+use manipulation::gripper;
+use manipulation::{Limb, ObjectPose};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use scene::Scene;
 use serde::{Deserialize, Serialize};

@@ -3,12 +3,12 @@
 use crate::Out;
 use crate::robot::{Robot, side};
 use crate::table::to_array;
-use kinematics::{Limb, gripper};
+use manipulation::{Limb, gripper};
+use messages::FixedText;
+use messages::robot::{EndEffectorProperties, EndpointState, JointState, Measurement, UiType};
+use messages::{JOINT_STATE_NAMES, WireError};
 use nalgebra::SVector;
-use node::Time;
-use protocol::FixedText;
-use protocol::robot::{EndEffectorProperties, EndpointState, JointState, Measurement, UiType};
-use protocol::{JOINT_STATE_NAMES, WireError};
+use service::Time;
 
 /// Beats between two states of a gripper, and between two of its properties.
 const GRIPPER_BEATS: u64 = 2;

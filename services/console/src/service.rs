@@ -7,15 +7,15 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use node::{Span, Time};
-use runtime::client::Client;
-use runtime::clock;
-use runtime::device;
-use runtime::driver;
-use runtime::exit::{Exit, Failure};
-use runtime::lifecycle::{Environment, Lifecycle};
+use config::{Recogniser, Settings, Voice};
 use serde_json::json;
-use settings::{Recogniser, Settings, Voice};
+use service::client::Client;
+use service::clock;
+use service::exit::{Exit, Failure};
+use service::lifecycle::{Environment, Lifecycle};
+use service::service_loop;
+use service::worker_channel;
+use service::{Span, Time};
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 
@@ -41,7 +41,7 @@ const RESTARTS_MAX: usize = 8;
 /// Runs the service until it is told to end.
 pub fn run() -> ExitCode {
     let about = "serves the page from which a person talks to the robot and sees what it thinks";
-    driver::program("console", about, serve)
+    service_loop::program("console", about, serve)
 }
 
 fn serve(arguments: Vec<String>) -> Result<(), Failure> {
@@ -53,8 +53,8 @@ fn serve(arguments: Vec<String>) -> Result<(), Failure> {
     let failed = |what: &'static str| {
         move |e: std::io::Error| Failure::new(Exit::NotReached, format!("{what}: {e}"))
     };
-    let (to_commands, commands) = device::channel::<Command>().map_err(failed("inbox"))?;
-    let (to_motions, motions) = device::channel::<Motion>().map_err(failed("inbox"))?;
+    let (to_commands, commands) = worker_channel::channel::<Command>().map_err(failed("inbox"))?;
+    let (to_motions, motions) = worker_channel::channel::<Motion>().map_err(failed("inbox"))?;
     let (to_restarts, restarts) = crossbeam_channel::bounded(RESTARTS_MAX);
     let ways = Ways { commands: to_commands.clone(), motions: to_motions, restarts: to_restarts };
     let study = Study::new(&settings, &environment.paths)?;

@@ -1,7 +1,7 @@
 //! What an utterance may mean: each hypothesis as an answer to each question, equal ones together.
 
 use crate::Config;
-use protocol::{AskedQuestion, Hypothesis, Interpretation, READINGS_MAX, WireError};
+use messages::{AskedQuestion, Hypothesis, Interpretation, READINGS_MAX, WireError};
 use scene::{Doubt, Question, Reading};
 
 /// The interpretations for each of the questions asked and for none, most likely first. Each

@@ -12,9 +12,9 @@ pub mod shell;
 
 use interpret::interpretations;
 use language::Reader;
-use node::{Effects, Event, Never, Node, NodeError, Time};
-use protocol::{Fits, FixedText, Interpretation, Observation, Utterance, WireError, WireReading};
+use messages::{Fits, FixedText, Interpretation, Observation, Utterance, WireError, WireReading};
 use scene::{Reading, Scene};
+use service::{Effects, Event, Never, Node, NodeError, Time};
 
 /// How it reads: the scene and its reader.
 pub struct Config {

@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    runtime::driver::run::<grounding::shell::GroundingProgram>()
+    service::service_loop::run::<grounding::shell::GroundingProgram>()
 }

@@ -1,13 +1,13 @@
 //! Grounding's topics and configuration.
 
 use crate::{Config, GroundingNode};
+use config::Settings;
 use language::{Language, Reader as TextReader};
-use protocol::{Observation, Service, Utterance, topics};
-use runtime::bus::{PortError, Reader, Writer};
-use runtime::driver::{Context, Program, Shell};
-use runtime::exit::{Exit, Failure};
-use runtime::lifecycle::Environment;
-use settings::Settings;
+use messages::{Observation, Service, Utterance, topics};
+use service::bus::{PortError, Reader, Writer};
+use service::exit::{Exit, Failure};
+use service::lifecycle::Environment;
+use service::service_loop::{Context, Program, Shell};
 
 /// Grounding as a program. `--language paper|careful` overrides the setting, so that a group can
 /// be swapped from one reading to the other while it runs.

@@ -17,13 +17,13 @@ mod view;
 mod tests;
 
 use dialogue::person::Reaction;
-use mind::{Mind, Turns};
-use node::{Effects, Event, Node, NodeError, Span, Time};
-use protocol::inbox::{Inbox, Verdict};
-use protocol::{
+use messages::inbox::{Inbox, Verdict};
+use messages::{
     ActKind, Activity, AppliedMark, ArmStatus, AskedQuestion, Observation, PickOutcome, PickPhase,
     PolicyView, Presentation, Presented, PromptId, RobotAct, Source, UtteranceSeq,
 };
+use mind::{Mind, Turns};
+use service::{Effects, Event, Node, NodeError, Span, Time};
 use state::{Asking, Cause, Heard, Record, State};
 
 /// How often what stands is sent again.
@@ -268,7 +268,7 @@ fn check(state: &State) -> Result<(), NodeError> {
 }
 
 /// How turns are taken, from the settings.
-pub fn turns(settings: &settings::Settings) -> Turns {
+pub fn turns(settings: &config::Settings) -> Turns {
     let turns = &settings.dialogue.turns;
     Turns {
         response_window_s: turns.response_window_s,

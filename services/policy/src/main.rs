@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    runtime::driver::run::<policy::shell::PolicyProgram>()
+    service::service_loop::run::<policy::shell::PolicyProgram>()
 }

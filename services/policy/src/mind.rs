@@ -15,17 +15,17 @@ mod words;
 
 use crate::state::{Act, Cause, Interaction, State};
 use acts::{ask, keep_words, order_again, pick, repeat, say, set};
+use config::Prior;
 use dialogue::gesture::Gestures;
 use dialogue::person::Reaction;
 use dialogue::{
     Action, Actions, Attribution, Confusion, Costs, DecisionProblem, Durations, Model, Params,
     Planner, Step,
 };
-use node::Time;
+use messages::{ActKind, Ended, Outcome, PickId, PickOutcome, PromptId, UtteranceSeq};
 use pointing::Pointing;
-use protocol::{ActKind, Ended, Outcome, PickId, PickOutcome, PromptId, UtteranceSeq};
 use scene::Scene;
-use settings::Prior;
+use service::Time;
 
 /// How turns are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]

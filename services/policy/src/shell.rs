@@ -2,16 +2,16 @@
 
 use crate::mind::{Assumptions, Mind};
 use crate::{In, Out, PolicyNode, kept, turns};
+use config::{Section, Settings};
 use dialogue::Confusion;
-use protocol::{
+use messages::{
     Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, Service, topics,
 };
-use runtime::bus::{EncodedWriter, PortError, Reader, Writer};
-use runtime::driver::{Context, Program, Shell};
-use runtime::exit::{Exit, Failure};
-use runtime::lifecycle::Environment;
 use scene::{Fnv1a, Scene};
-use settings::{Section, Settings};
+use service::bus::{EncodedWriter, PortError, Reader, Writer};
+use service::exit::{Exit, Failure};
+use service::lifecycle::Environment;
+use service::service_loop::{Context, Program, Shell};
 
 /// The policy as a program. `--planner NAME` overrides the setting, so that a group can be swapped
 /// from one planner to another while it runs.

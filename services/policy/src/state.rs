@@ -6,13 +6,13 @@ use crate::history::History;
 use dialogue::Belief;
 use dialogue::person::Reaction;
 use dialogue::person::{Joint, Person};
-use node::Time;
-use protocol::{
+use messages::{
     ActId, ActKind, Ended, InteractionId, Interpretation, PickId, PickOutcome, PromptId,
     UtteranceSeq,
 };
 use scene::{ObjectId, Question};
 use serde::{Deserialize, Serialize};
+use service::Time;
 
 /// The dialogue's state.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

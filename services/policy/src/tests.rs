@@ -12,14 +12,14 @@ use crate::mind::{Mind, questions};
 use crate::shell;
 use crate::state::{Asking, Cause, Heard, Record, State};
 use crate::{In, Out, PolicyNode, journal_check};
+use config::Settings;
 use dialogue::{Answer, Model, Rng};
-use node::{Effects, Event, Node, Span, Time};
-use protocol::{
+use messages::{
     ActKind, ArmStatus, AskedQuestion, FixedText, Interpretation, Observation, Outcome,
     PickOutcome, PickPhase, Presentation, Presented, PromptId, UtteranceSeq, WireReading,
 };
 use scene::{Intent, ObjectId, Question, Reading, Response};
-use settings::Settings;
+use service::{Effects, Event, Node, Span, Time};
 use std::path::Path;
 use std::sync::OnceLock;
 

@@ -12,15 +12,15 @@ use crate::record::{Accepted, Hypothesis, Record};
 use crate::said::Content;
 use crate::transcript;
 use crate::{Config, Fx, Out, Recognised, Segment, ToRecognise};
-use node::{Span, Time};
-use partials::Partials;
-use piece::Piece;
-use protocol::outbox::Outbox;
-use protocol::{
+use messages::outbox::Outbox;
+use messages::{
     Activity, AppliedMark, EarState, FixedText, Hearing, Injection, MotionCommand, MotionOrder,
     Receipt, ReceiptStatus, RequestKey, Sound, Source, UtteranceSeq, topics,
 };
+use partials::Partials;
+use piece::Piece;
 use scene::{Intent, Question};
+use service::{Span, Time};
 use std::collections::VecDeque;
 use std::ops::RangeInclusive;
 use told::{receipt, utterance};

@@ -21,13 +21,13 @@ use devices::microphone::MicrophoneStatus;
 use devices::stream::Cut;
 use ears::Ears;
 use live::Live;
-use mouth::Mouth;
-use node::{Effects, Event, Node, NodeError, Span, Time};
-use protocol::{
+use messages::{
     Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MotionCommand, Partial,
     Presented, PromptId, Receipt, RobotAct, Utterance,
 };
+use mouth::Mouth;
 use record::Record;
+use service::{Effects, Event, Node, NodeError, Span, Time};
 
 pub use record::Hypothesis;
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::live::Began;
-use node::Time;
-use protocol::{RequestKey, Source};
+use messages::{RequestKey, Source};
+use service::Time;
 
 /// A sound on its way to becoming an utterance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use node::Time;
-use protocol::{RequestKey, Source};
+use messages::{RequestKey, Source};
+use service::Time;
 
 use crate::devices::stream::Cut;
 

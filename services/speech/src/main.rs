@@ -3,5 +3,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    runtime::driver::run::<speech::shell::SpeechProgram>()
+    service::service_loop::run::<speech::shell::SpeechProgram>()
 }

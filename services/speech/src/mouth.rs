@@ -3,9 +3,9 @@
 
 use crate::record::{Record, Said};
 use crate::{Fx, Line, Out, Spoken, VoiceEvent};
-use node::{Span, Time};
-use protocol::{ASKED_MAX, ActId, ActKind, ArmStatus, Presentation, Presented, PromptId, RobotAct};
+use messages::{ASKED_MAX, ActId, ActKind, ArmStatus, Presentation, Presented, PromptId, RobotAct};
 use scene::Question;
+use service::{Span, Time};
 use std::collections::VecDeque;
 
 /// Presentations of questions that are remembered.

@@ -1,9 +1,9 @@
 //! What the speech service must not forget.
 
-use node::Time;
-use protocol::{Presentation, Presented, PromptId, RequestKey, UtteranceSeq};
+use messages::{Presentation, Presented, PromptId, RequestKey, UtteranceSeq};
 use scene::Question;
 use serde::{Deserialize, Serialize};
+use service::Time;
 
 /// A journal record of the speech service.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,7 +46,7 @@ pub struct Accepted {
     pub hypotheses: Vec<Hypothesis>,
     /// The point that was pointed at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
-    /// [`protocol::Source`] as on the wire.
+    /// [`messages::Source`] as on the wire.
     pub source: u8,
     /// The latest questions whose sound had begun by then, newest first.
     pub asked: Vec<Said>,

@@ -1,6 +1,6 @@
 //! What one utterance consists of, and whether it can be taken.
 
-use protocol::{POINTED_AT_MAX_M, Source, is_somewhere};
+use messages::{POINTED_AT_MAX_M, Source, is_somewhere};
 
 use crate::{Config, Hypothesis};
 

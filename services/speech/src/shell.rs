@@ -8,19 +8,19 @@ use crate::devices::stream::OwnVoice;
 use crate::devices::watched_folder::WatchedFolder;
 use crate::live::Live;
 use crate::{Config, In, Out, Recognised, SpeechNode};
+use config::Settings;
 use crossbeam_channel::Receiver;
 use language::{Language, Reader as TextReader};
-use node::Span;
-use protocol::{
+use messages::{
     Activity, AppliedMark, ArmStatus, AudioChunk, Hearing, Injection, MotionCommand, Partial,
     Presented, Receipt, RobotAct, Service, Utterance, topics,
 };
-use runtime::bus::{EncodedReader, PortError, Reader, Writer};
-use runtime::device::DeviceSender;
-use runtime::driver::{Context, Program, Shell};
-use runtime::exit::Failure;
-use runtime::lifecycle::Environment;
-use settings::Settings;
+use service::Span;
+use service::bus::{EncodedReader, PortError, Reader, Writer};
+use service::exit::Failure;
+use service::lifecycle::Environment;
+use service::service_loop::{Context, Program, Shell};
+use service::worker_channel::DeviceSender;
 
 mod ear;
 mod microphone;

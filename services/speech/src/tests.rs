@@ -5,12 +5,12 @@ use crate::live::{Began, LIVE_FROM, Live};
 use crate::record::{Hypothesis, Record};
 use crate::{Config, In, Line, Out, Recognised, Segment, SpeechNode, Spoken, VoiceEvent};
 use language::{Language, Reader};
-use node::{Effects, Event, Node, Span, Time};
-use protocol::{
+use messages::{
     ActKind, Activity, AppliedMark, FixedText, Injection, Presentation, RequestKey, RobotAct,
     Sound, Source, Utterance,
 };
 use scene::{AttributeId, Question, Scene, ValueId};
+use service::{Effects, Event, Node, Span, Time};
 
 const WHITE: Question = Question::Attribute(AttributeId(0), ValueId(0));
 

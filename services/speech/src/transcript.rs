@@ -1,6 +1,6 @@
 //! Speech that a client's own recogniser has recognised.
 
-use protocol::HYPOTHESES_MAX;
+use messages::HYPOTHESES_MAX;
 
 use crate::Hypothesis;
 

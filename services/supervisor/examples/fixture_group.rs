@@ -8,9 +8,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
-use runtime::group::{GroupName, GroupPaths};
+use config::{Log, Restart, RestartLimits};
 use serde::Deserialize;
-use settings::{Log, Restart, RestartLimits};
+use service::group::{GroupName, GroupPaths};
 use supervisor::Supervisor;
 use supervisor::configuration::Configuration;
 use supervisor::spec::{GroupSpec, ServiceSpec};
@@ -59,7 +59,7 @@ fn ten_seconds() -> u64 {
 }
 
 fn main() -> ExitCode {
-    runtime::logging::init();
+    service::logging::init();
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let paths = GroupPaths::resolve(&GroupName::new(&arguments[0]).unwrap()).unwrap();
     let file = PathBuf::from(&arguments[1]);

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use runtime::group::{ENV_GROUP, ENV_HOME, ENV_INCARNATION, GroupPaths};
 use rustix::fs::{FlockOperation, flock};
 use rustix::io::Errno;
 use rustix::process::{Pid, PidfdFlags, Signal, getpid, pidfd_open, pidfd_send_signal};
+use service::group::{ENV_GROUP, ENV_HOME, ENV_INCARNATION, GroupPaths};
 use thiserror::Error;
 
 use crate::bond::{is_free, open_lock};
@@ -148,7 +148,7 @@ fn names(processes: &[Process]) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use runtime::group::GroupName;
+    use service::group::GroupName;
 
     use super::*;
 

@@ -8,7 +8,7 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use runtime::group::GroupPaths;
+use service::group::GroupPaths;
 
 /// The epoch in force; a new one if there is none, or if `fresh` asks for it.
 ///
@@ -68,7 +68,7 @@ fn now_s() -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use runtime::group::GroupName;
+    use service::group::GroupName;
 
     use super::*;
 

@@ -10,9 +10,9 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use runtime::exit::Exit;
-use runtime::group::{ENV_HOME, GroupName, GroupPaths};
-use settings::Log;
+use config::Log;
+use service::exit::Exit;
+use service::group::{ENV_HOME, GroupName, GroupPaths};
 use thiserror::Error;
 
 use crate::control::{CallError, Refusal, Reply, Request, call};

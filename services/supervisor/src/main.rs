@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
-use runtime::exit::Exit;
-use runtime::group::{GroupName, GroupPaths};
+use service::exit::Exit;
+use service::group::{GroupName, GroupPaths};
 use supervisor::Supervisor;
 use supervisor::configuration::from_settings;
 use supervisor::launch::Options;
@@ -18,7 +18,7 @@ use supervisor::launch::Options;
 #[command(name = "whichone-supervisor", version)]
 struct Arguments {
     /// Name of the group.
-    #[arg(long, default_value = GroupName::DEFAULT, env = runtime::group::ENV_GROUP)]
+    #[arg(long, default_value = GroupName::DEFAULT, env = service::group::ENV_GROUP)]
     group: GroupName,
     /// Folder of the configuration.
     #[arg(long, default_value = "config", value_name = "DIR")]
@@ -51,7 +51,7 @@ fn main() -> ExitCode {
             return if error.use_stderr() { Exit::Usage.code() } else { Exit::Ok.code() };
         }
     };
-    runtime::logging::init();
+    service::logging::init();
     end_on_panic();
     if arguments.detached
         && let Err(error) = rustix::process::setsid()

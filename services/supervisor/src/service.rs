@@ -4,8 +4,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use runtime::admin::NoRoom;
-use runtime::group::{self, GroupPaths};
+use service::group::{self, GroupPaths};
+use service::shm_cleanup::NoRoom;
 
 use crate::Time;
 use crate::bond::Bond;

@@ -7,9 +7,9 @@ use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use runtime::admin::NoRoom;
 use rustix::fs::{Access, access};
 use rustix::process::Pid;
+use service::shm_cleanup::NoRoom;
 use thiserror::Error;
 
 use crate::before_exec;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-pub use settings::{Log, Restart, RestartLimits};
+pub use config::{Log, Restart, RestartLimits};
 
 /// A group as configured, checked: names are unique, `after` names exist and form no cycle
 /// (see [`Schedule::new`](crate::schedule::Schedule::new)).

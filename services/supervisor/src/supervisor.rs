@@ -8,10 +8,10 @@ use std::fs::File;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use runtime::admin::{Admin, NoRoom, check_room};
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
 use rustix::process::Pid;
+use service::exit::Exit;
+use service::group::GroupPaths;
+use service::shm_cleanup::{Admin, NoRoom, check_room};
 
 use crate::Time;
 use crate::configuration::{Configuration, Load, Publish};

@@ -6,9 +6,9 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 
-use runtime::exit::Exit;
 use serde::de::DeserializeOwned;
 use serde_json::{Value as Json, json};
+use service::exit::Exit;
 
 use crate::cli::InputArgs;
 use crate::output::Output;

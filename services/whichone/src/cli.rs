@@ -1,7 +1,7 @@
 //! The command surface: every verb, its arguments and their help.
 
 use clap::{Parser, Subcommand};
-use runtime::group::{ENV_GROUP, GroupName};
+use service::group::{ENV_GROUP, GroupName};
 
 mod arm;
 mod batch;

@@ -3,10 +3,10 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use kinematics::{Chain, JOINTS, Joints, Limb};
+use manipulation::{Chain, JOINTS, Joints, Limb};
 use nalgebra::Isometry3;
-use robot::{Joint, Robot};
-use runtime::exit::Exit;
+use robot_model::{Joint, Robot};
+use service::exit::Exit;
 
 use crate::cli::WhichArm;
 use crate::trouble::Trouble;

@@ -8,7 +8,7 @@ use std::ffi::OsString;
 use std::io::ErrorKind;
 
 use clap::Parser;
-use runtime::exit::Exit;
+use service::exit::Exit;
 
 use crate::cli::Cli;
 use crate::output::{Output, complain};

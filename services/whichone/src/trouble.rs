@@ -2,12 +2,12 @@
 
 use std::io;
 
-use runtime::bus::{BusError, PortError};
-use runtime::client::ClientError;
-use runtime::exit::{Exit, Failure};
-use runtime::group::GroupError;
+use config::Problems;
 use scene::Problem;
-use settings::Problems;
+use service::bus::{BusError, PortError};
+use service::client::ClientError;
+use service::exit::{Exit, Failure};
+use service::group::GroupError;
 use supervisor::control::{CallError, Refusal};
 use supervisor::launch::LaunchError;
 

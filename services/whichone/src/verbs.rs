@@ -1,6 +1,6 @@
 //! The verbs, a file each or a family a file.
 
-use protocol::MotionOrder;
+use messages::MotionOrder;
 
 use crate::cli::{ArmArgs, Awaited, Cli, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;

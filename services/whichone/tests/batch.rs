@@ -4,10 +4,10 @@
 use std::path::{Path, PathBuf};
 
 use dialogue::{Actions, Costs, Mode, Model, Params};
-use kinematics::Limb;
 use language::Language;
-use runtime::exit::Exit;
+use manipulation::Limb;
 use serde_json::{Value as Json, json};
+use service::exit::Exit;
 use whichone::batch::{self, Decider, Grounder};
 use whichone::cli::{LimbArg, WhichArm};
 use whichone::described_arm::DescribedArm;

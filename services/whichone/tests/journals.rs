@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use config::Settings;
 use journal::{Header, Journal};
-use node::Time;
+use messages::{Interpretation, PromptId, UtteranceSeq};
 use policy::mind::Mind;
 use policy::state::{Asking, Cause, Heard, Record, State};
-use protocol::{Interpretation, PromptId, UtteranceSeq};
 use scene::{Reading, Response};
-use settings::Settings;
+use service::Time;
 
 /// A group that has only journals.
 struct Lab(tempfile::TempDir);

@@ -3,7 +3,7 @@
 use super::targets::postures;
 use super::{numbers, rows, seven, timed};
 use crate::report::Report;
-use kinematics::{Clearance, Cuboid, Limb, Robot};
+use manipulation::{Clearance, Cuboid, Limb, Robot};
 
 /// The table of the reference.
 const TABLE: Cuboid = Cuboid::aligned([0.9, 0.0, -0.2], [0.6, 1.4, 0.04]);

@@ -4,7 +4,7 @@
 use super::inverse::Solver;
 use super::targets::Random;
 use super::{BUDGET_S, arm, thread_s};
-use kinematics::{Joints, Limb};
+use manipulation::{Joints, Limb};
 use nalgebra::{Isometry3, Matrix6, Vector6};
 
 /// Distance and angle at which it stops.

@@ -3,7 +3,7 @@
 use super::targets::postures;
 use super::{arm, thread_s};
 use crate::report::Report;
-use kinematics::{Joints, Limb};
+use manipulation::{Joints, Limb};
 
 /// Postures of one sample, and samples.
 const POSTURES: usize = 1000;

@@ -5,7 +5,7 @@ use super::judge::{Judge, Rule, apart};
 use super::targets::{Target, middle};
 use super::{Effort, arm, mean, timed};
 use crate::report::{Report, Table, percentile};
-use kinematics::{Joints, Limb};
+use manipulation::{Joints, Limb};
 use nalgebra::Isometry3;
 
 /// Something that looks for a posture from a seed.

@@ -1,9 +1,9 @@
 //! Whether an answer is one.
 
 use super::arm;
-use kinematics::{Joints, Limb};
+use manipulation::{Joints, Limb};
 use nalgebra::Isometry3;
-use robot::{Robot, SerialChain};
+use robot_model::{Robot, SerialChain};
 
 /// What an answer must keep.
 #[derive(Clone, Copy, Debug)]

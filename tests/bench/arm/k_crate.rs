@@ -4,9 +4,9 @@ use super::inverse::Solver;
 use super::targets::Random;
 use super::{BUDGET_S, thread_s};
 use k::prelude::*;
-use kinematics::{Joints, Limb};
+use manipulation::{Joints, Limb};
 use nalgebra::Isometry3;
-use robot::Robot;
+use robot_model::Robot;
 use std::io::Write;
 
 type Serial = k::SerialChain<f64>;

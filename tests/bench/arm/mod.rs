@@ -19,7 +19,7 @@ mod refusal;
 mod targets;
 
 use crate::report::Report;
-use kinematics::{Arm, Limb, Robot};
+use manipulation::{Arm, Limb, Robot};
 use std::sync::LazyLock;
 
 pub(crate) fn measure(report: &mut Report, quick: bool) {
@@ -97,6 +97,6 @@ fn numbers(fields: &[String]) -> Vec<f64> {
     fields.iter().map(|field| field.parse().unwrap_or(f64::NAN)).collect()
 }
 
-fn seven(numbers: &[f64]) -> kinematics::Joints {
+fn seven(numbers: &[f64]) -> manipulation::Joints {
     std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(f64::NAN))
 }

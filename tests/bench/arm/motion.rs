@@ -2,10 +2,10 @@
 
 use super::{arm, fixture, mean, numbers, rows, seven, timed};
 use crate::report::{Report, Table};
-use kinematics::{Joints, Limb, MotionLimits, Path, PositionLimits, State, Trajectory};
+use manipulation::{Joints, Limb, MotionLimits, Path, PositionLimits, State, Trajectory};
 
 /// Grid intervals: as the services time a path, and finer.
-const INTERVALS: [usize; 2] = [kinematics::INTERVALS_MIN, 4000];
+const INTERVALS: [usize; 2] = [manipulation::INTERVALS_MIN, 4000];
 
 pub(super) fn measure(report: &mut Report) {
     let mut rows = splines();

@@ -6,7 +6,7 @@ use super::inverse::{Outcome, Seed};
 use super::judge::Rule;
 use super::targets::{Target, middle};
 use super::{BUDGET_S, Effort};
-use kinematics::{Joints, Limb};
+use manipulation::{Joints, Limb};
 use serde::Deserialize;
 use serde_json::json;
 use std::io::Write;
@@ -73,7 +73,7 @@ fn question(targets: &[Target], effort: Effort) -> String {
         let matrix = pose.to_homogeneous();
         matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
     };
-    let robot = robot::Robot::baxter();
+    let robot = robot_model::Robot::baxter();
     let poses = robot.poses(|_| 0.0);
     let mount = |limb: Limb| {
         robot.link_index(&format!("{limb}_arm_mount")).map(|link| matrix(&poses[link]))

@@ -2,7 +2,7 @@
 
 use super::{arm, numbers, rows, timed};
 use crate::report::Report;
-use kinematics::Limb;
+use manipulation::Limb;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 /// Times that each pose is asked for; the fastest counts.

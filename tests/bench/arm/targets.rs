@@ -1,9 +1,9 @@
 //! Poses to reach, and where the solvers begin.
 
 use super::arm;
-use kinematics::{Joints, Limb};
+use manipulation::{Joints, Limb};
 use nalgebra::Isometry3;
-use robot::Robot;
+use robot_model::Robot;
 
 /// A pose of `<limb>_gripper` in `base`.
 #[derive(Clone, Copy, Debug)]

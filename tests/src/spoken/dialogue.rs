@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 
 use dialogue::Rng;
 use language::{Language, Reader};
-use node::{Span, Time};
-use protocol::{EarState, Outcome, ReceiptStatus};
-use runtime::client::Client;
-use runtime::clock;
+use messages::{EarState, Outcome, ReceiptStatus};
 use scene::{Question, Reading, Scene};
 use serde::Serialize;
+use service::client::Client;
+use service::clock;
+use service::{Span, Time};
 use speech::devices::voice::Synthesiser;
 
 use super::room::Room;
@@ -88,7 +88,7 @@ pub fn converse(conditions: Conditions) -> Told {
     let settings = settings(&pipe, conditions);
     let group = Group::up(&settings.iter().map(String::as_str).collect::<Vec<_>>());
     let client = Client::join(group.paths()).expect("a running group");
-    let scene = settings::Settings::load_snapshot(&group.paths().run()).expect("a snapshot").scene;
+    let scene = config::Settings::load_snapshot(&group.paths().run()).expect("a snapshot").scene;
     let mut talk = Talk::new(&client, scene, room, folder.path(), conditions);
     talk.hold();
     let told = talk.told();

@@ -11,9 +11,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use node::{Span, Time};
-use runtime::clock;
 use rustix::fs::{CWD, FileType, Mode, OFlags, mknodat};
+use service::clock;
+use service::{Span, Time};
 
 use super::sound::Pink;
 

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use protocol::{
+use messages::{
     ActKind, Activity, EarState, PolicyView, Presentation, Presented, Receipt, RobotAct, topics,
 };
-use runtime::bus::{EncodedReader, Reader};
-use runtime::client::Client;
+use service::bus::{EncodedReader, Reader};
+use service::client::Client;
 
 /// A prompt and which presentation of it.
 pub(super) type Said = (u64, u32);

@@ -129,7 +129,7 @@ impl Person {
 
     /// A reaction time: log-normal, seconds.
     pub fn reaction_s(&mut self) -> f64 {
-        durations::log_normal(&mut self.rng, 0.9, 0.55)
+        preflight::log_normal(&mut self.rng, 0.9, 0.55)
     }
 
     fn yes_or_no(&mut self, (k, v): Value) -> String {

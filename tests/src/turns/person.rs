@@ -1,9 +1,9 @@
 //! When a person answers what: seldom as it was expected.
 
 use dialogue::{Answer, Model, Rng};
-use durations::log_normal;
-use node::{Span, Time};
+use preflight::log_normal;
 use scene::{ObjectId, Question, Scene};
+use service::{Span, Time};
 
 /// How a person's words reach the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

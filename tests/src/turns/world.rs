@@ -3,18 +3,18 @@
 
 use std::collections::{BTreeMap, HashSet};
 
+use config::Settings;
 use dialogue::{Model, Rng};
-use durations::log_normal;
 use grounding::GroundingNode;
-use node::{Event, Node, Span, Time};
+use messages::{
+    ActKind, Injection, Presentation, Presented, Receipt, RequestKey, Sound, Source, UtteranceSeq,
+};
 use policy::PolicyNode;
 use policy::evidence::Asked;
 use policy::state::Cause;
-use protocol::{
-    ActKind, Injection, Presentation, Presented, Receipt, RequestKey, Sound, Source, UtteranceSeq,
-};
+use preflight::log_normal;
 use scene::{ObjectId, Question};
-use settings::Settings;
+use service::{Event, Node, Span, Time};
 use speech::devices::stream::Cut;
 use speech::live::{Began, LIVE_FROM, Live};
 use speech::{Hypothesis, Line, Recognised, Segment, SpeechNode, Spoken, ToRecognise, VoiceEvent};
@@ -95,7 +95,7 @@ struct World<'a> {
     grounding: Host<GroundingNode>,
     policy: Host<PolicyNode>,
     to_speech: Vec<speech::In>,
-    to_grounding: Vec<Box<protocol::Utterance>>,
+    to_grounding: Vec<Box<messages::Utterance>>,
     to_policy: Vec<policy::In>,
     channel: Channel,
     person: Person,

@@ -13,14 +13,14 @@ mod tests;
 
 use super::{ArmDriver, Command, Fault, Fingers, Measured, Order, Source, Told};
 use crate::state::{ArmState, side};
+use config::Baxter;
 use gripper::{Condition, Gripper};
-use kinematics::{JOINTS, Joints, Limb, PositionLimits, Robot};
-use node::{Span, Time};
-use protocol::Hindrance;
-use protocol::robot::{
+use manipulation::{JOINTS, Joints, Limb, PositionLimits, Robot};
+use messages::Hindrance;
+use messages::robot::{
     AssemblyState, JointCommand, JointMode, JointState, JointTrajectoryPoint, SpeedRatio,
 };
-use settings::Baxter;
+use service::{Span, Time};
 
 /// Longest time between two passes: a little more than between two joint states, which begin a pass
 /// themselves.
@@ -74,7 +74,7 @@ struct Set {
 impl BaxterDriver {
     /// A driver that has heard nothing yet: until it does, the posture is the one that the journal
     /// remembers.
-    pub fn new(arm: &settings::Arm, state: &ArmState) -> Self {
+    pub fn new(arm: &config::Arm, state: &ArmState) -> Self {
         let settings = arm.baxter;
         let still = [[0.0; 7]; 2];
         let measured = Measured {

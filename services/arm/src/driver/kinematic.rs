@@ -2,7 +2,7 @@
 
 use super::{ArmDriver, Command, Fingers, Measured, Source};
 use crate::state::{ArmState, side};
-use kinematics::gripper;
+use manipulation::gripper;
 
 /// Distance of a joint from the neutral posture that still counts as rest, radians.
 const ACCURACY_RAD: f64 = 1e-6;

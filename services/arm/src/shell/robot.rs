@@ -2,13 +2,13 @@
 
 use crate::driver::{Order, Told};
 use crate::state::side;
-use kinematics::Limb;
-use protocol::robot::{
+use manipulation::Limb;
+use messages::robot::{
     AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, JointCommand,
     JointState, JointTrajectoryPoint, SpeedRatio,
 };
-use protocol::topics::robot;
-use runtime::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
+use messages::topics::robot;
+use service::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
 
 /// The robot's topics as the arm uses them; pairs are left and right.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ impl RobotTopics {
     }
 }
 
-type Pair = [protocol::Topic; 2];
+type Pair = [messages::Topic; 2];
 
 fn readers<T: WireMessage>(bus: &Bus, [left, right]: &Pair) -> Result<[Reader<T>; 2], BusError> {
     Ok([bus.reader(left)?, bus.reader(right)?])

@@ -1,7 +1,7 @@
 //! The way that people see.
 
 use super::*;
-use protocol::{MotionPhase, TRAJECTORY_POINTS_MAX};
+use messages::{MotionPhase, TRAJECTORY_POINTS_MAX};
 
 fn latest(machine: &Machine) -> &TrajectoryView {
     machine.courses.last().unwrap()

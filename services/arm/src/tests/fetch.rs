@@ -1,8 +1,8 @@
 //! Each of the six bowls is brought, within the limits, and time says how long it takes.
 
 use super::*;
-use kinematics::{Limb, Robot as Description};
-use protocol::JOINT_STATE_LEN;
+use manipulation::{Limb, Robot as Description};
+use messages::JOINT_STATE_LEN;
 
 #[test]
 fn every_bowl_is_brought_and_put_back() {
@@ -43,8 +43,8 @@ fn assert_published_within_limits(states: &[JointStates]) {
 }
 
 fn joint_of(entry: usize) -> Option<usize> {
-    let name = protocol::JOINT_STATE_NAMES[entry].split_once('_')?.1;
-    kinematics::JOINTS.iter().position(|joint| *joint == name)
+    let name = messages::JOINT_STATE_NAMES[entry].split_once('_')?.1;
+    manipulation::JOINTS.iter().position(|joint| *joint == name)
 }
 
 #[test]

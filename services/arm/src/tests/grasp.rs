@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::state::Cause;
-use kinematics::gripper;
+use manipulation::gripper;
 
 /// Objects stand so far beside their places that about every other grasp misses.
 fn inaccurate(attempts: u32) -> Config {

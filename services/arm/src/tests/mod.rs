@@ -14,15 +14,15 @@ use crate::driver::ArmDriver;
 use crate::recover;
 use crate::state::{Record, side};
 use crate::{ArmNode, Config, In, Out};
-use kinematics::{Joints, Limb};
-use node::{Effects, Event, Node, Span, Time};
-use protocol::{
+use config::Settings;
+use manipulation::{Joints, Limb};
+use messages::{
     ActKind, ArmStatus, InteractionId, JointStates, MotionCommand, MotionOrder, PickId,
     PickOutcome, PickPhase, RobotAct, TrajectoryView, WorldView,
 };
 use robot::Robot;
 use scene::{ObjectId, Question};
-use settings::Settings;
+use service::{Effects, Event, Node, Span, Time};
 use std::path::Path;
 use std::sync::OnceLock;
 

@@ -10,7 +10,7 @@ fn a_repeated_order_is_known_and_an_old_one_obsolete() {
     machine.run(3.0);
     machine.assert_delivered(3, 1);
     // As from a policy that was restored from an old copy.
-    machine.node.act.id = protocol::ActId(0);
+    machine.node.act.id = messages::ActId(0);
     machine.act(pick(2, 4));
     machine.act(pick(3, 4));
     machine.run(3.0);
@@ -61,7 +61,7 @@ fn given_up_before_it_was_known_it_never_begins() {
     machine.act(cancel(1, 4));
     machine.run(0.1);
     assert_eq!(machine.outcome(), PickOutcome::Cancelled);
-    machine.node.act.id = protocol::ActId(0);
+    machine.node.act.id = messages::ActId(0);
     machine.act(pick(1, 4));
     machine.run(1.0);
     assert!(machine.rests());

@@ -1,8 +1,8 @@
 //! Pointing: the gripper's axis passes through the object, and the status says for which question.
 
 use super::*;
+use messages::ActId;
 use nalgebra::Vector3;
-use protocol::ActId;
 
 fn assert_aims(machine: &Machine, object: u16) {
     let place = machine.config.scene.object(ObjectId(object)).placement.unwrap();

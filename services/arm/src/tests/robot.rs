@@ -3,9 +3,9 @@
 use crate::Config;
 use crate::driver::{ArmDriver, Command, Fingers, KinematicArm, Measured};
 use crate::state::{ArmState, Posture, side};
-use kinematics::{Arm, ArmShape, Cuboid, Limb};
-use protocol::PickPhase;
-use protocol::pick::Pick;
+use manipulation::{Arm, ArmShape, Cuboid, Limb};
+use messages::PickPhase;
+use messages::pick::Pick;
 use scene::Placement;
 use std::cell::RefCell;
 use std::rc::Rc;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use node::{Span, Time};
+use service::{Span, Time};
 
 use crate::picture::Line;
 

@@ -12,16 +12,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use node::{Span, Time};
-use protocol::{Injection, JointStates, MotionCommand, topics};
-use runtime::bus::{EncodedWriter, Writer};
-use runtime::client::Client;
-use runtime::clock;
-use runtime::device::DeviceReceiver;
-use runtime::exit::Failure;
-use runtime::group::GroupPaths;
+use config::Settings;
+use messages::{Injection, JointStates, MotionCommand, topics};
 use serde_json::Value as Json;
-use settings::Settings;
+use service::bus::{EncodedWriter, Writer};
+use service::client::Client;
+use service::clock;
+use service::exit::Failure;
+use service::group::GroupPaths;
+use service::worker_channel::DeviceReceiver;
+use service::{Span, Time};
 
 use crate::hub::command::{Command, Motion, Verb, Words};
 use crate::hub::{Hub, ViewerId};

@@ -1,9 +1,9 @@
 //! Orders to the motion stop, on their way to the arm.
 
-use node::{Span, Time};
-use protocol::{ArmStatus, MotionCommand, MotionOrder};
-use runtime::bus::Writer;
+use messages::{ArmStatus, MotionCommand, MotionOrder};
 use serde_json::json;
+use service::bus::Writer;
+use service::{Span, Time};
 
 use crate::hub::Hub;
 use crate::hub::command::Motion;

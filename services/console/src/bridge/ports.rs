@@ -1,11 +1,11 @@
 //! The topics that the console reads.
 
-use node::Time;
-use protocol::{
+use messages::{
     Activity, ArmStatus, Hearing, JointStates, Observation, Partial, PolicyView, Presented,
     Receipt, RobotAct, TrajectoryView, WorldView, topics,
 };
-use runtime::bus::{Bus, BusError, EncodedReader, PortError, Reader};
+use service::Time;
+use service::bus::{Bus, BusError, EncodedReader, PortError, Reader};
 
 /// Every topic that is shown.
 #[derive(Debug)]
@@ -62,7 +62,7 @@ pub(super) fn quiet<T>(result: Result<Option<T>, PortError>) -> Option<T> {
 }
 
 /// Everything that waits on a topic.
-pub(super) fn all<T: runtime::bus::WireMessage + Copy>(reader: &Reader<T>) -> Vec<T> {
+pub(super) fn all<T: service::bus::WireMessage + Copy>(reader: &Reader<T>) -> Vec<T> {
     let mut all = Vec::new();
     quiet(reader.drain(|message| all.push(*message)).map(Some));
     all

@@ -1,11 +1,11 @@
 //! Words of viewers on their way to the robot: sent under one key until they are answered, so that
 //! no restart in between loses or doubles them.
 
-use node::{Span, Time};
-use protocol::{Injection, Receipt, ReceiptStatus, Sound};
-use runtime::bus::EncodedWriter;
-use runtime::client::random_key;
+use messages::{Injection, Receipt, ReceiptStatus, Sound};
 use serde_json::json;
+use service::bus::EncodedWriter;
+use service::client::random_key;
+use service::{Span, Time};
 
 use crate::hub::command::Words;
 use crate::hub::{Hub, ViewerId};

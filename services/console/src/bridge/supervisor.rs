@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError};
-use runtime::device::DeviceSender;
-use runtime::group::GroupPaths;
 use serde_json::Value as Json;
+use service::group::GroupPaths;
+use service::worker_channel::DeviceSender;
 use supervisor::control::{Reply, Request, call};
 
 use crate::hub::ViewerId;

@@ -1,7 +1,7 @@
 //! What viewers ask the bridge to do.
 
-use node::Time;
 use serde_json::Value as Json;
+use service::Time;
 use supervisor::status::GroupStatus;
 
 use super::ViewerId;

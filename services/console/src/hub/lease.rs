@@ -2,7 +2,7 @@
 //!
 //! Pure: times come from outside.
 
-use node::{Span, Time};
+use service::{Span, Time};
 
 use super::ViewerId;
 

@@ -12,9 +12,9 @@ mod tests;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use node::{Span, Time};
-use runtime::device::DeviceSender;
 use serde_json::{Value as Json, json};
+use service::worker_channel::DeviceSender;
+use service::{Span, Time};
 use tokio::sync::{mpsc, watch};
 
 use crate::server::metrics::Metrics;

@@ -1,7 +1,7 @@
 //! Control, answers and full mailboxes.
 
 use super::*;
-use runtime::device::{self, DeviceReceiver};
+use service::worker_channel::{self, DeviceReceiver};
 
 struct World {
     hub: Hub,
@@ -10,8 +10,8 @@ struct World {
 }
 
 fn world() -> World {
-    let (to_commands, commands) = device::channel().unwrap();
-    let (to_motions, motions) = device::channel().unwrap();
+    let (to_commands, commands) = worker_channel::channel().unwrap();
+    let (to_motions, motions) = worker_channel::channel().unwrap();
     let (restarts, _) = crossbeam_channel::bounded(1);
     let ways = Ways { commands: to_commands, motions: to_motions, restarts };
     World { hub: Hub::new(ways, 3, Span::from_ms(1_000)), commands, motions }

@@ -1,9 +1,9 @@
 //! The arm and the things around it.
 
-use node::Time;
-use protocol::{ArmStatus, Hindrance, PickOutcome, PickPhase, TrajectoryView, WorldView};
+use messages::{ArmStatus, Hindrance, PickOutcome, PickPhase, TrajectoryView, WorldView};
 use scene::Scene;
 use serde_json::{Value as Json, json};
+use service::Time;
 
 use crate::hub::ms;
 

@@ -1,6 +1,6 @@
 //! What the robot thinks.
 
-use protocol::PolicyView;
+use messages::PolicyView;
 use scene::{Question, Scene, question_to_json};
 use serde_json::{Value as Json, json};
 

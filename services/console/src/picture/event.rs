@@ -1,8 +1,8 @@
 //! What has happened, for whoever keeps count: the study.
 
-use node::Time;
-use protocol::{Ended, Receipt};
+use messages::{Ended, Receipt};
 use scene::Question;
+use service::Time;
 
 /// Something that has happened; each told once.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use protocol::{Observation, Presented, Receipt, RobotAct};
+use messages::{Observation, Presented, Receipt, RobotAct};
 use serde_json::{Value as Json, json};
 
 /// Answers over which the percentiles are taken.

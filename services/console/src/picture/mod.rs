@@ -19,12 +19,12 @@ mod understood;
 mod tests;
 
 use ::scene::Scene;
-use node::Time;
-use protocol::{
+use messages::{
     Activity, ArmStatus, Hearing, JointStates, Observation, Partial, PolicyView, Presented,
     Receipt, RobotAct, TrajectoryView, WorldView,
 };
 use serde_json::{Value as Json, json};
+use service::Time;
 use supervisor::status::GroupStatus;
 
 pub use event::PictureEvent;

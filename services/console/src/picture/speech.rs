@@ -2,10 +2,10 @@
 
 use std::collections::VecDeque;
 
-use node::Time;
-use protocol::{ActKind, EarState, Hearing, MicrophoneState, Presentation, Presented, RobotAct};
+use messages::{ActKind, EarState, Hearing, MicrophoneState, Presentation, Presented, RobotAct};
 use scene::Question;
 use serde_json::{Value as Json, json};
+use service::Time;
 
 use crate::hub::ms;
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use ::scene::{AttributeId, Question, Reading, Response, ValueId};
-use protocol::{
+use messages::{
     ActKind, Ended, FixedText, Interpretation, Outcome, Presentation, ReceiptStatus, WireReading,
 };
 

@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-use node::Time;
-use protocol::{Ended, Outcome, Presentation, Presented, Receipt, ReceiptStatus, Source};
+use messages::{Ended, Outcome, Presentation, Presented, Receipt, ReceiptStatus, Source};
 use scene::{ObjectId, Question, Scene, question_to_json};
+use service::Time;
 use supervisor::status::ServiceStatus;
 
 use super::line::{Line, Who};

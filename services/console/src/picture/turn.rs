@@ -1,11 +1,11 @@
 //! Whose turn it is: one truth for every viewer, from what the services say.
 
-use node::Time;
-use protocol::{
+use messages::{
     Activity, ArmStatus, Hearing, MicrophoneState, PickPhase, PolicyView, Presentation, Presented,
 };
 use serde::Serialize;
 use serde_json::{Value as Json, json};
+use service::Time;
 use supervisor::status::GroupStatus;
 
 use super::services;

@@ -1,6 +1,6 @@
 //! What an utterance was understood to say, in words.
 
-use protocol::{AskedQuestion, Interpretation, Observation};
+use messages::{AskedQuestion, Interpretation, Observation};
 use scene::{Intent, Question, Reading, Response, Scene};
 
 use super::line::Meaning;

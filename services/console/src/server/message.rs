@@ -1,7 +1,7 @@
 //! What pages say: text frames with JSON, checked key by key.
 
-use node::Time;
 use serde_json::Value as Json;
+use service::Time;
 
 use crate::hub::command::{Verb, Words};
 use crate::hub::{Role, ViewerId};

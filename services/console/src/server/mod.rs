@@ -61,7 +61,7 @@ pub async fn serve(listener: TcpListener, app: Arc<App>) -> std::io::Result<()> 
         loop {
             beat.tick().await;
             beating.hub.advance();
-            beating.hub.tick(runtime::clock::now());
+            beating.hub.tick(service::clock::now());
         }
     });
     let served = axum::serve(listener, router(app))

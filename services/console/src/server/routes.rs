@@ -8,8 +8,8 @@ use axum::extract::ws::WebSocketUpgrade;
 use axum::extract::{Path, State};
 use axum::http::{HeaderMap, Method, Response, StatusCode, Uri, header};
 use axum::response::IntoResponse;
-use node::Span;
-use runtime::clock;
+use service::Span;
+use service::clock;
 
 use super::message::FRAME_BYTES_MAX;
 use super::{Access, App, assets, socket as sockets};

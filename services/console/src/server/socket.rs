@@ -6,8 +6,8 @@ use std::time::Duration;
 use axum::extract::ws::{CloseFrame, Message as Frame, WebSocket, close_code};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
-use runtime::clock;
 use serde_json::json;
+use service::clock;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, interval_at, timeout};
 

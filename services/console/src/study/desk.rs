@@ -3,11 +3,11 @@
 //! Invariant: [`Desk::people`] is the fold of what was written down. Whatever is asked for or seen
 //! gives events; only when these are on the disk does [`Desk::apply`] take them in.
 
-use scene::ObjectId;
-use serde_json::{Map, Value as Json};
-use trials::{
+use evaluation::user_study::{
     Begun, Counts, Drawn, Entry, Event, Participant, Protocol, Stage, VERSION, draw, new_id, plan,
 };
+use scene::ObjectId;
+use serde_json::{Map, Value as Json};
 
 use super::seen::Seen;
 
@@ -105,7 +105,7 @@ impl Desk {
             }),
             Ask::Spoilt(id, why) => self.about(id, |person| match person.stage {
                 Stage::Running => {
-                    let fault = trials::Fault::Experimenter;
+                    let fault = evaluation::user_study::Fault::Experimenter;
                     Ok(vec![Event::Faulted { fault, why: why.clone() }])
                 }
                 _ => Err("no interaction runs; it can be called spoilt only while it does".into()),

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use evaluation::user_study::{Entry, FILE_ENDING, Participant};
 use journal::lines::{self, Lines};
-use trials::{Entry, FILE_ENDING, Participant};
 
 /// The study's folder, for its only writer.
 #[derive(Debug)]
@@ -25,7 +25,7 @@ impl Files {
             |path: &Path, error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
         let files = lines::read_folder(&self.folder, FILE_ENDING)
             .map_err(|(path, error)| of(&path, &error))?;
-        trials::people(files).map_err(|(path, error)| of(&path, &error))
+        evaluation::user_study::people(files).map_err(|(path, error)| of(&path, &error))
     }
 
     /// Writes entries of a participant down; they are on the disk afterwards.

@@ -8,8 +8,8 @@ use axum::extract::{Path, State};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use evaluation::user_study::{FILE_ENDING, Participant};
 use journal::lines;
-use trials::{FILE_ENDING, Participant};
 
 use crate::server::App;
 
@@ -31,14 +31,18 @@ fn serve(folder: PathBuf, name: &str) -> Response {
     };
     let csv = |text: String| download(name, "text/csv; charset=utf-8", text);
     match name {
-        "export.csv" | "interactions.csv" => csv(trials::tables(&people).interactions),
-        "participants.csv" => csv(trials::tables(&people).participants),
-        "dictionary.csv" => csv(trials::tables(&people).dictionary),
-        "export.json" => {
-            download(name, "application/json", format!("{:#}\n", trials::to_json(&people)))
+        "export.csv" | "interactions.csv" => {
+            csv(evaluation::user_study::tables(&people).interactions)
         }
+        "participants.csv" => csv(evaluation::user_study::tables(&people).participants),
+        "dictionary.csv" => csv(evaluation::user_study::tables(&people).dictionary),
+        "export.json" => download(
+            name,
+            "application/json",
+            format!("{:#}\n", evaluation::user_study::to_json(&people)),
+        ),
         "report.json" => {
-            let report = trials::report(&people).to_json();
+            let report = evaluation::user_study::report(&people).to_json();
             ([(header::CONTENT_TYPE, "application/json")], report.to_string()).into_response()
         }
         _ => picture(&people, name),
@@ -46,12 +50,13 @@ fn serve(folder: PathBuf, name: &str) -> Response {
 }
 
 fn picture(people: &[Participant], name: &str) -> Response {
-    let pictures = trials::pictures(&trials::report(people));
+    let pictures = evaluation::user_study::pictures(&evaluation::user_study::report(people));
     let wanted = name.strip_suffix(".svg");
     let found = pictures.into_iter().find(|(name, _)| Some(*name) == wanted);
     match found {
         Some((_, canvas)) => {
-            ([(header::CONTENT_TYPE, "image/svg+xml")], plot::svg(&canvas)).into_response()
+            ([(header::CONTENT_TYPE, "image/svg+xml")], evaluation::charts::svg(&canvas))
+                .into_response()
         }
         None => (StatusCode::NOT_FOUND, "the study has no such file\n").into_response(),
     }
@@ -60,7 +65,8 @@ fn picture(people: &[Participant], name: &str) -> Response {
 fn read(folder: PathBuf) -> Result<Vec<Participant>, String> {
     let files = lines::read_folder(&folder, FILE_ENDING)
         .map_err(|(path, error)| format!("{}: {error}", path.display()))?;
-    trials::people(files).map_err(|(path, error)| format!("{}: {error}", path.display()))
+    evaluation::user_study::people(files)
+        .map_err(|(path, error)| format!("{}: {error}", path.display()))
 }
 
 fn download(name: &str, kind: &'static str, text: String) -> Response {

@@ -22,14 +22,14 @@ mod watch;
 
 use std::path::PathBuf;
 
-use node::{Span, Time};
-use protocol::{Receipt, Source as Way};
-use runtime::exit::{Exit, Failure};
-use runtime::group::GroupPaths;
+use config::Settings;
+use evaluation::user_study::{Entry, Event, Source};
+use messages::{Receipt, Source as Way};
 use scene::Question;
 use serde_json::{Value as Json, json};
-use settings::Settings;
-use trials::{Entry, Event, Source};
+use service::exit::{Exit, Failure};
+use service::group::GroupPaths;
+use service::{Span, Time};
 
 use crate::hub::command::{Verb, Words};
 use crate::hub::{ViewerId, ms};
@@ -182,7 +182,7 @@ impl Running {
         if verb == "find" {
             let found = self.desk.of_page(&page);
             return Ok(json!({
-                "participant": found.map(trials::Participant::id),
+                "participant": found.map(evaluation::user_study::Participant::id),
                 "stage": found.map(|person| person.stage.name()),
             }));
         }

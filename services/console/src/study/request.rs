@@ -56,7 +56,7 @@ pub(super) fn read(verb: &str, arguments: &Json) -> Result<Ask, String> {
 
 /// A seed that nobody can foresee.
 pub(super) fn seed() -> u64 {
-    let key = runtime::client::random_key().0;
+    let key = service::client::random_key().0;
     key.iter().take(8).fold(0, |seed, byte| (seed << 8) | u64::from(*byte))
 }
 

@@ -1,7 +1,7 @@
 //! The section `study`: what pages are shown.
 
+use evaluation::user_study::{End, Participant, Stage, Status, Trial};
 use serde_json::{Value as Json, json};
-use trials::{End, Participant, Stage, Status, Trial};
 
 use super::desk::Desk;
 use super::seen::Seen;

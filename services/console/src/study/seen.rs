@@ -1,6 +1,6 @@
 //! What the study sees of the robot.
 
-use protocol::{ArmStatus, PickPhase, PolicyView};
+use messages::{ArmStatus, PickPhase, PolicyView};
 use scene::Scene;
 use supervisor::machine::Actual;
 use supervisor::status::GroupStatus;

@@ -3,10 +3,10 @@
 mod world;
 
 use dialogue::Rng;
-use protocol::Outcome;
+use evaluation::user_study::{Event, Participant, Protocol, Stage, Status, Verdict};
+use messages::Outcome;
 use scene::Scene;
 use serde_json::{Map, json};
-use trials::{Event, Participant, Protocol, Stage, Status, Verdict};
 
 use super::desk::{Ask, Desk};
 use super::watch::Wish;
@@ -129,7 +129,7 @@ fn running(seconds_max: f64) -> World {
 
 fn outcome_of(world: &World) -> String {
     let person = world.desk.of_page(PAGE).unwrap();
-    let json = trials::to_json(std::slice::from_ref(person));
+    let json = evaluation::user_study::to_json(std::slice::from_ref(person));
     json["participants"][0]["trials"][0]["outcome"].as_str().unwrap().to_owned()
 }
 

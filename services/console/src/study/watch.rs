@@ -1,8 +1,8 @@
 //! What the study makes of what it sees: how the running interaction goes, and what it wants of the
 //! robot. Pure.
 
-use protocol::{Ended, Outcome, PolicyView};
-use trials::{Event, Fault, Participant, Source, Stage, Trial, Verdict};
+use evaluation::user_study::{Event, Fault, Participant, Source, Stage, Trial, Verdict};
+use messages::{Ended, Outcome, PolicyView};
 
 use super::desk::Desk;
 use super::seen::{Hindrance, Seen};

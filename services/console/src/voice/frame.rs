@@ -1,7 +1,7 @@
 //! A piece of sound as a page sends it.
 
-use node::Time;
-use runtime::clock;
+use service::Time;
+use service::clock;
 
 /// Bytes before the samples.
 const HEADER: usize = 24;

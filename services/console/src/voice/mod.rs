@@ -13,11 +13,11 @@ mod ledger;
 mod receipts;
 mod times;
 
-use node::{Span, Time};
-use protocol::{AudioChunk, RequestKey};
-use runtime::audio::AudioStream;
-use runtime::client::Client;
-use runtime::clock;
+use messages::{AudioChunk, RequestKey};
+use service::audio::AudioStream;
+use service::client::Client;
+use service::clock;
+use service::{Span, Time};
 
 use crate::hub::ViewerId;
 pub use frame::PcmFrame;

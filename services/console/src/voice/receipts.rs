@@ -1,8 +1,8 @@
 //! What a page is told of what its viewer said.
 
-use node::Time;
-use protocol::{Receipt, ReceiptStatus};
+use messages::{Receipt, ReceiptStatus};
 use serde_json::json;
+use service::Time;
 
 use crate::hub::ms;
 
@@ -36,7 +36,7 @@ pub(super) fn lost(number: u32, why: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use protocol::FixedText;
+    use messages::FixedText;
     use serde_json::Value as Json;
 
     fn read(frame: &str) -> Json {

@@ -1,6 +1,6 @@
 //! When the samples of a viewer's stream were taken, whatever the viewer's clock says.
 
-use node::{Span, Time};
+use service::{Span, Time};
 
 /// Nanoseconds of one sample.
 const SAMPLE_NS: u64 = 62_500;

@@ -3,9 +3,9 @@
 use super::words;
 use crate::evidence::Asked;
 use crate::state::{Act, Interaction, Prompt, State};
-use node::Time;
-use protocol::{ActKind, InteractionId, PickId, PromptId};
+use messages::{ActKind, InteractionId, PickId, PromptId};
 use scene::{ObjectId, Question, Scene};
+use service::Time;
 
 /// Makes `act` the standing decision.
 pub(super) fn set(state: &mut State, act: Act) {

@@ -5,9 +5,9 @@ use crate::evidence::{Asked as InWords, Evidence, Said};
 use crate::state::{Asking, Heard, State};
 use dialogue::person::Reaction;
 use dialogue::{Addressed, Asked, Attribution, QUESTION_S};
-use node::{Span, Time};
-use protocol::{ActKind, PromptId};
+use messages::{ActKind, PromptId};
 use scene::{Intent, Question, Reading};
+use service::{Span, Time};
 
 impl Mind {
     /// How an utterance is divided among the questions of `heard.asked`. Those of other interactions
@@ -76,7 +76,7 @@ impl Mind {
             (0..to.questions.len()).max_by(|a, b| to.questions[*a].total_cmp(&to.questions[*b]));
         let Some(at) = at.filter(|at| to.questions[*at] >= PLAIN) else { return };
         let asking = heard.asked[at];
-        let says = |meant: &&protocol::Interpretation| {
+        let says = |meant: &&messages::Interpretation| {
             meant.question == Some(at) && content(&meant.reading) != Reading::default()
         };
         let open = state.open.as_mut().filter(|_| heard.meant.iter().find(says).is_some());

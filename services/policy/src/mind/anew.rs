@@ -7,9 +7,9 @@
 use super::{Mind, posterior, words};
 use crate::evidence::Asked;
 use crate::state::{Interaction, Known, State};
-use node::Time;
-use protocol::{ActKind, Outcome, PromptId, UtteranceSeq};
+use messages::{ActKind, Outcome, PromptId, UtteranceSeq};
 use scene::{ObjectId, Question};
+use service::Time;
 
 /// Objects that are remembered by name and words while an interaction is open. Of more it is only
 /// told that something has changed.

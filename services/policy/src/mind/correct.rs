@@ -5,9 +5,9 @@ use super::Mind;
 use super::acts::call_off;
 use crate::evidence::{Asked, Evidence, Said};
 use crate::state::{Heard, State};
-use node::Time;
-use protocol::{ActKind, PromptId};
+use messages::{ActKind, PromptId};
 use scene::{ObjectId, Response};
+use service::Time;
 
 /// Where what is fetched has become less likely than this, it is fetched no further.
 const LIKELY: f64 = 0.5;

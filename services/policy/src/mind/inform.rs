@@ -3,8 +3,8 @@
 use super::{Mind, posterior, words};
 use crate::evidence::Evidence;
 use crate::state::{Heard, Held, Interaction, State};
-use node::Time;
 use scene::{Reading, Response};
+use service::Time;
 
 impl Mind {
     /// Scores what was said against the questions that it may answer, and decides anew.

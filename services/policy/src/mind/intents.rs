@@ -3,9 +3,9 @@
 use super::acts::call_off;
 use super::{Mind, posterior, repeat, say, words};
 use crate::state::{Heard, State};
-use node::Time;
-use protocol::{ActKind, Outcome, UtteranceSeq};
+use messages::{ActKind, Outcome, UtteranceSeq};
 use scene::Intent;
+use service::Time;
 
 impl Mind {
     /// Takes in one utterance. Whatever it is, it counts as applied.

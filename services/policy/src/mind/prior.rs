@@ -2,8 +2,8 @@
 
 use super::Mind;
 use crate::state::State;
+use config::PriorObjects;
 use dialogue::Belief;
-use settings::PriorObjects;
 
 impl Mind {
     /// The belief of an interaction in which nothing was said.

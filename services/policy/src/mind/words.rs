@@ -2,7 +2,7 @@
 
 use crate::state::Heard;
 use dialogue::Action;
-use protocol::PickOutcome;
+use messages::PickOutcome;
 use scene::{ObjectId, Scene};
 
 /// A remark on a word that the scene does not have, to go before the next question.

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::evidence::NAMES_MAX;
-use protocol::PickId;
+use messages::PickId;
 
 /// The shipped bowls without those in `gone`, and with these TOML lines behind them.
 fn bowls(gone: &[&str], more: &str) -> Settings {

@@ -3,7 +3,7 @@
 use super::{answer, at, belief, heard, mind, settings, typed};
 use crate::mind::Mind;
 use crate::state::{Cause, State};
-use protocol::{ActKind, Outcome, PickId, PickOutcome, PromptId};
+use messages::{ActKind, Outcome, PickId, PickOutcome, PromptId};
 use scene::{Intent, ObjectId, Reading, Response};
 
 fn words(words: &[&str]) -> Reading {

@@ -4,10 +4,10 @@ use super::{answer, at, heard, settings_with};
 use crate::mind::{Mind, questions};
 use crate::state::Record;
 use crate::{journal_check, shell};
+use config::Settings;
 use dialogue::Answer;
-use protocol::{ActKind, PromptId};
+use messages::{ActKind, PromptId};
 use scene::{ObjectId, Question, Reading, Response};
-use settings::Settings;
 
 const ROBOT: (&str, &str) = ("dialogue.costs.from", "robot");
 const POINTING: [(&str, &str); 3] =

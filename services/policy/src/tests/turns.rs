@@ -1,7 +1,7 @@
 //! Which question an answer counts for, and when the robot holds back.
 
 use super::*;
-use protocol::Activity;
+use messages::Activity;
 
 fn mind_with(attribution: &str) -> Mind {
     shell::mind(&settings_with(&[("dialogue.turns.attribution", attribution)])).unwrap()

@@ -9,9 +9,9 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
-use node::{Span, Time};
-use protocol::{AudioChunk, RequestKey, Source};
-use runtime::clock;
+use messages::{AudioChunk, RequestKey, Source};
+use service::clock;
+use service::{Span, Time};
 
 use crate::devices::microphone::{MicrophoneEvent, Outgoing, Sink};
 use crate::devices::stream::{Duplex, Listener, OwnVoice, StreamEvent, shifted};

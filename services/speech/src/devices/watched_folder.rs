@@ -15,7 +15,7 @@ use std::sync::{Arc, mpsc};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use protocol::{Injection, Receipt, ReceiptStatus, RequestKey, Sound};
+use messages::{Injection, Receipt, ReceiptStatus, RequestKey, Sound};
 use serde_json::{Value as Json, json};
 
 /// How often the folder is looked at.
@@ -210,7 +210,7 @@ fn key(path: &Path, metadata: &Metadata) -> RequestKey {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use protocol::FixedText;
+    use messages::FixedText;
 
     const PATIENCE: Duration = Duration::from_secs(20);
 

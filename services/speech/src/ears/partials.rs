@@ -3,7 +3,7 @@
 use crate::devices::stream::Cut;
 use crate::listening::{Listened, Listening};
 use crate::{Fx, Out};
-use protocol::{FixedText, Partial, RequestKey, Source};
+use messages::{FixedText, Partial, RequestKey, Source};
 
 /// Follows what is being spoken.
 #[derive(Debug, Default)]

@@ -2,8 +2,8 @@
 
 use crate::Segment;
 use crate::listening::Listened;
-use node::{Span, Time};
-use protocol::{RequestKey, Source};
+use messages::{RequestKey, Source};
+use service::{Span, Time};
 
 /// A piece of a sound.
 #[derive(Clone, Copy)]

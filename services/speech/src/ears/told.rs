@@ -2,7 +2,7 @@
 
 use crate::record::{Accepted, Hypothesis, Said};
 use crate::said::in_words;
-use protocol::{AskedQuestion, FixedText, Receipt, ReceiptStatus, Utterance};
+use messages::{AskedQuestion, FixedText, Receipt, ReceiptStatus, Utterance};
 
 /// The answer to the client who gave it.
 pub(super) fn receipt(accepted: &Accepted) -> Receipt {
@@ -39,10 +39,10 @@ pub(super) fn utterance(accepted: &Accepted) -> Utterance {
     };
     let asked: Vec<AskedQuestion> = accepted.asked.iter().map(asked_question).collect();
     utterance.set_asked(&asked);
-    let heard: Vec<protocol::Hypothesis<'_>> = (accepted.hypotheses.iter())
+    let heard: Vec<messages::Hypothesis<'_>> = (accepted.hypotheses.iter())
         .map(|Hypothesis { text, weight, confidence }| {
             let confidence = confidence.clone();
-            protocol::Hypothesis { text, weight: *weight, confidence }
+            messages::Hypothesis { text, weight: *weight, confidence }
         })
         .collect();
     if utterance.set_hypotheses(&heard).is_err() {

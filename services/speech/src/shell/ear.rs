@@ -11,9 +11,9 @@ use crate::devices::recogniser::{
 use crate::devices::stream::Cut;
 use crate::devices::vad::SegmenterOptions;
 use crate::{Hypothesis, In, Recognised, Segment, ToRecognise};
-use protocol::EarState;
-use runtime::device::DeviceSender;
-use settings::Settings;
+use config::Settings;
+use messages::EarState;
+use service::worker_channel::DeviceSender;
 
 /// The recogniser, where there is one.
 pub(super) struct EarDevice(Option<Ear>);
@@ -21,7 +21,7 @@ pub(super) struct EarDevice(Option<Ear>);
 impl EarDevice {
     pub(super) fn start(settings: &Settings, work: &Path, inbox: &DeviceSender<In>) -> Self {
         let inbox = inbox.clone();
-        if settings.speech.recogniser == settings::Recogniser::None {
+        if settings.speech.recogniser == config::Recogniser::None {
             inbox.send(In::Ear(EarState::Off));
             return Self(None);
         }
@@ -81,12 +81,12 @@ fn ear_options(settings: &Settings, work: &Path) -> EarOptions {
     }
 }
 
-fn backend(speech: &settings::Speech, work: &Path) -> Backend {
-    if speech.recogniser == settings::Recogniser::Command {
+fn backend(speech: &config::Speech, work: &Path) -> Backend {
+    if speech.recogniser == config::Recogniser::Command {
         let command = speech.recogniser_command.clone().unwrap_or_default();
         return Backend::Command(CommandOptions::new(command));
     }
-    if speech.recogniser == settings::Recogniser::Whisper {
+    if speech.recogniser == config::Recogniser::Whisper {
         let model = speech.whisper_model.clone().unwrap_or_default();
         return Backend::Whisper(WhisperOptions::new(model));
     }

@@ -10,9 +10,9 @@ use crate::devices::microphone::{
 };
 use crate::devices::stream::OwnVoice;
 use crate::shell::ear::segmenter;
-use node::Span;
-use runtime::device::DeviceSender;
-use settings::{MicrophoneMode, Recogniser, Settings};
+use config::{MicrophoneMode, Recogniser, Settings};
+use service::Span;
+use service::worker_channel::DeviceSender;
 
 /// The microphone, or why there is none.
 pub(super) struct MicrophoneDevice(Result<Microphone, String>);

@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::devices::stream::OwnVoice;
 use crate::devices::voice::{Voice, VoiceEvent as Device, VoiceOptions, VoiceOutput};
 use crate::{In, Line, Spoken, VoiceEvent};
-use runtime::clock;
-use runtime::device::DeviceSender;
-use settings::Settings;
+use config::Settings;
+use service::clock;
+use service::worker_channel::DeviceSender;
 
 /// The voice.
 pub(super) struct VoiceDevice(Voice);

@@ -2,7 +2,7 @@
 
 use std::env;
 
-use settings::{Section, Service, Settings};
+use config::{Section, Service, Settings};
 
 use super::{Configuration, Load};
 use crate::launch::Options;

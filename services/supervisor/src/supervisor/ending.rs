@@ -3,9 +3,9 @@
 use std::fs;
 use std::time::Duration;
 
-use protocol::Epoch;
-use runtime::admin::{Admin, remove_leftovers};
-use runtime::exit::Exit;
+use messages::Epoch;
+use service::exit::Exit;
+use service::shm_cleanup::{Admin, remove_leftovers};
 
 use super::Supervisor;
 use super::start::{Folder, StartError, make_folder};

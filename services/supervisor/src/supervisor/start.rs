@@ -6,12 +6,12 @@ use std::io;
 use std::os::unix::fs::DirBuilderExt;
 use std::time::{Duration, Instant};
 
-use protocol::Epoch;
-use runtime::admin::{Admin, NoRoom, check_room};
-use runtime::bus::BusError;
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
+use messages::Epoch;
 use rustix::process::{Resource, Rlimit, getpid, set_child_subreaper, setrlimit};
+use service::bus::BusError;
+use service::exit::Exit;
+use service::group::GroupPaths;
+use service::shm_cleanup::{Admin, NoRoom, check_room};
 use thiserror::Error;
 
 use super::{About, LoadBox, Supervisor, TICK};

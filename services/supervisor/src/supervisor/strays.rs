@@ -3,10 +3,10 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use runtime::group::{ENV_INCARNATION, ENV_SERVICE};
 use rustix::process::{
     Pid, PidfdFlags, Signal, WaitOptions, getpid, pidfd_open, pidfd_send_signal, waitpid,
 };
+use service::group::{ENV_INCARNATION, ENV_SERVICE};
 
 use super::Supervisor;
 use crate::procfs::{self, Process};

@@ -8,9 +8,9 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use runtime::group::{GroupName, GroupPaths};
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::{Value, json};
+use service::group::{GroupName, GroupPaths};
 use supervisor::control::{Refusal, Reply, Request, call};
 use supervisor::machine::Actual;
 use supervisor::status::{GroupStatus, ServiceStatus};
@@ -223,7 +223,7 @@ impl Group {
     #[track_caller]
     pub(crate) fn check_nothing_left(&self) {
         assert!(!self.paths.run().exists(), "run folder");
-        let shared = runtime::admin::leftovers(&self.paths);
+        let shared = service::shm_cleanup::leftovers(&self.paths);
         assert!(shared.is_empty(), "shared memory: {shared:?}");
         let processes = self.processes();
         assert!(processes.is_empty(), "processes: {processes:?}");
@@ -251,7 +251,7 @@ impl Drop for Group {
         for pid in self.processes() {
             let _ = kill_process(Pid::from_raw(pid.cast_signed()).unwrap(), Signal::KILL);
         }
-        runtime::admin::remove_leftovers(&self.paths);
+        service::shm_cleanup::remove_leftovers(&self.paths);
         if thread::panicking() {
             eprintln!("--- supervisor\n{}", self.log());
         }

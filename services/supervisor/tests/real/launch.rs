@@ -5,8 +5,8 @@
 use std::fs;
 use std::path::Path;
 
-use runtime::exit::Exit;
-use runtime::group::{GroupName, GroupPaths};
+use service::exit::Exit;
+use service::group::{GroupName, GroupPaths};
 use supervisor::control::{Reply, Request, call};
 use supervisor::group::GroupState;
 use supervisor::launch::{LaunchError, Launched, Options, detached, wait_ready};
@@ -91,7 +91,7 @@ fn a_detached_group_comes_up_and_goes_down() {
     let names: Vec<&str> = status.services.iter().map(|service| service.name.as_str()).collect();
     assert_eq!(names, ["speech", "grounding", "policy", "arm", "console"]);
     assert_eq!(session_of(status.supervisor_pid), status.supervisor_pid, "a session of its own");
-    let settings = home.paths.run().join(settings::SNAPSHOT_FILE);
+    let settings = home.paths.run().join(config::SNAPSHOT_FILE);
     assert!(settings.exists());
     let error = home.launch().wait_listening(PATIENCE).unwrap_err();
     assert_eq!(error.exit(), Exit::NotReached);

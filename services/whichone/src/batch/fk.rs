@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use kinematics::Joints;
+use manipulation::Joints;
 use nalgebra::Isometry3;
 use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};

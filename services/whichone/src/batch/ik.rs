@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::time::Instant;
 
-use kinematics::{Chain, Joints};
+use manipulation::{Chain, Joints};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
-use kinematics::Limb;
+use manipulation::Limb;
 
 use super::ConfigArgs;
 

@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use dialogue::{Costs, Mode};
-use kinematics::Limb;
 use language::Language;
+use manipulation::Limb;
 
 use super::ConfigArgs;
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Subcommand, ValueEnum};
-use study::UserKind;
+use evaluation::simulation::UserKind;
 
 use super::batch::ProblemArgs;
 use super::group::ConfigArgs;

@@ -3,10 +3,10 @@
 use std::thread;
 use std::time::Instant;
 
-use protocol::{Ended, Outcome as How};
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
+use messages::{Ended, Outcome as How};
 use serde_json::json;
+use service::exit::Exit;
+use service::group::GroupPaths;
 
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::words;

@@ -5,10 +5,10 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use protocol::{MotionOrder, Receipt, ReceiptStatus};
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
+use messages::{MotionOrder, Receipt, ReceiptStatus};
 use serde_json::json;
+use service::exit::Exit;
+use service::group::GroupPaths;
 
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::interrupt::Interrupt;

@@ -1,8 +1,8 @@
 //! `check`: whether a configuration is right, and what would run.
 
-use runtime::exit::Exit;
+use config::{Problems, Settings};
 use serde_json::{Value as Json, json};
-use settings::{Problems, Settings};
+use service::exit::Exit;
 
 use super::{place, words};
 use crate::cli::CheckArgs;
@@ -81,7 +81,7 @@ fn summary(settings: &Settings) -> Vec<String> {
     lines
 }
 
-fn service(service: &settings::Service) -> Vec<String> {
+fn service(service: &config::Service) -> Vec<String> {
     let program = |command: &Vec<String>| command.join(" ");
     let command = service.command.as_ref();
     let seconds = |time: std::time::Duration| format!("{} s", time.as_secs_f64());

@@ -2,7 +2,7 @@
 
 use clap::CommandFactory;
 use clap_complete::{Shell, generate};
-use runtime::exit::Exit;
+use service::exit::Exit;
 
 use crate::cli::Cli;
 use crate::output::Output;

@@ -1,6 +1,6 @@
 //! Where the group's page is.
 
-use runtime::group::GroupPaths;
+use service::group::GroupPaths;
 
 /// The address of the console's page, while one is served.
 pub(super) fn url(paths: &GroupPaths) -> Option<String> {

@@ -9,18 +9,18 @@ use std::os::unix::fs::MetadataExt;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use node::Span;
-use protocol::{
+use config::Settings;
+use messages::{
     Activity, ArmStatus, Hearing, Injection, PolicyView, Presented, Receipt, RequestKey, Sound,
     topics,
 };
-use runtime::bus::{EncodedReader, EncodedWriter, PortError, Reader};
-use runtime::client::{Client, random_key};
-use runtime::clock;
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
 use scene::Scene;
-use settings::Settings;
+use service::Span;
+use service::bus::{EncodedReader, EncodedWriter, PortError, Reader};
+use service::client::{Client, random_key};
+use service::clock;
+use service::exit::Exit;
+use service::group::GroupPaths;
 
 use crate::trouble::Trouble;
 
@@ -161,7 +161,7 @@ impl Conversation {
     ///
     /// # Errors
     /// The arm does not answer.
-    pub(super) fn motion(&self, order: protocol::MotionOrder) -> Result<(), Trouble> {
+    pub(super) fn motion(&self, order: messages::MotionOrder) -> Result<(), Trouble> {
         Ok(self.client.motion(order, Span::from_ms(5_000))?)
     }
 

@@ -5,11 +5,11 @@ use std::fs;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 
-use runtime::admin;
-use runtime::exit::Exit;
-use runtime::group::{GroupName, GroupPaths};
+use config::{BUILT_IN, Settings};
 use serde::Serialize;
-use settings::{BUILT_IN, Settings};
+use service::exit::Exit;
+use service::group::{GroupName, GroupPaths};
+use service::shm_cleanup;
 use supervisor::launch;
 
 use super::{console, leftovers, place, up, words};
@@ -139,7 +139,7 @@ fn folder(paths: &GroupPaths) -> Finding {
 fn shared_memory(settings: Option<&Settings>) -> Finding {
     const WHAT: &str = "shared memory";
     let needed = settings.map_or(32, |settings| settings.group.shared_memory_free_min_mib);
-    if let Err(error) = admin::check_room(needed.into()) {
+    if let Err(error) = shm_cleanup::check_room(needed.into()) {
         return bad(WHAT, error.to_string());
     }
     let probe = Path::new("/dev/shm").join(format!("whichone-doctor-{}", std::process::id()));
@@ -154,7 +154,7 @@ fn left_behind(paths: &GroupPaths) -> Finding {
     const WHAT: &str = "leftovers";
     let groups = groups(paths.home());
     let dead = |group: &&GroupPaths| {
-        let traces = group.run().exists() || !admin::leftovers(group).is_empty();
+        let traces = group.run().exists() || !shm_cleanup::leftovers(group).is_empty();
         traces && !leftovers::some_service_lives(group) && !up::is_running(group).unwrap_or(true)
     };
     let dead: Vec<&str> = groups.iter().filter(dead).map(|group| group.name().as_str()).collect();

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use runtime::exit::Exit;
 use serde_json::json;
+use service::exit::Exit;
 
 use super::planning;
 use crate::cli::{ExportArgs, Exported};

@@ -3,10 +3,10 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use protocol::{EarState, Hearing, MicrophoneState, topics};
-use runtime::client::Client;
-use runtime::group::GroupPaths;
+use messages::{EarState, Hearing, MicrophoneState, topics};
 use serde_json::{Value as Json, json};
+use service::client::Client;
+use service::group::GroupPaths;
 
 use super::conversation::LOOK_EVERY;
 use crate::output::{Ink, Style};
@@ -92,7 +92,7 @@ pub(super) fn to_json(hearing: &Hearing) -> Json {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use protocol::FixedText;
+    use messages::FixedText;
 
     fn hearing(state: MicrophoneState, note: &str) -> Hearing {
         Hearing {

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use runtime::exit::Exit;
+use service::exit::Exit;
 
 use crate::trouble::Trouble;
 

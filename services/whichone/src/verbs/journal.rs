@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use journal::{Ending, JournalOpenError, Reading};
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::json;
+use service::exit::Exit;
+use service::group::GroupPaths;
 
 use super::{place, words};
 use crate::cli::JournalArgs;
@@ -151,6 +151,6 @@ fn numbered_file(path: &Path, number: usize) -> PathBuf {
 }
 
 /// Seconds of the machine's monotonic clock.
-fn at(time: node::Time) -> String {
+fn at(time: service::Time) -> String {
     format!("{:>12.3} s", time.ns() as f64 / 1e9)
 }

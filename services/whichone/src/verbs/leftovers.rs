@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use runtime::admin;
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
+use service::exit::Exit;
+use service::group::GroupPaths;
+use service::shm_cleanup;
 
 use crate::trouble::Trouble;
 
@@ -31,7 +31,7 @@ pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBu
         thread::sleep(LOOK_EVERY);
     }
     let run = paths.run();
-    let mut removed = admin::remove_leftovers(paths);
+    let mut removed = shm_cleanup::remove_leftovers(paths);
     match std::fs::remove_dir_all(&run) {
         Ok(()) => removed.push(run),
         Err(error) if error.kind() == ErrorKind::NotFound => {}

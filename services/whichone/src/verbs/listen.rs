@@ -6,12 +6,12 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use protocol::{AudioChunk, Receipt, ReceiptStatus, Sound};
-use runtime::audio::AudioStream;
-use runtime::client::Client;
-use runtime::clock;
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
+use messages::{AudioChunk, Receipt, ReceiptStatus, Sound};
+use service::audio::AudioStream;
+use service::client::Client;
+use service::clock;
+use service::exit::Exit;
+use service::group::GroupPaths;
 use speech::devices::audio::{RATE_HZ, read_wav};
 use speech::devices::stream::SampleClock;
 

@@ -6,9 +6,9 @@ use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
 use serde_json::json;
+use service::exit::Exit;
+use service::group::GroupPaths;
 
 use crate::cli::LogsArgs;
 use crate::output::{Ink, Output};

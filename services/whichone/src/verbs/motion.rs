@@ -2,12 +2,12 @@
 
 use std::time::Duration;
 
-use node::Span;
-use protocol::MotionOrder;
-use runtime::client::Client;
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
+use messages::MotionOrder;
 use serde_json::json;
+use service::Span;
+use service::client::Client;
+use service::exit::Exit;
+use service::group::GroupPaths;
 
 use crate::output::Output;
 use crate::trouble::Outcome;

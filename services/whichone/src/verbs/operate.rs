@@ -3,12 +3,12 @@
 use std::os::fd::OwnedFd;
 use std::time::Duration;
 
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Pid, PidfdFlags, pidfd_open};
 use rustix::time::Timespec;
 use serde_json::json;
+use service::exit::Exit;
+use service::group::GroupPaths;
 use supervisor::control::{CallError, DownReport, Refusal, Reply, Request, call};
 use supervisor::status::GroupStatus;
 

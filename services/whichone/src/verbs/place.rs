@@ -3,9 +3,9 @@
 use std::env;
 use std::path::{Path, PathBuf};
 
-use runtime::exit::Exit;
-use runtime::group::{GroupName, GroupPaths};
-use settings::Settings;
+use config::Settings;
+use service::exit::Exit;
+use service::group::{GroupName, GroupPaths};
 
 use crate::cli::ConfigArgs;
 use crate::trouble::Trouble;
@@ -39,7 +39,7 @@ pub(super) fn settings_in_force(
     args: &ConfigArgs,
 ) -> Result<Settings, Trouble> {
     let named = args.config.is_some() || args.profile.is_some() || !args.set.is_empty();
-    if !named && paths.run().join(settings::SNAPSHOT_FILE).is_file() {
+    if !named && paths.run().join(config::SNAPSHOT_FILE).is_file() {
         return Ok(Settings::load_snapshot(&paths.run())?);
     }
     settings(args)

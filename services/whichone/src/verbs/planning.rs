@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use config::{CostsFrom, Settings};
 use dialogue::{Actions, Costs, DecisionProblem, Durations, Model, Params, registry};
-use runtime::exit::Exit;
 use scene::Scene;
-use settings::{CostsFrom, Settings};
+use service::exit::Exit;
 
 use super::place;
 use crate::batch::Decider;

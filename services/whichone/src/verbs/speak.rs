@@ -2,13 +2,13 @@
 
 use std::time::Duration;
 
-use node::{Span, Time};
-use protocol::{Receipt, ReceiptStatus, Sound, Source};
-use runtime::client::Client;
-use runtime::clock;
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
+use messages::{Receipt, ReceiptStatus, Sound, Source};
 use serde_json::json;
+use service::client::Client;
+use service::clock;
+use service::exit::Exit;
+use service::group::GroupPaths;
+use service::{Span, Time};
 
 use super::hearing;
 use crate::cli::{PointArgs, SayArgs, TalkArgs};
@@ -92,7 +92,7 @@ fn tell_all(receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
 
 /// Tells what became of an utterance.
 pub(super) fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Trouble> {
-    let unclear = |error: protocol::WireError| Trouble::new(Exit::NotReached, error.to_string());
+    let unclear = |error: messages::WireError| Trouble::new(Exit::NotReached, error.to_string());
     let status = ReceiptStatus::from_code(receipt.status).map_err(unclear)?;
     let source = Source::from_code(receipt.source).map_err(unclear)?;
     let note = receipt.note.as_str().map_err(unclear)?;

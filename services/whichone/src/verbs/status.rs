@@ -1,8 +1,8 @@
 //! `status`: what an operator needs to see.
 
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
 use serde_json::json;
+use service::exit::Exit;
+use service::group::GroupPaths;
 use supervisor::control::CallError;
 use supervisor::group::GroupState;
 use supervisor::machine::{Actual, Wanted};

@@ -4,8 +4,8 @@ use std::num::NonZeroUsize;
 use std::path::Path;
 use std::time::Instant;
 
-use runtime::exit::Exit;
-use study::Tally;
+use evaluation::simulation::Tally;
+use service::exit::Exit;
 
 use crate::cli::StudyArgs;
 use crate::output::{Output, note};

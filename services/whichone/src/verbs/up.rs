@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
+use service::exit::Exit;
+use service::group::GroupPaths;
 use supervisor::control::{CallError, Request};
 use supervisor::launch::{self, Options};
 

@@ -3,8 +3,8 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
+use service::exit::Exit;
+use service::group::GroupPaths;
 use supervisor::control::{Reply, Request, call};
 
 use super::conversation::{Conversation, LOOK_EVERY};

@@ -1,6 +1,6 @@
 //! Amounts and conditions in words.
 
-use protocol::Hindrance;
+use messages::Hindrance;
 
 /// A length of time, e.g. `340 ms`, `12.3 s`, `4 min`, `3 h 20 min`, `2 d 5 h`.
 pub(super) fn time(seconds: f64) -> String {

@@ -1,11 +1,11 @@
 //! One gripper of a Baxter: what it was told, whether it has understood, and what it feels.
 
 use super::super::Fingers;
-use kinematics::gripper;
-use node::{Span, Time};
-use protocol::robot::{
+use manipulation::gripper;
+use messages::robot::{
     Command, EndEffectorCommand, EndEffectorProperties, EndEffectorState, Tristate, UiType,
 };
+use service::{Span, Time};
 
 /// How often a command is sent again that the gripper has not confirmed.
 const RESEND_EVERY: Span = Span::from_ms(250);

@@ -2,16 +2,16 @@
 
 use super::*;
 use crate::driver::Grip;
-use protocol::robot::{Command as Word, EndEffectorCommand, EndEffectorState, Tristate};
-use settings::Settings;
+use config::Settings;
+use messages::robot::{Command as Word, EndEffectorCommand, EndEffectorState, Tristate};
 use std::path::Path;
 
-fn arm() -> settings::Arm {
+fn arm() -> config::Arm {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
     Settings::load(folder, Some("baxter"), &[]).unwrap().arm
 }
 
-fn first(arm: &settings::Arm) -> ArmState {
+fn first(arm: &config::Arm) -> ArmState {
     ArmState::first(&arm.robot, 0, 0.04)
 }
 
@@ -23,7 +23,7 @@ fn ready_gripper(now: Time) -> EndEffectorState {
 
 /// A driver, and a robot that says what it is told to say.
 struct Bench {
-    arm: settings::Arm,
+    arm: config::Arm,
     driver: BaxterDriver,
     now: Time,
     joints: [Joints; 2],

@@ -1,10 +1,10 @@
 //! A desk with its disk, a robot and services, for the tests of the study's rules.
 
-use protocol::{Ended, Outcome, PolicyView};
-use scene::Scene;
-use trials::{
+use evaluation::user_study::{
     Design, Entry, Event, Item, Kind, Objects, Order, Participant, Protocol, Source, Stage, Status,
 };
+use messages::{Ended, Outcome, PolicyView};
+use scene::Scene;
 
 use crate::study::desk::{Ask, Desk, kept};
 use crate::study::seen::Seen;

@@ -1,5 +1,5 @@
 use crossbeam_channel::unbounded;
-use protocol::{CHUNK_SAMPLES_MAX, Pcm};
+use messages::{CHUNK_SAMPLES_MAX, Pcm};
 
 use super::*;
 use crate::devices::testing::voice;

@@ -71,7 +71,7 @@ fn segments_are_heard_in_order_and_rejected_ones_are_kept() {
 fn an_utterance_of_a_stream_is_decoded_as_it_was_cut() {
     let (ear, events) = stub(false);
     let samples = [vec![0; 8_000], testing::voice(1.0), vec![0; 8_000]].concat();
-    let at = node::Time(0);
+    let at = service::Time(0);
     let cut = Cut { onset: at, end: at, samples, speech: 8_000..24_000 };
     ear.hear(4, Sound::Speech(cut)).unwrap();
     let EarEvent::Heard { id: 4, segments } = next(&events) else { panic!("heard") };
@@ -194,7 +194,7 @@ fn slow(quick: bool) -> (Ear, Receiver<EarEvent>, Receiver<usize>, Sender<()>) {
 }
 
 fn cut(len: usize) -> Cut {
-    let at = node::Time(0);
+    let at = service::Time(0);
     Cut { onset: at, end: at, samples: vec![7; len], speech: 0..len }
 }
 

@@ -18,10 +18,10 @@ use crossbeam_channel::{Sender, TrySendError, bounded};
 use crate::devices::stream::OwnVoice;
 use crate::devices::vad::SegmenterOptions;
 use crate::live::Live;
+pub use messages::MicrophoneState;
 pub(crate) use outgoing::Outgoing;
 pub use outgoing::Sink;
 pub use program::usual;
-pub use protocol::MicrophoneState;
 
 /// What the microphone is made of.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,12 +44,12 @@ pub struct MicrophoneOptions {
 
 impl MicrophoneOptions {
     /// What the settings ask for.
-    pub fn of(speech: &settings::Speech) -> Self {
+    pub fn of(speech: &config::Speech) -> Self {
         let microphone = &speech.microphone;
         let defaults = Self::hands_free();
         Self {
             programs: microphone.command.clone().map_or(defaults.programs, |own| vec![own]),
-            hands_free: microphone.mode == settings::MicrophoneMode::HandsFree,
+            hands_free: microphone.mode == config::MicrophoneMode::HandsFree,
             barge_in: microphone.barge_in,
             segmenter: SegmenterOptions {
                 closing_pause_s: speech.closing_pause.as_secs_f64(),

@@ -72,8 +72,8 @@ mod tests {
     use crate::devices::stream::Cut;
     use crate::live::Began;
     use crossbeam_channel::{TrySendError, bounded};
-    use node::Time;
-    use protocol::{RequestKey, Source};
+    use messages::{RequestKey, Source};
+    use service::Time;
 
     fn began(sound: u64) -> MicrophoneEvent {
         MicrophoneEvent::Live(Live::Began(Began {

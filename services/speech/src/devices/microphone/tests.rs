@@ -2,8 +2,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use crossbeam_channel::{Receiver, unbounded};
-use node::{Span, Time};
-use runtime::clock;
+use service::clock;
+use service::{Span, Time};
 
 use super::*;
 use crate::devices::stream::Cut;

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, TryRecvError};
-use protocol::{MicrophoneState, Source};
-use runtime::client::random_key;
-use runtime::clock;
+use messages::{MicrophoneState, Source};
+use service::client::random_key;
+use service::clock;
 
 use super::level::{Level, QUIETEST_DB};
 use super::outgoing::{Outgoing, Sink};

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use node::Time;
+use service::Time;
 
 /// Nanoseconds of one sample at [`RATE_HZ`](crate::devices::audio::RATE_HZ), exactly.
 const SAMPLE_NS: i64 = 62_500;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use node::Time;
+use service::Time;
 
 use super::{OwnVoice, Stream, StreamEvent, shifted};
 use crate::devices::vad::SegmenterOptions;
@@ -72,7 +72,7 @@ impl Listener {
 mod tests {
     use super::*;
     use crate::devices::testing::voice;
-    use node::Span;
+    use service::Span;
 
     fn s(seconds: f64) -> Time {
         Time(1_000_000_000) + Span::from_s(seconds)

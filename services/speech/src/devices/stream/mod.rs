@@ -11,7 +11,7 @@ mod own_voice;
 
 use std::ops::Range;
 
-use node::Time;
+use service::Time;
 
 pub use clock::SampleClock;
 pub(crate) use clock::shifted;

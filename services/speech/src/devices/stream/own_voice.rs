@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use node::{Span, Time};
+use service::{Span, Time};
 
 /// Sentences that are remembered: sound arrives some tenths of a second after it was made.
 const SENTENCES_MAX: usize = 8;

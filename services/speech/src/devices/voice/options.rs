@@ -50,7 +50,7 @@ impl VoiceOptions {
     }
 
     /// The voice of the settings.
-    pub fn of(speech: &settings::Speech, work: &Path) -> Self {
+    pub fn of(speech: &config::Speech, work: &Path) -> Self {
         let defaults = Self::new(work);
         let players = match speech.player.as_deref() {
             Some([program, arguments @ ..]) => {
@@ -60,14 +60,14 @@ impl VoiceOptions {
         };
         let espeak_ng = defaults.program;
         let (mode, program) = match speech.voice {
-            settings::Voice::Auto => (VoiceMode::Auto, espeak_ng),
-            settings::Voice::EspeakNg => (VoiceMode::Aloud, espeak_ng),
-            settings::Voice::Flite => (VoiceMode::Aloud, Program::Flite("flite".into())),
-            settings::Voice::Command => {
+            config::Voice::Auto => (VoiceMode::Auto, espeak_ng),
+            config::Voice::EspeakNg => (VoiceMode::Aloud, espeak_ng),
+            config::Voice::Flite => (VoiceMode::Aloud, Program::Flite("flite".into())),
+            config::Voice::Command => {
                 let words = speech.voice_command.clone().unwrap_or_default();
                 (VoiceMode::Aloud, Program::Command(words))
             }
-            settings::Voice::Print => (VoiceMode::Print, espeak_ng),
+            config::Voice::Print => (VoiceMode::Print, espeak_ng),
         };
         Self {
             mode,

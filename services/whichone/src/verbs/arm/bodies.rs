@@ -1,8 +1,8 @@
 //! What robot and objects look like.
 
-use kinematics::ObjectPose;
+use manipulation::ObjectPose;
 use nalgebra::{Isometry3, Vector3};
-use robot::{Body, Shape};
+use robot_model::{Body, Shape};
 use scene::ObjectId;
 use solid::{Mesh, Paint, Rgb};
 

@@ -1,8 +1,8 @@
 //! The picture of a pick: two views of robot and scene, the phases, and the motion in time.
 
-use kinematics::PickPhase;
+use evaluation::charts::{Align, BLACK, Canvas, GREY, Ink, PlotError, Raster, Size};
+use manipulation::PickPhase;
 use nalgebra::Vector3;
-use plot::{Align, BLACK, Canvas, GREY, Ink, PlotError, Raster, Size};
 use solid::{Camera, Layer, Mesh, Paint, Rgb, Sheet, render};
 
 use super::pick::{PHASES, Pick, ink};
@@ -85,7 +85,7 @@ fn names(canvas: &mut Canvas, pick: &Pick<'_>, onto: impl Fn(&Vector3<f64>) -> O
     let mut taken: Vec<(f64, f64, f64)> = Vec::new();
     for (index, place) in pick.places.iter().enumerate() {
         let text = &pick.scene.object(index.into()).name;
-        let half = 0.5 * plot::LETTER_WIDTH * text.chars().count() as f64 + 2.0;
+        let half = 0.5 * evaluation::charts::LETTER_WIDTH * text.chars().count() as f64 + 2.0;
         let [x, y, z] = place.xyz_m;
         let Some((over, top)) = onto(&Vector3::new(x, y, place.top_z_m())) else { continue };
         let near = Vector3::new(x + 0.5 * place.size_m[0], y, place.bottom_z_m());
@@ -140,7 +140,7 @@ fn legend(canvas: &mut Canvas, pick: &Pick<'_>, mut y: f64, width: f64) -> f64 {
     for (phase, name, _) in PHASES {
         let Some((begin_s, end_s)) = pick.plan.timeline.span_s(phase) else { continue };
         let text = format!("{name} {:.1} s", end_s - begin_s);
-        let long = 20.0 + plot::LETTER_WIDTH * text.len() as f64;
+        let long = 20.0 + evaluation::charts::LETTER_WIDTH * text.len() as f64;
         if x + long > width {
             (x, y) = (LEFT, y + 18.0);
         }

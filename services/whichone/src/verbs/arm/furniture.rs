@@ -1,6 +1,6 @@
 //! What the objects stand on: a board under each group that stands equally high and close.
 
-use kinematics::ObjectPose;
+use manipulation::ObjectPose;
 use nalgebra::{Isometry3, Vector3};
 use solid::{Mesh, Paint, Rgb};
 

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use kinematics::{Cuboid, Limb, ObjectPose, PickPhase, PlanSettings, Robot, plan_pick};
-use runtime::exit::Exit;
+use manipulation::{Cuboid, Limb, ObjectPose, PickPhase, PlanSettings, Robot, plan_pick};
 use scene::Scene;
 use serde_json::{Value as Json, json};
+use service::exit::Exit;
 
 use super::{place, planning};
 use crate::cli::{ArmPlotArgs, ArmVerb, ArmVerbArgs};
@@ -47,11 +47,12 @@ fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
         out.json(&to_json(&pick))?;
         return Ok(Exit::Ok);
     }
-    let failed = |error: ::plot::PlotError| Trouble::new(Exit::Storage, error.to_string());
+    let failed =
+        |error: ::evaluation::charts::PlotError| Trouble::new(Exit::Storage, error.to_string());
     let canvas = figure::draw(&pick, args.width, args.samples).map_err(failed)?;
     let bytes = match ending {
-        "svg" => ::plot::svg(&canvas).into_bytes(),
-        _ => ::plot::png(&canvas).map_err(failed)?,
+        "svg" => ::evaluation::charts::svg(&canvas).into_bytes(),
+        _ => ::evaluation::charts::png(&canvas).map_err(failed)?,
     };
     write(&args.out, &bytes)?;
     let name = &pick.scene.object(pick.object.into()).name;

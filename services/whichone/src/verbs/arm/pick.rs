@@ -1,11 +1,11 @@
 //! A planned pick, and where everything is while it is carried out.
 
-use kinematics::{
+use evaluation::charts::Ink;
+use manipulation::{
     Arms, Limb, ObjectPose, PickPhase, PickPlan, PlanSettings, Robot, attached_pose, gripper,
 };
 use nalgebra::{Isometry3, Vector3};
-use plot::Ink;
-use robot::Joint;
+use robot_model::Joint;
 use scene::Scene;
 
 /// What is drawn.
@@ -33,7 +33,7 @@ pub(super) const PHASES: [(PickPhase, &str, usize); 6] = [
 /// The colour of a phase.
 pub(super) fn ink(phase: PickPhase) -> Ink {
     let known = PHASES.iter().find(|(known, ..)| *known == phase);
-    plot::colour(known.map_or(0, |(.., colour)| *colour))
+    evaluation::charts::colour(known.map_or(0, |(.., colour)| *colour))
 }
 
 impl Pick<'_> {

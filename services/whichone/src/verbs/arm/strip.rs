@@ -1,6 +1,6 @@
 //! The pick in time: how fast the joints move and how high the gripper is.
 
-use plot::{Align, BLACK, Canvas, FAINT, GREY, Ink, Linear, Size};
+use evaluation::charts::{Align, BLACK, Canvas, FAINT, GREY, Ink, Linear, Size};
 
 use super::pick::{PHASES, Pick, ink};
 
@@ -24,7 +24,9 @@ pub(super) fn draw(canvas: &mut Canvas, pick: &Pick<'_>, (left, top, width, heig
         100.0 * pick.plan.at(t_s).qd[joint].abs() / (ratio * limits.velocity[joint])
     };
     let speeds: Vec<(Ink, Vec<(f64, f64)>)> = (0..7)
-        .map(|joint| (plot::colour(joint), times(pick).map(|t| (t, share(t, joint))).collect()))
+        .map(|joint| {
+            (evaluation::charts::colour(joint), times(pick).map(|t| (t, share(t, joint))).collect())
+        })
         .collect();
     curves(canvas, pick, frame(0), "joint speed, % of what is allowed", &speeds, 100.0);
     joint_names(canvas, pick, frame(0));
@@ -93,6 +95,6 @@ fn joint_names(canvas: &mut Canvas, pick: &Pick<'_>, (left, top, width, height):
     for (joint, name) in names.iter().enumerate() {
         let short = name.strip_prefix(&prefix).unwrap_or(name);
         let at = (left + width * (joint as f64 + 0.5) / 7.0, top + height + 27.0);
-        canvas.words(at, short, Align::Middle, Size::Small, plot::colour(joint));
+        canvas.words(at, short, Align::Middle, Size::Small, evaluation::charts::colour(joint));
     }
 }

@@ -1,6 +1,6 @@
 //! Which interaction is waited for.
 
-use protocol::Ended;
+use messages::Ended;
 
 use crate::verbs::conversation::Seen;
 

@@ -1,6 +1,6 @@
 //! What is known of a dialogue at one moment.
 
-use protocol::{
+use messages::{
     Activity, ArmStatus, Hearing, PolicyView, Presentation, Presented, Receipt, ReceiptStatus,
 };
 
@@ -63,7 +63,7 @@ impl Seen {
 /// Parts of dialogues, for tests.
 #[cfg(test)]
 pub(in crate::verbs) mod example {
-    use protocol::{Ended, Outcome};
+    use messages::{Ended, Outcome};
     use scene::Question;
 
     use super::*;

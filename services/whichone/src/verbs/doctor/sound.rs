@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
-use node::Span;
-use settings::{MicrophoneMode, Recogniser, Settings, Voice};
+use config::{MicrophoneMode, Recogniser, Settings, Voice};
+use service::Span;
 use speech::devices::microphone::{
     Microphone, MicrophoneEvent, MicrophoneOptions, MicrophoneState,
 };

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use arm::state::Record;
-use protocol::pick::Pick;
-use protocol::{PickId, PickOutcome, PickPhase};
+use messages::pick::Pick;
+use messages::{PickId, PickOutcome, PickPhase};
 
 use super::{Broken, Part, at};
 
@@ -82,7 +82,7 @@ fn step(
 
 #[cfg(test)]
 mod tests {
-    use protocol::InteractionId;
+    use messages::InteractionId;
     use scene::ObjectId;
 
     use super::*;

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use dialogue::Belief;
+use messages::{ActKind, PickOutcome};
 use policy::journal_check::refold_since;
 use policy::mind::Mind;
 use policy::state::{Act, Cause, Record};
-use protocol::{ActKind, PickOutcome};
 
 use super::{Broken, Part, at};
 use crate::verbs::words;
@@ -132,22 +132,22 @@ fn fold(mind: &mut Mind, part: &Part<Record>, settings_key: u64) -> Result<usize
 
 #[cfg(test)]
 mod tests {
+    use messages::{InteractionId, PickId, UtteranceSeq};
     use policy::state::{Heard, State};
-    use protocol::{InteractionId, PickId, UtteranceSeq};
 
     use super::*;
 
     fn heard(seq: u64) -> Record {
         let heard = Heard { seq: UtteranceSeq(seq), ..Heard::default() };
         let state = State { applied: UtteranceSeq(seq), ..State::default() };
-        Record { cause: Cause::Utterance(heard), at: node::Time(0), state }
+        Record { cause: Cause::Utterance(heard), at: service::Time(0), state }
     }
 
     fn delivered(applied: u64, interaction: u64) -> Record {
         let pick = PickId { interaction: InteractionId(interaction), attempt: 1 };
         let cause = Cause::PickEnded { pick, outcome: PickOutcome::Delivered };
         let state = State { applied: UtteranceSeq(applied), ..State::default() };
-        Record { cause, at: node::Time(0), state }
+        Record { cause, at: service::Time(0), state }
     }
 
     fn check(records: &[Record]) -> Result<(), String> {

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{PoisonError, RwLock};
 
-use study::{Choice, Shared, Situation};
+use evaluation::simulation::{Choice, Shared, Situation};
 
 /// The choices of one policy. Each thread looks into its own memory first, so locks are seldom
 /// waited for.

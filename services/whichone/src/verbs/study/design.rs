@@ -1,9 +1,9 @@
 //! What is compared: a row per policy and kind of people, and per rules of turn-taking.
 
 use dialogue::registry;
-use runtime::exit::Exit;
-use study::UserKind;
-use study::turns::{Rules, Talker};
+use evaluation::simulation::UserKind;
+use evaluation::simulation::turns::{Rules, Talker};
+use service::exit::Exit;
 
 use crate::cli::{STUDY_ALL, StudyArgs};
 use crate::trouble::Trouble;

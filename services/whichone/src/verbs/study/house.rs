@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use dialogue::{Durations, Mode};
-use durations::{Extent, Motions, Pace, Voice, measure};
-use kinematics::Robot;
+use evaluation::simulation::{Patience, Room};
 use language::{Language, Reader};
-use runtime::exit::Exit;
-use study::{Patience, Room};
+use manipulation::Robot;
+use preflight::{Extent, Motions, Pace, Voice, measure};
+use service::exit::Exit;
 
 use crate::cli::{ModeArg, Preset, ProblemArgs, StudyArgs};
 use crate::output::note;

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use runtime::exit::Exit;
-use runtime::group::GroupPaths;
-use study::{Interval, Mean};
-use trials::{Group, Paired, Participant, Report};
+use evaluation::simulation::{Interval, Mean};
+use evaluation::user_study::{Group, Paired, Participant, Report};
+use service::exit::Exit;
+use service::group::GroupPaths;
 
 use super::write;
 use crate::cli::ReportArgs;
@@ -20,7 +20,7 @@ use crate::verbs::{place, words};
 pub(crate) fn report(paths: &GroupPaths, args: &ReportArgs, out: &mut Output<'_>) -> Outcome {
     let folder = folder(paths, args)?;
     let people = read(&folder)?;
-    let report = trials::report(&people);
+    let report = evaluation::user_study::report(&people);
     if let Some(folder) = &args.out {
         export(folder, &people, &report)?;
         note(format_args!("written to {}", folder.display()));
@@ -42,9 +42,9 @@ fn folder(paths: &GroupPaths, args: &ReportArgs) -> Result<PathBuf, Trouble> {
 }
 
 fn read(folder: &Path) -> Result<Vec<Participant>, Trouble> {
-    let files = journal::lines::read_folder(folder, trials::FILE_ENDING)
+    let files = journal::lines::read_folder(folder, evaluation::user_study::FILE_ENDING)
         .map_err(|(path, error)| Trouble::file(&path, &error))?;
-    let people = trials::people(files).map_err(|(path, error)| {
+    let people = evaluation::user_study::people(files).map_err(|(path, error)| {
         Trouble::new(Exit::Storage, format!("{}: {error}", path.display()))
     })?;
     if people.is_empty() {
@@ -57,15 +57,19 @@ fn read(folder: &Path) -> Result<Vec<Participant>, Trouble> {
 
 fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), Trouble> {
     std::fs::create_dir_all(folder).map_err(|error| Trouble::file(folder, &error))?;
-    let tables = trials::tables(people);
+    let tables = evaluation::user_study::tables(people);
     write(folder, "interactions.csv", tables.interactions.as_bytes())?;
     write(folder, "participants.csv", tables.participants.as_bytes())?;
     write(folder, "dictionary.csv", tables.dictionary.as_bytes())?;
-    write(folder, "study.json", format!("{:#}\n", trials::to_json(people)).as_bytes())?;
+    write(
+        folder,
+        "study.json",
+        format!("{:#}\n", evaluation::user_study::to_json(people)).as_bytes(),
+    )?;
     write(folder, "report.json", format!("{:#}\n", report.to_json()).as_bytes())?;
-    for (name, canvas) in trials::pictures(report) {
-        write(folder, &format!("{name}.svg"), plot::svg(&canvas).as_bytes())?;
-        let png = plot::png(&canvas)
+    for (name, canvas) in evaluation::user_study::pictures(report) {
+        write(folder, &format!("{name}.svg"), evaluation::charts::svg(&canvas).as_bytes())?;
+        let png = evaluation::charts::png(&canvas)
             .map_err(|error| Trouble::new(Exit::Storage, format!("{name}.png: {error}")))?;
         write(folder, &format!("{name}.png"), &png)?;
     }

@@ -1,7 +1,7 @@
 //! The study as data: JSON and CSV.
 
+use evaluation::simulation::Tally;
 use serde_json::{Map, Value as Json, json};
-use study::Tally;
 
 use super::design::Row;
 use super::house::House;

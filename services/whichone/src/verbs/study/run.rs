@@ -9,7 +9,7 @@ use std::sync::mpsc;
 use std::thread;
 
 use dialogue::registry;
-use study::{CHUNK, Memo, Room, Tally, interactions, turns};
+use evaluation::simulation::{CHUNK, Memo, Room, Tally, interactions, turns};
 
 use super::board::Board;
 use super::design::{People, Row};

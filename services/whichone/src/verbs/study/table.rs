@@ -1,6 +1,6 @@
 //! The study as tables for people.
 
-use study::{Interval, Mean, Tally};
+use evaluation::simulation::{Interval, Mean, Tally};
 
 use super::design::Row;
 use super::house::House;

@@ -1,6 +1,6 @@
 //! The picture as lines of text.
 
-use protocol::{ArmStatus, Hindrance, PickOutcome, PickPhase, PolicyView};
+use messages::{ArmStatus, Hindrance, PickOutcome, PickPhase, PolicyView};
 use scene::Scene;
 use supervisor::group::GroupState;
 use supervisor::machine::{Actual, Wanted};

@@ -2,12 +2,12 @@
 
 use std::collections::VecDeque;
 
-use node::Time;
-use protocol::{ArmStatus, Hindrance, PickOutcome, PickPhase, Receipt, ReceiptStatus};
-use runtime::clock;
-use runtime::group::GroupPaths;
+use messages::{ArmStatus, Hindrance, PickOutcome, PickPhase, Receipt, ReceiptStatus};
 use scene::{Scene, question_to_json};
 use serde_json::{Map, Value as Json, json};
+use service::Time;
+use service::clock;
+use service::group::GroupPaths;
 use supervisor::status::GroupStatus;
 
 use crate::trouble::Trouble;

@@ -1,7 +1,7 @@
 //! How many questions are asked: a small histogram for each policy and kind of people.
 
-use plot::{Align, BLACK, Canvas, FAINT, GREY, LETTER_WIDTH, Place, Size, colour};
-use study::{HISTOGRAM, Tally};
+use evaluation::charts::{Align, BLACK, Canvas, FAINT, GREY, LETTER_WIDTH, Place, Size, colour};
+use evaluation::simulation::{HISTOGRAM, Tally};
 
 use super::distinct;
 use crate::verbs::study::design::Row;

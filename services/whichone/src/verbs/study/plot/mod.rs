@@ -3,9 +3,9 @@
 mod histogram;
 mod scatter;
 
-use runtime::exit::Exit;
+use service::exit::Exit;
 
-use study::Tally;
+use evaluation::simulation::Tally;
 
 use super::design::Row;
 use crate::trouble::Trouble;
@@ -32,8 +32,8 @@ pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, Troubl
     }
     let mut pictures = Vec::new();
     for (name, canvas) in canvases {
-        pictures.push((format!("{name}.svg"), plot::svg(&canvas).into_bytes()));
-        let png = plot::png(&canvas)
+        pictures.push((format!("{name}.svg"), evaluation::charts::svg(&canvas).into_bytes()));
+        let png = evaluation::charts::png(&canvas)
             .map_err(|error| Trouble::new(Exit::Storage, format!("{name}.png: {error}")))?;
         pictures.push((format!("{name}.png"), png));
     }

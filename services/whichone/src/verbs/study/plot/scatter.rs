@@ -1,7 +1,9 @@
 //! Success against seconds, with the intervals of both; a panel for each kind of people.
 
-use plot::{Align, BLACK, Canvas, FAINT, GREY, LETTER_WIDTH, Linear, Missing, Place, Size, colour};
-use study::{Interval, Mean, Tally};
+use evaluation::charts::{
+    Align, BLACK, Canvas, FAINT, GREY, LETTER_WIDTH, Linear, Missing, Place, Size, colour,
+};
+use evaluation::simulation::{Interval, Mean, Tally};
 
 use super::distinct;
 use crate::verbs::study::design::Row;

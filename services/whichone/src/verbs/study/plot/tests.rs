@@ -1,7 +1,7 @@
 use super::*;
 use crate::verbs::study::design::People;
-use study::turns::{Rules, Talker};
-use study::{End, Outcome, UserKind};
+use evaluation::simulation::turns::{Rules, Talker};
+use evaluation::simulation::{End, Outcome, UserKind};
 
 fn tally(right: u32, wrong: u32) -> Tally {
     let mut tally = Tally::default();

@@ -1,0 +1,147 @@
+//! `arm.toml`: which arm, how it moves, and where it brings things.
+
+use manipulation::{Limb, PlanSettings, Robot, gripper};
+
+use crate::fields::Fields;
+
+/// The arm.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arm {
+    /// What it is made of: links, joints, limits, shapes.
+    pub robot: Robot,
+    /// What moves.
+    pub driver: Driver,
+    /// The limb that fetches; `None`: the one that reaches the object better.
+    pub limb: Option<Limb>,
+    /// How it moves, and where it brings things.
+    pub plan: PlanSettings,
+    /// Simulated seconds per second.
+    pub time_scale: f64,
+    /// Whether an object that was handed over is put back in its place in the simulated world.
+    pub restock: bool,
+    /// How often joint states are published, Hz.
+    pub joint_rate_hz: f64,
+    /// How grasps are tried.
+    pub grasp: Grasps,
+    /// What is expected of a Baxter, for the driver of that name.
+    pub baxter: Baxter,
+    /// The simulated Baxter.
+    pub simulated: Simulated,
+}
+
+/// How grasps are tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grasps {
+    /// How often in all, where the fingers close on nothing.
+    pub attempts: u32,
+    /// Standard deviation of the distance between where an object stands and where it is taken to
+    /// stand, across the fingers, metres; simulated worlds only.
+    pub error_m: f64,
+}
+
+/// What is expected of a Baxter. The defaults are those of the robot's own trajectory server, but
+/// for the goal time, in which a real arm cannot settle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Baxter {
+    /// How far a joint may be from where it was commanded to be during a motion, radians.
+    pub path_tolerance_rad: f64,
+    /// How far a joint may be from where a motion ends, radians.
+    pub goal_tolerance_rad: f64,
+    /// How long after its end a motion may take to arrive, seconds.
+    pub goal_time_s: f64,
+    /// Below this a joint stands still, rad/s.
+    pub still_rad_s: f64,
+    /// Age beyond which joint states are too old to move by, seconds.
+    pub stale_s: f64,
+    /// The speed ratio that the robot is told: a trajectory has its limits in itself.
+    pub speed_ratio: f64,
+    /// Whether the robot is told velocity and acceleration beside the position.
+    pub feed_forward: bool,
+}
+
+/// The simulated Baxter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Simulated {
+    /// Time constant with which a joint follows its command, seconds.
+    pub lag_s: f64,
+    /// Standard deviation of measured joint positions, radians.
+    pub noise_rad: f64,
+    /// Share of joint states that get lost.
+    pub loss: f64,
+    /// Seed of everything that is random in it.
+    pub seed: u64,
+    /// Whether its motors are on as it comes up.
+    pub enabled: bool,
+}
+
+/// What moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Driver {
+    /// The kinematic model of Baxter in a simulated world.
+    Kinematic,
+    /// A Baxter behind its own topics: a real one's bridge, or the simulated one.
+    Baxter,
+}
+
+/// Reads the section; the robot that it names is put in once its files have been read.
+pub(crate) fn read(f: &mut Fields<'_>) -> Arm {
+    f.text("robot");
+    let arm = Arm {
+        robot: Robot::baxter().clone(),
+        driver: f.choice("driver", &[("kinematic", Driver::Kinematic), ("baxter", Driver::Baxter)]),
+        limb: f.choice(
+            "limb",
+            &[("auto", None), ("left", Some(Limb::Left)), ("right", Some(Limb::Right))],
+        ),
+        plan: plan(f),
+        time_scale: f.number("time_scale", 0.01..=1000.0),
+        restock: f.flag("restock"),
+        joint_rate_hz: f.number("joint_rate_hz", 1.0..=1000.0),
+        grasp: Grasps {
+            attempts: f.whole("grasp_attempts", 1..=5),
+            error_m: f.number("grasp_error_m", 0.0..=0.1),
+        },
+        baxter: f.table("baxter", baxter),
+        simulated: f.table("simulated", simulated),
+    };
+    if arm.driver == Driver::Baxter && arm.time_scale != 1.0 && !f.is_wrong("time_scale") {
+        let what = format!("is {}, but a robot moves in real time", arm.time_scale);
+        f.problem("time_scale", &what, "write `time_scale = 1.0`, or use driver = \"kinematic\"");
+    }
+    arm
+}
+
+fn baxter(f: &mut Fields<'_>) -> Baxter {
+    Baxter {
+        path_tolerance_rad: f.number("path_tolerance_rad", 0.01..=1.0),
+        goal_tolerance_rad: f.number("goal_tolerance_rad", 0.001..=0.1),
+        goal_time_s: f.number("goal_time_s", 0.1..=60.0),
+        still_rad_s: f.number("still_rad_s", 0.005..=0.5),
+        stale_s: f.number("stale_s", 0.03..=1.0),
+        speed_ratio: f.number("speed_ratio", 0.05..=1.0),
+        feed_forward: f.flag("feed_forward"),
+    }
+}
+
+fn simulated(f: &mut Fields<'_>) -> Simulated {
+    Simulated {
+        lag_s: f.number("lag_s", 0.002..=1.0),
+        noise_rad: f.number("noise_rad", 0.0..=0.01),
+        loss: f.number("loss", 0.0..=0.9),
+        seed: f.whole("seed", 0..=u64::from(u32::MAX)),
+        enabled: f.flag("enabled"),
+    }
+}
+
+fn plan(f: &mut Fields<'_>) -> PlanSettings {
+    PlanSettings {
+        speed_ratio: f.number("speed_ratio", 0.05..=1.0),
+        hover_m: f.number("hover_m", 0.02..=0.5),
+        hand_over_xyz_m: f.triple("hand_over_xyz"),
+        table_z_m: f.number("table_z_m", -1.0..=1.0),
+        open_width_m: gripper::width_m(f.number("grip_open_percent", 1.0..=100.0)),
+        standoff_m: f.number("standoff_m", 0.05..=1.0),
+        point_s: f.number("point_s", 0.0..=60.0),
+        margin_m: f.number("margin_m", 0.0..=0.2),
+    }
+}

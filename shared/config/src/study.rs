@@ -1,0 +1,117 @@
+//! `study.toml`: a study with people.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use evaluation::user_study::{Design, Item, Kind, Objects, Order, Protocol};
+
+use crate::fields::Fields;
+
+/// A study with people.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// Whether the console conducts one.
+    pub enabled: bool,
+    /// What was decided. Its policies are named: the configured planner where nothing else was said.
+    pub protocol: Protocol,
+    /// How long a service may be away before the interaction is spoilt.
+    pub fault: Duration,
+    /// Folder of the data; the group's own where nothing is said.
+    pub data_dir: Option<PathBuf>,
+}
+
+/// Most questions of a questionnaire.
+const ITEMS_MAX: usize = 100;
+
+pub(crate) fn read(f: &mut Fields<'_>, configured_planner: &str) -> Study {
+    let protocol = Protocol {
+        title: f.text("title"),
+        consent: f.optional_text("consent").unwrap_or_default(),
+        instructions: f.texts("instructions"),
+        interactions: f.whole("interactions", 1..=100),
+        warmup: f.whole("warmup", 0..=20),
+        objects: f
+            .choice("objects", &[("uniform", Objects::Uniform), ("balanced", Objects::Balanced)]),
+        design: f.choice("design", &[("within", Design::Within), ("between", Design::Between)]),
+        policies: policies(f, configured_planner),
+        order: f.choice("order", &[("latin", Order::Latin), ("random", Order::Random)]),
+        seconds_max: f.number("seconds_max", 10.0..=3600.0),
+        show_belief: f.flag("show_belief"),
+        keep_words: f.flag("keep_words"),
+        questionnaire: questionnaire(f),
+    };
+    Study {
+        enabled: f.flag("enabled"),
+        protocol,
+        fault: f.seconds("fault_s", 1.0..=600.0),
+        data_dir: f.absolute("data_dir"),
+    }
+}
+
+fn policies(f: &mut Fields<'_>, configured: &str) -> Vec<String> {
+    let policies = f.texts("policies");
+    let known = ::dialogue::registry::names();
+    for (n, policy) in policies.iter().enumerate() {
+        if !known.contains(&policy.as_str()) {
+            f.not_one_of("policies", policy, &known);
+        } else if policies[..n].contains(policy) {
+            f.problem("policies", format!("names `{policy}` twice"), "name each policy once");
+        }
+    }
+    if policies.is_empty() { vec![configured.to_owned()] } else { policies }
+}
+
+fn questionnaire(f: &mut Fields<'_>) -> Vec<Item> {
+    let items = f.list("questionnaire", DEFAULTS, item);
+    if items.len() > ITEMS_MAX {
+        let what = format!("has {} questions", items.len());
+        f.problem("questionnaire", what, format!("ask at most {ITEMS_MAX}"));
+    }
+    for (n, item) in items.iter().enumerate() {
+        if items[..n].iter().any(|other| other.id == item.id) {
+            let what = format!("has two questions with the id `{}`", item.id);
+            f.problem("questionnaire", what, "give each an id of its own");
+        }
+    }
+    items
+}
+
+/// What holds for a question where nothing is said.
+const DEFAULTS: &str = r#"id = ""
+text = ""
+kind = ""
+required = true
+points = 5
+options = []
+low = ""
+high = """#;
+
+fn item(f: &mut Fields<'_>) -> Item {
+    let kinds = [
+        ("likert", Kind::Likert),
+        ("choice", Kind::Choice),
+        ("number", Kind::Number),
+        ("text", Kind::Text),
+    ];
+    let mut item = Item {
+        id: f.text("id"),
+        text: f.text("text"),
+        kind: f.choice("kind", &kinds),
+        options: f.texts("options"),
+        low: f.optional_text("low").unwrap_or_default(),
+        high: f.optional_text("high").unwrap_or_default(),
+        points: f.whole("points", 2..=11),
+        required: f.flag("required"),
+    };
+    let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    if !f.is_wrong("id") && !item.id.chars().all(plain) {
+        f.problem("id", format!("`{}` is no column name", item.id), "use letters, digits and _");
+    }
+    if !f.is_wrong("kind") && item.kind == Kind::Choice && item.options.len() < 2 {
+        f.problem("options", "offers nothing to choose", "write `options = [\"one\", \"two\"]`");
+    }
+    if item.kind != Kind::Likert {
+        item.points = 0;
+    }
+    item
+}

@@ -1,0 +1,159 @@
+//! Which layer wins, and what the values become.
+
+use std::path::Path;
+use std::time::Duration;
+
+use language::Language;
+use manipulation::{Limb, PlanSettings};
+
+use super::{Folder, ONE_BOWL, shipped};
+use crate::{BUILT_IN, Recogniser, Restart, Section, Settings, Voice};
+
+#[test]
+fn the_shipped_folder_loads_with_every_profile_and_scene() {
+    let names = |folder: &str| -> Vec<String> {
+        let files = std::fs::read_dir(shipped().join(folder)).unwrap();
+        let stem = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
+        files.map(|file| stem(&file.unwrap().path())).collect()
+    };
+    let (profiles, scenes) = (names("profiles"), names("scenes"));
+    for known in ["lab", "ci", "paper"] {
+        assert!(profiles.iter().any(|name| name == known), "{profiles:?}");
+    }
+    for known in ["bowls", "markers", "tools"] {
+        assert!(scenes.iter().any(|name| name == known), "{scenes:?}");
+    }
+    let load = |profile, scene: &str| {
+        let overrides = [("group.scene".to_owned(), scene.to_owned())];
+        let settings = Settings::load(&shipped(), profile, &overrides)
+            .unwrap_or_else(|e| panic!("{scene} with {profile:?}: {e}"));
+        assert_eq!(settings.scene.name(), scene);
+    };
+    scenes.iter().for_each(|scene| load(None, scene));
+    profiles.iter().for_each(|profile| load(Some(profile), "markers"));
+}
+
+#[test]
+fn an_almost_empty_folder_gives_the_shipped_values() {
+    let folder = Folder::new(&[]);
+    let bare = folder.load(None, &[]).unwrap();
+    let full = Settings::load(&shipped(), None, &[]).unwrap();
+    for section in Section::ALL {
+        assert_eq!(bare.section_text(section), full.section_text(section));
+    }
+    let origins = bare.origins();
+    assert!(origins.iter().all(|origin| origin.from == "built-in defaults"));
+    assert!(origins.iter().any(|origin| origin.key == "arm.limb" && origin.value == "\"auto\""));
+}
+
+#[test]
+fn the_defaults_are_what_the_documentation_says() {
+    let Settings { group, dialogue, speech, arm, .. } = Folder::new(&[]).load(None, &[]).unwrap();
+    let names: Vec<_> = group.services.iter().map(|service| service.name.as_str()).collect();
+    assert_eq!(names, BUILT_IN);
+    let [speech_service, grounding, _, arm_service, _] = &group.services[..] else {
+        unreachable!()
+    };
+    assert_eq!(grounding.watchdog, Some(Duration::from_secs(3)));
+    assert_eq!(grounding.stop_deadline, Duration::from_secs(5));
+    assert_eq!(grounding.start_deadline, Duration::from_secs(10));
+    assert_eq!(
+        (grounding.restart, grounding.nice, grounding.critical),
+        (Restart::Always, 0, false)
+    );
+    assert_eq!(
+        (&grounding.command, &speech_service.after),
+        (&None, &vec!["grounding".to_owned(), "policy".to_owned(),])
+    );
+    assert_eq!(arm_service.watchdog, Some(Duration::from_secs(3)));
+    assert_eq!(arm_service.stop_deadline, Duration::from_secs(15));
+    assert_eq!((group.restart.exits_max, group.restart.window.as_secs()), (5, 60));
+
+    assert_eq!(dialogue.params, dialogue::Params::default());
+    assert_eq!(dialogue.costs, dialogue::Costs::default());
+    assert_eq!((dialogue.language, &*dialogue.planner), (Language::Careful, "lookahead"));
+    assert!(dialogue.actions.attribute && !dialogue.actions.which);
+    assert_eq!((speech.voice, speech.recogniser), (Voice::Auto, Recogniser::Auto));
+    assert_eq!((speech.player, speech.model_dir), (None, None));
+    assert_eq!((arm.limb, arm.time_scale, arm.restock), (None, 1.0, true));
+    assert_eq!(arm.plan, PlanSettings { speed_ratio: 0.6, ..PlanSettings::default() });
+}
+
+#[test]
+fn later_layers_win_value_by_value() {
+    let folder = Folder::new(&[
+        ("arm.toml", "speed_ratio = 0.3\ntime_scale = 2\njoint_rate_hz = 50"),
+        ("profiles/fast.toml", "[arm]\ntime_scale = 10\njoint_rate_hz = 20"),
+    ]);
+    let arm = folder.load(Some("fast"), &[("arm.joint_rate_hz", "10")]).unwrap().arm;
+    assert_eq!((arm.plan.speed_ratio, arm.time_scale, arm.joint_rate_hz), (0.3, 10.0, 10.0));
+    assert_eq!(arm.plan.hover_m, 0.15);
+
+    let settings = folder.load(Some("fast"), &[("arm.joint_rate_hz", "10")]).unwrap();
+    let from = |key: &str| {
+        let origin = settings.origins().into_iter().find(|origin| origin.key == key).unwrap();
+        origin.from.replace(&format!("{}/", folder.path().display()), "")
+    };
+    assert_eq!(from("arm.speed_ratio"), "arm.toml");
+    assert_eq!(from("arm.time_scale"), "profiles/fast.toml");
+    assert_eq!(from("arm.joint_rate_hz"), "--set");
+    assert_eq!(from("arm.hover_m"), "built-in defaults");
+}
+
+#[test]
+fn overrides_need_no_quotes_in_a_shell() {
+    let folder = Folder::new(&[]);
+    let overrides = [
+        ("speech.voice", "print"),
+        ("arm.limb", "\"left\""),
+        ("arm.restock", "false"),
+        ("arm.hand_over_xyz", "[0.75, 0.4, 0.15]"),
+        ("dialogue.costs.wrong", "80"),
+        ("group.services.arm.watchdog_s", "0"),
+    ];
+    let settings = folder.load(None, &overrides).unwrap();
+    assert_eq!(settings.speech.voice, Voice::Print);
+    assert_eq!((settings.arm.limb, settings.arm.restock), (Some(Limb::Left), false));
+    assert_eq!(settings.arm.plan.hand_over_xyz_m, [0.75, 0.4, 0.15]);
+    assert_eq!(settings.dialogue.costs.wrong, 80.0);
+    assert_eq!(settings.group.services[3].watchdog, None);
+}
+
+#[test]
+fn services_can_be_added_and_keep_their_order() {
+    let folder = Folder::new(&[(
+        "group.toml",
+        "[services.zoom]\ncommand = ['zoom', '-x']\nafter = ['arm', 'camera']\n\
+         [services.camera]\ncommand = ['camera']\nrestart = 'never'\nnice = -3\n\
+         [services.grounding]\ncommand = ['python3', 'grounding.py']\n",
+    )]);
+    let services = folder.load(None, &[]).unwrap().group.services;
+    let names: Vec<_> = services.iter().map(|service| service.name.as_str()).collect();
+    assert_eq!(names, ["speech", "grounding", "policy", "arm", "console", "zoom", "camera"]);
+    assert_eq!(services[1].command, Some(vec!["python3".into(), "grounding.py".into()]));
+    assert_eq!(services[5].after, ["arm", "camera"]);
+    assert_eq!(services[5].watchdog, Some(Duration::from_secs(3)));
+    assert_eq!((services[6].restart, services[6].nice), (Restart::Never, -3));
+}
+
+#[test]
+fn a_layer_can_take_an_optional_value_back() {
+    let folder = Folder::new(&[
+        ("speech.toml", "player = ['aplay']\nmodel_dir = '/opt/model'"),
+        ("profiles/plain.toml", "[speech]\nplayer = []\nmodel_dir = ''"),
+    ]);
+    let speech = folder.load(None, &[]).unwrap().speech;
+    assert_eq!(speech.player, Some(vec!["aplay".to_owned()]));
+    assert_eq!(speech.model_dir.as_deref(), Some(Path::new("/opt/model")));
+    let speech = folder.load(Some("plain"), &[]).unwrap().speech;
+    assert_eq!((speech.player, speech.model_dir), (None, None));
+}
+
+#[test]
+fn a_scene_may_be_a_path() {
+    let folder = Folder::new(&[("mine/lab.toml", &ONE_BOWL.replace("one bowl", "mine"))]);
+    let scene = folder.load(None, &[("group.scene", "mine/lab.toml")]).unwrap().scene;
+    assert_eq!(scene.name(), "mine");
+    let absolute = folder.path().join("mine/lab.toml").display().to_string();
+    assert_eq!(folder.load(None, &[("group.scene", &absolute)]).unwrap().scene, scene);
+}

@@ -1,0 +1,62 @@
+//! Random draws, and how the randomness of a study is divided.
+
+use dialogue::Rng;
+pub(crate) use preflight::{between, log_normal};
+
+/// What a stream of random numbers is for. Each has its own, so that a person who says one thing
+/// more does not change how long anything takes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Stream {
+    /// What the person wants, is like and says.
+    Person = 1,
+    /// How long things take.
+    Clock = 2,
+    /// Dialogues in real time.
+    Turns = 3,
+}
+
+/// The random numbers of interaction `number`, the same for every policy.
+pub(crate) fn stream(seed: u64, stream: Stream, number: u64) -> Rng {
+    // Three steps of the generator's own mixing: neighbouring numbers give unrelated streams.
+    let a = Rng::new(seed).next_u64();
+    let b = Rng::new(a ^ stream as u64).next_u64();
+    Rng::new(Rng::new(b ^ number).next_u64())
+}
+
+/// True with that probability.
+pub(crate) fn chance(rng: &mut Rng, probability: f64) -> bool {
+    rng.uniform() < probability
+}
+
+/// One of several, each as likely; `None` of nothing.
+pub(crate) fn one_of<'a, T>(rng: &mut Rng, list: &'a [T]) -> Option<&'a T> {
+    if list.is_empty() { None } else { list.get(rng.below(list.len())) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn streams_differ_and_repeat() {
+        let first = |seed, kind, number| stream(seed, kind, number).next_u64();
+        let mut all = std::collections::HashSet::new();
+        for number in 0..100 {
+            for kind in [Stream::Person, Stream::Clock, Stream::Turns] {
+                assert!(all.insert(first(1, kind, number)));
+                assert_eq!(first(1, kind, number), first(1, kind, number));
+            }
+        }
+        assert_ne!(first(1, Stream::Person, 0), first(2, Stream::Person, 0));
+    }
+
+    #[test]
+    fn nothing_is_drawn_from_nothing() {
+        let mut rng = Rng::new(3);
+        assert_eq!(one_of::<u8>(&mut rng, &[]), None);
+        assert_eq!(one_of(&mut rng, &[5]), Some(&5));
+        assert!(!chance(&mut rng, 0.0) && chance(&mut rng, 1.0));
+        let x = between(&mut rng, (2.0, 3.0));
+        assert!((2.0..3.0).contains(&x));
+    }
+}

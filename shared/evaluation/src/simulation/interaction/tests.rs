@@ -1,0 +1,144 @@
+use super::*;
+use crate::simulation::testing::{bowls, yes_no};
+use crate::simulation::{UserKind, interactions};
+use dialogue::{Actions, Belief, Mode, Model, Params, evaluate, registry};
+use language::Language;
+
+struct House {
+    scene: Scene,
+    reader: Reader,
+    model: Model,
+    pace: Pace,
+}
+
+impl House {
+    fn new() -> Self {
+        let scene = bowls();
+        let reader = Reader::new(&scene, Language::Careful);
+        let model = Model::new(&scene, Params::default());
+        Self { scene, reader, model, pace: Pace::default() }
+    }
+
+    fn room(&self) -> Room<'_> {
+        Room {
+            scene: &self.scene,
+            reader: &self.reader,
+            problem: yes_no(&self.model),
+            patience: Patience::default(),
+            voice: Voice::default(),
+            pace: &self.pace,
+            motions: None,
+            request: true,
+        }
+    }
+}
+
+/// A person with prepared turns.
+struct Script(ObjectId, Vec<Turn>);
+
+impl User for Script {
+    fn wanted(&self) -> ObjectId {
+        self.0
+    }
+
+    fn request(&mut self) -> Turn {
+        self.answer(Question::None)
+    }
+
+    fn answer(&mut self, _: Question) -> Turn {
+        if self.1.is_empty() { Turn::SILENCE } else { self.1.remove(0) }
+    }
+}
+
+fn play(house: &House, planner: &str, wanted: &str, turns: Vec<Turn>) -> Outcome {
+    let mut memo = Memo::new(registry::planner(planner).unwrap());
+    let wanted = house.scene.object_named(wanted).unwrap();
+    interact(&house.room(), &mut memo, &mut Script(wanted, turns), &mut Rng::new(1))
+}
+
+/// The study of people as the model has them against the exact evaluation, for every policy that
+/// decides by the belief over objects alone, as the evaluation does.
+#[test]
+fn the_model_s_people_average_out_to_the_evaluation() {
+    let (seed, n) = (20_261, 20_000);
+    let house = House::new();
+    let mut rooms = vec![house.room(), house.room()];
+    rooms[1].problem.actions = Actions { mode: Mode::Present, attribute: false, which: true };
+    for room in &rooms {
+        for name in registry::names() {
+            let mut planner = registry::planner(name).unwrap();
+            if planner.minds_the_person() {
+                continue;
+            }
+            let mut memo = Memo::new(registry::planner(name).unwrap());
+            let tally = interactions(room, &mut memo, UserKind::Model, seed, 0..n);
+            let exact = evaluate(&mut *planner, &room.problem, &Belief::uniform(6), 1e-9);
+            let case = format!("seed {seed}, {name}: {exact:?}");
+            let spread = (exact.success * (1.0 - exact.success) / n as f64).sqrt();
+            let off = (tally.success() - exact.success).abs();
+            assert!(off <= 5.0 * spread + 1e-6, "{case}, success {}", tally.success());
+            for (mean, exact) in [(&tally.questions, exact.questions), (&tally.value, exact.value)]
+            {
+                let off = (mean.mean() - exact).abs();
+                assert!(off <= 5.0 * mean.error() + 1e-3, "{case}, {} not {exact}", mean.mean());
+            }
+        }
+    }
+}
+
+#[test]
+fn a_request_that_says_enough_is_fetched_at_once() {
+    let house = House::new();
+    let words = Turn::words("get me the small metal bowl in the cabinet, the silver one");
+    let outcome = play(&house, "never-ask", "metal", vec![words]);
+    assert_eq!((outcome.end, outcome.questions), (End::Right, 0));
+    assert_eq!((outcome.talk_s, outcome.value), (0.0, 50.0));
+    assert!(outcome.seconds > 1.0, "saying what it fetches takes time");
+}
+
+#[test]
+fn silence_is_asked_into_again_and_then_given_up() {
+    let house = House::new();
+    let outcome = play(&house, "lookahead", "metal", vec![]);
+    let patience = Patience::default();
+    assert_eq!((outcome.end, outcome.questions), (End::Abandoned, patience.repeats_max + 1));
+    assert!(outcome.talk_s > 4.0 * patience.response_window_s);
+    let costs = Costs::SECONDS;
+    let asked: f64 = (0..4).map(|k| -4.0 * costs.discount.powi(k)).sum();
+    let value = asked + costs.discount.powi(4) * costs.wait_value();
+    assert!((outcome.value - value).abs() < 1e-9, "{outcome:?} not {value}");
+}
+
+#[test]
+fn what_is_not_an_answer_is_dealt_with_as_the_policy_does() {
+    let house = House::new();
+    let yes = |n: usize| vec![Turn::words("yes"); n];
+    let repeated = [vec![Turn::SILENCE, Turn::words("can you repeat that?")], yes(9)].concat();
+    let plain = [vec![Turn::SILENCE], yes(9)].concat();
+    let (repeated, plain) =
+        (play(&house, "lookahead", "metal", repeated), play(&house, "lookahead", "metal", plain));
+    assert_eq!(repeated.questions, plain.questions + 1);
+    let cancelled = vec![Turn::SILENCE, Turn::words("forget it, never mind")];
+    assert_eq!(play(&house, "lookahead", "metal", cancelled).end, End::Cancelled);
+    let late = Turn { late_s: 60.0, ..Turn::words("yes") };
+    let late = [vec![Turn::SILENCE, late], yes(9)].concat();
+    let late = play(&house, "lookahead", "metal", late);
+    assert_eq!(late.questions, plain.questions + 1);
+    assert!(late.talk_s > plain.talk_s + Patience::default().response_window_s);
+}
+
+#[test]
+fn who_waits_for_ever_gets_what_waiting_is_worth() {
+    let house = House::new();
+    let mut room = house.room();
+    room.problem.costs = Costs::PREDECESSOR;
+    let mut memo = Memo::new(registry::planner("never-ask").unwrap());
+    let wanted = ObjectId(0);
+    let mut nobody = Script(wanted, vec![]);
+    let outcome = interact(&room, &mut memo, &mut nobody, &mut Rng::new(1));
+    assert_eq!((outcome.end, outcome.questions), (End::Waited, 0));
+    assert_eq!(outcome.value, Costs::PREDECESSOR.wait_value());
+    let turns = vec![Turn::SILENCE, Turn::words("it's in the dishwasher")];
+    let outcome = interact(&room, &mut memo, &mut Script(wanted, turns), &mut Rng::new(1));
+    assert!((outcome.value - (-1.0 + 0.9 * 10.0)).abs() < 1e-9 || outcome.end != End::Right);
+}

@@ -1,0 +1,44 @@
+//! Dialogues in real time: who speaks when, and which question an answer counts for.
+//!
+//! In a dialogue of turns, as [`crate::simulation::interact`] conducts it, an answer follows its question. In
+//! real time the robot listens for a while, plans, and may ask the next question just as the person
+//! answers the last. The paper lost many of its interactions to that (section 6). This is a
+//! simulation of discrete events with the robot's rules of turn-taking as parts to be combined.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `rules.rs` | the rules and their names |
+//! | `person.rs` | when people answer, and what is recognised when |
+//! | `talk.rs` | the robot's side, and the dialogue |
+
+mod person;
+mod rules;
+mod talk;
+
+pub use person::Talker;
+pub use rules::{Rules, UnknownRule};
+
+use crate::simulation::draw::{Stream, stream};
+use crate::simulation::interaction::Room;
+use crate::simulation::memo::Memo;
+use crate::simulation::tally::Tally;
+
+/// Counts the dialogues `numbers` under these rules.
+pub fn dialogues(
+    room: &Room<'_>,
+    memo: &mut Memo<'_>,
+    rules: &Rules,
+    talker: &Talker,
+    seed: u64,
+    numbers: std::ops::Range<u64>,
+) -> Tally {
+    let mut tally = Tally::default();
+    for number in numbers {
+        let mut rng = stream(seed, Stream::Turns, number);
+        tally.add(&talk::talk(room, memo, rules, talker, &mut rng));
+    }
+    tally
+}
+
+#[cfg(test)]
+mod tests;

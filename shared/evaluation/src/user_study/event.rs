@@ -1,0 +1,232 @@
+//! What can happen to a participant: the lines of the journal.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value as Json};
+
+use crate::user_study::plan::Step;
+use crate::user_study::protocol::Protocol;
+use crate::user_study::trial::Verdict;
+
+/// Version of the lines' form.
+pub const VERSION: u32 = 1;
+
+/// Ending of the files' names, after the participant's code and a dot.
+pub const FILE_ENDING: &str = "jsonl";
+
+/// A line of a participant's journal.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    /// When, milliseconds since 1970 by the computer's clock.
+    pub at: u64,
+    /// What happened.
+    #[serde(flatten)]
+    pub event: Event,
+}
+
+/// What can happen. Times in `_ms` are milliseconds of the machine's monotonic clock: only their
+/// differences mean something.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "event", rename_all = "snake_case")]
+pub enum Event {
+    /// A participant came. Always the first line.
+    Begun(Box<Begun>),
+    /// Agreed to take part.
+    Consented,
+    /// Has read the instructions.
+    Instructed,
+    /// The next desired object was drawn.
+    Drawn(Drawn),
+    /// The policy service was told to decide by that planner.
+    Switched {
+        /// Its name.
+        planner: String,
+    },
+    /// The policy service was given its configured planner back.
+    Restored,
+    /// The participant began the interaction that was drawn last.
+    Started {
+        /// The robot's latest interaction before it.
+        after: u64,
+    },
+    /// The participant said something.
+    Heard {
+        /// The utterance's number.
+        seq: u64,
+        /// By which way.
+        source: Source,
+        /// When it began.
+        onset_ms: f64,
+        /// When it was accepted as a whole.
+        accepted_ms: f64,
+        /// The words, where they are kept.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        words: Option<String>,
+    },
+    /// The robot asked something, or asked it again.
+    Asked {
+        /// The question's number.
+        prompt: u64,
+        /// How often it was asked before, and once.
+        presentation: u32,
+        /// Its words, where they are kept.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        words: Option<String>,
+    },
+    /// The robot decided which object to fetch.
+    Decided {
+        /// When.
+        decided_ms: f64,
+    },
+    /// The interaction ended, and counts unless it is practice.
+    Ended {
+        /// How.
+        verdict: Verdict,
+        /// The robot's number of it, 0 where nothing was said.
+        interaction: u64,
+        /// The object that was handed over or tried.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        object: Option<String>,
+        /// Questions asked, repetitions not counted, as the robot reckons.
+        questions: u32,
+        /// Utterances, as the robot reckons.
+        utterances: u32,
+        /// From the first utterance's acceptance to the end, as the robot reckons, seconds; none
+        /// where the robot did not end it.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        seconds: Option<f64>,
+        /// When it was noticed.
+        ended_ms: f64,
+    },
+    /// The interaction was spoilt by something technical; it does not count, and is repeated.
+    Faulted {
+        /// What it was.
+        fault: Fault,
+        /// In a sentence.
+        why: String,
+    },
+    /// Has come to the questionnaire.
+    Questioned,
+    /// Has answered the questionnaire: answers by the items' ids, without those left open.
+    Answered {
+        /// The answers.
+        answers: Map<String, Json>,
+    },
+    /// Has done everything.
+    Finished,
+    /// The participant went on after the page or the console was gone.
+    Resumed {
+        /// The page that asked for it.
+        session: String,
+    },
+    /// Went away in the middle; what there is counts.
+    Left,
+    /// Withdrew; nothing of it counts.
+    Withdrawn,
+    /// Withdrew and had the data deleted: what came before this is gone.
+    Deleted,
+}
+
+/// The first line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Begun {
+    /// [`VERSION`].
+    pub version: u32,
+    /// The participant's name in the data.
+    pub participant: String,
+    /// The page that the participant uses; not exported.
+    pub session: String,
+    /// What all randomness of this participant comes from.
+    pub seed: u64,
+    /// What is to be done, in order.
+    pub plan: Vec<Step>,
+    /// The protocol in force.
+    pub protocol: Protocol,
+    /// The group that the robot belongs to.
+    pub group: String,
+    /// The console's version.
+    pub software: String,
+}
+
+/// A desired object.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Drawn {
+    /// Place in the plan, from 0; the same again after a fault.
+    pub step: usize,
+    /// The object's name.
+    pub object: String,
+    /// How people call it.
+    pub label: String,
+    /// The scene's name.
+    pub scene: String,
+    /// The scene's key, 16 hexadecimal digits.
+    pub scene_key: String,
+    /// The names of all objects there were to draw from.
+    pub among: Vec<String>,
+}
+
+/// By which way something was said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// Typed.
+    Typed,
+    /// Spoken.
+    Voice,
+}
+
+/// What can spoil an interaction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fault {
+    /// A service was away for too long.
+    Service,
+    /// The scene was changed.
+    Scene,
+    /// The policy could not be switched, or decides by another planner.
+    Planner,
+    /// The robot was started anew, or the console was away for so long that its end was missed.
+    Missed,
+    /// The experimenter said so.
+    Experimenter,
+}
+
+/// A journal that is none.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: {what}; restore the file from a copy, or move it out of the folder")]
+pub struct FormatError {
+    /// Which line, from 1.
+    pub line: usize,
+    /// What is wrong with it.
+    pub what: String,
+}
+
+impl Entry {
+    /// The line, with its end.
+    ///
+    /// # Panics
+    /// Never: an entry is an object with text keys and finite numbers.
+    pub fn to_line(&self) -> String {
+        serde_json::to_string(self).expect("an entry is JSON") + "\n"
+    }
+}
+
+/// Reads a journal. A last line without its end is a write that was cut short, and was never
+/// acknowledged: it is left out.
+///
+/// # Errors
+/// The first line that is no entry.
+pub fn parse(text: &str) -> Result<Vec<Entry>, FormatError> {
+    let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+    let lines = whole.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    lines.map(|(n, line)| entry(line).map_err(|what| FormatError { line: n + 1, what })).collect()
+}
+
+fn entry(line: &str) -> Result<Entry, String> {
+    let entry: Entry = serde_json::from_str(line).map_err(|error| error.to_string())?;
+    match &entry.event {
+        Event::Begun(begun) if begun.version > VERSION => {
+            Err(format!("version {} is newer than this program's {VERSION}", begun.version))
+        }
+        _ => Ok(entry),
+    }
+}

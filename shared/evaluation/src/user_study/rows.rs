@@ -1,0 +1,212 @@
+//! The data as tables for statistics programs, and as JSON.
+
+use serde_json::{Map, Value as Json, json};
+
+use crate::user_study::dictionary::{INTERACTIONS, PARTICIPANTS, dictionary};
+use crate::user_study::event::Source;
+use crate::user_study::item::Item;
+use crate::user_study::participant::Participant;
+use crate::user_study::stamp::utc;
+use crate::user_study::trial::{End, Trial, Verdict};
+
+/// The files of an export.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tables {
+    /// A row per interaction.
+    pub interactions: String,
+    /// A row per participant, with the questionnaire.
+    pub participants: String,
+    /// What the columns mean.
+    pub dictionary: String,
+}
+
+/// The tables of these participants, in their order. An empty cell is a value that there is not.
+pub fn tables(people: &[Participant]) -> Tables {
+    let items = items(people);
+    let mut interactions = line(INTERACTIONS.iter().map(|column| column.name.to_owned()));
+    for person in people {
+        for row in trials(person) {
+            interactions += &line(row.iter().map(cell_of));
+        }
+    }
+    let asked = items.iter().map(|item| format!("q_{}", item.id));
+    let heads = PARTICIPANTS.iter().map(|column| column.name.to_owned());
+    let mut participants = line(heads.chain(asked));
+    for person in people {
+        let answers = items.iter().map(|item| answer(person, item));
+        participants += &line(participant(person).into_iter().chain(answers).map(|v| cell_of(&v)));
+    }
+    Tables { interactions, participants, dictionary: dictionary(&items) }
+}
+
+/// The same as one JSON object, with the words said and asked where they were kept, and the protocol
+/// that each participant had.
+pub fn to_json(people: &[Participant]) -> Json {
+    let people = people.iter().map(|person| {
+        let names = PARTICIPANTS.iter().map(|column| column.name);
+        let mut row = object(names.zip(participant(person)));
+        row.insert("answers".to_owned(), Json::Object(person.answers.clone()));
+        row.insert("protocol".to_owned(), json!(person.begun.protocol));
+        let names = || INTERACTIONS.iter().map(|column| column.name);
+        let trials = trials(person).into_iter().zip(&person.trials).map(|(values, trial)| {
+            let mut row = object(names().zip(values));
+            row.insert("said".to_owned(), said(trial));
+            row.insert("asked".to_owned(), asked(trial));
+            Json::Object(row)
+        });
+        row.insert("trials".to_owned(), trials.collect());
+        Json::Object(row)
+    });
+    json!({ "format": "whichone-study", "version": 1, "participants": people.collect::<Vec<_>>() })
+}
+
+/// Every item that any of the participants was asked, each id once, in order of appearance.
+pub(crate) fn items(people: &[Participant]) -> Vec<Item> {
+    let mut items: Vec<Item> = Vec::new();
+    for item in people.iter().flat_map(|person| &person.begun.protocol.questionnaire) {
+        if items.iter().all(|known| known.id != item.id) {
+            items.push(item.clone());
+        }
+    }
+    items
+}
+
+fn object<'a>(pairs: impl Iterator<Item = (&'a str, Json)>) -> Map<String, Json> {
+    pairs.map(|(name, value)| (name.to_owned(), value)).collect()
+}
+
+fn said(trial: &Trial) -> Json {
+    let said = trial.said.iter().map(|said| {
+        let source = if said.source == Source::Typed { "typed" } else { "voice" };
+        json!({ "seq": said.seq, "source": source, "words": said.words })
+    });
+    said.collect()
+}
+
+fn asked(trial: &Trial) -> Json {
+    let asked = trial.asked.iter().map(|question| {
+        json!({ "prompt": question.prompt, "times": question.presentations, "words": question.words })
+    });
+    asked.collect()
+}
+
+/// The rows of a participant's interactions. Of deleted data there are none.
+fn trials(person: &Participant) -> Vec<Vec<Json>> {
+    let mut number = 0;
+    let rows = person.trials.iter().enumerate().map(|(n, trial)| {
+        number += u32::from(trial.counts());
+        row(person, n + 1, trial.counts().then_some(number), trial)
+    });
+    rows.collect()
+}
+
+/// The values in the order of [`INTERACTIONS`].
+fn row(person: &Participant, n: usize, number: Option<u32>, trial: &Trial) -> Vec<Json> {
+    let counts = trial.counts() && person.status().counts();
+    let (interaction, picked) = match &trial.end {
+        Some(End::Verdict { interaction, object, .. }) => {
+            (Some(*interaction).filter(|n| *n > 0), object.clone())
+        }
+        _ => (None, None),
+    };
+    let (outcome, fault) = match &trial.end {
+        Some(End::Verdict { verdict, .. }) => (verdict.name(), None),
+        Some(End::Fault(_, why)) => ("fault", Some(why)),
+        None => ("unfinished", None),
+    };
+    let success = trial.verdict().filter(|_| counts).map(|v| u8::from(v == Verdict::Right));
+    vec![
+        json!(person.id()),
+        json!(person.status().name()),
+        json!(n),
+        json!(number),
+        json!(block(person, trial)),
+        json!(u8::from(trial.step.practice)),
+        json!(u8::from(counts)),
+        json!(trial.step.policy),
+        json!(trial.drawn.scene),
+        json!(trial.drawn.scene_key),
+        json!(trial.drawn.object),
+        json!(picked),
+        json!(outcome),
+        json!(success),
+        json!(trial.seconds().map(thousandths)),
+        json!(trial.talk_seconds().map(thousandths)),
+        json!(trial.questions()),
+        json!(trial.repeats()),
+        json!(trial.utterances()),
+        json!(trial.said_by(Source::Typed)),
+        json!(trial.said_by(Source::Voice)),
+        json!(interaction),
+        json!(utc(trial.drawn_at)),
+        json!(trial.started_at.map(utc)),
+        json!(trial.ended_at.map(utc)),
+        json!(trial.resumed),
+        json!(fault),
+    ]
+}
+
+/// The values in the order of [`PARTICIPANTS`].
+fn participant(person: &Participant) -> Vec<Json> {
+    let asks = !person.begun.protocol.consent.is_empty();
+    let right = person.counted().filter(|trial| trial.verdict() == Some(Verdict::Right)).count();
+    let faults = person.trials.iter().filter(|t| matches!(t.end, Some(End::Fault(..)))).count();
+    vec![
+        json!(person.id()),
+        json!(person.status().name()),
+        json!(policies(person).join(">")),
+        json!(person.counted().count()),
+        json!(right),
+        json!(faults),
+        json!(asks.then_some(u8::from(person.consented))),
+        json!(utc(person.begun_at)),
+        json!(utc(person.latest_at)),
+        json!(format!("{:016x}", person.begun.seed)),
+        json!(person.begun.group),
+        json!(person.begun.software),
+    ]
+}
+
+/// The policies of the plan in their order, each once.
+fn policies(person: &Participant) -> Vec<&str> {
+    let mut list: Vec<&str> = Vec::new();
+    for step in &person.begun.plan {
+        if !list.contains(&step.policy.as_str()) {
+            list.push(&step.policy);
+        }
+    }
+    list
+}
+
+fn block(person: &Participant, trial: &Trial) -> Option<usize> {
+    policies(person).iter().position(|policy| *policy == trial.step.policy).map(|n| n + 1)
+}
+
+fn answer(person: &Participant, item: &Item) -> Json {
+    person.answers.get(&item.id).cloned().unwrap_or(Json::Null)
+}
+
+fn thousandths(value: f64) -> f64 {
+    (value * 1e3).round() / 1e3
+}
+
+fn line(cells: impl Iterator<Item = String>) -> String {
+    cells.collect::<Vec<_>>().join(",") + "\n"
+}
+
+fn cell_of(value: &Json) -> String {
+    match value {
+        Json::Null => String::new(),
+        Json::String(text) => cell(text),
+        other => other.to_string(),
+    }
+}
+
+/// A text as a cell (RFC 4180).
+pub(crate) fn cell(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}

@@ -1,0 +1,258 @@
+//! A robot for the kinematics from its description.
+
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
+use nalgebra::{Isometry3, Point3, Vector3};
+use robot_model::{Body as Shaped, Joint, JointKind, Limits, Robot as Description, Shape};
+
+use super::{Body, Parts, Robot};
+use crate::chain::{Axis, Chain, ZeroPosture};
+use crate::clearance::{Capsule, Cuboid};
+use crate::limb::{Joints, Limb};
+use crate::limits::{MotionLimits, PositionLimits};
+
+/// Why a described robot cannot be moved by this crate: what is missing, and the cure.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{what}; {cure}")]
+pub struct Unsuitable {
+    /// What is missing.
+    pub what: String,
+    /// What to do about it.
+    pub cure: String,
+}
+
+/// Acceleration of joints for which the description states none, rad/s²: MoveIt's for Baxter.
+const ACCELERATION_RAD_S2: f64 = 2.0;
+
+/// Jerk of joints for which the description states none, in accelerations per second.
+const JERK_PER_S: f64 = 10.0;
+
+impl Robot {
+    /// The robot of a description whose links `left_gripper` and `right_gripper` each hang on seven
+    /// turning joints. Groups `left_arm` and `right_arm` have a posture `neutral`, in which the
+    /// limb rests; other postures of theirs are used as stations where the limb is clear there.
+    ///
+    /// Joints without stated acceleration and jerk get 2 rad/s² and ten times that per second.
+    /// What a limb carries is enclosed in capsules; what carries no limb is its body, as it stands
+    /// with every joint at zero.
+    ///
+    /// # Errors
+    /// [`Unsuitable`] names what is missing.
+    pub fn from_description(description: &Description) -> Result<Self, Unsuitable> {
+        let left = parts(description, Limb::Left)?;
+        let right = parts(description, Limb::Right)?;
+        Ok(Self::new(description.clone(), left, right, body(description)?))
+    }
+}
+
+impl Chain {
+    /// The chain from the root to the link `tip` of any described robot; it must hang on seven
+    /// turning joints.
+    ///
+    /// # Errors
+    /// [`Unsuitable`] if there is no such link, or another number of joints.
+    pub fn from_description(description: &Description, tip: &str) -> Result<Self, Unsuitable> {
+        let joints = joints(description, tip)?;
+        let posture = posture(description, &joints, tip);
+        Ok(Self::new(&posture, PositionLimits(joints.map(limits_of))))
+    }
+}
+
+fn parts(description: &Description, limb: Limb) -> Result<Parts, Unsuitable> {
+    let tip = format!("{limb}_gripper");
+    let joints = joints(description, &tip)?;
+    let of = |f: &dyn Fn(&Limits) -> f64| joints.map(|joint| joint.limits.as_ref().map_or(0.0, f));
+    let acceleration = |limits: &Limits| limits.acceleration.unwrap_or(ACCELERATION_RAD_S2);
+    let limits = MotionLimits::new(
+        PositionLimits(joints.map(limits_of)),
+        of(&|limits| limits.velocity),
+        of(&acceleration),
+        of(&|limits| limits.jerk.unwrap_or_else(|| JERK_PER_S * acceleration(limits))),
+    );
+    Ok(Parts {
+        posture: posture(description, &joints, &tip),
+        limits,
+        names: joints.map(|joint| joint.name.clone()),
+        neutral: named(description, limb, "neutral", &joints)?,
+        stations: stations(description, limb, &joints),
+        capsules: capsules(description, limb, &joints)?,
+        may_touch: may_touch(description, limb),
+    })
+}
+
+/// The seven joints that move `tip`, shoulder first.
+fn joints<'a>(description: &'a Description, tip: &str) -> Result<[&'a Joint; 7], Unsuitable> {
+    let chain = description.chain(tip).map_err(|error| Unsuitable {
+        what: error.to_string(),
+        cure: "name the link at the end of a limb of seven turning joints".to_owned(),
+    })?;
+    let joints: Vec<&Joint> = chain.movable().collect();
+    let turning = joints.iter().all(|joint| joint.kind == JointKind::Revolute);
+    let count = joints.len();
+    joints.try_into().ok().filter(|_| turning).ok_or_else(|| Unsuitable {
+        what: format!(
+            "link {tip:?} hangs on {count} moving joints that are not seven revolute ones"
+        ),
+        cure: "limbs of seven revolute joints with limits are supported".to_owned(),
+    })
+}
+
+fn limits_of(joint: &Joint) -> (f64, f64) {
+    joint.limits.map_or((0.0, 0.0), |limits| (limits.lower, limits.upper))
+}
+
+fn posture(description: &Description, joints: &[&Joint; 7], tip: &str) -> ZeroPosture {
+    let poses = description.poses(|_| 0.0);
+    let axes = joints.map(|joint| {
+        let pose = &poses[joint.child];
+        let direction = pose.rotation * joint.axis.into_inner();
+        Axis { point: pose.translation.vector, direction }
+    });
+    let tool = description.link_index(tip).map_or_else(Isometry3::identity, |link| poses[link]);
+    ZeroPosture { axes, tool }
+}
+
+fn group(limb: Limb) -> String {
+    format!("{limb}_arm")
+}
+
+/// A named posture of the limb; joints that it leaves out are at zero.
+fn named(
+    description: &Description,
+    limb: Limb,
+    name: &str,
+    joints: &[&Joint; 7],
+) -> Result<Joints, Unsuitable> {
+    let group = group(limb);
+    let posture = description.posture(&group, name).ok_or_else(|| Unsuitable {
+        what: format!("there is no posture {name:?} of group {group:?}"),
+        cure: format!("add <group_state name={name:?} group={group:?}> to the SRDF"),
+    })?;
+    let q = joints.map(|joint| posture.position(joint.child - 1).unwrap_or(0.0));
+    match PositionLimits(joints.map(limits_of)).first_violation(&q) {
+        None => Ok(q),
+        Some((joint, at, (lower, upper))) => Err(Unsuitable {
+            what: format!("posture {name:?} of {group:?} has {joint} at {at} rad"),
+            cure: format!("keep it between {lower} and {upper}"),
+        }),
+    }
+}
+
+fn stations(description: &Description, limb: Limb, joints: &[&Joint; 7]) -> Vec<Joints> {
+    let of_limb = description.postures().iter().filter(|posture| posture.group == group(limb));
+    of_limb.filter_map(|posture| named(description, limb, &posture.name, joints).ok()).collect()
+}
+
+/// Which of the limb's joints moves a link last.
+fn mover(description: &Description, joints: &[&Joint; 7], mut link: usize) -> Option<usize> {
+    while let Some(joint) = description.carrier(link) {
+        if let Some(place) = joints.iter().position(|own| own.child == joint.child) {
+            return Some(place);
+        }
+        link = joint.parent;
+    }
+    None
+}
+
+fn capsules(
+    description: &Description,
+    limb: Limb,
+    joints: &[&Joint; 7],
+) -> Result<Vec<(usize, &'static str, Capsule)>, Unsuitable> {
+    let poses = description.poses(|_| 0.0);
+    let mut capsules = Vec::new();
+    for (index, link) in description.links().iter().enumerate() {
+        let Some(joint) = mover(description, joints, index) else { continue };
+        for shaped in &link.collision {
+            let capsule = enclosing(shaped, &poses[index], &link.name)?;
+            capsules.push((joint, kept(short(limb, &link.name)), capsule));
+        }
+    }
+    Ok(capsules)
+}
+
+/// What no limb moves.
+fn body(description: &Description) -> Result<Body, Unsuitable> {
+    let limbs = [joints(description, "left_gripper")?, joints(description, "right_gripper")?];
+    let poses = description.poses(|_| 0.0);
+    let mut body = Body::default();
+    for (index, link) in description.links().iter().enumerate() {
+        if limbs.iter().any(|joints| mover(description, joints, index).is_some()) {
+            continue;
+        }
+        for shaped in &link.collision {
+            let name = kept(&link.name);
+            let pose = poses[index] * shaped.origin;
+            match shaped.shape {
+                Shape::Box { size } => body.cuboids.push((name, upright(&pose, &size))),
+                _ => body.capsules.push((name, enclosing(shaped, &poses[index], &link.name)?)),
+            }
+        }
+    }
+    Ok(body)
+}
+
+/// The upright box round a box: the box itself if it stands upright.
+fn upright(pose: &Isometry3<f64>, size: &Vector3<f64>) -> Cuboid {
+    let rotation = pose.rotation.to_rotation_matrix();
+    let z = rotation.matrix().column(2);
+    if z[2] > 1.0 - 1e-9 {
+        let x = rotation.matrix().column(0);
+        let yaw = x[1].atan2(x[0]);
+        return Cuboid { centre: pose.translation.vector.into(), size: (*size).into(), yaw };
+    }
+    let extent = rotation.matrix().abs() * size;
+    Cuboid::aligned(pose.translation.vector.into(), extent.into())
+}
+
+/// The capsule round a shape, in the root's frame at `link`'s pose. Round shapes keep their size.
+fn enclosing(shaped: &Shaped, link: &Isometry3<f64>, name: &str) -> Result<Capsule, Unsuitable> {
+    let pose = link * shaped.origin;
+    let along = |axis: Vector3<f64>, length: f64, radius: f64| {
+        let end = |sign: f64| (pose * Point3::from(axis * (0.5 * sign * length))).coords;
+        Capsule { a: end(-1.0), b: end(1.0), radius }
+    };
+    match &shaped.shape {
+        Shape::Capsule { radius, length } | Shape::Cylinder { radius, length } => {
+            Ok(along(Vector3::z(), *length, *radius))
+        }
+        Shape::Sphere { radius } => Ok(along(Vector3::z(), 0.0, *radius)),
+        Shape::Box { size } => {
+            let longest = size.imax();
+            let mut axis = Vector3::zeros();
+            axis[longest] = 1.0;
+            let aside = 0.5 * (size.norm_squared() - size[longest] * size[longest]).sqrt();
+            Ok(along(axis, size[longest], aside))
+        }
+        Shape::Mesh { file } => Err(Unsuitable {
+            what: format!("link {name:?} has a mesh ({file}) for its collision shape"),
+            cure: "enclose it in capsules, cylinders, boxes or spheres instead".to_owned(),
+        }),
+    }
+}
+
+fn may_touch(description: &Description, limb: Limb) -> Vec<(String, String)> {
+    let name = |link: usize| short(limb, &description.links()[link].name).to_owned();
+    description.may_touch().iter().map(|(a, b)| (name(*a), name(*b))).collect()
+}
+
+/// A link's name without its limb's.
+fn short(limb: Limb, name: &str) -> &str {
+    name.strip_prefix(limb.name()).and_then(|rest| rest.strip_prefix('_')).unwrap_or(name)
+}
+
+/// The name for as long as the program runs: a program knows few robots, and errors that name a
+/// link are copied about.
+fn kept(name: &str) -> &'static str {
+    static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+    match names.get(name) {
+        Some(known) => known,
+        None => {
+            let name: &'static str = String::from(name).leak();
+            names.insert(name);
+            name
+        }
+    }
+}

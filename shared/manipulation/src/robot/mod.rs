@@ -1,0 +1,196 @@
+//! The robot: two limbs and the body that they hang on.
+
+mod describe;
+#[cfg(test)]
+mod tests;
+
+use std::sync::{Arc, LazyLock};
+
+use nalgebra::Vector3;
+
+use robot_model::Robot as Description;
+
+use crate::chain::{Chain, ZeroPosture};
+use crate::clearance::ArmShape;
+use crate::clearance::{Capsule, Cuboid};
+use crate::limb::{Joints, Limb};
+use crate::limits::MotionLimits;
+use crate::plan::Arms;
+
+pub use describe::Unsuitable;
+
+/// A robot of two limbs with seven turning joints each. Copies share what it holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    description: Arc<Description>,
+    limbs: Arc<[Arm; 2]>,
+}
+
+/// One limb: how it moves, and the room that it takes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Arm {
+    /// Which one.
+    pub limb: Limb,
+    /// Its joints' names in the description, shoulder first.
+    pub joint_names: [String; 7],
+    /// Its kinematics.
+    pub chain: Chain,
+    /// What its joints may do at most.
+    pub limits: MotionLimits,
+    /// Where it rests.
+    pub neutral: Joints,
+    /// Postures over which it may find its way, radians: the one at rest, and others in which it is
+    /// clear of itself and of the body.
+    pub stations: Vec<Joints>,
+    /// The shapes that enclose its links, shoulder first.
+    pub(crate) enclosures: Vec<Enclosure>,
+    /// Pairs of enclosures that must not touch.
+    pub(crate) pairs: Vec<(usize, usize)>,
+    /// What the limb hangs on.
+    pub(crate) body: Arc<Body>,
+}
+
+/// A capsule that moves with a joint.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Enclosure {
+    /// 0 shoulder to 6 wrist.
+    pub(crate) joint: usize,
+    /// The link that it encloses, without the limb's name.
+    pub(crate) link: &'static str,
+    /// In the joint's frame, see [`Chain::frames`].
+    pub(crate) capsule: Capsule,
+}
+
+/// Torso, pedestal and head, in `base`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Body {
+    pub(crate) cuboids: Vec<(&'static str, Cuboid)>,
+    pub(crate) capsules: Vec<(&'static str, Capsule)>,
+}
+
+/// What a limb is made from.
+struct Parts {
+    posture: ZeroPosture,
+    limits: MotionLimits,
+    names: [String; 7],
+    neutral: Joints,
+    stations: Vec<Joints>,
+    /// Capsules with the joint that moves them and their link's name, in `base` at zero.
+    capsules: Vec<(usize, &'static str, Capsule)>,
+    /// Pairs of links that may touch.
+    may_touch: Vec<(String, String)>,
+}
+
+impl Robot {
+    /// The robot that whichone ships: Baxter with its electric grippers and extended fingers.
+    pub fn baxter() -> &'static Self {
+        static BAXTER: LazyLock<Robot> = LazyLock::new(|| {
+            Robot::from_description(Description::baxter()).expect("the tests build this very robot")
+        });
+        &BAXTER
+    }
+
+    fn new(description: Description, left: Parts, right: Parts, body: Body) -> Self {
+        let body = Arc::new(body);
+        let arms = [(Limb::Left, left), (Limb::Right, right)];
+        let limbs = Arc::new(arms.map(|(limb, parts)| Arm::new(limb, parts, &body)));
+        Self { description: Arc::new(description), limbs }
+    }
+
+    /// Where every link is, and what it looks like.
+    pub fn description(&self) -> &Description {
+        &self.description
+    }
+
+    /// One of its limbs.
+    pub fn arm(&self, limb: Limb) -> &Arm {
+        match limb {
+            Limb::Left => &self.limbs[0],
+            Limb::Right => &self.limbs[1],
+        }
+    }
+
+    /// Both limbs at rest.
+    pub fn neutral(&self) -> Arms {
+        let [left, right] = Limb::BOTH.map(|limb| self.arm(limb).neutral);
+        Arms { left, right }
+    }
+}
+
+impl Arm {
+    fn new(limb: Limb, parts: Parts, body: &Arc<Body>) -> Self {
+        let chain = Chain::new(&parts.posture, parts.limits.position);
+        let frames = chain.frames(&[0.0; 7]);
+        let enclosures = parts.capsules.into_iter().map(|(joint, link, capsule)| {
+            let local = |p: &Vector3<f64>| frames[joint].seen(&(p - frames[joint].origin));
+            let capsule = Capsule { a: local(&capsule.a), b: local(&capsule.b), ..capsule };
+            Enclosure { joint, link, capsule }
+        });
+        let enclosures: Vec<Enclosure> = enclosures.collect();
+        let pairs = pairs(&chain, &enclosures, &parts.may_touch);
+        let mut arm = Self {
+            limb,
+            joint_names: parts.names,
+            chain,
+            limits: parts.limits,
+            neutral: parts.neutral,
+            stations: parts.stations,
+            enclosures,
+            pairs,
+            body: Arc::clone(body),
+        };
+        let clear = |q: &Joints| {
+            let shape = ArmShape::at(&arm, q);
+            !shape.to_itself(0.0).is_some() && !shape.to_trunk(0.0).is_some()
+        };
+        let stations = arm.stations.iter().copied().filter(clear).collect();
+        arm.stations = stations;
+        arm
+    }
+
+    /// The enclosing capsules at `q`, in `base`.
+    pub(crate) fn capsules(&self, q: &Joints) -> Vec<Capsule> {
+        placed(&self.chain, &self.enclosures, q)
+    }
+}
+
+fn placed(chain: &Chain, enclosures: &[Enclosure], q: &Joints) -> Vec<Capsule> {
+    let frames = chain.frames(q);
+    let place = |Enclosure { joint, capsule, .. }: &Enclosure| {
+        let frame = &frames[*joint];
+        Capsule { a: frame.point(&capsule.a), b: frame.point(&capsule.b), ..*capsule }
+    };
+    enclosures.iter().map(place).collect()
+}
+
+/// Postures at which capsules are looked at to tell which always overlap.
+const POSTURES: u32 = 60;
+
+/// The pairs of enclosures that must not touch: of links at least two joints apart, unless the
+/// description lets them, or they overlap wherever the arm is: enclosures are wider than what they
+/// enclose.
+fn pairs(
+    chain: &Chain,
+    enclosures: &[Enclosure],
+    may_touch: &[(String, String)],
+) -> Vec<(usize, usize)> {
+    let excused =
+        |a: &str, b: &str| may_touch.iter().any(|(c, d)| (a == c && b == d) || (a == d && b == c));
+    let apart = |(i, j): &(usize, usize)| {
+        let (a, b) = (&enclosures[*i], &enclosures[*j]);
+        b.joint >= a.joint + 2 && !excused(a.link, b.link)
+    };
+    let count = enclosures.len();
+    let all = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
+    let mut wanted: Vec<_> = all.filter(apart).map(|pair| (pair, true)).collect();
+    for k in 0..POSTURES {
+        // Strides without a common period: each joint goes through its whole range.
+        let share =
+            std::array::from_fn(|i| (f64::from(k) * 0.618 * (1.0 + 0.37 * i as f64)).fract());
+        let capsules = placed(chain, enclosures, &chain.limits().at(&share));
+        for ((i, j), always) in &mut wanted {
+            *always &= capsules[*i].to_capsule(&capsules[*j]) < 0.0;
+        }
+    }
+    wanted.into_iter().filter(|(_, always)| !always).map(|(pair, _)| pair).collect()
+}

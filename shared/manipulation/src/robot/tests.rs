@@ -1,0 +1,165 @@
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::Isometry3;
+
+use super::*;
+use crate::inverse::{TOLERANCE_M, TOLERANCE_RAD};
+use crate::samples::{Random, difference, fixture, neutral, robot};
+
+fn described(urdf: &str) -> Description {
+    Description::parse(urdf, None).unwrap_or_else(|faults| panic!("{faults}"))
+}
+
+/// Another arm of Baxter's family, and one that is of none.
+fn others() -> [Chain; 2] {
+    let iiwa = include_str!("../../../../tests/fixtures/robots/seven_joints.urdf");
+    let askew = iiwa.replace(r#"<origin xyz="0 0 0.2045""#, r#"<origin xyz="0.05 0.03 0.2045""#);
+    assert_ne!(askew, iiwa, "the fixture has changed");
+    [iiwa, &askew].map(|urdf| Chain::from_description(&described(urdf), "flange").unwrap())
+}
+
+#[test]
+fn limits_and_postures_are_the_facts() {
+    let facts: toml::Table = fixture("baxter_facts.toml").parse().unwrap();
+    let joints = facts["joint"].as_array().unwrap();
+    for limb in Limb::BOTH {
+        let arm = robot().arm(limb);
+        for (i, name) in arm.joint_names.iter().enumerate() {
+            assert_eq!(*name, limb.joint_name(i));
+            let fact = joints.iter().find(|j| j["name"].as_str() == Some(name)).unwrap();
+            let of = |key: &str| fact[key].as_float().unwrap();
+            assert_eq!((of("lower"), of("upper")), arm.limits.position.0[i], "{name}");
+            assert_eq!(of("velocity"), arm.limits.velocity[i], "{name}");
+        }
+        assert_eq!((arm.limits.acceleration, arm.limits.jerk), ([2.0; 7], [20.0; 7]));
+        assert_eq!(arm.neutral, neutral());
+        assert_eq!(arm.stations.len(), 2, "neutral and untuck; the tuck is in the trunk");
+        assert!(arm.chain.is_closed_form());
+    }
+}
+
+#[test]
+fn the_chain_is_where_its_description_says() {
+    let mut random = Random::seeded(51);
+    for limb in Limb::BOTH {
+        let arm = robot().arm(limb);
+        let described = robot().description().chain(&format!("{limb}_gripper")).unwrap();
+        for _ in 0..200 {
+            let q = random.posture();
+            assert!(difference(&arm.chain.forward(&q), &described.forward(&q)) < 1e-10);
+            let (fast, slow) = (arm.chain.jacobian(&q), described.jacobian(&q));
+            assert!((0..7).all(|j| (fast.column(j) - slow.column(j)).amax() < 1e-10));
+            let m = (arm.chain.manipulability(&q), described.manipulability(&q));
+            assert!((m.0 - m.1).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_limb_of_the_family_is_recognised_and_another_is_not() {
+    let [family, askew] = others();
+    assert!(family.is_closed_form() && !askew.is_closed_form());
+}
+
+#[test]
+fn limbs_of_other_robots_are_solved() {
+    let seed = 52;
+    let mut random = Random::seeded(seed);
+    for (chain, count) in others().into_iter().zip([400, 60]) {
+        for _ in 0..count {
+            let q = chain.limits().at(&std::array::from_fn(|_| random.unit()));
+            let target = chain.forward(&q);
+            let found =
+                chain.inverse(&target, None).unwrap_or_else(|e| panic!("{seed} {q:?}: {e}"));
+            assert_reaches(&chain, &target, &found.q);
+            let near = chain.inverse(&target, Some(&q)).unwrap();
+            assert_reaches(&chain, &target, &near.q);
+            let away: f64 = near.q.iter().zip(&q).map(|(a, b)| (a - b).powi(2)).sum();
+            assert!(away.sqrt() < 1e-3, "{seed} {q:?}");
+        }
+        let all = chain.solutions(&chain.forward(&[0.3; 7]));
+        assert!(all.len() > 3 && all.iter().all(|q| chain.limits().within(q)));
+        let far = Isometry3::translation(5.0, 0.0, 0.0);
+        assert!(chain.inverse(&far, None).is_err() && chain.solutions(&far).is_empty());
+        assert!(chain.inverse(&Isometry3::translation(f64::NAN, 0.0, 0.0), None).is_err());
+    }
+}
+
+fn assert_reaches(chain: &Chain, target: &Isometry3<f64>, q: &Joints) {
+    let reached = chain.forward(q);
+    assert!(chain.limits().within(q));
+    assert!((reached.translation.vector - target.translation.vector).norm() <= TOLERANCE_M);
+    assert!(reached.rotation.angle_to(&target.rotation) <= TOLERANCE_RAD + 3e-8);
+}
+
+#[test]
+fn jacobians_of_other_robots_agree_with_finite_differences() {
+    let mut random = Random::seeded(53);
+    for chain in others() {
+        let q = chain.limits().at(&std::array::from_fn(|_| random.unit()));
+        let jacobian = chain.jacobian(&q);
+        for j in 0..7 {
+            let moved = |by: f64| {
+                let mut q = q;
+                q[j] += by;
+                chain.forward(&q)
+            };
+            let (before, after) = (moved(-1e-6), moved(1e-6));
+            let linear = (after.translation.vector - before.translation.vector) / 2e-6;
+            let turn = (after.rotation * before.rotation.inverse()).scaled_axis() / 2e-6;
+            for i in 0..3 {
+                assert!((jacobian[(i, j)] - linear[i]).abs() < 1e-8);
+                assert!((jacobian[(i + 3, j)] - turn[i]).abs() < 1e-8);
+            }
+        }
+    }
+}
+
+#[test]
+fn what_a_description_lacks_is_said() {
+    let iiwa = described(include_str!("../../../../tests/fixtures/robots/seven_joints.urdf"));
+    let error = Robot::from_description(&iiwa).unwrap_err().to_string();
+    assert!(error.contains("left_gripper") && error.contains("seven"), "{error}");
+    let error = Chain::from_description(&iiwa, iiwa.root().name.as_str()).unwrap_err().to_string();
+    assert!(error.contains("0 moving joints"), "{error}");
+    let unposed = described(robot_model::BAXTER_URDF);
+    let error = Robot::from_description(&unposed).unwrap_err().to_string();
+    assert!(error.contains("neutral") && error.contains("<group_state"), "{error}");
+    let meshed = robot_model::BAXTER_URDF.replace(
+        r#"<capsule radius="0.1466" length="0.175646263837"/>"#,
+        r#"<mesh filename="shoulder.stl"/>"#,
+    );
+    let meshed = Description::parse(&meshed, Some(robot_model::BAXTER_SRDF)).unwrap();
+    let error = Robot::from_description(&meshed).unwrap_err().to_string();
+    assert!(error.contains("shoulder.stl") && error.contains("capsules"), "{error}");
+}
+
+#[test]
+fn other_shapes_are_enclosed() {
+    let boxed = robot_model::BAXTER_URDF.replace(
+        r#"<capsule radius="0.1466" length="0.175646263837"/>"#,
+        r#"<box size="0.06 0.08 0.3"/>"#,
+    );
+    let boxed = Description::parse(&boxed, Some(robot_model::BAXTER_SRDF)).unwrap();
+    let boxed = Robot::from_description(&boxed).unwrap();
+    let capsule = boxed.arm(Limb::Left).enclosures[0].capsule;
+    assert!((capsule.radius - 0.05).abs() < 1e-12);
+    assert!(((capsule.a - capsule.b).norm() - 0.3).abs() < 1e-9);
+}
+
+#[test]
+fn a_tool_may_point_anywhere() {
+    let mut random = Random::seeded(54);
+    let chain = &robot().arm(Limb::Right).chain;
+    let aside = Isometry3::new([0.02, -0.05, 0.1].into(), [0.4, FRAC_PI_2, 0.1].into());
+    let tooled = chain.with_tool(&aside);
+    assert!(tooled.is_closed_form());
+    for _ in 0..100 {
+        let q = random.posture();
+        let target = tooled.forward(&q);
+        let placed = chain.forward(&q) * aside;
+        assert!((target.translation.vector - placed.translation.vector).norm() < 1e-9);
+        assert!(target.rotation.angle_to(&placed.rotation) < 1e-7);
+        assert_reaches(&tooled, &target, &tooled.inverse(&target, None).unwrap().q);
+    }
+}

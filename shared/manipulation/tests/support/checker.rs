@@ -1,0 +1,315 @@
+//! Carries a plan out and looks at every instant whether something touches something: points on the
+//! surfaces of the capsules and boxes, put where the robot description's own forward kinematics puts
+//! its links. Shares no code with the planner's clearances.
+
+use manipulation::{
+    Cuboid, Joints, Limb, MotionLimits, ObjectPose, PickPhase, PickPlan, Robot, attached_pose,
+};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+
+use super::fixture;
+use super::solid::Solid;
+
+/// Times a second at which shapes are looked at.
+const RATE_HZ: f64 = 100.0;
+
+/// Overlaps that count as rounding, metres.
+const TOLERANCE_M: f64 = 1e-4;
+
+/// The same between an object and what it stood on while it is lifted off, metres.
+const LIFT_TOLERANCE_M: f64 = 1e-3;
+
+/// The checker's own table: as the planner is told, solid below its top.
+const TABLE_SIZE_M: [f64; 3] = [1.1, 2.4, 0.5];
+const TABLE_MIDDLE_M: [f64; 2] = [0.95, 0.0];
+
+/// A part of the robot: a solid in the frame of a link of the description.
+struct Part {
+    solid: Solid,
+    link: usize,
+    /// Whether what the gripper holds may touch it.
+    wrist: bool,
+}
+
+/// What two solids did that they must not.
+#[derive(Debug)]
+pub(crate) struct Violation {
+    pub(crate) t_s: f64,
+    pub(crate) what: String,
+}
+
+/// The robot and what stands around, as the checker sees them.
+pub(crate) struct Checker<'a> {
+    robot: &'a Robot,
+    /// The left arm's capsules, the right arm's, and what does not move.
+    arms: [Vec<Part>; 2],
+    body: Vec<(Solid, Isometry3<f64>)>,
+    /// Numbers of an arm's capsules that must not touch.
+    own_pairs: Vec<(usize, usize)>,
+    /// Of an arm's capsules and of what does not move.
+    body_pairs: Vec<(usize, usize)>,
+}
+
+impl<'a> Checker<'a> {
+    pub(crate) fn new(robot: &'a Robot) -> Self {
+        let facts: toml::Table = fixture("baxter_facts.toml").parse().unwrap();
+        let capsules = facts["capsule"].as_array().unwrap();
+        let arm = |limb: Limb| -> Vec<Part> {
+            capsules.iter().map(|capsule| part(robot, limb, capsule)).collect()
+        };
+        let body = body(&facts);
+        let names: Vec<&str> = body.iter().map(|(solid, _)| solid.name.as_str()).collect();
+        let pairs: serde_json::Value =
+            serde_json::from_str(&fixture("clearance_pairs.json")).unwrap();
+        let (mut own_pairs, mut body_pairs) = (Vec::new(), Vec::new());
+        for pair in pairs["pairs"].as_array().unwrap() {
+            let [a, b] = [0, 1].map(|i| pair[i].as_str().unwrap());
+            match (number(a, "left"), number(b, "left")) {
+                (Some(a), Some(b)) => own_pairs.push((a, b)),
+                (Some(a), None) => {
+                    body_pairs.extend(names.iter().position(|name| *name == b).map(|b| (a, b)));
+                }
+                (None, Some(b)) => {
+                    body_pairs.extend(names.iter().position(|name| *name == a).map(|a| (b, a)));
+                }
+                (None, None) => {}
+            }
+        }
+        assert!(own_pairs.len() > 50 && body_pairs.len() > 80, "the reference's pairs");
+        Self { robot, arms: [arm(Limb::Left), arm(Limb::Right)], body, own_pairs, body_pairs }
+    }
+
+    /// Carries `plan` out from neutral arms: `object` among `others` on a table. The first thing
+    /// that goes wrong.
+    pub(crate) fn violation(
+        &self,
+        plan: &PickPlan,
+        object: &ObjectPose,
+        others: &[Cuboid],
+        table_z_m: f64,
+    ) -> Option<Violation> {
+        let around = surroundings(others, table_z_m);
+        let held = Solid::cuboid("the object", object.size_m);
+        let neutral = self.robot.neutral();
+        let (still, _) = self.poses(plan.limb().other(), neutral.of(plan.limb().other()));
+        let released_s = plan.timeline.span_s(PickPhase::Release)?.0;
+        let closed_s = plan.timeline.span_s(PickPhase::Close)?.1;
+        let steps = (plan.duration_s() * RATE_HZ).ceil() as usize;
+        (0..=steps).find_map(|k| {
+            let t_s = k as f64 / RATE_HZ;
+            let (now, gripper) = self.poses(plan.limb(), &plan.at(t_s).q);
+            let holds = (closed_s..released_s).contains(&t_s);
+            let carried = holds.then(|| attached_pose(&gripper, &plan.object_in_gripper));
+            let what = self
+                .arm_touches(plan.limb(), &now, &still, &around)
+                .or_else(|| {
+                    self.held_touches(plan.limb(), &held, carried?, object, &now, &still, &around)
+                })
+                .or_else(|| {
+                    let stands = t_s < closed_s;
+                    stands.then(|| self.arm_on_object(plan.limb(), &now, &held, object)).flatten()
+                });
+            what.map(|what| Violation { t_s, what })
+        })
+    }
+
+    fn arm_touches(
+        &self,
+        limb: Limb,
+        now: &[Isometry3<f64>],
+        still: &[Isometry3<f64>],
+        around: &[(Solid, Isometry3<f64>)],
+    ) -> Option<String> {
+        let (own, theirs) = (&self.arms[side(limb)], &self.arms[side(limb.other())]);
+        let pair = |a: &Part, at: &Isometry3<f64>, b: &Solid, there: &Isometry3<f64>| {
+            touching(&a.solid, at, b, there, TOLERANCE_M)
+        };
+        let body = self.body_pairs.iter().find_map(|(i, k)| {
+            let (solid, pose) = &self.body[*k];
+            pair(&own[*i], &now[*i], solid, pose)
+        });
+        body.or_else(|| {
+            self.own_pairs
+                .iter()
+                .find_map(|(i, j)| pair(&own[*i], &now[*i], &own[*j].solid, &now[*j]))
+        })
+        .or_else(|| {
+            (0..own.len()).find_map(|i| {
+                let others = theirs.iter().zip(still).map(|(part, pose)| (&part.solid, pose));
+                let around = around.iter().map(|(solid, pose)| (solid, pose));
+                others.chain(around).find_map(|(solid, pose)| pair(&own[i], &now[i], solid, pose))
+            })
+        })
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "everything that stands somewhere")]
+    fn held_touches(
+        &self,
+        limb: Limb,
+        held: &Solid,
+        at: Isometry3<f64>,
+        object: &ObjectPose,
+        now: &[Isometry3<f64>],
+        still: &[Isometry3<f64>],
+        around: &[(Solid, Isometry3<f64>)],
+    ) -> Option<String> {
+        let stood = Vector3::from(object.xyz_m);
+        let lifted = at.translation.vector - stood;
+        let over_its_place = lifted.xy().norm() < 0.005 && lifted.z < 0.02;
+        let own = self.arms[side(limb)].iter().zip(now).filter(|(part, _)| !part.wrist);
+        let theirs = self.arms[side(limb.other())].iter().zip(still);
+        let parts = own.chain(theirs).map(|(part, pose)| (&part.solid, pose));
+        let body = self.body.iter().map(|(solid, pose)| (solid, pose));
+        let robot = parts.chain(body).find_map(|(s, p)| touching(held, &at, s, p, TOLERANCE_M));
+        robot.or_else(|| {
+            let tolerance = if over_its_place { LIFT_TOLERANCE_M } else { TOLERANCE_M };
+            around.iter().find_map(|(s, p)| touching(held, &at, s, p, tolerance))
+        })
+    }
+
+    /// The arm against the object where it stands, the wrist and the gripper apart.
+    fn arm_on_object(
+        &self,
+        limb: Limb,
+        now: &[Isometry3<f64>],
+        standing: &Solid,
+        object: &ObjectPose,
+    ) -> Option<String> {
+        let own = self.arms[side(limb)].iter().zip(now).filter(|(part, _)| !part.wrist);
+        let place = object.isometry();
+        own.into_iter()
+            .find_map(|(part, pose)| touching(&part.solid, pose, standing, &place, TOLERANCE_M))
+    }
+
+    /// Where the links of one arm's capsules are, and its gripper.
+    fn poses(&self, limb: Limb, q: &Joints) -> (Vec<Isometry3<f64>>, Isometry3<f64>) {
+        let description = self.robot.description();
+        let names = &self.robot.arm(limb).joint_names;
+        let poses = description
+            .poses(|joint| names.iter().position(|name| *name == joint.name).map_or(0.0, |i| q[i]));
+        let gripper = description.link_index(&format!("{limb}_gripper")).unwrap();
+        (self.arms[side(limb)].iter().map(|part| poses[part.link]).collect(), poses[gripper])
+    }
+}
+
+/// The first limit that a plan breaks, looked at a thousand times a second.
+pub(crate) fn broken_limit(plan: &PickPlan, limits: &MotionLimits) -> Option<Violation> {
+    let mut begin_s = 0.0;
+    let mut before: Option<(Joints, Joints)> = None;
+    for stage in plan.timeline.stages() {
+        let steps = (stage.motion.duration_s() * 1e3).ceil() as usize;
+        let mut accelerations: Option<(f64, Joints)> = None;
+        for k in 0..=steps {
+            let t_s = (k as f64 * 1e-3).min(stage.motion.duration_s());
+            let state = stage.motion.state(t_s);
+            for j in 0..7 {
+                let at = |what: &str, value: f64| {
+                    let what = format!("joint {j}: {what} {value}");
+                    Some(Violation { t_s: begin_s + t_s, what })
+                };
+                let over = |value: f64, most: f64| value.abs() > most * (1.0 + 1e-6);
+                let (lower, upper) = limits.position.0[j];
+                if !(lower..=upper).contains(&state.q[j]) {
+                    return at("position", state.q[j]);
+                }
+                if over(state.qd[j], limits.velocity[j]) {
+                    return at("velocity", state.qd[j]);
+                }
+                if over(state.qdd[j], limits.acceleration[j]) {
+                    return at("acceleration", state.qdd[j]);
+                }
+                if let Some((earlier_s, earlier)) = accelerations {
+                    let change = state.qdd[j] - earlier[j];
+                    if change.abs() > limits.jerk[j] * (t_s - earlier_s) + 1e-6 {
+                        return at("jerk", change / (t_s - earlier_s));
+                    }
+                }
+                if let Some((q, qd)) = before.filter(|_| k == 0)
+                    && ((q[j] - state.q[j]).abs() > 1e-9 || (qd[j] - state.qd[j]).abs() > 1e-6)
+                {
+                    return at("jump between stages", state.q[j] - q[j]);
+                }
+            }
+            accelerations = Some((t_s, state.qdd));
+            before = Some((state.q, state.qd));
+        }
+        begin_s += stage.motion.duration_s();
+    }
+    None
+}
+
+fn side(limb: Limb) -> usize {
+    match limb {
+        Limb::Left => 0,
+        Limb::Right => 1,
+    }
+}
+
+fn touching(
+    a: &Solid,
+    at: &Isometry3<f64>,
+    b: &Solid,
+    there: &Isometry3<f64>,
+    tolerance_m: f64,
+) -> Option<String> {
+    let depth = a.overlap(at, b, there);
+    (depth > tolerance_m).then(|| format!("{} is {:.1} mm in {}", a.name, depth * 1e3, b.name))
+}
+
+fn part(robot: &Robot, limb: Limb, capsule: &toml::Value) -> Part {
+    let link = capsule["link"].as_str().unwrap();
+    let triple = |key: &str| -> Vector3<f64> {
+        Vector3::from(capsule[key].clone().try_into::<[f64; 3]>().unwrap())
+    };
+    let name = format!("{limb}_{link}");
+    let radius = capsule["radius"].as_float().unwrap();
+    Part {
+        solid: Solid::round(&name, triple("a"), triple("b"), radius),
+        link: robot.description().link_index(&name).unwrap(),
+        wrist: ["wrist", "hand"].contains(&link),
+    }
+}
+
+/// Torso and pedestal as boxes, and the head as two balls, named as in the reference's pairs.
+fn body(facts: &toml::Table) -> Vec<(Solid, Isometry3<f64>)> {
+    let mut body = Vec::new();
+    for link in facts["link"].as_array().unwrap() {
+        let name = link["name"].as_str().unwrap();
+        if !["torso", "pedestal"].contains(&name) {
+            continue;
+        }
+        for (k, shape) in link["collision"].as_array().unwrap().iter().enumerate() {
+            let triple = |key: &str| -> Option<[f64; 3]> {
+                shape.get(key).and_then(|value| value.clone().try_into().ok())
+            };
+            if let (Some(size), Some(xyz)) = (triple("size"), triple("xyz")) {
+                let solid = Solid::cuboid(&format!("{name}#{k}"), size);
+                body.push((solid, Translation3::from(Vector3::from(xyz)).into()));
+            }
+        }
+    }
+    for (k, y) in [-0.04, 0.04].into_iter().enumerate() {
+        let ball = Solid::round(&format!("head#{k}"), Vector3::zeros(), Vector3::zeros(), 0.22);
+        body.push((ball, Isometry3::translation(0.04, y, 0.75)));
+    }
+    body
+}
+
+/// The number of an arm's capsule in the reference, e.g. 13 of `left_hand#13`.
+fn number(name: &str, limb: &str) -> Option<usize> {
+    let (link, number) = name.split_once('#')?;
+    link.starts_with(limb).then(|| number.parse().ok()).flatten()
+}
+
+fn surroundings(others: &[Cuboid], table_z_m: f64) -> Vec<(Solid, Isometry3<f64>)> {
+    let [x, y] = TABLE_MIDDLE_M;
+    let table = Isometry3::translation(x, y, table_z_m - 0.5 * TABLE_SIZE_M[2]);
+    let mut around = vec![(Solid::cuboid("the table", TABLE_SIZE_M).without_points(), table)];
+    for (k, other) in others.iter().enumerate() {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), other.yaw);
+        let place = Translation3::from(Vector3::from(other.centre));
+        let solid = Solid::cuboid(&format!("object {k}"), other.size);
+        around.push((solid, Isometry3::from_parts(place, turn)));
+    }
+    around
+}

@@ -1,0 +1,170 @@
+//! Random tables, and what comes of picking everything on them.
+
+use manipulation::gripper::STROKE_M;
+use manipulation::{Cuboid, Limb, ObjectPose, PlanError, PlanSettings, Robot, plan_pick};
+
+use super::Random;
+use super::checker::{Checker, broken_limit};
+
+/// Six to twelve objects of all kinds on the table, that do not overlap: blocks, bars, bowls and
+/// boxes that are held at the rim, and some that are too wide to be held.
+pub(crate) fn random_table(random: &mut Random) -> Vec<ObjectPose> {
+    let count = 6 + (random.unit() * 7.0) as usize;
+    let mut objects: Vec<ObjectPose> = Vec::new();
+    let mut misses = 0;
+    while objects.len() < count {
+        let object = random_object(random);
+        let apart_m = random.between(0.005, 0.08);
+        let beside = |other: &ObjectPose| {
+            let way = [0, 1].map(|i| other.xyz_m[i] - object.xyz_m[i]);
+            way[0].hypot(way[1]) > radius(other) + radius(&object) + apart_m
+        };
+        if objects.iter().all(beside) {
+            objects.push(object);
+        } else {
+            misses += 1;
+            if misses > 500 {
+                (objects, misses) = (Vec::new(), 0);
+            }
+        }
+    }
+    objects
+}
+
+fn radius(object: &ObjectPose) -> f64 {
+    0.5 * object.size_m[0].hypot(object.size_m[1])
+}
+
+fn random_object(random: &mut Random) -> ObjectPose {
+    let thin = random.between(0.012, 0.040);
+    let wide = random.between(0.06, 0.18);
+    let wall = random.between(0.003, 0.009);
+    let (size, grasp_width_m) = match (random.unit() * 10.0) as usize {
+        0..=2 => ([thin, thin, random.between(0.02, 0.12)], thin),
+        3..=4 => ([wide, thin, random.between(0.012, 0.06)], thin),
+        5..=7 => ([wide, wide, random.between(0.03, 0.09)], wall),
+        8 => ([wide, random.between(0.05, 0.12), random.between(0.03, 0.08)], wall),
+        _ => ([wide, wide, random.between(0.03, 0.10)], random.between(STROKE_M + 0.001, 0.1)),
+    };
+    let z = TABLE_Z_M + 0.5 * size[2];
+    ObjectPose {
+        xyz_m: [random.between(0.50, 0.85), random.between(-0.65, 0.65), z],
+        yaw_rad: random.between(-3.1, 3.1),
+        size_m: size,
+        grasp_width_m,
+    }
+}
+
+pub(crate) const TABLE_Z_M: f64 = -0.155;
+
+/// The settings of the configuration that ships.
+pub(crate) fn settings() -> PlanSettings {
+    PlanSettings { speed_ratio: 0.6, table_z_m: TABLE_Z_M, ..PlanSettings::default() }
+}
+
+pub(crate) fn all_but(objects: &[ObjectPose], i: usize) -> Vec<Cuboid> {
+    let others = objects.iter().enumerate().filter(|(j, _)| *j != i);
+    others.map(|(_, object)| object.cuboid()).collect()
+}
+
+/// What came of many tables.
+#[derive(Debug, Default)]
+pub(crate) struct Tally {
+    pub(crate) tables: usize,
+    pub(crate) objects: usize,
+    pub(crate) picked: usize,
+    pub(crate) by_the_nearer_arm: usize,
+    pub(crate) too_wide: usize,
+    /// Refused, and refused also where nothing else stands on the table.
+    pub(crate) refused_alone: usize,
+    /// Refused among the others, and whatever else was tried.
+    pub(crate) refused_among: usize,
+    /// Refused, but possible from another height, or to another place of handing over.
+    pub(crate) possible_otherwise: usize,
+    pub(crate) plan_ms: Vec<f64>,
+    pub(crate) refuse_ms: Vec<f64>,
+    pub(crate) duration_s: Vec<f64>,
+    /// Everything that went wrong: the seed's table and what.
+    pub(crate) violations: Vec<String>,
+}
+
+impl Tally {
+    pub(crate) fn add(&mut self, other: Self) {
+        self.tables += other.tables;
+        self.objects += other.objects;
+        self.picked += other.picked;
+        self.by_the_nearer_arm += other.by_the_nearer_arm;
+        self.too_wide += other.too_wide;
+        self.refused_alone += other.refused_alone;
+        self.refused_among += other.refused_among;
+        self.possible_otherwise += other.possible_otherwise;
+        self.plan_ms.extend(other.plan_ms);
+        self.refuse_ms.extend(other.refuse_ms);
+        self.duration_s.extend(other.duration_s);
+        self.violations.extend(other.violations);
+    }
+}
+
+/// Plans a pick of every object of one random table, and carries out every plan.
+pub(crate) fn try_table(robot: &Robot, checker: &Checker<'_>, seed: u64) -> Tally {
+    let objects = random_table(&mut Random::seeded(seed));
+    let settings = settings();
+    let mut tally = Tally { tables: 1, objects: objects.len(), ..Tally::default() };
+    for (i, object) in objects.iter().enumerate() {
+        let others = all_but(&objects, i);
+        let clock = std::time::Instant::now();
+        let plan = plan_pick(robot, object, None, &robot.neutral(), &others, &settings);
+        let ms = clock.elapsed().as_secs_f64() * 1e3;
+        match plan {
+            Ok(plan) => {
+                tally.picked += 1;
+                tally.plan_ms.push(ms);
+                tally.duration_s.push(plan.duration_s());
+                tally.by_the_nearer_arm += usize::from(plan.limb().side() * object.xyz_m[1] >= 0.0);
+                let limits = robot.arm(plan.limb()).limits.at_speed_ratio(settings.speed_ratio);
+                let wrong = broken_limit(&plan, &limits)
+                    .or_else(|| checker.violation(&plan, object, &others, settings.table_z_m));
+                if let Some(wrong) = wrong {
+                    let (t_s, what) = (wrong.t_s, wrong.what);
+                    tally.violations.push(format!("table {seed} object {i}, {t_s:.2} s: {what}"));
+                }
+            }
+            Err(PlanError::Grasp(_)) => tally.too_wide += 1,
+            Err(_) => {
+                tally.refuse_ms.push(ms);
+                refused(robot, object, &others, &mut tally);
+            }
+        }
+    }
+    tally
+}
+
+/// What kind of refusal it was.
+fn refused(robot: &Robot, object: &ObjectPose, others: &[Cuboid], tally: &mut Tally) {
+    let neutral = robot.neutral();
+    let possible = |others: &[Cuboid], settings: &PlanSettings| {
+        Limb::BOTH
+            .into_iter()
+            .any(|limb| plan_pick(robot, object, Some(limb), &neutral, others, settings).is_ok())
+    };
+    if !possible(&[], &settings()) {
+        tally.refused_alone += 1;
+    } else if variants().iter().any(|settings| possible(others, settings)) {
+        tally.possible_otherwise += 1;
+    } else {
+        tally.refused_among += 1;
+    }
+}
+
+/// The settings with other heights above the grasp and other places of handing over.
+fn variants() -> Vec<PlanSettings> {
+    let mut variants = vec![settings()];
+    for hover_m in [0.05, 0.10, 0.20] {
+        variants.push(PlanSettings { hover_m, ..settings() });
+    }
+    for hand_over_xyz_m in [[0.75, 0.45, 0.30], [0.60, 0.60, 0.25]] {
+        variants.push(PlanSettings { hand_over_xyz_m, ..settings() });
+        variants.push(PlanSettings { hand_over_xyz_m, hover_m: 0.10, ..settings() });
+    }
+    variants
+}

@@ -1,0 +1,82 @@
+//! The seconds of every question and pick in a scene, on this robot.
+
+use dialogue::Durations;
+use scene::{AttributeId, ObjectId, Question, Scene, ValueId};
+
+use crate::{Motions, Pace, Voice};
+
+/// What single actions take of the person's time.
+///
+/// A question takes what passes from deciding on it to its answer recognised: saying it, then, in
+/// expectation, reacting, one word, and the recogniser; a pointing question also the way of the arm
+/// there from rest. A pick takes what passes to its hand-over. Where the arm's motions are not
+/// given, or not those of pointing, these lists are empty.
+pub fn measure(scene: &Scene, voice: &Voice, pace: &Pace, motions: Option<&Motions>) -> Durations {
+    let answer_s = pace.mean_answer_s();
+    let asked_s = |question| voice.seconds(&scene.phrase(question)) + answer_s;
+    let attributes = (0..scene.attributes().len()).map(AttributeId::from);
+    let is = |k: AttributeId| {
+        let values = 0..scene.attributes()[k.index()].values.len();
+        values.map(|v| asked_s(Question::Attribute(k, ValueId::from(v)))).collect()
+    };
+    let objects = || (0..scene.objects().len()).map(ObjectId::from);
+    let aim_s = |object| motions.and_then(|motions| motions.point_s(None, object));
+    let point: Option<Vec<f64>> =
+        objects().map(|i| Some(aim_s(i)? + asked_s(Question::Point(i)))).collect();
+    let pick = motions.map(|motions| objects().map(|i| motions.pick_s(None, i)).collect());
+    Durations {
+        attribute: attributes.clone().map(is).collect(),
+        which: attributes.map(|k| asked_s(Question::Which(k))).collect(),
+        point: point.unwrap_or_default(),
+        pick: pick.unwrap_or_default(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Extent;
+    use crate::testing::bowls;
+    use dialogue::{Model, Params};
+    use manipulation::{PickPhase, PlanSettings, PointPhase, Robot, plan_pick, plan_point};
+
+    #[test]
+    fn questions_take_the_seconds_of_their_words_and_of_the_answer() {
+        let scene = bowls();
+        let (voice, pace) = (Voice::default(), Pace::default());
+        let durations = measure(&scene, &voice, &pace, None);
+        assert_eq!(durations.check(&Model::new(&scene, Params::default())), vec![]);
+        assert_eq!((durations.point.len(), durations.pick.len()), (0, 0));
+        let is_it = |words: &str| voice.seconds(words) + pace.mean_answer_s();
+        let all: Vec<f64> = durations.attribute.iter().flatten().copied().collect();
+        assert!(all.contains(&is_it("Is it big?")), "{all:?}");
+        let longest = all.iter().copied().fold(0.0, f64::max);
+        assert_eq!(longest, is_it("Is it in the dishwasher?"));
+        let slow = measure(&scene, &Voice { words_per_minute: 80.0 }, &pace, None);
+        assert!(slow.which.iter().zip(&durations.which).all(|(slow, usual)| slow > usual));
+    }
+
+    #[test]
+    fn pointing_and_picking_take_the_seconds_of_their_trajectories() {
+        let scene = bowls();
+        let (voice, pace) = (Voice::default(), Pace::default());
+        let (robot, settings) = (Robot::baxter(), PlanSettings::default());
+        let motions = Motions::plan(robot, &scene, None, &settings, Extent::FromRest).unwrap();
+        let durations = measure(&scene, &voice, &pace, Some(&motions));
+        let places = crate::motion::places(&scene).unwrap();
+        for i in 0..6 {
+            let others = |except| (0..6).filter(move |j| Some(*j) != except);
+            let cuboids = |except| others(except).map(|j| places[j].cuboid()).collect::<Vec<_>>();
+            let (rest, at) = (&robot.neutral(), &places[i]);
+            let pick = plan_pick(robot, at, None, rest, &cuboids(Some(i)), &settings).unwrap();
+            let released_s = pick.timeline.span_s(PickPhase::Release).unwrap().1;
+            assert_eq!(durations.pick_s(i.into()), Some(released_s));
+            let aim = plan_point(robot, at.xyz_m, None, rest, &cuboids(None), &settings).unwrap();
+            let aimed_s = aim.timeline.span_s(PointPhase::Aim).unwrap().1;
+            let question = Question::Point(i.into());
+            let said_s = voice.seconds(&scene.phrase(question)) + pace.mean_answer_s();
+            assert_eq!(durations.question_s(question), Some(aimed_s + said_s));
+        }
+        assert!(durations.point.iter().any(|s| *s != durations.point[0]), "some stand farther");
+    }
+}

@@ -1,0 +1,183 @@
+//! The group's shared memory: one iceoryx2 node per process, opened with the group's own prefix and
+//! folder so that groups never see each other.
+
+use crate::group::GroupPaths;
+use iceoryx2::prelude::*;
+use messages::schema::Schema;
+use messages::topics::Topic;
+use messages::{Epoch, Incarnation, Service, Stamp};
+use serde::de::DeserializeOwned;
+
+mod doorbell;
+mod encoded;
+mod open;
+mod ports;
+
+pub use doorbell::{Bell, Ear};
+pub use encoded::{EncodedReader, EncodedWriter};
+pub use open::Topics;
+pub use ports::{Reader, Writer};
+
+pub(crate) type Ipc = ipc::Service;
+
+/// A process's access to the group's topics. Not shared between threads.
+#[derive(Debug)]
+pub struct Bus {
+    node: Node<Ipc>,
+    identity: Identity,
+}
+
+/// Who a process is in its group.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Identity {
+    /// Epoch of the group.
+    pub epoch: Epoch,
+    /// Incarnation of the service; 0 for clients and the supervisor.
+    pub incarnation: Incarnation,
+}
+
+/// A topic cannot be opened.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum BusError {
+    /// The other side was built with other messages.
+    #[error(
+        "topic {topic}: this program's {payload} has schema {ours}, the group's topic has another \
+         one ({cause}); use programs of one build in a group"
+    )]
+    Schema {
+        /// The topic.
+        topic: String,
+        /// Payload type of this program.
+        payload: &'static str,
+        /// Schema key of this program.
+        ours: String,
+        /// iceoryx2's word for it.
+        cause: String,
+    },
+    /// Anything else that iceoryx2 says.
+    #[error("shared memory, {what}: {cause}")]
+    Ipc {
+        /// What was tried.
+        what: String,
+        /// iceoryx2's word for it.
+        cause: String,
+    },
+}
+
+impl BusError {
+    pub(crate) fn ipc(what: &str, cause: String) -> Self {
+        Self::Ipc { what: what.to_owned(), cause }
+    }
+}
+
+/// A message could not be sent or taken.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("topic {topic}: {cause}")]
+pub struct PortError {
+    topic: &'static str,
+    cause: String,
+}
+
+impl PortError {
+    pub(crate) fn new(topic: &'static str, cause: String) -> Self {
+        Self { topic, cause }
+    }
+}
+
+/// The configuration with which every process of the group opens iceoryx2.
+pub(crate) fn config(paths: &GroupPaths) -> Result<Config, BusError> {
+    set_log_level(LogLevel::Fatal);
+    let mut config = Config::default();
+    let bad = |what: &str| BusError::ipc(what, "not usable as a name".to_owned());
+    config.global.prefix =
+        FileName::new(paths.ipc_prefix().as_bytes()).map_err(|_| bad("prefix"))?;
+    let root = Path::new(paths.ipc().as_os_str().as_encoded_bytes());
+    config.global.set_root_path(&root.map_err(|_| bad("iceoryx2 folder"))?);
+    // Only the supervisor cleans up after the dead: right after it has reaped them, before it
+    // starts a successor. Others would race it at every start.
+    config.global.node.cleanup_dead_nodes_on_creation = false;
+    config.global.node.cleanup_dead_nodes_on_destruction = false;
+    config.global.service.cleanup_dead_nodes_on_open = false;
+    Ok(config)
+}
+
+impl Bus {
+    /// Opens the group's shared memory as process `name`.
+    ///
+    /// # Errors
+    /// iceoryx2 refuses: no memory, no permission, no such folder.
+    pub fn open(paths: &GroupPaths, name: &str, identity: Identity) -> Result<Self, BusError> {
+        let config = config(paths)?;
+        let node_name =
+            NodeName::new(name).map_err(|e| BusError::ipc("node name", format!("{e:?}")))?;
+        let node = NodeBuilder::new()
+            .name(&node_name)
+            .config(&config)
+            .signal_handling_mode(SignalHandlingMode::Disabled)
+            .create::<Ipc>()
+            .map_err(|e| BusError::ipc("node", format!("{e:?}")))?;
+        Ok(Self { node, identity })
+    }
+
+    /// Who this process is.
+    pub fn identity(&self) -> Identity {
+        self.identity
+    }
+
+    /// Writes a fixed-layout topic.
+    ///
+    /// # Errors
+    /// Another schema, too many writers, or iceoryx2 refuses.
+    pub fn writer<T: WireMessage>(&self, topic: &Topic) -> Result<Writer<T>, BusError> {
+        Writer::open(self, topic)
+    }
+
+    /// Reads a fixed-layout topic.
+    ///
+    /// # Errors
+    /// As [`Bus::writer`].
+    pub fn reader<T: WireMessage>(&self, topic: &Topic) -> Result<Reader<T>, BusError> {
+        Reader::open(self, topic)
+    }
+
+    /// Writes a topic of encoded payloads.
+    ///
+    /// # Errors
+    /// As [`Bus::writer`].
+    pub fn encoded_writer<T: Schema>(&self, topic: &Topic) -> Result<EncodedWriter<T>, BusError> {
+        EncodedWriter::open(self, topic)
+    }
+
+    /// Reads a topic of encoded payloads.
+    ///
+    /// # Errors
+    /// As [`Bus::writer`].
+    pub fn encoded_reader<T: Schema + DeserializeOwned>(
+        &self,
+        topic: &Topic,
+    ) -> Result<EncodedReader<T>, BusError> {
+        EncodedReader::open(self, topic)
+    }
+
+    /// The wake-up of `service`, for that service itself.
+    ///
+    /// # Errors
+    /// iceoryx2 refuses.
+    pub fn ear(&self, service: Service) -> Result<Ear, BusError> {
+        Ear::open(self, service)
+    }
+
+    pub(crate) fn node(&self) -> &Node<Ipc> {
+        &self.node
+    }
+
+    pub(crate) fn stamp(&self) -> Stamp {
+        let Identity { epoch, incarnation } = self.identity;
+        Stamp { epoch: epoch.0, incarnation: incarnation.0, ..Stamp::default() }
+    }
+}
+
+/// What a fixed-layout message must be.
+pub trait WireMessage: Schema + ZeroCopySend + Copy + std::fmt::Debug + 'static {}
+
+impl<T: Schema + ZeroCopySend + Copy + std::fmt::Debug + 'static> WireMessage for T {}

@@ -1,0 +1,85 @@
+//! Wake-ups. An event says only "look": it may come once for many messages, or never where its
+//! listener was dead, so the woken side always drains everything and also looks by itself at times.
+
+use super::{Bus, BusError, Ipc};
+use iceoryx2::port::{listener::Listener, notifier::Notifier};
+use iceoryx2::prelude::*;
+use iceoryx2::service::port_factory::event::PortFactory;
+use messages::Service;
+use messages::topics::NODES_MAX;
+use std::os::fd::BorrowedFd;
+
+/// Listens for wake-ups of one service.
+#[derive(Debug)]
+pub struct Ear {
+    listener: Listener<Ipc>,
+    _topic: PortFactory<Ipc>,
+}
+
+/// Wakes one service.
+#[derive(Debug)]
+pub struct Bell {
+    notifier: Notifier<Ipc>,
+    _topic: PortFactory<Ipc>,
+}
+
+pub(super) fn open(bus: &Bus, service: Service) -> Result<PortFactory<Ipc>, BusError> {
+    let name = format!("wake/{}", service.name());
+    let service_name =
+        ServiceName::new(&name).map_err(|e| BusError::ipc(&name, format!("{e:?}")))?;
+    bus.node()
+        .service_builder(&service_name)
+        .event()
+        .max_nodes(NODES_MAX)
+        .max_notifiers(4 * NODES_MAX)
+        .max_listeners(2)
+        .open_or_create()
+        .map_err(|e| BusError::ipc(&name, format!("{e:?}")))
+}
+
+impl Ear {
+    pub(super) fn open(bus: &Bus, service: Service) -> Result<Self, BusError> {
+        let topic = open(bus, service)?;
+        let listener = topic
+            .listener_builder()
+            .create()
+            .map_err(|e| BusError::ipc(service.name(), format!("{e:?}")))?;
+        Ok(Self { listener, _topic: topic })
+    }
+
+    /// Readable while a wake-up waits.
+    pub fn fd(&self) -> BorrowedFd<'_> {
+        // SAFETY: the descriptor belongs to `listener`, which lives as long as the borrow of
+        // `self`, and is only polled.
+        #[allow(unsafe_code)]
+        unsafe {
+            BorrowedFd::borrow_raw(self.listener.file_descriptor().native_handle())
+        }
+    }
+
+    /// Takes all wake-ups that wait.
+    pub fn clear(&self) {
+        let mut woken = 0_u32;
+        if let Err(error) = self.listener.try_wait(|_| woken += 1) {
+            tracing::debug!(?error, "wake-ups not taken; the next pass takes them");
+        }
+    }
+}
+
+impl Bell {
+    pub(super) fn open(bus: &Bus, service: Service) -> Result<Self, BusError> {
+        let topic = open(bus, service)?;
+        let notifier = topic
+            .notifier_builder()
+            .create()
+            .map_err(|e| BusError::ipc(service.name(), format!("{e:?}")))?;
+        Ok(Self { notifier, _topic: topic })
+    }
+
+    /// Wakes the service, if it is there. A failure is no error: it looks by itself soon.
+    pub(super) fn ring(&self) {
+        if let Err(error) = self.notifier.notify() {
+            tracing::debug!(?error, "wake-up not delivered");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Readers and writers of topics whose payloads are postcard in a byte slice.
+
+use super::doorbell::Bell;
+use super::open::{Gate, bells, open_topic};
+use super::{Bus, BusError, Ipc, PortError};
+use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
+use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
+use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
+use messages::Stamp;
+use messages::schema::Schema;
+use messages::topics::Topic;
+use serde::{Serialize, de::DeserializeOwned};
+use std::marker::PhantomData;
+
+/// First guess at the size of a payload, bytes; it grows as needed.
+const BYTES: usize = 4096;
+/// Largest payload, bytes.
+const BYTES_MAX: usize = 16 << 20;
+
+/// Writes a topic of postcard payloads.
+#[derive(Debug)]
+pub struct EncodedWriter<T: Schema> {
+    topic: &'static str,
+    publisher: Publisher<Ipc, [u8], Stamp>,
+    bells: Vec<Bell>,
+    stamp: Stamp,
+    _service: PortFactory<Ipc, [u8], Stamp>,
+    _payload: PhantomData<T>,
+}
+
+impl<T: Schema> EncodedWriter<T> {
+    pub(super) fn open(bus: &Bus, topic: &Topic) -> Result<Self, BusError> {
+        let service = open_topic!(bus, topic, [u8])?;
+        let publisher = service
+            .publisher_builder()
+            .max_loaned_samples(1)
+            .initial_max_slice_len(BYTES)
+            .allocation_strategy(AllocationStrategy::PowerOfTwo)
+            .backpressure_strategy(BackpressureStrategy::DiscardData)
+            .create()
+            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let bells = bells(bus, topic)?;
+        let (topic, stamp) = (topic.name, bus.stamp());
+        Ok(Self { topic, publisher, bells, stamp, _service: service, _payload: PhantomData })
+    }
+
+    /// Encodes and sends the payload.
+    ///
+    /// # Errors
+    /// It does not encode, is too large, or iceoryx2 has no memory left for it.
+    pub fn send(&self, payload: &T) -> Result<(), PortError>
+    where
+        T: Serialize,
+    {
+        let failed = |cause| PortError::new(self.topic, cause);
+        let bytes = postcard::to_stdvec(payload).map_err(|e| failed(e.to_string()))?;
+        if bytes.len() > BYTES_MAX {
+            return Err(failed(format!("{} bytes, {BYTES_MAX} at most", bytes.len())));
+        }
+        let loan = self.publisher.loan_slice_uninit(bytes.len());
+        let mut sample = loan.map_err(|e| failed(format!("{e:?}")))?;
+        *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
+        sample.write_from_slice(&bytes).send().map_err(|e| failed(format!("{e:?}")))?;
+        self.bells.iter().for_each(Bell::ring);
+        Ok(())
+    }
+}
+
+/// Reads a topic of postcard payloads.
+#[derive(Debug)]
+pub struct EncodedReader<T: Schema> {
+    topic: &'static str,
+    subscriber: Subscriber<Ipc, [u8], Stamp>,
+    gate: Gate,
+    _service: PortFactory<Ipc, [u8], Stamp>,
+    _payload: PhantomData<T>,
+}
+
+impl<T: Schema + DeserializeOwned> EncodedReader<T> {
+    pub(super) fn open(bus: &Bus, topic: &Topic) -> Result<Self, BusError> {
+        let service = open_topic!(bus, topic, [u8])?;
+        let subscriber = service
+            .subscriber_builder()
+            .buffer_size(topic.buffer)
+            .history_request(topic.history)
+            .create()
+            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let gate = Gate::new(bus.identity().epoch, topic);
+        Ok(Self { topic: topic.name, subscriber, gate, _service: service, _payload: PhantomData })
+    }
+
+    /// The next payload; one that does not decode is logged and passed over, for a client's bad
+    /// bytes must not stop a service.
+    ///
+    /// # Errors
+    /// iceoryx2 lost its connection to a writer.
+    pub fn take(&self) -> Result<Option<T>, PortError> {
+        loop {
+            let received = self.subscriber.receive();
+            let received = received.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
+            let Some(sample) = received else { return Ok(None) };
+            if !self.gate.admits(sample.user_header()) {
+                continue;
+            }
+            match postcard::from_bytes(sample.payload()) {
+                Ok(payload) => return Ok(Some(payload)),
+                Err(error) => tracing::warn!(topic = self.topic, %error, "payload refused"),
+            }
+        }
+    }
+
+    /// The newest payload of those that wait.
+    ///
+    /// # Errors
+    /// As [`EncodedReader::take`].
+    pub fn latest(&self) -> Result<Option<T>, PortError> {
+        let mut latest = None;
+        while let Some(payload) = self.take()? {
+            latest = Some(payload);
+        }
+        Ok(latest)
+    }
+}

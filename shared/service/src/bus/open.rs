@@ -1,0 +1,144 @@
+//! Opening topics: the same bounds and the same schema check for every payload kind.
+
+use super::doorbell::{self, Bell};
+use super::{Bus, BusError, Ipc};
+use iceoryx2::prelude::*;
+use iceoryx2::service::attribute::{AttributeKey, AttributeValue};
+use iceoryx2::service::builder::publish_subscribe::{
+    PublishSubscribeOpenError, PublishSubscribeOpenOrCreateError,
+};
+use iceoryx2::service::port_factory::event::PortFactory;
+use messages::topics::{self, Topic};
+use messages::{Epoch, Incarnation, Service, Stamp};
+use std::cell::Cell;
+
+/// Opens the topic, creating it where this process is the first. A macro, because iceoryx2's
+/// builders for structs and for slices are different types without a common trait.
+macro_rules! open_topic {
+    ($bus:expr, $topic:expr, $payload:ty) => {{
+        use iceoryx2::prelude::ServiceName;
+        use messages::topics::{NODES_MAX, READERS_MAX};
+        let (bus, topic): (&$crate::bus::Bus, &messages::topics::Topic) = ($bus, $topic);
+        let failed = |cause: String| $crate::bus::BusError::ipc(topic.name, cause);
+        let name = ServiceName::new(topic.name).map_err(|e| failed(format!("{e:?}")))?;
+        let required = $crate::bus::open::schema_attribute(topic).map_err(failed)?;
+        bus.node()
+            .service_builder(&name)
+            .publish_subscribe::<$payload>()
+            .user_header::<messages::Stamp>()
+            .max_publishers(topic.writers_max)
+            .max_subscribers(READERS_MAX)
+            .max_nodes(NODES_MAX)
+            .subscriber_max_buffer_size(topic.buffer)
+            .subscriber_max_borrowed_samples(1)
+            .history_size(topic.history)
+            .enable_safe_overflow(true)
+            .open_or_create_with_attributes(&required)
+            .map_err(|error| $crate::bus::open::refused(topic, &error))
+    }};
+}
+pub(super) use open_topic;
+
+pub(super) fn schema_attribute(topic: &Topic) -> Result<AttributeVerifier, String> {
+    let key = AttributeKey::new(b"schema").map_err(|e| format!("{e:?}"))?;
+    let schema = (topic.schema)().to_string();
+    let value = AttributeValue::new(schema.as_bytes()).map_err(|e| format!("{e:?}"))?;
+    AttributeVerifier::new().require(&key, &value).map_err(|e| format!("{e:?}"))
+}
+
+pub(super) fn refused(topic: &Topic, error: &PublishSubscribeOpenOrCreateError) -> BusError {
+    use PublishSubscribeOpenError::{IncompatibleAttributes, IncompatibleTypes};
+    let cause = format!("{error:?}");
+    match error {
+        PublishSubscribeOpenOrCreateError::PublishSubscribeOpenError(
+            IncompatibleAttributes | IncompatibleTypes,
+        ) => BusError::Schema {
+            topic: topic.name.to_owned(),
+            payload: topic.payload,
+            ours: (topic.schema)().to_string(),
+            cause,
+        },
+        _ => BusError::ipc(topic.name, cause),
+    }
+}
+
+/// Everything of a group held open, so that it outlives any single service.
+#[derive(Debug)]
+pub struct Topics {
+    _topics: Vec<Box<dyn std::fmt::Debug>>,
+    _bells: Vec<PortFactory<Ipc>>,
+}
+
+impl Topics {
+    /// Opens (or, where this process is the first, creates) every topic and wake-up.
+    ///
+    /// # Errors
+    /// iceoryx2 refuses, or a topic of another schema stands there.
+    pub fn create(bus: &Bus) -> Result<Self, BusError> {
+        let topics = topics::ALL.iter().map(|topic| keep(bus, topic)).collect::<Result<_, _>>()?;
+        let bells = Service::ALL.iter().map(|&s| doorbell::open(bus, s));
+        Ok(Self { _topics: topics, _bells: bells.collect::<Result<_, _>>()? })
+    }
+}
+
+/// Holds a topic open without reading or writing it; its type is found by its payload's name.
+fn keep(bus: &Bus, topic: &Topic) -> Result<Box<dyn std::fmt::Debug>, BusError> {
+    macro_rules! by_name {
+        ($($payload:ident),+) => {
+            match topic.payload {
+                $(name if name == <messages::$payload as messages::schema::Schema>::NAME => {
+                    Box::new(open_topic!(bus, topic, messages::$payload)?)
+                })+
+                _ => Box::new(open_topic!(bus, topic, [u8])?),
+            }
+        };
+    }
+    Ok(by_name!(
+        Receipt,
+        Utterance,
+        Presented,
+        Activity,
+        Hearing,
+        Partial,
+        AudioChunk,
+        Observation,
+        AppliedMark,
+        RobotAct,
+        ArmStatus,
+        JointStates,
+        MotionCommand
+    ))
+}
+
+/// The bells of a topic's readers.
+pub(super) fn bells(bus: &Bus, topic: &Topic) -> Result<Vec<Bell>, BusError> {
+    topic.readers.iter().map(|&service| Bell::open(bus, service)).collect()
+}
+
+/// Turns away messages of another epoch and of an earlier incarnation of the writer than has
+/// already been heard.
+#[derive(Debug)]
+pub(super) struct Gate {
+    epoch: Epoch,
+    /// Newest incarnation heard; not kept where several clients write.
+    newest: Option<Cell<Incarnation>>,
+}
+
+impl Gate {
+    pub(super) fn new(epoch: Epoch, topic: &Topic) -> Self {
+        Self { epoch, newest: topic.writer.map(|_| Cell::default()) }
+    }
+
+    pub(super) fn admits(&self, stamp: &Stamp) -> bool {
+        if Epoch(stamp.epoch) != self.epoch {
+            return false;
+        }
+        let Some(newest) = &self.newest else { return true };
+        let incarnation = Incarnation(stamp.incarnation);
+        if incarnation < newest.get() {
+            return false;
+        }
+        newest.set(incarnation);
+        true
+    }
+}

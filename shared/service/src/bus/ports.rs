@@ -1,0 +1,124 @@
+//! Readers and writers of fixed-layout topics.
+//!
+//! A writer never blocks: a slow or stopped reader loses the oldest message, and is sent again what
+//! matters.
+
+use super::doorbell::Bell;
+use super::open::{Gate, bells, open_topic};
+use super::{Bus, BusError, Ipc, PortError, WireMessage};
+use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
+use iceoryx2::prelude::BackpressureStrategy;
+use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
+use messages::Stamp;
+use messages::topics::Topic;
+
+/// Writes a fixed-layout topic.
+#[derive(Debug)]
+pub struct Writer<T: WireMessage> {
+    topic: &'static str,
+    publisher: Publisher<Ipc, T, Stamp>,
+    bells: Vec<Bell>,
+    stamp: Stamp,
+    _service: PortFactory<Ipc, T, Stamp>,
+}
+
+impl<T: WireMessage> Writer<T> {
+    pub(super) fn open(bus: &Bus, topic: &Topic) -> Result<Self, BusError> {
+        let service = open_topic!(bus, topic, T)?;
+        let publisher = service
+            .publisher_builder()
+            .max_loaned_samples(1)
+            .backpressure_strategy(BackpressureStrategy::DiscardData)
+            .create()
+            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let bells = bells(bus, topic)?;
+        Ok(Self { topic: topic.name, publisher, bells, stamp: bus.stamp(), _service: service })
+    }
+
+    /// Sends the message and wakes the topic's readers. That it was sent does not mean that it was
+    /// received.
+    ///
+    /// # Errors
+    /// iceoryx2 has no memory left for it.
+    pub fn send(&self, message: &T) -> Result<(), PortError> {
+        let loan = self.publisher.loan_uninit();
+        let mut sample = loan.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
+        *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
+        let sent = sample.write_payload(*message).send();
+        sent.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
+        self.bells.iter().for_each(Bell::ring);
+        Ok(())
+    }
+}
+
+/// Reads a fixed-layout topic.
+#[derive(Debug)]
+pub struct Reader<T: WireMessage> {
+    topic: &'static str,
+    subscriber: Subscriber<Ipc, T, Stamp>,
+    gate: Gate,
+    _service: PortFactory<Ipc, T, Stamp>,
+}
+
+impl<T: WireMessage> Reader<T> {
+    pub(super) fn open(bus: &Bus, topic: &Topic) -> Result<Self, BusError> {
+        let service = open_topic!(bus, topic, T)?;
+        let subscriber = service
+            .subscriber_builder()
+            .buffer_size(topic.buffer)
+            .history_request(topic.history)
+            .create()
+            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let gate = Gate::new(bus.identity().epoch, topic);
+        Ok(Self { topic: topic.name, subscriber, gate, _service: service })
+    }
+
+    /// The next message, read where the writer left it; none where nothing waits.
+    ///
+    /// # Errors
+    /// iceoryx2 lost its connection to a writer.
+    pub fn take<R>(&self, read: impl FnOnce(&T) -> R) -> Result<Option<R>, PortError> {
+        self.take_stamped(|message, _| read(message))
+    }
+
+    fn take_stamped<R>(&self, read: impl FnOnce(&T, &Stamp) -> R) -> Result<Option<R>, PortError> {
+        loop {
+            let received = self.subscriber.receive();
+            match received.map_err(|e| PortError::new(self.topic, format!("{e:?}")))? {
+                None => return Ok(None),
+                Some(sample) if self.gate.admits(sample.user_header()) => {
+                    return Ok(Some(read(sample.payload(), sample.user_header())));
+                }
+                Some(_) => {}
+            }
+        }
+    }
+
+    /// Every message that waits, in order.
+    ///
+    /// # Errors
+    /// As [`Reader::take`].
+    pub fn drain(&self, mut read: impl FnMut(&T)) -> Result<(), PortError> {
+        while self.take(&mut read)?.is_some() {}
+        Ok(())
+    }
+
+    /// As [`Reader::drain`], with who sent each message and when.
+    ///
+    /// # Errors
+    /// As [`Reader::take`].
+    pub fn drain_stamped(&self, mut read: impl FnMut(&T, &Stamp)) -> Result<(), PortError> {
+        while self.take_stamped(&mut read)?.is_some() {}
+        Ok(())
+    }
+
+    /// The newest message of those that wait.
+    ///
+    /// # Errors
+    /// As [`Reader::take`].
+    pub fn latest(&self) -> Result<Option<T>, PortError> {
+        let mut latest = None;
+        self.drain(|message| latest = Some(*message))?;
+        Ok(latest)
+    }
+}

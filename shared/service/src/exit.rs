@@ -1,0 +1,66 @@
+//! Exit codes: part of the contract with the supervisor and with scripts.
+
+use std::process::ExitCode;
+
+/// How a program of the group ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    /// As it should.
+    Ok = 0,
+    /// What was asked for was not reached; asking again may help.
+    NotReached = 1,
+    /// Called wrongly.
+    Usage = 64,
+    /// An invariant is broken: a defect of the program.
+    Invariant = 70,
+    /// The journal or another file cannot be written.
+    Storage = 74,
+    /// Configuration, scene or message schema do not fit. Starting again does not help.
+    Config = 78,
+}
+
+impl Exit {
+    /// As a process ends with it.
+    pub fn code(self) -> ExitCode {
+        ExitCode::from(self as u8)
+    }
+}
+
+/// Why a service ended before its time.
+#[derive(Debug, thiserror::Error)]
+#[error("{message}")]
+pub struct Failure {
+    /// The exit code that tells the supervisor what to do about it.
+    pub exit: Exit,
+    /// For the log and the operator's status.
+    pub message: String,
+}
+
+impl Failure {
+    /// A failure with its reason.
+    pub fn new(exit: Exit, message: impl Into<String>) -> Self {
+        Self { exit, message: message.into() }
+    }
+}
+
+impl From<crate::bus::BusError> for Failure {
+    fn from(error: crate::bus::BusError) -> Self {
+        let exit = match error {
+            crate::bus::BusError::Schema { .. } => Exit::Config,
+            crate::bus::BusError::Ipc { .. } => Exit::NotReached,
+        };
+        Self::new(exit, error.to_string())
+    }
+}
+
+impl From<crate::bus::PortError> for Failure {
+    fn from(error: crate::bus::PortError) -> Self {
+        Self::new(Exit::NotReached, error.to_string())
+    }
+}
+
+impl From<crate::NodeError> for Failure {
+    fn from(error: crate::NodeError) -> Self {
+        Self::new(Exit::Config, error.to_string())
+    }
+}

@@ -1,0 +1,22 @@
+//! The shell: the only place that opens topics, reads clocks, takes signals and writes files for
+//! the services. iceoryx2 is reached through this crate alone.
+
+pub mod audio;
+pub mod bus;
+pub mod client;
+pub mod clock;
+mod effects;
+pub mod exit;
+pub mod group;
+pub mod lifecycle;
+pub mod logging;
+mod notify;
+mod reducer;
+pub mod service_loop;
+pub mod shm_cleanup;
+mod time;
+pub mod worker_channel;
+
+pub use effects::Effects;
+pub use reducer::{Event, Never, Node, NodeError};
+pub use time::{Span, Time};

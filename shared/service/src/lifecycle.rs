@@ -1,0 +1,218 @@
+//! A service's life under its supervisor: signals, lifeline, readiness and beats.
+//!
+//! The protocol is that of `sd_notify`: datagrams to `$NOTIFY_SOCKET`. The lifeline is a pipe that
+//! only the supervisor could write to: its end of file says that the supervisor is gone. The
+//! service then ends by itself, and if it cannot, a guard thread kills its whole process group.
+
+use crate::exit::{Exit, Failure};
+use crate::group::{self, GroupName, GroupPaths};
+use crate::notify::Notifier;
+use crate::{Span, Time};
+use messages::{Epoch, Incarnation};
+use rustix::event::{PollFd, PollFlags, poll};
+use rustix::fs::{FlockOperation, flock};
+use sd_notify::NotifyState;
+use std::fs::File;
+use std::os::fd::{AsFd, BorrowedFd, FromRawFd, OwnedFd};
+use std::os::unix::net::UnixStream;
+use std::time::Duration;
+
+/// How long a service may take to end after its supervisor is gone, before it is killed.
+const ORPHAN_GRACE: Duration = Duration::from_secs(15);
+/// Longest time between two beats.
+const BEAT_MAX: Span = Span::from_ms(500);
+
+/// What the supervisor told this process through its environment.
+#[derive(Clone, Debug)]
+pub struct Environment {
+    /// The group's folders.
+    pub paths: GroupPaths,
+    /// Epoch of the group.
+    pub epoch: Epoch,
+    /// Number of this start.
+    pub incarnation: Incarnation,
+    /// What follows the program on its command line; a swapped service may have some.
+    pub arguments: Vec<String>,
+}
+
+impl Environment {
+    /// For a node without a group around it, in simulations and reports: a home in which nothing
+    /// can be kept.
+    pub fn nowhere() -> Self {
+        Self {
+            paths: GroupPaths::nowhere(),
+            epoch: Epoch(1),
+            incarnation: Incarnation(1),
+            arguments: Vec::new(),
+        }
+    }
+
+    /// Reads the environment variables that the supervisor sets.
+    ///
+    /// # Errors
+    /// Not started by a supervisor, or by one of another kind.
+    pub fn read(arguments: Vec<String>) -> Result<Self, Failure> {
+        let name = text(group::ENV_GROUP)?;
+        let usage = |e: group::GroupError| Failure::new(Exit::Usage, e.to_string());
+        let name = GroupName::new(&name).map_err(usage)?;
+        Ok(Self {
+            paths: GroupPaths::resolve(&name).map_err(usage)?,
+            epoch: Epoch(number(group::ENV_EPOCH)?),
+            incarnation: Incarnation(number(group::ENV_INCARNATION)?),
+            arguments,
+        })
+    }
+}
+
+fn text(key: &str) -> Result<String, Failure> {
+    std::env::var(key).map_err(|_| {
+        let cure = "services are started by their supervisor: whichone up";
+        Failure::new(Exit::Usage, format!("{key} is not set; {cure}"))
+    })
+}
+
+fn number<T: std::str::FromStr>(key: &str) -> Result<T, Failure> {
+    let value = text(key)?;
+    value.parse().map_err(|_| Failure::new(Exit::Usage, format!("{key}={value} is not a number")))
+}
+
+/// The service's side of the bond with its supervisor.
+#[derive(Debug)]
+pub struct Lifecycle {
+    signals: UnixStream,
+    lifeline: Option<OwnedFd>,
+    _alive: File,
+    beat_every: Span,
+    last_beat: Option<Time>,
+    notifier: Notifier,
+}
+
+impl Lifecycle {
+    /// Takes over SIGTERM and SIGINT, the lifeline, and the alive lock.
+    ///
+    /// # Errors
+    /// The operating system refuses one of them.
+    pub fn begin(paths: &GroupPaths) -> Result<Self, Failure> {
+        let failed = |what: &'static str| {
+            move |e: std::io::Error| Failure::new(Exit::NotReached, format!("{what}: {e}"))
+        };
+        let (signals, writer) = UnixStream::pair().map_err(failed("signal pipe"))?;
+        signals.set_nonblocking(true).map_err(failed("signal pipe"))?;
+        for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
+            let writer = writer.try_clone().map_err(failed("signal pipe"))?;
+            signal_hook::low_level::pipe::register(signal, writer)
+                .map_err(failed("signal handler"))?;
+        }
+        let alive = File::create(paths.alive_lock()).map_err(failed("alive.lock"))?;
+        flock(&alive, FlockOperation::NonBlockingLockShared)
+            .map_err(|e| failed("alive.lock")(e.into()))?;
+        let lifeline = lifeline().map_err(failed("lifeline"))?;
+        if let Some(fd) = &lifeline {
+            guard(fd.try_clone().map_err(failed("lifeline"))?);
+        }
+        let watchdog =
+            sd_notify::watchdog_enabled().map(|period| Span::from_s(period.as_secs_f64()));
+        let beat_every = watchdog.map_or(BEAT_MAX, |period| Span(period.0 / 3).min(BEAT_MAX));
+        let notifier = Notifier::from_environment().map_err(failed("notification socket"))?;
+        Ok(Self { signals, lifeline, _alive: alive, beat_every, last_beat: None, notifier })
+    }
+
+    /// Descriptors to be polled: signals, and the lifeline where there is one.
+    fn fds(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
+        std::iter::once(self.signals.as_fd()).chain(self.lifeline.as_ref().map(AsFd::as_fd))
+    }
+
+    /// Sleeps until one of `also` can be read, a signal or the supervisor's end comes, or `longest`
+    /// has passed.
+    pub fn wait(&self, also: &[BorrowedFd<'_>], longest: Span) {
+        let timeout = rustix::time::Timespec {
+            tv_sec: (longest.0 / 1_000_000_000) as i64,
+            tv_nsec: (longest.0 % 1_000_000_000) as i64,
+        };
+        let fds: Vec<BorrowedFd<'_>> = also.iter().copied().chain(self.fds()).collect();
+        let mut polled: Vec<PollFd<'_>> =
+            fds.iter().map(|fd| PollFd::new(fd, PollFlags::IN)).collect();
+        // Interrupted by a signal or not: whoever waits looks at everything then.
+        let _ = poll(&mut polled, Some(&timeout));
+    }
+
+    /// Whether the service has been told to end.
+    pub fn told_to_end(&mut self) -> bool {
+        let mut byte = [0_u8; 16];
+        let signalled = std::io::Read::read(&mut self.signals, &mut byte).is_ok_and(|n| n > 0);
+        signalled || self.lifeline.as_ref().is_some_and(orphaned)
+    }
+
+    /// Tells the supervisor that the service does its work.
+    pub fn ready(&mut self) {
+        let version = concat!("X_VERSION=", env!("CARGO_PKG_VERSION"));
+        self.notifier.say(&[NotifyState::Custom(version), NotifyState::Ready]);
+    }
+
+    /// Tells the supervisor that the service has begun to end.
+    pub fn stopping(&mut self) {
+        self.notifier.say(&[NotifyState::Stopping]);
+    }
+
+    /// Beats where a beat is due. Called by the main loop after a full pass and by nobody else, so
+    /// that a beat means that work is being done.
+    pub fn beat(&mut self, now: Time, pending_since: Option<Time>) {
+        if self.last_beat.is_some_and(|last| now < last + self.beat_every) {
+            return;
+        }
+        self.last_beat = Some(now);
+        let age_ms = pending_since.map_or(0, |since| now.since(since).0 / 1_000_000);
+        let age = format!("X_INPUT_AGE_MS={age_ms}");
+        self.notifier.beat(&[NotifyState::Watchdog, NotifyState::Custom(&age)]);
+    }
+
+    /// When the next beat is due.
+    pub fn next_beat(&self, now: Time) -> Time {
+        self.last_beat.map_or(now, |last| last + self.beat_every)
+    }
+}
+
+/// The inherited read end of the supervisor's lifeline.
+fn lifeline() -> std::io::Result<Option<OwnedFd>> {
+    let Ok(number) = std::env::var(group::ENV_LIFELINE_FD) else { return Ok(None) };
+    let bad = || std::io::Error::other(format!("{}={number}", group::ENV_LIFELINE_FD));
+    let raw: i32 = number.parse().map_err(|_| bad())?;
+    if raw <= 2 || rustix::io::fcntl_getfd(borrow(raw)).is_err() {
+        return Err(bad());
+    }
+    // SAFETY: the descriptor is open (just asked), was inherited for this purpose, and its number
+    // is used by nobody else in this process.
+    #[allow(unsafe_code)]
+    let fd = unsafe { OwnedFd::from_raw_fd(raw) };
+    rustix::io::fcntl_setfd(&fd, rustix::io::FdFlags::CLOEXEC)?;
+    Ok(Some(fd))
+}
+
+fn borrow(raw: i32) -> BorrowedFd<'static> {
+    // SAFETY: used for one query, which answers with an error where the descriptor is not open.
+    #[allow(unsafe_code)]
+    unsafe {
+        BorrowedFd::borrow_raw(raw)
+    }
+}
+
+fn orphaned(lifeline: &OwnedFd) -> bool {
+    let mut fds = [PollFd::new(lifeline, PollFlags::IN)];
+    let now = rustix::time::Timespec { tv_sec: 0, tv_nsec: 0 };
+    poll(&mut fds, Some(&now)).is_ok_and(|n| n > 0)
+}
+
+/// Waits for the supervisor's end, and then for this process's own; kills the group where that does
+/// not come.
+fn guard(lifeline: OwnedFd) {
+    let watch = move || {
+        while poll(&mut [PollFd::new(&lifeline, PollFlags::IN)], None).is_err() {}
+        std::thread::sleep(ORPHAN_GRACE);
+        let _ = rustix::process::kill_current_process_group(rustix::process::Signal::KILL);
+    };
+    let started =
+        std::thread::Builder::new().name("guard".into()).stack_size(64 << 10).spawn(watch);
+    if let Err(error) = started {
+        tracing::warn!(%error, "no guard thread; an orphan would end by its main loop only");
+    }
+}

@@ -1,0 +1,71 @@
+//! What a service is: a deterministic reducer from events to effects.
+//!
+//! A node does no IO, reads no clock and starts no threads; everything that it wants done it states
+//! as [`Effects`], and the runtime carries them out in one fixed order: append all records, sync
+//! once, and only then publish. So a node can be killed at any point, and a simulation can run all
+//! of them in one thread.
+
+use crate::{Effects, Time};
+
+/// What happens to a node.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event<In> {
+    /// The node has been recovered and its topics are open.
+    Started,
+    /// Something arrived, from a topic or a device.
+    Message(In),
+    /// A deadline has passed, or the periodic tick is due.
+    Tick,
+    /// The service is to end: bring what moves to rest, then call [`Effects::exit`].
+    Shutdown,
+}
+
+/// A service as a reducer.
+pub trait Node: Sized {
+    /// What it is configured with.
+    type Config;
+    /// What arrives.
+    type In;
+    /// What it publishes or asks of its devices.
+    type Out;
+    /// What it must not forget. A stateless node uses [`Never`].
+    type Record;
+
+    /// The node as its journal left it; an empty journal is the first start. There is no other way
+    /// to make one, so that first start and restart share one path.
+    ///
+    /// # Errors
+    /// The journal contradicts the configuration in a way that the node cannot mend.
+    fn recover(config: Self::Config, records: Vec<Self::Record>) -> Result<Self, NodeError>;
+
+    /// One event. Must be deterministic in `(self, event, now)`.
+    fn on(&mut self, event: Event<Self::In>, now: Time, fx: &mut Effects<Self::Out, Self::Record>);
+
+    /// When the next [`Event::Tick`] is wanted.
+    fn deadline(&self) -> Option<Time>;
+
+    /// Since when the oldest input waits unhandled, for the operator's status.
+    fn pending_since(&self) -> Option<Time> {
+        None
+    }
+
+    /// Records that stand for the whole journal so far. Offered where nothing is in progress, so
+    /// that the journal can be cut short there.
+    fn snapshot(&self) -> Option<Vec<Self::Record>> {
+        None
+    }
+}
+
+/// The record of a node that has nothing to remember.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Never {}
+
+/// A node cannot be recovered.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{what} ({cure})")]
+pub struct NodeError {
+    /// What is wrong.
+    pub what: String,
+    /// What the operator can do.
+    pub cure: String,
+}

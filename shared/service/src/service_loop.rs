@@ -1,0 +1,275 @@
+//! The main loop of every service, the same for first start and restart:
+//! recover → open topics → ready → (wait, drain everything, decide, commit, beat)*.
+//!
+//! Commit is where the promises are kept: all records of a pass are appended and synced once, and
+//! only then does anything of it become visible to others.
+
+use crate::bus::{Bus, Ear, Identity, PortError};
+use crate::clock;
+use crate::exit::{Exit, Failure};
+use crate::lifecycle::{Environment, Lifecycle};
+use crate::logging;
+use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
+use crate::{Effects, Event, Node, Span, Time};
+use config::Settings;
+use journal::{Header, Journal, JournalOpenError};
+use messages::Service;
+use serde::{Serialize, de::DeserializeOwned};
+use std::process::ExitCode;
+
+/// Events of one pass; what is left waits for the next, so that beats and signals are not held up.
+const PASS_EVENTS_MAX: usize = 256;
+/// Longest sleep: inputs are looked at this often even if a wake-up was lost.
+const LOOK_EVERY: Span = Span::from_ms(500);
+/// Journals are cut short beyond this, where the node offers a snapshot.
+const JOURNAL_BYTES: u64 = 1 << 20;
+/// How long to wait for the previous incarnation to release its journal.
+const LOCK_PATIENCE: Span = Span::from_ms(3_000);
+
+/// A service: a node and the shell around it.
+pub trait Program {
+    /// Which service it is.
+    const SERVICE: Service;
+    /// Kind of record in its journal; none for a node that remembers nothing. A changed record
+    /// type needs a changed name.
+    const RECORD: Option<&'static str>;
+    /// One paragraph for `--help`.
+    const ABOUT: &'static str;
+    /// The reducer.
+    type Node: Node<Record: Serialize + DeserializeOwned>;
+    /// Its topics and devices.
+    type Shell: Shell<Self::Node>;
+
+    /// The node's configuration.
+    ///
+    /// # Errors
+    /// Arguments that the service does not know.
+    fn config(
+        environment: &Environment,
+        settings: &Settings,
+    ) -> Result<<Self::Node as Node>::Config, Failure>;
+}
+
+/// The topics and devices of one node.
+pub trait Shell<N: Node>: Sized {
+    /// Opens them.
+    ///
+    /// # Errors
+    /// A topic of another schema, or a device that is needed and missing.
+    fn open(context: &Context<'_, N::In>) -> Result<Self, Failure>;
+
+    /// Hands every waiting message to `take`.
+    ///
+    /// # Errors
+    /// A topic cannot be read.
+    fn drain(&mut self, take: &mut dyn FnMut(N::In)) -> Result<(), PortError>;
+
+    /// Sends one output or gives it to a device.
+    ///
+    /// # Errors
+    /// A topic cannot be written.
+    fn publish(&mut self, output: N::Out) -> Result<(), PortError>;
+}
+
+/// What a shell may use.
+#[derive(Debug)]
+pub struct Context<'a, In> {
+    /// The group's shared memory.
+    pub bus: &'a Bus,
+    /// The settings in force.
+    pub settings: &'a Settings,
+    /// For device threads.
+    pub devices: DeviceSender<In>,
+    /// Where the group lives.
+    pub environment: &'a Environment,
+}
+
+/// Runs the service until it is told to end.
+pub fn run<P: Program>() -> ExitCode {
+    program(P::SERVICE.name(), P::ABOUT, serve::<P>)
+}
+
+/// The outside of every service's program: `--help` with its name and what it is `about`, logs, and the
+/// exit code of how `serve`, which gets the arguments, has ended.
+pub fn program(
+    name: &str,
+    about: &str,
+    serve: impl FnOnce(Vec<String>) -> Result<(), Failure>,
+) -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.iter().any(|a| a == "--help" || a == "-h") {
+        return help(name, about);
+    }
+    logging::init();
+    match serve(arguments) {
+        Ok(()) => Exit::Ok.code(),
+        Err(failure) => {
+            tracing::error!(exit = failure.exit as u8, "{failure}");
+            failure.exit.code()
+        }
+    }
+}
+
+fn help(name: &str, about: &str) -> ExitCode {
+    use std::io::Write;
+    let text = format!(
+        "whichone-{name}: {about}\n\nStarted by the group's supervisor (whichone up); put your own in \
+         its place with:\n  whichone swap {name} -- COMMAND…\n"
+    );
+    // A closed pipe is the reader's choice.
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    Exit::Ok.code()
+}
+
+fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
+    let environment = Environment::read(arguments)?;
+    let lifecycle = Lifecycle::begin(&environment.paths)?;
+    let settings = Settings::load_snapshot(&environment.paths.run())
+        .map_err(|e| Failure::new(Exit::Config, e.to_string()))?;
+    let config = P::config(&environment, &settings)?;
+    let (journal, records) = open_journal::<P>(&environment)?;
+    let node = P::Node::recover(config, records)?;
+    let identity = Identity { epoch: environment.epoch, incarnation: environment.incarnation };
+    let bus = Bus::open(&environment.paths, P::SERVICE.name(), identity)?;
+    let ear = bus.ear(P::SERVICE)?;
+    let (devices, inbox) =
+        worker_channel::channel().map_err(|e| Failure::new(Exit::NotReached, e.to_string()))?;
+    let context = Context { bus: &bus, settings: &settings, devices, environment: &environment };
+    let shell = P::Shell::open(&context)?;
+    Loop::<P> { node, shell, journal, inbox, ear, lifecycle, ending: false }.run()
+}
+
+type Record<P> = <<P as Program>::Node as Node>::Record;
+type In<P> = <<P as Program>::Node as Node>::In;
+type Out<P> = <<P as Program>::Node as Node>::Out;
+/// A journal, where the service has one, and what it held.
+type Recovered<P> = (Option<Journal<Record<P>>>, Vec<Record<P>>);
+
+fn open_journal<P: Program>(environment: &Environment) -> Result<Recovered<P>, Failure> {
+    let Some(record) = P::RECORD else { return Ok((None, Vec::new())) };
+    let path = environment.paths.journal_file(P::SERVICE.name());
+    let header = Header {
+        record: record.to_owned(),
+        schema: 0,
+        scene: 0,
+        group: environment.paths.name().to_string(),
+        epoch: environment.epoch.0,
+    };
+    let until = clock::now() + LOCK_PATIENCE;
+    loop {
+        match Journal::open(&path, &header) {
+            Ok((journal, recovered)) => {
+                if recovered.truncated_bytes > 0 {
+                    tracing::warn!(bytes = recovered.truncated_bytes, "torn tail cut off");
+                }
+                tracing::info!(records = recovered.records.len(), "journal recovered");
+                return Ok((Some(journal), recovered.records));
+            }
+            Err(JournalOpenError::Locked { .. }) if clock::now() < until => {
+                std::thread::sleep(std::time::Duration::from_millis(10));
+            }
+            Err(error) => {
+                let exit = match error {
+                    JournalOpenError::Locked { .. } | JournalOpenError::Io { .. } => Exit::Storage,
+                    _ => Exit::Config,
+                };
+                return Err(Failure::new(exit, format!("{}: {error}", path.display())));
+            }
+        }
+    }
+}
+
+struct Loop<P: Program> {
+    node: P::Node,
+    shell: P::Shell,
+    journal: Option<Journal<Record<P>>>,
+    inbox: DeviceReceiver<In<P>>,
+    ear: Ear,
+    lifecycle: Lifecycle,
+    ending: bool,
+}
+
+impl<P: Program> Loop<P> {
+    fn run(mut self) -> Result<(), Failure> {
+        let mut effects = Effects::default();
+        self.node.on(Event::Started, clock::now(), &mut effects);
+        self.commit(&mut effects)?;
+        self.lifecycle.ready();
+        tracing::info!("ready");
+        loop {
+            self.wait();
+            self.pass(&mut effects)?;
+            self.commit(&mut effects)?;
+            self.lifecycle.beat(clock::now(), self.node.pending_since());
+            if effects.exits() {
+                tracing::info!("ended as told");
+                return Ok(());
+            }
+        }
+    }
+
+    /// Sleeps until something waits, a deadline passes, or it is time to look anyway.
+    fn wait(&self) {
+        let now = clock::now();
+        let until = [self.node.deadline(), Some(self.lifecycle.next_beat(now))]
+            .into_iter()
+            .flatten()
+            .fold(now + LOOK_EVERY, Time::min);
+        self.lifecycle.wait(&[self.ear.fd(), self.inbox.fd()], until.since(now));
+    }
+
+    /// Feeds everything that waits to the node.
+    fn pass(&mut self, effects: &mut Effects<Out<P>, Record<P>>) -> Result<(), Failure> {
+        self.ear.clear();
+        self.inbox.clear();
+        if !self.ending && self.lifecycle.told_to_end() {
+            self.ending = true;
+            self.lifecycle.stopping();
+            self.node.on(Event::Shutdown, clock::now(), effects);
+        }
+        let mut arrived = Vec::new();
+        self.shell.drain(&mut |message| arrived.push(message))?;
+        while arrived.len() < PASS_EVENTS_MAX
+            && let Some(message) = self.inbox.take()
+        {
+            arrived.push(message);
+        }
+        for message in arrived {
+            self.node.on(Event::Message(message), clock::now(), effects);
+        }
+        if self.node.deadline().is_some_and(|deadline| deadline <= clock::now()) {
+            self.node.on(Event::Tick, clock::now(), effects);
+        }
+        Ok(())
+    }
+
+    /// Makes the pass durable, then visible. Never the other way round.
+    fn commit(&mut self, effects: &mut Effects<Out<P>, Record<P>>) -> Result<(), Failure> {
+        let records = effects.take_records();
+        if let Some(journal) = &mut self.journal
+            && !records.is_empty()
+        {
+            let storage = |e: String| Failure::new(Exit::Storage, e);
+            for record in &records {
+                journal.append(record).map_err(|e| storage(e.to_string()))?;
+            }
+            journal.sync().map_err(|e| storage(e.to_string()))?;
+        }
+        for output in effects.take_outputs() {
+            self.shell.publish(output)?;
+        }
+        self.shorten()
+    }
+
+    /// Cuts a long journal short where nothing is in progress.
+    fn shorten(&mut self) -> Result<(), Failure> {
+        let Some(journal) = &mut self.journal else { return Ok(()) };
+        if journal.bytes() < JOURNAL_BYTES {
+            return Ok(());
+        }
+        let Some(snapshot) = self.node.snapshot() else { return Ok(()) };
+        journal.rotate(&snapshot).map_err(|e| Failure::new(Exit::Storage, e.to_string()))?;
+        tracing::info!(records = snapshot.len(), "journal begun anew from a snapshot");
+        Ok(())
+    }
+}
