@@ -12,8 +12,8 @@ use rustix::process::{
     pidfd_send_signal, waitid,
 };
 
-use crate::exit::Exit;
 use crate::machine::Effect;
+use service::process_exit::ProcessExit;
 
 /// A child that leads its own process group and has not been reaped.
 #[derive(Debug)]
@@ -56,7 +56,7 @@ impl Child {
     /// Reaps the ended child, after killing what is left of its process group.
     ///
     /// In this order: until it is reaped, nobody else can be given its number, nor its group's.
-    pub(crate) fn reap(self) -> Exit {
+    pub(crate) fn reap(self) -> ProcessExit {
         if let Err(error) = self.kill_group()
             && error != Errno::SRCH
         {
@@ -64,15 +64,15 @@ impl Child {
         }
         match waitid(WaitId::PidFd(self.pidfd.as_fd()), WaitIdOptions::EXITED) {
             Ok(Some(status)) => match (status.exit_status(), status.terminating_signal()) {
-                (Some(code), _) => Exit::Code(code),
-                (None, Some(signal)) => Exit::Signal(signal),
+                (Some(code), _) => ProcessExit::Code(code),
+                (None, Some(signal)) => ProcessExit::Signal(signal),
                 (None, None) => unreachable!("only ended children were asked for"),
             },
             Ok(None) => unreachable!("the wait was a blocking one"),
             // Reaped by somebody else: a defect, but the process has ended all the same.
             Err(error) => {
                 tracing::error!(pid = %self.pid, %error, "exit status lost");
-                Exit::Signal(Signal::KILL.as_raw())
+                ProcessExit::Signal(Signal::KILL.as_raw())
             }
         }
     }

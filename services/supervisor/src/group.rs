@@ -4,7 +4,7 @@
 //! comes after are ready (a later restart of one of those leaves it alone); while the group stops,
 //! a service is stopped once all that come after it are at rest.
 
-use serde::{Deserialize, Serialize};
+use service::status::GroupState;
 
 use crate::Time;
 use crate::machine::{Actual, Effect, Event, HeldBecause, Limits, Machine, Wanted};
@@ -29,20 +29,6 @@ enum Phase {
     Starting,
     /// Every service that is wanted has been ready once.
     Running,
-    Stopping,
-}
-
-/// What a group is doing as a whole.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum GroupState {
-    /// Services are being started for the first time.
-    Starting,
-    /// Every service that is wanted up is ready.
-    Ready,
-    /// Some service that is wanted up is not ready.
-    Degraded,
-    /// Services are being stopped in order.
     Stopping,
 }
 

@@ -6,19 +6,14 @@
 //! its limits allow, and when the group is down no process of it is left. What to do is decided by
 //! pure state ([`machine`], [`group`], [`swap`]); the rest carries it out.
 //!
-//! The command line uses [`launch`] to start a supervisor and [`control`] to talk to it.
 
 use std::time::Duration;
 
 pub mod configuration;
-pub mod control;
-pub mod exit;
 pub mod group;
-pub mod launch;
 pub mod machine;
 pub mod schedule;
 pub mod spec;
-pub mod status;
 pub mod swap;
 
 mod before_exec;
@@ -26,7 +21,6 @@ mod bond;
 mod child;
 mod earlier;
 mod epoch;
-mod logs;
 mod notify;
 mod procfs;
 mod server;

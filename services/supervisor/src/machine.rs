@@ -8,11 +8,12 @@
 use std::time::Duration;
 
 use crate::Time;
-use crate::exit::Exit;
 use crate::spec::Restart;
 use crate::tally::{Tally, Verdict};
+use service::process_exit::ProcessExit;
 
-pub use vocabulary::{Actual, Effect, Event, Failure, HeldBecause, Limits, Wanted};
+pub use service::status::{Actual, Failure, Wanted};
+pub use vocabulary::{Effect, Event, HeldBecause, Limits};
 
 use state::{State, Step, Why};
 
@@ -210,7 +211,7 @@ impl Machine {
         None
     }
 
-    fn exited(&mut self, exit: Exit, now: Time) -> Option<Effect> {
+    fn exited(&mut self, exit: ProcessExit, now: Time) -> Option<Effect> {
         let (why, ready_for) = match self.state {
             State::Starting { .. } => (None, None),
             State::Ready { since } => (None, Some(now.saturating_sub(since))),

@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use clap::Parser;
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
+use service::launch::Options;
 use supervisor::Supervisor;
 use supervisor::configuration::from_settings;
-use supervisor::launch::Options;
 
 /// Starts, watches, restarts and stops the services of one group.
 ///

@@ -10,7 +10,7 @@ use std::time::Duration;
 use rustix::event::PollFlags;
 
 use crate::Time;
-use crate::control::{REQUEST_BYTES_MAX, Refusal, RefusalKind, Reply, Request};
+use service::control::{REQUEST_BYTES_MAX, Refusal, RefusalKind, Reply, Request};
 
 #[cfg(test)]
 mod tests;

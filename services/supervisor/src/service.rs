@@ -10,12 +10,12 @@ use service::shm_cleanup::NoRoom;
 use crate::Time;
 use crate::bond::Bond;
 use crate::child::Child;
-use crate::exit::Exit;
-use crate::logs;
 use crate::machine::{Effect, Event, Failure};
 use crate::notify::{Notification, NotifySocket};
 use crate::spawn::{self, Launch, SpawnError};
 use crate::spec::{Log, ServiceSpec};
+use service::log_file;
+use service::process_exit::ProcessExit;
 
 /// A service, whether or not a process of it runs.
 #[derive(Debug)]
@@ -54,7 +54,7 @@ pub(crate) struct Running {
 #[derive(Clone, Debug)]
 pub(crate) struct Ended {
     pub(crate) incarnation: u32,
-    pub(crate) exit: Exit,
+    pub(crate) exit: ProcessExit,
     pub(crate) failure: Option<Failure>,
     pub(crate) killed: bool,
     pub(crate) at: Time,
@@ -88,7 +88,7 @@ impl Service {
         around: &Surroundings,
         room: Result<(), NoRoom>,
         now: Time,
-    ) -> Result<(), Exit> {
+    ) -> Result<(), ProcessExit> {
         assert!(self.running.is_none(), "{} runs already", self.spec.name);
         let started = room.map_err(SpawnError::from);
         match started.and_then(|()| self.try_spawn(incarnation, around, now)) {
@@ -126,8 +126,8 @@ impl Service {
         let socket = around.paths.notify_socket(&self.spec.name, incarnation);
         let failed =
             |path: &Path, error| SpawnError::Io { program: path.display().to_string(), error };
-        let log = logs::open(&path, &around.log).map_err(|error| failed(&path, error))?;
-        self.log_from = logs::size(&path);
+        let log = log_file::open(&path, &around.log).map_err(|error| failed(&path, error))?;
+        self.log_from = log_file::size(&path);
         let notify = NotifySocket::bind(&socket).map_err(|error| failed(&socket, error))?;
         let (words, directory) = match &self.swapped {
             Some(command) => (&command.words, &command.directory),
@@ -224,7 +224,7 @@ impl Service {
     }
 
     /// Reaps the ended process, with whatever is left of its group, and notes how it ended.
-    pub(crate) fn reap(&mut self, failure: Option<Failure>, now: Time) -> Option<Exit> {
+    pub(crate) fn reap(&mut self, failure: Option<Failure>, now: Time) -> Option<ProcessExit> {
         let Running { child, incarnation, killed, .. } = self.running.take()?;
         let exit = child.reap();
         let ended = Ended { incarnation, exit, failure, killed, at: now, error: None };
@@ -235,7 +235,7 @@ impl Service {
 
     /// The last lines of the last incarnation's log.
     pub(crate) fn log_tail(&self, paths: &GroupPaths) -> Vec<String> {
-        logs::tail(&paths.log_file(&self.spec.name), self.log_from)
+        log_file::tail(&paths.log_file(&self.spec.name), self.log_from)
     }
 
     /// Puts a command in the place of the current one; `None` is the configured one.

@@ -15,7 +15,7 @@ use thiserror::Error;
 use crate::before_exec;
 use crate::bond::Bond;
 use crate::child::Child;
-use crate::exit::Exit;
+use service::process_exit::ProcessExit;
 
 /// What to start, and with what.
 #[derive(Debug)]
@@ -57,15 +57,17 @@ pub(crate) enum SpawnError {
 
 impl SpawnError {
     /// The error as an end of the service: whether trying again may help.
-    pub(crate) fn as_exit(&self) -> Exit {
+    pub(crate) fn as_exit(&self) -> ProcessExit {
         match self {
             Self::Io { error, .. } => match error.kind() {
-                ErrorKind::NotFound | ErrorKind::PermissionDenied => Exit::NotStartable,
-                ErrorKind::InvalidInput | ErrorKind::ArgumentListTooLong => Exit::NotStartable,
-                _ => Exit::NotStarted,
+                ErrorKind::NotFound | ErrorKind::PermissionDenied => ProcessExit::NotStartable,
+                ErrorKind::InvalidInput | ErrorKind::ArgumentListTooLong => {
+                    ProcessExit::NotStartable
+                }
+                _ => ProcessExit::NotStarted,
             },
-            Self::Room(_) => Exit::NotStarted,
-            Self::Empty | Self::Missing(_) | Self::NotExecutable(_) => Exit::NotStartable,
+            Self::Room(_) => ProcessExit::NotStarted,
+            Self::Empty | Self::Missing(_) | Self::NotExecutable(_) => ProcessExit::NotStartable,
         }
     }
 }

@@ -170,7 +170,7 @@ impl Supervisor {
         }
         self.check_critical(now);
         self.answer_waits(now);
-        if !self.told_ready && self.group.state() == crate::group::GroupState::Ready {
+        if !self.told_ready && self.group.state() == service::status::GroupState::Ready {
             self.told_ready = true;
             tracing::info!(ms = now.as_millis(), "every service is ready");
             self.systemd.tell("READY=1");
@@ -235,7 +235,7 @@ impl Supervisor {
         let services = self.services.iter().filter(|service| service.running.is_some());
         let names = services.map(|service| service.spec.name.as_str()).chain(["supervisor"]);
         for name in names {
-            match crate::logs::bound(&self.around.paths.log_file(name), &self.around.log) {
+            match service::log_file::bound(&self.around.paths.log_file(name), &self.around.log) {
                 Ok(true) => tracing::warn!(service = name, "its log grew too fast and was cut"),
                 Ok(false) => {}
                 Err(error) => tracing::warn!(service = name, %error, "its log is not bounded"),

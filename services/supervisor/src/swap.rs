@@ -66,9 +66,9 @@ mod tests {
 
     use super::*;
     use crate::Time;
-    use crate::exit::Exit;
     use crate::group::tests::{LIMITS, service};
     use crate::machine::{Event, Limits};
+    use service::process_exit::ProcessExit;
 
     const NOW: Time = Duration::from_secs(1);
 
@@ -89,8 +89,8 @@ mod tests {
         events.iter().map(&mut after).collect()
     }
 
-    const STOPPED: Event = Event::Exited(Exit::Code(0));
-    const REFUSED: Event = Event::Exited(Exit::Code(78));
+    const STOPPED: Event = Event::Exited(ProcessExit::Code(0));
+    const REFUSED: Event = Event::Exited(ProcessExit::Code(78));
 
     #[test]
     fn a_new_command_that_becomes_ready_is_kept() {

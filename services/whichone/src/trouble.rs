@@ -6,10 +6,10 @@ use config::Problems;
 use scene::Problem;
 use service::bus::{BusError, PortError};
 use service::client::ClientError;
+use service::control::{CallError, Refusal};
 use service::exit::{Exit, Failure};
 use service::group::GroupError;
-use supervisor::control::{CallError, Refusal};
-use supervisor::launch::LaunchError;
+use service::launch::LaunchError;
 
 /// What every verb ends with: the exit code of a verb that said all there is to say, or trouble.
 pub type Outcome = Result<Exit, Trouble>;

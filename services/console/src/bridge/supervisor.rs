@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError};
 use serde_json::Value as Json;
+use service::control::{Reply, Request, call};
 use service::group::GroupPaths;
 use service::worker_channel::DeviceSender;
-use supervisor::control::{Reply, Request, call};
 
 use crate::hub::ViewerId;
 use crate::hub::command::Command;

@@ -2,7 +2,7 @@
 
 use serde_json::Value as Json;
 use service::Time;
-use supervisor::status::GroupStatus;
+use service::status::GroupStatus;
 
 use super::ViewerId;
 use crate::voice::PcmFrame;

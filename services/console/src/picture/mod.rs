@@ -25,7 +25,7 @@ use messages::{
 };
 use serde_json::{Value as Json, json};
 use service::Time;
-use supervisor::status::GroupStatus;
+use service::status::GroupStatus;
 
 pub use event::PictureEvent;
 pub use latency::{Latency, Stages};

@@ -1,8 +1,8 @@
 //! The processes of the group.
 
 use serde_json::{Value as Json, json};
-use supervisor::machine::Actual;
-use supervisor::status::{GroupStatus, ServiceStatus};
+use service::status::Actual;
+use service::status::{GroupStatus, ServiceStatus};
 
 /// The section.
 pub(super) fn section(group: &GroupStatus) -> Json {

@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, VecDeque};
 use messages::{Ended, Outcome, Presentation, Presented, Receipt, ReceiptStatus, Source};
 use scene::{ObjectId, Question, Scene, question_to_json};
 use service::Time;
-use supervisor::status::ServiceStatus;
+use service::status::ServiceStatus;
 
 use super::line::{Line, Who};
 use super::speech::Prompt;

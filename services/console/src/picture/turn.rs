@@ -6,7 +6,7 @@ use messages::{
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 use service::Time;
-use supervisor::status::GroupStatus;
+use service::status::GroupStatus;
 
 use super::services;
 use crate::hub::ms;

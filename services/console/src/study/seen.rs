@@ -2,8 +2,8 @@
 
 use messages::{ArmStatus, PickPhase, PolicyView};
 use scene::Scene;
-use supervisor::machine::Actual;
-use supervisor::status::GroupStatus;
+use service::status::Actual;
+use service::status::GroupStatus;
 
 /// Services without which no interaction can go on.
 const NEEDED: [&str; 4] = ["speech", "grounding", "policy", "arm"];

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, bounded};
-use supervisor::control::{Reply, Request, call};
+use service::control::{Reply, Request, call};
 
 use super::watch::Wish;
 

@@ -5,8 +5,8 @@ use std::env;
 use config::{Section, Service, Settings};
 
 use super::{Configuration, Load};
-use crate::launch::Options;
 use crate::spec::{GroupSpec, ServiceSpec};
+use service::launch::Options;
 
 /// Reads the configuration folder that `options` name.
 pub fn from_settings(options: Options) -> Load {

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::*;
-use crate::exit::Exit;
 use crate::spec::{Log, Restart, RestartLimits, ServiceSpec};
+use service::process_exit::ProcessExit;
 
 /// The same cases in every run, and no files.
 pub(crate) fn seeded() -> ProptestConfig {
@@ -67,7 +67,7 @@ fn up(group: &mut Group) {
 }
 
 const CHAIN: &[(&str, &[&str])] = &[("c", &["b"]), ("a", &[]), ("b", &["a"])];
-const CRASH: Event = Event::Exited(Exit::Signal(9));
+const CRASH: Event = Event::Exited(ProcessExit::Signal(9));
 
 #[test]
 fn services_start_when_those_before_them_are_ready() {
@@ -104,7 +104,7 @@ fn services_stop_when_those_behind_them_are_at_rest() {
     for service in [0, 2, 1] {
         assert_eq!(settle(&mut group), [(service, Effect::Terminate)]);
         assert!(!group.is_stopped());
-        assert_eq!(group.on(service, Event::Exited(Exit::Code(0)), NOW), None);
+        assert_eq!(group.on(service, Event::Exited(ProcessExit::Code(0)), NOW), None);
     }
     assert_eq!(settle(&mut group), []);
     assert!(group.is_stopped());
@@ -124,15 +124,15 @@ fn only_a_critical_service_that_was_given_up_loses_the_group() {
     let mut group = group(CHAIN);
     up(&mut group);
     group.critical[2] = true;
-    group.on(0, Event::Exited(Exit::Code(78)), NOW);
+    group.on(0, Event::Exited(ProcessExit::Code(78)), NOW);
     assert_eq!(group.lost(), None);
     group.on(2, Event::Hold, NOW);
-    group.on(2, Event::Exited(Exit::Code(0)), NOW);
+    group.on(2, Event::Exited(ProcessExit::Code(0)), NOW);
     assert_eq!(group.lost(), None);
     group.on(2, Event::Start, NOW);
     assert_eq!(settle(&mut group), [(2, Effect::Spawn)]);
-    group.on(2, Event::Exited(Exit::Code(78)), NOW);
-    assert_eq!(group.lost(), Some((2, HeldBecause::Permanent(Exit::Code(78)))));
+    group.on(2, Event::Exited(ProcessExit::Code(78)), NOW);
+    assert_eq!(group.lost(), Some((2, HeldBecause::Permanent(ProcessExit::Code(78)))));
 }
 
 proptest! {
@@ -159,7 +159,7 @@ proptest! {
             let event = match event {
                 0 | 1 => Event::Ready,
                 2 => CRASH,
-                _ => Event::Exited(Exit::Code(0)),
+                _ => Event::Exited(ProcessExit::Code(0)),
             };
             if group.machine(service).is_live() {
                 group.on(service, event, now);
@@ -184,7 +184,7 @@ proptest! {
             for service in 0..group.order().len() {
                 let machine = group.machine(service);
                 if machine.actual() == Actual::Stopping {
-                    group.on(service, Event::Exited(Exit::Signal(15)), now);
+                    group.on(service, Event::Exited(ProcessExit::Signal(15)), now);
                 }
             }
         }

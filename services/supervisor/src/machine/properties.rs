@@ -41,9 +41,9 @@ fn any_deed() -> impl Strategy<Value = Event> {
         3 => Just(Event::Ready),
         2 => Just(Event::Beat),
         1 => (0u64..20_000).prop_map(|ms| Event::Extend(Duration::from_millis(ms))),
-        3 => (0i32..3).prop_map(|code| Event::Exited(Exit::Code(code))),
-        1 => Just(Event::Exited(Exit::Code(78))),
-        2 => Just(Event::Exited(Exit::Signal(9))),
+        3 => (0i32..3).prop_map(|code| Event::Exited(ProcessExit::Code(code))),
+        1 => Just(Event::Exited(ProcessExit::Code(78))),
+        2 => Just(Event::Exited(ProcessExit::Signal(9))),
         4 => Just(Event::Clock),
     ]
 }
@@ -148,7 +148,7 @@ proptest! {
             world.now = due;
             prop_assert_eq!(world.machine.on(Event::Clock, due), Some(Effect::Kill));
         }
-        world.give(Event::Exited(Exit::Signal(9)), 1)?;
+        world.give(Event::Exited(ProcessExit::Signal(9)), 1)?;
         prop_assert_eq!(world.machine.actual(), Actual::Down);
         world.give(Event::Clock, 3_600_000)?;
         prop_assert!(!world.lives);
@@ -161,7 +161,7 @@ proptest! {
         world.give(Event::Start, 0)?;
         world.give(Event::Admit, 0)?;
         for exit in 0..exits {
-            world.give(Event::Exited(Exit::Code(code)), 10)?;
+            world.give(Event::Exited(ProcessExit::Code(code)), 10)?;
             let pause = TALLY.backoff_first * 2u32.pow(exit);
             if exit + 1 == TALLY.exits_max {
                 prop_assert_eq!(world.machine.actual(), Actual::Held);

@@ -9,9 +9,9 @@ struct Bench {
     now: Time,
 }
 
-const CRASH: Event = Event::Exited(Exit::Signal(9));
-const STOPPED: Event = Event::Exited(Exit::Code(0));
-const REFUSED: Event = Event::Exited(Exit::Code(78));
+const CRASH: Event = Event::Exited(ProcessExit::Signal(9));
+const STOPPED: Event = Event::Exited(ProcessExit::Code(0));
+const REFUSED: Event = Event::Exited(ProcessExit::Code(78));
 
 impl Bench {
     fn new() -> Self {
@@ -135,7 +135,7 @@ fn too_many_exits_hold_it_until_released() {
 
 #[test]
 fn a_permanent_exit_holds_it_at_once() {
-    for exit in [Exit::Code(78), Exit::Code(64), Exit::NotStartable] {
+    for exit in [ProcessExit::Code(78), ProcessExit::Code(64), ProcessExit::NotStartable] {
         let mut bench = Bench::starting();
         assert_eq!(bench.on(Event::Exited(exit)), None);
         assert_eq!(bench.machine.held_because(), Some(HeldBecause::Permanent(exit)));

@@ -3,38 +3,8 @@
 use std::fmt;
 use std::time::Duration;
 
-use serde::{Deserialize, Serialize};
-
-use crate::exit::Exit;
 use crate::spec::{Restart, RestartLimits, ServiceSpec};
-
-/// What is wanted of a service.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Wanted {
-    /// It should run.
-    Up,
-    /// It should not run.
-    Down,
-}
-
-/// What a service actually does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Actual {
-    /// Not running; if wanted up, it waits for the services that it comes after.
-    Down,
-    /// Running, not ready yet.
-    Starting,
-    /// Running and ready.
-    Ready,
-    /// Running, told to end.
-    Stopping,
-    /// Not running, about to be started again.
-    Backoff,
-    /// Not running, not started again until an operator says so.
-    Held,
-}
+use service::process_exit::ProcessExit;
 
 /// What happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,7 +30,7 @@ pub enum Event {
     /// It asks for this much more time for what it does.
     Extend(Duration),
     /// Its process has been reaped (or could not be made).
-    Exited(Exit),
+    Exited(ProcessExit),
     /// Time has passed.
     Clock,
 }
@@ -78,23 +48,13 @@ pub enum Effect {
     Kill,
 }
 
-/// What a service failed to do, for which it was stopped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Failure {
-    /// It was not ready within its start deadline.
-    NotReady,
-    /// Its main loop did not go round within the watchdog's period.
-    NoBeat,
-}
-
 /// Why a service is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeldBecause {
     /// An operator wants it so.
     Operator,
     /// Its last exit says that another start cannot help.
-    Permanent(Exit),
+    Permanent(ProcessExit),
     /// It ended this often within the window.
     TooOften(u32),
     /// It failed, and its restart policy is `never`.

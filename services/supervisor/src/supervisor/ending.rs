@@ -11,9 +11,9 @@ use super::Supervisor;
 use super::start::{Folder, StartError, make_folder};
 use super::waits::Goal;
 use crate::Time;
-use crate::control::{DownReport, Refusal, RefusalKind, Reply};
 use crate::machine::HeldBecause;
 use crate::server::Server;
+use service::control::{DownReport, Refusal, RefusalKind, Reply};
 
 /// A second loss of the topics' files within this time is no accident; the group is given up.
 const RENEWAL_INTERVAL: Duration = Duration::from_secs(60);

@@ -4,10 +4,10 @@ use super::waits::Goal;
 use super::{About, Supervisor};
 use crate::Time;
 use crate::configuration::Configuration;
-use crate::control::{Refusal, RefusalKind, Reply};
 use crate::machine::{Event, HeldBecause, Wanted};
 use crate::server::Client;
 use crate::spec::ServiceSpec;
+use service::control::{Refusal, RefusalKind, Reply};
 
 impl Supervisor {
     /// Reads the configuration anew and restarts what it concerns; or, where anything is wrong

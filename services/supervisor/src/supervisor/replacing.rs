@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use super::Supervisor;
 use super::requests::done;
 use crate::Time;
-use crate::control::{Refusal, RefusalKind, Reply};
 use crate::machine::Event;
 use crate::server::Client;
 use crate::service::Command;
 use crate::spawn::find_program;
 use crate::swap::{Move, Swap};
+use service::control::{Refusal, RefusalKind, Reply};
 
 /// A replacement under way.
 #[derive(Debug)]

@@ -9,7 +9,7 @@ use crate::Time;
 use crate::machine::Actual;
 use crate::procfs;
 use crate::service::Ended;
-use crate::status::{GroupStatus, LastExit, ServiceStatus};
+use service::status::{GroupStatus, LastExit, ServiceStatus};
 
 impl Supervisor {
     /// The group at this moment.

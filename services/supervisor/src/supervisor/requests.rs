@@ -4,9 +4,9 @@ use super::Supervisor;
 use super::ending::Cause;
 use super::waits::{Goal, Wait};
 use crate::Time;
-use crate::control::{Refusal, RefusalKind, Reply, Request};
 use crate::machine::{Event, Wanted};
 use crate::server::Client;
+use service::control::{Refusal, RefusalKind, Reply, Request};
 
 impl Supervisor {
     /// Answers a request, or begins what it asks for and answers when that is done.

@@ -4,9 +4,9 @@ use std::time::Duration;
 
 use super::Supervisor;
 use crate::Time;
-use crate::control::{Refusal, RefusalKind, Reply};
 use crate::machine::{Actual, Wanted};
 use crate::server::Client;
+use service::control::{Refusal, RefusalKind, Reply};
 
 /// A client, what it waits for, and what it is told then.
 #[derive(Debug)]

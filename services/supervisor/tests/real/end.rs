@@ -2,8 +2,8 @@ use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
 use serde_json::json;
-use supervisor::control::{DownReport, Reply, Request};
-use supervisor::machine::Actual;
+use service::control::{DownReport, Reply, Request};
+use service::status::Actual;
 
 use crate::harness::{Group, WAIT_MS, send, service, wait_for, with};
 

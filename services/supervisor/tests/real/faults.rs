@@ -2,9 +2,9 @@ use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
 use serde_json::json;
-use supervisor::control::{RefusalKind, Request};
-use supervisor::exit::Exit;
-use supervisor::group::GroupState;
+use service::control::{RefusalKind, Request};
+use service::process_exit::ProcessExit;
+use service::status::GroupState;
 use supervisor::machine::{Actual, Failure};
 
 use crate::harness::{Group, WAIT_MS, send, service, wait_for, with};
@@ -19,7 +19,7 @@ fn a_killed_service_is_back_and_the_others_never_notice() {
     send(group.pid("arm"), Signal::KILL);
     let again = group.until_ready("arm", 2);
     let last = again.last_exit.unwrap();
-    assert_eq!((last.exit, last.incarnation, last.killed), (Exit::Signal(9), 1, false));
+    assert_eq!((last.exit, last.incarnation, last.killed), (ProcessExit::Signal(9), 1, false));
     assert_eq!(again.restarts, 1);
     assert_eq!(group.pid("policy"), policy);
     assert_eq!(group.status().state, GroupState::Ready);
@@ -46,7 +46,7 @@ fn a_crash_loop_is_slowed_down_and_then_held_with_the_log() {
     let held = group.until("arm", Actual::Held);
     assert_eq!(held.incarnation, 5);
     assert_eq!(held.why.as_deref(), Some("5 exits in a short time"));
-    assert_eq!(held.last_exit.unwrap().exit, Exit::Code(3));
+    assert_eq!(held.last_exit.unwrap().exit, ProcessExit::Code(3));
     assert_eq!(held.log_tail, ["so it goes"]);
     let pauses = Duration::from_millis(100 + 200 + 400 + 800);
     assert!(begun.elapsed() >= pauses, "{:?}", begun.elapsed());
@@ -62,7 +62,7 @@ fn a_service_that_no_longer_beats_is_aborted_and_replaced() {
         wait_for("a second start", || Some(group.service("arm")).filter(|s| s.incarnation > 1));
     let last = again.last_exit.unwrap();
     assert_eq!(last.failure, Some(Failure::NoBeat));
-    assert_eq!(last.exit, Exit::Signal(6), "it leaves a trace of where it hung");
+    assert_eq!(last.exit, ProcessExit::Signal(6), "it leaves a trace of where it hung");
 }
 
 #[test]
@@ -130,11 +130,7 @@ fn files_removed_by_hand_restart_the_group_once() {
     std::fs::remove_dir_all(group.paths.run()).unwrap();
     wait_for("the group to be made anew", || {
         let call = |request| {
-            supervisor::control::call(
-                &group.paths.control_socket(),
-                request,
-                crate::harness::PATIENCE,
-            )
+            service::control::call(&group.paths.control_socket(), request, crate::harness::PATIENCE)
         };
         call(&Request::WaitReady { wait_ms: WAIT_MS }).ok()
     });

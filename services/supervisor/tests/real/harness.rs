@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::{Value, json};
+use service::control::{Refusal, Reply, Request, call};
 use service::group::{GroupName, GroupPaths};
-use supervisor::control::{Refusal, Reply, Request, call};
-use supervisor::machine::Actual;
-use supervisor::status::{GroupStatus, ServiceStatus};
+use service::status::Actual;
+use service::status::{GroupStatus, ServiceStatus};
 use tempfile::TempDir;
 
 /// Only to fail: every wait ends as soon as what it waits for is so.

@@ -5,11 +5,11 @@
 use std::fs;
 use std::path::Path;
 
+use service::control::{Reply, Request, call};
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
-use supervisor::control::{Reply, Request, call};
-use supervisor::group::GroupState;
-use supervisor::launch::{LaunchError, Launched, Options, detached, wait_ready};
+use service::launch::{LaunchError, Launched, Options, detached, wait_ready};
+use service::status::GroupState;
 use tempfile::TempDir;
 
 use crate::harness::{PATIENCE, WAIT_MS, fixture};

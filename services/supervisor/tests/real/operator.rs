@@ -1,6 +1,6 @@
 use serde_json::json;
-use supervisor::control::{RefusalKind, Reply, Request};
-use supervisor::machine::{Actual, Wanted};
+use service::control::{RefusalKind, Reply, Request};
+use service::status::{Actual, Wanted};
 
 use crate::harness::{Group, WAIT_MS, service, with};
 

@@ -1,6 +1,6 @@
 use rustix::process::Signal;
 use serde_json::json;
-use supervisor::control::Request;
+use service::control::Request;
 
 use crate::harness::{Group, WAIT_MS, is_alive, send, service, wait_for, with};
 

@@ -1,8 +1,8 @@
 use rustix::process::Signal;
 use serde_json::json;
-use supervisor::control::{RefusalKind, Request};
-use supervisor::group::GroupState;
-use supervisor::machine::{Actual, Wanted};
+use service::control::{RefusalKind, Request};
+use service::status::GroupState;
+use service::status::{Actual, Wanted};
 
 use crate::harness::{Group, WAIT_MS, fixture, service, wait_for, with};
 

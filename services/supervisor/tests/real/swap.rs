@@ -1,6 +1,6 @@
 use serde_json::json;
-use supervisor::control::{RefusalKind, Request};
-use supervisor::machine::Actual;
+use service::control::{RefusalKind, Request};
+use service::status::Actual;
 
 use crate::harness::{Group, WAIT_MS, fixture, send, service, with};
 

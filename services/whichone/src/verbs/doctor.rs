@@ -9,8 +9,8 @@ use config::{BUILT_IN, Settings};
 use serde::Serialize;
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
+use service::launch;
 use service::shm_cleanup;
-use supervisor::launch;
 
 use super::{console, leftovers, place, up, words};
 use crate::cli::ConfigArgs;

@@ -7,10 +7,10 @@ use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Pid, PidfdFlags, pidfd_open};
 use rustix::time::Timespec;
 use serde_json::json;
+use service::control::{CallError, DownReport, Refusal, Reply, Request, call};
 use service::exit::Exit;
 use service::group::GroupPaths;
-use supervisor::control::{CallError, DownReport, Refusal, Reply, Request, call};
-use supervisor::status::GroupStatus;
+use service::status::GroupStatus;
 
 use super::{leftovers, words};
 use crate::cli::{RestartArgs, ServiceArgs, SwapArgs};

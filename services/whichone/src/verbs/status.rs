@@ -1,12 +1,12 @@
 //! `status`: what an operator needs to see.
 
 use serde_json::json;
+use service::control::CallError;
 use service::exit::Exit;
 use service::group::GroupPaths;
-use supervisor::control::CallError;
-use supervisor::group::GroupState;
-use supervisor::machine::{Actual, Wanted};
-use supervisor::status::{GroupStatus, ServiceStatus};
+use service::status::GroupState;
+use service::status::{Actual, Wanted};
+use service::status::{GroupStatus, ServiceStatus};
 
 use super::operate::{Unanswered, status_of};
 use super::{console, hearing, words};

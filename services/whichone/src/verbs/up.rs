@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
+use service::control::{CallError, Request};
 use service::exit::Exit;
 use service::group::GroupPaths;
-use supervisor::control::{CallError, Request};
-use supervisor::launch::{self, Options};
+use service::launch::{self, Options};
 
 use super::{console, operate, place};
 use crate::cli::{ConfigArgs, UpArgs, WaitFor};

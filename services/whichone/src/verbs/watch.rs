@@ -3,9 +3,9 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
+use service::control::{Reply, Request, call};
 use service::exit::Exit;
 use service::group::GroupPaths;
-use supervisor::control::{Reply, Request, call};
 
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::interrupt::Interrupt;

@@ -2,9 +2,9 @@
 
 use messages::{ArmStatus, Hindrance, PickOutcome, PickPhase, PolicyView};
 use scene::Scene;
-use supervisor::group::GroupState;
-use supervisor::machine::{Actual, Wanted};
-use supervisor::status::{GroupStatus, ServiceStatus};
+use service::status::GroupState;
+use service::status::{Actual, Wanted};
+use service::status::{GroupStatus, ServiceStatus};
 
 use super::picture::{Picture, Speaker, object_name};
 use crate::output::{Ink, Style};

@@ -8,7 +8,7 @@ use serde_json::{Map, Value as Json, json};
 use service::Time;
 use service::clock;
 use service::group::GroupPaths;
-use supervisor::status::GroupStatus;
+use service::status::GroupStatus;
 
 use crate::trouble::Trouble;
 use crate::verbs::conversation::{Conversation, Seen};

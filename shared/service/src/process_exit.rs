@@ -4,16 +4,16 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Exit code of a service that will never work as configured (`EX_CONFIG`).
+/// ProcessExit code of a service that will never work as configured (`EX_CONFIG`).
 pub const EXIT_CONFIG: i32 = 78;
 
-/// Exit code of a service that does not understand its command line (`EX_USAGE`).
+/// ProcessExit code of a service that does not understand its command line (`EX_USAGE`).
 pub const EXIT_USAGE: i32 = 64;
 
 /// How one incarnation ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Exit {
+pub enum ProcessExit {
     /// It exited with this code.
     Code(i32),
     /// This signal ended it.
@@ -24,7 +24,7 @@ pub enum Exit {
     NotStartable,
 }
 
-impl Exit {
+impl ProcessExit {
     /// Whether starting the same thing again cannot help.
     pub fn is_permanent(self) -> bool {
         matches!(self, Self::Code(EXIT_CONFIG | EXIT_USAGE) | Self::NotStartable)
@@ -36,7 +36,7 @@ impl Exit {
     }
 }
 
-impl fmt::Display for Exit {
+impl fmt::Display for ProcessExit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
             Self::Code(EXIT_CONFIG) => write!(f, "exit 78 (configuration or schema refused)"),
@@ -75,20 +75,24 @@ mod tests {
 
     #[test]
     fn only_what_cannot_get_better_is_permanent() {
-        for exit in [Exit::Code(64), Exit::Code(78), Exit::NotStartable] {
+        for exit in [ProcessExit::Code(64), ProcessExit::Code(78), ProcessExit::NotStartable] {
             assert!(exit.is_permanent(), "{exit}");
         }
-        for exit in
-            [Exit::Code(0), Exit::Code(1), Exit::Code(75), Exit::Signal(9), Exit::NotStarted]
-        {
+        for exit in [
+            ProcessExit::Code(0),
+            ProcessExit::Code(1),
+            ProcessExit::Code(75),
+            ProcessExit::Signal(9),
+            ProcessExit::NotStarted,
+        ] {
             assert!(!exit.is_permanent(), "{exit}");
         }
     }
 
     #[test]
     fn ends_are_told_in_words() {
-        assert_eq!(Exit::Signal(9).to_string(), "signal KILL");
-        assert_eq!(Exit::Signal(40).to_string(), "signal 40");
-        assert_eq!(Exit::Code(3).to_string(), "exit 3");
+        assert_eq!(ProcessExit::Signal(9).to_string(), "signal KILL");
+        assert_eq!(ProcessExit::Signal(40).to_string(), "signal 40");
+        assert_eq!(ProcessExit::Code(3).to_string(), "exit 3");
     }
 }

@@ -10,13 +10,13 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use crate::exit::Exit;
+use crate::group::{ENV_HOME, GroupName, GroupPaths};
 use config::Log;
-use service::exit::Exit;
-use service::group::{ENV_HOME, GroupName, GroupPaths};
 use thiserror::Error;
 
 use crate::control::{CallError, Refusal, Reply, Request, call};
-use crate::logs;
+use crate::log_file;
 
 /// Name of the supervisor's program.
 pub const PROGRAM: &str = "whichone-supervisor";
@@ -172,8 +172,8 @@ fn open_log(paths: &GroupPaths) -> io::Result<(File, u64)> {
     fs::create_dir_all(paths.log())?;
     let path = paths.log_file("supervisor");
     let limits = Log { level: String::new(), file_bytes_max: LOG_BYTES_MAX, files_kept: 3 };
-    let log = logs::open(&path, &limits)?;
-    let from = logs::size(&path);
+    let log = log_file::open(&path, &limits)?;
+    let from = log_file::size(&path);
     Ok((log, from))
 }
 
@@ -195,7 +195,7 @@ impl Launched {
                 return Ok(());
             }
             if let Ok(Some(status)) = self.process.try_wait() {
-                let log = logs::tail(&self.paths.log_file("supervisor"), self.log_from);
+                let log = log_file::tail(&self.paths.log_file("supervisor"), self.log_from);
                 return Err(LaunchError::Ended { status, log });
             }
             if Instant::now() > until {

@@ -5,7 +5,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use crate::spec::Log;
+use config::Log;
 
 /// Lines and bytes of a log's tail as told to an operator.
 const TAIL_LINES_MAX: usize = 12;
@@ -15,7 +15,7 @@ const TAIL_BYTES_MAX: u64 = 4096;
 ///
 /// # Errors
 /// The file cannot be opened.
-pub(crate) fn open(path: &Path, limits: &Log) -> io::Result<File> {
+pub fn open(path: &Path, limits: &Log) -> io::Result<File> {
     if size(path) > limits.file_bytes_max {
         shift(path, limits.files_kept)?;
         if limits.files_kept > 0 {
@@ -33,7 +33,7 @@ pub(crate) fn open(path: &Path, limits: &Log) -> io::Result<File> {
 ///
 /// # Errors
 /// The copy cannot be made; the log is emptied all the same.
-pub(crate) fn bound(path: &Path, limits: &Log) -> io::Result<bool> {
+pub fn bound(path: &Path, limits: &Log) -> io::Result<bool> {
     let bytes = size(path);
     if bytes <= limits.file_bytes_max {
         return Ok(false);
@@ -48,7 +48,7 @@ pub(crate) fn bound(path: &Path, limits: &Log) -> io::Result<bool> {
 }
 
 /// The last lines of a log from byte `from` on: what the last incarnation has said.
-pub(crate) fn tail(path: &Path, from: u64) -> Vec<String> {
+pub fn tail(path: &Path, from: u64) -> Vec<String> {
     let read = || -> io::Result<String> {
         let mut file = File::open(path)?;
         let length = file.metadata()?.len();
@@ -65,7 +65,7 @@ pub(crate) fn tail(path: &Path, from: u64) -> Vec<String> {
 }
 
 /// Size of a log, bytes; 0 where there is none.
-pub(crate) fn size(path: &Path) -> u64 {
+pub fn size(path: &Path) -> u64 {
     path.metadata().map_or(0, |meta| meta.len())
 }
 

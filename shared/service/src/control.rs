@@ -6,8 +6,8 @@
 
 use std::path::PathBuf;
 
+use crate::exit::Exit;
 use serde::{Deserialize, Serialize};
-use service::exit::Exit;
 
 use crate::status::GroupStatus;
 

@@ -4,9 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::exit::Exit;
-use crate::group::GroupState;
-use crate::machine::{Actual, Failure, Wanted};
+use crate::process_exit::ProcessExit;
 
 /// A group at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -100,7 +98,7 @@ pub struct LastExit {
     /// Which one.
     pub incarnation: u32,
     /// How it ended.
-    pub exit: Exit,
+    pub exit: ProcessExit,
     /// What it was stopped for, if it had failed to do something.
     pub failure: Option<Failure>,
     /// Whether it had to be killed.
@@ -109,4 +107,56 @@ pub struct LastExit {
     pub age_s: f64,
     /// All of this in a few words.
     pub text: String,
+}
+
+/// State of a group as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum GroupState {
+    /// Services are being started for the first time.
+    Starting,
+    /// Every service that is wanted up is ready.
+    Ready,
+    /// Some service that is wanted up is not ready.
+    Degraded,
+    /// Services are being stopped in order.
+    Stopping,
+}
+
+/// Desired state of a service.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Wanted {
+    /// Running.
+    Up,
+    /// Not running.
+    Down,
+}
+
+/// Actual state of a service.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Actual {
+    /// Not running; if wanted up, waiting for the services in its `after` list.
+    Down,
+    /// Running, not ready yet.
+    Starting,
+    /// Running and ready.
+    Ready,
+    /// Running, asked to shut down.
+    Stopping,
+    /// Not running, waiting to be restarted.
+    Backoff,
+    /// Not running, not restarted until an operator requests it.
+    Held,
+}
+
+/// Missed deadline for which the supervisor stopped a service.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Failure {
+    /// Not ready within its start deadline.
+    NotReady,
+    /// No beat of its main loop within the watchdog's period.
+    NoBeat,
 }

@@ -53,7 +53,7 @@ pub enum CallError {
 }
 
 fn of(group: &str) -> String {
-    if group == service::group::GroupName::DEFAULT {
+    if group == crate::group::GroupName::DEFAULT {
         String::new()
     } else {
         format!(" --group {group}")
