@@ -18,6 +18,7 @@ mod isolation;
 mod people;
 mod person;
 mod planners;
+mod python;
 mod recovery;
 mod robot;
 mod speech;
