@@ -17,21 +17,21 @@ pub mod spec;
 pub mod swap;
 
 mod before_exec;
-mod bond;
 mod child;
-mod earlier;
 mod epoch;
+mod lifeline;
 mod notify;
+mod previous_run;
 mod procfs;
+mod restart_limiter;
 mod server;
 mod service;
 mod signals;
 mod spawn;
 mod supervisor;
 mod systemd;
-mod tally;
 
-pub use earlier::EarlierError;
+pub use previous_run::PreviousRunError;
 pub use supervisor::{StartError, Supervisor};
 
 /// Time since the supervisor's start, on the monotonic clock.

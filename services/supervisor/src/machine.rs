@@ -8,8 +8,8 @@
 use std::time::Duration;
 
 use crate::Time;
+use crate::restart_limiter::{RestartLimiter, Verdict};
 use crate::spec::Restart;
-use crate::tally::{Tally, Verdict};
 use service::process_exit::ProcessExit;
 
 pub use service::status::{Actual, Failure, Wanted};
@@ -45,7 +45,7 @@ pub struct Machine {
     state: State,
     incarnation: u32,
     deadline: Option<Time>,
-    tally: Tally,
+    restart_limiter: RestartLimiter,
     failure: Option<Failure>,
 }
 
@@ -58,7 +58,7 @@ impl Machine {
             state: State::Down,
             incarnation: 0,
             deadline: None,
-            tally: Tally::default(),
+            restart_limiter: RestartLimiter::default(),
             failure: None,
         }
     }
@@ -158,7 +158,7 @@ impl Machine {
 
     fn restart(&mut self, now: Time) -> Option<Effect> {
         self.wanted = Wanted::Up;
-        self.tally.forget();
+        self.restart_limiter.forget();
         if self.is_live() {
             return self.end(Why::Asked, now);
         }
@@ -244,7 +244,7 @@ impl Machine {
             }
             Restart::Always | Restart::OnFailure => {}
         }
-        match self.tally.count(&self.limits.tally, ready_for, now) {
+        match self.restart_limiter.count(&self.limits.restart_limits, ready_for, now) {
             Verdict::Again => return Some(self.spawn(now)),
             Verdict::After(pause) => {
                 self.state = State::Backoff;
@@ -311,7 +311,7 @@ impl Machine {
 
     /// Down, with nothing remembered against it.
     fn rest(&mut self) {
-        self.tally.forget();
+        self.restart_limiter.forget();
         self.state = State::Down;
         self.deadline = None;
     }

@@ -8,8 +8,8 @@ use service::group::{self, GroupPaths};
 use service::shm_cleanup::NoRoom;
 
 use crate::Time;
-use crate::bond::Bond;
 use crate::child::Child;
+use crate::lifeline::Lifeline;
 use crate::machine::{Effect, Event, Failure};
 use crate::notify::{Notification, NotifySocket};
 use crate::spawn::{self, Launch, SpawnError};
@@ -66,7 +66,7 @@ pub(crate) struct Ended {
 #[derive(Debug)]
 pub(crate) struct Surroundings {
     pub(crate) paths: GroupPaths,
-    pub(crate) bond: Bond,
+    pub(crate) lifeline: Lifeline,
     pub(crate) epoch: u64,
     pub(crate) log: Log,
     /// The folder in which configured commands are meant.
@@ -139,7 +139,7 @@ impl Service {
             environment: self.environment(incarnation, around),
             log,
             nice: self.spec.nice,
-            bond: &around.bond,
+            lifeline: &around.lifeline,
         })?;
         Ok(Running {
             child,
@@ -167,7 +167,7 @@ impl Service {
             (group::ENV_SERVICE, (&self.spec.name).into()),
             (group::ENV_INCARNATION, incarnation.to_string().into()),
             (group::ENV_EPOCH, around.epoch.to_string().into()),
-            (group::ENV_LIFELINE_FD, around.bond.lifeline_number().to_string().into()),
+            (group::ENV_LIFELINE_FD, around.lifeline.descriptor().to_string().into()),
             ("NOTIFY_SOCKET", socket.into()),
         ];
         if let Some(period) = self.spec.watchdog {

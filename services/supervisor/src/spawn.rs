@@ -13,8 +13,8 @@ use service::shm_cleanup::NoRoom;
 use thiserror::Error;
 
 use crate::before_exec;
-use crate::bond::Bond;
 use crate::child::Child;
+use crate::lifeline::Lifeline;
 use service::process_exit::ProcessExit;
 
 /// What to start, and with what.
@@ -27,7 +27,7 @@ pub(crate) struct Launch<'a> {
     /// Takes the process's standard output and error.
     pub(crate) log: File,
     pub(crate) nice: i32,
-    pub(crate) bond: &'a Bond,
+    pub(crate) lifeline: &'a Lifeline,
 }
 
 /// A program could not be started.
@@ -88,7 +88,7 @@ pub(crate) fn spawn(launch: Launch<'_>) -> Result<Child, SpawnError> {
         .stdout(launch.log.try_clone().map_err(failed)?)
         .stderr(launch.log)
         .process_group(0);
-    before_exec::prepare(&mut command, launch.bond.inherited(), launch.nice);
+    before_exec::prepare(&mut command, launch.lifeline.inherited(), launch.nice);
     let started = command.spawn().map_err(failed)?;
     // The handle is dropped without a wait: the child is reaped through its pidfd.
     let pid = Pid::from_child(&started);

@@ -30,13 +30,13 @@ use replacing::Replacement;
 use waits::Wait;
 
 mod ending;
+mod orphans;
 mod poll;
 mod reload;
 mod replacing;
 mod report;
 mod requests;
 mod start;
-mod strays;
 mod waits;
 
 /// How often things are looked at that nobody tells of: sizes of logs, files of topics.
@@ -60,9 +60,9 @@ pub struct Supervisor {
     systemd: Systemd,
     waits: Vec<Wait>,
     replacements: BTreeMap<usize, Replacement>,
-    strays: Vec<String>,
-    strays_killed: u32,
-    /// Strays that have been killed and not reaped yet.
+    orphans: Vec<String>,
+    orphans_killed: u32,
+    /// Orphans that have been killed and not reaped yet.
     condemned: Vec<Pid>,
     ending: Option<Ending>,
     last_renewal: Option<Time>,
@@ -145,7 +145,7 @@ impl Supervisor {
             }
         }
         if self.signals.child_ended() {
-            self.clear_strays();
+            self.clear_orphans();
         }
         if ready.listener {
             self.server.accept(now);
@@ -227,7 +227,7 @@ impl Supervisor {
         if let Some(admin) = &self.admin {
             admin.clean_dead();
         }
-        self.clear_strays();
+        self.clear_orphans();
         self.give(service, Event::Exited(exit), self.now());
     }
 

@@ -11,8 +11,8 @@ use serde_json::{Value as Json, json};
 use service::exit::Exit;
 
 use crate::cli::InputArgs;
+use crate::error::{CliError, Outcome};
 use crate::output::Output;
-use crate::trouble::{Outcome, Trouble};
 
 mod belief;
 mod fk;
@@ -49,7 +49,7 @@ where
         }
         line.clear();
         let unreadable =
-            |e: io::Error| Trouble::new(Exit::Storage, format!("the input cannot be read: {e}"));
+            |e: io::Error| CliError::new(Exit::Storage, format!("the input cannot be read: {e}"));
         if input.read_until(b'\n', &mut line).map_err(unreadable)? == 0 {
             out.flush()?;
             return Ok(exit);
@@ -73,9 +73,9 @@ where
 ///
 /// # Errors
 /// There is no such file.
-pub fn open(input: &InputArgs) -> Result<Box<dyn Read>, Trouble> {
+pub fn open(input: &InputArgs) -> Result<Box<dyn Read>, CliError> {
     let Some(path) = &input.input else { return Ok(Box::new(io::stdin().lock())) };
-    let file = File::open(path).map_err(|error| Trouble::file(path, &error))?;
+    let file = File::open(path).map_err(|error| CliError::file(path, &error))?;
     Ok(Box::new(file))
 }
 

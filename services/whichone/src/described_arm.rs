@@ -9,7 +9,7 @@ use robot_model::{Joint, Robot};
 use service::exit::Exit;
 
 use crate::cli::WhichArm;
-use crate::trouble::Trouble;
+use crate::error::CliError;
 
 /// An arm of seven joints, and which of the robot's links it is about.
 #[derive(Debug)]
@@ -27,12 +27,12 @@ impl DescribedArm {
     ///
     /// # Errors
     /// The file cannot be read, everything that is wrong with it, or why it has no such arm.
-    pub fn load(robot: Option<&Path>, which: &WhichArm) -> Result<Self, Trouble> {
+    pub fn load(robot: Option<&Path>, which: &WhichArm) -> Result<Self, CliError> {
         let robot = match robot {
             None => Cow::Borrowed(Robot::baxter()),
             Some(path) => Cow::Owned(read(path)?),
         };
-        Self::of(robot, which).map_err(|reason| Trouble::new(Exit::Usage, reason))
+        Self::of(robot, which).map_err(|reason| CliError::new(Exit::Usage, reason))
     }
 
     /// Name, and pose in the root's frame, of each of its links at a posture (radians, or metres
@@ -50,9 +50,9 @@ impl DescribedArm {
     ///
     /// # Errors
     /// Why it cannot be solved for a pose: some joint does not turn between limits.
-    pub fn chain(&self) -> Result<Chain, Trouble> {
+    pub fn chain(&self) -> Result<Chain, CliError> {
         Chain::from_description(&self.robot, &self.tip)
-            .map_err(|reason| Trouble::new(Exit::Usage, reason.to_string()))
+            .map_err(|reason| CliError::new(Exit::Usage, reason.to_string()))
     }
 
     fn of(robot: Cow<'static, Robot>, which: &WhichArm) -> Result<Self, String> {
@@ -100,10 +100,10 @@ fn subtree(robot: &Robot, first: usize) -> Vec<usize> {
     links
 }
 
-fn read(path: &Path) -> Result<Robot, Trouble> {
-    let text = std::fs::read_to_string(path).map_err(|error| Trouble::file(path, &error))?;
+fn read(path: &Path) -> Result<Robot, CliError> {
+    let text = std::fs::read_to_string(path).map_err(|error| CliError::file(path, &error))?;
     Robot::parse(&text, None).map_err(|faults| {
-        Trouble::new(Exit::Config, faults.in_files(&path.display().to_string(), ""))
+        CliError::new(Exit::Config, faults.in_files(&path.display().to_string(), ""))
     })
 }
 
@@ -116,7 +116,7 @@ mod tests {
         robot: Option<&Path>,
         limb: Option<LimbArg>,
         tip: Option<&str>,
-    ) -> Result<DescribedArm, Trouble> {
+    ) -> Result<DescribedArm, CliError> {
         DescribedArm::load(robot, &WhichArm { limb, tip: tip.map(str::to_owned) })
     }
 

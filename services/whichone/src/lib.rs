@@ -11,15 +11,16 @@ use clap::Parser;
 use service::exit::Exit;
 
 use crate::cli::Cli;
+use crate::error::CliError;
 use crate::output::{Output, complain};
-use crate::trouble::Trouble;
 
 pub mod batch;
 pub mod cli;
 pub mod described_arm;
+pub mod error;
 pub mod output;
 pub mod scene_file;
-pub mod trouble;
+
 pub mod verbs;
 
 /// Runs the command line `arguments`, program name first, and says how the process should end.
@@ -37,12 +38,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     match ended {
         Ok(exit) => exit,
         // Whoever read this has seen enough.
-        Err(Trouble::Output(error)) if error.kind() == ErrorKind::BrokenPipe => Exit::Ok,
+        Err(CliError::Output(error)) if error.kind() == ErrorKind::BrokenPipe => Exit::Ok,
         Err(trouble) => {
             complain(&trouble);
             match trouble {
-                Trouble::Failure(failure) => failure.exit,
-                Trouble::Output(_) => Exit::Storage,
+                CliError::Failure(failure) => failure.exit,
+                CliError::Output(_) => Exit::Storage,
             }
         }
     }

@@ -9,7 +9,7 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 
 use serde::Serialize;
 
-use crate::trouble::Trouble;
+use crate::error::CliError;
 
 /// Where a verb prints to.
 pub struct Output<'a> {
@@ -84,7 +84,7 @@ impl<'a> Output<'a> {
     ///
     /// # Errors
     /// Nobody takes it.
-    pub fn line(&mut self, text: impl Display) -> Result<(), Trouble> {
+    pub fn line(&mut self, text: impl Display) -> Result<(), CliError> {
         self.queue_line(text)?;
         self.flush()
     }
@@ -93,15 +93,15 @@ impl<'a> Output<'a> {
     ///
     /// # Errors
     /// Nobody takes it.
-    pub fn queue_line(&mut self, text: impl Display) -> Result<(), Trouble> {
-        writeln!(self.sink, "{text}").map_err(Trouble::Output)
+    pub fn queue_line(&mut self, text: impl Display) -> Result<(), CliError> {
+        writeln!(self.sink, "{text}").map_err(CliError::Output)
     }
 
     /// Prints a value as one line of JSON, at once.
     ///
     /// # Errors
     /// Nobody takes it.
-    pub fn json(&mut self, value: &impl Serialize) -> Result<(), Trouble> {
+    pub fn json(&mut self, value: &impl Serialize) -> Result<(), CliError> {
         self.queue_json(value)?;
         self.flush()
     }
@@ -110,17 +110,17 @@ impl<'a> Output<'a> {
     ///
     /// # Errors
     /// Nobody takes it.
-    pub fn queue_json(&mut self, value: &impl Serialize) -> Result<(), Trouble> {
-        serde_json::to_writer(&mut self.sink, value).map_err(|e| Trouble::Output(e.into()))?;
-        self.sink.write_all(b"\n").map_err(Trouble::Output)
+    pub fn queue_json(&mut self, value: &impl Serialize) -> Result<(), CliError> {
+        serde_json::to_writer(&mut self.sink, value).map_err(|e| CliError::Output(e.into()))?;
+        self.sink.write_all(b"\n").map_err(CliError::Output)
     }
 
     /// Prints text as it is, at once.
     ///
     /// # Errors
     /// Nobody takes it.
-    pub fn text(&mut self, text: &str) -> Result<(), Trouble> {
-        self.sink.write_all(text.as_bytes()).map_err(Trouble::Output)?;
+    pub fn text(&mut self, text: &str) -> Result<(), CliError> {
+        self.sink.write_all(text.as_bytes()).map_err(CliError::Output)?;
         self.flush()
     }
 
@@ -128,8 +128,8 @@ impl<'a> Output<'a> {
     ///
     /// # Errors
     /// Nobody takes it.
-    pub fn flush(&mut self) -> Result<(), Trouble> {
-        self.sink.flush().map_err(Trouble::Output)
+    pub fn flush(&mut self) -> Result<(), CliError> {
+        self.sink.flush().map_err(CliError::Output)
     }
 }
 
@@ -162,7 +162,7 @@ pub fn note(text: impl Display) {
 }
 
 /// Tells what went wrong.
-pub fn complain(trouble: &Trouble) {
+pub fn complain(trouble: &CliError) {
     let style = Style { colour: io::stderr().is_terminal() && colour_is_welcome() };
     note(format_args!("{} {trouble}", style.paint(Ink::Red, "error:")));
 }

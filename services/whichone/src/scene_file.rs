@@ -4,14 +4,14 @@ use std::path::Path;
 
 use scene::Scene;
 
-use crate::trouble::Trouble;
+use crate::error::CliError;
 
 /// Reads a scene file: JSON where the text begins with a brace, else TOML.
 ///
 /// # Errors
 /// The file cannot be read, or everything that is wrong with it.
-pub fn load(path: &Path) -> Result<Scene, Trouble> {
-    let text = std::fs::read_to_string(path).map_err(|error| Trouble::file(path, &error))?;
+pub fn load(path: &Path) -> Result<Scene, CliError> {
+    let text = std::fs::read_to_string(path).map_err(|error| CliError::file(path, &error))?;
     Ok(read(&path.display().to_string(), &text)?)
 }
 
@@ -43,7 +43,7 @@ mod tests {
     fn every_problem_is_told_with_its_file() {
         let broken = [("{", "is not JSON"), ("name = ", "s:"), ("{\"objects\":[]}", "s:")];
         for (text, part) in broken {
-            let told = Trouble::from(read("s", text).unwrap_err()).to_string();
+            let told = CliError::from(read("s", text).unwrap_err()).to_string();
             assert!(told.contains(part) && told.starts_with("s:"), "{text}: {told}");
         }
         let trouble = load(Path::new("/nowhere/scene.toml")).unwrap_err();

@@ -4,8 +4,8 @@ use messages::MotionOrder;
 
 use crate::cli::{ArmArgs, Awaited, Cli, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
+use crate::error::{CliError, Outcome};
 use crate::output::Output;
-use crate::trouble::{Outcome, Trouble};
 use crate::{batch, scene_file};
 
 mod arm;
@@ -25,7 +25,7 @@ mod listen;
 mod logs;
 mod motion;
 mod operate;
-mod place;
+mod paths;
 mod planning;
 mod speak;
 mod status;
@@ -39,7 +39,7 @@ mod words;
 /// # Errors
 /// Why it was not done.
 pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
-    let paths = || place::paths(&cli.group);
+    let paths = || paths::group_paths(&cli.group);
     match cli.verb {
         Verb::Up(args) => up::up(&paths()?, &args, out),
         Verb::Down(args) => operate::down(&paths()?, args.timeout, out),
@@ -92,6 +92,6 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
     }
 }
 
-fn described_arm(args: &ArmArgs) -> Result<DescribedArm, Trouble> {
+fn described_arm(args: &ArmArgs) -> Result<DescribedArm, CliError> {
     DescribedArm::load(args.robot.as_deref(), &args.which)
 }

@@ -117,7 +117,8 @@ pub struct DownReport {
     /// Services that did not end when asked and were killed.
     pub killed: Vec<String>,
     /// Processes that services had left behind and that were killed.
-    pub strays: Vec<String>,
+    #[serde(rename = "strays")]
+    pub orphans: Vec<String>,
     /// Files in shared memory that had to be removed by name.
     pub leftovers: Vec<String>,
     /// Time from the request to the end, seconds.

@@ -28,7 +28,8 @@ pub struct GroupStatus {
     /// The configuration's folder.
     pub config: PathBuf,
     /// Processes that services had left behind and that were killed, since the start.
-    pub strays_killed: u32,
+    #[serde(rename = "strays_killed")]
+    pub orphans_killed: u32,
     /// The supervisor's own memory, KiB.
     pub rss_kib: Option<u64>,
     /// Processor time that the supervisor has used, seconds.

@@ -8,7 +8,7 @@ use super::*;
 use crate::group::tests::{seeded, service};
 use crate::spec::RestartLimits;
 
-const TALLY: RestartLimits = RestartLimits {
+const RESTART_LIMITS: RestartLimits = RestartLimits {
     exits_max: 4,
     window: Duration::from_secs(20),
     backoff_first: Duration::from_millis(100),
@@ -17,7 +17,7 @@ const TALLY: RestartLimits = RestartLimits {
 };
 
 fn machine() -> Machine {
-    Machine::new(Limits::of(&service("any", &[]), TALLY))
+    Machine::new(Limits::of(&service("any", &[]), RESTART_LIMITS))
 }
 
 /// What the outside world may do: an operator's wishes and a process's deeds.
@@ -123,8 +123,8 @@ proptest! {
             world.give(event, after_ms)?;
         }
         for (first, &from) in world.starts.iter().enumerate() {
-            let within = world.starts[first..].iter().filter(|&&at| at - from < TALLY.window);
-            prop_assert!(within.count() <= TALLY.exits_max as usize, "{:?}", world.starts);
+            let within = world.starts[first..].iter().filter(|&&at| at - from < RESTART_LIMITS.window);
+            prop_assert!(within.count() <= RESTART_LIMITS.exits_max as usize, "{:?}", world.starts);
         }
     }
 
@@ -162,8 +162,8 @@ proptest! {
         world.give(Event::Admit, 0)?;
         for exit in 0..exits {
             world.give(Event::Exited(ProcessExit::Code(code)), 10)?;
-            let pause = TALLY.backoff_first * 2u32.pow(exit);
-            if exit + 1 == TALLY.exits_max {
+            let pause = RESTART_LIMITS.backoff_first * 2u32.pow(exit);
+            if exit + 1 == RESTART_LIMITS.exits_max {
                 prop_assert_eq!(world.machine.actual(), Actual::Held);
                 break;
             }

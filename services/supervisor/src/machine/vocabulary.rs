@@ -84,18 +84,18 @@ pub struct Limits {
     /// Which exits are followed by a new start.
     pub restart: Restart,
     /// How often and how soon.
-    pub tally: RestartLimits,
+    pub restart_limits: RestartLimits,
 }
 
 impl Limits {
     /// Those of a service in a group with these restart limits.
-    pub fn of(service: &ServiceSpec, tally: RestartLimits) -> Self {
+    pub fn of(service: &ServiceSpec, restart_limits: RestartLimits) -> Self {
         Self {
             start: service.start_deadline,
             watchdog: service.watchdog,
             stop: service.stop_deadline,
             restart: service.restart,
-            tally,
+            restart_limits,
         }
     }
 }

@@ -162,7 +162,7 @@ impl Supervisor {
         });
         DownReport {
             killed: killed.map(|service| service.spec.name.clone()).collect(),
-            strays: std::mem::take(&mut self.strays),
+            orphans: std::mem::take(&mut self.orphans),
             leftovers: leftovers.iter().map(|path| path.display().to_string()).collect(),
             seconds: (self.now() - ending.since).as_secs_f64(),
         }

@@ -25,7 +25,7 @@ impl Supervisor {
             scene: self.about.scene.clone(),
             profile: self.about.profile.clone(),
             config: self.about.config.clone(),
-            strays_killed: self.strays_killed,
+            orphans_killed: self.orphans_killed,
             rss_kib: procfs::rss_kib(me),
             cpu_s: procfs::process(me).map(|process| process.cpu_s),
             services: (0..self.services.len()).map(|s| self.service_status(s, now)).collect(),

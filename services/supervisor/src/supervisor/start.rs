@@ -15,11 +15,11 @@ use service::shm_cleanup::{Admin, NoRoom, check_room};
 use thiserror::Error;
 
 use super::{About, LoadBox, Supervisor, TICK};
-use crate::bond::Bond;
 use crate::configuration::{Configuration, Load};
-use crate::earlier::{self, EarlierError};
 use crate::epoch;
 use crate::group::Group;
+use crate::lifeline::Lifeline;
+use crate::previous_run::{self, PreviousRunError};
 use crate::schedule::ScheduleError;
 use crate::server::Server;
 use crate::service::{Service, Surroundings};
@@ -38,7 +38,7 @@ pub enum StartError {
     Order(#[from] ScheduleError),
     /// An earlier supervisor, or what it had started, is still there.
     #[error(transparent)]
-    Earlier(#[from] EarlierError),
+    PreviousRun(#[from] PreviousRunError),
     /// Too little shared memory.
     #[error(transparent)]
     Room(#[from] NoRoom),
@@ -60,7 +60,7 @@ impl StartError {
     pub fn exit(&self) -> Exit {
         match self {
             Self::Config(_) | Self::Order(_) => Exit::Config,
-            Self::Earlier(_) | Self::Room(_) | Self::SharedMemory(_) => Exit::NotReached,
+            Self::PreviousRun(_) | Self::Room(_) | Self::SharedMemory(_) => Exit::NotReached,
             Self::Io { .. } => Exit::Storage,
         }
     }
@@ -76,8 +76,8 @@ pub(super) fn start(
     let configuration = load().map_err(StartError::Config)?;
     let group = Group::new(&configuration.spec)?;
     make_folder(&paths, Folder::Root)?;
-    let taken = earlier::take_group(&paths)?;
-    let alive = earlier::await_end(&paths, longest_stop(&configuration.spec))?;
+    let taken = previous_run::take_group(&paths)?;
+    let alive = previous_run::await_end(&paths, longest_stop(&configuration.spec))?;
     let raised = raise(&paths, &configuration, alive, fresh);
     let raised = raised.inspect_err(|_| {
         // The folder says that a group runs. What cannot be removed is removed at the next start.
@@ -100,8 +100,8 @@ pub(super) fn start(
         systemd: Systemd::from_env(),
         waits: Vec::new(),
         replacements: BTreeMap::new(),
-        strays: Vec::new(),
-        strays_killed: 0,
+        orphans: Vec::new(),
+        orphans_killed: 0,
         condemned: Vec::new(),
         ending: None,
         last_renewal: None,
@@ -137,7 +137,7 @@ fn raise(
     adopt_orphans().map_err(failed("process settings"))?;
     let server = Server::bind(&paths.control_socket()).map_err(failed("control socket"))?;
     let around = Surroundings {
-        bond: Bond::new(alive).map_err(failed("lifeline"))?,
+        lifeline: Lifeline::new(alive).map_err(failed("lifeline"))?,
         epoch,
         log: configuration.spec.log.clone(),
         directory: std::env::current_dir().map_err(failed("current folder"))?,

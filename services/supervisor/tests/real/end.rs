@@ -24,7 +24,7 @@ fn services_end_in_the_reverse_order() {
     ]);
     let report = down(&mut group);
     assert_eq!(report.killed, [""; 0]);
-    assert_eq!(report.strays, [""; 0]);
+    assert_eq!(report.orphans, [""; 0]);
     assert_eq!(group.events()[3..], ["speech 1 ended", "policy 1 ended", "arm 1 ended"]);
 }
 
@@ -65,7 +65,7 @@ fn what_a_service_left_in_its_group_is_killed_and_reported() {
     let left = group.left_behind();
     assert!(crate::harness::is_alive(left));
     let report = down(&mut group);
-    assert_eq!(report.strays, [format!("sleep ({left})")]);
+    assert_eq!(report.orphans, [format!("sleep ({left})")]);
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn what_left_the_group_is_killed_as_well_and_only_when_its_service_ends() {
     assert!(crate::harness::is_alive(left), "its own service still runs");
     group.done(&Request::Stop { service: "arm".into(), wait_ms: WAIT_MS });
     wait_for("the daemon to be killed", || (!crate::harness::is_alive(left)).then_some(()));
-    assert_eq!(group.status().strays_killed, 1);
+    assert_eq!(group.status().orphans_killed, 1);
 }
 
 #[test]

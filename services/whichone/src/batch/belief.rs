@@ -9,8 +9,8 @@ use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 
 use super::{parse, run};
+use crate::error::Outcome;
 use crate::output::Output;
-use crate::trouble::Outcome;
 
 /// One dialogue about one scene.
 #[derive(Deserialize)]

@@ -9,8 +9,8 @@ use serde_json::{Map, Value as Json, json};
 
 use super::{parse, run};
 use crate::described_arm::DescribedArm;
+use crate::error::Outcome;
 use crate::output::Output;
-use crate::trouble::Outcome;
 
 #[derive(Deserialize)]
 struct Line {

@@ -8,8 +8,8 @@ use serde::Deserialize;
 use serde_json::{Value as Json, json};
 
 use super::{parse, run};
+use crate::error::Outcome;
 use crate::output::Output;
-use crate::trouble::Outcome;
 
 /// Reads utterances about one scene.
 pub struct Grounder {

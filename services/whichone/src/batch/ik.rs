@@ -9,8 +9,8 @@ use serde::Deserialize;
 use serde_json::{Value as Json, json};
 
 use super::{parse, run};
+use crate::error::Outcome;
 use crate::output::Output;
-use crate::trouble::Outcome;
 
 #[derive(Deserialize)]
 struct Line {

@@ -14,8 +14,8 @@ use super::conversation::{Conversation, LOOK_EVERY};
 use super::interrupt::Interrupt;
 use super::{await_pick, operate, up};
 use crate::cli::ChatArgs;
+use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, note};
-use crate::trouble::{Outcome, Trouble};
 
 /// How long the end of a chat waits for what was said last to come to its end.
 const LAST_WORDS: Duration = Duration::from_secs(120);
@@ -89,7 +89,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         Self { conversation, out, printed: None, ended: None }
     }
 
-    fn greet(&mut self) -> Result<(), Trouble> {
+    fn greet(&mut self) -> Result<(), CliError> {
         if self.out.is_json() || !io::stdin().is_terminal() {
             return Ok(());
         }
@@ -103,7 +103,7 @@ impl<'a, 'b> Chat<'a, 'b> {
     }
 
     /// Prints what has happened.
-    fn look(&mut self) -> Result<(), Trouble> {
+    fn look(&mut self) -> Result<(), CliError> {
         for receipt in self.conversation.look()? {
             if self.conversation.is_own(&receipt) {
                 self.refused(&receipt)?;
@@ -126,7 +126,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         self.outcome()
     }
 
-    fn robot_says(&mut self, text: &str) -> Result<(), Trouble> {
+    fn robot_says(&mut self, text: &str) -> Result<(), CliError> {
         if self.out.is_json() {
             return self.out.json(&json!({ "robot": text }));
         }
@@ -135,7 +135,7 @@ impl<'a, 'b> Chat<'a, 'b> {
     }
 
     /// Tells of words that were not taken; accepted ones stand in the terminal already.
-    fn refused(&mut self, receipt: &Receipt) -> Result<(), Trouble> {
+    fn refused(&mut self, receipt: &Receipt) -> Result<(), CliError> {
         if receipt.status == ReceiptStatus::Accepted.code() {
             return Ok(());
         }
@@ -147,7 +147,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         self.out.line(self.out.style().paint(Ink::Red, line))
     }
 
-    fn outcome(&mut self) -> Result<(), Trouble> {
+    fn outcome(&mut self) -> Result<(), CliError> {
         let Some(view) = &self.conversation.seen().view else { return Ok(()) };
         let last = view.last.clone();
         let id = last.as_ref().map_or(0, |last| last.interaction);
@@ -165,7 +165,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         self.out.line(self.out.style().paint(Ink::Dim, format!("({sentence})")))
     }
 
-    fn resume(&mut self) -> Result<(), Trouble> {
+    fn resume(&mut self) -> Result<(), CliError> {
         self.conversation.motion(MotionOrder::Resume)?;
         note("the arm may move");
         Ok(())

@@ -4,14 +4,14 @@ use config::{Problems, Settings};
 use serde_json::{Value as Json, json};
 use service::exit::Exit;
 
-use super::{place, words};
+use super::{paths, words};
 use crate::cli::CheckArgs;
+use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, note, table};
-use crate::trouble::{Outcome, Trouble};
 
 /// Tells every problem at once, or what would run.
 pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
-    let folder = place::config_folder(&args.config)?;
+    let folder = paths::config_folder(&args.config)?;
     let loaded = Settings::load(&folder, args.config.profile.as_deref(), &args.config.set);
     match loaded {
         Err(problems) => refused(&problems, out),
@@ -94,7 +94,7 @@ fn service(service: &config::Service) -> Vec<String> {
     ]
 }
 
-fn values(settings: &Settings, out: &mut Output<'_>) -> Result<(), Trouble> {
+fn values(settings: &Settings, out: &mut Output<'_>) -> Result<(), CliError> {
     let rows: Vec<Vec<String>> =
         settings.origins().into_iter().map(|o| vec![o.key, o.value, o.from]).collect();
     table(&["KEY", "VALUE", "FROM"], &rows).into_iter().try_for_each(|line| out.line(line))

@@ -5,8 +5,8 @@ use clap_complete::{Shell, generate};
 use service::exit::Exit;
 
 use crate::cli::Cli;
+use crate::error::Outcome;
 use crate::output::Output;
-use crate::trouble::Outcome;
 
 /// Prints the script.
 pub(super) fn completions(shell: Shell, out: &mut Output<'_>) -> Outcome {

@@ -22,7 +22,7 @@ use service::clock;
 use service::exit::Exit;
 use service::group::GroupPaths;
 
-use crate::trouble::Trouble;
+use crate::error::CliError;
 
 mod seen;
 
@@ -72,7 +72,7 @@ impl Conversation {
     ///
     /// # Errors
     /// It does not run, or is of another build.
-    pub(super) fn join(paths: &GroupPaths) -> Result<Self, Trouble> {
+    pub(super) fn join(paths: &GroupPaths) -> Result<Self, CliError> {
         let client = Client::join(paths)?;
         let bus = client.bus();
         let settings = Settings::load_snapshot(&paths.run())?;
@@ -121,7 +121,7 @@ impl Conversation {
     ///
     /// # Errors
     /// The topic cannot be opened.
-    pub(super) fn say(&mut self, text: &str) -> Result<(), Trouble> {
+    pub(super) fn say(&mut self, text: &str) -> Result<(), CliError> {
         if self.injections.is_none() {
             self.injections = Some(self.client.bus().encoded_writer(&topics::INJECTION)?);
         }
@@ -138,7 +138,7 @@ impl Conversation {
     ///
     /// # Errors
     /// The group has ended.
-    pub(super) fn first_look(&mut self) -> Result<(), Trouble> {
+    pub(super) fn first_look(&mut self) -> Result<(), CliError> {
         let until = Instant::now() + FIRST_PATIENCE;
         while Instant::now() < until && self.seen.view.is_none() {
             self.look()?;
@@ -161,7 +161,7 @@ impl Conversation {
     ///
     /// # Errors
     /// The arm does not answer.
-    pub(super) fn motion(&self, order: messages::MotionOrder) -> Result<(), Trouble> {
+    pub(super) fn motion(&self, order: messages::MotionOrder) -> Result<(), CliError> {
         Ok(self.client.motion(order, Span::from_ms(5_000))?)
     }
 
@@ -170,7 +170,7 @@ impl Conversation {
     ///
     /// # Errors
     /// The group has ended.
-    pub(super) fn look(&mut self) -> Result<Vec<Receipt>, Trouble> {
+    pub(super) fn look(&mut self) -> Result<Vec<Receipt>, CliError> {
         if self.checked.elapsed() >= CHECK_EVERY {
             self.check()?;
         }
@@ -210,7 +210,7 @@ impl Conversation {
     }
 
     /// Notices the group's end.
-    fn check(&mut self) -> Result<(), Trouble> {
+    fn check(&mut self) -> Result<(), CliError> {
         self.checked = Instant::now();
         if folder(&self.paths) != Some(self.folder) {
             return Err(ended(&self.paths));
@@ -239,6 +239,6 @@ fn folder(paths: &GroupPaths) -> Option<u64> {
     paths.ipc().metadata().ok().map(|metadata| metadata.ino())
 }
 
-fn ended(paths: &GroupPaths) -> Trouble {
-    Trouble::new(Exit::NotReached, format!("group {} has ended", paths.name()))
+fn ended(paths: &GroupPaths) -> CliError {
+    CliError::new(Exit::NotReached, format!("group {} has ended", paths.name()))
 }

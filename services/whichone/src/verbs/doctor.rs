@@ -12,10 +12,10 @@ use service::group::{GroupName, GroupPaths};
 use service::launch;
 use service::shm_cleanup;
 
-use super::{console, leftovers, place, up, words};
+use super::{console, leftovers, paths, up, words};
 use crate::cli::ConfigArgs;
+use crate::error::Outcome;
 use crate::output::{Ink, Output, Style};
-use crate::trouble::Outcome;
 
 mod sound;
 
@@ -41,7 +41,7 @@ enum State {
 
 /// Looks at everything that a group needs, and tells what is missing with its cure.
 pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>) -> Outcome {
-    let settings = place::settings(args);
+    let settings = paths::settings(args);
     let mut findings = vec![
         programs(),
         folder(paths),

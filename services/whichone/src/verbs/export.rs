@@ -7,15 +7,15 @@ use service::exit::Exit;
 
 use super::planning;
 use crate::cli::{ExportArgs, Exported};
+use crate::error::{CliError, Outcome};
 use crate::output::Output;
-use crate::trouble::{Outcome, Trouble};
 
 /// Prints the problem, or writes it to the file that is named.
 pub(super) fn export(args: &ExportArgs, out: &mut Output<'_>) -> Outcome {
     let Exported::Pomdp = args.what;
     let found = planning::of_scene(&args.scene, &args.problem)?;
     let exported = pomdp::of_dialogue(&found.scene, &found.decision()).map_err(|error| {
-        Trouble::new(Exit::Config, format!("{}: {error}", args.scene.display()))
+        CliError::new(Exit::Config, format!("{}: {error}", args.scene.display()))
     })?;
     let text = exported.write(&comment(found.scene.name()));
     let sizes = [&exported.states, &exported.actions, &exported.observations].map(Vec::len);
@@ -41,8 +41,8 @@ pub(super) fn export(args: &ExportArgs, out: &mut Output<'_>) -> Outcome {
     Ok(Exit::Ok)
 }
 
-fn write(path: &Path, text: &str) -> Result<(), Trouble> {
-    std::fs::write(path, text).map_err(|error| Trouble::file(path, &error))
+fn write(path: &Path, text: &str) -> Result<(), CliError> {
+    std::fs::write(path, text).map_err(|error| CliError::file(path, &error))
 }
 
 fn comment(scene: &str) -> String {

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use service::exit::Exit;
 
-use crate::trouble::Trouble;
+use crate::error::CliError;
 
 /// Whether the person wants to end: Ctrl-C, or a request of the system's. Only for verbs that have
 /// something to put back in order; others are simply ended.
@@ -17,11 +17,11 @@ impl Interrupt {
     ///
     /// # Errors
     /// The operating system refuses.
-    pub(super) fn listen() -> Result<Self, Trouble> {
+    pub(super) fn listen() -> Result<Self, CliError> {
         let told = Arc::new(AtomicBool::new(false));
         for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
             signal_hook::flag::register(signal, Arc::clone(&told))
-                .map_err(|error| Trouble::new(Exit::NotReached, format!("signals: {error}")))?;
+                .map_err(|error| CliError::new(Exit::NotReached, format!("signals: {error}")))?;
         }
         Ok(Self(told))
     }

@@ -9,10 +9,10 @@ use serde_json::json;
 use service::exit::Exit;
 use service::group::GroupPaths;
 
-use super::{place, words};
+use super::{paths, words};
 use crate::cli::JournalArgs;
+use crate::error::{CliError, Outcome};
 use crate::output::{Output, note};
-use crate::trouble::{Outcome, Trouble};
 
 mod arm;
 mod policy;
@@ -50,7 +50,7 @@ pub(super) fn journal(paths: &GroupPaths, args: &JournalArgs, out: &mut Output<'
     if !path.is_file() {
         let what = format!("group {} has no journal of {} yet", paths.name(), args.service);
         let cure = "start it first: whichone up";
-        return Err(Trouble::new(Exit::NotReached, format!("{what}; {cure}")));
+        return Err(CliError::new(Exit::NotReached, format!("{what}; {cure}")));
     }
     match (args.service.as_str(), args.verify) {
         ("speech", false) => print(&path, out, speech::line),
@@ -58,7 +58,7 @@ pub(super) fn journal(paths: &GroupPaths, args: &JournalArgs, out: &mut Output<'
         (_, false) => print(&path, out, arm::line),
         ("speech", true) => verify(&path, out, speech::verify),
         ("policy", true) => {
-            let settings = place::settings_in_force(paths, &args.config)?;
+            let settings = paths::settings_in_force(paths, &args.config)?;
             let latest = policy::settings_key(&read(&path)?);
             let mut mind = ::policy::shell::mind_of_key(&settings, latest)?;
             verify(&path, out, |parts| policy::verify(&mut mind, parts))
@@ -95,7 +95,7 @@ fn tell_ending<R>(part: &Part<R>) -> Outcome {
         Ending::Corrupt { at, seq, .. } => {
             let what = format!("{} is damaged at byte {at}", part.file.display());
             let cure = "begin anew with: whichone up --fresh";
-            Err(Trouble::new(Exit::Invariant, format!("{what}, before record {seq}; {cure}")))
+            Err(CliError::new(Exit::Invariant, format!("{what}, before record {seq}; {cure}")))
         }
     }
 }
@@ -119,7 +119,7 @@ fn verify<R: DeserializeOwned>(
             if out.is_json() {
                 out.json(&json!({ "ok": false, "broken": broken.to_string() }))?;
             }
-            return Err(Trouble::new(Exit::Invariant, broken.to_string()));
+            return Err(CliError::new(Exit::Invariant, broken.to_string()));
         }
     };
     if out.is_json() {
@@ -132,14 +132,14 @@ fn verify<R: DeserializeOwned>(
     Ok(Exit::Ok)
 }
 
-fn read<R: DeserializeOwned>(path: &Path) -> Result<Part<R>, Trouble> {
+fn read<R: DeserializeOwned>(path: &Path) -> Result<Part<R>, CliError> {
     let reading = journal::read(path).map_err(|error| {
         let exit = match error {
             JournalOpenError::Io { .. } => Exit::Storage,
             JournalOpenError::Corrupt { .. } => Exit::Invariant,
             _ => Exit::Config,
         };
-        Trouble::new(exit, format!("{}: {error}", path.display()))
+        CliError::new(exit, format!("{}: {error}", path.display()))
     })?;
     Ok(Part { file: path.to_owned(), reading })
 }

@@ -10,7 +10,7 @@ use service::exit::Exit;
 use service::group::GroupPaths;
 use service::shm_cleanup;
 
-use crate::trouble::Trouble;
+use crate::error::CliError;
 
 /// How often it is looked whether the last service has ended.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
@@ -20,13 +20,13 @@ const LOOK_EVERY: Duration = Duration::from_millis(50);
 ///
 /// # Errors
 /// Some service still runs when the time is up.
-pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBuf>, Trouble> {
+pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBuf>, CliError> {
     let until = Instant::now() + timeout;
     while some_service_lives(paths) {
         if Instant::now() >= until {
             let what = format!("group {}: services without a supervisor still run", paths.name());
             let cure = "wait, or start the group and stop it again";
-            return Err(Trouble::new(Exit::NotReached, format!("{what}; {cure}")));
+            return Err(CliError::new(Exit::NotReached, format!("{what}; {cure}")));
         }
         thread::sleep(LOOK_EVERY);
     }
@@ -35,7 +35,7 @@ pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBu
     match std::fs::remove_dir_all(&run) {
         Ok(()) => removed.push(run),
         Err(error) if error.kind() == ErrorKind::NotFound => {}
-        Err(error) => return Err(Trouble::file(&run, &error)),
+        Err(error) => return Err(CliError::file(&run, &error)),
     }
     Ok(removed)
 }

@@ -17,8 +17,8 @@ use speech::devices::stream::SampleClock;
 
 use super::speak;
 use crate::cli::ListenArgs;
+use crate::error::{CliError, Outcome};
 use crate::output::Output;
-use crate::trouble::{Outcome, Trouble};
 
 /// Samples that are streamed at a time: a twentieth of a second.
 const PIECE: usize = RATE_HZ as usize / 20;
@@ -36,14 +36,15 @@ pub(super) fn listen(paths: &GroupPaths, args: &ListenArgs, out: &mut Output<'_>
     }
     if args.live {
         let samples = read_wav(&args.file, LONGEST_S);
-        let samples = samples.map_err(|error| Trouble::new(Exit::NotReached, error.to_string()))?;
+        let samples =
+            samples.map_err(|error| CliError::new(Exit::NotReached, error.to_string()))?;
         return stream(paths, args, from_samples(samples), out);
     }
-    let absolute = args.file.canonicalize().map_err(|error| Trouble::file(&args.file, &error))?;
-    std::fs::File::open(&absolute).map_err(|error| Trouble::file(&args.file, &error))?;
+    let absolute = args.file.canonicalize().map_err(|error| CliError::file(&args.file, &error))?;
+    std::fs::File::open(&absolute).map_err(|error| CliError::file(&args.file, &error))?;
     let path = absolute.into_os_string().into_string().map_err(|path| {
         let what = format!("{}: the path is not UTF-8; rename the file", path.display());
-        Trouble::new(Exit::Usage, what)
+        CliError::new(Exit::Usage, what)
     })?;
     speak::give(paths, Sound::Wav(path), args.timeout, out)
 }
@@ -63,7 +64,7 @@ fn stream(paths: &GroupPaths, args: &ListenArgs, pieces: Pieces, out: &mut Outpu
                 let taken = times.read(samples.len(), clock::now());
                 stream.send(taken, &samples)?;
             }
-            Ok(Err(why)) => return Err(Trouble::new(Exit::NotReached, why)),
+            Ok(Err(why)) => return Err(CliError::new(Exit::NotReached, why)),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break,
         }
@@ -74,7 +75,7 @@ fn stream(paths: &GroupPaths, args: &ListenArgs, pieces: Pieces, out: &mut Outpu
         if Instant::now() >= until {
             let what =
                 format!("no answer within {} s; see: whichone status", args.timeout.as_secs());
-            return Err(Trouble::new(Exit::NotReached, what));
+            return Err(CliError::new(Exit::NotReached, what));
         }
         if ended.is_none_or(|ended| ended.elapsed() >= END_EVERY) {
             stream.end(clock::now())?;
@@ -94,7 +95,7 @@ struct Told {
 }
 
 impl Told {
-    fn tell(&mut self, receipts: &[Receipt], out: &mut Output<'_>) -> Result<(), Trouble> {
+    fn tell(&mut self, receipts: &[Receipt], out: &mut Output<'_>) -> Result<(), CliError> {
         for receipt in receipts {
             if self.segments.contains(&receipt.segment) {
                 continue;
@@ -114,7 +115,7 @@ impl Told {
 
     fn outcome(&self) -> Outcome {
         match self.segments.len() {
-            0 | 1 => Err(Trouble::new(Exit::NotReached, "nobody was heard to speak".to_owned())),
+            0 | 1 => Err(CliError::new(Exit::NotReached, "nobody was heard to speak".to_owned())),
             _ => Ok(if self.accepted { Exit::Ok } else { Exit::NotReached }),
         }
     }

@@ -11,8 +11,8 @@ use service::exit::Exit;
 use service::group::GroupPaths;
 
 use crate::cli::LogsArgs;
+use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output};
-use crate::trouble::{Outcome, Trouble};
 
 use file::LogFile;
 
@@ -26,7 +26,7 @@ pub(super) fn logs(paths: &GroupPaths, args: &LogsArgs, out: &mut Output<'_>) ->
     let mut files = files(paths, args.service.as_deref())?;
     let mut lines = Vec::new();
     for file in &mut files {
-        let last = file.last_lines(args.tail).map_err(|e| Trouble::file(file.path(), &e))?;
+        let last = file.last_lines(args.tail).map_err(|e| CliError::file(file.path(), &e))?;
         lines.extend(last.into_iter().map(|line| (file.service().to_owned(), line)));
     }
     let lines = in_order_of_time(lines);
@@ -48,7 +48,7 @@ fn follow(
     args: &LogsArgs,
     files: &mut Vec<LogFile>,
     out: &mut Output<'_>,
-) -> Result<(), Trouble> {
+) -> Result<(), CliError> {
     if args.service.is_none() {
         // A service that was not there before has all of its log still to be told.
         let new = self::files(paths, None)?;
@@ -59,13 +59,13 @@ fn follow(
     let several = files.len() > 1;
     let mut lines = Vec::new();
     for file in files {
-        let new = file.new_lines().map_err(|e| Trouble::file(file.path(), &e))?;
+        let new = file.new_lines().map_err(|e| CliError::file(file.path(), &e))?;
         lines.extend(new.into_iter().map(|line| (file.service().to_owned(), line)));
     }
     in_order_of_time(lines).iter().try_for_each(|(service, line)| tell(several, service, line, out))
 }
 
-fn tell(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Result<(), Trouble> {
+fn tell(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Result<(), CliError> {
     if out.is_json() {
         return out.json(&json!({ "service": service, "line": line }));
     }
@@ -78,7 +78,7 @@ fn tell(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Resul
 }
 
 /// The log of one service, or all logs of the group.
-fn files(paths: &GroupPaths, service: Option<&str>) -> Result<Vec<LogFile>, Trouble> {
+fn files(paths: &GroupPaths, service: Option<&str>) -> Result<Vec<LogFile>, CliError> {
     let names = names(&paths.log())?;
     match service {
         None => Ok(names.iter().map(|name| LogFile::new(name, paths.log_file(name))).collect()),
@@ -91,15 +91,15 @@ fn files(paths: &GroupPaths, service: Option<&str>) -> Result<Vec<LogFile>, Trou
                 true => "start the group first: whichone up".to_owned(),
                 false => format!("there are {}", names.join(", ")),
             };
-            Err(Trouble::new(Exit::Usage, format!("{what}; {cure}")))
+            Err(CliError::new(Exit::Usage, format!("{what}; {cure}")))
         }
     }
 }
 
-fn names(folder: &Path) -> Result<Vec<String>, Trouble> {
+fn names(folder: &Path) -> Result<Vec<String>, CliError> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-        entries => entries.map_err(|error| Trouble::file(folder, &error))?,
+        entries => entries.map_err(|error| CliError::file(folder, &error))?,
     };
     let name = |entry: std::io::Result<fs::DirEntry>| {
         Some(entry.ok()?.file_name().to_str()?.strip_suffix(".log")?.to_owned())

@@ -9,8 +9,8 @@ use service::client::Client;
 use service::exit::Exit;
 use service::group::GroupPaths;
 
+use crate::error::Outcome;
 use crate::output::Output;
-use crate::trouble::Outcome;
 
 /// Latches or releases the motion stop, and returns once the arm has confirmed it.
 pub(super) fn motion(

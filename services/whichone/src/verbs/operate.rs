@@ -14,8 +14,8 @@ use service::status::GroupStatus;
 
 use super::{leftovers, words};
 use crate::cli::{RestartArgs, ServiceArgs, SwapArgs};
+use crate::error::{CliError, Outcome};
 use crate::output::Output;
-use crate::trouble::{Outcome, Trouble};
 
 /// How long the supervisor may take for an answer, beyond what it is asked to wait for.
 const ANSWER_PATIENCE: Duration = Duration::from_secs(5);
@@ -31,7 +31,7 @@ pub(super) enum Unanswered {
     Refused(Refusal),
 }
 
-impl From<Unanswered> for Trouble {
+impl From<Unanswered> for CliError {
     fn from(unanswered: Unanswered) -> Self {
         match unanswered {
             Unanswered::Call(error) => error.into(),
@@ -98,7 +98,7 @@ pub(super) fn reload(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>
 /// Replaces a service's program.
 pub(super) fn swap(paths: &GroupPaths, args: SwapArgs, out: &mut Output<'_>) -> Outcome {
     let directory = std::env::current_dir()
-        .map_err(|error| Trouble::new(Exit::NotReached, format!("the current folder: {error}")))?;
+        .map_err(|error| CliError::new(Exit::NotReached, format!("the current folder: {error}")))?;
     let SwapArgs { service, command, timeout } = args;
     order(paths, &Request::Swap { service, command, directory }, timeout, out)
 }
@@ -137,12 +137,16 @@ fn await_end(process: &OwnedFd) {
     let _ = poll(&mut [PollFd::new(process, PollFlags::IN)], Some(&patience));
 }
 
-fn tell_down(paths: &GroupPaths, report: &DownReport, out: &mut Output<'_>) -> Result<(), Trouble> {
+fn tell_down(
+    paths: &GroupPaths,
+    report: &DownReport,
+    out: &mut Output<'_>,
+) -> Result<(), CliError> {
     let after = words::time(report.seconds);
     out.line(format_args!("group {} is down after {after}", paths.name()))?;
     let remarks = [
         ("did not end when asked and were killed", &report.killed),
-        ("left behind by services and killed", &report.strays),
+        ("left behind by services and killed", &report.orphans),
         ("left in shared memory and removed", &report.leftovers),
     ];
     for (what, names) in remarks.into_iter().filter(|(_, names)| !names.is_empty()) {

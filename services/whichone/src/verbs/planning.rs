@@ -7,11 +7,11 @@ use dialogue::{Actions, Costs, DecisionProblem, Durations, Model, Params, regist
 use scene::Scene;
 use service::exit::Exit;
 
-use super::place;
+use super::paths;
 use crate::batch::Decider;
 use crate::cli::{ConfigArgs, PlanArgs, ProblemArgs};
+use crate::error::CliError;
 use crate::scene_file;
-use crate::trouble::Trouble;
 
 /// What decides where neither the command line nor a configuration says.
 const PLANNER: &str = "lookahead";
@@ -46,11 +46,11 @@ impl Problem {
 ///
 /// # Errors
 /// A scene or a configuration that is wrong.
-pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Trouble> {
+pub(super) fn decider(args: &PlanArgs) -> Result<Decider, CliError> {
     let scene = scene_file::load(&args.scene)?;
     let problem = problem(scene, &args.problem)?;
     let planner = registry::planner(args.planner.as_deref().unwrap_or(problem.planner()))
-        .map_err(|error| Trouble::new(Exit::Config, error.to_string()))?;
+        .map_err(|error| CliError::new(Exit::Config, error.to_string()))?;
     let Problem { scene, model, costs, durations, actions, .. } = problem;
     Ok(Decider { scene, model, costs, durations, actions, planner })
 }
@@ -59,18 +59,18 @@ pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Trouble> {
 ///
 /// # Errors
 /// A scene or a configuration that is wrong.
-pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, Trouble> {
+pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, CliError> {
     problem(scene_file::load(&scene_path(scene, &args.config)?)?, args)
 }
 
 /// What the command line says, else the configuration, else, where none is named and none is
 /// found, what is built in.
-fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Trouble> {
+fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, CliError> {
     let config = &args.config;
     let named = config.config.is_some() || config.profile.is_some() || !config.set.is_empty();
-    let settings = match place::config_folder(config) {
+    let settings = match paths::config_folder(config) {
         Err(_) if !named => None,
-        _ => Some(place::settings(config)?),
+        _ => Some(paths::settings(config)?),
     };
     let configured = settings.as_ref().map(|settings| &settings.dialogue);
     let params = configured.map_or_else(Params::default, |dialogue| dialogue.params);
@@ -86,17 +86,17 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Trouble> {
     let durations = of_robot
         .map(|settings| settings.measure(&scene, actions.point()))
         .transpose()
-        .map_err(|error| Trouble::new(Exit::Config, error.to_string()))?;
+        .map_err(|error| CliError::new(Exit::Config, error.to_string()))?;
     Ok(Problem { scene, model, costs, durations, actions, settings })
 }
 
 /// A word that is no file's name is one of the configuration's scenes.
-pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Trouble> {
+pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, CliError> {
     let is_word = named.extension().is_none() && named.components().count() == 1;
     if named.is_file() || !is_word {
         return Ok(named.to_owned());
     }
-    let scenes = place::config_folder(args)?.join("scenes");
+    let scenes = paths::config_folder(args)?.join("scenes");
     let path = scenes.join(named).with_extension("toml");
     if path.is_file() {
         return Ok(path);
@@ -104,5 +104,5 @@ pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Tro
     let (name, folder) = (named.display(), scenes.display());
     let what = format!("{name}: there is no file of that name, nor a scene in {folder}");
     let cure = "name a scene file, or a scene without its folder and ending, e.g. bowls";
-    Err(Trouble::new(Exit::Config, format!("{what} ({cure})")))
+    Err(CliError::new(Exit::Config, format!("{what} ({cure})")))
 }

@@ -12,8 +12,8 @@ use service::{Span, Time};
 
 use super::hearing;
 use crate::cli::{PointArgs, SayArgs, TalkArgs};
+use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, note};
-use crate::trouble::{Outcome, Trouble};
 
 /// Says words, and tells whether they were accepted.
 pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> Outcome {
@@ -31,23 +31,23 @@ pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> O
 }
 
 /// When it was said.
-fn when(args: &SayArgs) -> Result<(Time, Time), Trouble> {
+fn when(args: &SayArgs) -> Result<(Time, Time), CliError> {
     let ended = args.ended_ago.unwrap_or_default();
     let began = args.began_ago.unwrap_or(ended);
     if began < ended {
         let what = "nobody ends before he begins: --began-ago is the longer time";
-        return Err(Trouble::new(Exit::Usage, what));
+        return Err(CliError::new(Exit::Usage, what));
     }
     let now = clock::now();
     let ago = |time: Duration| now - Span::from_s(time.as_secs_f64());
     Ok((ago(began), ago(ended)))
 }
 
-fn transcript(args: &SayArgs) -> Result<Sound, Trouble> {
+fn transcript(args: &SayArgs) -> Result<Sound, CliError> {
     let others: f64 = args.alternatives.iter().map(|(_, weight)| weight).sum();
     if others >= 1.0 {
         let what = format!("the alternatives weigh {others} and leave nothing of 1 for the text");
-        return Err(Trouble::new(Exit::Usage, what));
+        return Err(CliError::new(Exit::Usage, what));
     }
     let best = (args.text.join(" "), 1.0 - others, args.confidence.clone());
     let others = args.alternatives.iter().map(|(text, weight)| (text.clone(), *weight, Vec::new()));
@@ -91,8 +91,8 @@ fn tell_all(receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
 }
 
 /// Tells what became of an utterance.
-pub(super) fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Trouble> {
-    let unclear = |error: messages::WireError| Trouble::new(Exit::NotReached, error.to_string());
+pub(super) fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), CliError> {
+    let unclear = |error: messages::WireError| CliError::new(Exit::NotReached, error.to_string());
     let status = ReceiptStatus::from_code(receipt.status).map_err(unclear)?;
     let source = Source::from_code(receipt.source).map_err(unclear)?;
     let note = receipt.note.as_str().map_err(unclear)?;
@@ -121,7 +121,7 @@ pub(super) fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Troubl
         (ReceiptStatus::Over, _) if note.is_empty() => {}
         (ReceiptStatus::Over, _) => out.line(style.paint(Ink::Yellow, note))?,
         (ReceiptStatus::Refused, _) => {
-            return Err(Trouble::new(Exit::NotReached, format!("not accepted: {note}")));
+            return Err(CliError::new(Exit::NotReached, format!("not accepted: {note}")));
         }
     }
     let measured = spoken && receipt.snr_db > 0.0;

@@ -10,8 +10,8 @@ use service::status::{GroupStatus, ServiceStatus};
 
 use super::operate::{Unanswered, status_of};
 use super::{console, hearing, words};
+use crate::error::Outcome;
 use crate::output::{Ink, Output, Style, table};
-use crate::trouble::Outcome;
 
 /// Shows the group. The exit code says whether everything that is wanted is ready.
 pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
@@ -80,9 +80,9 @@ fn head(status: &GroupStatus, style: Style) -> String {
     if let Some(profile) = &status.profile {
         head += &format!(" with profile {profile}");
     }
-    if status.strays_killed > 0 {
-        let strays = words::count(status.strays_killed.into(), "stray");
-        head += &format!(", {strays} killed");
+    if status.orphans_killed > 0 {
+        let orphans = words::count(status.orphans_killed.into(), "orphan");
+        head += &format!(", {orphans} killed");
     }
     head
 }
@@ -147,7 +147,7 @@ mod tests {
             told,
             [
                 "group lab is degraded: scene bowls, up 1 min 1 s, supervisor 7, configuration /c \
-                 with profile ci, 1 stray killed",
+                 with profile ci, 1 orphan killed",
                 "SERVICE  STATE  PID  UP  STARTS  BEAT  INPUT  MEMORY  NOTE",
                 "policy   held   -    -   5       -     -      -       5 exits in a short time; \
                  last ended 2.0 s ago with exit 1",

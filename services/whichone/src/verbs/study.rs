@@ -8,8 +8,8 @@ use evaluation::simulation::Tally;
 use service::exit::Exit;
 
 use crate::cli::StudyArgs;
+use crate::error::{CliError, Outcome};
 use crate::output::{Output, note};
-use crate::trouble::{Outcome, Trouble};
 
 mod board;
 mod design;
@@ -35,7 +35,7 @@ pub(super) fn study(args: &StudyArgs, out: &mut Output<'_>) -> Outcome {
     let house = House::new(args)?;
     let rows = design::rows(args, house.planner())?;
     if let Some(folder) = &args.out {
-        std::fs::create_dir_all(folder).map_err(|error| Trouble::file(folder, &error))?;
+        std::fs::create_dir_all(folder).map_err(|error| CliError::file(folder, &error))?;
     }
     let results: Vec<(&Row, Tally)> = rows.iter().zip(conduct(args, &house, &rows)).collect();
     if let Some(folder) = &args.out {
@@ -72,7 +72,7 @@ fn conduct(args: &StudyArgs, house: &House, rows: &[Row]) -> Vec<Tally> {
 }
 
 /// Writes a file of the study.
-fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Trouble> {
+fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), CliError> {
     let path = folder.join(name);
-    std::fs::write(&path, bytes).map_err(|error| Trouble::file(&path, &error))
+    std::fs::write(&path, bytes).map_err(|error| CliError::file(&path, &error))
 }

@@ -7,10 +7,10 @@ use service::exit::Exit;
 use service::group::GroupPaths;
 use service::launch::{self, Options};
 
-use super::{console, operate, place};
+use super::{console, operate, paths};
 use crate::cli::{ConfigArgs, UpArgs, WaitFor};
+use crate::error::{CliError, Outcome};
 use crate::output::{Output, note};
-use crate::trouble::{Outcome, Trouble};
 
 /// A new supervisor first waits this long for services of one that was killed.
 const EARLIER_SERVICES: Duration = Duration::from_secs(25);
@@ -45,13 +45,13 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
 }
 
 /// Starts a detached group with everything ready, for a verb that needs one.
-pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<(), Trouble> {
+pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<(), CliError> {
     let options = options(paths, config, false)?;
     start(paths, &options, Some(Duration::from_secs(30))).map(drop)
 }
 
 /// Whether a supervisor answers for the group.
-pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, Trouble> {
+pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, CliError> {
     match operate::ask(paths, &Request::Ping, Duration::ZERO) {
         Ok(_) => Ok(true),
         Err(operate::Unanswered::Call(CallError::NoGroup { .. })) => Ok(false),
@@ -59,23 +59,23 @@ pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, Trouble> {
     }
 }
 
-fn refuse_twice(paths: &GroupPaths) -> Result<(), Trouble> {
+fn refuse_twice(paths: &GroupPaths) -> Result<(), CliError> {
     if !is_running(paths)? {
         return Ok(());
     }
     let name = paths.name();
     let pid = operate::status_of(paths)?.supervisor_pid;
     let what = format!("group {name} is running already (supervisor {pid})");
-    Err(Trouble::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
+    Err(CliError::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
 }
 
 /// What the supervisor is started with. It checks the configuration itself; here it is checked
 /// first so that problems are told without its log around them.
-fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Options, Trouble> {
-    place::settings(config)?;
+fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Options, CliError> {
+    paths::settings(config)?;
     Ok(Options {
         group: paths.name().clone(),
-        config: place::config_folder(config)?,
+        config: paths::config_folder(config)?,
         profile: config.profile.clone(),
         set: config.set.clone(),
         fresh,
@@ -84,7 +84,11 @@ fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Optio
 
 /// Starts a detached supervisor and waits until it listens, and until every service is ready
 /// where that is asked for. What it says then.
-fn start(paths: &GroupPaths, options: &Options, wait: Option<Duration>) -> Result<String, Trouble> {
+fn start(
+    paths: &GroupPaths,
+    options: &Options,
+    wait: Option<Duration>,
+) -> Result<String, CliError> {
     let mut launched = launch::detached(&launch::program(), options, paths)?;
     launched.wait_listening(EARLIER_SERVICES)?;
     let Some(timeout) = wait else { return Ok("services are starting".to_owned()) };

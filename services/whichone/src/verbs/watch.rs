@@ -10,8 +10,8 @@ use service::group::GroupPaths;
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::interrupt::Interrupt;
 use crate::cli::WatchArgs;
+use crate::error::{CliError, Outcome};
 use crate::output::Output;
-use crate::trouble::{Outcome, Trouble};
 
 use picture::Picture;
 
@@ -53,7 +53,7 @@ fn follow(
     interrupt: &Interrupt,
     screen: bool,
     out: &mut Output<'_>,
-) -> Result<(), Trouble> {
+) -> Result<(), CliError> {
     let (mut drawn, mut asked) = (None::<Instant>, Instant::now());
     while !interrupt.is_told() {
         picture.look()?;
@@ -74,7 +74,7 @@ fn follow(
     Ok(())
 }
 
-fn draw_once(picture: &Picture, out: &mut Output<'_>) -> Result<(), Trouble> {
+fn draw_once(picture: &Picture, out: &mut Output<'_>) -> Result<(), CliError> {
     if out.is_json() {
         return out.json(&picture.to_json());
     }
@@ -83,7 +83,7 @@ fn draw_once(picture: &Picture, out: &mut Output<'_>) -> Result<(), Trouble> {
 }
 
 /// Looks until every service has been heard of, but not for ever.
-fn gather(picture: &mut Picture) -> Result<(), Trouble> {
+fn gather(picture: &mut Picture) -> Result<(), CliError> {
     let until = Instant::now() + FIRST_PATIENCE;
     while Instant::now() < until && !picture.is_complete() {
         picture.look()?;

@@ -7,11 +7,11 @@ use scene::Scene;
 use serde_json::{Value as Json, json};
 use service::exit::Exit;
 
-use super::{place, planning};
+use super::{paths, planning};
 use crate::cli::{ArmPlotArgs, ArmVerb, ArmVerbArgs};
+use crate::error::{CliError, Outcome};
 use crate::output::Output;
 use crate::scene_file;
-use crate::trouble::{Outcome, Trouble};
 
 mod bodies;
 mod figure;
@@ -33,9 +33,9 @@ fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
     if !["png", "svg"].contains(&ending) {
         let cure = "end its name with .png or .svg";
         let what = format!("{}: is no kind of picture ({cure})", args.out.display());
-        return Err(Trouble::new(Exit::Usage, what));
+        return Err(CliError::new(Exit::Usage, what));
     }
-    let settings = place::settings(&args.config)?;
+    let settings = paths::settings(&args.config)?;
     let scene = match &args.scene {
         None => settings.scene.clone(),
         Some(named) => scene_file::load(&planning::scene_path(named, &args.config)?)?,
@@ -48,7 +48,7 @@ fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
         return Ok(Exit::Ok);
     }
     let failed =
-        |error: ::evaluation::charts::PlotError| Trouble::new(Exit::Storage, error.to_string());
+        |error: ::evaluation::charts::PlotError| CliError::new(Exit::Storage, error.to_string());
     let canvas = figure::draw(&pick, args.width, args.samples).map_err(failed)?;
     let bytes = match ending {
         "svg" => ::evaluation::charts::svg(&canvas).into_bytes(),
@@ -70,9 +70,9 @@ fn planned<'a>(
     limb: Option<Limb>,
     robot: &'a Robot,
     settings: &'a PlanSettings,
-) -> Result<Pick<'a>, Trouble> {
+) -> Result<Pick<'a>, CliError> {
     let refuse =
-        |what: String| Trouble::new(Exit::Config, format!("scene {}: {what}", scene.name()));
+        |what: String| CliError::new(Exit::Config, format!("scene {}: {what}", scene.name()));
     let names = || scene.objects().iter().map(|object| object.name.as_str()).collect::<Vec<_>>();
     let object = object.map_or(Some(0), |name| scene.objects().iter().position(|o| o.name == name));
     let object = object.ok_or_else(|| {
@@ -90,7 +90,7 @@ fn planned<'a>(
             grasp_width_m: at.grasp_width,
         })
     });
-    let places: Vec<ObjectPose> = placed.collect::<Result<_, Trouble>>()?;
+    let places: Vec<ObjectPose> = placed.collect::<Result<_, CliError>>()?;
     let others = places.iter().enumerate().filter(|(i, _)| *i != object);
     let others: Vec<Cuboid> = others.map(|(_, place)| place.cuboid()).collect();
     let rest = robot.neutral();
@@ -120,6 +120,6 @@ fn to_json(pick: &Pick<'_>) -> Json {
     })
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), Trouble> {
-    std::fs::write(path, bytes).map_err(|error| Trouble::file(path, &error))
+fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
+    std::fs::write(path, bytes).map_err(|error| CliError::file(path, &error))
 }

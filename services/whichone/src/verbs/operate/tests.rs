@@ -33,8 +33,8 @@ fn told(
     let mut printed = Vec::new();
     let ended =
         verb(&paths, &mut Output::to(&mut printed, json)).map_err(|trouble| match trouble {
-            Trouble::Failure(failure) => (failure.exit, failure.message),
-            Trouble::Output(error) => panic!("{error}"),
+            CliError::Failure(failure) => (failure.exit, failure.message),
+            CliError::Output(error) => panic!("{error}"),
         });
     let asked = serde_json::from_str(&supervisor.join().unwrap()).unwrap();
     (asked, String::from_utf8(printed).unwrap(), ended)

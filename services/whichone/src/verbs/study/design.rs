@@ -6,7 +6,7 @@ use evaluation::simulation::turns::{Rules, Talker};
 use service::exit::Exit;
 
 use crate::cli::{STUDY_ALL, StudyArgs};
-use crate::trouble::Trouble;
+use crate::error::CliError;
 
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +64,7 @@ const TALKERS: [(&str, Talker); 2] = [("usual", Talker::USUAL), ("truthful", Tal
 ///
 /// # Errors
 /// Rules that are none.
-pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, Trouble> {
+pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, CliError> {
     let policies = listed(&args.policies, &registry::names());
     let kinds: Vec<UserKind> =
         listed(&args.users, &[]).iter().filter_map(|name| UserKind::named(name)).collect();
@@ -76,7 +76,7 @@ pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, Trouble>
     let timed = policies.iter().find(|name| *name == planner).or(policies.first());
     for name in listed(&args.turns, &Rules::ALL) {
         let rules = Rules::parse(&name)
-            .map_err(|error| Trouble::new(Exit::Usage, format!("--turns: {error}")))?;
+            .map_err(|error| CliError::new(Exit::Usage, format!("--turns: {error}")))?;
         for (name, talker) in TALKERS {
             let people = People::RealTime { rules, name, talker };
             rows.extend(timed.map(|policy| Row { policy: policy.clone(), people }));

@@ -10,8 +10,8 @@ use preflight::{Extent, Motions, Pace, Voice, measure};
 use service::exit::Exit;
 
 use crate::cli::{ModeArg, Preset, ProblemArgs, StudyArgs};
+use crate::error::CliError;
 use crate::output::note;
-use crate::trouble::Trouble;
 use crate::verbs::planning::{Problem, of_scene};
 
 /// Everything that the interactions of a study share.
@@ -33,7 +33,7 @@ impl House {
     ///
     /// # Errors
     /// A file that is wrong, or an object that the arm cannot reach.
-    pub(super) fn new(args: &StudyArgs) -> Result<Self, Trouble> {
+    pub(super) fn new(args: &StudyArgs) -> Result<Self, CliError> {
         let scene = args.scene.as_deref().unwrap_or(Path::new(PAPER_SCENE));
         let problem = of_scene(scene, &preset(args))?;
         let settings = problem.settings.as_ref();
@@ -110,7 +110,7 @@ fn preset(args: &StudyArgs) -> ProblemArgs {
 }
 
 /// The arm's motions in a scene with places.
-fn motions(problem: &Problem) -> Result<Option<Motions>, Trouble> {
+fn motions(problem: &Problem) -> Result<Option<Motions>, CliError> {
     let scene = &problem.scene;
     if scene.objects().iter().any(|object| object.placement.is_none()) {
         note("the scene gives no places: the arm is taken to need no time");
@@ -123,5 +123,5 @@ fn motions(problem: &Problem) -> Result<Option<Motions>, Trouble> {
     let extent = if pointing { Extent::Pairs } else { Extent::Picks };
     Motions::plan(robot, scene, limb, &plan, extent)
         .map(Some)
-        .map_err(|error| Trouble::new(Exit::Config, error.to_string()))
+        .map_err(|error| CliError::new(Exit::Config, error.to_string()))
 }

@@ -9,9 +9,9 @@ use service::group::GroupPaths;
 
 use super::write;
 use crate::cli::ReportArgs;
+use crate::error::{CliError, Outcome};
 use crate::output::{Output, note, table};
-use crate::trouble::{Outcome, Trouble};
-use crate::verbs::{place, words};
+use crate::verbs::{paths, words};
 
 /// Reads the data and prints the results.
 ///
@@ -33,30 +33,30 @@ pub(crate) fn report(paths: &GroupPaths, args: &ReportArgs, out: &mut Output<'_>
     Ok(Exit::Ok)
 }
 
-fn folder(paths: &GroupPaths, args: &ReportArgs) -> Result<PathBuf, Trouble> {
+fn folder(paths: &GroupPaths, args: &ReportArgs) -> Result<PathBuf, CliError> {
     if let Some(folder) = &args.folder {
         return Ok(folder.clone());
     }
-    let settings = place::settings_in_force(paths, &args.config)?;
+    let settings = paths::settings_in_force(paths, &args.config)?;
     Ok(settings.study.data_dir.unwrap_or_else(|| paths.study()))
 }
 
-fn read(folder: &Path) -> Result<Vec<Participant>, Trouble> {
+fn read(folder: &Path) -> Result<Vec<Participant>, CliError> {
     let files = journal::lines::read_folder(folder, evaluation::user_study::FILE_ENDING)
-        .map_err(|(path, error)| Trouble::file(&path, &error))?;
+        .map_err(|(path, error)| CliError::file(&path, &error))?;
     let people = evaluation::user_study::people(files).map_err(|(path, error)| {
-        Trouble::new(Exit::Storage, format!("{}: {error}", path.display()))
+        CliError::new(Exit::Storage, format!("{}: {error}", path.display()))
     })?;
     if people.is_empty() {
         let what = format!("{} holds no data of a study", folder.display());
         let cure = "name the folder, or conduct one: set study.enabled, and open /study";
-        return Err(Trouble::new(Exit::NotReached, format!("{what}; {cure}")));
+        return Err(CliError::new(Exit::NotReached, format!("{what}; {cure}")));
     }
     Ok(people)
 }
 
-fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), Trouble> {
-    std::fs::create_dir_all(folder).map_err(|error| Trouble::file(folder, &error))?;
+fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), CliError> {
+    std::fs::create_dir_all(folder).map_err(|error| CliError::file(folder, &error))?;
     let tables = evaluation::user_study::tables(people);
     write(folder, "interactions.csv", tables.interactions.as_bytes())?;
     write(folder, "participants.csv", tables.participants.as_bytes())?;
@@ -70,7 +70,7 @@ fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), 
     for (name, canvas) in evaluation::user_study::pictures(report) {
         write(folder, &format!("{name}.svg"), evaluation::charts::svg(&canvas).as_bytes())?;
         let png = evaluation::charts::png(&canvas)
-            .map_err(|error| Trouble::new(Exit::Storage, format!("{name}.png: {error}")))?;
+            .map_err(|error| CliError::new(Exit::Storage, format!("{name}.png: {error}")))?;
         write(folder, &format!("{name}.png"), &png)?;
     }
     Ok(())

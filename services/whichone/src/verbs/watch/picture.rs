@@ -10,7 +10,7 @@ use service::clock;
 use service::group::GroupPaths;
 use service::status::GroupStatus;
 
-use crate::trouble::Trouble;
+use crate::error::CliError;
 use crate::verbs::conversation::{Conversation, Seen};
 use crate::verbs::hearing;
 
@@ -71,7 +71,7 @@ impl Picture {
     }
 
     /// Takes in what has happened.
-    pub(super) fn look(&mut self) -> Result<(), Trouble> {
+    pub(super) fn look(&mut self) -> Result<(), CliError> {
         let receipts = self.conversation.look()?;
         if self.before.is_none() {
             self.before = self.seen().view.as_ref().map(|view| view.applied);

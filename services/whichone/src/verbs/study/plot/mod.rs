@@ -8,7 +8,7 @@ use service::exit::Exit;
 use evaluation::simulation::Tally;
 
 use super::design::Row;
-use crate::trouble::Trouble;
+use crate::error::CliError;
 
 /// A picture's file name and bytes.
 pub(super) type Picture = (String, Vec<u8>);
@@ -17,7 +17,7 @@ pub(super) type Picture = (String, Vec<u8>);
 ///
 /// # Errors
 /// A picture that cannot be encoded.
-pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, Trouble> {
+pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, CliError> {
     let (real_time, in_turns): (Vec<_>, Vec<_>) =
         results.iter().cloned().partition(|(row, _)| row.people.in_real_time());
     let mut canvases = Vec::new();
@@ -34,7 +34,7 @@ pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, Troubl
     for (name, canvas) in canvases {
         pictures.push((format!("{name}.svg"), evaluation::charts::svg(&canvas).into_bytes()));
         let png = evaluation::charts::png(&canvas)
-            .map_err(|error| Trouble::new(Exit::Storage, format!("{name}.png: {error}")))?;
+            .map_err(|error| CliError::new(Exit::Storage, format!("{name}.png: {error}")))?;
         pictures.push((format!("{name}.png"), png));
     }
     Ok(pictures)

@@ -13,7 +13,7 @@ use rustix::process::{Pid, PidfdFlags, Signal, getpid, pidfd_open, pidfd_send_si
 use service::group::{ENV_GROUP, ENV_HOME, ENV_INCARNATION, GroupPaths};
 use thiserror::Error;
 
-use crate::bond::{is_free, open_lock};
+use crate::lifeline::{is_free, open_lock};
 use crate::procfs::{self, Process};
 
 /// How long the kernel may take to end what was killed.
@@ -24,7 +24,7 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 
 /// The group is not this supervisor's to run.
 #[derive(Debug, Error)]
-pub enum EarlierError {
+pub enum PreviousRunError {
     /// Another supervisor runs it.
     #[error("group {group} is running already{}", with_pid(.pid))]
     Running {
@@ -54,16 +54,16 @@ fn with_pid(pid: &Option<u32>) -> String {
 ///
 /// # Errors
 /// Another supervisor has it.
-pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, EarlierError> {
+pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, PreviousRunError> {
     let path = paths.supervisor_lock();
-    let failed = |error| EarlierError::Io { path: path.clone(), error };
+    let failed = |error| PreviousRunError::Io { path: path.clone(), error };
     let mut file = open_lock(&path).map_err(failed)?;
     match flock(&file, FlockOperation::NonBlockingLockExclusive) {
         Err(Errno::WOULDBLOCK) => {
             let mut text = String::new();
             let read = file.read_to_string(&mut text);
             let pid = read.ok().and_then(|_| text.trim().parse().ok());
-            return Err(EarlierError::Running { group: paths.name().to_string(), pid });
+            return Err(PreviousRunError::Running { group: paths.name().to_string(), pid });
         }
         taken => taken.map_err(|error| failed(error.into()))?,
     }
@@ -81,9 +81,9 @@ pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, EarlierError> {
 ///
 /// # Errors
 /// Some process survives even that.
-pub(crate) fn await_end(paths: &GroupPaths, patience: Duration) -> Result<File, EarlierError> {
+pub(crate) fn await_end(paths: &GroupPaths, patience: Duration) -> Result<File, PreviousRunError> {
     let path = paths.alive_lock();
-    let failed = |error| EarlierError::Io { path: path.clone(), error };
+    let failed = |error| PreviousRunError::Io { path: path.clone(), error };
     let alive = open_lock(&path).map_err(failed)?;
     if is_free(&alive) {
         return Ok(alive);
@@ -98,7 +98,7 @@ pub(crate) fn await_end(paths: &GroupPaths, patience: Duration) -> Result<File, 
     if wait(&alive, KILL_PATIENCE) {
         return Ok(alive);
     }
-    Err(EarlierError::Undying(names(&leftovers(paths))))
+    Err(PreviousRunError::Undying(names(&leftovers(paths))))
 }
 
 fn wait(alive: &File, patience: Duration) -> bool {

@@ -8,7 +8,7 @@ use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
 
 use crate::cli::ConfigArgs;
-use crate::trouble::Trouble;
+use crate::error::CliError;
 
 /// A file that tells a folder of this configuration from another that happens to have its name.
 const MARK: &str = "group.toml";
@@ -17,7 +17,7 @@ const MARK: &str = "group.toml";
 ///
 /// # Errors
 /// There is no place for groups.
-pub(super) fn paths(group: &GroupName) -> Result<GroupPaths, Trouble> {
+pub(super) fn group_paths(group: &GroupName) -> Result<GroupPaths, CliError> {
     Ok(GroupPaths::resolve(group)?)
 }
 
@@ -25,7 +25,7 @@ pub(super) fn paths(group: &GroupName) -> Result<GroupPaths, Trouble> {
 ///
 /// # Errors
 /// No configuration is found, or everything that is wrong with it.
-pub(super) fn settings(args: &ConfigArgs) -> Result<Settings, Trouble> {
+pub(super) fn settings(args: &ConfigArgs) -> Result<Settings, CliError> {
     let folder = config_folder(args)?;
     Ok(Settings::load(&folder, args.profile.as_deref(), &args.set)?)
 }
@@ -37,7 +37,7 @@ pub(super) fn settings(args: &ConfigArgs) -> Result<Settings, Trouble> {
 pub(super) fn settings_in_force(
     paths: &GroupPaths,
     args: &ConfigArgs,
-) -> Result<Settings, Trouble> {
+) -> Result<Settings, CliError> {
     let named = args.config.is_some() || args.profile.is_some() || !args.set.is_empty();
     if !named && paths.run().join(config::SNAPSHOT_FILE).is_file() {
         return Ok(Settings::load_snapshot(&paths.run())?);
@@ -50,7 +50,7 @@ pub(super) fn settings_in_force(
 ///
 /// # Errors
 /// None of them is there.
-pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, Trouble> {
+pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, CliError> {
     if let Some(named) = args.config.as_ref().filter(|path| !path.as_os_str().is_empty()) {
         return Ok(absolute(named));
     }
@@ -59,7 +59,7 @@ pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, Trouble> {
         .ok_or_else(|| {
             let what = format!("no configuration: there is no ./config with {MARK}");
             let cure = "name its folder with --config DIR or WHICHONE_CONFIG";
-            Trouble::new(Exit::Config, format!("{what}; {cure}"))
+            CliError::new(Exit::Config, format!("{what}; {cure}"))
         })
 }
 

@@ -15,7 +15,7 @@ use crate::procfs::{self, Process};
 const END_PATIENCE: Duration = Duration::from_secs(2);
 
 /// The last ones are told by name when the group is down.
-const STRAYS_TOLD_MAX: usize = 100;
+const ORPHANS_REPORTED_MAX: usize = 100;
 
 impl Supervisor {
     /// Notes what else lives in the process group of a service that has ended; it is killed when
@@ -33,13 +33,13 @@ impl Supervisor {
         // Told here, and condemned: a killed process may take a while to end, and is not to be
         // told of again meanwhile.
         self.condemned.extend(left.iter().map(|process| process.pid));
-        self.tell_strays(&left, &name);
+        self.report_orphans(&left, &name);
     }
 
     /// Reaps children that are nobody's any more, and kills those that no running incarnation has
     /// started.
-    pub(super) fn clear_strays(&mut self) {
-        for process in self.strays() {
+    pub(super) fn clear_orphans(&mut self) {
+        for process in self.orphans() {
             if process.is_zombie || !self.belongs_to_running(process.pid) {
                 self.clear(process, "a service that has ended");
             }
@@ -50,7 +50,7 @@ impl Supervisor {
     pub(super) fn clear_all(&mut self) {
         let until = Instant::now() + END_PATIENCE;
         loop {
-            let left = self.strays();
+            let left = self.orphans();
             if left.is_empty() || Instant::now() > until {
                 break;
             }
@@ -61,7 +61,7 @@ impl Supervisor {
         }
     }
 
-    /// Reaps a stray, or kills it, which is told once: it may take a while to end.
+    /// Reaps a orphan, or kills it, which is told once: it may take a while to end.
     fn clear(&mut self, process: Process, of: &str) {
         let pid = process.pid;
         if process.is_zombie {
@@ -72,13 +72,13 @@ impl Supervisor {
             kill(pid);
             if !self.condemned.contains(&pid) {
                 self.condemned.push(pid);
-                self.tell_strays(&[process], of);
+                self.report_orphans(&[process], of);
             }
         }
     }
 
     /// Children of this process that are not the process of a service.
-    fn strays(&self) -> Vec<Process> {
+    fn orphans(&self) -> Vec<Process> {
         let me = getpid().as_raw_nonzero().get();
         let leaders: Vec<Pid> = self
             .services
@@ -107,14 +107,14 @@ impl Supervisor {
         })
     }
 
-    fn tell_strays(&mut self, processes: &[Process], of: &str) {
+    fn report_orphans(&mut self, processes: &[Process], of: &str) {
         for process in processes {
-            let stray = format!("{} ({})", process.name, process.pid);
-            tracing::warn!(stray, of, "killed a process that was left behind");
-            self.strays_killed += 1;
-            self.strays.push(stray);
-            if self.strays.len() > STRAYS_TOLD_MAX {
-                self.strays.remove(0);
+            let orphan = format!("{} ({})", process.name, process.pid);
+            tracing::warn!(orphan, of, "killed a process that was left behind");
+            self.orphans_killed += 1;
+            self.orphans.push(orphan);
+            if self.orphans.len() > ORPHANS_REPORTED_MAX {
+                self.orphans.remove(0);
             }
         }
     }

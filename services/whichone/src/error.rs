@@ -12,11 +12,11 @@ use service::group::GroupError;
 use service::launch::LaunchError;
 
 /// What every verb ends with: the exit code of a verb that said all there is to say, or trouble.
-pub type Outcome = Result<Exit, Trouble>;
+pub type Outcome = Result<Exit, CliError>;
 
 /// Why a verb ends before its time.
 #[derive(Debug, thiserror::Error)]
-pub enum Trouble {
+pub enum CliError {
     /// Something to tell the person, with the exit code that tells it to scripts.
     #[error(transparent)]
     Failure(#[from] Failure),
@@ -25,8 +25,8 @@ pub enum Trouble {
     Output(io::Error),
 }
 
-impl Trouble {
-    /// Trouble with its exit code and reason.
+impl CliError {
+    /// CliError with its exit code and reason.
     pub fn new(exit: Exit, reason: impl Into<String>) -> Self {
         Self::Failure(Failure::new(exit, reason))
     }
@@ -37,7 +37,7 @@ impl Trouble {
     }
 }
 
-impl From<ClientError> for Trouble {
+impl From<ClientError> for CliError {
     fn from(error: ClientError) -> Self {
         match error {
             ClientError::Bus(error) => error.into(),
@@ -46,37 +46,37 @@ impl From<ClientError> for Trouble {
     }
 }
 
-impl From<BusError> for Trouble {
+impl From<BusError> for CliError {
     fn from(error: BusError) -> Self {
         Self::Failure(error.into())
     }
 }
 
-impl From<PortError> for Trouble {
+impl From<PortError> for CliError {
     fn from(error: PortError) -> Self {
         Self::Failure(error.into())
     }
 }
 
-impl From<GroupError> for Trouble {
+impl From<GroupError> for CliError {
     fn from(error: GroupError) -> Self {
         Self::new(Exit::Usage, error.to_string())
     }
 }
 
-impl From<CallError> for Trouble {
+impl From<CallError> for CliError {
     fn from(error: CallError) -> Self {
         Self::new(Exit::NotReached, error.to_string())
     }
 }
 
-impl From<LaunchError> for Trouble {
+impl From<LaunchError> for CliError {
     fn from(error: LaunchError) -> Self {
         Self::new(error.exit(), error.to_string())
     }
 }
 
-impl From<Refusal> for Trouble {
+impl From<Refusal> for CliError {
     fn from(refusal: Refusal) -> Self {
         let details = refusal.details.iter().map(|line| format!("\n  {line}"));
         let exit = refusal.exit();
@@ -84,13 +84,13 @@ impl From<Refusal> for Trouble {
     }
 }
 
-impl From<Problems> for Trouble {
+impl From<Problems> for CliError {
     fn from(problems: Problems) -> Self {
         Self::new(Exit::Config, problems.to_string())
     }
 }
 
-impl From<Vec<Problem>> for Trouble {
+impl From<Vec<Problem>> for CliError {
     fn from(problems: Vec<Problem>) -> Self {
         let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
         Self::new(Exit::Config, lines.join("\n"))

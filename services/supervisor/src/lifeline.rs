@@ -1,4 +1,4 @@
-//! What ties the whole tree of service processes to this supervisor.
+//! The connection between the supervisor and the whole tree of its service processes.
 //!
 //! Every service, and whatever it starts, inherits two descriptors. One is the read end of the
 //! *lifeline*, a pipe that only the supervisor could write to: it reads as ended when the
@@ -14,30 +14,30 @@ use std::path::Path;
 use rustix::fs::{FlockOperation, flock};
 use rustix::pipe::{PipeFlags, pipe_with};
 
-/// The supervisor's ends.
+/// The supervisor's ends of the connection.
 #[derive(Debug)]
-pub(crate) struct Bond {
-    lifeline: OwnedFd,
-    _kept_open: OwnedFd,
+pub(crate) struct Lifeline {
+    read_end: OwnedFd,
+    _write_end: OwnedFd,
     alive: File,
 }
 
-impl Bond {
+impl Lifeline {
     /// A new lifeline, and a shared lock on `alive`.
     pub(crate) fn new(alive: File) -> io::Result<Self> {
-        let (lifeline, kept_open) = pipe_with(PipeFlags::CLOEXEC)?;
+        let (read_end, write_end) = pipe_with(PipeFlags::CLOEXEC)?;
         flock(&alive, FlockOperation::NonBlockingLockShared)?;
-        Ok(Self { lifeline, _kept_open: kept_open, alive })
+        Ok(Self { read_end, _write_end: write_end, alive })
     }
 
     /// Descriptors that every service inherits.
     pub(crate) fn inherited(&self) -> [BorrowedFd<'_>; 2] {
-        [self.lifeline.as_fd(), self.alive.as_fd()]
+        [self.read_end.as_fd(), self.alive.as_fd()]
     }
 
     /// Number of the lifeline's descriptor, the same in every service.
-    pub(crate) fn lifeline_number(&self) -> RawFd {
-        self.lifeline.as_raw_fd()
+    pub(crate) fn descriptor(&self) -> RawFd {
+        self.read_end.as_raw_fd()
     }
 }
 
@@ -62,10 +62,10 @@ mod tests {
         let path = folder.path().join("alive.lock");
         let later = open_lock(&path).unwrap();
         assert!(is_free(&later));
-        let bond = Bond::new(open_lock(&path).unwrap()).unwrap();
+        let lifeline = Lifeline::new(open_lock(&path).unwrap()).unwrap();
         assert!(!is_free(&later));
-        let inherited = rustix::io::dup(bond.inherited()[1]).unwrap();
-        drop(bond);
+        let inherited = rustix::io::dup(lifeline.inherited()[1]).unwrap();
+        drop(lifeline);
         assert!(!is_free(&later), "a child still lives");
         drop(inherited);
         assert!(is_free(&later));

@@ -8,7 +8,7 @@ use crate::spec::RestartLimits;
 
 /// The unasked exits of one service.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Tally {
+pub(crate) struct RestartLimiter {
     /// Exits that may still lie within the window, oldest first; never more than `exits_max`.
     exits: VecDeque<Time>,
     /// Pauses since the last reset: the exponent of the next one.
@@ -31,7 +31,7 @@ pub(crate) enum Verdict {
     },
 }
 
-impl Tally {
+impl RestartLimiter {
     /// Counts an exit at `now` of an incarnation that had been ready for `ready_for` (`None`: it
     /// never was) and says what follows.
     ///
@@ -89,41 +89,41 @@ mod tests {
 
     #[test]
     fn pauses_double_up_to_the_longest() {
-        let mut tally = Tally::default();
+        let mut limiter = RestartLimiter::default();
         let found: Vec<_> =
-            (0..8).map(|s| tally.count(&LIMITS, None, Time::from_secs(s))).collect();
+            (0..8).map(|s| limiter.count(&LIMITS, None, Time::from_secs(s))).collect();
         let expected = [100, 200, 400, 800, 1600, 3200, 5000, 5000].map(pause);
         assert_eq!(found, expected);
     }
 
     #[test]
     fn the_first_exit_after_ready_is_answered_at_once_and_only_that() {
-        let mut tally = Tally::default();
+        let mut limiter = RestartLimiter::default();
         let soon = Some(Duration::from_secs(1));
-        assert_eq!(tally.count(&LIMITS, soon, Time::from_secs(1)), Verdict::Again);
-        assert_eq!(tally.count(&LIMITS, soon, Time::from_secs(2)), pause(100));
-        assert_eq!(tally.count(&LIMITS, soon, Time::from_secs(3)), pause(200));
+        assert_eq!(limiter.count(&LIMITS, soon, Time::from_secs(1)), Verdict::Again);
+        assert_eq!(limiter.count(&LIMITS, soon, Time::from_secs(2)), pause(100));
+        assert_eq!(limiter.count(&LIMITS, soon, Time::from_secs(3)), pause(200));
     }
 
     #[test]
     fn a_long_time_of_being_ready_resets_the_pauses() {
-        let mut tally = Tally::default();
+        let mut limiter = RestartLimiter::default();
         for s in 0..4 {
-            tally.count(&LIMITS, None, Time::from_secs(s));
+            limiter.count(&LIMITS, None, Time::from_secs(s));
         }
         let long = Some(LIMITS.backoff_reset);
-        assert_eq!(tally.count(&LIMITS, long, Time::from_secs(40)), Verdict::Again);
-        assert_eq!(tally.count(&LIMITS, None, Time::from_secs(41)), pause(100));
+        assert_eq!(limiter.count(&LIMITS, long, Time::from_secs(40)), Verdict::Again);
+        assert_eq!(limiter.count(&LIMITS, None, Time::from_secs(41)), pause(100));
     }
 
     #[test]
     fn the_window_slides() {
         let limits = RestartLimits { exits_max: 3, ..LIMITS };
-        let mut tally = Tally::default();
-        assert_eq!(tally.count(&limits, None, Time::from_secs(0)), pause(100));
-        assert_eq!(tally.count(&limits, None, Time::from_secs(59)), pause(200));
-        assert_eq!(tally.count(&limits, None, Time::from_secs(60)), pause(400));
-        let last = tally.count(&limits, None, Time::from_secs(118));
+        let mut limiter = RestartLimiter::default();
+        assert_eq!(limiter.count(&limits, None, Time::from_secs(0)), pause(100));
+        assert_eq!(limiter.count(&limits, None, Time::from_secs(59)), pause(200));
+        assert_eq!(limiter.count(&limits, None, Time::from_secs(60)), pause(400));
+        let last = limiter.count(&limits, None, Time::from_secs(118));
         assert_eq!(last, Verdict::GiveUp { exits: 3 });
     }
 }
