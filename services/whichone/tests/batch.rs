@@ -13,7 +13,7 @@ use whichone::cli::{LimbArg, WhichArm};
 use whichone::described_arm::DescribedArm;
 use whichone::output::Output;
 use whichone::scene_file;
-use whichone::trouble::Outcome;
+use whichone::error::Outcome;
 
 fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
