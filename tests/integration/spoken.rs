@@ -1,7 +1,7 @@
 //! Dialogues with real sound in real time: a synthesised person at the microphone's program, and the
 //! robot's own voice without a sound card.
 
-use messages::{Presentation, Presented, topics};
+use messages::{PresentationState, Presented, topics};
 use service::client::Client;
 use whichone_tests::spoken::{Conditions, tally};
 use whichone_tests::{Group, wait_for};
@@ -18,7 +18,7 @@ fn a_question_lasts_as_long_as_its_sound_without_a_sound_card() {
     group.say("get me the bowl");
     let said = wait_for("a question said to its end", 20.0, || {
         let latest = presented.latest().unwrap()?;
-        (latest.state == Presentation::Ended.code()).then_some(latest)
+        (latest.state == PresentationState::Ended.code()).then_some(latest)
     });
     let entries = std::fs::read_dir(folder.path()).unwrap();
     let files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();

@@ -5,6 +5,7 @@ use arm::{ArmNode, In, Order, Out, Told};
 use baxter::BaxterNode;
 use baxter::robot::Robot;
 use config::Settings;
+use messages::WireCode;
 use messages::robot::{Drill, DrillKind, JointState};
 use messages::{
     ActKind, ArmStatus, Hindrance, MotionCommand, MotionOrder, PickOutcome, PickPhase, RobotAct,

@@ -23,7 +23,7 @@ fn ensure(holds: bool, what: impl FnOnce() -> String) -> Verdict {
 }
 
 fn delivered_the_right_one(world: &World) -> Verdict {
-    let wanted = (Outcome::Delivered, Some(world.person.wanted.0));
+    let wanted = (Outcome::Delivered, Some(world.person.wanted));
     ensure(world.outcome() == Some(wanted), || format!("the end was {:?}", world.outcome()))
 }
 

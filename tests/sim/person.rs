@@ -3,7 +3,7 @@
 //! acknowledged.
 
 use dialogue::{Answer, Model};
-use messages::{Injection, Presentation, Presented, Receipt, RequestKey, Sound};
+use messages::{Injection, PresentationState, Presented, Receipt, RequestKey, Sound};
 use scene::{ObjectId, Question, Scene};
 use service::{Span, Time};
 
@@ -98,7 +98,7 @@ impl Person {
 
     pub(crate) fn hear(&mut self, presented: &Presented, now: Time) {
         let heard = (presented.prompt, presented.presentation);
-        let ended = presented.state == Presentation::Ended.code();
+        let ended = presented.state == PresentationState::Ended.code();
         let answer = self.answers.iter().find(|(prompt, _)| *prompt == presented.prompt);
         let Some((_, answer)) = answer.cloned() else { return };
         if !ended || self.saying.is_some() || self.answered.contains(&heard) {

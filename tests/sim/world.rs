@@ -6,6 +6,7 @@ use arm::ArmNode;
 use config::Settings;
 use dialogue::Model;
 use grounding::GroundingNode;
+use messages::WireCode;
 use messages::{ActKind, Outcome, PolicyView};
 use policy::PolicyNode;
 use scene::{Question, Scene};
@@ -109,7 +110,7 @@ impl World {
     }
 
     /// How the interaction ended.
-    pub(crate) fn outcome(&self) -> Option<(Outcome, Option<u16>)> {
+    pub(crate) fn outcome(&self) -> Option<(Outcome, Option<scene::ObjectId>)> {
         self.view.last.as_ref().map(|ended| (ended.outcome, ended.object))
     }
 

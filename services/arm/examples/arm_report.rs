@@ -6,6 +6,7 @@
 use arm::shell::ArmProgram;
 use arm::{ArmNode, In};
 use config::Settings;
+use messages::WireCode;
 use messages::{ActKind, PickPhase, RobotAct};
 use service::lifecycle::Environment;
 use service::service_loop::Program;

@@ -5,6 +5,7 @@ use crate::executor::{Progress, Purpose};
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
 use manipulation::Limb;
+use messages::WireCode;
 use messages::{MotionPhase, PickOutcome, PickPhase};
 use service::{Span, Time};
 

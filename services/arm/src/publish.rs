@@ -6,6 +6,7 @@ use crate::state::{ArmState, side};
 use crate::world::World;
 use crate::{Fx, Out};
 use manipulation::{JOINTS, Limb, gripper};
+use messages::WireCode;
 use messages::{ActId, ArmStatus, Hindrance, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates};
 use service::{Span, Time};
 

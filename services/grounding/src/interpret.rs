@@ -18,7 +18,7 @@ pub(crate) fn interpretations(
         let readings = readings(config, heard, question, at_most).into_iter();
         meant.extend(readings.map(|(weight, reading)| Interpretation {
             weight,
-            question: place,
+            answers: place,
             reading,
         }));
     }

@@ -79,7 +79,7 @@ impl GroundingNode {
         let heard = utterance.hypotheses()?;
         let mut meant = if heard.is_empty() && utterance.gesture.target_m()?.is_some() {
             // Somebody points and says nothing: one reading, without a word.
-            vec![Interpretation { weight: 1.0, question: None, reading: Reading::default() }]
+            vec![Interpretation { weight: 1.0, answers: None, reading: Reading::default() }]
         } else {
             interpretations(&self.config, &heard, utterance.asked()?)?
         };

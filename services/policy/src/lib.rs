@@ -16,13 +16,13 @@ mod view;
 #[cfg(test)]
 mod tests;
 
-use dialogue::person::Reaction;
+use messages::WireCode;
 use messages::inbox::{Inbox, Verdict};
 use messages::{
     ActKind, Activity, AppliedMark, ArmStatus, AskedQuestion, Observation, PickOutcome, PickPhase,
-    PolicyView, Presentation, Presented, PromptId, RobotAct, Source, UtteranceSeq,
+    PolicyView, PresentationState, Presented, PromptId, RobotAct, Source, UtteranceSeq,
 };
-use mind::{Mind, Turns};
+use mind::Mind;
 use service::{Effects, Event, Node, NodeError, Span, Time};
 use state::{Asking, Cause, Heard, Record, State};
 
@@ -210,7 +210,7 @@ impl PolicyNode {
         let act = &self.state.act;
         let said = self.presented.prompt == act.prompt.0
             && self.presented.presentation == act.presentation
-            && self.presented.state == Presentation::Ended.code();
+            && self.presented.state == PresentationState::Ended.code();
         let window = Span::from_s(self.mind.response_window_s(&self.state));
         act.kind == ActKind::Ask
             && said
@@ -265,17 +265,4 @@ fn check(state: &State) -> Result<(), NodeError> {
         what: format!("the journal's belief cannot be gone on from: {error}"),
         cure: "start the group afresh: whichone up --fresh".to_owned(),
     })
-}
-
-/// How turns are taken, from the settings.
-pub fn turns(settings: &config::Settings) -> Turns {
-    let turns = &settings.dialogue.turns;
-    Turns {
-        response_window_s: turns.response_window_s,
-        repeats_max: turns.repeats_max,
-        questions_max: turns.questions_max,
-        attribution: turns.attribution,
-        spoken: Reaction::new(turns.reaction_median_s, turns.reaction_log_sd),
-        typed: Reaction::new(turns.typing_median_s, turns.typing_log_sd),
-    }
 }

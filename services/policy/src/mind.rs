@@ -15,34 +15,15 @@ mod words;
 
 use crate::state::{Act, Cause, Interaction, State};
 use acts::{ask, keep_words, order_again, pick, repeat, say, set};
-use config::Prior;
 use dialogue::gesture::Gestures;
-use dialogue::person::Reaction;
 use dialogue::{
-    Action, Actions, Attribution, Confusion, Costs, DecisionProblem, Durations, Model, Params,
-    Planner, Step,
+    Action, Actions, Confusion, Costs, DecisionProblem, Durations, Model, Params, Planner, Prior,
+    Step, TurnTaking,
 };
 use messages::{ActKind, Ended, Outcome, PickId, PickOutcome, PromptId, UtteranceSeq};
 use pointing::Pointing;
 use scene::Scene;
 use service::Time;
-
-/// How turns are taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turns {
-    /// Seconds of silence after a question before it is asked again.
-    pub response_window_s: f64,
-    /// How often a question is repeated into silence before the interaction is given up.
-    pub repeats_max: u32,
-    /// How often the robot asks in one interaction, repetitions included, before it stops asking.
-    pub questions_max: u32,
-    /// How an utterance is attributed to a question.
-    pub attribution: Attribution,
-    /// How soon people answer aloud, before anything is known of the person at hand.
-    pub spoken: Reaction,
-    /// How soon people type their answer.
-    pub typed: Reaction,
-}
 
 /// What is taken to be true of people, and what is wanted of the robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -73,7 +54,7 @@ pub struct Mind {
     pointing: Option<Pointing>,
     prior: Prior,
     planner: Box<dyn Planner + Send>,
-    turns: Turns,
+    turns: TurnTaking,
     key: u64,
 }
 
@@ -83,7 +64,7 @@ impl Mind {
         scene: Scene,
         assumptions: Assumptions,
         planner: Box<dyn Planner + Send>,
-        turns: Turns,
+        turns: TurnTaking,
         key: u64,
     ) -> Self {
         let Assumptions { params, confusion, costs, durations, actions, prior, gestures } =
@@ -105,7 +86,7 @@ impl Mind {
     }
 
     /// How turns are taken.
-    pub fn turns(&self) -> Turns {
+    pub fn turns(&self) -> TurnTaking {
         self.turns
     }
 
@@ -233,13 +214,13 @@ impl Mind {
             state.person = Some(joint.person().clone());
         }
         state.ended = Some(Ended {
-            interaction: open.id.0,
-            object: open.pick.map(|(_, object)| object.0),
+            interaction: open.id,
+            object: open.pick.map(|(_, object)| object),
             name: open.pick.map(|_| open.picked.clone()),
             outcome,
             questions: questions(&open),
             seconds: at.since(open.opened).s(),
-            utterances: (open.utterances.0.0, open.utterances.1.0),
+            utterances: open.utterances,
         });
         say(state, text, at);
     }

@@ -1,7 +1,7 @@
 //! The policy's topics and configuration.
 
 use crate::mind::{Assumptions, Mind};
-use crate::{In, Out, PolicyNode, kept, turns};
+use crate::{In, Out, PolicyNode, kept};
 use config::{Section, Settings};
 use dialogue::Confusion;
 use messages::{
@@ -87,7 +87,7 @@ fn mind_with(settings: &Settings, planner: &str) -> Result<Mind, Failure> {
         prior: dialogue.prior,
         gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
     };
-    let (scene, turns) = (settings.scene.clone(), turns(settings));
+    let (scene, turns) = (settings.scene.clone(), dialogue.turns);
     Ok(Mind::new(scene, assumptions, planner, turns, key))
 }
 

@@ -1,11 +1,12 @@
 //! Everything that the policy must not forget. It is small, so each journal record holds it whole,
 //! and recovery reads one record.
 
-use crate::evidence::{Asked, Evidence};
+use crate::evidence::Evidence;
 use crate::history::History;
 use dialogue::Belief;
-use dialogue::person::Reaction;
-use dialogue::person::{Joint, Person};
+use dialogue::NamedQuestion;
+use dialogue::user_model::Reaction;
+use dialogue::user_model::{Joint, Person};
 use messages::{
     ActId, ActKind, Ended, InteractionId, Interpretation, PickId, PickOutcome, PromptId,
     UtteranceSeq,
@@ -130,7 +131,7 @@ pub struct Prompt {
     /// Its number.
     pub id: PromptId,
     /// What was asked.
-    pub asked: Asked,
+    pub asked: NamedQuestion,
     /// When what was said to it had ended, since it was last asked.
     pub answered: Option<Time>,
 }

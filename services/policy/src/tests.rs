@@ -14,9 +14,10 @@ use crate::state::{Asking, Cause, Heard, Record, State};
 use crate::{In, Out, PolicyNode, journal_check};
 use config::Settings;
 use dialogue::{Answer, Model, Rng};
+use messages::WireCode;
 use messages::{
     ActKind, ArmStatus, AskedQuestion, FixedText, Interpretation, Observation, Outcome,
-    PickOutcome, PickPhase, Presentation, Presented, PromptId, UtteranceSeq, WireReading,
+    PickOutcome, PickPhase, PresentationState, Presented, PromptId, UtteranceSeq, WireReading,
 };
 use scene::{Intent, ObjectId, Question, Reading, Response};
 use service::{Effects, Event, Node, Span, Time};
@@ -57,7 +58,7 @@ fn typed(seq: u64, prompt: PromptId, reading: Reading) -> Heard {
     let asking = Asking { prompt, began, ended: Some(began), whole: true };
     let asked = if prompt == PromptId(0) { Vec::new() } else { vec![asking] };
     let as_answer_to =
-        |question| Interpretation { weight: 1.0, question, reading: reading.clone() };
+        |question| Interpretation { weight: 1.0, answers: question, reading: reading.clone() };
     let meant = (0..asked.len()).map(Some).chain([None]).map(as_answer_to).collect();
     let (seq, onset, end) = (UtteranceSeq(seq), accepted, accepted);
     Heard { seq, asked, typed: true, onset, end, accepted, meant, ..Heard::default() }
@@ -154,7 +155,7 @@ fn observation(seq: u64, prompt: u64, reading: &Reading) -> In {
         observation.asked[0] = AskedQuestion { prompt, whole: 1, ..AskedQuestion::default() };
     }
     let question = (prompt > 0).then_some(0);
-    let meant = Interpretation { weight: 1.0, question, reading: reading.clone() };
+    let meant = Interpretation { weight: 1.0, answers: question, reading: reading.clone() };
     observation.readings[0] = WireReading::new(&meant).0;
     In::Observation(Box::new(observation))
 }
@@ -206,7 +207,7 @@ fn silence_counts_from_the_end_of_the_spoken_question() {
     let said = Presented {
         prompt: act.prompt.0,
         presentation: act.presentation,
-        state: Presentation::Ended.code(),
+        state: PresentationState::Ended.code(),
         ended_ns: at(1000).ns(),
         ..Presented::default()
     };
@@ -315,5 +316,5 @@ fn only_the_ordered_pick_s_end_ends_the_interaction() {
     assert!(tell(&mut node, In::Arm(done(pick.interaction.0 + 1)), at(2)).0.is_empty());
     assert_eq!(tell(&mut node, In::Arm(done(pick.interaction.0)), at(3)).0.len(), 1);
     assert!(tell(&mut node, In::Arm(done(pick.interaction.0)), at(4)).0.is_empty());
-    assert_eq!(node.state().ended.as_ref().map(|e| e.object), Some(Some(object.0)));
+    assert_eq!(node.state().ended.as_ref().map(|e| e.object), Some(Some(object)));
 }

@@ -2,7 +2,7 @@
 
 use crate::mind::{Mind, questions};
 use crate::state::{Act, Interaction, State};
-use messages::{ActKind, FixedText, PolicyView, RobotAct};
+use messages::{ActKind, FixedText, PolicyView, RobotAct, UtteranceSeq, WireCode};
 use scene::Question;
 
 /// The standing decision on the wire.
@@ -41,8 +41,9 @@ pub(crate) fn view(mind: &Mind, state: &State, refused: u64) -> PolicyView {
     let mut belief = belief.probabilities();
     let objects = mind.scene().objects().len();
     let absent = belief.split_off(objects.min(belief.len())).into_iter().next().unwrap_or(0.0);
-    let latest = |ended: &messages::Ended| ended.utterances;
-    let utterances = |open: &Interaction| (open.utterances.0.0, open.utterances.1.0);
+    let numbers = |(first, last): (UtteranceSeq, UtteranceSeq)| (first.0, last.0);
+    let latest = |ended: &messages::Ended| numbers(ended.utterances);
+    let utterances = |open: &Interaction| numbers(open.utterances);
     PolicyView {
         scene_key: state.scene_key,
         applied: state.applied.0,

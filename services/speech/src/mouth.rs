@@ -3,7 +3,9 @@
 
 use crate::record::{Record, Said};
 use crate::{Fx, Line, Out, Spoken, VoiceEvent};
-use messages::{ASKED_MAX, ActId, ActKind, ArmStatus, Presentation, Presented, PromptId, RobotAct};
+use messages::{
+    ASKED_MAX, ActId, ActKind, ArmStatus, PresentationState, Presented, PromptId, RobotAct,
+};
 use scene::Question;
 use service::{Span, Time};
 use std::collections::VecDeque;
@@ -203,11 +205,11 @@ impl Mouth {
                 prompt: words.prompt.0,
                 presentation: words.presentation,
                 started_ns: started.ns(),
-                state: Presentation::Speaking.code(),
+                state: PresentationState::Speaking.code(),
                 ..Presented::default()
             },
-            (_, Some(broken), _) => broken.presented(Presentation::Interrupted),
-            (_, _, Some(last)) => last.presented(Presentation::Ended),
+            (_, Some(broken), _) => broken.presented(PresentationState::Interrupted),
+            (_, _, Some(last)) => last.presented(PresentationState::Ended),
             (_, None, None) => Presented::default(),
         };
         fx.publish(Out::Presented(presented));

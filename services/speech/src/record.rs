@@ -1,6 +1,6 @@
 //! What the speech service must not forget.
 
-use messages::{Presentation, Presented, PromptId, RequestKey, UtteranceSeq};
+use messages::{PresentationState, Presented, PromptId, RequestKey, UtteranceSeq};
 use scene::Question;
 use serde::{Deserialize, Serialize};
 use service::Time;
@@ -81,7 +81,7 @@ pub struct Said {
 
 impl Said {
     /// As the policy and the console get it.
-    pub(crate) fn presented(&self, state: Presentation) -> Presented {
+    pub(crate) fn presented(&self, state: PresentationState) -> Presented {
         Presented {
             prompt: self.prompt.0,
             presentation: self.presentation,

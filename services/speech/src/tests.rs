@@ -5,8 +5,9 @@ use crate::live::{Began, LIVE_FROM, Live};
 use crate::record::{Hypothesis, Record};
 use crate::{Config, In, Line, Out, Recognised, Segment, SpeechNode, Spoken, VoiceEvent};
 use language::{Language, Reader};
+use messages::WireCode;
 use messages::{
-    ActKind, Activity, AppliedMark, FixedText, Injection, Presentation, RequestKey, RobotAct,
+    ActKind, Activity, AppliedMark, FixedText, Injection, PresentationState, RequestKey, RobotAct,
     Sound, Source, Utterance,
 };
 use scene::{AttributeId, Question, Scene, ValueId};
@@ -183,7 +184,7 @@ fn who_interrupts_is_listened_to_and_the_question_is_said_again_if_it_stands() {
         Out::Presented(presented) => Some((presented.prompt, presented.state)),
         _ => None,
     });
-    assert_eq!(told, Some((7, Presentation::Interrupted.code())), "nobody heard it whole");
+    assert_eq!(told, Some((7, PresentationState::Interrupted.code())), "nobody heard it whole");
     assert!(spoken(&speech.take(0.1, ask(7))).is_none(), "the person still speaks");
     speech.take(0.5, ended(onset));
     let outputs = speech.take(0.5, nothing());

@@ -79,7 +79,7 @@ fn dialogue() -> Vec<Record> {
             onset: at,
             end: at,
             accepted: at,
-            meant: vec![Interpretation { weight: 1.0, question: Some(0), reading }],
+            meant: vec![Interpretation { weight: 1.0, answers: Some(0), reading }],
             ..Heard::default()
         };
         let cause = Cause::Utterance(heard);

@@ -1,11 +1,12 @@
 //! `dialogue.toml`: how the robot understands, believes and decides.
 
-use dialogue::{Actions, Attribution, Costs, Fault, Mode, Params};
+use dialogue::user_model::Reaction;
+use dialogue::{Actions, Attribution, Costs, Fault, Mode, Params, Prior, TurnTaking};
 use language::Language;
 
 use crate::fields::Fields;
 use crate::gesture::{self, Gesture};
-use crate::prior::{self, Prior};
+use crate::prior;
 
 /// The dialogue.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +24,7 @@ pub struct Dialogue {
     /// Where the costs of its questions come from.
     pub costs_from: CostsFrom,
     /// How turns are taken.
-    pub turns: Turns,
+    pub turns: TurnTaking,
     /// What is believed before anything is said.
     pub prior: Prior,
     /// How pointing gestures are understood.
@@ -38,27 +39,6 @@ pub enum CostsFrom {
     Config,
     /// The robot's own voice and arm in the scene at hand, for each question alone.
     Robot,
-}
-
-/// How turns are taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turns {
-    /// Seconds after a question in which an answer is waited for.
-    pub response_window_s: f64,
-    /// How often a question without an answer is asked again before something else is tried.
-    pub repeats_max: u32,
-    /// Questions of one interaction after which the robot decides with what it knows.
-    pub questions_max: u32,
-    /// How an utterance is attributed to a question.
-    pub attribution: Attribution,
-    /// Median of the time from a question's end to a spoken answer's first sound, seconds.
-    pub reaction_median_s: f64,
-    /// Standard deviation of that time's logarithm.
-    pub reaction_log_sd: f64,
-    /// Median of the time from a question's appearance to a typed answer, seconds.
-    pub typing_median_s: f64,
-    /// Standard deviation of that time's logarithm.
-    pub typing_log_sd: f64,
 }
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
@@ -109,8 +89,8 @@ fn costs(f: &mut Fields<'_>) -> (Costs, CostsFrom) {
     (costs, f.choice("from", &[("config", CostsFrom::Config), ("robot", CostsFrom::Robot)]))
 }
 
-fn turns(f: &mut Fields<'_>) -> Turns {
-    Turns {
+fn turns(f: &mut Fields<'_>) -> TurnTaking {
+    TurnTaking {
         response_window_s: f.number("response_window_s", 0.05..=600.0),
         repeats_max: f.whole("repeats_max", 0..=100),
         questions_max: f.whole("questions_max", 0..=1000),
@@ -122,11 +102,13 @@ fn turns(f: &mut Fields<'_>) -> Turns {
                 ("naive", Attribution::Naive),
             ],
         ),
-        reaction_median_s: f.number("reaction_median_s", 0.05..=60.0),
-        reaction_log_sd: f.number("reaction_log_sd", 0.05..=2.0),
-        typing_median_s: f.number("typing_median_s", 0.05..=60.0),
-        typing_log_sd: f.number("typing_log_sd", 0.05..=2.0),
+        spoken: reaction(f, "reaction_median_s", "reaction_log_sd"),
+        typed: reaction(f, "typing_median_s", "typing_log_sd"),
     }
+}
+
+fn reaction(f: &mut Fields<'_>, median_s: &'static str, log_sd: &'static str) -> Reaction {
+    Reaction::new(f.number(median_s, 0.05..=60.0), f.number(log_sd, 0.05..=2.0))
 }
 
 /// The model's own checks, for the values that are numbers at all.

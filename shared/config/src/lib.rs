@@ -41,10 +41,9 @@ use scene::Scene;
 
 pub use crate::arm::{Arm, Baxter, Driver, Grasps, Simulated};
 pub use crate::console::Console;
-pub use crate::dialogue::{CostsFrom, Dialogue, Turns};
+pub use crate::dialogue::{CostsFrom, Dialogue};
 pub use crate::gesture::Gesture;
 pub use crate::group::{Group, Log, RestartLimits};
-pub use crate::prior::{Prior, PriorObjects};
 pub use crate::problems::Problems;
 pub use crate::resolved::{Origin, Section};
 pub use crate::services::{BUILT_IN, OPTIONAL, Restart, Service};

@@ -103,7 +103,7 @@ const AGAIN_S: f64 = 2.0;
 impl Addressed {
     /// Divides an utterance that was spoken from `onset_s` on. `rate` is how many answers to a
     /// question begin per second, so many seconds after its end, while it is unanswered
-    /// ([`Reaction::rate`](crate::person::Reaction::rate)).
+    /// ([`Reaction::rate`](crate::user_model::Reaction::rate)).
     pub fn of(asked: &[Asked], onset_s: f64, rate: impl Fn(f64) -> f64) -> Self {
         let weights = asked.iter().map(|asked| asked.rate(onset_s, &rate)).collect();
         Self::of_weights(weights, NONE)
@@ -153,7 +153,7 @@ impl Addressed {
 mod tests {
     use super::*;
     use crate::Rng;
-    use crate::person::Reaction;
+    use crate::user_model::Reaction;
     use scene::ObjectId;
 
     fn asked(n: u16, began_s: f64, ended_s: f64) -> Asked {

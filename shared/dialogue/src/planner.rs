@@ -3,7 +3,7 @@
 use scene::Question;
 use serde::{Deserialize, Serialize};
 
-use crate::person::Joint;
+use crate::user_model::Joint;
 use crate::{Action, Actions, Belief, Costs, Decision, Durations, Model, PolicyTable};
 
 /// The decision problem `(S, A, T, R, Ω, O)` of section 3, but for the belief.

@@ -3,7 +3,7 @@
 
 use scene::{Question, Reading};
 
-use crate::person::{Joint, Person};
+use crate::user_model::{Joint, Person};
 use crate::{Belief, BeliefError, Decision, DecisionProblem, Model, Planner, Step};
 
 /// A belief over the hypotheses, perhaps together with the person's error rate.

@@ -17,11 +17,11 @@ pub mod text;
 pub mod topics;
 pub mod wire;
 
-pub use ids::{
-    ActId, Epoch, Incarnation, InteractionId, PickId, PromptId, RequestKey, UtteranceSeq,
-};
+pub use dialogue::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
+pub use dialogue::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPhase};
+pub use ids::{Epoch, Incarnation, RequestKey};
 pub use messages::*;
 pub use payloads::*;
 pub use text::{FixedText, TextTooLong};
 pub use topics::{Service, Topic};
-pub use wire::WireError;
+pub use wire::{WireCode, WireError};

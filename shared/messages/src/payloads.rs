@@ -1,7 +1,8 @@
 //! Payloads of variable size: postcard in a byte slice.
 
+use crate::RequestKey;
 use crate::schema::{Field, Schema};
-use crate::{PickOutcome, RequestKey};
+use dialogue::Ended;
 use scene::Question;
 use serde::{Deserialize, Serialize};
 
@@ -123,58 +124,6 @@ encoded!(
      last?Ended refused:u64 planner; \
      Ended(interaction:u64 object?u16 name?str outcome questions:u32 seconds:f64 utterances(u64,u64))"
 );
-
-/// How an interaction ended.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ended {
-    /// [`crate::InteractionId`].
-    pub interaction: u64,
-    /// The object that was picked or tried, its place in the scene as it was then.
-    pub object: Option<u16>,
-    /// That object's name.
-    pub name: Option<String>,
-    /// How it ended.
-    pub outcome: Outcome,
-    /// Questions that were asked.
-    pub questions: u32,
-    /// Seconds from the first utterance to the end.
-    pub seconds: f64,
-    /// First and last utterance.
-    pub utterances: (u64, u64),
-}
-
-/// How an interaction ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Outcome {
-    /// An object was handed over.
-    Delivered,
-    /// The arm could not; the object is named.
-    Failed,
-    /// The person withdrew the request.
-    Cancelled,
-    /// The person fell silent, or no question helped.
-    Abandoned,
-    /// The scene was changed under the dialogue, and nothing of it was left.
-    SceneChanged,
-    /// The robot concluded that the wanted object is not here.
-    NotHere,
-}
-
-impl Outcome {
-    /// What a pick's end means for its interaction; none while it is pending.
-    pub fn of_pick(outcome: PickOutcome) -> Option<Self> {
-        match outcome {
-            PickOutcome::Pending => None,
-            PickOutcome::Delivered => Some(Self::Delivered),
-            PickOutcome::Unreachable
-            | PickOutcome::Interrupted
-            | PickOutcome::Missed
-            | PickOutcome::Blocked => Some(Self::Failed),
-            PickOutcome::Cancelled => Some(Self::Cancelled),
-        }
-    }
-}
 
 /// Where the objects are in the simulated world. Arm to clients.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -46,6 +46,37 @@ macro_rules! wire_enum {
 }
 pub(crate) use wire_enum;
 
+/// An enum of the dialogue that travels as one byte.
+pub trait WireCode: Sized {
+    /// Returns the byte on the wire.
+    fn code(self) -> u8;
+
+    /// Returns the meaning of a byte.
+    ///
+    /// # Errors
+    /// A byte that no writer of this build sends.
+    fn from_code(code: u8) -> Result<Self, WireError>;
+}
+
+/// Implements [`WireCode`] from a table of all variants.
+macro_rules! wire_code {
+    ($name:ident { $($variant:ident = $code:literal,)+ }) => {
+        impl $crate::wire::WireCode for $name {
+            fn code(self) -> u8 {
+                match self { $(Self::$variant => $code,)+ }
+            }
+
+            fn from_code(code: u8) -> Result<Self, $crate::WireError> {
+                match code {
+                    $($code => Ok(Self::$variant),)+
+                    _ => Err($crate::WireError::new(stringify!($name), code.into())),
+                }
+            }
+        }
+    };
+}
+pub(crate) use wire_code;
+
 /// The byte of a response.
 pub(crate) fn response_code(response: Response) -> u8 {
     match response {

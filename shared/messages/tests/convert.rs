@@ -46,7 +46,7 @@ proptest! {
     fn a_reading_survives_the_wire(
         reading in readings(), weight in 0.0..=1.0, question in prop::option::of(0..ASKED_MAX),
     ) {
-        let interpretation = Interpretation { weight, question, reading };
+        let interpretation = Interpretation { weight, answers: question, reading };
         let (wire, fits) = WireReading::new(&interpretation);
         prop_assert_eq!(fits, Fits::Whole);
         prop_assert_eq!(wire.interpretation(WORDS, ASKED_MAX), Ok(interpretation));
@@ -61,9 +61,9 @@ proptest! {
         (wire.base_count, wire.excluded_count) = (counts[0], counts[1]);
         (wire.response, wire.intent, wire.question) = (codes[0], codes[1], codes[2]);
         (wire.base[0], wire.base_doubt[0]) = (word, doubt);
-        if let Ok(Interpretation { question, reading, .. }) = wire.interpretation(WORDS, 3) {
+        if let Ok(Interpretation { answers, reading, .. }) = wire.interpretation(WORDS, 3) {
             prop_assert!(reading.base.iter().all(|w| w.index() < WORDS));
-            prop_assert!(question.is_none_or(|place| place < 3));
+            prop_assert!(answers.is_none_or(|place| place < 3));
             prop_assert!((0.0..=1.0 + 1e-6).contains(&reading.doubt.of_word(0)));
         }
     }
@@ -127,7 +127,7 @@ proptest! {
 }
 
 fn certainly(reading: Reading) -> Interpretation {
-    Interpretation { weight: 1.0, question: None, reading }
+    Interpretation { weight: 1.0, answers: None, reading }
 }
 
 #[test]

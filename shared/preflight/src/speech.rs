@@ -1,7 +1,7 @@
 //! How long speech takes: the robot's, the person's, and until it is recognised.
 
 use dialogue::Rng;
-use dialogue::person::SPOKEN;
+use dialogue::user_model::SPOKEN;
 
 use crate::draw::{between, log_normal};
 

@@ -19,9 +19,8 @@ mod reducer;
 pub mod service_loop;
 pub mod shm_cleanup;
 pub mod status;
-mod time;
 pub mod worker_channel;
 
+pub use dialogue::time::{Span, Time};
 pub use effects::Effects;
 pub use reducer::{Event, Never, Node, NodeError};
-pub use time::{Span, Time};

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use messages::{
-    ActKind, Activity, EarState, PolicyView, Presentation, Presented, Receipt, RobotAct, topics,
+    ActKind, Activity, EarState, PolicyView, PresentationState, Presented, Receipt, RobotAct,
+    topics,
 };
 use service::bus::{EncodedReader, Reader};
 use service::client::Client;
@@ -73,9 +74,9 @@ impl Taps {
         self.acts.drain(take).expect("acts");
         let told = |presented: &Presented| {
             let said = (presented.prompt, presented.presentation);
-            match Presentation::from_code(presented.state) {
-                Ok(Presentation::Speaking) => news.began.push((said, presented.started_ns)),
-                Ok(Presentation::Ended) => news.ended.push((said, presented.ended_ns)),
+            match PresentationState::from_code(presented.state) {
+                Ok(PresentationState::Speaking) => news.began.push((said, presented.started_ns)),
+                Ok(PresentationState::Ended) => news.ended.push((said, presented.ended_ns)),
                 _ => {}
             }
         };

@@ -1,16 +1,17 @@
 //! The processes, the robot's voice and a recogniser in simulated time. The dialogue ends with the
 //! decision what to pick: what the arm does then has its own tests.
 
+use dialogue::NamedQuestion;
 use std::collections::{BTreeMap, HashSet};
 
 use config::Settings;
 use dialogue::{Model, Rng};
 use grounding::GroundingNode;
 use messages::{
-    ActKind, Injection, Presentation, Presented, Receipt, RequestKey, Sound, Source, UtteranceSeq,
+    ActKind, Injection, PresentationState, Presented, Receipt, RequestKey, Sound, Source,
+    UtteranceSeq,
 };
 use policy::PolicyNode;
-use policy::evidence::Asked;
 use policy::state::Cause;
 use preflight::log_normal;
 use scene::{ObjectId, Question};
@@ -302,10 +303,10 @@ impl<'a> World<'a> {
             return;
         }
         let began = Time(presented.started_ns);
-        if state == Presentation::Speaking.code() {
+        if state == PresentationState::Speaking.code() {
             let ends = self.saying.as_ref().map_or(self.now, |saying| saying.ends);
             self.person.hear_begin(Heard { prompt, question, began, ends });
-        } else if state == Presentation::Ended.code() {
+        } else if state == PresentationState::Ended.code() {
             let ends = Time(presented.ended_ns);
             self.person.hear_end(Heard { prompt, question, began, ends }, ends);
         }
@@ -340,16 +341,16 @@ impl<'a> World<'a> {
             let Cause::Utterance(heard) = &record.cause else { return None };
             let (said, ..) = self.said.get(*self.numbers.get(&heard.seq.0)?)?;
             let evidence = record.state.open.as_ref()?.evidence.last()?;
-            let truth = Asked::new(scene, said.question);
-            if truth == Asked::Nothing {
+            let truth = NamedQuestion::new(scene, said.question);
+            if truth == NamedQuestion::None {
                 return None;
             }
-            let weight = |is: &dyn Fn(&Asked) -> bool| -> f64 {
+            let weight = |is: &dyn Fn(&NamedQuestion) -> bool| -> f64 {
                 evidence.meant.iter().filter(|(_, asked, _)| is(asked)).map(|(w, ..)| w).sum()
             };
             let all = weight(&|_| true);
             let right = weight(&|asked| *asked == truth) / all;
-            let wrong = weight(&|asked| *asked != truth && *asked != Asked::Nothing) / all;
+            let wrong = weight(&|asked| *asked != truth && *asked != NamedQuestion::None) / all;
             Some(Credit { right, wrong })
         };
         self.policy.journal().iter().filter_map(credit).collect()

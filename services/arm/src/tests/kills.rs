@@ -1,6 +1,7 @@
 //! Killed at any point, any number of times, the arm brings the ordered object once.
 
 use super::*;
+use messages::WireCode;
 
 /// A small generator (xorshift), so that a seed has one story.
 struct Random(u64);

@@ -16,6 +16,7 @@ use crate::state::{Record, side};
 use crate::{ArmNode, Config, In, Out};
 use config::Settings;
 use manipulation::{Joints, Limb};
+use messages::WireCode;
 use messages::{
     ActKind, ArmStatus, InteractionId, JointStates, MotionCommand, MotionOrder, PickId,
     PickOutcome, PickPhase, RobotAct, TrajectoryView, WorldView,

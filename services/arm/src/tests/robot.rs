@@ -5,6 +5,7 @@ use crate::driver::{ArmDriver, Command, Fingers, KinematicArm, Measured};
 use crate::state::{ArmState, Posture, side};
 use manipulation::{Arm, ArmShape, Cuboid, Limb};
 use messages::PickPhase;
+use messages::WireCode;
 use messages::pick::Pick;
 use scene::Placement;
 use std::cell::RefCell;

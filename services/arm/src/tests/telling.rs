@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::state::Cause;
+use messages::WireCode;
 
 #[test]
 fn an_idle_arm_tells_its_joints_at_100_hz_and_writes_nothing() {

@@ -3,6 +3,7 @@
 //! Pure. Whatever is done is said in words that a person could say too, so that it stands in the
 //! transcript and in the journal, and does nothing that a dialogue could not.
 
+use messages::WireCode;
 use messages::{ArmStatus, PickPhase, PolicyView};
 use scene::{ObjectId, Question, Scene};
 

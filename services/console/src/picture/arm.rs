@@ -1,5 +1,6 @@
 //! The arm and the things around it.
 
+use messages::WireCode;
 use messages::{ArmStatus, Hindrance, PickOutcome, PickPhase, TrajectoryView, WorldView};
 use scene::Scene;
 use serde_json::{Value as Json, json};

@@ -2,7 +2,9 @@
 
 use std::collections::VecDeque;
 
-use messages::{ActKind, EarState, Hearing, MicrophoneState, Presentation, Presented, RobotAct};
+use messages::{
+    ActKind, EarState, Hearing, MicrophoneState, PresentationState, Presented, RobotAct,
+};
 use scene::Question;
 use serde_json::{Value as Json, json};
 use service::Time;
@@ -71,7 +73,7 @@ pub(super) fn speaking(prompt: &Prompt, presented: &Presented, has_sound: bool) 
         "url": has_sound.then(|| format!("/voice/line-{id}-{presentation}.wav")),
         "began_ms": ms(Time(started_ns)),
         "ended_ms": (ended_ns > 0).then(|| ms(Time(ended_ns))),
-        "state": Presentation::from_code(state).ok(),
+        "state": PresentationState::from_code(state).ok(),
     })
 }
 

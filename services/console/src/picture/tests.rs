@@ -1,9 +1,12 @@
 //! Messages folded into the picture, in the order and number in which services really send them.
 
 use super::*;
+use ::dialogue::ids::{InteractionId, UtteranceSeq};
 use ::scene::{AttributeId, Question, Reading, Response, ValueId};
+use messages::WireCode;
 use messages::{
-    ActKind, Ended, FixedText, Interpretation, Outcome, Presentation, ReceiptStatus, WireReading,
+    ActKind, Ended, FixedText, Interpretation, Outcome, PresentationState, ReceiptStatus,
+    WireReading,
 };
 
 const BOWLS: &str = include_str!("../../../../config/scenes/bowls.toml");
@@ -47,15 +50,16 @@ fn asks(prompt: u64, interaction: u64) -> RobotAct {
 }
 
 fn said(prompt: u64, presentation: u32) -> Presented {
-    let state = Presentation::Ended.code();
+    let state = PresentationState::Ended.code();
     Presented { prompt, presentation, started_ns: 5, ended_ns: 6, state, ..Presented::default() }
 }
 
 /// "No" to the question of a prompt.
 fn no(seq: u64, prompt: u64) -> Observation {
     let reading = Reading { response: Response::No, ..Reading::default() };
-    let means =
-        |question, reading| WireReading::new(&Interpretation { weight: 1.0, question, reading }).0;
+    let means = |question, reading| {
+        WireReading::new(&Interpretation { weight: 1.0, answers: question, reading }).0
+    };
     let mut observation = Observation {
         seq,
         scene_key: scene().key(),
@@ -79,13 +83,13 @@ fn view(interaction: u64, last: Option<Ended>) -> PolicyView {
 
 fn delivered(interaction: u64) -> Ended {
     Ended {
-        interaction,
-        object: Some(1),
+        interaction: InteractionId(interaction),
+        object: Some(::scene::ObjectId(1)),
         name: Some("white2".to_owned()),
         outcome: Outcome::Delivered,
         questions: 1,
         seconds: 2.5,
-        utterances: (1, 2),
+        utterances: (UtteranceSeq(1), UtteranceSeq(2)),
     }
 }
 

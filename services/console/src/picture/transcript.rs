@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-use messages::{Ended, Outcome, Presentation, Presented, Receipt, ReceiptStatus, Source};
+use messages::{Ended, Outcome, PresentationState, Presented, Receipt, ReceiptStatus, Source};
 use scene::{ObjectId, Question, Scene, question_to_json};
 use service::Time;
 use service::status::ServiceStatus;
@@ -117,7 +117,8 @@ impl Transcript {
         now: Now,
     ) -> bool {
         let said = (presented.prompt, presented.presentation);
-        let has_begun = Presentation::from_code(presented.state).is_ok_and(Presentation::has_begun);
+        let has_begun =
+            PresentationState::from_code(presented.state).is_ok_and(PresentationState::has_begun);
         let is_known = self.lines.iter().any(|line| line.said == Some(said));
         if is_known || !has_begun {
             return false;
@@ -138,10 +139,10 @@ impl Transcript {
     /// An interaction has ended. Whether that is news.
     pub(super) fn ended(&mut self, scene: &Scene, ended: &Ended, now: Now) -> bool {
         let first_look = self.ended == 0;
-        if ended.interaction <= self.ended {
+        if ended.interaction.0 <= self.ended {
             return false;
         }
-        self.ended = ended.interaction;
+        self.ended = ended.interaction.0;
         // One that ended before this console looked is no news, nor one that it has told already.
         if first_look && self.lines.iter().any(|line| line.outcome.is_some()) {
             return false;

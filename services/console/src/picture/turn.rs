@@ -1,7 +1,9 @@
 //! Whose turn it is: one truth for every viewer, from what the services say.
 
+use messages::WireCode;
 use messages::{
-    Activity, ArmStatus, Hearing, MicrophoneState, PickPhase, PolicyView, Presentation, Presented,
+    Activity, ArmStatus, Hearing, MicrophoneState, PickPhase, PolicyView, PresentationState,
+    Presented,
 };
 use serde::Serialize;
 use serde_json::{Value as Json, json};
@@ -92,7 +94,7 @@ pub(super) fn turn(facts: &Facts<'_>) -> Turn {
             return plain(Robot, Understanding);
         }
     }
-    if presented.state == Presentation::Speaking.code() {
+    if presented.state == PresentationState::Speaking.code() {
         return plain(Robot, Speaking);
     }
     if arm.is_some_and(is_fetching) {
@@ -103,7 +105,7 @@ pub(super) fn turn(facts: &Facts<'_>) -> Turn {
     match decision {
         "ask" if open => {
             let said = view.is_some_and(|view| view.prompt == presented.prompt)
-                && presented.state == Presentation::Ended.code();
+                && presented.state == PresentationState::Ended.code();
             if said { plain(Person, Asked) } else { plain(Robot, Understanding) }
         }
         // A pick that is called off is the arm's affair, too, until it has left the object.
@@ -142,7 +144,7 @@ mod tests {
         PolicyView { interaction, decision: decision.to_owned(), prompt, ..PolicyView::default() }
     }
 
-    fn said(prompt: u64, state: Presentation) -> Presented {
+    fn said(prompt: u64, state: PresentationState) -> Presented {
         Presented { prompt, state: state.code(), ..Presented::default() }
     }
 
@@ -178,9 +180,9 @@ mod tests {
         );
         let asks = view(1, "ask", 4);
         assert_eq!(of(&asks, &nothing, quiet, still), (Robot, TurnState::Understanding));
-        let speaking = said(4, Presentation::Speaking);
+        let speaking = said(4, PresentationState::Speaking);
         assert_eq!(of(&asks, &speaking, quiet, still), (Robot, TurnState::Speaking));
-        let ended = said(4, Presentation::Ended);
+        let ended = said(4, PresentationState::Ended);
         assert_eq!(of(&asks, &ended, quiet, still), (Person, TurnState::Asked));
         let picks = view(1, "pick", 5);
         assert_eq!(of(&picks, &ended, quiet, still), (Arm, TurnState::Moving));
@@ -188,13 +190,13 @@ mod tests {
         assert_eq!(of(&leaves, &ended, quiet, still), (Arm, TurnState::Moving));
         let moves = ArmStatus { phase: PickPhase::Holding.code(), moving: 1, ..still };
         assert_eq!(
-            of(&picks, &said(5, Presentation::Ended), quiet, moves),
+            of(&picks, &said(5, PresentationState::Ended), quiet, moves),
             (Arm, TurnState::Moving)
         );
         let done = ArmStatus { phase: PickPhase::Done.code(), ..still };
         let over = view(0, "say", 6);
         assert_eq!(
-            of(&over, &said(6, Presentation::Ended), quiet, done),
+            of(&over, &said(6, PresentationState::Ended), quiet, done),
             (Nobody, TurnState::Idle)
         );
     }

@@ -39,7 +39,7 @@ pub(super) fn read(
     let answered = answered.filter(|at| asked.get(*at).is_some_and(stands));
     let mut meant: Vec<&Interpretation> = all
         .iter()
-        .filter(|meant| meant.question == answered && meant.weight >= WEIGHT_MIN)
+        .filter(|meant| meant.answers == answered && meant.weight >= WEIGHT_MIN)
         .collect();
     meant.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let meanings = meant.iter().take(SHOWN_MAX).map(|meant| Meaning {
@@ -56,7 +56,7 @@ pub(super) fn read(
 fn answered(all: &[Interpretation], asked: &[AskedQuestion], onset_ns: u64) -> Option<usize> {
     let latest = asked.iter().position(|asked| asked.began_ns <= onset_ns)?;
     let best = |question: Option<usize>| {
-        let meant = all.iter().filter(|meant| meant.question == question);
+        let meant = all.iter().filter(|meant| meant.answers == question);
         meant.max_by(|a, b| a.weight.total_cmp(&b.weight)).map(|meant| &meant.reading)
     };
     let reading = best(Some(latest))?;

@@ -1,5 +1,6 @@
 //! What the study sees of the robot.
 
+use messages::WireCode;
 use messages::{ArmStatus, PickPhase, PolicyView};
 use scene::Scene;
 use service::status::Actual;
@@ -65,7 +66,7 @@ impl Seen<'_> {
 
     /// The number of the robot's latest interaction, open or ended; 0 where there was none.
     pub(super) fn latest_interaction(&self) -> u64 {
-        let ended = |view: &PolicyView| view.last.as_ref().map_or(0, |last| last.interaction);
+        let ended = |view: &PolicyView| view.last.as_ref().map_or(0, |last| last.interaction.0);
         self.view.map_or(0, |view| view.interaction.max(ended(view)))
     }
 

@@ -138,7 +138,7 @@ fn spoilt(trial: &Trial, seen: &Seen<'_>, is_away: bool) -> Option<Event> {
         return fault(Fault::Planner, format!("the policy decides by {}", view.planner));
     }
     let latest = seen.latest_interaction();
-    let ended = view.last.as_ref().map_or(0, |last| last.interaction);
+    let ended = view.last.as_ref().map_or(0, |last| last.interaction.0);
     if latest < trial.after {
         return fault(Fault::Missed, "the robot was started afresh".to_owned());
     }
@@ -150,7 +150,7 @@ fn spoilt(trial: &Trial, seen: &Seen<'_>, is_away: bool) -> Option<Event> {
 
 /// The robot has ended it.
 fn ended(trial: &Trial, seen: &Seen<'_>) -> Option<Event> {
-    let last = seen.view?.last.as_ref().filter(|last| last.interaction == trial.after + 1)?;
+    let last = seen.view?.last.as_ref().filter(|last| last.interaction.0 == trial.after + 1)?;
     let verdict = match last.outcome {
         Outcome::Delivered if last.name.as_ref() == Some(&trial.drawn.object) => Verdict::Right,
         Outcome::Delivered => Verdict::Wrong,
@@ -165,7 +165,7 @@ fn ended(trial: &Trial, seen: &Seen<'_>) -> Option<Event> {
     };
     Some(Event::Ended {
         verdict,
-        interaction: last.interaction,
+        interaction: last.interaction.0,
         object: last.name.clone(),
         questions: last.questions,
         utterances: utterances(last),
@@ -176,7 +176,7 @@ fn ended(trial: &Trial, seen: &Seen<'_>) -> Option<Event> {
 
 fn utterances(last: &Ended) -> u32 {
     let (first, latest) = last.utterances;
-    u32::try_from(latest.saturating_sub(first) + 1).unwrap_or(u32::MAX)
+    u32::try_from(latest.0.saturating_sub(first.0) + 1).unwrap_or(u32::MAX)
 }
 
 /// It lasts longer than it may: from the first utterance, or from the start where nothing was said.

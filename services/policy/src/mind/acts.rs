@@ -1,8 +1,8 @@
 //! How a decision becomes the standing act: what is asked, picked, said, or said again.
 
 use super::words;
-use crate::evidence::Asked;
 use crate::state::{Act, Interaction, Prompt, State};
+use dialogue::NamedQuestion;
 use messages::{ActKind, InteractionId, PickId, PromptId};
 use scene::{ObjectId, Question, Scene};
 use service::Time;
@@ -47,7 +47,7 @@ pub(super) fn ask(
         return;
     }
     state.last_prompt = state.last_prompt.next();
-    let asked = Asked::new(scene, question);
+    let asked = NamedQuestion::new(scene, question);
     open.prompts.push(Prompt { id: state.last_prompt, asked, answered: None });
     let prompt = state.last_prompt;
     let kind = ActKind::Ask;

@@ -1,10 +1,11 @@
 //! Which of the questions asked an utterance answers: a weight for each, and for none.
 
 use super::Mind;
-use crate::evidence::{Asked as InWords, Evidence, Said};
+use crate::evidence::Evidence;
 use crate::state::{Asking, Heard, State};
-use dialogue::person::Reaction;
+use dialogue::user_model::Reaction;
 use dialogue::{Addressed, Asked, Attribution, QUESTION_S};
+use dialogue::{NamedQuestion, NamedReading};
 use messages::{ActKind, PromptId};
 use scene::{Intent, Question, Reading};
 use service::{Span, Time};
@@ -49,17 +50,17 @@ impl Mind {
     /// What an utterance says about the wanted object: each interpretation with the weight of its
     /// question, equal ones together.
     pub(super) fn evidence(&self, state: &State, heard: &Heard, to: &Addressed) -> Evidence {
-        let mut meant: Vec<(f64, InWords, Said)> = Vec::new();
+        let mut meant: Vec<(f64, NamedQuestion, NamedReading)> = Vec::new();
         for interpretation in &heard.meant {
-            let share = interpretation.question.map_or(to.none, |at| to.questions[at]);
+            let share = interpretation.answers.map_or(to.none, |at| to.questions[at]);
             let weight = share * interpretation.weight;
             if weight < NEGLIGIBLE {
                 continue;
             }
             // An answer to another interaction's question says nothing about this one's object.
-            let prompt = interpretation.question.map(|at| heard.asked[at].prompt);
+            let prompt = interpretation.answers.map(|at| heard.asked[at].prompt);
             let asked = prompt.and_then(|prompt| put_in_words(state, prompt)).unwrap_or_default();
-            let said = Said::new(&self.scene, &content(&interpretation.reading));
+            let said = NamedReading::new(&self.scene, &content(&interpretation.reading));
             match meant.iter_mut().find(|(_, a, s)| (a, s) == (&asked, &said)) {
                 Some((sum, ..)) => *sum += weight,
                 None => meant.push((weight, asked, said)),
@@ -76,8 +77,8 @@ impl Mind {
             (0..to.questions.len()).max_by(|a, b| to.questions[*a].total_cmp(&to.questions[*b]));
         let Some(at) = at.filter(|at| to.questions[*at] >= PLAIN) else { return };
         let asking = heard.asked[at];
-        let says = |meant: &&messages::Interpretation| {
-            meant.question == Some(at) && content(&meant.reading) != Reading::default()
+        let says = |meant: &&dialogue::Interpretation| {
+            meant.answers == Some(at) && content(&meant.reading) != Reading::default()
         };
         let open = state.open.as_mut().filter(|_| heard.meant.iter().find(says).is_some());
         let prompts = open.map_or(&mut [][..], |open| &mut open.prompts[..]);
@@ -130,10 +131,10 @@ fn put(state: &State, asking: &Asking) -> Option<Asked> {
 }
 
 /// What a prompt of the open interaction asks. That something is being fetched can be denied.
-fn put_in_words(state: &State, prompt: PromptId) -> Option<InWords> {
+fn put_in_words(state: &State, prompt: PromptId) -> Option<NamedQuestion> {
     let open = state.open.as_ref()?;
     if state.act.kind == ActKind::Pick && state.act.prompt == prompt {
-        return Some(InWords::Point(open.picked.clone()));
+        return Some(NamedQuestion::Point(open.picked.clone()));
     }
     open.prompts.iter().find(|known| known.id == prompt).map(|known| known.asked.clone())
 }

@@ -5,8 +5,8 @@
 //! former scene but what the state holds of it in words.
 
 use super::{Mind, posterior, words};
-use crate::evidence::Asked;
 use crate::state::{Interaction, Known, State};
+use dialogue::NamedQuestion;
 use messages::{ActKind, Outcome, PromptId, UtteranceSeq};
 use scene::{ObjectId, Question};
 use service::Time;
@@ -68,7 +68,7 @@ impl Mind {
         let picked = self.scene.object_named(&open.picked);
         open.pick = open.pick.zip(picked).map(|((id, _), object)| (id, object));
         let asked = open.prompts.iter().find(|prompt| prompt.id == state.act.prompt);
-        state.act.question = asked.map_or(&Asked::Nothing, |p| &p.asked).question(&self.scene);
+        state.act.question = asked.map_or(&NamedQuestion::None, |p| &p.asked).question(&self.scene);
         if state.act.kind == ActKind::Ask && state.act.question == Question::None {
             state.act.kind = ActKind::Wait;
         }

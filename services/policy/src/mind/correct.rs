@@ -3,8 +3,9 @@
 
 use super::Mind;
 use super::acts::call_off;
-use crate::evidence::{Asked, Evidence, Said};
+use crate::evidence::Evidence;
 use crate::state::{Heard, State};
+use dialogue::{NamedQuestion, NamedReading};
 use messages::{ActKind, PromptId};
 use scene::{ObjectId, Response};
 use service::Time;
@@ -34,8 +35,8 @@ impl Mind {
     /// came with: nobody stops the robot on its way to the right object by a slip of the tongue, as
     /// may happen with the answer to a question.
     fn denial(&self, object: ObjectId, name: &str, evidence: &Evidence) -> Option<Evidence> {
-        let that = Asked::Point(name.to_owned());
-        let denies = |asked: &Asked, said: &Said| {
+        let that = NamedQuestion::Point(name.to_owned());
+        let denies = |asked: &NamedQuestion, said: &NamedReading| {
             (*asked == that && said.response == Response::No)
                 || said.excluded.iter().any(|group| self.describes(group, object))
         };
@@ -43,8 +44,9 @@ impl Mind {
         let weights = meant.map(|(weight, asked, said)| (*weight, denies(asked, said)));
         let all: f64 = weights.clone().map(|(weight, _)| weight).sum();
         let no: f64 = weights.filter(|(_, denies)| *denies).map(|(weight, _)| weight).sum();
-        let alone = Said { response: Response::No, ..Said::default() };
-        let meant = vec![(no, that, alone), (all - no, Asked::Nothing, Said::default())];
+        let alone = NamedReading { response: Response::No, ..NamedReading::default() };
+        let meant =
+            vec![(no, that, alone), (all - no, NamedQuestion::None, NamedReading::default())];
         (2.0 * no > all).then(|| Evidence { meant, ..Evidence::default() })
     }
 

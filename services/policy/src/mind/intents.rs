@@ -29,7 +29,7 @@ impl Mind {
         let to = self.addressed(state, heard);
         let mut shares: Vec<(Intent, f64)> = Vec::new();
         for meant in &heard.meant {
-            let share = meant.weight * meant.question.map_or(to.none, |at| to.questions[at]);
+            let share = meant.weight * meant.answers.map_or(to.none, |at| to.questions[at]);
             match shares.iter_mut().find(|(intent, _)| *intent == meant.reading.intent) {
                 Some((_, sum)) => *sum += share,
                 None => shares.push((meant.reading.intent, share)),

@@ -5,7 +5,7 @@ use super::Mind;
 use crate::evidence::Evidence;
 use crate::state::{Interaction, State};
 use dialogue::Posterior;
-use dialogue::person::Person;
+use dialogue::user_model::Person;
 
 /// Answers after which a person's reaction time counts as known.
 const ACQUAINTED: u32 = 5;

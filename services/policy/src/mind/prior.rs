@@ -2,8 +2,7 @@
 
 use super::Mind;
 use crate::state::State;
-use config::PriorObjects;
-use dialogue::Belief;
+use dialogue::{Belief, PriorObjects};
 
 impl Mind {
     /// The belief of an interaction in which nothing was said.

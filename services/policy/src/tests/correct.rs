@@ -62,7 +62,7 @@ fn the_next_pick_has_a_key_of_its_own() {
     assert_ne!(other, object);
     let delivered = Cause::PickEnded { pick: next, outcome: PickOutcome::Delivered };
     let ended = mind.step(&after, &delivered, at(5)).ended.expect("it has ended");
-    assert_eq!((ended.object, ended.outcome), (Some(other.0), Outcome::Delivered));
+    assert_eq!((ended.object, ended.outcome), (Some(other), Outcome::Delivered));
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn what_the_arm_holds_already_is_handed_over() {
     let denied = mind.step(&state, &heard(2, state.act.prompt, answer(Response::No)), at(2));
     let delivered = Cause::PickEnded { pick, outcome: PickOutcome::Delivered };
     let ended = mind.step(&denied, &delivered, at(3)).ended.expect("it has ended");
-    assert_eq!((ended.object, ended.outcome), (Some(object.0), Outcome::Delivered));
+    assert_eq!((ended.object, ended.outcome), (Some(object), Outcome::Delivered));
 }
 
 #[test]

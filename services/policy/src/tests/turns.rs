@@ -21,7 +21,7 @@ fn said(prompt: PromptId, began_s: f64, ended_s: f64) -> Asking {
 fn spoken(seq: u64, asked: &[Asking], onset_s: f64, response: Response) -> Heard {
     let as_answer_to = |question| {
         let reading = answer(response);
-        Interpretation { weight: 1.0, question, reading }
+        Interpretation { weight: 1.0, answers: question, reading }
     };
     let meant = (0..asked.len()).map(Some).chain([None]).map(as_answer_to).collect();
     Heard {

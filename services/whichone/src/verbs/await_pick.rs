@@ -32,7 +32,7 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
     loop {
         conversation.look()?;
         if let Some(ended) = waiting.look(conversation.seen()) {
-            remember(paths, ended.interaction)?;
+            remember(paths, ended.interaction.0)?;
             return tell(&ended, out);
         }
         let answer = |user: &mut TruthfulUser| {

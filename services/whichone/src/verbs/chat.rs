@@ -150,7 +150,7 @@ impl<'a, 'b> Chat<'a, 'b> {
     fn outcome(&mut self) -> Result<(), CliError> {
         let Some(view) = &self.conversation.seen().view else { return Ok(()) };
         let last = view.last.clone();
-        let id = last.as_ref().map_or(0, |last| last.interaction);
+        let id = last.as_ref().map_or(0, |last| last.interaction.0);
         let before = self.ended.replace(id);
         let (Some(last), Some(true)) = (last, before.map(|before| before < id)) else {
             return Ok(());

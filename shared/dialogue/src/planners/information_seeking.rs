@@ -1,7 +1,7 @@
 //! `information-seeking`: asks under uncertainty about the person who answers.
 
-use crate::person::{Joint, Person};
 use crate::planning::{Bound, Choice, Effort, Glancer, Reduced};
+use crate::user_model::{Joint, Person};
 use crate::{Action, Answer, Belief, Decision, DecisionProblem, Model, Planner, Step};
 
 use scene::Question;

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use dialogue::person::Person;
+use dialogue::user_model::Person;
 use dialogue::{Action, Belief, DecisionProblem, Planner, Posterior, Step};
 use scene::Question;
 

@@ -1,8 +1,8 @@
 //! What the arm tells, and how it is stopped.
 
 use crate::schema::wire_struct;
-use crate::wire::wire_enum;
-use crate::{ActId, InteractionId, PickId};
+use crate::wire::{wire_code, wire_enum};
+use crate::{ActId, InteractionId, PickId, PickOutcome, PickPhase};
 use iceoryx2::prelude::ZeroCopySend;
 
 /// Joints of a joint state: 7 a limb, head pan and nod, torso.
@@ -15,43 +15,16 @@ pub const JOINT_STATE_NAMES: [&str; JOINT_STATE_LEN] = [
     "torso_t0",
 ];
 
-wire_enum! {
-    /// How far a pick has come. Each is durable before the arm acts on it.
-    PickPhase {
-        /// Nothing to do.
-        Idle = 0,
-        /// Taken on; nothing has moved.
-        Accepted = 1,
-        /// On the way to the object, gripper open.
-        Moving = 2,
-        /// The gripper closes on the object.
-        Closing = 3,
-        /// The object is held: lifted and carried to the person.
-        Holding = 4,
-        /// Over; see the outcome.
-        Done = 5,
-    }
-}
-
-wire_enum! {
-    /// How a pick ended.
-    PickOutcome {
-        /// Not yet.
-        Pending = 0,
-        /// The object was handed over.
-        Delivered = 1,
-        /// No motion reaches it; nothing moved.
-        Unreachable = 2,
-        /// It could not be known whether the object was grasped; a person must look.
-        Interrupted = 3,
-        /// Given up on the policy's or the operator's word, object put back or never touched.
-        Cancelled = 4,
-        /// The fingers closed on nothing as often as is tried; nothing is held.
-        Missed = 5,
-        /// The robot did not follow its motion, or did not arrive; a person must look.
-        Blocked = 6,
-    }
-}
+wire_code!(PickPhase { Idle = 0, Accepted = 1, Moving = 2, Closing = 3, Holding = 4, Done = 5, });
+wire_code!(PickOutcome {
+    Pending = 0,
+    Delivered = 1,
+    Unreachable = 2,
+    Interrupted = 3,
+    Cancelled = 4,
+    Missed = 5,
+    Blocked = 6,
+});
 
 wire_enum! {
     /// What keeps the robot from moving at all, the gravest where there are several.

@@ -2,6 +2,9 @@
 
 use crate::schema::wire_struct;
 use crate::wire::{self, WireError};
+use dialogue::Presentation;
+use dialogue::ids::PromptId;
+use dialogue::time::Time;
 use iceoryx2::prelude::ZeroCopySend;
 use scene::Question;
 
@@ -67,6 +70,37 @@ wire_struct! {
         whole: u8,
         /// Zero.
         reserved: [u8; 3],
+    }
+}
+
+impl From<&Presentation> for AskedQuestion {
+    fn from(presentation: &Presentation) -> Self {
+        Self {
+            prompt: presentation.prompt.0,
+            scene: presentation.scene,
+            began_ns: presentation.began.ns(),
+            ended_ns: presentation.ended.map_or(0, Time::ns),
+            question: presentation.question.into(),
+            presentation: presentation.number,
+            whole: presentation.complete.into(),
+            ..Self::default()
+        }
+    }
+}
+
+impl TryFrom<&AskedQuestion> for Presentation {
+    type Error = WireError;
+
+    fn try_from(wire: &AskedQuestion) -> Result<Self, WireError> {
+        Ok(Self {
+            prompt: PromptId(wire.prompt),
+            number: wire.presentation,
+            question: wire.question.try_into()?,
+            scene: wire.scene,
+            began: Time(wire.began_ns),
+            ended: (wire.ended_ns > 0).then_some(Time(wire.ended_ns)),
+            complete: wire.whole != 0,
+        })
     }
 }
 

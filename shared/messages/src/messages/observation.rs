@@ -6,9 +6,9 @@ use crate::messages::utterance::ASKED_MAX;
 use crate::schema::wire_struct;
 use crate::text::FixedText;
 use crate::wire::{self, WireError};
+use dialogue::Interpretation;
 use iceoryx2::prelude::ZeroCopySend;
 use scene::{Doubt, Reading, WordId};
-use serde::{Deserialize, Serialize};
 
 /// Readings of one utterance, for all questions together.
 pub const READINGS_MAX: usize = 32;
@@ -53,24 +53,13 @@ wire_struct! {
     }
 }
 
-/// What an utterance may mean if it answers a certain question.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Interpretation {
-    /// Probability among those for the same question.
-    pub weight: f64,
-    /// The question's place among those asked; none for an answer to none of them.
-    pub question: Option<usize>,
-    /// What it says then.
-    pub reading: Reading,
-}
-
 impl WireReading {
     /// The interpretation on the wire; words beyond the bounds are left out, and the caller told.
     pub fn new(interpretation: &Interpretation) -> (Self, Fits) {
-        let Interpretation { weight, question, reading } = interpretation;
+        let Interpretation { weight, answers, reading } = interpretation;
         let mut wire = Self {
             weight: *weight,
-            question: question.map_or(NO_QUESTION, |place| place as u8),
+            question: answers.map_or(NO_QUESTION, |place| place as u8),
             response: wire::response_code(reading.response),
             intent: wire::intent_code(reading.intent),
             base_count: reading.base.len().min(BASE_WORDS_MAX) as u8,
@@ -95,13 +84,13 @@ impl WireReading {
     /// # Errors
     /// Counts, codes, doubts, questions or words that make no sense then.
     pub fn interpretation(&self, words: usize, asked: usize) -> Result<Interpretation, WireError> {
-        let question = match self.question {
+        let answers = match self.question {
             NO_QUESTION => None,
             place if usize::from(place) < asked => Some(usize::from(place)),
             place => return Err(WireError::new("question", place.into())),
         };
         let reading = self.reading(words)?;
-        Ok(Interpretation { weight: checked_share("weight", self.weight)?, question, reading })
+        Ok(Interpretation { weight: checked_share("weight", self.weight)?, answers, reading })
     }
 
     fn reading(&self, words: usize) -> Result<Reading, WireError> {

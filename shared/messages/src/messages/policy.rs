@@ -3,8 +3,8 @@
 use crate::messages::common::WireQuestion;
 use crate::schema::wire_struct;
 use crate::text::FixedText;
-use crate::wire::{WireError, wire_enum};
-use crate::{InteractionId, PickId};
+use crate::wire::{WireCode, WireError, wire_code};
+use crate::{ActKind, InteractionId, PickId};
 use iceoryx2::prelude::ZeroCopySend;
 use scene::ObjectId;
 
@@ -16,21 +16,7 @@ wire_struct! {
     }
 }
 
-wire_enum! {
-    /// What the robot does.
-    ActKind {
-        /// Waits for the person.
-        Wait = 0,
-        /// Asks `question`, saying `text`.
-        Ask = 1,
-        /// Says `text`; no answer is expected.
-        Say = 2,
-        /// Picks `object` and says `text`.
-        Pick = 3,
-        /// Gives up the pick of `interaction` and `attempt`, if the object is not yet grasped.
-        Cancel = 4,
-    }
-}
+wire_code!(ActKind { Wait = 0, Ask = 1, Say = 2, Pick = 3, Cancel = 4, });
 
 wire_struct! {
     /// The policy's standing decision. Policy to speech and arm, sent again until superseded.

@@ -8,7 +8,7 @@ use iceoryx2::prelude::ZeroCopySend;
 
 wire_enum! {
     /// How far the robot has come with saying a prompt.
-    Presentation {
+    PresentationState {
         /// Nothing was said yet.
         Silent = 0,
         /// Being said.
@@ -20,7 +20,7 @@ wire_enum! {
     }
 }
 
-impl Presentation {
+impl PresentationState {
     /// Whether somebody may have heard some of it.
     pub fn has_begun(self) -> bool {
         self != Self::Silent
@@ -38,7 +38,7 @@ wire_struct! {
         ended_ns: u64,
         /// Which presentation of the prompt.
         presentation: u32,
-        /// [`Presentation`].
+        /// [`PresentationState`].
         state: u8,
         /// Zero.
         reserved: [u8; 3],

@@ -1,5 +1,6 @@
 //! A desk with its disk, a robot and services, for the tests of the study's rules.
 
+use dialogue::ids::{InteractionId, UtteranceSeq};
 use evaluation::user_study::{
     Design, Entry, Event, Item, Kind, Objects, Order, Participant, Protocol, Source, Stage, Status,
 };
@@ -144,7 +145,7 @@ impl World {
 
     pub(super) fn say(&mut self, seq: u64) {
         if self.view.interaction == 0 {
-            let last = self.view.last.as_ref().map_or(0, |last| last.interaction);
+            let last = self.view.last.as_ref().map_or(0, |last| last.interaction.0);
             self.view.interaction = last + 1;
         }
         let (source, onset_ms) = (Source::Typed, self.ms - 500.0);
@@ -160,13 +161,13 @@ impl World {
         }
         let interaction = std::mem::take(&mut self.view.interaction);
         self.view.last = Some(Ended {
-            interaction,
+            interaction: InteractionId(interaction),
             object: None,
             name: name.map(str::to_owned),
             outcome,
             questions: 2,
             seconds: 9.5,
-            utterances: (1, 3),
+            utterances: (UtteranceSeq(1), UtteranceSeq(3)),
         });
     }
 

@@ -27,7 +27,7 @@ impl Waiting {
     pub(super) fn look(&mut self, seen: &Seen) -> Option<Ended> {
         let view = seen.view.as_ref()?;
         if let Some(goal) = self.goal {
-            return view.last.clone().filter(|last| last.interaction >= goal);
+            return view.last.clone().filter(|last| last.interaction.0 >= goal);
         }
         if !seen.is_settled() {
             self.settled = 0;
@@ -38,7 +38,7 @@ impl Waiting {
             return None;
         }
         self.settled += 1;
-        let last = view.last.clone().filter(|last| last.interaction > self.told);
+        let last = view.last.clone().filter(|last| last.interaction.0 > self.told);
         last.filter(|_| self.settled >= LOOKS)
     }
 }
@@ -54,7 +54,7 @@ mod tests {
     fn told(before: u64, looks: &[Seen]) -> Option<(usize, u64)> {
         let mut waiting = Waiting::new(before);
         let ends = looks.iter().map(|seen| waiting.look(seen)).enumerate();
-        ends.into_iter().find_map(|(n, ended)| Some((n, ended?.interaction)))
+        ends.into_iter().find_map(|(n, ended)| Some((n, ended?.interaction.0)))
     }
 
     #[test]

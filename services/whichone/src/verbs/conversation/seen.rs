@@ -1,7 +1,7 @@
 //! What is known of a dialogue at one moment.
 
 use messages::{
-    Activity, ArmStatus, Hearing, PolicyView, Presentation, Presented, Receipt, ReceiptStatus,
+    Activity, ArmStatus, Hearing, PolicyView, PresentationState, Presented, Receipt, ReceiptStatus,
 };
 
 /// The latest of everything.
@@ -46,7 +46,7 @@ impl Seen {
         let is_asked = view.interaction != 0
             && view.decision == "ask"
             && prompt == view.prompt
-            && state == Presentation::Ended.code();
+            && state == PresentationState::Ended.code();
         is_asked.then_some((prompt, presentation))
     }
 
@@ -54,7 +54,7 @@ impl Seen {
     pub(in crate::verbs) fn words(&self) -> Option<(Said, &str)> {
         let view = self.view.as_ref()?;
         let Presented { prompt, presentation, state, .. } = self.presented;
-        let has_begun = Presentation::from_code(state).is_ok_and(Presentation::has_begun);
+        let has_begun = PresentationState::from_code(state).is_ok_and(PresentationState::has_begun);
         let latest = has_begun && prompt != 0 && prompt == view.prompt && !view.text.is_empty();
         latest.then_some(((prompt, presentation), view.text.as_str()))
     }
@@ -63,7 +63,7 @@ impl Seen {
 /// Parts of dialogues, for tests.
 #[cfg(test)]
 pub(in crate::verbs) mod example {
-    use messages::{Ended, Outcome};
+    use messages::{Ended, Outcome, UtteranceSeq};
     use scene::Question;
 
     use super::*;
@@ -79,7 +79,7 @@ pub(in crate::verbs) mod example {
             decision: "ask".into(),
             ..PolicyView::default()
         };
-        let state = Presentation::Ended.code();
+        let state = PresentationState::Ended.code();
         let presented = Presented { prompt: 5, presentation: 1, state, ..Presented::default() };
         let activity = Some(Activity::default());
         Seen { view: Some(view), presented, activity, accepted: 3, ..Seen::default() }
@@ -88,13 +88,13 @@ pub(in crate::verbs) mod example {
     /// Interaction `id` has ended, none is open.
     pub(in crate::verbs) fn ended(id: u64) -> Seen {
         let last = Ended {
-            interaction: id,
-            object: Some(1),
+            interaction: dialogue::ids::InteractionId(id),
+            object: Some(scene::ObjectId(1)),
             name: Some("clear".into()),
             outcome: Outcome::Delivered,
             questions: 2,
             seconds: 12.5,
-            utterances: (1, 3),
+            utterances: (UtteranceSeq(1), UtteranceSeq(3)),
         };
         let mut seen = asked(Question::None);
         let view = seen.view.take().map(|view| PolicyView {
@@ -147,7 +147,7 @@ mod tests {
     fn a_question_is_open_from_the_end_of_its_presentation() {
         let mut seen = example::asked(Question::None);
         assert_eq!(seen.open_question(), Some((5, 1)));
-        seen.presented.state = Presentation::Speaking.code();
+        seen.presented.state = PresentationState::Speaking.code();
         assert_eq!(seen.open_question(), None);
         assert_eq!(seen.words(), Some(((5, 1), "Is it so?")));
         seen.presented.prompt = 4;

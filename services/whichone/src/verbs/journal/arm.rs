@@ -1,5 +1,6 @@
 //! The arm's records.
 
+use messages::WireCode;
 use std::collections::BTreeMap;
 
 use arm::state::Record;

@@ -1,5 +1,6 @@
 //! The picture as lines of text.
 
+use messages::WireCode;
 use messages::{ArmStatus, Hindrance, PickOutcome, PickPhase, PolicyView};
 use scene::Scene;
 use service::status::GroupState;

@@ -1,5 +1,6 @@
 //! Everything that is shown, at one moment.
 
+use messages::WireCode;
 use std::collections::VecDeque;
 
 use messages::{ArmStatus, Hindrance, PickOutcome, PickPhase, Receipt, ReceiptStatus};

@@ -1,6 +1,6 @@
 //! The robot's side of a dialogue in real time.
 
-use dialogue::person::Reaction;
+use dialogue::user_model::Reaction;
 use dialogue::{Action, Addressed, Answer, Asked, Attribution, Posterior, Rng};
 use scene::Question;
 

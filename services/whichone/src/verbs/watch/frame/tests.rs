@@ -1,3 +1,4 @@
+use messages::WireCode;
 use serde_json::json;
 
 use super::*;

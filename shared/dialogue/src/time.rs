@@ -1,4 +1,4 @@
-//! Time as a number that somebody else read.
+//! Moments and lengths of time on the monotonic clock, as numbers: reading the clock is the caller's part.
 
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, Sub};

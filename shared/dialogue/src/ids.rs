@@ -1,0 +1,58 @@
+//! Identifiers of the dialogue. Each is assigned once, by the service that owns it, and made durable
+//! before its first use, so that a restart never assigns one twice.
+
+use serde::{Deserialize, Serialize};
+
+macro_rules! id {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(
+            Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+        )]
+        #[serde(transparent)]
+        pub struct $name(pub u64);
+
+        impl $name {
+            /// Returns the identifier that follows.
+            #[must_use]
+            pub fn next(self) -> Self {
+                Self(self.0 + 1)
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                self.0.fmt(f)
+            }
+        }
+    };
+}
+
+id! {
+    /// Position of an accepted utterance: 1, 2, 3 … without a gap. 0: none yet.
+    UtteranceSeq
+}
+id! {
+    /// One interaction, from the first request to its outcome; increasing, never reused. 0: none.
+    InteractionId
+}
+id! {
+    /// One decision of the policy, increasing. 0: none.
+    ActId
+}
+id! {
+    /// One line of the robot. A repeated question keeps its id. 0: none.
+    PromptId
+}
+
+/// One attempt to fetch one object. The pair is the idempotency key of the motion.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
+pub struct PickId {
+    /// The interaction that decided it.
+    pub interaction: InteractionId,
+    /// 1 for the first attempt. Another follows only where the previous one ended without a grasp,
+    /// because the scene changed or the user wants another object.
+    pub attempt: u32,
+}

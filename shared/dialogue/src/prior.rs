@@ -1,0 +1,21 @@
+//! Settings of the belief before anything was said.
+
+/// Prior of a new interaction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prior {
+    /// Which objects are more probable.
+    pub objects: PriorObjects,
+    /// Weight of each object in the Dirichlet distribution, in deliveries.
+    pub smoothing: f64,
+    /// Probability that the wanted object is not here; 0 where that is not considered.
+    pub absent: f64,
+}
+
+/// Which objects are more probable before anything was said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PriorObjects {
+    /// All alike, as in the paper.
+    Uniform,
+    /// Those delivered more often.
+    History,
+}

@@ -1,0 +1,22 @@
+//! Settings of turn-taking.
+
+use crate::Attribution;
+use crate::user_model::Reaction;
+
+/// How the robot takes turns with the user.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TurnTaking {
+    /// Seconds of silence after a question before it is repeated.
+    pub response_window_s: f64,
+    /// Repetitions into silence before the interaction is abandoned.
+    pub repeats_max: u32,
+    /// Questions of one interaction, repetitions included, after which the robot picks the most
+    /// probable object instead of asking.
+    pub questions_max: u32,
+    /// How an utterance is attributed to a question.
+    pub attribution: Attribution,
+    /// Reaction time of spoken answers, before anything is known of the user.
+    pub spoken: Reaction,
+    /// Reaction time of typed answers.
+    pub typed: Reaction,
+}
