@@ -28,8 +28,6 @@ impl Lab {
         std::fs::create_dir_all(&folder).expect("a folder");
         let header = Header {
             record: "policy/4".into(),
-            schema: 0,
-            scene: 0,
             group: "lab".into(),
             epoch: 1,
         };

@@ -1,50 +1,43 @@
-//! What can go wrong, one enum per operation. Each message ends with the cure.
+//! Errors, one enum per operation. Messages end with what the operator can do.
 
 use std::io;
 
-/// Why a journal cannot be opened or read.
+/// Way out for a journal that another version wrote.
+const FRESH: &str = "help: start the version that wrote it, or start anew with `whichone up \
+                     --fresh`, which keeps the old file";
+
+/// Failure to open or read a journal.
 #[derive(Debug, thiserror::Error)]
 pub enum JournalOpenError {
-    /// Another process writes it.
-    #[error("another process{} writes this journal; stop it first", by(*pid))]
+    /// Another process holds the lock.
+    #[error("the journal is locked by another process{}; help: stop that process", by(*pid))]
     Locked {
         /// The other process, where the lock file names it.
         pid: Option<u32>,
     },
     /// The file does not begin like a journal.
-    #[error("this is not a journal; move the file away or set it aside to start anew")]
+    #[error("not a journal; help: move the file away, or run `whichone up --fresh`")]
     NotAJournal,
-    /// Written in another format of the file itself.
-    #[error(
-        "the journal has format {found}, this version reads format {expected}; \
-         start the version that wrote it, or set the journal aside to start anew"
-    )]
+    /// Another version of the file format.
+    #[error("expected journal format {expected}, found {found}; {FRESH}")]
     Format {
         /// Format number of the file.
         found: u32,
         /// Format number of this version, [`FORMAT`](crate::FORMAT).
         expected: u32,
     },
-    /// Holds records of another kind or layout.
-    #[error(
-        "the journal holds records `{found}` with schema {found_schema:016x}, this version writes \
-         `{expected}` with schema {expected_schema:016x}; start the version that wrote it, or set \
-         the journal aside to start anew"
-    )]
+    /// Records of another kind.
+    #[error("expected records of kind `{expected}`, found `{found}`; {FRESH}")]
     Record {
         /// Kind of record in the file.
         found: String,
-        /// Its schema key.
-        found_schema: u64,
         /// Kind of record of the caller.
         expected: String,
-        /// Its schema key.
-        expected_schema: u64,
     },
     /// Belongs to another group.
     #[error(
-        "the journal belongs to group `{found}`, this is group `{expected}`; \
-         give each group its own state folder"
+        "expected a journal of group `{expected}`, found one of group `{found}`; \
+         help: give each group its own state folder"
     )]
     Group {
         /// Group of the file.
@@ -54,8 +47,8 @@ pub enum JournalOpenError {
     },
     /// Written in another epoch of the group.
     #[error(
-        "the journal is of epoch {found}, the group is in epoch {expected}; \
-         set the journal aside to join this epoch"
+        "expected epoch {expected}, found a journal of epoch {found}; \
+         help: start a new epoch with `whichone up --fresh`, which keeps the old file"
     )]
     Epoch {
         /// Epoch of the file.
@@ -63,57 +56,43 @@ pub enum JournalOpenError {
         /// Epoch of the caller.
         expected: u64,
     },
-    /// Written for another scene.
+    /// Damage to acknowledged records.
     #[error(
-        "the journal was written for another scene (key {found:016x}, now {expected:016x}); \
-         go back to that scene, or set the journal aside to start anew"
-    )]
-    Scene {
-        /// Scene key of the file.
-        found: u64,
-        /// Scene key of the caller.
-        expected: u64,
-    },
-    /// Damaged in a part that had been acknowledged.
-    #[error(
-        "the journal is damaged at byte {at}, before record {seq}, with valid records after it; \
-         inspect it, then set it aside to start anew"
+        "corrupt at byte {at}, before record {seq}, with valid records after it; help: inspect the \
+         file, then start anew with `whichone up --fresh`, which keeps it"
     )]
     Corrupt {
-        /// Offset of the first damaged byte's frame.
+        /// Offset of the first damaged frame.
         at: u64,
         /// Number of the first record that cannot be read.
         seq: u64,
     },
-    /// An undamaged frame whose records do not decode: two layouts share one schema key.
-    #[error(
-        "the records from {seq} on (byte {at}) are whole but not of this layout; \
-         start the version that wrote them, or set the journal aside to start anew"
-    )]
+    /// A valid frame whose records do not decode: two layouts share one record kind.
+    #[error("records from {seq} on (byte {at}) have another layout; {FRESH}")]
     Undecodable {
         /// Offset of the frame.
         at: u64,
         /// Number of its first record.
         seq: u64,
     },
-    /// The operating system refused.
+    /// Failure of the operating system.
     #[error("cannot {doing}: {source}")]
     Io {
-        /// What was tried.
+        /// Attempted operation.
         doing: &'static str,
-        /// Why it failed.
+        /// Cause.
         source: io::Error,
     },
 }
 
-/// Why a record cannot be appended. The journal is as before.
+/// Failure to append a record. The journal is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum AppendError {
     /// The record does not encode.
     #[error("the record does not encode: {0}")]
     Encode(#[from] postcard::Error),
-    /// More than one frame may hold.
-    #[error("{bytes} bytes between two syncs, at most {max} fit; sync more often")]
+    /// Exceeds the capacity of one frame.
+    #[error("{bytes} bytes between two syncs exceed the limit of {max}; help: sync more often")]
     TooLarge {
         /// Encoded size of the unsynced records with this one.
         bytes: usize,
@@ -122,40 +101,39 @@ pub enum AppendError {
     },
 }
 
-/// Why appended records did not become durable.
+/// Failure to make appended records durable.
 #[derive(Debug, thiserror::Error)]
 pub enum SyncError {
-    /// No space. The file is as before and the records wait in memory: free space, sync again.
-    #[error("no space for the journal: {0}; free some and sync again")]
+    /// No space left. The file is unchanged and the records stay in memory: free space and sync again.
+    #[error("no space for the journal: {0}; help: free some space")]
     Full(io::Error),
-    /// The write failed. The file is as before and the records wait in memory.
+    /// Failed write. The file is unchanged and the records stay in memory.
     #[error("cannot write the journal: {0}")]
     Write(io::Error),
-    /// It is unknown what reached the disk; this journal takes nothing more. Opening it anew
-    /// finds out.
-    #[error("it is unknown what of the journal reached the disk ({0}); open it anew")]
+    /// Unknown state of the file on disk; the journal accepts no more records until it is reopened.
+    #[error("unknown how much of the journal reached the disk ({0}); help: reopen it")]
     Unknown(io::Error),
     /// An earlier operation ended with [`SyncError::Unknown`].
-    #[error("the journal failed before and takes no more records; open it anew")]
+    #[error("the journal failed earlier and accepts no more records; help: reopen it")]
     Poisoned,
 }
 
-/// Why a journal could not be rotated.
+/// Failure to rotate a journal.
 #[derive(Debug, thiserror::Error)]
 pub enum RotateError {
-    /// The snapshot does not fit or encode; the old journal goes on.
+    /// The snapshot does not fit or encode; the old journal stays in use.
     #[error("snapshot: {0}")]
     Snapshot(#[from] AppendError),
-    /// What was appended before could not be synced; the old journal goes on unless the cause says
-    /// otherwise.
+    /// Pending records could not be synced; the old journal stays in use unless the source is
+    /// [`SyncError::Unknown`].
     #[error(transparent)]
     Sync(#[from] SyncError),
-    /// The new file could not be put in place; the old journal goes on.
-    #[error("cannot {doing}: {source}; the old journal goes on")]
+    /// The new file could not be installed; the old journal stays in use.
+    #[error("cannot {doing}: {source}; the old journal stays in use")]
     Io {
-        /// What was tried.
+        /// Attempted operation.
         doing: &'static str,
-        /// Why it failed.
+        /// Cause.
         source: io::Error,
     },
 }

@@ -10,23 +10,22 @@ use serde::de::DeserializeOwned;
 
 use crate::header::{self, Header, StoredHeader};
 use crate::lock::Lock;
-use crate::rotate::{self, KEEP_DEFAULT, Step};
+use crate::rotate::{self, KEPT, Step};
 use crate::scan::{self, Ending, Position, Scan};
 use crate::tail::{Batch, Tail};
 use crate::{AppendError, JournalOpenError, RotateError, SyncError, frame};
 
-/// The one writer of a journal. Records that were not synced are forgotten when it is dropped.
+/// The only writer of a journal. Unsynced records are lost when it is dropped.
 #[derive(Debug)]
 pub struct Journal<R> {
     path: PathBuf,
     header: Header,
     tail: Tail<File>,
-    keep: usize,
     _lock: Lock,
     _record: PhantomData<fn(&R)>,
 }
 
-/// What [`Journal::open`] found. All of it is durable.
+/// Contents found by [`Journal::open`]. All of it is durable.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Recovered<R> {
     /// Every record of the file, oldest first; a file that was rotated starts with its snapshot.
@@ -37,10 +36,10 @@ pub struct Recovered<R> {
     pub truncated_bytes: u64,
 }
 
-/// What [`read`] found.
+/// Contents found by [`read`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reading<R> {
-    /// Whose journal it is.
+    /// Owner and kind.
     pub header: Header,
     /// Every record up to the ending, oldest first.
     pub records: Vec<R>,
@@ -74,39 +73,31 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
             path: path.to_owned(),
             header: header.clone(),
             tail,
-            keep: KEEP_DEFAULT,
             _lock: lock,
             _record: PhantomData,
         };
         Ok((journal, recovered))
     }
 
-    /// How many old journals a rotation keeps ([`KEEP_DEFAULT`] where nothing is said).
-    #[must_use]
-    pub fn keeping(mut self, keep: usize) -> Self {
-        self.keep = keep;
-        self
-    }
-
-    /// Takes a record for the next sync. Not durable yet.
+    /// Queues a record for the next sync. Not durable yet.
     ///
     /// # Errors
-    /// See [`AppendError`]; the record is not taken.
+    /// See [`AppendError`]; the record is not queued.
     pub fn append(&mut self, record: &R) -> Result<(), AppendError> {
         self.tail.append(record)
     }
 
     /// Makes everything appended so far durable, with one write and one `fdatasync`, as a whole.
-    /// Does nothing where nothing waits.
+    /// Does nothing if no record is queued.
     ///
     /// # Errors
-    /// See [`SyncError`]; nothing of it may be acted on.
+    /// See [`SyncError`]; none of the records may be acted on.
     pub fn sync(&mut self) -> Result<(), SyncError> {
         self.tail.sync()
     }
 
     /// Continues in a new file that starts with `snapshot`; the old one is kept as `<name>.1`.
-    /// Records that wait are synced into the old file first. Numbers go on. A crash at any moment
+    /// Queued records are synced into the old file first. Numbering continues. A crash at any moment
     /// leaves either the old or the new journal.
     ///
     /// # Errors
@@ -122,7 +113,7 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
     ) -> Result<(), RotateError> {
         self.tail.sync()?;
         let (bytes, position) = compose(&self.header, self.next_seq(), snapshot)?;
-        match rotate::replace(&self.path, &bytes, self.keep, before) {
+        match rotate::replace(&self.path, &bytes, KEPT, before) {
             Ok(file) => self.tail = Tail::new(file, position),
             Err((Step::SyncFolder, error)) => {
                 self.tail.poison();
@@ -131,11 +122,6 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
             Err((step, source)) => return Err(RotateError::Io { doing: step.doing(), source }),
         }
         Ok(())
-    }
-
-    /// Where the journal is.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Number that the next record synced gets.
@@ -147,31 +133,17 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
     pub fn bytes(&self) -> u64 {
         self.tail.position().end
     }
-
-    /// Records that wait for a sync.
-    pub fn waiting(&self) -> usize {
-        self.tail.waiting()
-    }
 }
 
-/// Reads a journal without taking it, also while its writer lives and where it is damaged.
+/// Reads a journal without locking it, even while its writer lives or where it is damaged.
 ///
 /// # Errors
-/// Where the header or the record layout is another one; damage is told by [`Reading::ending`].
+/// Another header or record layout; damage is reported by [`Reading::ending`].
 pub fn read<R: DeserializeOwned>(path: &Path) -> Result<Reading<R>, JournalOpenError> {
     let bytes = fs::read(path).map_err(JournalOpenError::io("read the journal"))?;
     let stored = header::decode(&bytes)?;
     let Scan { records, ending, .. } = scan::scan(&bytes, &stored)?;
     Ok(Reading { header: stored.header, records, first_seq: stored.first_seq, ending })
-}
-
-/// Reads whose journal a file is, whatever its records are.
-///
-/// # Errors
-/// Where it is no journal, one of another format, or its header is damaged.
-pub fn read_header(path: &Path) -> Result<Header, JournalOpenError> {
-    let bytes = fs::read(path).map_err(JournalOpenError::io("read the journal"))?;
-    Ok(header::decode(&bytes)?.header)
 }
 
 fn create<R: Serialize>(

@@ -1,4 +1,4 @@
-//! The start of the file: whose journal it is.
+//! The start of the file: owner and kind of the journal.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,29 +6,26 @@ use crate::JournalOpenError;
 use crate::frame::words;
 
 /// Format number of the file layout that this version writes.
-pub const FORMAT: u32 = 1;
+///
+/// Format 1 had two more numbers in its header.
+pub const FORMAT: u32 = 2;
 
 /// Magic, format, length and checksum before the header's body.
 const PREFIX_BYTES: usize = 20;
 const MAGIC: [u8; 8] = *b"WHICHJNL";
 
-/// Whose journal a file is. All fields must match when it is opened again.
+/// Owner and kind of a journal. All fields must match when it is reopened.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Header {
-    /// Kind of record, e.g. `policy`; told when another kind is found.
+    /// Kind of record with its version, e.g. `policy/4`: a changed layout has another kind.
     pub record: String,
-    /// Structural key of the record type: a changed layout has another key.
-    pub schema: u64,
-    /// Key of the scene or configuration that the records mean something in; 0 where they mean
-    /// the same in every scene.
-    pub scene: u64,
     /// Name of the process group.
     pub group: String,
-    /// Epoch of the group: numbers of another epoch are never compared.
+    /// Epoch of the group; numbers of different epochs are never compared.
     pub epoch: u64,
 }
 
-/// A header as it stands in the file.
+/// A header as stored in the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct StoredHeader {
     pub(crate) header: Header,
@@ -75,7 +72,7 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<StoredHeader, JournalOpenError> {
     Ok(StoredHeader { header, first_seq, crc, len: PREFIX_BYTES + len })
 }
 
-/// Refuses a journal that belongs to somebody else.
+/// Rejects a journal of another owner or kind.
 pub(crate) fn check(found: &Header, expected: &Header) -> Result<(), JournalOpenError> {
     if found.group != expected.group {
         return Err(JournalOpenError::Group {
@@ -83,19 +80,14 @@ pub(crate) fn check(found: &Header, expected: &Header) -> Result<(), JournalOpen
             expected: expected.group.clone(),
         });
     }
-    if found.record != expected.record || found.schema != expected.schema {
+    if found.record != expected.record {
         return Err(JournalOpenError::Record {
             found: found.record.clone(),
-            found_schema: found.schema,
             expected: expected.record.clone(),
-            expected_schema: expected.schema,
         });
     }
     if found.epoch != expected.epoch {
         return Err(JournalOpenError::Epoch { found: found.epoch, expected: expected.epoch });
-    }
-    if found.scene != expected.scene {
-        return Err(JournalOpenError::Scene { found: found.scene, expected: expected.scene });
     }
     Ok(())
 }

@@ -4,8 +4,8 @@
 //! appended between two syncs is there as a whole or not at all. Nothing else may be relied on
 //! before effects become visible.
 //!
-//! One file has one writer (a lock held for life, see [`lock_holder`]). It starts with a
-//! [`Header`] that says whose journal it is, followed by frames, one per sync, all little-endian:
+//! One file has one writer, which holds a lock for life. It starts with a [`Header`] that names the
+//! owner, followed by frames, one per sync, all little-endian:
 //!
 //! ```text
 //! header  magic 8 | format u32 | len u32 | crc32c u32 | body (postcard: Header, first_seq u64)
@@ -22,7 +22,7 @@
 //! the pages of one batch in any order before the sync, and a hole in an unacknowledged batch must
 //! not look like corruption.
 //!
-//! Errors do not name the file; the caller knows it. What people are to read is kept as [`lines`].
+//! Errors do not name the file; the caller knows it. Data for people is kept as [`lines`].
 
 mod error;
 mod file;
@@ -38,9 +38,8 @@ mod tail;
 mod tests;
 
 pub use error::{AppendError, JournalOpenError, RotateError, SyncError};
-pub use file::{Journal, Reading, Recovered, read, read_header};
+pub use file::{Journal, Reading, Recovered, read};
 pub use frame::BODY_BYTES_MAX;
 pub use header::{FORMAT, Header};
-pub use lock::{LockHolder, lock_holder};
-pub use rotate::{KEEP_DEFAULT, set_aside};
+pub use rotate::KEPT;
 pub use scan::Ending;

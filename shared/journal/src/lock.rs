@@ -2,37 +2,12 @@
 //! carry the lock because a rotation puts another file in its place.
 
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{self, Read, Write};
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use crate::JournalOpenError;
 
-/// Who holds a journal's lock.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LockHolder {
-    /// The process, where the lock file names it.
-    pub pid: Option<u32>,
-}
-
-/// Who writes the journal at `path` now; `None` where nobody does. It takes the lock for a moment,
-/// so ask only while no service that owns it is being started.
-///
-/// # Errors
-/// Where the lock file exists but cannot be opened.
-pub fn lock_holder(path: &Path) -> io::Result<Option<LockHolder>> {
-    let file = match File::open(lock_path(path)) {
-        Ok(file) => file,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(error),
-    };
-    match file.try_lock_shared() {
-        Ok(()) => Ok(None),
-        Err(TryLockError::WouldBlock) => Ok(Some(LockHolder { pid: pid_in(&file) })),
-        Err(TryLockError::Error(error)) => Err(error),
-    }
-}
-
-/// The lock, free again when dropped and when the process ends in any way.
+/// The lock; released when dropped and when the process ends in any way.
 #[derive(Debug)]
 pub(crate) struct Lock {
     _file: File,

@@ -1,19 +1,15 @@
-//! Putting a new file in the place of a journal, and keeping the old ones as `<name>.1` (the
-//! latest) to `<name>.N`.
+//! Replacement of a journal's file; the old ones are kept as `<name>.1` (the latest) to `<name>.N`.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-use crate::JournalOpenError;
-use crate::lock::Lock;
+/// Number of old journals kept.
+pub const KEPT: usize = 4;
 
-/// Old journals kept where nothing else is said.
-pub const KEEP_DEFAULT: usize = 4;
-
-/// What a replacement does, in this order. A crash before any of them leaves either the old or
-/// the new journal whole under its name.
+/// Steps of a replacement, in order. A crash before any of them leaves either the old or the new
+/// journal intact under its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Step {
     WriteNew,
@@ -68,21 +64,6 @@ pub(crate) fn replace(
     enter(Step::SyncFolder)?;
     sync_folder(path).map_err(at(Step::SyncFolder))?;
     Ok(file)
-}
-
-/// Keeps the journal at `path` as `<name>.1` and leaves its place empty, so that the next
-/// [`Journal::open`](crate::Journal::open) starts anew. Does nothing where there is none.
-///
-/// # Errors
-/// `Locked` while a process writes it, `Io`.
-pub fn set_aside(path: &Path, keep: usize) -> Result<(), JournalOpenError> {
-    let _lock = Lock::take(path)?;
-    clear_unfinished(path).map_err(JournalOpenError::io("clear an unfinished rotation"))?;
-    if !path.exists() {
-        return Ok(());
-    }
-    let moved = shift(path, keep.max(1)).and_then(|()| fs::rename(path, beside(path, "1")));
-    moved.and_then(|()| sync_folder(path)).map_err(JournalOpenError::io("set the journal aside"))
 }
 
 /// Removes what a replacement that did not finish has left.

@@ -1,4 +1,4 @@
-//! The writing end: records wait here until a sync makes them durable as one frame.
+//! The writing end: queues records until a sync makes them durable as one frame.
 
 use std::fs::File;
 use std::io;
@@ -10,7 +10,7 @@ use crate::frame::{self, BODY_BYTES_MAX};
 use crate::scan::Position;
 use crate::{AppendError, SyncError};
 
-/// What the journal needs of a file; the seam where tests let a disk fail.
+/// File operations of the journal; tests inject disk faults here.
 pub(crate) trait Storage {
     fn write_at(&mut self, bytes: &[u8], at: u64) -> io::Result<()>;
     fn truncate(&mut self, len: u64) -> io::Result<()>;
@@ -46,7 +46,7 @@ impl<S: Storage> Tail<S> {
     }
 
     /// The end of a file that was there before, cut to `position`. A killed writer may have written
-    /// without syncing, so nothing in the file may be believed before this succeeded.
+    /// without syncing, so the file's content is not trusted before this succeeds.
     pub(crate) fn resume(mut storage: S, position: Position, torn: bool) -> io::Result<Self> {
         if torn {
             storage.truncate(position.end)?;
@@ -59,22 +59,18 @@ impl<S: Storage> Tail<S> {
         self.position
     }
 
-    pub(crate) fn waiting(&self) -> usize {
-        self.waiting.count
-    }
-
     pub(crate) fn append<R: Serialize>(&mut self, record: &R) -> Result<(), AppendError> {
         self.waiting.push(record)
     }
 
-    /// Takes no more records: what the disk holds is unknown.
+    /// Rejects further records: the content of the disk is unknown.
     pub(crate) fn poison(&mut self) {
         self.poisoned = true;
     }
 
     /// One write, one sync. On a failed write the file is cut back to what it was; on a failed sync
     /// it is cut back too, because a second sync would report success for pages that the first one
-    /// already gave up, and then nothing more is taken.
+    /// already gave up, and then no more records are accepted.
     pub(crate) fn sync(&mut self) -> Result<(), SyncError> {
         if self.poisoned {
             return Err(SyncError::Poisoned);

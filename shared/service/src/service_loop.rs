@@ -150,8 +150,6 @@ fn open_journal<P: Program>(environment: &Environment) -> Result<Recovered<P>, F
     let path = environment.paths.journal_file(P::SERVICE.name());
     let header = Header {
         record: record.to_owned(),
-        schema: 0,
-        scene: 0,
         group: environment.paths.name().to_string(),
         epoch: environment.epoch.0,
     };

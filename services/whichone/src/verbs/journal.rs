@@ -106,7 +106,7 @@ fn verify<R: DeserializeOwned>(
     out: &mut Output<'_>,
     check: impl FnOnce(&[Part<R>]) -> Result<Vec<String>, Broken>,
 ) -> Outcome {
-    let older = (1..=journal::KEEP_DEFAULT).rev().map(|n| numbered_file(path, n));
+    let older = (1..=journal::KEPT).rev().map(|n| numbered_file(path, n));
     let files: Vec<PathBuf> = older.filter(|file| file.is_file()).chain([path.into()]).collect();
     let parts: Vec<Part<R>> = files.iter().map(|file| read(file)).collect::<Result<_, _>>()?;
     for part in &parts {

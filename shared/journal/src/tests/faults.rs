@@ -2,7 +2,7 @@
 
 use std::io::{self, ErrorKind};
 
-use super::{Said, header, said};
+use super::{Entry, entry, header};
 use crate::SyncError;
 use crate::header;
 use crate::scan::{Ending, Position, Scan, scan};
@@ -52,11 +52,11 @@ impl Disk {
         Tail::new(self, position)
     }
 
-    fn scan(&self) -> Scan<Said> {
+    fn scan(&self) -> Scan<Entry> {
         scan(&self.bytes, &header::decode(&self.bytes).unwrap()).unwrap()
     }
 
-    fn records(&self) -> Vec<Said> {
+    fn records(&self) -> Vec<Entry> {
         let Scan { records, ending, .. } = self.scan();
         assert_eq!(ending, Ending::Whole);
         records
@@ -64,7 +64,7 @@ impl Disk {
 }
 
 /// Appends and syncs one record.
-fn put(tail: &mut Tail<&mut Disk>, record: &Said) -> Result<(), SyncError> {
+fn put(tail: &mut Tail<&mut Disk>, record: &Entry) -> Result<(), SyncError> {
     tail.append(record).unwrap();
     tail.sync()
 }
@@ -73,66 +73,65 @@ fn put(tail: &mut Tail<&mut Disk>, record: &Said) -> Result<(), SyncError> {
 fn one_sync_writes_once_whatever_it_holds() {
     let mut disk = Disk::new();
     let mut tail = disk.tail();
-    (1..=9).for_each(|n| tail.append(&said(n)).unwrap());
+    (1..=9).for_each(|n| tail.append(&entry(n)).unwrap());
     tail.sync().unwrap();
     assert_eq!(disk.syncs, 1);
-    assert_eq!(disk.records(), (1..=9).map(said).collect::<Vec<_>>());
+    assert_eq!(disk.records(), (1..=9).map(entry).collect::<Vec<_>>());
 }
 
 #[test]
 fn a_full_disk_leaves_a_valid_file_and_the_records_wait() {
     for written in 0..60 {
         let mut disk = Disk::new();
-        put(&mut disk.tail(), &said(1)).unwrap();
+        put(&mut disk.tail(), &entry(1)).unwrap();
         disk.write_fault = Some((written, ErrorKind::StorageFull));
         let mut tail = disk.tail();
-        assert!(matches!(put(&mut tail, &said(2)), Err(SyncError::Full(_))));
-        assert_eq!(tail.waiting(), 1);
-        tail.append(&said(3)).unwrap();
+        assert!(matches!(put(&mut tail, &entry(2)), Err(SyncError::Full(_))));
+        tail.append(&entry(3)).unwrap();
         tail.sync().unwrap();
-        assert_eq!(disk.records(), [said(1), said(2), said(3)], "after {written} bytes");
+        assert_eq!(disk.records(), [entry(1), entry(2), entry(3)], "after {written} bytes");
     }
 }
 
 #[test]
 fn a_failed_write_is_cut_back() {
     let mut disk = Disk::new();
-    put(&mut disk.tail(), &said(1)).unwrap();
+    put(&mut disk.tail(), &entry(1)).unwrap();
     disk.write_fault = Some((11, ErrorKind::Other));
-    assert!(matches!(put(&mut disk.tail(), &said(2)), Err(SyncError::Write(_))));
-    assert_eq!(disk.records(), [said(1)]);
+    assert!(matches!(put(&mut disk.tail(), &entry(2)), Err(SyncError::Write(_))));
+    assert_eq!(disk.records(), [entry(1)]);
 }
 
 #[test]
 fn after_a_failed_sync_nothing_is_believed_any_more() {
     let mut disk = Disk::new();
-    put(&mut disk.tail(), &said(1)).unwrap();
+    put(&mut disk.tail(), &entry(1)).unwrap();
     disk.sync_fault = true;
     let mut tail = disk.tail();
-    assert!(matches!(put(&mut tail, &said(2)), Err(SyncError::Unknown(_))));
+    assert!(matches!(put(&mut tail, &entry(2)), Err(SyncError::Unknown(_))));
     assert!(matches!(tail.sync(), Err(SyncError::Poisoned)));
-    assert!(matches!(put(&mut tail, &said(3)), Err(SyncError::Poisoned)));
-    assert_eq!(disk.records(), [said(1)], "the record was not acknowledged");
+    assert!(matches!(put(&mut tail, &entry(3)), Err(SyncError::Poisoned)));
+    assert_eq!(disk.records(), [entry(1)], "the record was not acknowledged");
 }
 
 #[test]
 fn a_partial_write_that_cannot_be_cut_back_poisons_and_is_a_torn_tail_later() {
     let mut disk = Disk::new();
-    put(&mut disk.tail(), &said(1)).unwrap();
+    put(&mut disk.tail(), &entry(1)).unwrap();
     disk.write_fault = Some((30, ErrorKind::StorageFull));
     disk.truncate_fault = true;
     let mut tail = disk.tail();
-    assert!(matches!(put(&mut tail, &said(2)), Err(SyncError::Unknown(_))));
+    assert!(matches!(put(&mut tail, &entry(2)), Err(SyncError::Unknown(_))));
     assert!(matches!(tail.sync(), Err(SyncError::Poisoned)));
     let Scan { records, ending, position: Position { end, .. } } = disk.scan();
-    assert_eq!(records, [said(1)]);
+    assert_eq!(records, [entry(1)]);
     assert_eq!(ending, Ending::Torn { at: end, bytes: 30 });
 }
 
 #[test]
 fn nothing_is_believed_before_what_was_found_is_synced() {
     let mut disk = Disk::new();
-    put(&mut disk.tail(), &said(1)).unwrap();
+    put(&mut disk.tail(), &entry(1)).unwrap();
     let Position { end, .. } = disk.scan().position;
     disk.bytes.extend_from_slice(&[7; 50]);
     let position = disk.scan().position;
@@ -141,11 +140,11 @@ fn nothing_is_believed_before_what_was_found_is_synced() {
 
     disk.syncs = 0;
     let mut tail = Tail::resume(&mut disk, position, true).unwrap();
-    put(&mut tail, &said(2)).unwrap();
+    put(&mut tail, &entry(2)).unwrap();
     assert_eq!(
         (position.end, disk.syncs),
         (end, 2),
         "once for what was found, once for the record"
     );
-    assert_eq!(disk.records(), [said(1), said(2)]);
+    assert_eq!(disk.records(), [entry(1), entry(2)]);
 }

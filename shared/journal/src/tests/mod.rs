@@ -1,4 +1,4 @@
-//! The journal on real files, with the damage and the crashes that it promises to survive.
+//! Tests of the journal on real files, with the damage and crashes that it must survive.
 
 mod damage;
 mod faults;
@@ -14,44 +14,44 @@ use crate::{Header, Journal, Recovered};
 
 /// A record with a body whose length the tests choose.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Said {
+struct Entry {
     number: u32,
     text: String,
     belief: Vec<f64>,
 }
 
-fn said(number: u32) -> Said {
+fn entry(number: u32) -> Entry {
     let belief = (0..number % 4).map(|i| f64::from(i) / 7.0).collect();
-    Said { number, text: format!("utterance {number}"), belief }
+    Entry { number, text: format!("utterance {number}"), belief }
 }
 
 fn header() -> Header {
-    Header { record: "said".into(), schema: 0xfeed, scene: 7, group: "kitchen".into(), epoch: 3 }
+    Header { record: "entry/2".into(), group: "kitchen".into(), epoch: 3 }
 }
 
-/// A folder of its own, with the journal's path in it.
-struct Place {
+/// A journal's path in a temporary folder.
+struct TestJournal {
     folder: TempDir,
     path: PathBuf,
 }
 
-impl Place {
+impl TestJournal {
     fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("policy.journal");
         Self { folder, path }
     }
 
-    fn open(&self) -> (Journal<Said>, Recovered<Said>) {
+    fn open(&self) -> (Journal<Entry>, Recovered<Entry>) {
         Journal::open(&self.path, &header()).unwrap()
     }
 
-    fn recover(&self) -> Recovered<Said> {
+    fn recover(&self) -> Recovered<Entry> {
         self.open().1
     }
 
     /// A journal with one sync per batch; returns the length of the file after each.
-    fn write(&self, batches: &[&[Said]]) -> Vec<u64> {
+    fn write(&self, batches: &[&[Entry]]) -> Vec<u64> {
         let (mut journal, _) = self.open();
         let mut lens = vec![journal.bytes()];
         for batch in batches {
