@@ -22,7 +22,7 @@ use std::path::Path;
 pub fn settings(over: &[(&str, &str)]) -> Settings {
     let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"));
     let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-    Settings::load(config, Some("ci"), &over).unwrap_or_else(|e| panic!("{e}"))
+    preflight::load(config, Some("ci"), &over).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Waits until `fact` gives a value.

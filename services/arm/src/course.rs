@@ -1,5 +1,6 @@
 //! Which way the gripper is going, for people to see.
 
+use crate::Config;
 use crate::executor::{Executor, Program, Purpose};
 use crate::state::side;
 use manipulation::{Arm, Trajectory};
@@ -26,13 +27,13 @@ pub(crate) struct Course {
 
 impl Course {
     /// A program begins, for `object` where it is for one.
-    pub(crate) fn begin(&mut self, program: &Program, object: Option<ObjectId>, arm: &config::Arm) {
+    pub(crate) fn begin(&mut self, program: &Program, object: Option<ObjectId>, config: &Config) {
         let pick = match program.purpose {
             Purpose::Pick(id) => Some(id),
             Purpose::Aim(_) | Purpose::Return => None,
         };
-        self.time_scale = arm.time_scale;
-        self.duration_s = program.duration_s() / arm.time_scale;
+        self.time_scale = config.arm.time_scale;
+        self.duration_s = program.duration_s() / config.arm.time_scale;
         self.told = None;
         self.view = TrajectoryView {
             interaction: pick.map_or(0, |id| id.interaction.0),
@@ -40,7 +41,7 @@ impl Course {
             object: object.map(|object| object.0),
             limb: side(program.limb) as u8,
             began_ns: 0,
-            phases: phases(program, arm.robot.arm(program.limb), arm.time_scale),
+            phases: phases(program, config.setup.robot.arm(program.limb), config.arm.time_scale),
         };
     }
 

@@ -63,7 +63,7 @@ impl ArmNode {
     /// A limb that is not at rest, or on its way there.
     pub(crate) fn limb_away(&self) -> Option<Limb> {
         let measured = self.driver.measured();
-        let robot = &self.config.arm.robot;
+        let robot = &self.config.setup.robot;
         Limb::BOTH.into_iter().find(|limb| !measured.is_at_rest(robot, *limb))
     }
 
@@ -143,7 +143,7 @@ impl ArmNode {
             Purpose::Aim(object) => Some(object),
             Purpose::Return => None,
         };
-        self.course.begin(&program, object, &self.config.arm);
+        self.course.begin(&program, object, &self.config);
         self.executor.start(program);
     }
 
@@ -175,10 +175,10 @@ impl ArmNode {
 
     fn planner_with<R>(&self, plan: impl FnOnce(&Planner<'_>) -> R) -> R {
         plan(&Planner {
-            robot: &self.config.arm.robot,
-            settings: &self.config.arm.plan,
+            robot: &self.config.setup.robot,
+            settings: &self.config.setup.plan,
             grasps: &self.config.arm.grasp,
-            limb: self.config.arm.limb,
+            limb: self.config.setup.limb,
             world: &self.world,
             state: &self.state,
             measured: &self.driver.measured(),

@@ -35,6 +35,7 @@ use messages::{
     ArmStatus, Hindrance, JointStates, MotionCommand, RobotAct, TrajectoryView, WorldView,
 };
 use orders::StandingAct;
+use preflight::ArmSetup;
 use publish::{Facts, Publisher};
 use scene::{ObjectId, Scene};
 use service::{Effects, Event, Node, NodeError, Span, Time};
@@ -72,8 +73,10 @@ type Fx = Effects<Out, Record>;
 /// What the arm is configured with.
 #[derive(Clone, Debug)]
 pub struct Config {
-    /// How it moves, and where it brings things.
+    /// Driver, time scale, grasps, and the simulated world.
     pub arm: config::Arm,
+    /// Robot, limb and settings of motions.
+    pub setup: ArmSetup,
     /// The objects and their places.
     pub scene: Scene,
 }
@@ -115,7 +118,7 @@ impl Node for ArmNode {
         let state = recover::state(&config, records)?;
         let driver = match config.arm.driver {
             config::Driver::Kinematic => Box::new(KinematicArm::at(&state)) as Box<dyn ArmDriver>,
-            config::Driver::Baxter => Box::new(BaxterDriver::new(&config.arm, &state)),
+            config::Driver::Baxter => Box::new(BaxterDriver::new(&config, &state)),
         };
         Ok(Self::with_driver(config, state, driver))
     }
@@ -160,7 +163,7 @@ impl ArmNode {
         let settled = recover::other_scene(&state, &config.scene);
         let scene_changed = settled.is_some();
         Self {
-            world: World::new(&config.arm.robot, &config.scene),
+            world: World::new(&config.setup.robot, &config.scene),
             publisher: Publisher::new(&config.arm),
             course: Course::default(),
             state: settled.unwrap_or(state),

@@ -43,10 +43,10 @@ pub fn next(phase: PickPhase, holding: Option<bool>, at_hand_over: bool) -> Next
 /// The journal's joints are not where joints can be.
 pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, NodeError> {
     let first =
-        || ArmState::first(&config.arm.robot, config.scene.key(), config.arm.plan.open_width_m);
+        || ArmState::first(&config.setup.robot, config.scene.key(), config.setup.plan.open_width_m);
     let state = records.pop().map_or_else(first, |record| record.state);
     let within = |limb: &Limb| {
-        config.arm.robot.arm(*limb).chain.limits().within(&state.posture.joints[side(*limb)])
+        config.setup.robot.arm(*limb).chain.limits().within(&state.posture.joints[side(*limb)])
     };
     match Limb::BOTH
         .into_iter()

@@ -5,9 +5,10 @@ use config::{Driver, Settings};
 use messages::{
     ArmStatus, JointStates, MotionCommand, RobotAct, Service, TrajectoryView, WorldView, topics,
 };
+use preflight::ArmSetup;
 use robot::RobotTopics;
 use service::bus::{EncodedWriter, PortError, Reader, Writer};
-use service::exit::Failure;
+use service::exit::{Exit, Failure};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 
@@ -25,7 +26,9 @@ impl Program for ArmProgram {
     type Shell = ArmShell;
 
     fn config(_: &Environment, settings: &Settings) -> Result<Config, Failure> {
-        Ok(Config { arm: settings.arm.clone(), scene: settings.scene.clone() })
+        let setup = ArmSetup::new(settings)
+            .map_err(|problems| Failure::new(Exit::Config, problems.to_string()))?;
+        Ok(Config { arm: settings.arm.clone(), setup, scene: settings.scene.clone() })
     }
 }
 

@@ -10,8 +10,9 @@ use messages::robot::{
 };
 use messages::topics::robot;
 use messages::{Service, Topic};
+use preflight::ArmSetup;
 use service::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
-use service::exit::Failure;
+use service::exit::{Exit, Failure};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 
@@ -30,9 +31,11 @@ impl Program for BaxterProgram {
     type Shell = BaxterShell;
 
     fn config(_: &Environment, settings: &Settings) -> Result<Config, Failure> {
+        let setup = ArmSetup::new(settings)
+            .map_err(|problems| Failure::new(Exit::Config, problems.to_string()))?;
         let arm = &settings.arm;
         Ok(Config {
-            robot: arm.robot.clone(),
+            robot: setup.robot,
             simulated: arm.simulated,
             grasp_error_m: arm.grasp.error_m,
             restock: arm.restock,

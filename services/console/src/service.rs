@@ -71,7 +71,7 @@ fn serve(arguments: Vec<String>) -> Result<(), Failure> {
             },
             "study": study.is_offered(),
         }),
-        urdf: settings.robot_urdf().to_owned(),
+        urdf: settings.robot_files().urdf.text.clone(),
         voice_dir: settings.voice_dir(&environment.paths.run()),
         study_dir: study::folder(&settings, &environment.paths),
     });

@@ -104,7 +104,7 @@ pub(crate) fn key(settings: &Settings, planner: &str) -> u64 {
         hash.text(planner);
     }
     hash.text(&settings.section_text(Section::Dialogue));
-    hash.text(settings.scene_text());
+    hash.text(&settings.scene_file().text);
     if settings.durations.is_some() {
         hash.text(&settings.durations_text());
     }

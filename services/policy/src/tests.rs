@@ -33,7 +33,7 @@ fn settings() -> Settings {
 fn settings_with(over: &[(&str, &str)]) -> Settings {
     let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
     let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
-    Settings::load(config, None, &over).unwrap_or_else(|e| panic!("{e}"))
+    preflight::load(config, None, &over).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn mind() -> Mind {

@@ -1,20 +1,16 @@
 //! `arm.toml`: which arm, how it moves, and where it brings things.
 
-use manipulation::{Limb, PlanSettings, Robot, gripper};
-
 use crate::fields::Fields;
 
 /// The arm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
-    /// What it is made of: links, joints, limits, shapes.
-    pub robot: Robot,
-    /// What moves.
+    /// The driver of its joints.
     pub driver: Driver,
-    /// The limb that fetches; `None`: the one that reaches the object better.
-    pub limb: Option<Limb>,
-    /// How it moves, and where it brings things.
-    pub plan: PlanSettings,
+    /// The limb that fetches.
+    pub limb: Limb,
+    /// Settings of its motions.
+    pub motion: Motion,
     /// Simulated seconds per second.
     pub time_scale: f64,
     /// Whether an object that was handed over is put back in its place in the simulated world.
@@ -27,6 +23,38 @@ pub struct Arm {
     pub baxter: Baxter,
     /// The simulated Baxter.
     pub simulated: Simulated,
+}
+
+/// The limb that fetches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Limb {
+    /// The one that reaches the object better.
+    Auto,
+    /// Always the left one.
+    Left,
+    /// Always the right one.
+    Right,
+}
+
+/// Settings of motions. Positions in frame `base`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motion {
+    /// Share of the joints' velocity, acceleration and jerk limits, 0 to 1.
+    pub speed_ratio: f64,
+    /// Height above an object at which a grasp is approached, metres.
+    pub hover_m: f64,
+    /// Where objects are handed over, metres.
+    pub hand_over_xyz_m: [f64; 3],
+    /// Height of the table, metres.
+    pub table_z_m: f64,
+    /// Opening of the gripper before a grasp, per cent of its stroke.
+    pub grip_open_percent: f64,
+    /// Distance from the gripper to an object that it points at, metres.
+    pub standoff_m: f64,
+    /// Time for which a pointing gesture is held, seconds.
+    pub point_s: f64,
+    /// Distance kept from obstacles, metres.
+    pub margin_m: f64,
 }
 
 /// How grasps are tried.
@@ -83,17 +111,14 @@ pub enum Driver {
     Baxter,
 }
 
-/// Reads the section; the robot that it names is put in once its files have been read.
+/// Reads the section.
 pub(crate) fn read(f: &mut Fields<'_>) -> Arm {
     f.text("robot");
     let arm = Arm {
-        robot: Robot::baxter().clone(),
         driver: f.choice("driver", &[("kinematic", Driver::Kinematic), ("baxter", Driver::Baxter)]),
-        limb: f.choice(
-            "limb",
-            &[("auto", None), ("left", Some(Limb::Left)), ("right", Some(Limb::Right))],
-        ),
-        plan: plan(f),
+        limb: f
+            .choice("limb", &[("auto", Limb::Auto), ("left", Limb::Left), ("right", Limb::Right)]),
+        motion: motion(f),
         time_scale: f.number("time_scale", 0.01..=1000.0),
         restock: f.flag("restock"),
         joint_rate_hz: f.number("joint_rate_hz", 1.0..=1000.0),
@@ -133,13 +158,13 @@ fn simulated(f: &mut Fields<'_>) -> Simulated {
     }
 }
 
-fn plan(f: &mut Fields<'_>) -> PlanSettings {
-    PlanSettings {
+fn motion(f: &mut Fields<'_>) -> Motion {
+    Motion {
         speed_ratio: f.number("speed_ratio", 0.05..=1.0),
         hover_m: f.number("hover_m", 0.02..=0.5),
         hand_over_xyz_m: f.triple("hand_over_xyz"),
         table_z_m: f.number("table_z_m", -1.0..=1.0),
-        open_width_m: gripper::width_m(f.number("grip_open_percent", 1.0..=100.0)),
+        grip_open_percent: f.number("grip_open_percent", 1.0..=100.0),
         standoff_m: f.number("standoff_m", 0.05..=1.0),
         point_s: f.number("point_s", 0.0..=60.0),
         margin_m: f.number("margin_m", 0.0..=0.2),

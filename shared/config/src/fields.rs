@@ -239,11 +239,6 @@ impl<'a> Fields<'a> {
         self.wrong.contains(&key)
     }
 
-    /// Whether no key of this table had a problem so far.
-    pub(crate) fn is_sound(&self) -> bool {
-        self.wrong.is_empty()
-    }
-
     /// A problem with the value at `key`, told where that value was written.
     pub(crate) fn problem(
         &mut self,

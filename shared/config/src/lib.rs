@@ -21,14 +21,13 @@ mod named;
 mod nearest;
 mod prior;
 mod problems;
-mod reach;
 mod resolved;
 mod robot_files;
 mod scene_file;
 mod services;
 mod snapshot;
 mod speech;
-mod study;
+pub mod study;
 mod text_file;
 
 #[cfg(test)]
@@ -39,17 +38,19 @@ use std::path::{Path, PathBuf};
 use ::dialogue::Durations;
 use scene::Scene;
 
-pub use crate::arm::{Arm, Baxter, Driver, Grasps, Simulated};
+pub use crate::arm::{Arm, Baxter, Driver, Grasps, Limb, Motion, Simulated};
 pub use crate::console::Console;
 pub use crate::dialogue::{CostsFrom, Dialogue};
 pub use crate::gesture::Gesture;
 pub use crate::group::{Group, Log, RestartLimits};
 pub use crate::problems::Problems;
 pub use crate::resolved::{Origin, Section};
+pub use crate::robot_files::RobotFiles;
 pub use crate::services::{BUILT_IN, OPTIONAL, Restart, Service};
 pub use crate::snapshot::SNAPSHOT_FILE;
 pub use crate::speech::{Microphone, MicrophoneMode, Recogniser, Speech, Voice};
 pub use crate::study::Study;
+pub use crate::text_file::TextFile;
 
 use crate::resolved::Resolved;
 
@@ -70,8 +71,8 @@ pub struct Settings {
     pub console: Console,
     /// The objects and the words for them. Every object has a place that the arm can reach.
     pub scene: Scene,
-    /// Seconds of every question and pick, where the robot's own are what its questions cost
-    /// ([`CostsFrom::Robot`]).
+    /// Measured seconds of every question and pick, under [`CostsFrom::Robot`]; set by
+    /// `preflight`, read from a snapshot.
     pub durations: Option<Durations>,
     resolved: Resolved,
 }
@@ -96,14 +97,25 @@ impl Settings {
         self.resolved.section_text(section)
     }
 
-    /// The scene file as it was read.
-    pub fn scene_text(&self) -> &str {
-        &self.resolved.scene.text
+    /// The scene file.
+    pub fn scene_file(&self) -> &TextFile {
+        &self.resolved.scene
     }
 
-    /// The robot's description as it was read: links, joints, limits and shapes (URDF).
-    pub fn robot_urdf(&self) -> &str {
-        &self.resolved.robot.urdf.text
+    /// The files that describe the robot.
+    pub fn robot_files(&self) -> &RobotFiles {
+        &self.resolved.robot
+    }
+
+    /// A problem with the value at a key, located in the file that it came from.
+    pub fn problem(
+        &self,
+        key: &[&str],
+        what: impl Into<String>,
+        cure: impl Into<String>,
+    ) -> scene::Problem {
+        let path: Vec<String> = key.iter().map(|part| (*part).to_owned()).collect();
+        self.resolved.tree.source_of(key).problem(&path, what, cure)
     }
 
     /// Where the sound of the robot's latest sentences is kept, if anywhere: where the operator says,

@@ -16,8 +16,7 @@ use crate::robot_files::{self, RobotFiles};
 use crate::scene_file;
 use crate::text_file::TextFile;
 use crate::{
-    Settings, arm, console, dialogue, durations, gesture, group, nearest, reach, services, speech,
-    study,
+    Settings, arm, console, dialogue, durations, gesture, group, nearest, services, speech, study,
 };
 
 pub(crate) fn load(
@@ -44,7 +43,7 @@ pub(crate) fn load(
         tree.merge(layer, &mut Vec::new(), &mut report);
     }
     let files = find_files(dir, &tree, &mut report);
-    check(tree, report, files, Basis::Files)
+    check(tree, report, files, None)
 }
 
 /// The files that the settings name; none where there was a problem with one.
@@ -63,53 +62,36 @@ fn find_files(dir: &Path, tree: &Table, report: &mut Report) -> Files {
     }
 }
 
-/// What is known of the arm in the scene.
-#[derive(Clone, Debug)]
-pub(crate) enum Basis {
-    /// Nothing: whether it can fetch every object, and how long it takes, is to be found out.
-    Files,
-    /// All, and too slow to find out again whenever a service starts; with the durations.
-    Snapshot(Option<Node>, Source),
-}
+/// Durations as a snapshot holds them, and the snapshot.
+pub(crate) type Measured = (Option<Node>, Source);
 
-/// Checks the merged layers and the files that they name.
+/// Checks the merged layers and the files that they name. `measured` are the durations of a
+/// snapshot; a configuration folder has none yet.
 pub(crate) fn check(
     mut tree: Table,
     mut report: Report,
     files: Files,
-    basis: Basis,
+    measured: Option<Measured>,
 ) -> Result<Settings, Problems> {
     services::complete(tree.table_at("group"), &mut report);
     let mut fields = Fields::new(&tree, Vec::new(), &mut report);
     let group = fields.table("group", group::read);
     let dialogue = fields.table("dialogue", dialogue::read);
     let speech = fields.table("speech", speech::read);
-    let (mut arm, arm_is_sound) = fields.table("arm", |f| (arm::read(f), f.is_sound()));
+    let arm = fields.table("arm", arm::read);
     let study = fields.table("study", |f| study::read(f, &dialogue.planner));
     let console = fields.table("console", console::read);
     fields.finish();
-    let Files { scene: file, robot: robot_files } = files;
-    let robot = robot_files.as_ref().and_then(|files| robot_files::read(files, &mut report));
-    let robot_is_sound = robot.is_some();
-    if let Some(robot) = robot {
-        arm.robot = robot;
-    }
+    let Files { scene: file, robot } = files;
     let scene = file.as_ref().and_then(|file| scene_file::read(file, &mut report));
-    if let (Some(file), Some(scene), Basis::Files, true) =
-        (&file, &scene, &basis, arm_is_sound && robot_is_sound)
-    {
-        reach::check(scene, file, &arm, &tree, &mut report);
-    }
     if let Some(scene) = &scene {
         gesture::check(scene, &dialogue.gesture, &tree, &mut report);
     }
-    let settings = file.zip(scene).zip(robot_files).map(|((file, scene), robot)| {
-        let durations = match basis {
-            // What is wrong already would be told again in other words.
-            _ if !report.is_empty() => None,
-            Basis::Snapshot(node, at) => durations::read(node, &dialogue, &scene, &at, &mut report),
-            Basis::Files => durations::find(&scene, &file, (&dialogue, &speech, &arm), &mut report),
-        };
+    let settings = file.zip(scene).zip(robot).map(|((file, scene), robot)| {
+        // Other problems would be reported again as missing durations.
+        let durations = measured.filter(|_| report.is_empty()).and_then(|(node, source)| {
+            durations::read(node, &dialogue, &scene, &source, &mut report)
+        });
         let resolved = Resolved { tree, scene: file, robot };
         Settings { group, dialogue, speech, arm, study, console, scene, durations, resolved }
     });

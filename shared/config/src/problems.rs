@@ -29,6 +29,21 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
+impl From<Problem> for Problems {
+    fn from(problem: Problem) -> Self {
+        Self(vec![problem])
+    }
+}
+
+impl From<Vec<Problem>> for Problems {
+    /// # Panics
+    /// Without a problem.
+    fn from(problems: Vec<Problem>) -> Self {
+        assert!(!problems.is_empty(), "an error without a problem");
+        Self(problems)
+    }
+}
+
 impl<'a> IntoIterator for &'a Problems {
     type Item = &'a Problem;
     type IntoIter = std::slice::Iter<'a, Problem>;

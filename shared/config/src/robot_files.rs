@@ -1,10 +1,6 @@
-//! The robot that the arm names.
+//! Files of the robot that the arm section names.
 
 use std::path::{Path, PathBuf};
-
-use manipulation::Robot;
-use robot_model::{BAXTER_SRDF, BAXTER_URDF};
-use scene::Problem;
 
 use crate::load::read_text;
 use crate::named::Named;
@@ -12,13 +8,13 @@ use crate::nearest;
 use crate::problems::Report;
 use crate::text_file::TextFile;
 
-/// The files of a robot's description as they were read.
+/// Files that describe the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct RobotFiles {
+pub struct RobotFiles {
     /// Links, joints, limits and shapes.
-    pub(crate) urdf: TextFile,
+    pub urdf: TextFile,
     /// Named postures, and links that may touch; none where there is no such file.
-    pub(crate) srdf: Option<TextFile>,
+    pub srdf: Option<TextFile>,
 }
 
 /// The robot that needs no files.
@@ -31,7 +27,10 @@ impl RobotFiles {
             label: format!("built-in {BUILT_IN}.{ending}"),
             text: text.to_owned(),
         };
-        Self { urdf: file(BAXTER_URDF, "urdf"), srdf: Some(file(BAXTER_SRDF, "srdf")) }
+        Self {
+            urdf: file(include_str!("../../../config/robots/baxter.urdf"), "urdf"),
+            srdf: Some(file(include_str!("../../../config/robots/baxter.srdf"), "srdf")),
+        }
     }
 }
 
@@ -59,31 +58,4 @@ pub(crate) fn find(dir: &Path, named: &Named<'_>, report: &mut Report) -> Option
     };
     let urdf = read(&path, report)?;
     Some(RobotFiles { urdf, srdf: read(&path.with_extension("srdf"), report) })
-}
-
-/// Reads the description. What ships is read once for all.
-pub(crate) fn read(files: &RobotFiles, report: &mut Report) -> Option<Robot> {
-    let srdf = files.srdf.as_ref().map(|file| file.text.as_str());
-    if files.urdf.text == BAXTER_URDF && srdf == Some(BAXTER_SRDF) {
-        return Some(Robot::baxter().clone());
-    }
-    let description = match robot_model::Robot::parse(&files.urdf.text, srdf) {
-        Ok(description) => description,
-        Err(faults) => {
-            for fault in faults.all() {
-                let file = match (fault.document, &files.srdf) {
-                    (robot_model::Document::Srdf, Some(srdf)) => &srdf.label,
-                    _ => &files.urdf.label,
-                };
-                let place = format!("line {}, {}", fault.line, fault.element);
-                report.add(Problem::new(file, place, &fault.problem, &fault.cure));
-            }
-            return None;
-        }
-    };
-    Robot::from_description(&description)
-        .map_err(|error| {
-            report.add(Problem::new(&*files.urdf.label, "", error.what, error.cure));
-        })
-        .ok()
 }

@@ -9,7 +9,7 @@ use scene::Problem;
 use toml::Value;
 
 use crate::layer::{Node, Source, Table};
-use crate::load::{self, Basis, Files};
+use crate::load::{self, Files};
 use crate::problems::{Problems, Report};
 use crate::resolved::{self, Resolved, to_toml};
 use crate::robot_files::RobotFiles;
@@ -86,7 +86,7 @@ impl Settings {
         let files = Files { scene, robot: urdf.map(|urdf| RobotFiles { urdf, srdf }) };
         let mut tree = resolved::defaults();
         tree.merge(layer, &mut Vec::new(), &mut report);
-        load::check(tree, report, files, Basis::Snapshot(measured, source))
+        load::check(tree, report, files, Some((measured, source)))
     }
 }
 

@@ -1,9 +1,10 @@
-//! A text file that settings name.
+//! Text files that settings name.
 
-/// A file as it was read.
+/// A text file and its name in diagnostics.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct TextFile {
-    /// The file, as people know it.
-    pub(crate) label: String,
-    pub(crate) text: String,
+pub struct TextFile {
+    /// Path, or a description of a built-in file.
+    pub label: String,
+    /// Its text.
+    pub text: String,
 }

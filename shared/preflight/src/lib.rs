@@ -1,22 +1,32 @@
-//! How long everything takes that robot and person do: the seconds that planners pay for questions
-//! and that studies count.
+//! Checks of a scene on a robot before anything moves, and the durations that planners pay for
+//! questions and that studies count.
 //!
-//! This crate is pure: no IO, no clock, no threads.
+//! This crate is pure, except for [`load`], which reads a configuration folder.
 //!
-//! | what | where |
+//! | contents | file |
 //! |---|---|
-//! | how long the arm takes, by its own trajectories | `motion.rs` |
-//! | how long speech takes: the robot's, the person's, and until it is recognised | `speech.rs` |
-//! | both together: the seconds of every question and pick in a scene | `measure.rs` |
+//! | loading a configuration with all checks | `load.rs` |
+//! | robot, limb and plan settings from a configuration | `setup.rs` |
+//! | reachability of every object | `reach.rs` |
+//! | durations of the arm's trajectories | `motion.rs` |
+//! | durations of speech: robot, person, recogniser | `speech.rs` |
+//! | durations of every question and pick in a scene | `measure.rs` |
 
 mod draw;
+mod load;
 mod measure;
 mod motion;
+mod reach;
+mod setup;
 mod speech;
 #[cfg(test)]
 mod testing;
+#[cfg(test)]
+mod tests;
 
 pub use draw::{between, log_normal};
+pub use load::{durations, load};
 pub use measure::measure;
 pub use motion::{Extent, MotionError, Motions, Refusal};
+pub use setup::ArmSetup;
 pub use speech::{Pace, Voice};

@@ -204,12 +204,7 @@ pub(crate) fn places(scene: &Scene) -> Result<Vec<ObjectPose>, MotionError> {
     let place = |object: &scene::Object| {
         let placement =
             object.placement.ok_or_else(|| MotionError::NoPlace(object.name.clone()))?;
-        Ok(ObjectPose {
-            xyz_m: placement.xyz,
-            yaw_rad: placement.yaw,
-            size_m: placement.size,
-            grasp_width_m: placement.grasp_width,
-        })
+        Ok(crate::reach::pose(&placement))
     };
     scene.objects().iter().map(place).collect()
 }

@@ -12,6 +12,7 @@ mod gripper;
 mod tests;
 
 use super::{ArmDriver, Command, Fault, Fingers, Measured, Order, Source, Told};
+use crate::Config;
 use crate::state::{ArmState, side};
 use config::Baxter;
 use gripper::{Condition, Gripper};
@@ -74,8 +75,8 @@ struct Set {
 impl BaxterDriver {
     /// A driver that has heard nothing yet: until it does, the posture is the one that the journal
     /// remembers.
-    pub fn new(arm: &config::Arm, state: &ArmState) -> Self {
-        let settings = arm.baxter;
+    pub fn new(config: &Config, state: &ArmState) -> Self {
+        let settings = config.arm.baxter;
         let still = [[0.0; 7]; 2];
         let measured = Measured {
             posture: state.posture,
@@ -87,8 +88,8 @@ impl BaxterDriver {
         };
         Self {
             settings,
-            robot: arm.robot.clone(),
-            used: Limb::BOTH.map(|own| arm.limb.is_none_or(|limb| limb == own)),
+            robot: config.setup.robot.clone(),
+            used: Limb::BOTH.map(|own| config.setup.limb.is_none_or(|limb| limb == own)),
             measured,
             joints_at: None,
             assembly: None,

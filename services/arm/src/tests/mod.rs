@@ -21,6 +21,7 @@ use messages::{
     ActKind, ArmStatus, InteractionId, JointStates, MotionCommand, MotionOrder, PickId,
     PickOutcome, PickPhase, RobotAct, TrajectoryView, WorldView,
 };
+use preflight::ArmSetup;
 use robot::Robot;
 use scene::{ObjectId, Question};
 use service::{Effects, Event, Node, Span, Time};
@@ -35,7 +36,8 @@ fn config() -> Config {
     let load = || {
         let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
         let settings = Settings::load(folder, None, &[]).unwrap();
-        Config { arm: settings.arm, scene: settings.scene }
+        let setup = ArmSetup::new(&settings).unwrap();
+        Config { arm: settings.arm, setup, scene: settings.scene }
     };
     SETTINGS.get_or_init(load).clone()
 }
@@ -227,11 +229,11 @@ impl Machine {
 
     fn rests(&self) -> bool {
         let measured = self.robot.measured();
-        Limb::BOTH.into_iter().all(|limb| measured.is_at_rest(&self.config.arm.robot, limb))
+        Limb::BOTH.into_iter().all(|limb| measured.is_at_rest(&self.config.setup.robot, limb))
     }
 
     fn tip(&self, limb: Limb) -> nalgebra::Isometry3<f64> {
-        self.config.arm.robot.arm(limb).chain.forward(&self.joints_of(limb))
+        self.config.setup.robot.arm(limb).chain.forward(&self.joints_of(limb))
     }
 
     fn joints_of(&self, limb: Limb) -> Joints {

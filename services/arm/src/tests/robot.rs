@@ -41,7 +41,7 @@ impl Robot {
         let cuboid = |p: Placement| Cuboid { centre: p.xyz, size: p.size, yaw: p.yaw };
         Self(Rc::new(RefCell::new(Body {
             arm: KinematicArm::at(state),
-            limbs: Limb::BOTH.map(|limb| config.arm.robot.arm(limb).clone()),
+            limbs: Limb::BOTH.map(|limb| config.setup.robot.arm(limb).clone()),
             velocity_is_zero: true,
             objects: places.map(cuboid).collect(),
             durable: state.pick,

@@ -11,7 +11,7 @@ use service::launch::Options;
 /// Reads the configuration folder that `options` name.
 pub fn from_settings(options: Options) -> Load {
     Box::new(move || {
-        let loaded = Settings::load(&options.config, options.profile.as_deref(), &options.set);
+        let loaded = preflight::load(&options.config, options.profile.as_deref(), &options.set);
         match loaded {
             Ok(settings) => Ok(configuration(settings, &options)),
             Err(problems) => Err(problems.iter().map(ToString::to_string).collect()),
@@ -72,5 +72,5 @@ fn fingerprint(name: &str, settings: &Settings) -> String {
     let texts = sections.iter().map(|&section| settings.section_text(section));
     let decides = !matches!(name, "speech" | "grounding" | "arm" | "console");
     let durations = decides.then(|| settings.durations_text());
-    texts.chain([settings.scene_text().to_owned()]).chain(durations).collect()
+    texts.chain([settings.scene_file().text.clone()]).chain(durations).collect()
 }

@@ -12,7 +12,7 @@ use crate::output::{Ink, Output, note, table};
 /// Tells every problem at once, or what would run.
 pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
     let folder = paths::config_folder(&args.config)?;
-    let loaded = Settings::load(&folder, args.config.profile.as_deref(), &args.config.set);
+    let loaded = preflight::load(&folder, args.config.profile.as_deref(), &args.config.set);
     match loaded {
         Err(problems) => refused(&problems, out),
         Ok(settings) if out.is_json() => {
@@ -58,7 +58,11 @@ fn summary(settings: &Settings) -> Vec<String> {
     ];
     let asks: Vec<&str> = asks.into_iter().filter(|(on, _)| *on).map(|(_, what)| what).collect();
     let asks = if asks.is_empty() { "no".to_owned() } else { asks.join(", ") };
-    let limb = arm.limb.map_or("the nearer limb".to_owned(), |limb| format!("the {limb} limb"));
+    let limb = match arm.limb {
+        config::Limb::Auto => "the nearer limb",
+        config::Limb::Left => "the left limb",
+        config::Limb::Right => "the right limb",
+    };
     let mut lines = vec![
         format!("  scene     {} ({objects}; {})", scene.name(), attributes.join(", ")),
         format!(
@@ -70,7 +74,7 @@ fn summary(settings: &Settings) -> Vec<String> {
             .to_lowercase(),
         format!(
             "  arm       {limb}, {:.0} % of its speed, time × {}",
-            arm.plan.speed_ratio * 100.0,
+            arm.motion.speed_ratio * 100.0,
             arm.time_scale
         ),
         "  services".to_owned(),

@@ -27,7 +27,7 @@ pub(super) fn group_paths(group: &GroupName) -> Result<GroupPaths, CliError> {
 /// No configuration is found, or everything that is wrong with it.
 pub(super) fn settings(args: &ConfigArgs) -> Result<Settings, CliError> {
     let folder = config_folder(args)?;
-    Ok(Settings::load(&folder, args.profile.as_deref(), &args.set)?)
+    Ok(preflight::load(&folder, args.profile.as_deref(), &args.set)?)
 }
 
 /// The settings of a running group, else those that the command line names.

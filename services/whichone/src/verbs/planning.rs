@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use config::{CostsFrom, Settings};
 use dialogue::{Actions, Costs, DecisionProblem, Durations, Model, Params, registry};
+use preflight::ArmSetup;
 use scene::Scene;
 use service::exit::Exit;
 
@@ -84,9 +85,12 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, CliError> {
         .as_ref()
         .filter(|settings| preset.is_none() && settings.dialogue.costs_from == CostsFrom::Robot);
     let durations = of_robot
-        .map(|settings| settings.measure(&scene, actions.point()))
-        .transpose()
-        .map_err(|error| CliError::new(Exit::Config, error.to_string()))?;
+        .map(|settings| {
+            let setup = ArmSetup::new(settings)?;
+            preflight::durations(settings, &setup, &scene, actions.point())
+                .map_err(|error| CliError::new(Exit::Config, error.to_string()))
+        })
+        .transpose()?;
     Ok(Problem { scene, model, costs, durations, actions, settings })
 }
 

@@ -4,10 +4,9 @@ use std::path::Path;
 use std::time::Duration;
 
 use language::Language;
-use manipulation::{Limb, PlanSettings};
 
 use super::{Folder, ONE_BOWL, shipped};
-use crate::{BUILT_IN, Recogniser, Restart, Section, Settings, Voice};
+use crate::{BUILT_IN, Limb, Recogniser, Restart, Section, Settings, Voice};
 
 #[test]
 fn the_shipped_folder_loads_with_every_profile_and_scene() {
@@ -75,8 +74,7 @@ fn the_defaults_are_what_the_documentation_says() {
     assert!(dialogue.actions.attribute && !dialogue.actions.which);
     assert_eq!((speech.voice, speech.recogniser), (Voice::Auto, Recogniser::Auto));
     assert_eq!((speech.player, speech.model_dir), (None, None));
-    assert_eq!((arm.limb, arm.time_scale, arm.restock), (None, 1.0, true));
-    assert_eq!(arm.plan, PlanSettings { speed_ratio: 0.6, ..PlanSettings::default() });
+    assert_eq!((arm.limb, arm.time_scale, arm.restock), (Limb::Auto, 1.0, true));
 }
 
 #[test]
@@ -86,8 +84,8 @@ fn later_layers_win_value_by_value() {
         ("profiles/fast.toml", "[arm]\ntime_scale = 10\njoint_rate_hz = 20"),
     ]);
     let arm = folder.load(Some("fast"), &[("arm.joint_rate_hz", "10")]).unwrap().arm;
-    assert_eq!((arm.plan.speed_ratio, arm.time_scale, arm.joint_rate_hz), (0.3, 10.0, 10.0));
-    assert_eq!(arm.plan.hover_m, 0.15);
+    assert_eq!((arm.motion.speed_ratio, arm.time_scale, arm.joint_rate_hz), (0.3, 10.0, 10.0));
+    assert_eq!(arm.motion.hover_m, 0.15);
 
     let settings = folder.load(Some("fast"), &[("arm.joint_rate_hz", "10")]).unwrap();
     let from = |key: &str| {
@@ -113,8 +111,8 @@ fn overrides_need_no_quotes_in_a_shell() {
     ];
     let settings = folder.load(None, &overrides).unwrap();
     assert_eq!(settings.speech.voice, Voice::Print);
-    assert_eq!((settings.arm.limb, settings.arm.restock), (Some(Limb::Left), false));
-    assert_eq!(settings.arm.plan.hand_over_xyz_m, [0.75, 0.4, 0.15]);
+    assert_eq!((settings.arm.limb, settings.arm.restock), (Limb::Left, false));
+    assert_eq!(settings.arm.motion.hand_over_xyz_m, [0.75, 0.4, 0.15]);
     assert_eq!(settings.dialogue.costs.wrong, 80.0);
     assert_eq!(settings.group.services[3].watchdog, None);
 }

@@ -2,7 +2,6 @@
 
 mod console;
 mod layering;
-mod reach;
 mod robots;
 mod snapshot;
 mod study;
@@ -21,7 +20,7 @@ fn shipped() -> PathBuf {
 }
 
 /// A configuration folder with the given files. The scene that the defaults name is always there,
-/// with one object, for which reach is found out quickly.
+/// with one object.
 struct Folder(TempDir);
 
 const ONE_BOWL: &str = r#"

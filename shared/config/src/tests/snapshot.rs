@@ -7,8 +7,9 @@ use crate::{SNAPSHOT_FILE, Section, Settings};
 
 #[test]
 fn a_snapshot_reads_back_equal() {
-    let overrides = [("arm.time_scale", "12.5"), ("group.scene", "markers"), ("arm.limb", "right")]
-        .map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let overrides =
+        [("arm.time_scale", "12.5"), ("group.scene", "markers"), ("dialogue.costs.from", "config")]
+            .map(|(key, value)| (key.to_owned(), value.to_owned()));
     for profile in [None, Some("ci"), Some("lab"), Some("paper")] {
         let settings = Settings::load(&shipped(), profile, &overrides).unwrap();
         let run = tempfile::tempdir().unwrap();
@@ -20,33 +21,11 @@ fn a_snapshot_reads_back_equal() {
         assert_eq!(read.speech, settings.speech);
         assert_eq!(read.arm, settings.arm);
         assert_eq!(read.scene, settings.scene);
-        assert_eq!(read.scene_text(), settings.scene_text());
+        assert_eq!(read.scene_file(), settings.scene_file());
         let names: Vec<_> =
             fs::read_dir(run.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
         assert_eq!(names, [SNAPSHOT_FILE], "nothing else is left in the folder");
     }
-}
-
-#[test]
-fn durations_are_measured_once_and_kept_bit_for_bit() {
-    let over = [("dialogue.costs.from", "robot"), ("dialogue.mode", "present")]
-        .map(|(key, value)| (key.to_owned(), value.to_owned()));
-    let settings = Settings::load(&shipped(), None, &over).unwrap();
-    let durations = settings.durations.clone().unwrap();
-    assert_eq!((durations.point.len(), durations.pick.len()), (6, 6));
-    assert_eq!(settings.measure(&settings.scene, true).unwrap(), durations);
-    let run = tempfile::tempdir().unwrap();
-    settings.write_snapshot(run.path()).unwrap();
-    let read = Settings::load_snapshot(run.path()).unwrap();
-    assert_eq!((&read, read.durations.as_ref()), (&settings, Some(&durations)));
-    assert_eq!(read.durations_text(), settings.durations_text());
-    let path = run.path().join(SNAPSHOT_FILE);
-    let text = fs::read_to_string(&path).unwrap();
-    fs::write(&path, text.replace("pick = [", "pick = [1.0, ")).unwrap();
-    let error = Settings::load_snapshot(run.path()).unwrap_err().to_string();
-    assert!(error.contains("the durations of this scene are missing"), "{error}");
-    let plain = Settings::load(&shipped(), None, &[]).unwrap();
-    assert_eq!((plain.durations.as_ref(), plain.durations_text()), (None, String::new()));
 }
 
 #[test]
@@ -57,7 +36,7 @@ fn editing_the_files_changes_nothing_until_the_next_snapshot() {
     folder.write("arm.toml", "speed_ratio = 0.9");
     folder.write("scenes/bowls.toml", "not a scene any more");
     let read = Settings::load_snapshot(run.path()).unwrap();
-    assert_eq!((read.arm.plan.speed_ratio, read.scene.name()), (0.3, "one bowl"));
+    assert_eq!((read.arm.motion.speed_ratio, read.scene.name()), (0.3, "one bowl"));
     assert!(folder.load(None, &[]).is_err());
 }
 

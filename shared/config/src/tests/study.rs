@@ -1,9 +1,8 @@
 //! `study.toml`, right and wrong.
 
-use evaluation::user_study::{Design, Kind, Objects};
-
 use super::Folder;
 use crate::Settings;
+use crate::study::{Design, Kind, Objects};
 
 #[track_caller]
 fn check(text: &str, expected: &[&str]) {

@@ -167,6 +167,20 @@ fn a_number_out_of_range() {
 }
 
 #[test]
+fn nobody_points_from_where_an_object_stands() {
+    let inside = "[gesture]\nenabled = true\nperson_xyz = [0.7, 0.2, -0.125]";
+    let complaints = Folder::new(&[("dialogue.toml", inside)]).complaints(None, &[]);
+    assert_eq!(
+        complaints,
+        [
+            "dialogue.toml: gesture.person_xyz: the person stands where `red_one` does (use a place from which people see the objects, e.g. [1.6, 0.0, 0.45])"
+        ]
+    );
+    let off = inside.replace("true", "false");
+    assert!(Folder::new(&[("dialogue.toml", &off)]).load(None, &[]).is_ok());
+}
+
+#[test]
 fn a_choice_that_does_not_exist() {
     check(
         "arm.toml",

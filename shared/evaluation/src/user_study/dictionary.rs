@@ -1,6 +1,6 @@
 //! What the columns of the data mean.
 
-use crate::user_study::item::{Item, Kind};
+use config::study::{Item, Kind};
 
 /// A column of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

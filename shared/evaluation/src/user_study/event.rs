@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
 use crate::user_study::plan::Step;
-use crate::user_study::protocol::Protocol;
 use crate::user_study::trial::Verdict;
+use config::study::Protocol;
 
 /// Version of the lines' form.
 pub const VERSION: u32 = 1;

@@ -8,7 +8,7 @@
 //!
 //! | what | where |
 //! |---|---|
-//! | what a lab has decided: texts, design, questionnaire | `protocol.rs`, `item.rs` |
+//! | what a lab has decided: texts, design, questionnaire | `config::study` |
 //! | which policy when, and which object | `plan.rs` |
 //! | what can happen, as lines of a journal | `event.rs` |
 //! | a participant and one interaction, folded | `participant.rs`, `trial.rs` |
@@ -18,12 +18,10 @@
 
 mod dictionary;
 mod event;
-mod item;
 mod paired;
 mod participant;
 mod pictures;
 mod plan;
-mod protocol;
 mod report;
 mod rows;
 mod stamp;
@@ -33,16 +31,15 @@ mod testing;
 mod tests;
 mod trial;
 
+pub use config::study::{Design, Item, Kind, Objects, Order, Protocol};
 pub use dictionary::{Column, INTERACTIONS, PARTICIPANTS, dictionary};
 pub use event::{
     Begun, Drawn, Entry, Event, FILE_ENDING, Fault, FormatError, Source, VERSION, parse,
 };
-pub use item::{Item, Kind};
 pub use paired::{Paired, paired};
 pub use participant::{Participant, Stage, Status, people};
 pub use pictures::pictures;
 pub use plan::{Counts, Step, draw, new_id, plan};
-pub use protocol::{Design, Objects, Order, Protocol};
 pub use report::{Answers, Group, Report, report};
 pub use rows::{Tables, tables, to_json};
 pub use stamp::utc;

@@ -3,7 +3,7 @@
 use dialogue::Rng;
 use serde::{Deserialize, Serialize};
 
-use crate::user_study::protocol::{Design, Objects, Order, Protocol};
+use config::study::{Design, Objects, Order, Protocol};
 
 /// Letters and digits that nobody takes for one another.
 const LETTERS: &[u8] = b"ACDEFGHJKMNPQRTUVWXY34679";

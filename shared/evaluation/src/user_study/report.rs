@@ -3,11 +3,11 @@
 use crate::simulation::{Interval, Mean, wilson};
 use serde_json::{Map, Value as Json, json};
 
-use crate::user_study::item::{Item, Kind};
 use crate::user_study::paired::{Paired, paired};
 use crate::user_study::participant::{Participant, Status};
 use crate::user_study::rows::items;
 use crate::user_study::trial::{End, Trial, Verdict};
+use config::study::{Item, Kind};
 
 /// Interactions with one policy, or with all.
 #[derive(Clone, Debug, PartialEq)]

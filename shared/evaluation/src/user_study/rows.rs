@@ -4,10 +4,10 @@ use serde_json::{Map, Value as Json, json};
 
 use crate::user_study::dictionary::{INTERACTIONS, PARTICIPANTS, dictionary};
 use crate::user_study::event::Source;
-use crate::user_study::item::Item;
 use crate::user_study::participant::Participant;
 use crate::user_study::stamp::utc;
 use crate::user_study::trial::{End, Trial, Verdict};
+use config::study::Item;
 
 /// The files of an export.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,11 +3,11 @@
 use serde_json::{Map, json};
 
 use crate::user_study::event::{Begun, Drawn, Entry, Event, Source, VERSION};
-use crate::user_study::item::{Item, Kind};
 use crate::user_study::participant::Participant;
 use crate::user_study::plan::{Counts, plan};
-use crate::user_study::protocol::{Design, Objects, Order, Protocol};
 use crate::user_study::trial::Verdict;
+use config::study::{Design, Objects, Order, Protocol};
+use config::study::{Item, Kind};
 
 pub(crate) fn protocol() -> Protocol {
     let item = |id: &str, kind, points| Item {

@@ -4,15 +4,18 @@ use super::*;
 use crate::driver::Grip;
 use config::Settings;
 use messages::robot::{Command as Word, EndEffectorCommand, EndEffectorState, Tristate};
+use preflight::ArmSetup;
 use std::path::Path;
 
-fn arm() -> config::Arm {
+fn config() -> Config {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
-    Settings::load(folder, Some("baxter"), &[]).unwrap().arm
+    let settings = Settings::load(folder, Some("baxter"), &[]).unwrap();
+    let setup = ArmSetup::new(&settings).unwrap();
+    Config { arm: settings.arm, setup, scene: settings.scene }
 }
 
-fn first(arm: &config::Arm) -> ArmState {
-    ArmState::first(&arm.robot, 0, 0.04)
+fn first(config: &Config) -> ArmState {
+    ArmState::first(&config.setup.robot, 0, 0.04)
 }
 
 fn ready_gripper(now: Time) -> EndEffectorState {
@@ -23,7 +26,7 @@ fn ready_gripper(now: Time) -> EndEffectorState {
 
 /// A driver, and a robot that says what it is told to say.
 struct Bench {
-    arm: config::Arm,
+    config: Config,
     driver: BaxterDriver,
     now: Time,
     joints: [Joints; 2],
@@ -33,19 +36,19 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let arm = arm();
-        let driver = BaxterDriver::new(&arm, &first(&arm));
+        let config = config();
+        let driver = BaxterDriver::new(&config, &first(&config));
         let now = Time(5_000_000_000);
-        let joints = Limb::BOTH.map(|limb| arm.robot.arm(limb).neutral);
+        let joints = Limb::BOTH.map(|limb| config.setup.robot.arm(limb).neutral);
         let assembly = AssemblyState { enabled: 1, ready: 1, ..AssemblyState::default() };
-        Self { arm, driver, now, joints, assembly, grippers: [ready_gripper(now); 2] }
+        Self { config, driver, now, joints, assembly, grippers: [ready_gripper(now); 2] }
     }
 
     /// The robot's joints, last joint first, with the head's among them.
     fn joint_state(&self) -> JointState {
         let mut joints = vec![("head_pan", [0.3; 3])];
         for limb in Limb::BOTH {
-            let names = self.arm.robot.arm(limb).joint_names.iter();
+            let names = self.config.setup.robot.arm(limb).joint_names.iter();
             let q = self.joints[side(limb)];
             joints.extend(names.zip(q).map(|(name, q)| (name.as_str(), [q, 0.0, 0.0])));
         }
@@ -179,7 +182,7 @@ fn a_joint_state_that_makes_no_sense_is_no_joint_state() {
 #[test]
 fn joints_a_hair_beyond_their_limits_stand_on_them() {
     let mut bench = Bench::new();
-    let limits = bench.arm.robot.arm(Limb::Left).limits.position;
+    let limits = bench.config.setup.robot.arm(Limb::Left).limits.position;
     bench.joints[0] = limits.at(&[1.0; 7]);
     bench.joints[0][0] += 0.002;
     bench.pass(None);

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use manipulation::{Cuboid, Limb, ObjectPose, PickPhase, PlanSettings, Robot, plan_pick};
+use preflight::ArmSetup;
 use scene::Scene;
 use serde_json::{Value as Json, json};
 use service::exit::Exit;
@@ -40,9 +41,10 @@ fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
         None => settings.scene.clone(),
         Some(named) => scene_file::load(&planning::scene_path(named, &args.config)?)?,
     };
-    let limb = args.limb.map_or(settings.arm.limb, Into::into);
-    let robot = &settings.arm.robot;
-    let pick = planned(&scene, args.object.as_deref(), limb, robot, &settings.arm.plan)?;
+    let setup = ArmSetup::new(&settings)?;
+    let limb = args.limb.map_or(setup.limb, Into::into);
+    let robot = &setup.robot;
+    let pick = planned(&scene, args.object.as_deref(), limb, robot, &setup.plan)?;
     if out.is_json() {
         out.json(&to_json(&pick))?;
         return Ok(Exit::Ok);

@@ -6,7 +6,7 @@ use dialogue::{Durations, Mode};
 use evaluation::simulation::{Patience, Room};
 use language::{Language, Reader};
 use manipulation::Robot;
-use preflight::{Extent, Motions, Pace, Voice, measure};
+use preflight::{ArmSetup, Extent, Motions, Pace, Voice, measure};
 use service::exit::Exit;
 
 use crate::cli::{ModeArg, Preset, ProblemArgs, StudyArgs};
@@ -116,9 +116,10 @@ fn motions(problem: &Problem) -> Result<Option<Motions>, CliError> {
         note("the scene gives no places: the arm is taken to need no time");
         return Ok(None);
     }
-    let plan = problem.settings.as_ref().map(|settings| settings.arm.plan).unwrap_or_default();
-    let limb = problem.settings.as_ref().and_then(|settings| settings.arm.limb);
-    let robot = problem.settings.as_ref().map_or(Robot::baxter(), |settings| &settings.arm.robot);
+    let setup = problem.settings.as_ref().map(ArmSetup::new).transpose()?;
+    let plan = setup.as_ref().map(|setup| setup.plan).unwrap_or_default();
+    let limb = setup.as_ref().and_then(|setup| setup.limb);
+    let robot = setup.as_ref().map_or(Robot::baxter(), |setup| &setup.robot);
     let pointing = problem.actions.mode == Mode::Present;
     let extent = if pointing { Extent::Pairs } else { Extent::Picks };
     Motions::plan(robot, scene, limb, &plan, extent)

@@ -3,9 +3,13 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use evaluation::user_study::{Design, Item, Kind, Objects, Order, Protocol};
-
 use crate::fields::Fields;
+
+mod item;
+mod protocol;
+
+pub use item::{Item, Kind};
+pub use protocol::{Design, Objects, Order, Protocol};
 
 /// A study with people.
 #[derive(Clone, Debug, PartialEq)]

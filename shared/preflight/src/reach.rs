@@ -1,0 +1,121 @@
+//! Reachability of the objects of a scene.
+
+use config::Settings;
+use manipulation::{ObjectPose, PlanError, PlanSettings, check_reachable, gripper};
+use scene::{Placement, Problem};
+
+use crate::ArmSetup;
+
+/// Returns a problem for every object without a place, and for every one that the arm cannot bring.
+pub(crate) fn check(settings: &Settings, setup: &ArmSetup) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    let placed = placed(settings, &mut problems);
+    check_widths(&placed, settings, setup, &mut problems);
+    let poses: Vec<ObjectPose> = placed.iter().map(|(_, pose)| *pose).collect();
+    let found = check_reachable(&setup.robot, &poses, setup.limb, &setup.plan);
+    if found.iter().all(Result::is_ok) {
+        return problems;
+    }
+    let mut hand_over = None;
+    let elsewhere = reachable_elsewhere(&poses, setup);
+    for (((n, _), found), elsewhere) in placed.iter().zip(found).zip(elsewhere) {
+        let Err(error) = found else { continue };
+        if elsewhere {
+            hand_over.get_or_insert(error);
+            continue;
+        }
+        let key = if matches!(error, PlanError::Grasp(_)) { "grasp_width" } else { "xyz" };
+        let cure = "move it, or change limb, hover_m or table_z_m of the arm";
+        problems.push(of_object(settings, *n, key, &reason(&error, setup), cure));
+    }
+    problems.extend(hand_over.map(|error| hand_over_problem(settings, &error)));
+    problems
+}
+
+/// A problem with the object at `n`.
+fn of_object(settings: &Settings, n: usize, key: &str, what: &str, cure: &str) -> Problem {
+    let what = format!("`{}` {what}", settings.scene.objects()[n].name);
+    Problem::new(&*settings.scene_file().label, format!("objects[{n}].{key}"), what, cure)
+}
+
+/// Reports every object that the gripper could hold but not with these settings: the fingers do not
+/// open that wide, or cannot detect it.
+fn check_widths(
+    placed: &[(usize, ObjectPose)],
+    settings: &Settings,
+    setup: &ArmSetup,
+    problems: &mut Vec<Problem>,
+) {
+    let open_m = setup.plan.open_width_m;
+    for (n, pose) in placed {
+        let width_m = pose.grasp_width_m;
+        let (what, cure) = if width_m > open_m && width_m <= gripper::STROKE_M {
+            let what = format!("is wider than the fingers open: {:.1} mm", open_m * 1e3);
+            (what, "raise grip_open_percent of the arm")
+        } else if width_m > 0.0 && !gripper::is_felt(width_m) {
+            let least_m = gripper::DEAD_ZONE * gripper::STROKE_M;
+            let what = format!("is too thin to be detected: at least {:.1} mm", least_m * 1e3);
+            (what, "choose a thicker part to grip")
+        } else {
+            continue;
+        };
+        problems.push(of_object(settings, *n, "grasp_width", &what, cure));
+    }
+}
+
+/// The objects that have a place, with their positions in the scene.
+fn placed(settings: &Settings, problems: &mut Vec<Problem>) -> Vec<(usize, ObjectPose)> {
+    let mut placed = Vec::new();
+    for (n, object) in settings.scene.objects().iter().enumerate() {
+        match object.placement {
+            Some(placement) => placed.push((n, pose(&placement))),
+            None => {
+                let what = "has no place, so it cannot be fetched";
+                let cure = "add `xyz`, `size` and `grasp_width`";
+                problems.push(of_object(settings, n, "xyz", what, cure));
+            }
+        }
+    }
+    placed
+}
+
+fn reason(error: &PlanError, setup: &ArmSetup) -> String {
+    let limbs =
+        setup.limb.map_or_else(|| "both limbs".to_owned(), |limb| format!("the {limb} limb"));
+    match error {
+        PlanError::Unreachable { at, distance_m, .. } => {
+            let mm = distance_m * 1e3;
+            format!("is out of reach of {limbs}: {mm:.0} mm are missing to {at}")
+        }
+        PlanError::Grasp(error) => format!("cannot be grasped: {error}"),
+        error => format!("cannot be fetched with {limbs}: {error}"),
+    }
+}
+
+/// Returns for each object whether the arm could fetch it with the default hand-over: if so, the
+/// configured hand-over is at fault, not the object.
+fn reachable_elsewhere(poses: &[ObjectPose], setup: &ArmSetup) -> Vec<bool> {
+    let hand_over_xyz_m = PlanSettings::default().hand_over_xyz_m;
+    if setup.plan.hand_over_xyz_m == hand_over_xyz_m {
+        return vec![false; poses.len()];
+    }
+    let plan = PlanSettings { hand_over_xyz_m, ..setup.plan };
+    check_reachable(&setup.robot, poses, setup.limb, &plan).iter().map(Result::is_ok).collect()
+}
+
+fn hand_over_problem(settings: &Settings, error: &PlanError) -> Problem {
+    let [x, y, z] = PlanSettings::default().hand_over_xyz_m;
+    let cure = format!("use a place in front of the robot, e.g. [{x}, {y}, {z}]");
+    let what = format!("objects cannot be brought: {error}");
+    settings.problem(&["arm", "hand_over_xyz"], what, cure)
+}
+
+/// Converts the placement of a scene's object.
+pub(crate) fn pose(placement: &Placement) -> ObjectPose {
+    ObjectPose {
+        xyz_m: placement.xyz,
+        yaw_rad: placement.yaw,
+        size_m: placement.size,
+        grasp_width_m: placement.grasp_width,
+    }
+}

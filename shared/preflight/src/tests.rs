@@ -1,0 +1,182 @@
+//! Configurations whose scene, robot or durations need the arm to be checked.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use config::{SNAPSHOT_FILE, Settings};
+use manipulation::{Limb, PlanSettings, Robot};
+use robot_model::{BAXTER_SRDF, BAXTER_URDF};
+use tempfile::TempDir;
+
+use crate::{ArmSetup, durations, load};
+
+const ONE_BOWL: &str = r#"
+name = "one bowl"
+noun = "bowl"
+
+[[attributes]]
+name = "color"
+values = ["red"]
+
+[[objects]]
+name = "red_one"
+attributes = { color = "red" }
+xyz = [0.7, 0.2, -0.125]
+size = [0.10, 0.10, 0.06]
+grasp_width = 0.004
+"#;
+
+/// The folder that is shipped.
+fn shipped() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config")
+}
+
+/// A configuration folder with one bowl and the given files.
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in [("scenes/bowls.toml", ONE_BOWL)].iter().chain(files) {
+        let path = folder.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+fn owned(overrides: &[(&str, &str)]) -> Vec<(String, String)> {
+    overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect()
+}
+
+/// Every problem of a configuration with such files, one per line, with files named from its folder.
+fn complaints(files: &[(&str, &str)], overrides: &[(&str, &str)]) -> Vec<String> {
+    let folder = folder(files);
+    let problems = load(folder.path(), None, &owned(overrides)).unwrap_err().to_string();
+    let prefix = format!("{}/", folder.path().display());
+    problems.lines().map(|line| line.replace(&prefix, "")).collect()
+}
+
+#[test]
+fn shipped_scenes_are_within_reach() {
+    for scene in ["bowls", "markers", "tools"] {
+        let settings = load(&shipped(), None, &owned(&[("group.scene", scene)]));
+        assert_eq!(settings.unwrap_or_else(|e| panic!("{scene}: {e}")).scene.name(), scene);
+    }
+}
+
+#[test]
+fn default_settings_plan_as_the_planner_does_by_default() {
+    let setup = ArmSetup::new(&Settings::load(&shipped(), None, &[]).unwrap()).unwrap();
+    assert_eq!((setup.limb, &setup.robot), (None, Robot::baxter()));
+    assert_eq!(setup.plan, PlanSettings { speed_ratio: 0.6, ..PlanSettings::default() });
+}
+
+#[test]
+fn durations_are_measured_once_and_survive_the_snapshot_bit_for_bit() {
+    let over = owned(&[("dialogue.costs.from", "robot"), ("dialogue.mode", "present")]);
+    let settings = load(&shipped(), None, &over).unwrap();
+    let measured = settings.durations.clone().unwrap();
+    assert_eq!((measured.point.len(), measured.pick.len()), (6, 6));
+    let setup = ArmSetup::new(&settings).unwrap();
+    assert_eq!(durations(&settings, &setup, &settings.scene, true).unwrap(), measured);
+    let run = tempfile::tempdir().unwrap();
+    settings.write_snapshot(run.path()).unwrap();
+    let read = Settings::load_snapshot(run.path()).unwrap();
+    assert_eq!((&read, read.durations.as_ref()), (&settings, Some(&measured)));
+    assert_eq!(read.durations_text(), settings.durations_text());
+    let path = run.path().join(SNAPSHOT_FILE);
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("pick = [", "pick = [1.0, ")).unwrap();
+    let error = Settings::load_snapshot(run.path()).unwrap_err().to_string();
+    assert!(error.contains("the durations of this scene are missing"), "{error}");
+    let plain = load(&shipped(), None, &[]).unwrap();
+    assert_eq!((plain.durations.as_ref(), plain.durations_text()), (None, String::new()));
+}
+
+/// `ONE_BOWL` with another line in place of the one that starts with `key`.
+fn bowl_with(key: &str, line: &str) -> String {
+    let lines = ONE_BOWL.lines().map(|old| if old.starts_with(key) { line } else { old });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[test]
+fn an_object_that_the_arm_cannot_fetch() {
+    let complaints = |scene: &str, overrides: &[(&str, &str)]| {
+        let found = complaints(&[("scenes/bowls.toml", scene)], overrides);
+        assert_eq!(found.len(), 1, "{found:?}");
+        found.into_iter().next().unwrap()
+    };
+    let far = complaints(&bowl_with("xyz", "xyz = [2.0, 0.2, -0.125]"), &[]);
+    let expected = "scenes/bowls.toml: objects[0].xyz: `red_one` is out of reach of both limbs: ";
+    assert!(far.starts_with(expected), "{far}");
+    let left = complaints(&bowl_with("xyz", "xyz = [0.7, -0.8, -0.125]"), &[("arm.limb", "left")]);
+    assert!(left.contains("`red_one` is out of reach of the left limb: "), "{left}");
+    let wide = complaints(&bowl_with("grasp_width", "grasp_width = 0.09"), &[]);
+    let expected = "scenes/bowls.toml: objects[0].grasp_width: `red_one` cannot be grasped: ";
+    assert!(wide.starts_with(expected), "{wide}");
+    let thin = complaints(&bowl_with("grasp_width", "grasp_width = 0.002"), &[]);
+    assert!(thin.contains("`red_one` is too thin to be detected: at least 2.1 mm"), "{thin}");
+    let narrow = [("arm.grip_open_percent", "30.0")];
+    let narrow = complaints(&bowl_with("grasp_width", "grasp_width = 0.02"), &narrow);
+    assert!(narrow.contains("`red_one` is wider than the fingers open: 12.5 mm"), "{narrow}");
+}
+
+#[test]
+fn a_hand_over_that_is_out_of_reach_is_blamed_itself() {
+    let second = ONE_BOWL.split("[[objects]]").nth(1).unwrap();
+    let second = second.replace("red_one", "other").replace("0.2,", "-0.2,");
+    let two = format!("{ONE_BOWL}\n[[objects]]{second}");
+    let over = [("arm.hand_over_xyz", "[3.0, 0.0, 0.2]")];
+    let complaints = complaints(&[("scenes/bowls.toml", &two)], &over);
+    assert_eq!(complaints.len(), 1, "{complaints:?}");
+    let expected = "--set: arm.hand_over_xyz: objects cannot be brought: ";
+    assert!(complaints[0].starts_with(expected), "{complaints:?}");
+}
+
+#[test]
+fn a_scene_without_places_cannot_be_worked_in() {
+    let text = "name = 's'\nnoun = 'cup'\n[[attributes]]\nname = 'color'\nvalues = ['red']\n\
+                [[objects]]\nname = 'one'\nattributes = { color = 'red' }\n";
+    let complaints = complaints(&[("scenes/bowls.toml", text)], &[]);
+    assert_eq!(
+        complaints,
+        [
+            "scenes/bowls.toml: objects[0].xyz: `one` has no place, so it cannot be fetched (add `xyz`, `size` and `grasp_width`)"
+        ]
+    );
+}
+
+/// Baxter with another velocity limit of its first joints.
+fn slower() -> String {
+    let slower = BAXTER_URDF.replacen("velocity=\"1.5\"", "velocity=\"0.5\"", 20);
+    assert_ne!(slower, BAXTER_URDF, "the description has changed");
+    slower
+}
+
+#[test]
+fn a_description_in_the_folder_is_the_robot() {
+    let folder = folder(&[
+        ("robots/slow.urdf", &slower()),
+        ("robots/slow.srdf", BAXTER_SRDF),
+        ("arm.toml", "robot = 'slow'"),
+    ]);
+    let setup = ArmSetup::new(&load(folder.path(), None, &[]).unwrap()).unwrap();
+    assert_eq!(setup.robot.arm(Limb::Left).limits.velocity[0], 0.5);
+}
+
+#[test]
+fn faults_of_a_description_are_located() {
+    let broken = BAXTER_URDF.replacen("velocity=\"1.5\"", "velocity=\"fast\"", 1);
+    let found =
+        complaints(&[("robots/baxter.urdf", &broken), ("robots/baxter.srdf", BAXTER_SRDF)], &[]);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].starts_with("robots/baxter.urdf: line "), "{found:?}");
+    assert!(found[0].contains("joint \"left_s0\": <limit> has velocity=\"fast\""), "{found:?}");
+}
+
+#[test]
+fn a_description_without_a_resting_posture_is_refused() {
+    let files = [("robots/bare.urdf", BAXTER_URDF), ("arm.toml", "robot = 'bare'")];
+    let found = complaints(&files, &[]);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].starts_with("robots/bare.urdf: "), "{found:?}");
+    assert!(found[0].contains("no posture \"neutral\""), "{found:?}");
+}
