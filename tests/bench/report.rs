@@ -1,10 +1,10 @@
 //! The table that is printed and written.
 
-use evaluation::charts::Lines;
 pub(crate) use evaluation::charts::Series;
+use evaluation::charts::{Chart, Scale};
 use serde::Serialize;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// One measured figure.
 #[derive(Debug, Serialize)]
@@ -51,9 +51,6 @@ pub(crate) struct Report {
     pub(crate) tables: Vec<Table>,
     pub(crate) plots: Vec<Plot>,
 }
-
-/// Width and height of a plot, two pixels a unit.
-const PLOT_SIZE: (f64, f64) = (960.0, 600.0);
 
 pub(crate) fn print(line: &str) {
     // A closed pipe is the reader's choice.
@@ -137,20 +134,12 @@ impl Report {
 
 impl Plot {
     fn write(&self, folder: &Path) -> std::io::Result<()> {
-        let chart = Lines {
-            title: format!("Cost over the number of {}", self.over),
-            x: self.over.to_owned(),
-            y: "median, µs".to_owned(),
-            x_scale: evaluation::charts::Scale::Logarithmic,
-            y_scale: evaluation::charts::Scale::Logarithmic,
-            series: self.series.clone(),
-        };
-        let chart = chart.draw(PLOT_SIZE).map_err(std::io::Error::other)?;
-        let file = |ending: &str| -> PathBuf { folder.join(self.file).with_extension(ending) };
-        let svg = evaluation::charts::svg(&chart);
-        std::fs::write(file("svg"), svg)?;
-        let png = evaluation::charts::png(&chart).map_err(std::io::Error::other)?;
-        std::fs::write(file("png"), png)
+        let title = format!("Cost over the number of {}", self.over);
+        let labels = (self.over, "median, µs");
+        let chart = Chart::lines(&title, labels, Scale::Logarithmic, &self.series)
+            .and_then(|chart| evaluation::charts::files(self.file, &chart))
+            .map_err(std::io::Error::other)?;
+        chart.iter().try_for_each(|(name, bytes)| std::fs::write(folder.join(name), bytes))
     }
 }
 

@@ -11,9 +11,9 @@ use service::exit::Exit;
 use whichone::batch::{self, Decider, Grounder};
 use whichone::cli::{LimbArg, WhichArm};
 use whichone::described_arm::DescribedArm;
+use whichone::error::Outcome;
 use whichone::output::Output;
 use whichone::scene_file;
-use whichone::error::Outcome;
 
 fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)

@@ -26,11 +26,7 @@ impl Lab {
     fn write(&self, records: &[Record]) {
         let folder = self.0.path().join("lab/journal");
         std::fs::create_dir_all(&folder).expect("a folder");
-        let header = Header {
-            record: "policy/4".into(),
-            group: "lab".into(),
-            epoch: 1,
-        };
+        let header = Header { record: "policy/4".into(), group: "lab".into(), epoch: 1 };
         let file = folder.join("policy.journal");
         let (mut journal, _) = Journal::open(&file, &header).expect("a journal");
         for record in records {

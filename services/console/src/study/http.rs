@@ -53,12 +53,12 @@ fn picture(people: &[Participant], name: &str) -> Response {
     let pictures = evaluation::user_study::pictures(&evaluation::user_study::report(people));
     let wanted = name.strip_suffix(".svg");
     let found = pictures.into_iter().find(|(name, _)| Some(*name) == wanted);
-    match found {
-        Some((_, canvas)) => {
-            ([(header::CONTENT_TYPE, "image/svg+xml")], evaluation::charts::svg(&canvas))
-                .into_response()
-        }
-        None => (StatusCode::NOT_FOUND, "the study has no such file\n").into_response(),
+    let Some((_, chart)) = found else {
+        return (StatusCode::NOT_FOUND, "the study has no such file\n").into_response();
+    };
+    match evaluation::charts::svg(&chart) {
+        Ok(text) => ([(header::CONTENT_TYPE, "image/svg+xml")], text).into_response(),
+        Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, format!("{error}\n")).into_response(),
     }
 }
 

@@ -1,132 +1,166 @@
-//! Axes: where a number lies, and at which numbers it is marked.
+//! Axes: the position of a value, and the values at which ticks are drawn.
 
-/// A linear axis from 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Linear {
-    /// Its end.
-    pub end: f64,
-    /// Between two marks.
-    pub step: f64,
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
+
+use crate::charts::PlotError;
+
+/// Division of an axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal steps are equally long.
+    Linear,
+    /// Equal factors are equally long; for values above 0.
+    Logarithmic,
+    /// For shares near 1: logarithm of the share missing to 1, so that 0.99 is as far from 0.9 as
+    /// 0.9 is from 0.
+    Missing,
 }
 
-impl Linear {
-    /// An axis that holds `largest`, marked at four to eight round numbers.
-    pub fn up_to(largest: f64) -> Self {
+/// An axis with its label and its ticks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit.
+    pub label: String,
+    scale: Scale,
+    ends: (f64, f64),
+    ticks: Vec<(f64, String)>,
+}
+
+/// Shares at which an axis of [`Scale::Missing`] has ticks.
+const SHARES: [f64; 11] = [0.0, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9999];
+
+impl Axis {
+    /// A linear axis from 0 that holds `largest`, with four to nine ticks at round numbers.
+    pub fn up_to(label: &str, largest: f64) -> Self {
         let largest = if largest.is_finite() && largest > 0.0 { largest } else { 1.0 };
-        let rough = largest / 7.0;
+        Self::between(label, 0.0, largest)
+    }
+
+    /// A linear axis that holds both values, which differ, with ticks at round numbers.
+    pub fn between(label: &str, least: f64, largest: f64) -> Self {
+        let rough = (largest - least) / 7.0;
         let power = 10.0_f64.powf(rough.log10().floor());
         let round = [1.0, 2.0, 5.0, 10.0].into_iter().find(|m| m * power >= rough);
         let step = round.unwrap_or(10.0) * power;
-        Self { end: step * (largest / step).ceil(), step }
+        let (first, last) = ((least / step).floor() as i64, (largest / step).ceil() as i64);
+        let ticks = (first..=last).map(|k| k as f64 * step).collect();
+        Self::new(label, Scale::Linear, (first as f64 * step, last as f64 * step), ticks)
     }
 
-    /// Where on the axis, 0 to 1.
-    pub fn place(&self, x: f64) -> f64 {
-        (x / self.end).clamp(0.0, 1.0)
-    }
-
-    /// The numbers that are marked.
-    pub fn marks(&self) -> Vec<f64> {
-        let count = (self.end / self.step).round() as usize;
-        (0..=count).map(|k| k as f64 * self.step).collect()
-    }
-}
-
-/// An axis on which equal factors are equally long.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Logarithmic {
-    /// Its ends, both above 0.
-    pub ends: (f64, f64),
-}
-
-impl Logarithmic {
-    /// An axis from `least` to `largest`, both above 0, with some room at either end.
-    pub fn over(least: f64, largest: f64) -> Self {
-        Self { ends: (least / 1.3, largest * 1.3) }
-    }
-
-    /// Where on the axis, 0 to 1.
-    pub fn place(&self, x: f64) -> f64 {
-        let (low, high) = self.ends;
-        ((x / low).ln() / (high / low).ln()).clamp(0.0, 1.0)
-    }
-
-    /// The numbers that are marked: powers of ten, and where these are few, twice and five times
-    /// them as well.
-    pub fn marks(&self) -> Vec<f64> {
-        let (low, high) = self.ends;
+    /// A logarithmic axis over values above 0, with ticks at powers of ten, and where these are
+    /// few, at two and five times them as well.
+    pub fn logarithmic(label: &str, least: f64, largest: f64) -> Self {
+        let (low, high) = (least / 1.3, largest * 1.3);
         let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
         let factors: &[f64] = if high / low > 300.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
         let all = powers.flat_map(|power| factors.iter().map(move |f| f * 10.0_f64.powi(power)));
-        all.filter(|mark| (low..=high).contains(mark)).collect()
-    }
-}
-
-/// An axis for shares near 1: the logarithm of what is missing, so that 99 % is as far from 90 %
-/// as that is from 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Missing {
-    /// Least share that is shown as missing.
-    least: f64,
-}
-
-/// Shares at which it is marked.
-const SHARES: [f64; 11] = [0.0, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9999];
-
-impl Missing {
-    /// An axis on which these shares differ; those of 1 lie at its end.
-    pub fn holding(shares: impl Iterator<Item = f64>) -> Self {
-        let least = shares.map(|share| 1.0 - share).filter(|missing| *missing > 1e-5);
-        Self { least: 0.6 * least.fold(0.02, f64::min) }
+        let ticks = all.filter(|tick| (low..=high).contains(tick)).collect();
+        Self::new(label, Scale::Logarithmic, (low, high), ticks)
     }
 
-    /// Where on the axis, 0 to 1.
-    pub fn place(&self, share: f64) -> f64 {
-        (1.0 - share).clamp(self.least, 1.0).log10() / self.least.log10()
+    /// An axis of [`Scale::Missing`] on which these shares differ, in per cent; those of 1 lie at
+    /// its end.
+    pub fn missing(label: &str, shares: impl Iterator<Item = f64>) -> Self {
+        let missing = shares.map(|share| 1.0 - share).filter(|missing| *missing > 1e-5);
+        let least = 0.6 * missing.fold(0.02, f64::min);
+        let ticks = SHARES.into_iter().filter(|share| 1.0 - share > 1.3 * least).chain([1.0]);
+        let mut axis = Self::new(label, Scale::Missing, (0.0, 1.0 - least), ticks.collect());
+        axis.ticks.iter_mut().for_each(|(share, text)| *text = short(100.0 * *share));
+        axis
     }
 
-    /// The shares that are marked, the last of them 1.
-    pub fn marks(&self) -> Vec<f64> {
-        let marked = SHARES.into_iter().filter(|share| 1.0 - share > 1.3 * self.least);
-        marked.chain([1.0]).collect()
+    /// An axis of named rows or columns, each of length 1.
+    pub fn named(label: &str, names: Vec<String>) -> Self {
+        let end = names.len() as f64;
+        let ticks = names.into_iter().enumerate().map(|(n, name)| (n as f64 + 0.5, name)).collect();
+        Self { label: label.to_owned(), scale: Scale::Linear, ends: (0.0, end), ticks }
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn linear_axes_are_marked_at_round_numbers() {
-        let axis = Linear::up_to(41.6);
-        assert_eq!((axis.end, axis.step), (50.0, 10.0));
-        assert_eq!(axis.marks(), [0.0, 10.0, 20.0, 30.0, 40.0, 50.0]);
-        assert_eq!((axis.place(25.0), axis.place(99.0)), (0.5, 1.0));
-        assert_eq!(Linear::up_to(0.0).end, 1.0);
-        for largest in [0.003, 0.7, 1.0, 7.0, 19.0, 123.0, 9_999.0] {
-            let axis = Linear::up_to(largest);
-            assert!(axis.end >= largest && (4..=9).contains(&axis.marks().len()), "{axis:?}");
+    /// An axis of this scale that holds all values; linear ones start at 0.
+    ///
+    /// # Errors
+    /// There are no values, or one is negative, not finite, or 0 on a logarithmic axis.
+    pub fn holding(
+        label: &str,
+        scale: Scale,
+        values: impl Iterator<Item = f64> + Clone,
+    ) -> Result<Self, PlotError> {
+        let valid = |value: &f64| match scale {
+            Scale::Logarithmic => value.is_finite() && *value > 0.0,
+            Scale::Linear | Scale::Missing => value.is_finite() && *value >= 0.0,
+        };
+        if let Some(value) = values.clone().find(|value| !valid(value)) {
+            return Err(PlotError(format!("invalid value on a {scale:?} axis: {value}")));
         }
+        let low = values.clone().reduce(f64::min);
+        let (low, high) = low
+            .zip(values.clone().reduce(f64::max))
+            .ok_or_else(|| PlotError("expected at least one point, found none".to_owned()))?;
+        Ok(match scale {
+            Scale::Linear => Self::up_to(label, high),
+            Scale::Logarithmic => Self::logarithmic(label, low, high),
+            Scale::Missing => Self::missing(label, values),
+        })
     }
 
-    #[test]
-    fn logarithmic_axes_are_marked_at_powers() {
-        let wide = Logarithmic::over(3.0, 20_000.0);
-        assert_eq!(wide.marks(), [10.0, 100.0, 1_000.0, 10_000.0]);
-        let narrow = Logarithmic::over(0.02, 0.3);
-        let marks: Vec<String> = narrow.marks().iter().map(|m| format!("{m:.2}")).collect();
-        assert_eq!(marks, ["0.02", "0.05", "0.10", "0.20"]);
-        let middle = wide.place((wide.ends.0 * wide.ends.1).sqrt());
-        assert!((middle - 0.5).abs() < 1e-12);
-        assert_eq!((wide.place(wide.ends.0), wide.place(1e9)), (0.0, 1.0));
+    fn new(label: &str, scale: Scale, ends: (f64, f64), ticks: Vec<f64>) -> Self {
+        let ticks = ticks.into_iter().map(|tick| (tick, short(tick))).collect();
+        Self { label: label.to_owned(), scale, ends, ticks }
     }
 
-    #[test]
-    fn shares_near_one_are_told_apart() {
-        let axis = Missing::holding([0.9, 0.999, 1.0].into_iter());
-        let (low, high, all) = (axis.place(0.9), axis.place(0.99), axis.place(1.0));
-        assert!((high - 2.0 * low).abs() < 1e-12 && high < all);
-        assert_eq!((axis.place(0.0), all), (0.0, 1.0));
-        assert_eq!(axis.marks()[axis.marks().len() - 2..], [0.999, 1.0]);
+    /// Returns the end values.
+    pub fn ends(&self) -> (f64, f64) {
+        self.ends
     }
+
+    /// Returns the ticks' values and texts.
+    pub fn ticks(&self) -> &[(f64, String)] {
+        &self.ticks
+    }
+
+    /// Returns the position of a value, 0 to 1.
+    pub fn position(&self, value: f64) -> f64 {
+        let (low, high) = self.ends;
+        let scaled = |value: f64| match self.scale {
+            Scale::Linear => value,
+            Scale::Logarithmic => value.ln(),
+            Scale::Missing => -(1.0 - value).ln(),
+        };
+        let value = scaled(value.clamp(low, high));
+        ((value - scaled(low)) / (scaled(high) - scaled(low))).clamp(0.0, 1.0)
+    }
+}
+
+impl Ranged for Axis {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (first, last): (i32, i32)) -> i32 {
+        first + (f64::from(last - first) * self.position(*value)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        // One grid only: without the lighter lines between its own.
+        let wanted = if hint.weight().allow_light_points() { &[] } else { &self.ticks[..] };
+        wanted.iter().map(|(value, _)| *value).collect()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.ends.0..self.ends.1
+    }
+}
+
+impl ValueFormatter<f64> for Axis {
+    fn format_ext(&self, value: &f64) -> String {
+        let tick = self.ticks.iter().find(|(tick, _)| tick == value);
+        tick.map_or_else(String::new, |(_, text)| text.clone())
+    }
+}
+
+/// A number without the digits that rounding leaves.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    format!("{rounded}")
 }

@@ -1,28 +1,23 @@
-//! Pictures of measurements, as SVG and PNG.
+//! Charts of measurements, as SVG and PNG.
 //!
-//! A picture is a list of shapes on a [`Canvas`]; [`svg`] and [`png`] write it down. The PNG has
-//! letters of its own, so that no font has to be installed. [`Lines`] is the chart of series over
-//! one axis; other charts are drawn by those who need them, with the axes of this crate.
+//! A [`Chart`] is data: panels with axes and shapes, and a legend. [`svg`] and [`png`] draw it
+//! with `plotters`; the PNG brings its own letters, so that no font has to be installed.
 //!
-//! This crate is pure: no IO, no clock, no threads. The same picture is the same bytes.
+//! This module is pure: no IO, no clock, no threads. The same chart gives the same bytes.
 
 mod axis;
-mod canvas;
-mod lines;
-mod png;
-mod raster;
-mod svg;
+mod chart;
+mod draw;
+mod pixels;
 
-pub use axis::{Linear, Logarithmic, Missing};
-pub use canvas::{
-    Align, BLACK, Canvas, FAINT, GREY, Ink, LETTER_WIDTH, Place, Shape, Size, colour,
-};
-pub use lines::{Lines, Scale, Series};
-pub use png::png;
-pub use raster::Raster;
-pub use svg::svg;
+pub use axis::{Axis, Scale};
+pub use chart::{Chart, Colour, Panel, Point, Series, Shape, colour};
+pub use draw::{files, png, svg};
 
-/// A picture cannot be drawn.
+/// A chart that cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cannot draw: {0}")]
 pub struct PlotError(pub String);
+
+#[cfg(test)]
+mod tests;

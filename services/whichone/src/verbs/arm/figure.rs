@@ -1,235 +1,129 @@
-//! The picture of a pick: two views of robot and scene, the phases, and the motion in time.
+//! Chart of a planned pick: joints over time, and the path of the gripper.
 
-use evaluation::charts::{Align, BLACK, Canvas, GREY, Ink, PlotError, Raster, Size};
-use manipulation::PickPhase;
+use evaluation::charts::{Axis, Chart, Panel, Point, Shape};
+use manipulation::{JOINTS, ObjectPose, PickPhase};
 use nalgebra::Vector3;
-use solid::{Camera, Layer, Mesh, Paint, Rgb, Sheet, render};
 
-use super::pick::{PHASES, Pick, ink};
-use super::strip::{self, Frame};
-use super::{bodies, furniture};
+use super::Pick;
 
-/// Height of the picture over its width.
-const SHAPE: f64 = 0.78;
-/// Share of the width that the view from the person's side takes.
-const WIDE: f64 = 0.64;
-/// How much of a ghost is seen.
-const GHOST: f64 = 0.30;
-/// How much a ghost takes on the colour of its phase.
-const TINT: f64 = 0.6;
-/// Lowest bits of a colour that are not told apart.
-const STEP: u8 = 3;
-/// Height of a line of names.
-const LINE: f64 = 10.0;
-const WAY_M: f64 = 0.006;
-const PAPER: [f64; 3] = [0.965, 0.967, 0.97];
+/// Phases with their names.
+pub(super) const PHASES: [(PickPhase, &str); 6] = [
+    (PickPhase::Approach, "approach"),
+    (PickPhase::Close, "close"),
+    (PickPhase::Lift, "lift"),
+    (PickPhase::HandOver, "hand over"),
+    (PickPhase::Release, "release"),
+    (PickPhase::Return, "return"),
+];
 
-/// Draws it so many pixels wide, with so many samples along either side of a pixel.
-///
-/// # Errors
-/// It cannot be encoded.
-pub(super) fn draw(pick: &Pick<'_>, pixels: u32, samples: u8) -> Result<Canvas, PlotError> {
-    let width = 0.5 * f64::from(pixels);
-    let height = (SHAPE * width).round();
-    let mut canvas = Canvas::new(width, height);
-    let object = &pick.scene.object(pick.object.into()).name;
-    let (scene, limb) = (pick.scene.name(), pick.plan.limb());
-    let title = format!("Fetching {object} from the scene {scene} with the {limb} arm");
-    canvas.words((16.0, 20.0), &title, Align::Left, Size::Large, BLACK);
-    let top = legend(&mut canvas, pick, 44.0, width) + 16.0;
-    let bottom = height - 172.0;
-    let layers = layers(pick);
-    let samples = usize::from(samples);
-    let sheet = Sheet { size: (1, 1), samples, ground: PAPER, ground_z: ground_z(pick) };
-    let split = (WIDE * width).round();
-    let beside = (split + 2.0, top, width - split - 2.0, bottom - top);
-    let views = [
-        (front(pick), (0.0, top, split - 2.0, bottom - top), "from the person's side"),
-        (above(beside), beside, "from above"),
-    ];
-    for (camera, frame, name) in views {
-        view(&mut canvas, pick, (&layers, &sheet), &camera, frame, name)?;
-    }
-    strip::draw(&mut canvas, pick, (8.0, bottom + 14.0, width - 20.0, 156.0));
-    Ok(canvas)
-}
+/// Moments that curves are drawn through.
+const MOMENTS: usize = 240;
+/// Series of the gripper's path, after those of the joints, and of everything grey.
+const GRIPPER: usize = JOINTS.len();
+const GREY: usize = 6;
 
-/// One view with the names of the objects.
-fn view(
-    canvas: &mut Canvas,
-    pick: &Pick<'_>,
-    (layers, sheet): (&[Layer], &Sheet),
-    camera: &Camera,
-    (left, top, width, height): Frame,
-    name: &str,
-) -> Result<(), PlotError> {
-    // A canvas shows two pixels a unit.
-    let size = ((2.0 * width) as usize, (2.0 * height) as usize);
-    let sheet = Sheet { size, ..*sheet };
-    let image = render(layers, camera, &sheet);
-    // Steps too small to be seen would double the file.
-    let pixels: Vec<_> = image.pixels.iter().map(|pixel| pixel.map(|part| part | STEP)).collect();
-    let raster = Raster::new(image.width, &pixels)?;
-    canvas.raster((left, top), (width, height), raster);
-    let onto = |place: &Vector3<f64>| {
-        let (right, down, _) = camera.project(place, size)?;
-        Some((left + 0.5 * right, top + 0.5 * down))
+/// Returns the chart, about that many pixels wide.
+pub(super) fn chart(pick: &Pick<'_>, width: u32) -> Chart {
+    let name = &pick.scene.object(pick.object.into()).name;
+    let (limb, seconds) = (pick.plan.limb(), pick.plan.duration_s());
+    let limits = pick.robot.arm(limb).limits;
+    let ratio = pick.settings.speed_ratio;
+    let share = |t_s: f64, joint: usize| {
+        100.0 * pick.plan.at(t_s).qd[joint].abs() / (ratio * limits.velocity[joint])
     };
-    names(canvas, pick, onto);
-    canvas.words((left + 12.0, top + 14.0), name, Align::Left, Size::Small, GREY);
-    Ok(())
-}
-
-/// Writes the objects' names beside them: above, or where that is free.
-fn names(canvas: &mut Canvas, pick: &Pick<'_>, onto: impl Fn(&Vector3<f64>) -> Option<(f64, f64)>) {
-    let mut taken: Vec<(f64, f64, f64)> = Vec::new();
-    for (index, place) in pick.places.iter().enumerate() {
-        let text = &pick.scene.object(index.into()).name;
-        let half = 0.5 * evaluation::charts::LETTER_WIDTH * text.chars().count() as f64 + 2.0;
-        let [x, y, z] = place.xyz_m;
-        let Some((over, top)) = onto(&Vector3::new(x, y, place.top_z_m())) else { continue };
-        let near = Vector3::new(x + 0.5 * place.size_m[0], y, place.bottom_z_m());
-        let bottom = onto(&near).map_or(top, |(_, bottom)| bottom);
-        let edge = onto(&Vector3::new(x, y + 0.5 * place.size_m[1], z)).map_or(over, |(x, _)| x);
-        let aside = (edge - over).abs() + half + 2.0;
-        let middle = 0.5 * (top + bottom);
-        let above = top - (bottom - top).abs().min(10.0) - LINE;
-        let beside = [(over, above), (over, bottom + LINE), (over + aside, middle)];
-        let farther =
-            [1.0, 2.0].map(|n| [(over, above - n * LINE), (over, bottom + (n + 1.0) * LINE)]);
-        let places = beside.into_iter().chain([(over - aside, middle)]);
-        let places = places.chain(farther.into_iter().flatten());
-        let free = |(x, y): &(f64, f64)| {
-            taken
-                .iter()
-                .all(|other| (x - other.0).abs() > half + other.2 || (y - other.1).abs() > LINE)
-        };
-        let at = places.clone().find(free).or(places.last()).unwrap_or((over, above));
-        taken.push((at.0, at.1, half));
-        label(
-            canvas,
-            at,
-            text,
-            if index == pick.object { ink(PickPhase::HandOver) } else { BLACK },
-        );
-    }
-}
-
-/// Words that can be read on anything.
-fn label(canvas: &mut Canvas, (x, y): (f64, f64), text: &str, ink: Ink) {
-    const ROUND: [(f64, f64); 8] = [
-        (-1.2, 0.0),
-        (1.2, 0.0),
-        (0.0, -1.2),
-        (0.0, 1.2),
-        (-0.9, -0.9),
-        (0.9, -0.9),
-        (-0.9, 0.9),
-        (0.9, 0.9),
+    let degrees = |t_s: f64, joint: usize| pick.plan.at(t_s).q[joint].to_degrees();
+    let panels = vec![
+        over_time(pick, "joint position, degrees", degrees),
+        path(pick, "gripper's path, from the side", "z, m", 2),
+        over_time(pick, "joint speed, % of the limit", share),
+        path(pick, "gripper's path, from above", "y, m", 1),
     ];
-    for (dx, dy) in ROUND {
-        canvas.words((x + dx, y + dy), text, Align::Middle, Size::Small, [0xff; 3]);
+    let names = pick.robot.arm(limb).joint_names.iter();
+    let prefix = format!("{limb}_");
+    let legend = names.map(|name| name.strip_prefix(&prefix).unwrap_or(name).to_owned());
+    let panel = width.saturating_sub(230) / 2;
+    Chart {
+        title: format!("{limb} limb fetches {name}: {seconds:.2} s"),
+        note: String::new(),
+        panels,
+        columns: 2,
+        panel_size: (panel, panel * 3 / 4),
+        legend: legend.chain(["gripper".to_owned()]).collect(),
     }
-    canvas.words((x, y), text, Align::Middle, Size::Small, ink);
 }
 
-/// The phases with their seconds, in as many rows as it takes; where the last one is.
-fn legend(canvas: &mut Canvas, pick: &Pick<'_>, mut y: f64, width: f64) -> f64 {
-    const LEFT: f64 = 16.0;
-    let mut x = LEFT;
-    for (phase, name, _) in PHASES {
+fn times(pick: &Pick<'_>) -> impl Iterator<Item = f64> {
+    let whole_s = pick.plan.duration_s();
+    (0..=MOMENTS).map(move |n| whole_s * n as f64 / MOMENTS as f64)
+}
+
+/// A curve for each joint, on a background of the phases.
+fn over_time(pick: &Pick<'_>, heading: &str, value: impl Fn(f64, usize) -> f64) -> Panel {
+    let curve = |joint| times(pick).map(|t_s| (t_s, value(t_s, joint))).collect::<Vec<Point>>();
+    let curves: Vec<Vec<Point>> = (0..JOINTS.len()).map(curve).collect();
+    let y = holding("", curves.iter().flatten().map(|point| point.1).chain([0.0]));
+    let (low, high) = y.ends();
+    let mut shapes = Vec::new();
+    for (n, (phase, name)) in PHASES.into_iter().enumerate() {
         let Some((begin_s, end_s)) = pick.plan.timeline.span_s(phase) else { continue };
-        let text = format!("{name} {:.1} s", end_s - begin_s);
-        let long = 20.0 + evaluation::charts::LETTER_WIDTH * text.len() as f64;
-        if x + long > width {
-            (x, y) = (LEFT, y + 18.0);
+        if n % 2 == 0 {
+            shapes.push((GREY, Shape::Band(begin_s, end_s)));
         }
-        canvas.area((x, y - 4.0), (14.0, 8.0), ink(phase));
-        canvas.words((x + 19.0, y), &text, Align::Left, Size::Small, BLACK);
-        x += long + 12.0;
+        let level = high - (high - low) * (0.05 + 0.07 * n as f64);
+        shapes.push((GREY, Shape::Text((end_s, level), name.to_owned())));
     }
-    y
+    shapes.extend(curves.into_iter().map(Shape::Line).enumerate());
+    let x = Axis::up_to("seconds", pick.plan.duration_s());
+    Panel { heading: heading.to_owned(), x, y, shapes }
 }
 
-/// Everything that is seen, solid and as ghosts.
-fn layers(pick: &Pick<'_>) -> Vec<Layer> {
-    let span = |phase| pick.plan.timeline.span_s(phase).unwrap_or_default();
-    let (lifted_s, given_s) = (span(PickPhase::Lift).1, span(PickPhase::HandOver).1);
-    let (down_s, grasped_s) = (span(PickPhase::Approach).1, span(PickPhase::Close).1);
-    let mut solid = bodies::robot(pick, given_s, false);
-    let boards = furniture::boards(&pick.places);
-    solid.add(furniture::mesh(&boards, pick.settings.table_z_m, ground_z(pick)));
-    let mut clear = Mesh::default();
-    let mut put = |index: usize, pose| {
-        let (mesh, seen_through) = bodies::object(pick, index);
-        let onto = if seen_through { &mut clear } else { &mut solid };
-        onto.add(mesh.placed(&pose));
-    };
-    for (index, place) in pick.places.iter().enumerate().filter(|(i, _)| *i != pick.object) {
-        put(index, place.isometry());
+/// The gripper's path and the objects' outlines, along x and another axis of frame `base`. Marks
+/// lie where phases end.
+fn path(pick: &Pick<'_>, heading: &str, label: &str, axis: usize) -> Panel {
+    let flat = |at: Vector3<f64>| (at.x, at[axis]);
+    let at = |t_s: f64| flat(gripper(pick, t_s));
+    let path: Vec<Point> = times(pick).map(at).collect();
+    let ends = PHASES.iter().filter_map(|(phase, _)| pick.plan.timeline.span_s(*phase));
+    let marks = ends.map(|(_, end_s)| at(end_s)).collect();
+    let outlines: Vec<Vec<Point>> =
+        pick.places.iter().map(|place| corners(place).map(flat).collect()).collect();
+    let points = || path.iter().chain(outlines.iter().flatten());
+    let (x, y) = (holding("x, m", points().map(|p| p.0)), holding(label, points().map(|p| p.1)));
+    let mut shapes = Vec::new();
+    for (index, corners) in outlines.iter().enumerate() {
+        let series = if index == pick.object { 1 } else { GREY };
+        let fold = |of: fn(f64, f64) -> f64| {
+            corners.iter().copied().reduce(|a, b| (of(a.0, b.0), of(a.1, b.1))).unwrap_or_default()
+        };
+        let (low, high) = (fold(f64::min), fold(f64::max));
+        let outline = vec![low, (high.0, low.1), high, (low.0, high.1), low];
+        shapes.push((series, Shape::Line(outline)));
+        let name = pick.scene.object(index.into()).name.clone();
+        shapes.push((series, Shape::Text((low.0, 0.5 * (low.1 + high.1)), name)));
     }
-    put(pick.object, pick.object_at(given_s));
-    let ghost = |(t_s, phase): (f64, PickPhase)| {
-        let mut mesh = bodies::robot(pick, t_s, true);
-        let (object, _) = bodies::object(pick, pick.object);
-        mesh.add(object.placed(&pick.object_at(t_s)));
-        // Each in a tint of its phase.
-        let tint = rgb(phase);
-        for triangle in &mut mesh.triangles {
-            let own = triangle.paint.rgb;
-            triangle.paint.rgb = [0, 1, 2].map(|n| own[n] + TINT * (tint[n] - own[n]));
-        }
-        Layer { mesh, opacity: GHOST }
-    };
-    let mut ways = Mesh::default();
-    for (phase, way) in pick.ways() {
-        ways.add(Mesh::tube(&way, WAY_M, Paint::glowing(rgb(phase))).part(30_000));
-    }
-    let solid = Layer { mesh: solid, opacity: 1.0 };
-    let clear = Layer { mesh: clear, opacity: 0.55 };
-    let ways = Layer { mesh: ways, opacity: 0.95 };
-    let ghosts = [
-        (0.0, PickPhase::Approach),
-        (0.5 * down_s, PickPhase::Approach),
-        (grasped_s, PickPhase::Close),
-        (lifted_s, PickPhase::Lift),
-    ]
-    .map(ghost);
-    [solid, clear].into_iter().chain(ghosts).chain([ways]).collect()
+    shapes.push((GRIPPER, Shape::Line(path)));
+    shapes.push((GRIPPER, Shape::Marks(marks)));
+    Panel { heading: heading.to_owned(), x, y, shapes }
 }
 
-/// The colour of a phase.
-fn rgb(phase: PickPhase) -> Rgb {
-    ink(phase).map(|part| f64::from(part) / 255.0)
+/// Returns the position of the point between the finger tips in frame `base`, metres.
+fn gripper(pick: &Pick<'_>, t_s: f64) -> Vector3<f64> {
+    let arm = pick.robot.arm(pick.plan.limb());
+    arm.chain.forward(&pick.plan.at(t_s).q).translation.vector
 }
 
-/// The lowest point of the robot at rest, or of what its objects stand on.
-fn ground_z(pick: &Pick<'_>) -> f64 {
-    let robot = bodies::robot(pick, 0.0, false);
-    let corners = robot.triangles.iter().flat_map(|triangle| &triangle.corners);
-    let lowest = corners.map(|corner| corner.z).fold(f64::INFINITY, f64::min);
-    pick.places.iter().map(|place| place.bottom_z_m() - 0.3).fold(lowest, f64::min)
+/// Returns the corners of an object in frame `base`, metres.
+fn corners(place: &ObjectPose) -> impl Iterator<Item = Vector3<f64>> {
+    let (pose, half) = (place.isometry(), Vector3::from(place.size_m) * 0.5);
+    let side = move |n: usize, bit: usize| if n >> bit & 1 == 0 { -half[bit] } else { half[bit] };
+    (0..8).map(move |n| {
+        let corner = Vector3::new(side(n, 0), side(n, 1), side(n, 2));
+        (pose * nalgebra::Point3::from(corner)).coords
+    })
 }
 
-/// From where the person stands, a little to the side.
-fn front(pick: &Pick<'_>) -> Camera {
-    let side = pick.plan.limb().side();
-    Camera {
-        eye: Vector3::new(3.0, 1.35 * side, 1.25),
-        target: Vector3::new(0.36, 0.10 * side, 0.18),
-        up: Vector3::z(),
-        height_rad: 0.51,
-    }
-}
-
-/// From high above, the robot at the top.
-fn above((_, _, width, height): Frame) -> Camera {
-    const SEEN_M: f64 = 2.05;
-    const HIGH_M: f64 = 9.0;
-    Camera {
-        eye: Vector3::new(0.30, 0.0, HIGH_M),
-        target: Vector3::new(0.30, 0.0, 0.0),
-        up: -Vector3::x(),
-        height_rad: SEEN_M / HIGH_M * height / width,
-    }
+fn holding(label: &str, values: impl Iterator<Item = f64> + Clone) -> Axis {
+    let least = values.clone().fold(f64::INFINITY, f64::min);
+    let largest = values.fold(f64::NEG_INFINITY, f64::max);
+    Axis::between(label, least, largest)
 }

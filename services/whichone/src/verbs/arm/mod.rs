@@ -1,9 +1,8 @@
-//! `arm`: what the arm would do, without a group.
+//! `arm`: planned motions of the arm, without a group.
 
 use std::path::Path;
 
-use manipulation::{Cuboid, Limb, ObjectPose, PickPhase, PlanSettings, Robot, plan_pick};
-use preflight::ArmSetup;
+use manipulation::{Cuboid, Limb, ObjectPose, PickPhase, PickPlan, PlanSettings, Robot, plan_pick};
 use scene::Scene;
 use serde_json::{Value as Json, json};
 use service::exit::Exit;
@@ -14,26 +13,32 @@ use crate::error::{CliError, Outcome};
 use crate::output::Output;
 use crate::scene_file;
 
-mod bodies;
 mod figure;
-mod furniture;
-mod pick;
-mod strip;
 
-use pick::Pick;
+/// A planned pick with everything it was planned from.
+struct Pick<'a> {
+    scene: &'a Scene,
+    robot: &'a Robot,
+    settings: &'a PlanSettings,
+    /// Places of all objects.
+    places: Vec<ObjectPose>,
+    /// Number of the object to fetch.
+    object: usize,
+    plan: PickPlan,
+}
 
-/// Does it.
+/// Runs the verb.
 pub(super) fn arm(args: &ArmVerbArgs, out: &mut Output<'_>) -> Outcome {
     let ArmVerb::Plot(args) = &args.what;
     plot(args, out)
 }
 
-/// Draws how an object is fetched.
+/// Draws the motion that fetches an object.
 fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
     let ending = args.out.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if !["png", "svg"].contains(&ending) {
         let cure = "end its name with .png or .svg";
-        let what = format!("{}: is no kind of picture ({cure})", args.out.display());
+        let what = format!("{}: not a picture format; help: {cure}", args.out.display());
         return Err(CliError::new(Exit::Usage, what));
     }
     let settings = paths::settings(&args.config)?;
@@ -49,13 +54,12 @@ fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
         out.json(&to_json(&pick))?;
         return Ok(Exit::Ok);
     }
-    let failed =
-        |error: ::evaluation::charts::PlotError| CliError::new(Exit::Storage, error.to_string());
-    let canvas = figure::draw(&pick, args.width, args.samples).map_err(failed)?;
-    let bytes = match ending {
-        "svg" => ::evaluation::charts::svg(&canvas).into_bytes(),
-        _ => ::evaluation::charts::png(&canvas).map_err(failed)?,
+    let chart = figure::chart(&pick, args.width);
+    let picture = match ending {
+        "svg" => evaluation::charts::svg(&chart).map(String::into_bytes),
+        _ => evaluation::charts::png(&chart),
     };
+    let bytes = picture.map_err(|error| CliError::new(Exit::Storage, error.to_string()))?;
     write(&args.out, &bytes)?;
     let name = &pick.scene.object(pick.object.into()).name;
     let seconds = pick.plan.duration_s();
@@ -118,7 +122,7 @@ fn to_json(pick: &Pick<'_>) -> Json {
         "object": pick.scene.object(pick.object.into()).name,
         "limb": plan.limb().to_string(),
         "seconds": plan.duration_s(),
-        "stages": pick::PHASES.iter().filter_map(|(phase, ..)| stage(*phase)).collect::<Vec<_>>(),
+        "stages": figure::PHASES.iter().filter_map(|(phase, _)| stage(*phase)).collect::<Vec<_>>(),
     })
 }
 

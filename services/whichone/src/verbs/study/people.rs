@@ -67,11 +67,10 @@ fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), 
         format!("{:#}\n", evaluation::user_study::to_json(people)).as_bytes(),
     )?;
     write(folder, "report.json", format!("{:#}\n", report.to_json()).as_bytes())?;
-    for (name, canvas) in evaluation::user_study::pictures(report) {
-        write(folder, &format!("{name}.svg"), evaluation::charts::svg(&canvas).as_bytes())?;
-        let png = evaluation::charts::png(&canvas)
-            .map_err(|error| CliError::new(Exit::Storage, format!("{name}.png: {error}")))?;
-        write(folder, &format!("{name}.png"), &png)?;
+    for (name, chart) in evaluation::user_study::pictures(report) {
+        let files = evaluation::charts::files(name, &chart)
+            .map_err(|error| CliError::new(Exit::Storage, format!("{name}: {error}")))?;
+        files.iter().try_for_each(|(name, bytes)| write(folder, name, bytes))?;
     }
     Ok(())
 }
