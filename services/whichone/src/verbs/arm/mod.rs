@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use manipulation::{Cuboid, Limb, ObjectPose, PickPhase, PickPlan, PlanSettings, Robot, plan_pick};
+use preflight::ArmSetup;
 use scene::Scene;
 use serde_json::{Value as Json, json};
 use service::exit::Exit;
