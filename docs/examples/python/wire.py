@@ -65,6 +65,8 @@ class Layout:
             text = re.fullmatch(r"FixedText<(\d+)>", array[1])
             element = self._type(array[1], 4 + int(text[1]) if text else 0)
             return element * (length // ctypes.sizeof(element))
+        if kind.startswith("Code<"):
+            return ctypes.c_uint8
         if kind.startswith("FixedText"):
             text = {"_fields_": [("len", ctypes.c_uint32), ("bytes", ctypes.c_uint8 * (length - 4))]}
             return type("FixedText", (ctypes.Structure,), text)

@@ -5,9 +5,9 @@
 //! does any IO: that is the runtime's part. Values read from the wire are never trusted: every
 //! accessor that interprets a byte is checked and can fail.
 
+mod fixed;
 pub mod ids;
 pub mod inbox;
-pub mod messages;
 pub mod outbox;
 pub mod payloads;
 pub mod pick;
@@ -19,9 +19,9 @@ pub mod wire;
 
 pub use dialogue::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 pub use dialogue::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPhase};
+pub use fixed::*;
 pub use ids::{Epoch, Incarnation, RequestKey};
-pub use messages::*;
 pub use payloads::*;
 pub use text::{FixedText, TextTooLong};
 pub use topics::{Service, Topic};
-pub use wire::{WireCode, WireError};
+pub use wire::{Code, WireCode, WireError, WireField};

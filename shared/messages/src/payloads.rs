@@ -1,27 +1,16 @@
 //! Payloads of variable size: postcard in a byte slice.
 
 use crate::RequestKey;
-use crate::schema::{Field, Schema};
-use dialogue::Ended;
+use crate::schema::payloads;
+use dialogue::{Ended, Outcome};
 use scene::Question;
 use serde::{Deserialize, Serialize};
 
-/// Declares a payload's identity: encoded ones have no layout, so their key hashes a description
-/// that is changed by hand together with the type.
-macro_rules! encoded {
-    ($ty:ty, $name:literal, $shape:literal) => {
-        impl Schema for $ty {
-            const NAME: &'static str = $name;
-
-            fn fields() -> Vec<Field> {
-                vec![Field { name: $shape, ty: "postcard", offset: 0, size: 0 }]
-            }
-
-            fn size() -> usize {
-                0
-            }
-        }
-    };
+payloads! {
+    Injection [Sound]
+    PolicyView [Question, Outcome]
+    WorldView []
+    TrajectoryView [MotionPhase]
 }
 
 /// Something that a client gives to the speech service to hear. Clients to speech; sent again with
@@ -38,12 +27,6 @@ pub struct Injection {
     /// What is to be heard.
     pub sound: Sound,
 }
-encoded!(
-    Injection,
-    "Injection",
-    "key[u8;16] onset_ns:u64 end_ns:u64 sound{Text(str),Wav(path str),Point(target_m[f64;3] words str),\
-     Talk(longest_s f64),Transcript(hypotheses[(str,f64,[f32])])}"
-);
 
 /// What a client gives.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -115,15 +98,6 @@ pub struct PolicyView {
     /// The planner that decides, by its name.
     pub planner: String,
 }
-encoded!(
-    PolicyView,
-    "PolicyView",
-    "scene_key:u64 applied:u64 interaction:u64 belief[f64] absent:f64 person?(f64,f64) question \
-     prompt:u64 text decision value:f64 alternatives[(str,f64)] expected_questions:f64 \
-     bounds?(f64,f64) questions:u32 utterances(u64,u64) \
-     last?Ended refused:u64 planner; \
-     Ended(interaction:u64 object?u16 name?str outcome questions:u32 seconds:f64 utterances(u64,u64))"
-);
 
 /// Where the objects are in the simulated world. Arm to clients.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -138,7 +112,6 @@ pub struct WorldView {
     /// Pose of the left and right gripper, as the objects'.
     pub grippers: [[f64; 7]; 2],
 }
-encoded!(WorldView, "WorldView", "at_ns:u64 objects[?[f64;7]] held?u16 grippers[[f64;7];2]");
 
 /// Points of a trajectory that are told at most.
 pub const TRAJECTORY_POINTS_MAX: usize = 256;
@@ -161,12 +134,6 @@ pub struct TrajectoryView {
     /// The phases in order, over or not; at most [`TRAJECTORY_POINTS_MAX`] points in all.
     pub phases: Vec<PhaseWay>,
 }
-encoded!(
-    TrajectoryView,
-    "TrajectoryView",
-    "interaction:u64 attempt:u32 object?u16 limb:u8 began_ns:u64 phases[PhaseWay]; \
-     PhaseWay(phase{Clear,Approach,Close,Lift,HandOver,Release,Aim,Return} points_m[[f64;3]] t_s[f64])"
-);
 
 /// The gripper's way in one phase.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -54,6 +54,8 @@ impl<const N: usize> FixedText<N> {
     }
 }
 
+impl<const N: usize> crate::wire::WireField for FixedText<N> {}
+
 impl<const N: usize> Default for FixedText<N> {
     fn default() -> Self {
         Self { len: 0, bytes: [0; N] }

@@ -1,122 +1,222 @@
-//! Checked reading of bytes that another process wrote.
+//! Enums and questions as bytes in fixed layouts, and the check of bytes that another process wrote.
 
 use scene::{AttributeId, Intent, ObjectId, Question, Response, ValueId};
+use std::marker::PhantomData;
 
-/// A value on the wire that has no meaning.
+/// An invalid value on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what} {value} on the wire has no meaning")]
+#[error("invalid {field} {value} on the wire")]
 pub struct WireError {
-    what: &'static str,
+    field: &'static str,
     value: u32,
 }
 
 impl WireError {
-    /// The field `what` holds `value`.
-    pub const fn new(what: &'static str, value: u32) -> Self {
-        Self { what, value }
+    /// An error for `value` in `field`.
+    pub const fn new(field: &'static str, value: u32) -> Self {
+        Self { field, value }
     }
 }
 
-/// Declares an enum that travels as one byte, with a checked way back.
-macro_rules! wire_enum {
-    ($(#[$doc:meta])* $name:ident { $($(#[$vdoc:meta])* $variant:ident = $code:literal,)+ }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
-        #[serde(rename_all = "snake_case")]
-        pub enum $name { $($(#[$vdoc])* $variant,)+ }
+/// An enum that travels as one byte.
+pub trait WireCode: Copy + 'static {
+    /// Name of the enum.
+    const NAME: &'static str;
+    /// Names of the variants with their codes, all of them; the first stands for an unset field.
+    const CODES: &'static [(&'static str, u8)];
 
-        impl $name {
-            /// The byte on the wire.
-            pub const fn code(self) -> u8 {
+    /// Returns the code in a message.
+    fn code(self) -> Code<Self> {
+        self.into()
+    }
+
+    /// Returns the variant of a code.
+    ///
+    /// # Errors
+    /// An invalid code.
+    fn from_code(code: Code<Self>) -> Result<Self, WireError> {
+        Self::from_byte(code.byte)
+    }
+
+    /// Returns the byte of this variant.
+    fn to_byte(self) -> u8;
+
+    /// Returns the variant of a byte.
+    ///
+    /// # Errors
+    /// A byte without a variant.
+    fn from_byte(byte: u8) -> Result<Self, WireError>;
+}
+
+/// The byte of an enum inside a fixed-layout message. Readers reject messages with invalid codes
+/// ([`WireField::check`]), so that services see valid ones only.
+#[repr(transparent)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Code<E> {
+    byte: u8,
+    variant: PhantomData<fn() -> E>,
+}
+
+// SAFETY: one plain byte, the same in every process; the marker has no size.
+#[allow(unsafe_code)]
+unsafe impl<E: 'static> iceoryx2::prelude::ZeroCopySend for Code<E> {}
+
+impl<E: WireCode> Code<E> {
+    /// A code as another process may write it, valid or not.
+    pub const fn from_raw(byte: u8) -> Self {
+        Self { byte, variant: PhantomData }
+    }
+
+    /// Returns the variant. An invalid code, which no message from a reader has, counts as unset.
+    pub fn get(self) -> E {
+        let unset = || E::from_byte(E::CODES[0].1);
+        E::from_byte(self.byte).or_else(|_| unset()).unwrap_or_else(|_| unreachable!())
+    }
+}
+
+impl<E: WireCode> From<E> for Code<E> {
+    fn from(variant: E) -> Self {
+        Self::from_raw(variant.to_byte())
+    }
+}
+
+impl<E: WireCode> PartialEq<E> for Code<E> {
+    fn eq(&self, variant: &E) -> bool {
+        self.byte == variant.to_byte()
+    }
+}
+
+impl<E> Default for Code<E> {
+    fn default() -> Self {
+        Self { byte: 0, variant: PhantomData }
+    }
+}
+
+impl<E: WireCode> std::fmt::Debug for Code<E> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match E::CODES.iter().find(|(_, byte)| *byte == self.byte) {
+            Some((name, _)) => f.write_str(name),
+            None => write!(f, "<invalid {} {}>", E::NAME, self.byte),
+        }
+    }
+}
+
+/// The type of a field in a fixed-layout message.
+pub trait WireField {
+    /// Whether some bytes of it are invalid.
+    const CHECKED: bool = false;
+
+    /// Checks the codes inside.
+    ///
+    /// # Errors
+    /// An invalid code.
+    fn check(&self) -> Result<(), WireError> {
+        Ok(())
+    }
+
+    /// Returns what a schema key has to cover beyond the type's name: codes, and nested keys.
+    fn detail() -> String {
+        String::new()
+    }
+}
+
+macro_rules! plain {
+    ($($number:ty)+) => { $(impl WireField for $number {})+ };
+}
+plain!(u8 u16 u32 u64 i32 f32 f64);
+
+impl<T: WireField, const N: usize> WireField for [T; N] {
+    const CHECKED: bool = T::CHECKED;
+
+    fn check(&self) -> Result<(), WireError> {
+        if T::CHECKED { self.iter().try_for_each(T::check) } else { Ok(()) }
+    }
+
+    fn detail() -> String {
+        T::detail()
+    }
+}
+
+impl<E: WireCode> WireField for Code<E> {
+    const CHECKED: bool = true;
+
+    fn check(&self) -> Result<(), WireError> {
+        E::from_byte(self.byte).map(drop)
+    }
+
+    fn detail() -> String {
+        E::CODES.iter().map(|(name, byte)| format!("{byte}={name} ")).collect()
+    }
+}
+
+/// Gives an enum of another module its codes.
+macro_rules! wire_codes {
+    ($name:ident { $($variant:ident = $code:literal,)+ }) => {
+        impl $crate::wire::WireCode for $name {
+            const NAME: &'static str = stringify!($name);
+            const CODES: &'static [(&'static str, u8)] = &[$((stringify!($variant), $code)),+];
+
+            fn to_byte(self) -> u8 {
                 match self { $(Self::$variant => $code,)+ }
             }
 
-            /// The meaning of a byte.
+            fn from_byte(byte: u8) -> Result<Self, $crate::WireError> {
+                match byte {
+                    $($code => Ok(Self::$variant),)+
+                    _ => Err($crate::WireError::new(stringify!($name), byte.into())),
+                }
+            }
+        }
+    };
+}
+pub(crate) use wire_codes;
+
+/// Declares an enum with its codes.
+macro_rules! wire_enum {
+    ($(#[$doc:meta])* $name:ident { $($(#[$vdoc:meta])* $variant:ident = $code:literal,)+ }) => {
+        $(#[$doc])*
+        #[derive(
+            Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash,
+            serde::Serialize, serde::Deserialize,
+        )]
+        #[serde(rename_all = "snake_case")]
+        pub enum $name { $($(#[$vdoc])* $variant,)+ }
+
+        $crate::wire::wire_codes! { $name { $($variant = $code,)+ } }
+
+        impl $name {
+            /// Returns the code in a message.
+            pub const fn code(self) -> $crate::wire::Code<Self> {
+                $crate::wire::Code::from_raw(match self { $(Self::$variant => $code,)+ })
+            }
+
+            /// Returns the variant of a code.
             ///
             /// # Errors
-            /// A byte that no writer of this build sends.
-            pub const fn from_code(code: u8) -> Result<Self, $crate::WireError> {
-                match code {
-                    $($code => Ok(Self::$variant),)+
-                    _ => Err($crate::WireError::new(stringify!($name), code as u32)),
-                }
+            /// An invalid code.
+            pub fn from_code(code: $crate::wire::Code<Self>) -> Result<Self, $crate::WireError> {
+                $crate::wire::WireField::check(&code)?;
+                Ok(code.get())
             }
         }
     };
 }
 pub(crate) use wire_enum;
 
-/// An enum of the dialogue that travels as one byte.
-pub trait WireCode: Sized {
-    /// Returns the byte on the wire.
-    fn code(self) -> u8;
-
-    /// Returns the meaning of a byte.
-    ///
-    /// # Errors
-    /// A byte that no writer of this build sends.
-    fn from_code(code: u8) -> Result<Self, WireError>;
-}
-
-/// Implements [`WireCode`] from a table of all variants.
-macro_rules! wire_code {
-    ($name:ident { $($variant:ident = $code:literal,)+ }) => {
-        impl $crate::wire::WireCode for $name {
-            fn code(self) -> u8 {
-                match self { $(Self::$variant => $code,)+ }
-            }
-
-            fn from_code(code: u8) -> Result<Self, $crate::WireError> {
-                match code {
-                    $($code => Ok(Self::$variant),)+
-                    _ => Err($crate::WireError::new(stringify!($name), code.into())),
-                }
-            }
-        }
-    };
-}
-pub(crate) use wire_code;
-
-/// The byte of a response.
-pub(crate) fn response_code(response: Response) -> u8 {
-    match response {
-        Response::None => 0,
-        Response::Yes => 1,
-        Response::No => 2,
+wire_codes! { Response { None = 0, Yes = 1, No = 2, } }
+wire_codes! {
+    Intent {
+        Inform = 0,
+        None = 1,
+        Stop = 2,
+        Cancel = 3,
+        Repeat = 4,
+        StartOver = 5,
+        AskBack = 6,
     }
 }
 
-/// The response of a byte.
-pub(crate) fn response_from(code: u8) -> Result<Response, WireError> {
-    match code {
-        0 => Ok(Response::None),
-        1 => Ok(Response::Yes),
-        2 => Ok(Response::No),
-        _ => Err(WireError::new("response", code.into())),
-    }
-}
-
-const INTENTS: [Intent; 7] = [
-    Intent::Inform,
-    Intent::None,
-    Intent::Stop,
-    Intent::Cancel,
-    Intent::Repeat,
-    Intent::StartOver,
-    Intent::AskBack,
-];
-
-/// The byte of an intent: its place in [`INTENTS`].
-pub(crate) fn intent_code(intent: Intent) -> u8 {
-    INTENTS.iter().position(|&i| i == intent).unwrap_or(0) as u8
-}
-
-/// The intent of a byte.
-pub(crate) fn intent_from(code: u8) -> Result<Intent, WireError> {
-    INTENTS.get(usize::from(code)).copied().ok_or(WireError::new("intent", code.into()))
-}
-
-/// A question as four numbers: kind, object, attribute, value; unused ones are 0.
+/// Returns a question as four numbers: kind, object, attribute, value; unused ones are 0.
 pub(crate) fn question_codes(question: Question) -> (u16, u16, u16, u16) {
     match question {
         Question::None => (0, 0, 0, 0),
@@ -126,7 +226,7 @@ pub(crate) fn question_codes(question: Question) -> (u16, u16, u16, u16) {
     }
 }
 
-/// The question of four numbers. Whether the scene has it is for the reader to check.
+/// Returns the question of four numbers. The reader checks that the scene has it.
 pub(crate) fn question_from(codes: (u16, u16, u16, u16)) -> Result<Question, WireError> {
     let (kind, object, attribute, value) = codes;
     match kind {

@@ -1,7 +1,7 @@
 //! What goes onto the wire comes off it unchanged, and what makes no sense is refused.
 
 use messages::{
-    ASKED_MAX, AskedQuestion, BASE_WORDS_MAX, EXCLUDED_GROUPS_MAX, EXCLUDED_WORDS_MAX, Fits,
+    ASKED_MAX, AskedQuestion, BASE_WORDS_MAX, Code, EXCLUDED_GROUPS_MAX, EXCLUDED_WORDS_MAX, Fits,
     Hypothesis, Interpretation, Observation, Utterance, WireQuestion, WireReading,
 };
 use proptest::prelude::*;
@@ -59,7 +59,9 @@ proptest! {
     ) {
         let mut wire = WireReading { excluded_len: lens, ..WireReading::default() };
         (wire.base_count, wire.excluded_count) = (counts[0], counts[1]);
-        (wire.response, wire.intent, wire.question) = (codes[0], codes[1], codes[2]);
+        wire.response = Code::from_raw(codes[0]);
+        wire.intent = Code::from_raw(codes[1]);
+        wire.question = codes[2];
         (wire.base[0], wire.base_doubt[0]) = (word, doubt);
         if let Ok(Interpretation { answers, reading, .. }) = wire.interpretation(WORDS, 3) {
             prop_assert!(reading.base.iter().all(|w| w.index() < WORDS));

@@ -1,19 +1,69 @@
 //! The wire layout is a contract with programs of other languages and builds: any change of it must
-//! be seen. `WHICHONE_BLESS=1 cargo test -p protocol` writes the golden file anew.
+//! be seen. `WHICHONE_BLESS=1 cargo test -p messages` rewrites the golden file.
 
-use messages::robot;
+use messages::robot::*;
 use messages::schema::{Field, Schema};
 use messages::topics::{self, Topic};
+use messages::*;
 use std::fmt::Write;
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/wire_layout.txt");
 
-fn describe<T: Schema>(text: &mut String) {
-    let _ = writeln!(text, "{} size {} schema {}", T::NAME, T::size(), T::key());
-    for Field { name, ty, offset, size } in T::fields() {
-        let _ = writeln!(text, "  {offset:>6} +{size:<6} {name}: {ty}");
-    }
-    text.push('\n');
+/// Name, size, key and fields of a message type.
+struct Layout {
+    name: &'static str,
+    size: usize,
+    key: String,
+    fields: Vec<Field>,
+}
+
+macro_rules! layouts {
+    ($($message:ty),+ $(,)?) => {
+        vec![$(Layout {
+            name: <$message>::NAME,
+            size: <$message>::size(),
+            key: <$message>::key().to_string(),
+            fields: <$message>::fields(),
+        }),+]
+    };
+}
+
+fn structs() -> Vec<Layout> {
+    layouts![
+        Stamp,
+        WireQuestion,
+        WireGesture,
+        AskedQuestion,
+        WireHypothesis,
+        WireReading,
+        Utterance,
+        Observation,
+        AppliedMark,
+        RobotAct,
+        Presented,
+        Activity,
+        Hearing,
+        Partial,
+        AudioChunk,
+        Receipt,
+        ArmStatus,
+        JointStates,
+        MotionCommand,
+        JointCommand,
+        JointState,
+        JointTrajectoryPoint,
+        SpeedRatio,
+        EndpointState,
+        EndEffectorCommand,
+        EndEffectorState,
+        EndEffectorProperties,
+        AssemblyState,
+        Drill,
+    ]
+}
+
+fn payloads() -> Vec<Layout> {
+    layouts![Injection, PolicyView, WorldView, TrajectoryView]
 }
 
 fn describe_topic(topic: &Topic, text: &mut String) {
@@ -31,101 +81,90 @@ fn describe_topic(topic: &Topic, text: &mut String) {
     );
 }
 
-fn layout() -> String {
+fn describe(layout: &Layout, text: &mut String) {
+    let Layout { name, size, key, fields } = layout;
+    let _ = writeln!(text, "{name} size {size} schema {key}");
+    for Field { name, ty, offset, size, .. } in fields {
+        let _ = writeln!(text, "  {offset:>6} +{size:<6} {name}: {ty}");
+    }
+    text.push('\n');
+}
+
+/// The codes of every enum in the structs, by the type of its field.
+fn codes(structs: &[Layout]) -> Vec<String> {
+    let fields = structs.iter().flat_map(|layout| &layout.fields);
+    let coded = fields.filter(|field| field.ty.starts_with("Code<"));
+    let mut codes: Vec<String> =
+        coded.map(|field| format!("{}: {}\n", field.ty, field.detail.trim_end())).collect();
+    codes.sort();
+    codes.dedup();
+    codes
+}
+
+fn golden_text() -> String {
     let mut text = String::from("# Topics\n\n");
-    topics::ALL.iter().for_each(|topic| describe_topic(topic, &mut text));
-    topics::robot::ALL.iter().for_each(|topic| describe_topic(topic, &mut text));
+    let topics = topics::ALL.iter().chain(&topics::robot::ALL);
+    topics.for_each(|topic| describe_topic(topic, &mut text));
     text.push_str("\n# Structs\n\n");
-    describe::<messages::Stamp>(&mut text);
-    describe::<messages::WireQuestion>(&mut text);
-    describe::<messages::WireGesture>(&mut text);
-    describe::<messages::AskedQuestion>(&mut text);
-    describe::<messages::WireHypothesis>(&mut text);
-    describe::<messages::WireReading>(&mut text);
-    describe::<messages::Utterance>(&mut text);
-    describe::<messages::Observation>(&mut text);
-    describe::<messages::AppliedMark>(&mut text);
-    describe::<messages::RobotAct>(&mut text);
-    describe::<messages::Presented>(&mut text);
-    describe::<messages::Activity>(&mut text);
-    describe::<messages::Hearing>(&mut text);
-    describe::<messages::Partial>(&mut text);
-    describe::<messages::AudioChunk>(&mut text);
-    describe::<messages::Receipt>(&mut text);
-    describe::<messages::ArmStatus>(&mut text);
-    describe::<messages::JointStates>(&mut text);
-    describe::<messages::MotionCommand>(&mut text);
-    describe::<robot::JointCommand>(&mut text);
-    describe::<robot::JointState>(&mut text);
-    describe::<robot::JointTrajectoryPoint>(&mut text);
-    describe::<robot::SpeedRatio>(&mut text);
-    describe::<robot::EndpointState>(&mut text);
-    describe::<robot::EndEffectorCommand>(&mut text);
-    describe::<robot::EndEffectorState>(&mut text);
-    describe::<robot::EndEffectorProperties>(&mut text);
-    describe::<robot::AssemblyState>(&mut text);
-    describe::<robot::Drill>(&mut text);
-    text.push_str("# Encoded payloads\n\n");
-    describe::<messages::Injection>(&mut text);
-    describe::<messages::PolicyView>(&mut text);
-    describe::<messages::WorldView>(&mut text);
-    describe::<messages::TrajectoryView>(&mut text);
+    structs().iter().for_each(|layout| describe(layout, &mut text));
+    text.push_str("# Codes\n\n");
+    text.extend(codes(&structs()));
+    text.push_str("\n# Postcard payloads\n\n");
+    payloads().iter().for_each(|layout| describe(layout, &mut text));
     text
 }
 
 #[test]
-fn the_wire_layout_is_the_golden_one() {
-    let layout = layout();
+fn wire_layout_matches_the_golden_file() {
+    let text = golden_text();
     if std::env::var_os("WHICHONE_BLESS").is_some() {
-        std::fs::write(GOLDEN, &layout).unwrap();
+        std::fs::write(GOLDEN, &text).unwrap();
     }
     let golden = std::fs::read_to_string(GOLDEN).unwrap_or_default();
-    assert_eq!(layout, golden, "the wire layout has changed; see the head of this file");
-}
-
-fn assert_without_padding<T: Schema>() {
-    let end = T::fields().iter().fold(0, |end, field| {
-        assert_eq!(field.offset, end, "{}: a gap before {}", T::NAME, field.name);
-        end + field.size
-    });
-    assert_eq!(end, T::size(), "{}: a gap at its end", T::NAME);
+    assert_eq!(text, golden, "the wire layout has changed; see the head of this file");
 }
 
 #[test]
-fn no_struct_has_padding() {
-    assert_without_padding::<messages::Stamp>();
-    assert_without_padding::<messages::WireQuestion>();
-    assert_without_padding::<messages::WireGesture>();
-    assert_without_padding::<messages::AskedQuestion>();
-    assert_without_padding::<messages::WireHypothesis>();
-    assert_without_padding::<messages::WireReading>();
-    assert_without_padding::<messages::Utterance>();
-    assert_without_padding::<messages::Observation>();
-    assert_without_padding::<messages::AppliedMark>();
-    assert_without_padding::<messages::RobotAct>();
-    assert_without_padding::<messages::Presented>();
-    assert_without_padding::<messages::Activity>();
-    assert_without_padding::<messages::Hearing>();
-    assert_without_padding::<messages::Partial>();
-    assert_without_padding::<messages::AudioChunk>();
-    assert_without_padding::<messages::Receipt>();
-    assert_without_padding::<messages::ArmStatus>();
-    assert_without_padding::<messages::JointStates>();
-    assert_without_padding::<messages::MotionCommand>();
-    assert_without_padding::<robot::JointCommand>();
-    assert_without_padding::<robot::JointState>();
-    assert_without_padding::<robot::JointTrajectoryPoint>();
-    assert_without_padding::<robot::SpeedRatio>();
-    assert_without_padding::<robot::EndpointState>();
-    assert_without_padding::<robot::EndEffectorCommand>();
-    assert_without_padding::<robot::EndEffectorState>();
-    assert_without_padding::<robot::EndEffectorProperties>();
-    assert_without_padding::<robot::AssemblyState>();
-    assert_without_padding::<robot::Drill>();
+fn wire_structs_have_no_padding() {
+    for Layout { name, size, fields, .. } in structs() {
+        let end = fields.iter().fold(0, |end, field| {
+            assert_eq!(field.offset, end, "{name}: a gap before {}", field.name);
+            end + field.size
+        });
+        assert_eq!(end, size, "{name}: a gap at its end");
+    }
+}
+
+/// The keys of payloads are derived from their types, so that no edit of a type goes unnoticed.
+#[test]
+fn payload_schemas_hold_every_type_and_variant() {
+    let fields: Vec<Field> = payloads().into_iter().flat_map(|layout| layout.fields).collect();
+    let ty = |name: &str| {
+        let field = fields.iter().find(|field| field.name == name);
+        field.unwrap_or_else(|| panic!("no type {name} in the payloads")).ty.as_ref()
+    };
+    assert!(ty("Injection").contains(r#"{"sound":{"TYPENAME":"Sound"}}"#), "{}", ty("Injection"));
+    for variant in ["Text", "Wav", "Point", "Talk", "Transcript", "target_m", "longest_s"] {
+        assert!(ty("Sound").contains(variant), "{variant}");
+    }
+    for variant in ["delivered", "failed", "cancelled", "abandoned", "scene_changed", "not_here"] {
+        assert!(ty("Outcome").contains(variant), "{variant}");
+    }
+    assert!(fields.iter().all(|field| field.name != "error"), "{fields:?}");
 }
 
 #[test]
-fn topics_have_names_of_their_own_and_bounds_that_hold() {
+fn messages_with_invalid_codes_are_rejected_wherever_the_code_is() {
+    let act = RobotAct { kind: Code::from_raw(9), ..RobotAct::default() };
+    assert_eq!(act.check(), Err(WireError::new("ActKind", 9)));
+    let mut observation = Observation::default();
+    assert_eq!(observation.check(), Ok(()));
+    observation.readings[READINGS_MAX - 1].intent = Code::from_raw(7);
+    assert_eq!(observation.check(), Err(WireError::new("Intent", 7)));
+}
+
+#[test]
+fn topics_have_unique_names_and_consistent_bounds() {
     let all: Vec<&Topic> = topics::ALL.iter().chain(&topics::robot::ALL).collect();
     for (i, topic) in all.iter().enumerate() {
         assert!(all[i + 1..].iter().all(|other| other.name != topic.name));

@@ -5,7 +5,7 @@ use crate::group::GroupPaths;
 use iceoryx2::prelude::*;
 use messages::schema::Schema;
 use messages::topics::Topic;
-use messages::{Epoch, Incarnation, Service, Stamp};
+use messages::{Epoch, Incarnation, Service, Stamp, WireField};
 use serde::de::DeserializeOwned;
 
 mod doorbell;
@@ -178,6 +178,9 @@ impl Bus {
 }
 
 /// What a fixed-layout message must be.
-pub trait WireMessage: Schema + ZeroCopySend + Copy + std::fmt::Debug + 'static {}
+pub trait WireMessage:
+    Schema + WireField + ZeroCopySend + Copy + std::fmt::Debug + 'static
+{
+}
 
-impl<T: Schema + ZeroCopySend + Copy + std::fmt::Debug + 'static> WireMessage for T {}
+impl<T: Schema + WireField + ZeroCopySend + Copy + std::fmt::Debug + 'static> WireMessage for T {}

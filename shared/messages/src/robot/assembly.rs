@@ -1,7 +1,7 @@
 //! The robot as a whole.
 
 use crate::schema::wire_struct;
-use crate::wire::wire_enum;
+use crate::wire::{Code, wire_enum};
 use iceoryx2::prelude::ZeroCopySend;
 
 wire_enum! {
@@ -30,7 +30,7 @@ wire_struct! {
         /// 1 if a part of it has a fault.
         error: u8,
         /// [`EstopButton`].
-        estop_button: u8,
+        estop_button: Code<EstopButton>,
         /// What stopped it: 0 nothing, 1 a person, 2 unknown, 3 a joint's fault, 4 its computer.
         estop_source: u8,
         /// Zero.

@@ -1,7 +1,7 @@
 //! What is done to the simulated robot from outside: by the people around it, and by faults.
 
 use crate::schema::wire_struct;
-use crate::wire::wire_enum;
+use crate::wire::{Code, wire_enum};
 use iceoryx2::prelude::ZeroCopySend;
 
 wire_enum! {
@@ -37,7 +37,7 @@ wire_struct! {
         /// Seconds or a number, after the kind.
         amount: f64,
         /// [`DrillKind`].
-        kind: u8,
+        kind: Code<DrillKind>,
         /// Zero.
         reserved: [u8; 7],
     }

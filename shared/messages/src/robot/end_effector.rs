@@ -2,7 +2,7 @@
 
 use crate::schema::wire_struct;
 use crate::text::FixedText;
-use crate::wire::{WireError, wire_enum};
+use crate::wire::{Code, WireError, wire_enum};
 use iceoryx2::prelude::ZeroCopySend;
 
 wire_enum! {
@@ -74,21 +74,21 @@ wire_struct! {
         /// The gripper's own number.
         id: u32,
         /// Whether it is switched on.
-        enabled: u8,
+        enabled: Code<Tristate>,
         /// Whether it has been calibrated.
-        calibrated: u8,
+        calibrated: Code<Tristate>,
         /// Whether it takes commands.
-        ready: u8,
+        ready: Code<Tristate>,
         /// Whether the fingers move.
-        moving: u8,
+        moving: Code<Tristate>,
         /// Whether the fingers stopped at something: the force threshold was met on the way.
-        gripping: u8,
+        gripping: Code<Tristate>,
         /// Whether the fingers came to the end of a command without meeting anything.
-        missed: u8,
+        missed: Code<Tristate>,
         /// Whether it has a fault; it has to be reset then.
-        error: u8,
+        error: Code<Tristate>,
         /// Whether it grips by opening.
-        reverse: u8,
+        reverse: Code<Tristate>,
         /// Percent: 0 closed, 100 open.
         position: f32,
         /// Percent of the greatest force.
@@ -109,7 +109,7 @@ wire_struct! {
         /// The gripper's own number.
         id: u32,
         /// [`UiType`].
-        ui_type: u8,
+        ui_type: Code<UiType>,
         /// 1 if it has to be calibrated.
         has_calibration: u8,
         /// 1 if it obeys `grip` and `release`.

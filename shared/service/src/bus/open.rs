@@ -9,7 +9,7 @@ use iceoryx2::service::builder::publish_subscribe::{
 };
 use iceoryx2::service::port_factory::event::PortFactory;
 use messages::topics::{self, Topic};
-use messages::{Epoch, Incarnation, Service, Stamp};
+use messages::{Epoch, Incarnation, Service, Stamp, WireError};
 use std::cell::Cell;
 
 /// Opens the topic, creating it where this process is the first. A macro, because iceoryx2's
@@ -122,11 +122,13 @@ pub(super) struct Gate {
     epoch: Epoch,
     /// Newest incarnation heard; not kept where several clients write.
     newest: Option<Cell<Incarnation>>,
+    /// Messages rejected because of invalid codes.
+    rejected: Cell<u64>,
 }
 
 impl Gate {
     pub(super) fn new(epoch: Epoch, topic: &Topic) -> Self {
-        Self { epoch, newest: topic.writer.map(|_| Cell::default()) }
+        Self { epoch, newest: topic.writer.map(|_| Cell::default()), rejected: Cell::new(0) }
     }
 
     pub(super) fn admits(&self, stamp: &Stamp) -> bool {
@@ -140,5 +142,11 @@ impl Gate {
         }
         newest.set(incarnation);
         true
+    }
+
+    /// Counts and logs a message with invalid codes, which no service may see.
+    pub(super) fn reject(&self, topic: &str, error: &WireError) {
+        self.rejected.set(self.rejected.get() + 1);
+        tracing::warn!(topic, %error, rejected = self.rejected.get(), "message rejected");
     }
 }

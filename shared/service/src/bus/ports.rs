@@ -87,7 +87,10 @@ impl<T: WireMessage> Reader<T> {
             match received.map_err(|e| PortError::new(self.topic, format!("{e:?}")))? {
                 None => return Ok(None),
                 Some(sample) if self.gate.admits(sample.user_header()) => {
-                    return Ok(Some(read(sample.payload(), sample.user_header())));
+                    match sample.payload().check() {
+                        Ok(()) => return Ok(Some(read(sample.payload(), sample.user_header()))),
+                        Err(error) => self.gate.reject(self.topic, &error),
+                    }
                 }
                 Some(_) => {}
             }

@@ -1,9 +1,9 @@
 //! What the robot has decided, and how far its belief has come.
 
-use crate::messages::common::WireQuestion;
+use crate::fixed::common::WireQuestion;
 use crate::schema::wire_struct;
 use crate::text::FixedText;
-use crate::wire::{WireCode, WireError, wire_code};
+use crate::wire::{Code, WireCode, WireError, wire_codes};
 use crate::{ActKind, InteractionId, PickId};
 use iceoryx2::prelude::ZeroCopySend;
 use scene::ObjectId;
@@ -16,11 +16,11 @@ wire_struct! {
     }
 }
 
-wire_code!(ActKind { Wait = 0, Ask = 1, Say = 2, Pick = 3, Cancel = 4, });
+wire_codes!(ActKind { Wait = 0, Ask = 1, Say = 2, Pick = 3, Cancel = 4, });
 
 wire_struct! {
     /// The policy's standing decision. Policy to speech and arm, sent again until superseded.
-    RobotAct = "RobotAct" nests [WireQuestion] {
+    RobotAct = "RobotAct" {
         /// [`ActId`].
         act: u64,
         /// [`InteractionId`].
@@ -30,7 +30,7 @@ wire_struct! {
         /// How often the prompt has been asked for: 1, and one more for each repetition.
         presentation: u32,
         /// [`ActKind`].
-        kind: u8,
+        kind: Code<ActKind>,
         /// Zero.
         reserved: [u8; 3],
         /// The question of an `Ask`; of a `Pick`, its object: that it is fetched can be denied.

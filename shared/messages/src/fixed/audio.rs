@@ -13,6 +13,8 @@ pub const CHUNK_SAMPLES_MAX: usize = 1_600;
 #[type_name("Pcm")]
 pub struct Pcm<const N: usize>(pub [i16; N]);
 
+impl<const N: usize> crate::wire::WireField for Pcm<N> {}
+
 impl<const N: usize> Default for Pcm<N> {
     fn default() -> Self {
         Self([0; N])

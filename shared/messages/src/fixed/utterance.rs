@@ -1,10 +1,10 @@
 //! An accepted utterance.
 
-use crate::messages::common::{AskedQuestion, checked_share};
-use crate::messages::gesture::WireGesture;
+use crate::fixed::common::{AskedQuestion, checked_share};
+use crate::fixed::gesture::WireGesture;
 use crate::schema::wire_struct;
 use crate::text::{FixedText, TextTooLong};
-use crate::wire::{WireError, wire_enum};
+use crate::wire::{Code, WireError, wire_enum};
 use iceoryx2::prelude::ZeroCopySend;
 
 /// Longest utterance, all hypotheses together, in bytes.
@@ -59,7 +59,7 @@ pub struct Hypothesis<'a> {
 
 wire_struct! {
     /// An accepted utterance. Speech to grounding.
-    Utterance = "Utterance" nests [AskedQuestion, WireGesture, WireHypothesis] {
+    Utterance = "Utterance" {
         /// [`UtteranceSeq`].
         seq: u64,
         /// The latest questions whose sound had begun when the utterance was accepted, newest
@@ -74,7 +74,7 @@ wire_struct! {
         /// When it was accepted.
         accepted_ns: u64,
         /// [`Source`].
-        source: u8,
+        source: Code<Source>,
         /// How many of `hypotheses` are used; the first is the best. 0 for a gesture without words.
         hypothesis_count: u8,
         /// How many of `asked` are used.

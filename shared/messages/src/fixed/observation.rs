@@ -1,14 +1,14 @@
 //! What an utterance was understood to say.
 
-use crate::messages::common::{AskedQuestion, checked_share};
-use crate::messages::gesture::WireGesture;
-use crate::messages::utterance::ASKED_MAX;
+use crate::fixed::common::{AskedQuestion, checked_share};
+use crate::fixed::gesture::WireGesture;
+use crate::fixed::utterance::{ASKED_MAX, Source};
 use crate::schema::wire_struct;
 use crate::text::FixedText;
-use crate::wire::{self, WireError};
+use crate::wire::{Code, WireError, WireField};
 use dialogue::Interpretation;
 use iceoryx2::prelude::ZeroCopySend;
-use scene::{Doubt, Reading, WordId};
+use scene::{Doubt, Intent, Reading, Response, WordId};
 
 /// Readings of one utterance, for all questions together.
 pub const READINGS_MAX: usize = 32;
@@ -41,9 +41,9 @@ wire_struct! {
         /// the observation's `asked`, or [`NO_QUESTION`].
         question: u8,
         /// [`scene::Response`]: 0 none, 1 yes, 2 no.
-        response: u8,
+        response: Code<Response>,
         /// [`scene::Intent`], in its order.
-        intent: u8,
+        intent: Code<Intent>,
         /// Used entries of `base`.
         base_count: u8,
         /// Used entries of `excluded`.
@@ -60,8 +60,8 @@ impl WireReading {
         let mut wire = Self {
             weight: *weight,
             question: answers.map_or(NO_QUESTION, |place| place as u8),
-            response: wire::response_code(reading.response),
-            intent: wire::intent_code(reading.intent),
+            response: reading.response.into(),
+            intent: reading.intent.into(),
             base_count: reading.base.len().min(BASE_WORDS_MAX) as u8,
             excluded_count: reading.excluded.len().min(EXCLUDED_GROUPS_MAX) as u8,
             response_doubt: reading.doubt.response as f32,
@@ -84,6 +84,7 @@ impl WireReading {
     /// # Errors
     /// Counts, codes, doubts, questions or words that make no sense then.
     pub fn interpretation(&self, words: usize, asked: usize) -> Result<Interpretation, WireError> {
+        self.check()?;
         let answers = match self.question {
             NO_QUESTION => None,
             place if usize::from(place) < asked => Some(usize::from(place)),
@@ -112,8 +113,8 @@ impl WireReading {
         Ok(Reading {
             base,
             excluded,
-            response: wire::response_from(self.response)?,
-            intent: wire::intent_from(self.intent)?,
+            response: self.response.get(),
+            intent: self.intent.get(),
             doubt,
         })
     }
@@ -158,7 +159,7 @@ fn checked_words(slots: &[u16], count: u8, known: usize) -> Result<Vec<WordId>, 
 
 wire_struct! {
     /// What an utterance was understood to say. Grounding to policy, one for each utterance.
-    Observation = "Observation" nests [WireReading, AskedQuestion, WireGesture] {
+    Observation = "Observation" {
         /// The utterance's [`UtteranceSeq`].
         seq: u64,
         /// Of the utterance.
@@ -179,8 +180,8 @@ wire_struct! {
         reading_count: u8,
         /// How many of `asked` are used.
         asked_count: u8,
-        /// [`crate::Source`] of the utterance.
-        source: u8,
+        /// [`Source`] of the utterance.
+        source: Code<Source>,
         /// Zero.
         reserved: [u8; 5],
         /// What it may mean: for each question asked and for none, most likely first.

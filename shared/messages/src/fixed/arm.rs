@@ -1,7 +1,7 @@
 //! What the arm tells, and how it is stopped.
 
 use crate::schema::wire_struct;
-use crate::wire::{wire_code, wire_enum};
+use crate::wire::{Code, wire_codes, wire_enum};
 use crate::{ActId, InteractionId, PickId, PickOutcome, PickPhase};
 use iceoryx2::prelude::ZeroCopySend;
 
@@ -15,8 +15,8 @@ pub const JOINT_STATE_NAMES: [&str; JOINT_STATE_LEN] = [
     "torso_t0",
 ];
 
-wire_code!(PickPhase { Idle = 0, Accepted = 1, Moving = 2, Closing = 3, Holding = 4, Done = 5, });
-wire_code!(PickOutcome {
+wire_codes!(PickPhase { Idle = 0, Accepted = 1, Moving = 2, Closing = 3, Holding = 4, Done = 5, });
+wire_codes!(PickOutcome {
     Pending = 0,
     Delivered = 1,
     Unreachable = 2,
@@ -60,15 +60,15 @@ wire_struct! {
         /// [`ObjectId`] of the latest pick.
         object: u32,
         /// [`PickPhase`] of the latest pick.
-        phase: u8,
+        phase: Code<PickPhase>,
         /// [`PickOutcome`] of the latest pick.
-        outcome: u8,
+        outcome: Code<PickOutcome>,
         /// 1 while the motion stop is latched.
         stopped: u8,
         /// 1 while any joint moves.
         moving: u8,
         /// [`Hindrance`].
-        hindrance: u8,
+        hindrance: Code<Hindrance>,
         /// Zero.
         reserved: [u8; 3],
         /// Expected seconds until the pick is done, 0 where none runs.
@@ -120,7 +120,7 @@ wire_struct! {
         /// When it was given; an older one than the last obeyed is ignored.
         given_ns: u64,
         /// [`MotionOrder`].
-        order: u8,
+        order: Code<MotionOrder>,
         /// Zero.
         reserved: [u8; 7],
     }

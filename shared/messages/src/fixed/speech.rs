@@ -2,8 +2,8 @@
 
 use crate::schema::wire_struct;
 use crate::text::FixedText;
-use crate::wire::wire_enum;
-use crate::{RequestKey, UtteranceSeq};
+use crate::wire::{Code, wire_enum};
+use crate::{RequestKey, Source, UtteranceSeq};
 use iceoryx2::prelude::ZeroCopySend;
 
 wire_enum! {
@@ -39,7 +39,7 @@ wire_struct! {
         /// Which presentation of the prompt.
         presentation: u32,
         /// [`PresentationState`].
-        state: u8,
+        state: Code<PresentationState>,
         /// Zero.
         reserved: [u8; 3],
     }
@@ -53,7 +53,7 @@ wire_struct! {
         /// Sounds that are still being recognised, and utterances that are not yet applied.
         pending: u32,
         /// [`EarState`].
-        ear: u8,
+        ear: Code<EarState>,
         /// Zero.
         reserved: [u8; 3],
     }
@@ -106,9 +106,9 @@ wire_struct! {
         /// Utterances that are being spoken or recognised.
         pending: u32,
         /// [`EarState`].
-        ear: u8,
+        ear: Code<EarState>,
         /// [`MicrophoneState`].
-        microphone: u8,
+        microphone: Code<MicrophoneState>,
         /// 1 where the last utterance was spoken (`snr_db` counts).
         measured: u8,
         /// Zero.
@@ -180,9 +180,9 @@ wire_struct! {
         /// How far the speech stood above the noise around it, decibels, 0 to 60; 0 for text.
         snr_db: f32,
         /// [`ReceiptStatus`].
-        status: u8,
-        /// [`crate::Source`].
-        source: u8,
+        status: Code<ReceiptStatus>,
+        /// [`Source`].
+        source: Code<Source>,
         /// Zero.
         reserved: [u8; 6],
         /// The text heard, or why it was refused.

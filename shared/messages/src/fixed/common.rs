@@ -53,7 +53,7 @@ impl TryFrom<WireQuestion> for Question {
 
 wire_struct! {
     /// A question as it was put to the person: one presentation of a prompt.
-    AskedQuestion = "AskedQuestion" nests [WireQuestion] {
+    AskedQuestion = "AskedQuestion" {
         /// [`crate::PromptId`].
         prompt: u64,
         /// [`scene::Scene::key`] of the scene that it was asked about.
