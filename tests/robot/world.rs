@@ -165,7 +165,7 @@ impl World {
         assert_eq!(self.outcome(), PickOutcome::Delivered);
         assert_eq!(self.grasps, 1, "one grasp that holds");
         let picks = self.arm_journal.iter().filter_map(|record| record.state.pick);
-        let phases: Vec<u8> = picks.map(|pick| pick.phase.code()).collect();
+        let phases: Vec<PickPhase> = picks.map(|pick| pick.phase).collect();
         assert!(phases.is_sorted(), "a phase was taken back");
     }
 

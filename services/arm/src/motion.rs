@@ -5,7 +5,6 @@ use crate::executor::{Progress, Purpose};
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
 use manipulation::Limb;
-use messages::WireCode;
 use messages::{MotionPhase, PickOutcome, PickPhase};
 use service::{Span, Time};
 
@@ -63,7 +62,7 @@ impl ArmNode {
         let limb = program.limb;
         let Some(phase) = program.steps.front().and_then(|step| step.phase) else { return false };
         let Some(pick) = self.state.open_pick() else { return false };
-        if pick.phase.code() >= phase.code() && self.state.limb == Some(limb) {
+        if pick.phase >= phase && self.state.limb == Some(limb) {
             return false;
         }
         if phase == PickPhase::Holding {
@@ -119,7 +118,7 @@ impl ArmNode {
 
     fn enter(&mut self, phase: PickPhase, limb: Limb, now: Time, fx: &mut Fx) {
         let Some(pick) = &mut self.state.pick else { return };
-        if pick.phase.code() < phase.code() {
+        if pick.phase < phase {
             pick.phase = phase;
         }
         tracing::info!(id = ?pick.id, ?phase, %limb, "pick goes on");

@@ -177,11 +177,16 @@ mod tests {
     fn calibrated() -> Fingers {
         let mut fingers = Fingers::new();
         assert_eq!(say(&mut fingers, Command::Go(50.0), 1), None);
-        assert_eq!(fingers.state(0, true).moving, 0, "nothing before it is calibrated");
+        assert_eq!(
+            fingers.state(0, true).moving,
+            Tristate::False,
+            "nothing before it is calibrated"
+        );
         say(&mut fingers, Command::Calibrate, 2);
         (0..300).for_each(|_| assert_eq!(fingers.advance(0.01), None));
         let state = fingers.state(0, true);
-        assert_eq!((state.calibrated, state.ready, state.command_sequence), (1, 1, 2));
+        assert_eq!([state.calibrated, state.ready], [Tristate::True; 2]);
+        assert_eq!(state.command_sequence, 2);
         fingers
     }
 
@@ -192,7 +197,8 @@ mod tests {
         fingers.meet(Some(0.01));
         let events: Vec<Event> = (0..100).filter_map(|_| fingers.advance(0.01)).collect();
         let state = fingers.state(0, true);
-        assert_eq!((events, state.gripping, state.missed), (vec![Event::Holds], 1, 0));
+        assert_eq!(events, [Event::Holds]);
+        assert_eq!([state.gripping, state.missed], [Tristate::True, Tristate::False]);
         assert!((state.position - 24.0).abs() < 0.1);
         assert_eq!(say(&mut fingers, Command::Grip, 4), None, "it grips already");
         assert_eq!(say(&mut fingers, Command::Go(100.0), 5), Some(Event::LetsGo));
@@ -207,7 +213,8 @@ mod tests {
             fingers.meet(object_m);
             (0..110).for_each(|_| assert_eq!(fingers.advance(0.01), None));
             let state = fingers.state(0, true);
-            assert_eq!((state.gripping, state.missed, state.moving), (0, 1, 0));
+            assert_eq!(state.missed, Tristate::True);
+            assert_eq!([state.gripping, state.moving], [Tristate::False; 2]);
         }
     }
 

@@ -161,7 +161,7 @@ impl PolicyNode {
         let heard = Heard {
             seq,
             asked: asked.iter().map(asking).collect(),
-            typed: !is_live(observation.source),
+            typed: !is_live(observation.source.get()),
             onset: Time(begun),
             end: Time(observation.end_ns.max(begun)),
             accepted: Time(observation.accepted_ns),
@@ -245,8 +245,8 @@ impl PolicyNode {
 
 /// Whether the times are those at which a person spoke. Whatever a client gives whole, a recording
 /// too, comes at a moment of its own choosing.
-fn is_live(source: u8) -> bool {
-    [Source::Microphone, Source::Browser].iter().any(|live| live.code() == source)
+fn is_live(source: Source) -> bool {
+    matches!(source, Source::Microphone | Source::Browser)
 }
 
 fn asking(asked: &AskedQuestion) -> Asking {

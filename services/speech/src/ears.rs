@@ -297,7 +297,7 @@ impl Ears {
             segment: piece.segment,
             hypotheses: content.hypotheses,
             gesture: content.gesture,
-            source: content.source.code(),
+            source: content.source,
             asked: mouth.asked(),
             onset: piece.span.0,
             end: piece.span.1,

@@ -1,6 +1,6 @@
 //! What the speech service must not forget.
 
-use messages::{PresentationState, Presented, PromptId, RequestKey, UtteranceSeq};
+use messages::{PresentationState, Presented, PromptId, RequestKey, Source, UtteranceSeq};
 use scene::Question;
 use serde::{Deserialize, Serialize};
 use service::Time;
@@ -46,8 +46,8 @@ pub struct Accepted {
     pub hypotheses: Vec<Hypothesis>,
     /// The point that was pointed at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
-    /// [`messages::Source`] as on the wire.
-    pub source: u8,
+    /// Where it came from.
+    pub source: Source,
     /// The latest questions whose sound had begun by then, newest first.
     pub asked: Vec<Said>,
     /// When the person began to speak.

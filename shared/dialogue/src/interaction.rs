@@ -36,7 +36,9 @@ impl ActKind {
 }
 
 /// Phase of a pick. Each is durable before the arm acts on it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
 pub enum PickPhase {
     /// Nothing to do.

@@ -44,11 +44,13 @@ struct OtherMark {
     utterance: u64,
 }
 
+impl messages::WireField for OtherMark {}
+
 impl Schema for OtherMark {
     const NAME: &'static str = "AppliedMark";
 
     fn fields() -> Vec<Field> {
-        vec![Field { name: "utterance", ty: "u64", offset: 0, size: 8 }]
+        Vec::new()
     }
 
     fn size() -> usize {

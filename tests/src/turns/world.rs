@@ -106,7 +106,7 @@ struct World<'a> {
     /// What is asked under each prompt.
     questions: BTreeMap<u64, Question>,
     /// What the person was told of presentations: which, and how far it had come.
-    heard: HashSet<(u64, u32, u8)>,
+    heard: HashSet<(u64, u32, PresentationState)>,
     /// What the person has begun to say, and whether the robot was told that it began and ended.
     said: Vec<(Utterance, bool, bool)>,
     working: Vec<Working>,
@@ -299,7 +299,7 @@ impl<'a> World<'a> {
         let Some(question) = self.questions.get(&presented.prompt).copied() else { return };
         let Presented { prompt, presentation, state, .. } = presented;
         // It is told again and again.
-        if !self.heard.insert((prompt, presentation, state)) {
+        if !self.heard.insert((prompt, presentation, state.get())) {
             return;
         }
         let began = Time(presented.started_ns);

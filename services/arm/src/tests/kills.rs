@@ -1,7 +1,6 @@
 //! Killed at any point, any number of times, the arm brings the ordered object once.
 
 use super::*;
-use messages::WireCode;
 
 /// A small generator (xorshift), so that a seed has one story.
 struct Random(u64);
@@ -56,7 +55,7 @@ fn story(seed: u64, kills: u32, restart: fn(&mut Machine)) {
     }
     machine.assert_delivered(1, object);
     for pair in machine.journal.windows(2) {
-        let phases = [&pair[0], &pair[1]].map(|r| r.state.pick.map_or(0, |p| p.phase.code()));
+        let phases = [&pair[0], &pair[1]].map(|r| r.state.pick.map(|pick| pick.phase));
         assert!(phases[0] <= phases[1], "seed {seed}: a phase was taken back");
     }
 }

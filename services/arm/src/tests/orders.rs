@@ -147,8 +147,6 @@ fn an_act_about_another_scene_waits_until_the_arm_knows_that_scene() {
 #[test]
 fn an_act_that_makes_no_sense_changes_nothing() {
     let mut machine = Machine::new(config());
-    machine.act(RobotAct { kind: 77, ..pick(1, 1) });
-    machine.run(0.5);
     let far = RobotAct { object: 70_000, act: 12, ..pick(1, 1) };
     machine.act(far);
     machine.run(0.5);

@@ -5,7 +5,6 @@ use crate::driver::{ArmDriver, Command, Fingers, KinematicArm, Measured};
 use crate::state::{ArmState, Posture, side};
 use manipulation::{Arm, ArmShape, Cuboid, Limb};
 use messages::PickPhase;
-use messages::WireCode;
 use messages::pick::Pick;
 use scene::Placement;
 use std::cell::RefCell;
@@ -159,7 +158,7 @@ impl Body {
             Fingers::Stay | Fingers::Open(_) if self.only_picks => PickPhase::Moving,
             Fingers::Stay | Fingers::Open(_) => PickPhase::Accepted,
         };
-        if pick.phase.code() < needed.code() {
+        if pick.phase < needed {
             self.wrongs.push(format!("{command:?} in phase {:?}", pick.phase));
         }
     }

@@ -83,13 +83,8 @@ fn only_newer_orders_are_obeyed() {
     machine.waiting.push(given(now - 9, MotionOrder::Resume));
     machine.waiting.push(given(now - 5, MotionOrder::Resume));
     machine.waiting.push(given(now + 3_600_000_000_000, MotionOrder::Resume));
-    machine.waiting.push(In::Motion(MotionCommand {
-        given_ns: now,
-        order: 9,
-        ..Default::default()
-    }));
     machine.run(0.02);
-    assert!(machine.node.state().stopped, "older, repeated, from the future, senseless");
+    assert!(machine.node.state().stopped, "older, repeated, from the future");
     machine.waiting.push(given(now - 4, MotionOrder::Resume));
     machine.run(0.02);
     assert!(!machine.node.state().stopped);
@@ -98,7 +93,7 @@ fn only_newer_orders_are_obeyed() {
 #[test]
 fn a_stop_from_the_future_stops_and_can_be_released() {
     let mut machine = Machine::new(config());
-    let stop = MotionCommand { given_ns: u64::MAX, order: 0, ..Default::default() };
+    let stop = MotionCommand { given_ns: u64::MAX, ..Default::default() };
     machine.waiting.push(In::Motion(stop));
     machine.run(0.02);
     assert!(machine.node.state().stopped);

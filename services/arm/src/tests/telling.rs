@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::state::Cause;
-use messages::WireCode;
 
 #[test]
 fn an_idle_arm_tells_its_joints_at_100_hz_and_writes_nothing() {
@@ -60,17 +59,18 @@ fn phases_are_durable_in_order_before_they_are_seen() {
     while !machine.rests() || machine.outcome() != PickOutcome::Delivered {
         machine.go(None);
         let durable = machine.journal.last().unwrap().state.pick.unwrap().phase;
-        let told = machine.status().phase;
-        assert!(told <= durable.code());
+        let told = machine.status().phase.get();
+        assert!(told <= durable);
         if seen.last() != Some(&told) {
             seen.push(told);
         }
     }
-    assert_eq!(seen.last(), Some(&PickPhase::Done.code()));
-    let mut phases: Vec<u8> =
-        machine.journal.iter().map(|r| r.state.pick.unwrap().phase.code()).collect();
+    assert_eq!(seen.last(), Some(&PickPhase::Done));
+    let mut phases: Vec<PickPhase> =
+        machine.journal.iter().map(|r| r.state.pick.unwrap().phase).collect();
     phases.dedup();
-    assert_eq!(phases, [1, 2, 3, 4, 5]);
+    use PickPhase::{Accepted, Closing, Done, Holding, Moving};
+    assert_eq!(phases, [Accepted, Moving, Closing, Holding, Done]);
     let mut causes: Vec<Cause> = machine.journal.iter().map(|record| record.cause).collect();
     causes.dedup();
     causes.retain(|cause| *cause != Cause::Moved);

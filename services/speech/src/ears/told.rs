@@ -20,7 +20,7 @@ pub(super) fn receipt(accepted: &Accepted) -> Receipt {
         confidence: confidence as f32,
         snr_db: accepted.snr_db,
         status: ReceiptStatus::Accepted.code(),
-        source: accepted.source,
+        source: accepted.source.into(),
         note: FixedText::truncated(&in_words(text, accepted.gesture)),
         ..Receipt::default()
     }
@@ -34,7 +34,7 @@ pub(super) fn utterance(accepted: &Accepted) -> Utterance {
         onset_ns: accepted.onset.ns(),
         end_ns: accepted.end.ns(),
         accepted_ns: accepted.accepted.ns(),
-        source: accepted.source,
+        source: accepted.source.into(),
         ..Utterance::default()
     };
     let asked: Vec<AskedQuestion> = accepted.asked.iter().map(asked_question).collect();

@@ -2,6 +2,7 @@
 
 use super::super::Fingers;
 use manipulation::gripper;
+use messages::Code;
 use messages::robot::{
     Command, EndEffectorCommand, EndEffectorProperties, EndEffectorState, Tristate, UiType,
 };
@@ -174,8 +175,8 @@ impl Gripper {
     }
 }
 
-fn is(tristate: u8) -> bool {
-    tristate == Tristate::True.code()
+fn is(tristate: Code<Tristate>) -> bool {
+    tristate == Tristate::True
 }
 
 /// Whether the command closes the fingers, so that it ends where they meet something or each other.

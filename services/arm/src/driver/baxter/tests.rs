@@ -235,18 +235,19 @@ fn a_gripper_is_told_until_it_says_that_it_has_heard() {
     assert_eq!(message.read(), Ok(Word::Go(0.0)), "no properties yet: the SDK's way to close");
     let again = (0..30).filter_map(|_| word(&bench.pass(Some(close)))).collect::<Vec<_>>();
     assert_eq!(again, [message], "the same number, four times a second");
-    let no = Tristate::False.code();
+    let [no, yes] = [Tristate::False, Tristate::True].map(Tristate::code);
     let heard = |state: EndEffectorState| EndEffectorState {
         command_sender: message.sender,
         command_sequence: message.sequence,
         ..state
     };
-    let moving = EndEffectorState { moving: 1, position: 60.0, ..bench.grippers[0] };
+    let moving =
+        EndEffectorState { moving: Tristate::True.code(), position: 60.0, ..bench.grippers[0] };
     bench.grippers[0] = heard(moving);
     assert!((0..60).all(|_| word(&bench.pass(Some(close))).is_none()));
     assert_eq!(bench.driver.has_arrived(&close, 0.5), Ok(false), "the fingers move");
     bench.grippers[0] =
-        heard(EndEffectorState { moving: no, gripping: 1, position: 10.0, ..bench.grippers[0] });
+        heard(EndEffectorState { moving: no, gripping: yes, position: 10.0, ..bench.grippers[0] });
     bench.pass(Some(close));
     assert_eq!(bench.driver.has_arrived(&close, 0.5), Ok(true));
     assert_eq!(bench.driver.measured().holds(Limb::Left), Some(true));
@@ -277,7 +278,7 @@ fn a_grasp_is_judged_by_feeling_and_by_position() {
         };
         bench.pass(Some(close));
         bench.driver.begin_pass(bench.now, [true; 2]);
-        assert_eq!(bench.driver.measured().holds(Limb::Left), holding, "{gripping} {position}");
+        assert_eq!(bench.driver.measured().holds(Limb::Left), holding, "{gripping:?} {position}");
     }
 }
 

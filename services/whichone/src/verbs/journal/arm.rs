@@ -1,6 +1,5 @@
 //! The arm's records.
 
-use messages::WireCode;
 use std::collections::BTreeMap;
 
 use arm::state::Record;
@@ -61,7 +60,7 @@ fn step(
     if same.is_some_and(|before| before.object != pick.object) {
         return Err(format!("{name} is of two objects"));
     }
-    if same.is_some_and(|before| before.phase.code() > pick.phase.code()) {
+    if same.is_some_and(|before| before.phase > pick.phase) {
         return Err(format!("{name} goes back to {:?}", pick.phase));
     }
     let phase_before = same.map(|before| before.phase);

@@ -65,7 +65,7 @@ fn an_arm_that_is_stopped_says_so_whatever_it_does() {
     assert_eq!(told, "arm moves to o1, 3.2 s to go, moving");
     let stopped = arm_line(&scene(2), &ArmStatus { stopped: 1, ..moving }, Style::default());
     assert!(stopped.contains("STOPPED"), "{stopped}");
-    let unknown = ArmStatus { phase: 99, object: 9, ..ArmStatus::default() };
+    let unknown = ArmStatus { object: 9, ..ArmStatus::default() };
     assert!(!arm_line(&scene(2), &unknown, Style::default()).is_empty());
 }
 
