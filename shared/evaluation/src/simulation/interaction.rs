@@ -5,7 +5,7 @@ use language::Reader;
 use preflight::{Motions, Pace, Voice};
 use scene::{Intent, ObjectId, Question, Reading, Response, Scene};
 
-use crate::simulation::users::{Said, Turn, User};
+use crate::simulation::users::{Domain, Reply, SimulatedUser, Turn};
 use crate::simulation::{Choice, Memo};
 
 /// Everything about a study but policy and people.
@@ -27,6 +27,13 @@ pub struct Room<'a> {
     pub motions: Option<&'a Motions>,
     /// Whether people begin with a request; else the robot begins, knowing nothing.
     pub request: bool,
+}
+
+impl<'a> Room<'a> {
+    /// The objects that users talk about.
+    pub fn domain(&self) -> Domain<'a> {
+        Domain { scene: self.scene, model: self.problem.model }
+    }
 }
 
 /// How long the robot goes on.
@@ -86,13 +93,13 @@ pub struct Outcome {
 pub fn interact(
     room: &Room<'_>,
     memo: &mut Memo<'_>,
-    user: &mut dyn User,
+    user: &mut SimulatedUser,
     clock: &mut Rng,
 ) -> Outcome {
-    let request = user.request();
+    let request = user.request(room.domain());
     let mut talk = Talk::new(room, memo.beginning(&room.problem), clock);
-    if room.request && matches!(request.said, Said::Words(_)) {
-        talk.hear(&request.said, Question::None);
+    if room.request && matches!(request.reply, Reply::Words(_)) {
+        talk.hear(&request.reply, Question::None);
     }
     loop {
         let end = match talk.decide(memo).action {
@@ -172,12 +179,12 @@ impl<'r, 'a> Talk<'r, 'a> {
     }
 
     /// Asks until something is said that counts.
-    fn ask(&mut self, question: Question, user: &mut dyn User) -> Option<End> {
+    fn ask(&mut self, question: Question, user: &mut SimulatedUser) -> Option<End> {
         let patience = self.room.patience;
         let mut silences = 0;
         loop {
             self.present(question);
-            let turn = user.answer(question);
+            let turn = user.answer(self.room.domain(), question);
             let next = self.listen(&turn, question);
             self.posterior.see_answer(next != Next::Nothing);
             match next {
@@ -212,23 +219,23 @@ impl<'r, 'a> Talk<'r, 'a> {
     fn listen(&mut self, turn: &Turn, question: Question) -> Next {
         let window_s = self.room.patience.response_window_s;
         let reaction_s = self.room.pace.reaction_s(self.clock) + turn.late_s;
-        if turn.said == Said::Nothing || reaction_s > window_s {
+        if turn.reply == Reply::Silence || reaction_s > window_s {
             self.seconds += window_s;
             return Next::Nothing;
         }
-        let speech_s = self.room.pace.speech_s(self.clock, words(&turn.said));
+        let speech_s = self.room.pace.speech_s(self.clock, turn.reply.words());
         let recogniser_s = self.room.pace.recogniser_s(self.clock);
-        let next = self.hear(&turn.said, question);
+        let next = self.hear(&turn.reply, question);
         let heard_s = reaction_s + speech_s + recogniser_s;
         self.seconds += if next == Next::Nothing { window_s.max(heard_s) } else { heard_s };
         next
     }
 
     /// A turn without a question. Where nobody says anything the robot would wait for ever.
-    fn wait(&mut self, user: &mut dyn User) -> Option<End> {
-        let turn = user.answer(Question::None);
+    fn wait(&mut self, user: &mut SimulatedUser) -> Option<End> {
+        let turn = user.answer(self.room.domain(), Question::None);
         let window_s = self.room.patience.response_window_s;
-        if turn.said == Said::Nothing || self.step > self.room.patience.questions_max {
+        if turn.reply == Reply::Silence || self.step > self.room.patience.questions_max {
             self.seconds += window_s;
             return Some(End::Waited);
         }
@@ -240,17 +247,17 @@ impl<'r, 'a> Talk<'r, 'a> {
     }
 
     /// Updates the belief with what was said, as the policy's service does it.
-    fn hear(&mut self, said: &Said, question: Question) -> Next {
+    fn hear(&mut self, said: &Reply, question: Question) -> Next {
         let model = self.room.problem.model;
         let hypotheses: Vec<(f64, Question, Reading)> = match said {
-            Said::Nothing => return Next::Nothing,
-            Said::Answer(answer) => {
+            Reply::Silence => return Next::Nothing,
+            Reply::Answer(answer) => {
                 self.answers += 1;
                 let heard = [(1.0, question, answer.reading(model))];
                 self.posterior.update_mixture(model, &heard);
                 return Next::Decide;
             }
-            Said::Words(words) => words
+            Reply::Words(words) => words
                 .iter()
                 .map(|(text, weight)| {
                     (*weight, question, self.room.reader.read(text, question).reading)
@@ -274,8 +281,8 @@ impl<'r, 'a> Talk<'r, 'a> {
         }
     }
 
-    fn pick(self, object: ObjectId, wanted: ObjectId) -> Outcome {
-        let end = if object == wanted { End::Right } else { End::Wrong };
+    fn pick(self, object: ObjectId, wanted: Option<ObjectId>) -> Outcome {
+        let end = if Some(object) == wanted { End::Right } else { End::Wrong };
         self.end(end, Some(object))
     }
 
@@ -311,17 +318,6 @@ impl<'r, 'a> Talk<'r, 'a> {
 
 fn says_something(reading: &Reading) -> bool {
     reading.response != Response::None || !reading.base.is_empty() || !reading.excluded.is_empty()
-}
-
-/// Words of the best hypothesis.
-fn words(said: &Said) -> usize {
-    match said {
-        Said::Nothing => 0,
-        Said::Answer(_) => 1,
-        Said::Words(hypotheses) => {
-            hypotheses.first().map_or(0, |(text, _)| text.split_whitespace().count())
-        }
-    }
 }
 
 #[cfg(test)]

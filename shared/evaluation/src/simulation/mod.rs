@@ -11,7 +11,7 @@
 //! |---|---|
 //! | one interaction, from the request to the hand-over | `interaction.rs` |
 //! | what the policy decides, remembered by belief | `memo.rs` |
-//! | people, one file each, and how their words are recognised | `users/` |
+//! | the simulated user: errors, wording, recogniser, timing | `users/` |
 //! | the same dialogues with people and robot talking in real time | `turns/` |
 //! | means, intervals, histograms | `stats.rs`, `tally.rs` |
 
@@ -29,7 +29,7 @@ pub use interaction::{End, Outcome, Patience, Room, interact};
 pub use memo::{Choice, Memo, Shared, Situation};
 pub use stats::{Interval, Mean, wilson};
 pub use tally::{HISTOGRAM, Tally};
-pub use users::{User, UserKind};
+pub use users::{SimulatedUser, UserKind};
 
 /// Interactions that are counted together.
 pub const CHUNK: u64 = 500;
@@ -44,9 +44,9 @@ pub fn interactions(
 ) -> Tally {
     let mut tally = Tally::default();
     for number in numbers {
-        let mut user = kind.person(room, seed, number);
+        let mut user = kind.user(room.domain(), seed, number);
         let mut clock = draw::stream(seed, draw::Stream::Clock, number);
-        tally.add(&interact(room, memo, &mut *user, &mut clock));
+        tally.add(&interact(room, memo, &mut user, &mut clock));
     }
     tally
 }

@@ -2,7 +2,8 @@
 
 use dialogue::registry;
 use evaluation::simulation::UserKind;
-use evaluation::simulation::turns::{Rules, Talker};
+use evaluation::simulation::turns::Rules;
+use evaluation::simulation::users::TimedKind;
 use service::exit::Exit;
 
 use crate::cli::{STUDY_ALL, StudyArgs};
@@ -29,7 +30,7 @@ pub(super) enum People {
         /// What the person is called.
         name: &'static str,
         /// How the person answers.
-        talker: Talker,
+        kind: TimedKind,
     },
 }
 
@@ -57,7 +58,8 @@ impl People {
 }
 
 /// People in real time: as they usually are, and without fault.
-const TALKERS: [(&str, Talker); 2] = [("usual", Talker::USUAL), ("truthful", Talker::TRUTHFUL)];
+const TIMED: [(&str, TimedKind); 2] =
+    [("usual", TimedKind::USUAL), ("truthful", TimedKind::TRUTHFUL)];
 
 /// The rows that are asked for. In real time the policy is `planner` where it is among those asked
 /// for, else the first of them.
@@ -77,8 +79,8 @@ pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, CliError
     for name in listed(&args.turns, &Rules::ALL) {
         let rules = Rules::parse(&name)
             .map_err(|error| CliError::new(Exit::Usage, format!("--turns: {error}")))?;
-        for (name, talker) in TALKERS {
-            let people = People::RealTime { rules, name, talker };
+        for (name, kind) in TIMED {
+            let people = People::RealTime { rules, name, kind };
             rows.extend(timed.map(|policy| Row { policy: policy.clone(), people }));
         }
     }

@@ -106,8 +106,8 @@ impl Worker<'_> {
         let numbers = first..(first + CHUNK).min(self.count);
         match people {
             People::InTurns(kind) => interactions(&self.room, memo, *kind, self.seed, numbers),
-            People::RealTime { rules, talker, .. } => {
-                turns::dialogues(&self.room, memo, rules, talker, self.seed, numbers)
+            People::RealTime { rules, kind, .. } => {
+                turns::dialogues(&self.room, memo, rules, kind, self.seed, numbers)
             }
         }
     }

@@ -33,27 +33,15 @@ impl House {
     }
 }
 
-/// A person with prepared turns.
-struct Script(ObjectId, Vec<Turn>);
-
-impl User for Script {
-    fn wanted(&self) -> ObjectId {
-        self.0
-    }
-
-    fn request(&mut self) -> Turn {
-        self.answer(Question::None)
-    }
-
-    fn answer(&mut self, _: Question) -> Turn {
-        if self.1.is_empty() { Turn::SILENCE } else { self.1.remove(0) }
-    }
-}
-
 fn play(house: &House, planner: &str, wanted: &str, turns: Vec<Turn>) -> Outcome {
     let mut memo = Memo::new(registry::planner(planner).unwrap());
     let wanted = house.scene.object_named(wanted).unwrap();
-    interact(&house.room(), &mut memo, &mut Script(wanted, turns), &mut Rng::new(1))
+    interact(
+        &house.room(),
+        &mut memo,
+        &mut SimulatedUser::scripted(wanted, turns),
+        &mut Rng::new(1),
+    )
 }
 
 /// The study of people as the model has them against the exact evaluation, for every policy that
@@ -113,15 +101,15 @@ fn silence_is_asked_into_again_and_then_given_up() {
 fn what_is_not_an_answer_is_dealt_with_as_the_policy_does() {
     let house = House::new();
     let yes = |n: usize| vec![Turn::words("yes"); n];
-    let repeated = [vec![Turn::SILENCE, Turn::words("can you repeat that?")], yes(9)].concat();
-    let plain = [vec![Turn::SILENCE], yes(9)].concat();
+    let repeated = [vec![Turn::SILENT, Turn::words("can you repeat that?")], yes(9)].concat();
+    let plain = [vec![Turn::SILENT], yes(9)].concat();
     let (repeated, plain) =
         (play(&house, "lookahead", "metal", repeated), play(&house, "lookahead", "metal", plain));
     assert_eq!(repeated.questions, plain.questions + 1);
-    let cancelled = vec![Turn::SILENCE, Turn::words("forget it, never mind")];
+    let cancelled = vec![Turn::SILENT, Turn::words("forget it, never mind")];
     assert_eq!(play(&house, "lookahead", "metal", cancelled).end, End::Cancelled);
     let late = Turn { late_s: 60.0, ..Turn::words("yes") };
-    let late = [vec![Turn::SILENCE, late], yes(9)].concat();
+    let late = [vec![Turn::SILENT, late], yes(9)].concat();
     let late = play(&house, "lookahead", "metal", late);
     assert_eq!(late.questions, plain.questions + 1);
     assert!(late.talk_s > plain.talk_s + Patience::default().response_window_s);
@@ -134,11 +122,12 @@ fn who_waits_for_ever_gets_what_waiting_is_worth() {
     room.problem.costs = Costs::PREDECESSOR;
     let mut memo = Memo::new(registry::planner("never-ask").unwrap());
     let wanted = ObjectId(0);
-    let mut nobody = Script(wanted, vec![]);
+    let mut nobody = SimulatedUser::scripted(wanted, vec![]);
     let outcome = interact(&room, &mut memo, &mut nobody, &mut Rng::new(1));
     assert_eq!((outcome.end, outcome.questions), (End::Waited, 0));
     assert_eq!(outcome.value, Costs::PREDECESSOR.wait_value());
-    let turns = vec![Turn::SILENCE, Turn::words("it's in the dishwasher")];
-    let outcome = interact(&room, &mut memo, &mut Script(wanted, turns), &mut Rng::new(1));
+    let turns = vec![Turn::SILENT, Turn::words("it's in the dishwasher")];
+    let outcome =
+        interact(&room, &mut memo, &mut SimulatedUser::scripted(wanted, turns), &mut Rng::new(1));
     assert!((outcome.value - (-1.0 + 0.9 * 10.0)).abs() < 1e-9 || outcome.end != End::Right);
 }

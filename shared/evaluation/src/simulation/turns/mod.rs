@@ -8,34 +8,32 @@
 //! | file | holds |
 //! |---|---|
 //! | `rules.rs` | the rules and their names |
-//! | `person.rs` | when people answer, and what is recognised when |
 //! | `talk.rs` | the robot's side, and the dialogue |
 
-mod person;
 mod rules;
 mod talk;
 
-pub use person::Talker;
 pub use rules::{Rules, UnknownRule};
 
 use crate::simulation::draw::{Stream, stream};
 use crate::simulation::interaction::Room;
 use crate::simulation::memo::Memo;
 use crate::simulation::tally::Tally;
+use crate::simulation::users::TimedKind;
 
 /// Counts the dialogues `numbers` under these rules.
 pub fn dialogues(
     room: &Room<'_>,
     memo: &mut Memo<'_>,
     rules: &Rules,
-    talker: &Talker,
+    kind: &TimedKind,
     seed: u64,
     numbers: std::ops::Range<u64>,
 ) -> Tally {
     let mut tally = Tally::default();
     for number in numbers {
-        let mut rng = stream(seed, Stream::Turns, number);
-        tally.add(&talk::talk(room, memo, rules, talker, &mut rng));
+        let rng = stream(seed, Stream::Turns, number);
+        tally.add(&talk::talk(room, memo, rules, kind, rng));
     }
     tally
 }

@@ -1,14 +1,14 @@
 //! The robot's side of a dialogue in real time.
 
 use dialogue::user_model::Reaction;
-use dialogue::{Action, Addressed, Answer, Asked, Attribution, Posterior, Rng};
+use dialogue::{Action, Addressed, Asked, Attribution, Posterior, Rng};
 use scene::Question;
 
-use super::person::{Person, Talker, Utterance};
 use super::rules::Rules;
 use crate::simulation::draw::log_normal;
 use crate::simulation::interaction::{End, Outcome, Room};
 use crate::simulation::memo::Memo;
+use crate::simulation::users::{Reply, TimedKind, TimedUser, TimedUtterance};
 
 /// How long the robot takes to say a question: median, seconds, and standard deviation of the
 /// logarithm. The web interface's voice and its delay, not the arm's own voice.
@@ -19,18 +19,18 @@ pub(super) fn talk(
     room: &Room<'_>,
     memo: &mut Memo<'_>,
     rules: &Rules,
-    talker: &Talker,
-    rng: &mut Rng,
+    kind: &TimedKind,
+    rng: Rng,
 ) -> Outcome {
-    let person = Person::new(room, *talker, rules.open, rng);
+    let mut user = kind.user(room.domain(), room.pace, rules.open, rng);
     let (median_s, log_sd) = room.pace.reaction_s;
     let mut talk = Talk {
         room,
         rules,
         reaction: Reaction::new(median_s, log_sd),
-        answers: talker.answers,
-        now_s: person.request_s(rng),
-        person,
+        answers: kind.answers,
+        now_s: user.request_s(room.domain()),
+        user,
         posterior: memo.beginning(&room.problem),
         asked: Vec::new(),
         step: 0,
@@ -44,12 +44,12 @@ pub(super) fn talk(
         let action = talk.plan(memo, answered);
         match action {
             Action::Pick(object) => {
-                let right = object == talk.person.wanted();
+                let right = Some(object) == talk.user.user().wanted();
                 return talk.end(if right { End::Right } else { End::Wrong });
             }
             Action::Wait => return talk.end(End::Waited),
             Action::Ask(question) => {
-                talk.ask(question, rng);
+                talk.ask(question);
                 answered = talk.listen();
                 talk.posterior.see_answer(answered);
             }
@@ -63,7 +63,7 @@ struct Talk<'a> {
     reaction: Reaction,
     /// Share of questions that people answer.
     answers: f64,
-    person: Person<'a>,
+    user: TimedUser,
     now_s: f64,
     posterior: Posterior,
     asked: Vec<Asked>,
@@ -88,7 +88,7 @@ impl Talk<'_> {
             let mut heard = self.take_in(done_s);
             self.now_s = done_s;
             if self.rules.hold {
-                while let Some(until_s) = self.person.busy_until_s(self.now_s) {
+                while let Some(until_s) = self.user.busy_until_s(self.now_s) {
                     heard |= self.take_in(until_s);
                     self.now_s = until_s;
                 }
@@ -115,14 +115,15 @@ impl Talk<'_> {
     }
 
     /// Says the question.
-    fn ask(&mut self, question: Question, rng: &mut Rng) {
+    fn ask(&mut self, question: Question) {
         let costs = self.room.problem.costs;
         self.value -= self.discount * self.room.problem.cost(Action::Ask(question));
         self.discount *= costs.discount;
         let began_s = self.now_s;
-        self.now_s += log_normal(rng, QUESTION_S.0, QUESTION_S.1);
+        self.now_s += log_normal(self.user.user().rng(), QUESTION_S.0, QUESTION_S.1);
         self.asked.push(Asked::whole(question, began_s, self.now_s));
-        self.person.hear(self.asked.len() - 1, question, self.now_s, rng);
+        let asked = (self.asked.len() as u64 - 1, question);
+        self.user.question_ended(self.room.domain(), asked, self.now_s);
     }
 
     /// Listens until something is heard, or the window has passed; whether something was.
@@ -133,14 +134,14 @@ impl Talk<'_> {
         }
         let mut until_s = self.now_s + self.rules.window_s;
         loop {
-            while let Some(utterance) = self.person.result(until_s) {
+            while let Some(utterance) = self.user.result(until_s) {
                 self.now_s = utterance.result_s;
                 if self.hear(&utterance) {
                     return true;
                 }
             }
             self.now_s = until_s;
-            match self.person.busy_until_s(self.now_s) {
+            match self.user.busy_until_s(self.now_s) {
                 Some(busy_s) if self.rules.hold => until_s = busy_s,
                 _ => return false,
             }
@@ -150,20 +151,18 @@ impl Talk<'_> {
     /// Takes in what arrives until then; whether anything did.
     fn take_in(&mut self, until_s: f64) -> bool {
         let mut heard = false;
-        while let Some(utterance) = self.person.result(until_s) {
+        while let Some(utterance) = self.user.result(until_s) {
             heard |= self.hear(&utterance);
         }
         heard
     }
 
     /// Updates the belief with an answer; whether there was one.
-    fn hear(&mut self, utterance: &Utterance) -> bool {
-        if utterance.answer == Answer::Silence {
-            return false;
-        }
+    fn hear(&mut self, utterance: &TimedUtterance) -> bool {
+        let Reply::Answer(answer) = utterance.reply else { return false };
         let model = self.room.problem.model;
         let addressed = self.addressed(utterance);
-        let reading = utterance.answer.reading(model);
+        let reading = answer.reading(model);
         let questions = self.asked.iter().map(|asked| asked.question);
         let mut heard: Vec<_> =
             questions.zip(&addressed.questions).map(|(q, w)| (*w, q, reading.clone())).collect();
@@ -171,7 +170,7 @@ impl Talk<'_> {
         let likeliest = (0..heard.len()).max_by(|a, b| heard[*a].0.total_cmp(&heard[*b].0));
         self.posterior.update_mixture(model, &heard);
         self.heard += 1;
-        let meant = self.asked[utterance.answers].question;
+        let meant = utterance.question;
         let taken = likeliest.and_then(|at| self.asked.get_mut(at));
         self.misplaced += u32::from(taken.as_ref().is_none_or(|asked| asked.question != meant));
         if let Some(asked) = taken {
@@ -180,14 +179,14 @@ impl Talk<'_> {
         true
     }
 
-    fn addressed(&self, utterance: &Utterance) -> Addressed {
+    fn addressed(&self, utterance: &TimedUtterance) -> Addressed {
         let asked = &self.asked;
         match self.rules.attribution {
             Attribution::Naive => Addressed::only(asked.len().checked_sub(1), asked.len()),
             Attribution::Onset => Addressed::latest_said(asked, utterance.onset_s),
             Attribution::Mixture => {
                 // With push-to-talk people wait for the click before they speak.
-                let delay_s = self.person.delay_s();
+                let delay_s = self.user.timing().click_s;
                 let rate = |seconds: f64| self.reaction.rate(seconds - delay_s, self.answers);
                 Addressed::of(asked, utterance.onset_s, rate)
             }

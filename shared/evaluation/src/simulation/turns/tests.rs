@@ -1,11 +1,12 @@
 use super::*;
 use crate::simulation::interaction::Patience;
 use crate::simulation::testing::{bowls, yes_no};
+use crate::simulation::users::TimedKind;
 use dialogue::{Model, Params, registry};
 use language::{Language, Reader};
 use preflight::{Pace, Voice};
 
-fn run(rules: &str, talker: &Talker, n: u64) -> Tally {
+fn run(rules: &str, talker: &TimedKind, n: u64) -> Tally {
     let scene = bowls();
     let reader = Reader::new(&scene, Language::Careful);
     let model = Model::new(&scene, Params::default());
@@ -27,7 +28,7 @@ fn run(rules: &str, talker: &Talker, n: u64) -> Tally {
 /// The published figures and those of an independent simulation: 75 to 80 % and 35 s.
 #[test]
 fn naive_turn_taking_loses_about_every_fifth_dialogue() {
-    let tally = run("naive", &Talker::USUAL, 4_000);
+    let tally = run("naive", &TimedKind::USUAL, 4_000);
     assert!((0.74..0.84).contains(&tally.success()), "{}", tally.success());
     assert!((30.0..38.0).contains(&tally.talk_s.mean()), "{}", tally.talk_s.mean());
     assert!(tally.misplaced_share() > 0.1, "{}", tally.misplaced_share());
@@ -35,22 +36,22 @@ fn naive_turn_taking_loses_about_every_fifth_dialogue() {
 
 #[test]
 fn each_cure_helps_alone() {
-    let naive = run("naive", &Talker::USUAL, 2_000);
-    let same = run("naive+same", &Talker::USUAL, 2_000);
+    let naive = run("naive", &TimedKind::USUAL, 2_000);
+    let same = run("naive+same", &TimedKind::USUAL, 2_000);
     assert!(same.success() > naive.success());
     for cure in ["naive+hold", "onset", "onset+hold+same+fast"] {
-        let cured = run(cure, &Talker::USUAL, 2_000);
+        let cured = run(cure, &TimedKind::USUAL, 2_000);
         assert!(cured.success() > 0.965, "{cure}: {}", cured.success());
         assert!(cured.misplaced_share() < 0.01, "{cure}: {}", cured.misplaced_share());
     }
-    let fast = run("naive+fast", &Talker::USUAL, 2_000);
+    let fast = run("naive+fast", &TimedKind::USUAL, 2_000);
     assert!(fast.talk_s.mean() + 6.0 < naive.talk_s.mean());
 }
 
 /// At most half of the paper's 35.8 s, and at least 99 %.
 #[test]
 fn an_open_microphone_halves_the_time() {
-    let tally = run("open+mixture+hold+same+fast+w2.5", &Talker::TRUTHFUL, 4_000);
+    let tally = run("open+mixture+hold+same+fast+w2.5", &TimedKind::TRUTHFUL, 4_000);
     assert!(tally.success() >= 0.99, "{}", tally.success());
     assert!(tally.talk_s.mean() <= 17.9, "{}", tally.talk_s.mean());
 }
@@ -58,16 +59,16 @@ fn an_open_microphone_halves_the_time() {
 /// With too short a window, answers come into the next question all the time.
 #[test]
 fn the_mixture_sorts_out_answers_that_come_late() {
-    let naive = run("open+naive+same+fast+w1", &Talker::USUAL, 2_000);
-    let mixture = run("open+mixture+same+fast+w1", &Talker::USUAL, 2_000);
+    let naive = run("open+naive+same+fast+w1", &TimedKind::USUAL, 2_000);
+    let mixture = run("open+mixture+same+fast+w1", &TimedKind::USUAL, 2_000);
     assert!(naive.success() < 0.6, "{}", naive.success());
     assert!(mixture.success() > 0.97, "{}", mixture.success());
 }
 
 #[test]
 fn chunks_add_up_to_the_whole() {
-    let whole = run("naive", &Talker::USUAL, 300);
-    let again = run("naive", &Talker::USUAL, 300);
+    let whole = run("naive", &TimedKind::USUAL, 300);
+    let again = run("naive", &TimedKind::USUAL, 300);
     assert_eq!(whole, again);
     assert_eq!(whole.interactions(), 300);
 }

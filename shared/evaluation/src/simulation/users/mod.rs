@@ -1,68 +1,122 @@
-//! Simulated people, one file each.
+//! The simulated user: what is wanted, what is said, and when.
 //!
-//! | name | answers | speaks |
+//! One [`SimulatedUser`] serves the study, the simulations, the tests with real sound and
+//! `whichone await pick --answer-as`. It never keeps the scene: each call names the [`Domain`], so
+//! that the scene may change under the dialogue.
+//!
+//! | kind | answers | speaks |
 //! |---|---|---|
 //! | `model` | with the probabilities of eq. (6) and (7), silent with `1 − p_l`, wrong with `ε` | in observations: nothing is misread |
 //! | `truthful` | always, and always right | one word |
-//! | `noisy` | wrong in 5 to 20 % and silent in 20 to 30 % of the cases, drawn per person | one word, through a recogniser that drops and confuses words |
+//! | `noisy` | wrong in 5 to 20 % and silent in 20 to 30 % of the cases, drawn per user | one word, through a recogniser that drops and confuses words |
 //! | `human` | mostly right; by value, with corrections, hedges, more than was asked, and late | sentences, through a better recogniser |
 //!
-//! Whatever they say in words is read by the `language` crate, as the grounding service does it.
+//! [`TimedUser`] adds reaction times and turn-taking errors. Words are read by the `language` crate,
+//! as the grounding service does it.
 
-mod human;
-mod model;
-mod noisy;
+mod manners;
 mod recogniser;
-mod truthful;
+mod timing;
 mod wording;
 
-use dialogue::{Answer, Rng};
-use scene::{ObjectId, Question};
+use dialogue::{Answer, Model, Rng};
+use scene::{ObjectId, Question, Scene};
 
-use crate::simulation::draw::{Stream, stream};
-use crate::simulation::interaction::Room;
+pub use manners::Manners;
+pub use timing::{Habits, TimedKind, TimedUser, TimedUtterance, Timing};
 
-/// What somebody does when it is their turn.
+use crate::simulation::draw::{Stream, between, chance, one_of, stream};
+use recogniser::Recogniser;
+use wording::{Wording, own_values};
+
+/// Share of a noisy user's wrong answers: the range from which it is drawn.
+const NOISY_WRONG: (f64, f64) = (0.05, 0.20);
+/// Share of the questions that a noisy user leaves unanswered: the range from which it is drawn.
+const NOISY_SILENT: (f64, f64) = (0.20, 0.30);
+/// Probabilities that a noisy user's request names no, one, and two values.
+const NOISY_REQUEST: [f64; 3] = [0.5, 0.3, 0.2];
+
+/// The objects that a user talks about.
+#[derive(Clone, Copy, Debug)]
+pub struct Domain<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The observation model of that scene.
+    pub model: &'a Model,
+}
+
+/// What a user contributes in one turn.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Said {
+pub enum Reply {
     /// Nothing.
-    Nothing,
-    /// The answer itself, as the belief hears it.
+    Silence,
+    /// An answer, as the belief receives it.
     Answer(Answer),
-    /// Words as they were recognised: hypotheses with their probabilities.
+    /// Recognised words: hypotheses with their probabilities, the most probable one first.
     Words(Vec<(String, f64)>),
 }
 
-/// A turn of a person's.
+impl Reply {
+    /// The most probable words; none of a silence or of an answer that is not in words.
+    pub fn text(&self) -> Option<&str> {
+        match self {
+            Self::Words(hypotheses) => hypotheses.first().map(|(text, _)| text.as_str()),
+            Self::Silence | Self::Answer(_) => None,
+        }
+    }
+
+    /// The number of words of the most probable hypothesis.
+    pub fn words(&self) -> usize {
+        match self {
+            Self::Silence => 0,
+            Self::Answer(_) => 1,
+            Self::Words(_) => self.text().map_or(0, |text| text.split_whitespace().count()),
+        }
+    }
+}
+
+impl From<Answer> for Reply {
+    fn from(answer: Answer) -> Self {
+        if answer == Answer::Silence { Self::Silence } else { Self::Answer(answer) }
+    }
+}
+
+/// A user's turn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turn {
     /// What is said.
-    pub said: Said,
-    /// How much later than usual it is said, seconds.
+    pub reply: Reply,
+    /// Delay beyond the usual reaction time, seconds.
     pub late_s: f64,
 }
 
-/// A person who wants one object.
-pub trait User {
-    /// What the person wants.
-    fn wanted(&self) -> ObjectId;
+impl Turn {
+    /// A turn in which nothing is said.
+    pub const SILENT: Self = Self { reply: Reply::Silence, late_s: 0.0 };
 
-    /// The first words: a request that the robot has understood to be one, and what it says about
-    /// the object.
-    fn request(&mut self) -> Turn;
-
-    /// The answer to a question, or what is said while the robot waits ([`Question::None`]).
-    fn answer(&mut self, question: Question) -> Turn;
+    /// Words that are recognised as they were said, in time.
+    pub fn words(text: &str) -> Self {
+        if text.is_empty() {
+            return Self::SILENT;
+        }
+        Reply::Words(vec![(text.to_owned(), 1.0)]).into()
+    }
 }
 
-/// A kind of people.
+impl From<Reply> for Turn {
+    fn from(reply: Reply) -> Self {
+        Self { reply, late_s: 0.0 }
+    }
+}
+
+/// A kind of user by name, as `whichone study` has them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum UserKind {
-    /// As the planner takes them to be.
+    /// As the planner expects users to be.
     Model,
-    /// Without fault.
+    /// Without errors.
     Truthful,
-    /// Often silent, often wrong, badly heard.
+    /// Often silent, often wrong, badly recognised.
     Noisy,
     /// As people talk.
     Human,
@@ -87,52 +141,215 @@ impl UserKind {
         Self::ALL.iter().find(|(_, kind)| *kind == self).map_or("", |(name, _)| name)
     }
 
-    /// Person `number` of a study: what they want, how they are and what they say.
-    pub fn person<'a>(self, room: &Room<'a>, seed: u64, number: u64) -> Box<dyn User + 'a> {
-        let mut rng = stream(seed, Stream::Person, number);
-        let wanted = ObjectId::from(rng.below(room.problem.model.objects()));
-        match self {
-            Self::Model => Box::new(model::Model::new(room, wanted, rng)),
-            Self::Truthful => Box::new(truthful::Truthful::new(room, wanted)),
-            Self::Noisy => Box::new(noisy::Noisy::new(room, wanted, rng)),
-            Self::Human => Box::new(human::Human::new(room, wanted, rng)),
+    /// User `number` of a study: their object, traits and replies follow from the seed and the
+    /// number.
+    pub fn user(self, domain: Domain<'_>, seed: u64, number: u64) -> SimulatedUser {
+        SimulatedUser::wanting_any(self.into(), domain, stream(seed, Stream::Person, number))
+    }
+}
+
+/// How a user errs, and in what form they reply.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Policy {
+    /// The answer distribution of the observation model.
+    Model,
+    /// Always right, in one word; with probability `by_value` a yes or no is replaced by the value
+    /// itself ("it is white").
+    Truthful {
+        /// Probability of an answer by value.
+        by_value: f64,
+    },
+    /// Answers with probability `answers`, of those `random` at random, right or wrong.
+    Unreliable {
+        /// Probability of answering at all.
+        answers: f64,
+        /// Probability that an answer is drawn at random.
+        random: f64,
+    },
+    /// One word, often wrong or missing, through a bad recogniser.
+    Noisy,
+    /// Sentences, as these manners have them.
+    Talkative(&'static Manners),
+}
+
+impl From<UserKind> for Policy {
+    fn from(kind: UserKind) -> Self {
+        match kind {
+            UserKind::Model => Self::Model,
+            UserKind::Truthful => Self::Truthful { by_value: 0.0 },
+            UserKind::Noisy => Self::Noisy,
+            UserKind::Human => Self::Talkative(&Manners::EVERYDAY),
         }
     }
 }
 
-impl Turn {
-    /// Saying nothing.
-    pub(crate) const SILENCE: Self = Self { said: Said::Nothing, late_s: 0.0 };
+/// A [`Policy`] with its traits drawn.
+#[derive(Clone, Debug)]
+enum Traits {
+    Model(dialogue::SimulatedUser),
+    Truthful { by_value: f64 },
+    Unreliable { answers: f64, random: f64 },
+    Noisy { wrong: f64, silent: f64 },
+    Talkative(&'static Manners),
+    Scripted(std::collections::VecDeque<Turn>),
+}
 
-    /// Something said at the usual time.
-    pub(crate) fn now(said: Said) -> Self {
-        Self { said, late_s: 0.0 }
+/// A user who wants one object. The same generator gives the same replies.
+#[derive(Clone, Debug)]
+pub struct SimulatedUser {
+    wanted: Option<ObjectId>,
+    traits: Traits,
+    rng: Rng,
+}
+
+impl SimulatedUser {
+    /// A user who wants that object.
+    pub fn new(policy: Policy, wanted: ObjectId, mut rng: Rng) -> Self {
+        let traits = match policy {
+            Policy::Model => Traits::Model(dialogue::SimulatedUser::new(wanted, rng.next_u64())),
+            Policy::Truthful { by_value } => Traits::Truthful { by_value },
+            Policy::Unreliable { answers, random } => Traits::Unreliable { answers, random },
+            Policy::Noisy => {
+                let wrong = between(&mut rng, NOISY_WRONG);
+                Traits::Noisy { wrong, silent: between(&mut rng, NOISY_SILENT) }
+            }
+            Policy::Talkative(manners) => Traits::Talkative(manners),
+        };
+        Self { wanted: Some(wanted), traits, rng }
     }
 
-    /// Words that are heard as they were said.
-    pub(crate) fn words(text: &str) -> Self {
-        Self::now(if text.is_empty() {
-            Said::Nothing
-        } else {
-            Said::Words(vec![(text.to_owned(), 1.0)])
-        })
+    /// A user who wants one of the objects, each with the same probability.
+    pub fn wanting_any(policy: Policy, domain: Domain<'_>, mut rng: Rng) -> Self {
+        let wanted = ObjectId::from(rng.below(domain.model.objects()));
+        Self::new(policy, wanted, rng)
+    }
+
+    /// A truthful user; without an object, one who wants something that is not in the scene.
+    pub fn truthful(wanted: Option<ObjectId>) -> Self {
+        Self { wanted, traits: Traits::Truthful { by_value: 0.0 }, rng: Rng::new(0) }
+    }
+
+    /// A user with prepared turns, the request first, who is silent once they are used up.
+    pub fn scripted(wanted: ObjectId, turns: Vec<Turn>) -> Self {
+        Self { wanted: Some(wanted), traits: Traits::Scripted(turns.into()), rng: Rng::new(0) }
+    }
+
+    /// The wanted object; `None` where the scene does not have it.
+    pub fn wanted(&self) -> Option<ObjectId> {
+        self.wanted
+    }
+
+    /// Sets the wanted object, after the scene has changed.
+    pub fn want(&mut self, object: Option<ObjectId>) {
+        self.wanted = object;
+    }
+
+    /// The user's generator, for further draws of the same stream.
+    pub fn rng(&mut self) -> &mut Rng {
+        &mut self.rng
+    }
+
+    /// Returns the opening request.
+    pub fn request(&mut self, domain: Domain<'_>) -> Turn {
+        match (&mut self.traits, self.wanted) {
+            (Traits::Scripted(turns), _) => turns.pop_front().unwrap_or(Turn::SILENT),
+            (Traits::Model(_), _) => Turn::SILENT,
+            (Traits::Noisy { .. }, Some(wanted)) => {
+                let named = own_values(domain.scene, wanted, &NOISY_REQUEST, &mut self.rng);
+                let object = Wording::plain(domain.scene).object(&named, &mut self.rng);
+                let heard = Recogniser::BAD.hear(
+                    &format!("get me the {object}"),
+                    domain.scene,
+                    &mut self.rng,
+                );
+                heard.into()
+            }
+            (Traits::Talkative(manners), Some(wanted)) => {
+                manners.speaker(domain, wanted, &mut self.rng).request()
+            }
+            _ => Turn::words(&format!("get me the {}", domain.scene.noun())),
+        }
+    }
+
+    /// Returns the reply to a question, or to a robot that waits ([`Question::None`]).
+    pub fn answer(&mut self, domain: Domain<'_>, question: Question) -> Turn {
+        let rng = &mut self.rng;
+        match (&mut self.traits, self.wanted) {
+            (Traits::Scripted(turns), _) => turns.pop_front().unwrap_or(Turn::SILENT),
+            (Traits::Model(user), _) => Reply::from(user.answer(domain.model, question)).into(),
+            (Traits::Unreliable { answers, random }, Some(wanted)) => {
+                let answer = if chance(rng, *answers) {
+                    let truth = Answer::truthful(domain.model, question, wanted);
+                    if chance(rng, *random) {
+                        any_answer(domain.model, question, truth, rng)
+                    } else {
+                        truth
+                    }
+                } else {
+                    Answer::Silence
+                };
+                Reply::from(answer).into()
+            }
+            (Traits::Noisy { wrong, silent }, Some(wanted)) => {
+                if chance(rng, *silent) {
+                    return Turn::SILENT;
+                }
+                let wrong = *wrong;
+                let answer = answer_or_slip(domain.model, question, wanted, wrong, rng);
+                Recogniser::BAD.hear(answer.text(domain.scene), domain.scene, rng).into()
+            }
+            (Traits::Talkative(manners), Some(wanted)) => {
+                manners.speaker(domain, wanted, rng).answer(question)
+            }
+            (Traits::Truthful { by_value }, Some(wanted)) => {
+                let by_value = chance(rng, *by_value);
+                if let (Question::Attribute(k, _), true) = (question, by_value)
+                    && let Some(v) = domain.model.value(wanted, k)
+                {
+                    let value = &domain.scene.attributes()[k.index()].values[v.index()];
+                    return Turn::words(&format!("it is {}", value.spoken));
+                }
+                let answer = Answer::truthful(domain.model, question, wanted);
+                Turn::words(answer.text(domain.scene))
+            }
+            // Nothing that the robot can name is true of an object that is not here.
+            (_, None) => match question {
+                Question::Point(_) | Question::Attribute(..) => {
+                    Turn::words(Answer::No.text(domain.scene))
+                }
+                Question::Which(_) | Question::None => Turn::SILENT,
+            },
+        }
     }
 }
 
-/// An answer to `question` that is not the true one: the other of yes and no, or another value;
-/// the true one where there is no other.
-pub(crate) fn wrong_answer(
-    model: &dialogue::Model,
+/// The true answer, or with probability `slip` a wrong one.
+fn answer_or_slip(
+    model: &Model,
     question: Question,
     wanted: ObjectId,
+    slip: f64,
     rng: &mut Rng,
 ) -> Answer {
     let truth = Answer::truthful(model, question, wanted);
-    let others: Vec<Answer> = Answer::possible(model, question)
-        .into_iter()
-        .filter(|answer| *answer != truth && *answer != Answer::Silence)
-        .collect();
-    crate::simulation::draw::one_of(rng, &others).copied().unwrap_or(truth)
+    if !chance(rng, slip) {
+        return truth;
+    }
+    let mut others = spoken_answers(model, question);
+    others.retain(|answer| *answer != truth);
+    // The true one where there is no other.
+    one_of(rng, &others).copied().unwrap_or(truth)
+}
+
+/// One of the answers, right or wrong.
+fn any_answer(model: &Model, question: Question, truth: Answer, rng: &mut Rng) -> Answer {
+    one_of(rng, &spoken_answers(model, question)).copied().unwrap_or(truth)
+}
+
+fn spoken_answers(model: &Model, question: Question) -> Vec<Answer> {
+    let mut all = Answer::possible(model, question);
+    all.retain(|answer| *answer != Answer::Silence);
+    all
 }
 
 #[cfg(test)]

@@ -1,17 +1,14 @@
 use super::*;
-use crate::simulation::Patience;
 use crate::simulation::testing::bowls;
-use dialogue::{Actions, Costs, DecisionProblem, Mode, Params};
+use dialogue::{Actions, Mode, Params};
 use language::{Language, Reader};
-use preflight::{Pace, Voice};
+use preflight::Pace;
 use scene::{AttributeId, Scene};
 
-/// A room with every question allowed, and what lives in it.
 struct House {
     scene: Scene,
     reader: Reader,
     model: dialogue::Model,
-    pace: Pace,
 }
 
 impl House {
@@ -19,37 +16,33 @@ impl House {
         let scene = bowls();
         let reader = Reader::new(&scene, Language::Careful);
         let model = dialogue::Model::new(&scene, Params::default());
-        Self { scene, reader, model, pace: Pace::default() }
+        Self { scene, reader, model }
     }
 
-    fn room(&self) -> Room<'_> {
+    fn domain(&self) -> Domain<'_> {
+        Domain { scene: &self.scene, model: &self.model }
+    }
+
+    /// Every question that can be asked.
+    fn questions(&self) -> Vec<Question> {
         let actions = Actions { mode: Mode::Present, attribute: true, which: true };
-        Room {
-            scene: &self.scene,
-            reader: &self.reader,
-            problem: DecisionProblem::new(&self.model, Costs::SECONDS, actions),
-            patience: Patience::default(),
-            voice: Voice::default(),
-            pace: &self.pace,
-            motions: None,
-            request: true,
-        }
+        actions.questions(&self.model)
     }
 }
 
-/// What the most probable hypothesis does to a uniform belief: the probability of what is wanted.
-fn believed(house: &House, question: Question, user: &dyn User, turn: &Turn) -> Option<f64> {
-    let Said::Words(words) = &turn.said else { return None };
+/// The probability of the wanted object after a turn, from a uniform belief.
+fn believed(house: &House, question: Question, user: &SimulatedUser, turn: &Turn) -> Option<f64> {
+    let Reply::Words(words) = &turn.reply else { return None };
     let mut belief = dialogue::Belief::uniform(6);
     let heard: Vec<_> = (words.iter())
         .map(|(text, weight)| (*weight, question, house.reader.read(text, question).reading))
         .collect();
     belief.update_mixture(&house.model, &heard);
-    Some(belief.probability(user.wanted()))
+    Some(belief.probability(user.wanted()?))
 }
 
 #[test]
-fn kinds_are_found_by_name() {
+fn user_kinds_are_found_by_name() {
     for (name, kind) in UserKind::ALL {
         assert_eq!((UserKind::named(name), kind.name()), (Some(kind), name));
     }
@@ -57,14 +50,13 @@ fn kinds_are_found_by_name() {
 }
 
 #[test]
-fn the_same_number_is_the_same_person_and_wants_the_same_of_every_kind() {
+fn user_number_fixes_the_wanted_object_and_the_replies() {
     let house = House::new();
-    let room = house.room();
     for number in 0..50 {
         let question = Question::Which(AttributeId(0));
         let talk = |kind: UserKind| {
-            let mut user = kind.person(&room, 3, number);
-            (user.wanted(), user.request(), user.answer(question))
+            let mut user = kind.user(house.domain(), 3, number);
+            (user.wanted(), user.request(house.domain()), user.answer(house.domain(), question))
         };
         for (_, kind) in UserKind::ALL {
             assert_eq!(talk(kind), talk(kind));
@@ -73,22 +65,21 @@ fn the_same_number_is_the_same_person_and_wants_the_same_of_every_kind() {
     }
 }
 
-/// Over all people and questions, what is understood must speak for the wanted object about as
-/// often as the kind of people is right; a grounding that misread the wording would show here.
+/// Over all users and questions, the reading must favour the wanted object about as often as the
+/// kind of user is right; a grounding that misread the wording would show here.
 #[test]
-fn what_people_say_is_understood() {
+fn replies_are_read_in_favour_of_the_wanted_object() {
     let house = House::new();
-    let room = house.room();
-    let questions = room.problem.actions.questions(&house.model);
+    let questions = house.questions();
     for (kind, least) in
         [(UserKind::Truthful, 1.0), (UserKind::Noisy, 0.80), (UserKind::Human, 0.93)]
     {
         let (mut for_it, mut all, mut silent) = (0, 0, 0);
         for number in 0..400 {
-            let mut user = kind.person(&room, 17, number);
+            let mut user = kind.user(house.domain(), 17, number);
             for question in &questions {
-                let turn = user.answer(*question);
-                let Some(p) = believed(&house, *question, &*user, &turn) else {
+                let turn = user.answer(house.domain(), *question);
+                let Some(p) = believed(&house, *question, &user, &turn) else {
                     silent += 1;
                     continue;
                 };
@@ -108,15 +99,14 @@ fn what_people_say_is_understood() {
 }
 
 #[test]
-fn requests_name_values_that_the_object_has() {
+fn requests_name_values_of_the_wanted_object() {
     let house = House::new();
-    let room = house.room();
     for kind in [UserKind::Noisy, UserKind::Human] {
         let (mut told, mut against) = (0, 0);
         for number in 0..500 {
-            let mut user = kind.person(&room, 5, number);
-            let turn = user.request();
-            let Some(p) = believed(&house, Question::None, &*user, &turn) else { continue };
+            let mut user = kind.user(house.domain(), 5, number);
+            let turn = user.request(house.domain());
+            let Some(p) = believed(&house, Question::None, &user, &turn) else { continue };
             told += u32::from(p > 1.0 / 6.0 + 1e-9);
             against += u32::from(p < 1.0 / 6.0 - 1e-9);
         }
@@ -125,15 +115,77 @@ fn requests_name_values_that_the_object_has() {
 }
 
 #[test]
-fn a_wrong_answer_is_another_one_where_there_is_one() {
+fn a_slip_gives_another_answer_where_there_is_one() {
     let house = House::new();
     let mut rng = Rng::new(1);
     let shape = house.scene.attribute_named("shape").unwrap();
-    for question in house.room().problem.actions.questions(&house.model) {
+    for question in house.questions() {
         for wanted in (0..6).map(ObjectId::from) {
             let truth = Answer::truthful(&house.model, question, wanted);
-            let wrong = wrong_answer(&house.model, question, wanted, &mut rng);
+            let wrong = answer_or_slip(&house.model, question, wanted, 1.0, &mut rng);
             assert_eq!(wrong == truth, question == Question::Which(shape), "{question:?}");
         }
+    }
+}
+
+#[test]
+fn an_absent_object_is_denied_and_never_described() {
+    let house = House::new();
+    let mut user = SimulatedUser::truthful(None);
+    for question in house.questions() {
+        let reply = user.answer(house.domain(), question).reply;
+        let denied = matches!(question, Question::Point(_) | Question::Attribute(..));
+        assert_eq!(reply.text(), denied.then_some("no"), "{question:?}");
+    }
+}
+
+/// The times of the answers to two questions, each of two seconds, with a pause of five between.
+fn answers(habits: Habits, seed: u64) -> Vec<(u64, f64, bool)> {
+    let house = House::new();
+    let policy = Policy::Truthful { by_value: 0.0 };
+    let user = SimulatedUser::new(policy, ObjectId(0), Rng::new(seed));
+    let timing = Timing {
+        reaction_s: (0.35, 2.2),
+        window_s: 2.5,
+        habits,
+        pace: Pace::default(),
+        ..Timing::default()
+    };
+    let mut user = TimedUser::new(user, timing);
+    let mut said = Vec::new();
+    for (prompt, began_s) in [(1, 10.0), (2, 17.0)] {
+        let asked = (prompt, Question::Point(ObjectId(0)));
+        user.question_began(house.domain(), asked, (began_s, began_s + 2.0));
+        let take = |user: &mut TimedUser, until_s| {
+            let begun = std::iter::from_fn(|| user.begins(until_s));
+            begun.map(|one| (one.prompt, one.onset_s - began_s - 2.0, one.again)).collect()
+        };
+        let early: Vec<_> = take(&mut user, began_s + 2.0);
+        user.question_ended(house.domain(), asked, began_s + 2.0);
+        said.extend([early, take(&mut user, began_s + 6.9)].concat());
+    }
+    said
+}
+
+#[test]
+fn timed_user_answers_when_its_habits_say() {
+    for seed in 0..200 {
+        let of = |habits| answers(habits, seed);
+        let in_time = |(_, at_s, again): &(u64, f64, bool)| {
+            *at_s >= 0.35 - 1e-9 && *at_s < 2.2 + 1e-9 && !again
+        };
+        let usual = of(Habits::default());
+        assert!(usual.len() == 2 && usual.iter().all(in_time), "seed {seed}: {usual:?}");
+        let early = of(Habits { early: 1.0, ..Habits::default() });
+        assert!(early.iter().all(|(_, at_s, _)| *at_s < 0.0), "seed {seed}: {early:?}");
+        let late = of(Habits { late: 1.0, ..Habits::default() });
+        assert!(late.iter().all(|(_, at_s, _)| *at_s >= 2.2 - 1e-9), "seed {seed}: {late:?}");
+        let doubled = of(Habits { doubled: 1.0, ..Habits::default() });
+        let repeats = doubled.iter().filter(|(.., again)| *again).count();
+        assert!(repeats >= 1, "seed {seed}: {doubled:?}");
+        let overlapping = of(Habits { overlapping: 1.0, ..Habits::default() });
+        let into_next =
+            |(prompt, at_s, again): &&(u64, f64, bool)| *prompt == 1 && *again && *at_s < 0.0;
+        assert_eq!(overlapping.iter().filter(into_next).count(), 1, "seed {seed}: {overlapping:?}");
     }
 }

@@ -1,27 +1,22 @@
-//! How people name objects and values.
+//! Names of objects and values as users say them.
 
 use dialogue::Rng;
 use scene::{AttributeId, ObjectId, Role, Scene, Value, ValueId};
 
 use crate::simulation::draw::{chance, one_of};
 
-/// A person's choice of words.
+/// A user's choice of words.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Wording<'a> {
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     /// Probability that a value is named by a synonym, where it has one.
-    synonyms: f64,
+    pub(super) synonyms: f64,
 }
 
 impl<'a> Wording<'a> {
     /// The scene's own words.
     pub(super) fn plain(scene: &'a Scene) -> Self {
         Self { scene, synonyms: 0.0 }
-    }
-
-    /// Other people's words as well.
-    pub(super) fn varied(scene: &'a Scene) -> Self {
-        Self { scene, synonyms: 0.35 }
     }
 
     /// A value in words.
@@ -59,8 +54,8 @@ impl<'a> Wording<'a> {
     }
 }
 
-/// So many of the object's own values as the draw says, by the probability of naming 0, 1, 2 …; in
-/// no particular order.
+/// Draws values of the object, in random order; `probabilities` are those of drawing 0, 1, 2, … of
+/// them.
 pub(super) fn own_values(
     scene: &Scene,
     object: ObjectId,
@@ -77,7 +72,7 @@ pub(super) fn own_values(
     named
 }
 
-/// A number from 0 on, with these probabilities; the last one where they fall short of 1.
+/// Draws an index with these probabilities; the last one where they fall short of 1.
 pub(super) fn number(probabilities: &[f64], rng: &mut Rng) -> usize {
     let mut left = rng.uniform();
     for (n, p) in probabilities.iter().enumerate() {
@@ -95,7 +90,7 @@ mod tests {
     use crate::simulation::testing::bowls;
 
     #[test]
-    fn objects_are_named_as_people_name_them() {
+    fn wording_puts_qualities_before_and_places_behind_the_noun() {
         let scene = bowls();
         let mut rng = Rng::new(1);
         let plain = Wording::plain(&scene);
@@ -107,7 +102,7 @@ mod tests {
         assert_eq!(plain.object(&values, &mut rng), "small white bowl in the cabinet");
         assert_eq!(plain.object(&[], &mut rng), "bowl");
         assert_eq!(plain.predicate(values[0], &mut rng), "in the cabinet");
-        let varied = Wording::varied(&scene);
+        let varied = Wording { scene: &scene, synonyms: 0.35 };
         let words: std::collections::BTreeSet<String> =
             (0..200).map(|_| varied.predicate(values[0], &mut rng)).collect();
         let all = ["in the cabinet", "in the cupboard"].map(str::to_owned);
@@ -115,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_the_object_s_own_and_differ() {
+    fn own_values_are_distinct_values_of_the_object() {
         let scene = bowls();
         let seed = 9;
         let mut rng = Rng::new(seed);

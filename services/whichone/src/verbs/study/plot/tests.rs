@@ -1,6 +1,7 @@
 use super::*;
 use crate::verbs::study::design::People;
-use evaluation::simulation::turns::{Rules, Talker};
+use evaluation::simulation::turns::Rules;
+use evaluation::simulation::users::TimedKind;
 use evaluation::simulation::{End, Outcome, UserKind};
 
 fn tally(right: u32, wrong: u32) -> Tally {
@@ -26,7 +27,7 @@ fn rows() -> Vec<Row> {
         row("a<b", People::InTurns(UserKind::Model)),
         row("a<b", People::InTurns(UserKind::Human)),
         row("other", People::InTurns(UserKind::Model)),
-        row("a<b", People::RealTime { rules, name: "usual", talker: Talker::USUAL }),
+        row("a<b", People::RealTime { rules, name: "usual", kind: TimedKind::USUAL }),
     ]
 }
 
