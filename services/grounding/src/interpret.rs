@@ -82,7 +82,7 @@ fn blend(a: &Doubt, b: &Doubt, part: f64) -> Doubt {
 
 /// A word of the best hypothesis that the scene does not have, for the robot's reply.
 pub(crate) fn unknown(config: &Config, best: &Hypothesis<'_>) -> Option<String> {
-    config.reader.read(best.text, Question::None).unknown.into_iter().next()
+    config.reader.unknown_words(best.text).into_iter().next()
 }
 
 #[cfg(test)]

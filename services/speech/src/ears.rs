@@ -314,7 +314,7 @@ impl Ears {
 
     fn says_stop(&self, hypotheses: &[Hypothesis]) -> bool {
         hypotheses.first().is_some_and(|best| {
-            self.config.reader.read(&best.text, Question::None).reading.intent == Intent::Stop
+            self.config.reader.read(&best.text, Question::None).intent == Intent::Stop
         })
     }
 

@@ -147,10 +147,10 @@ fn read(reader: &Reader, scene: &Scene, text: &str, random: &mut Random) -> Resu
         "number of readings"
     } else if (total - 1.0).abs() > 1e-9 {
         "weights"
-    } else if readings[0].1.base != understood.reading.base
-        || readings[0].1.response != understood.reading.response
-        || readings[0].1.excluded != understood.reading.excluded
-        || readings[0].1.intent != understood.reading.intent
+    } else if readings[0].1.base != understood.base
+        || readings[0].1.response != understood.response
+        || readings[0].1.excluded != understood.excluded
+        || readings[0].1.intent != understood.intent
     {
         "the best reading is not what is read"
     } else if !readings.iter().all(|(_, reading)| {

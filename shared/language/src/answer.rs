@@ -2,12 +2,12 @@
 
 use scene::Response;
 
-use crate::asked::Asked;
 use crate::clauses::Clause;
-use crate::cue::{Cue, cues};
+use crate::content::{Asserted, Content};
 use crate::lexicon::Sense;
-use crate::marks::Mark;
-use crate::meaning::{Meaning, Said};
+use crate::question_words::QuestionWords;
+use crate::tagger::Tag;
+use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 
 /// An answer to the question asked, or the lack of one.
@@ -19,7 +19,7 @@ pub(crate) enum Answer {
     Unsure,
 }
 
-/// Answers in order, each with its mark; a denial of what was asked about has none.
+/// Answers in order, each with its tag; a scope of what was asked about has none.
 #[derive(Debug, Default)]
 pub(crate) struct Answers {
     given: Vec<Given>,
@@ -29,19 +29,19 @@ pub(crate) struct Answers {
 #[derive(Clone, Copy, Debug)]
 struct Given {
     answer: Answer,
-    /// Its mark.
+    /// Its tag.
     at: Option<usize>,
     /// Probability that it was not given.
     doubt: f64,
 }
 
 impl Answers {
-    pub(crate) fn push(&mut self, answer: Answer, marks: &[Mark<'_>], at: usize) {
-        self.given.push(Given { answer, at: Some(at), doubt: marks[at].answer_doubt() });
+    pub(crate) fn push(&mut self, answer: Answer, tags: &[Tag<'_>], at: usize) {
+        self.given.push(Given { answer, at: Some(at), doubt: tags[at].answer_doubt() });
     }
 
     /// "not the white one", when white was asked about.
-    pub(crate) fn push_denial(&mut self, doubt: f64) {
+    pub(crate) fn push_negation(&mut self, doubt: f64) {
         self.given.push(Given { answer: Answer::No, at: None, doubt });
     }
 
@@ -60,12 +60,12 @@ impl Answers {
 
     /// The answer that stands: the last one, unless it is tied to its opposite ("yes and no"); and
     /// its doubt. An answer that was given twice is doubted as the surer one is.
-    fn standing(&self, marks: &[Mark<'_>]) -> Option<(Answer, f64)> {
+    fn standing(&self, tags: &[Tag<'_>]) -> Option<(Answer, f64)> {
         let last = *self.given.last()?;
         if let [.., before, _] = self.given[..]
             && let (Some(from), Some(to)) = (before.at, last.at)
             && before.answer != last.answer
-            && (is_tied(marks.get(from + 1..to).unwrap_or_default()) || is_doubled(marks, from, to))
+            && (is_tied(tags.get(from + 1..to).unwrap_or_default()) || is_doubled(tags, from, to))
         {
             return Some((Answer::Unsure, 0.0));
         }
@@ -75,123 +75,123 @@ impl Answers {
 }
 
 /// Only "and", "or" or "but" in between.
-fn is_tied(between: &[Mark<'_>]) -> bool {
-    let tie = |mark: &Mark<'_>| mark.is_any(cues![And Or But]);
+fn is_tied(between: &[Tag<'_>]) -> bool {
+    let tie = |tag: &Tag<'_>| tag.is_any(classes![And Or But]);
     between.iter().any(tie)
-        && between.iter().all(|mark| tie(mark) || mark.is_any(cues![Filler Plain]))
+        && between.iter().all(|tag| tie(tag) || tag.is_any(classes![Filler Plain]))
 }
 
 /// "sometimes yes, sometimes no", "could be yes, could be no".
-fn is_doubled(marks: &[Mark<'_>], from: usize, to: usize) -> bool {
-    let lead = |at: usize| at.checked_sub(1).and_then(|before| marks.get(before));
+fn is_doubled(tags: &[Tag<'_>], from: usize, to: usize) -> bool {
+    let lead = |at: usize| at.checked_sub(1).and_then(|before| tags.get(before));
     let (Some(first), Some(second)) = (lead(from), lead(to)) else { return false };
-    first.word == second.word && !second.is_any(cues![Yes No Repair Filler])
+    first.word == second.word && !second.is_any(classes![Yes No Repair Filler])
 }
 
-/// The answer that a mark gives by itself.
-pub(crate) fn answer(marks: &[Mark<'_>], clause: &Clause, at: usize) -> Option<Answer> {
-    let denied = at > clause.marks.start && marks[at - 1].is(Cue::Not);
+/// The answer that a tag gives by itself.
+pub(crate) fn answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> Option<Answer> {
+    let denied = at > clause.span.start && tags[at - 1].is(Class::Not);
     if denied {
         return None;
     }
-    match marks[at].cue()? {
-        Cue::Yes => Some(Answer::Yes),
-        Cue::WeakYes if is_bare(marks, clause) => Some(Answer::Yes),
-        Cue::WeakNo if is_bare(marks, clause) => Some(Answer::No),
-        Cue::Likely if is_bare(marks, clause) => Some(Answer::Yes),
-        Cue::Other if is_other_one(marks, clause, at) => Some(Answer::No),
-        Cue::Be | Cue::Auxiliary if is_affirmed(marks, clause, at) => Some(Answer::Yes),
-        Cue::WeakYes if is_judged(marks, clause, at) => Some(Answer::Yes),
-        Cue::WeakNo if is_judged(marks, clause, at) => Some(Answer::No),
+    match tags[at].class()? {
+        Class::Yes => Some(Answer::Yes),
+        Class::WeakYes if is_bare(tags, clause) => Some(Answer::Yes),
+        Class::WeakNo if is_bare(tags, clause) => Some(Answer::No),
+        Class::Likely if is_bare(tags, clause) => Some(Answer::Yes),
+        Class::Other if is_other_one(tags, clause, at) => Some(Answer::No),
+        Class::Be | Class::Auxiliary if is_affirmed(tags, clause, at) => Some(Answer::Yes),
+        Class::WeakYes if is_judged(tags, clause, at) => Some(Answer::Yes),
+        Class::WeakNo if is_judged(tags, clause, at) => Some(Answer::No),
         _ => None,
     }
 }
 
 /// Nothing in the clause says more than an answer does.
-fn is_bare(marks: &[Mark<'_>], clause: &Clause) -> bool {
-    const BARE: &[Cue] = cues![
+fn is_bare(tags: &[Tag<'_>], clause: &Clause) -> bool {
+    const BARE: &[Class] = classes![
         Yes No WeakYes WeakNo Likely Hedge Filler Courtesy Plain And But Join First Second It
         Pointer Preposition Be Auxiliary Determiner Head Repair
     ];
-    marks[clause.marks.clone()].iter().all(|mark| mark.is_any(BARE))
+    tags[clause.span.clone()].iter().all(|tag| tag.is_any(BARE))
 }
 
 /// "the other one", as opposed to "the other white one".
-fn is_other_one(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    let before = marks[clause.marks.start..at].last();
-    let after = marks[at + 1..clause.marks.end].first();
+fn is_other_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
+    let before = tags[clause.span.start..at].last();
+    let after = tags[at + 1..clause.span.end].first();
     let whole = after.is_none_or(|next| {
-        next.is_any(cues![Head Attribute Courtesy Filler No Be]) || next.gap >= Gap::Pause
+        next.is_any(classes![Head Attribute Courtesy Filler No Be]) || next.gap >= Gap::Pause
     });
-    let plain = marks[clause.marks.clone()]
+    let plain = tags[clause.span.clone()]
         .iter()
-        .all(|mark| !matches!(mark.sense, Sense::Unknown) && mark.value().is_none());
-    whole && plain && !before.is_some_and(|before| before.is_any(cues![Quantifier AskBack]))
+        .all(|tag| !matches!(tag.sense, Sense::Unknown) && tag.value().is_none());
+    whole && plain && !before.is_some_and(|before| before.is_any(classes![Quantifier AskBack]))
 }
 
 /// "drawer is right", "white would be wrong".
-fn is_judged(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    let before = &marks[clause.marks.start..at];
-    let plain = |mark: &Mark<'_>| {
-        mark.value().is_some() || mark.is_any(cues![Determiner Head Filler Yes No Preposition])
+fn is_judged(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
+    let before = &tags[clause.span.start..at];
+    let plain = |tag: &Tag<'_>| {
+        tag.value().is_some() || tag.is_any(classes![Determiner Head Filler Yes No Preposition])
     };
     matches!(before, [said @ .., be]
-        if be.is(Cue::Be) && said.iter().all(plain) && said.iter().any(|mark| mark.value().is_some()))
-        && at + 1 == clause.marks.end
+        if be.is(Class::Be) && said.iter().all(plain) && said.iter().any(|tag| tag.value().is_some()))
+        && at + 1 == clause.span.end
 }
 
 /// A sentence about what was asked that says no more than yes.
-fn is_affirmed(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    let before = &marks[clause.marks.start..at];
-    let subject = before.iter().rev().find(|mark| !mark.is(Cue::Plain));
-    let said = &marks[at + 1..clause.marks.end];
+fn is_affirmed(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
+    let before = &tags[clause.span.start..at];
+    let subject = before.iter().rev().find(|tag| !tag.is(Class::Plain));
+    let said = &tags[at + 1..clause.span.end];
     if said.is_empty() {
         // "it very much is", but not "if it is"
-        const OPEN: &[Cue] = cues![Question Join Unsure Not Unlisted Ordinal AskBack];
-        let plain = |mark: &Mark<'_>| {
-            mark.sense != Sense::Unknown && mark.value().is_none() && !mark.is_any(OPEN)
+        const OPEN: &[Class] = classes![Question Join Unsure Not Unlisted Ordinal AskBack];
+        let plain = |tag: &Tag<'_>| {
+            tag.sense != Sense::Unknown && tag.value().is_none() && !tag.is_any(OPEN)
         };
-        return subject.is_some_and(|mark| mark.is(Cue::It)) && before.iter().all(plain);
+        return subject.is_some_and(|tag| tag.is(Class::It)) && before.iter().all(plain);
     }
-    let about_it = before.last().is_some_and(|mark| mark.is_any(cues![It Pointer]));
-    let is = marks[at].is(Cue::Be);
-    about_it && (is && (is_the_one(marks, clause, at) || is_what(said)) || is_it(said))
+    let about_it = before.last().is_some_and(|tag| tag.is_any(classes![It Pointer]));
+    let is = tags[at].is(Class::Be);
+    about_it && (is && (is_the_one(tags, clause, at) || is_what(said)) || is_it(said))
 }
 
 /// "that's where it is", "that's what I've been looking for".
-fn is_what(said: &[Mark<'_>]) -> bool {
+fn is_what(said: &[Tag<'_>]) -> bool {
     let [what, whose, rest @ ..] = said else { return false };
-    const STRANGE: &[Cue] = cues![Not No Unsure Unlisted Third Other Ordinal];
+    const STRANGE: &[Class] = classes![Not No Unsure Unlisted Third Other Ordinal];
     // "what is in it" is a phrase
-    let phrase = what.is(Cue::AskBack) && what.word == "what";
-    (what.is(Cue::Question) || phrase)
-        && (whose.is_any(cues![It First Possessive Be]) || whose.word == "it")
-        && rest.iter().all(|mark| mark.value().is_none() && !mark.is_any(STRANGE))
-        && rest.iter().filter(|mark| mark.sense == Sense::Unknown).count() <= 1
+    let phrase = what.is(Class::AskBack) && what.word == "what";
+    (what.is(Class::Question) || phrase)
+        && (whose.is_any(classes![It First Possessive Be]) || whose.word == "it")
+        && rest.iter().all(|tag| tag.value().is_none() && !tag.is_any(STRANGE))
+        && rest.iter().filter(|tag| tag.sense == Sense::Unknown).count() <= 1
 }
 
 /// "it is made of that", "it does have that", "it's in there", "it is one".
-fn is_it(said: &[Mark<'_>]) -> bool {
+fn is_it(said: &[Tag<'_>]) -> bool {
     let Some((last, rest)) = said.split_last() else { return false };
     let place = matches!(last.word, "in" | "there" | "here" | "up" | "down" | "over" | "right");
     let shown =
-        last.is_any(cues![Pointer It]) || last.is(Cue::Plain) && (place || last.word == "one");
+        last.is_any(classes![Pointer It]) || last.is(Class::Plain) && (place || last.word == "one");
     shown
         && rest
             .iter()
-            .all(|mark| mark.is_any(cues![Plain Preposition Attribute Auxiliary Be Filler]))
+            .all(|tag| tag.is_any(classes![Plain Preposition Attribute Auxiliary Be Filler]))
 }
 
 /// "that is exactly the one I want", "it's the one".
-fn is_the_one(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    let said = &marks[at + 1..clause.marks.end];
-    let plain = marks[clause.marks.clone()].iter().all(|mark| {
-        mark.value().is_none()
-            && mark.sense != Sense::Unknown
-            && !mark.is_any(cues![Not Ordinal Unlisted Other Question])
+fn is_the_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
+    let said = &tags[at + 1..clause.span.end];
+    let plain = tags[clause.span.clone()].iter().all(|tag| {
+        tag.value().is_none()
+            && tag.sense != Sense::Unknown
+            && !tag.is_any(classes![Not Ordinal Unlisted Other Question])
     });
     let the_one = said.windows(2).any(|pair| {
-        (pair[0].word == "the" || pair[0].is(Cue::Possessive)) && pair[1].is(Cue::Head)
+        (pair[0].word == "the" || pair[0].is(Class::Possessive)) && pair[1].is(Class::Head)
     });
     plain && the_one
 }
@@ -199,29 +199,29 @@ fn is_the_one(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
 /// The response to the question: the answer that stands, or what the values said imply; and the
 /// probability that it was not given.
 pub(crate) fn response(
-    meaning: &Meaning<'_>,
-    marks: &[Mark<'_>],
-    asked: Asked<'_>,
+    content: &Content<'_>,
+    tags: &[Tag<'_>],
+    asked: QuestionWords<'_>,
 ) -> (Response, f64) {
-    if matches!(asked, Asked::Nothing) {
+    if matches!(asked, QuestionWords::Nothing) {
         return (Response::None, 0.0);
     }
-    let certain = !meaning.hedged && !meaning.alternatives;
-    match meaning.answers.standing(marks) {
+    let certain = !content.hedged && !content.alternatives;
+    match content.answers.standing(tags) {
         Some((Answer::Yes, doubt)) => (Response::Yes, doubt),
         Some((Answer::No, doubt)) => (Response::No, doubt),
-        None if certain => implied(&meaning.base, asked),
+        None if certain => implied(&content.base, asked),
         Some((Answer::Unsure, _)) | None => (Response::None, 0.0),
     }
 }
 
 /// "Is it white?" "The clear one." is a no, "The white one." a yes. It is as doubtful as the
 /// surest of the values that imply it.
-fn implied(base: &[Said<'_>], asked: Asked<'_>) -> (Response, f64) {
-    let (response, implies): (Response, Vec<&Said<'_>>) = match asked {
-        Asked::Value(attribute, word) => {
+fn implied(base: &[Asserted<'_>], asked: QuestionWords<'_>) -> (Response, f64) {
+    let (response, implies): (Response, Vec<&Asserted<'_>>) = match asked {
+        QuestionWords::Value(attribute, word) => {
             let said = base.iter().filter(|value| value.attributes.contains(&attribute));
-            let said: Vec<&Said<'_>> = said.collect();
+            let said: Vec<&Asserted<'_>> = said.collect();
             let agreeing = said.iter().filter(|value| value.word == word).count();
             match (agreeing, said.len()) {
                 (0, 1..) => (Response::No, said),
@@ -229,12 +229,12 @@ fn implied(base: &[Said<'_>], asked: Asked<'_>) -> (Response, f64) {
                 _ => (Response::None, Vec::new()),
             }
         }
-        Asked::Object(words) => {
+        QuestionWords::Object(words) => {
             let other = base.iter().filter(|value| !words.contains(&value.word));
-            let other: Vec<&Said<'_>> = other.collect();
+            let other: Vec<&Asserted<'_>> = other.collect();
             (if other.is_empty() { Response::None } else { Response::No }, other)
         }
-        Asked::Nothing | Asked::Attribute => (Response::None, Vec::new()),
+        QuestionWords::Nothing | QuestionWords::Attribute => (Response::None, Vec::new()),
     };
     (response, implies.iter().map(|value| value.doubt).reduce(f64::min).unwrap_or(0.0))
 }

@@ -19,7 +19,7 @@
 use scene::Scene;
 
 use crate::normalise::normalise;
-use crate::sound::{is_vowel_letter, sound};
+use crate::phonetics::{is_vowel_letter, sound};
 use crate::tokens::Tokens;
 
 /// Share of each row that is divided evenly: what sounds cannot explain.

@@ -10,16 +10,16 @@
 //! | any other way of not knowing | 0.55 | judged: it says little, not nothing |
 //!
 //! "Sure" is how often what is said with these words holds. A scene word is doubted by `1 − sure`;
-//! an answer or a denial by `2 (1 − sure)`, because half of an answer that was not given is right
+//! an answer or a scope by `2 (1 − sure)`, because half of an answer that was not given is right
 //! by chance ([`scene::Doubt`]).
 //!
 //! F. Mosteller and C. Youtz, "Quantifying probabilistic expressions", Statistical Science 5(1),
 //! 1990.
 
 use crate::clauses::{Clause, Topic};
-use crate::cue::{Cue, cues};
 use crate::lexicon::Sense;
-use crate::marks::Mark;
+use crate::tagger::Tag;
+use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 
 /// Words and how sure who uses them is; the first row that has a word of a phrase counts.
@@ -98,19 +98,19 @@ const SURE_LEAST: f64 = 0.55;
 pub(crate) const MAYBE: f64 = 0.6;
 
 /// How sure somebody is who says this phrase, 1 for a phrase that hedges nothing.
-pub(crate) fn sureness(cue: Cue, phrase: &str) -> f64 {
+pub(crate) fn sureness(class: Class, phrase: &str) -> f64 {
     let of = |rows: &[(f64, &[&str])]| {
         let said = |words: &[&str]| phrase.split(' ').any(|word| words.contains(&word));
         rows.iter().find(|(_, words)| said(words)).map(|(sure, _)| *sure)
     };
-    match cue {
-        Cue::Hedge | Cue::Likely | Cue::Unsure => of(SURENESS).unwrap_or(SURE_LEAST),
+    match class {
+        Class::Hedge | Class::Likely | Class::Unsure => of(SURENESS).unwrap_or(SURE_LEAST),
         // "I think so", "I doubt it", but not "good guess" and "no doubt"
-        Cue::Yes if phrase.ends_with(" so") => of(SURENESS).unwrap_or(1.0),
-        Cue::No if phrase.contains("doubt") || phrase.ends_with("likely") => {
+        Class::Yes if phrase.ends_with(" so") => of(SURENESS).unwrap_or(1.0),
+        Class::No if phrase.contains("doubt") || phrase.ends_with("likely") => {
             of(SURENESS).unwrap_or(1.0)
         }
-        Cue::No if phrase.ends_with(" so") || phrase.contains("not that i") => {
+        Class::No if phrase.ends_with(" so") || phrase.contains("not that i") => {
             of(SURENESS).unwrap_or(1.0)
         }
         _ => 1.0,
@@ -118,11 +118,11 @@ pub(crate) fn sureness(cue: Cue, phrase: &str) -> f64 {
 }
 
 /// "I don't think", where "think" is no phrase of its own.
-fn sureness_of(mark: &Mark<'_>) -> f64 {
-    match mark.sense {
-        Sense::Cue(Cue::Hedge | Cue::Likely | Cue::Unsure) => mark.sure,
-        Sense::Cue(Cue::Plain) if matches!(mark.word, "think" | "believe") => {
-            sureness(Cue::Hedge, mark.word)
+fn sureness_of(tag: &Tag<'_>) -> f64 {
+    match tag.sense {
+        Sense::Class(Class::Hedge | Class::Likely | Class::Unsure) => tag.sure,
+        Sense::Class(Class::Plain) if matches!(tag.word, "think" | "believe") => {
+            sureness(Class::Hedge, tag.word)
         }
         _ => 1.0,
     }
@@ -130,63 +130,63 @@ fn sureness_of(mark: &Mark<'_>) -> f64 {
 
 /// Lets each hedge weaken what is said in its clause; one that stands alone, what was said before
 /// it in the same sentence, or else what follows: "the white one, I think".
-pub(crate) fn hedge(marks: &mut [Mark<'_>], clauses: &[Clause]) {
+pub(crate) fn hedge(tags: &mut [Tag<'_>], clauses: &[Clause]) {
     for (n, clause) in clauses.iter().enumerate().filter(|(_, clause)| clause.topic == Topic::On) {
-        let sure = marks[clause.marks.clone()].iter().map(sureness_of).fold(1.0, f64::min);
+        let sure = tags[clause.span.clone()].iter().map(sureness_of).fold(1.0, f64::min);
         if sure == 1.0 {
             continue;
         }
-        let goes_on = |clause: &Clause| marks[clause.marks.start].gap < Gap::Stop;
-        let beside = match says_more(&marks[clause.marks.clone()]) {
+        let goes_on = |clause: &Clause| tags[clause.span.start].gap < Gap::Stop;
+        let beside = match says_more(&tags[clause.span.clone()]) {
             true => None,
             false => n
                 .checked_sub(1)
                 .filter(|_| goes_on(clause))
                 .or((n + 1 < clauses.len() && goes_on(&clauses[n + 1])).then_some(n + 1)),
         };
-        let beside = beside.map_or(0..0, |n| clauses[n].marks.clone());
-        for at in clause.marks.clone().chain(beside) {
-            marks[at].sure = marks[at].sure.min(sure);
+        let beside = beside.map_or(0..0, |n| clauses[n].span.clone());
+        for at in clause.span.clone().chain(beside) {
+            tags[at].sure = tags[at].sure.min(sure);
         }
     }
 }
 
 /// Whether a clause says anything that a hedge in it weakens.
-fn says_more(clause: &[Mark<'_>]) -> bool {
-    clause.iter().any(|mark| {
-        mark.value().is_some() || mark.is_any(cues![Yes No WeakYes WeakNo Not Except Other])
+fn says_more(clause: &[Tag<'_>]) -> bool {
+    clause.iter().any(|tag| {
+        tag.value().is_some() || tag.is_any(classes![Yes No WeakYes WeakNo Not Except Other])
     })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Cue, sureness};
+    use super::{Class, sureness};
 
     #[test]
     fn the_surer_the_words_the_less_the_doubt() {
         let order = [
-            (Cue::Likely, "most likely"),
-            (Cue::Yes, "i think so"),
-            (Cue::Likely, "probably"),
-            (Cue::Yes, "i guess so"),
-            (Cue::Hedge, "maybe"),
-            (Cue::Unsure, "no idea"),
+            (Class::Likely, "most likely"),
+            (Class::Yes, "i think so"),
+            (Class::Likely, "probably"),
+            (Class::Yes, "i guess so"),
+            (Class::Hedge, "maybe"),
+            (Class::Unsure, "no idea"),
         ];
-        let sure: Vec<f64> = order.iter().map(|(cue, phrase)| sureness(*cue, phrase)).collect();
+        let sure: Vec<f64> = order.iter().map(|(class, phrase)| sureness(*class, phrase)).collect();
         assert!(sure.windows(2).all(|pair| pair[0] > pair[1]), "{sure:?}");
         assert!(sure.iter().all(|sure| (0.5..1.0).contains(sure)));
     }
 
     #[test]
     fn a_plain_answer_is_sure() {
-        for (cue, phrase) in [
-            (Cue::Yes, "yes"),
-            (Cue::Yes, "no doubt"),
-            (Cue::Yes, "good guess"),
-            (Cue::No, "guess again"),
-            (Cue::WeakYes, "you could say that"),
+        for (class, phrase) in [
+            (Class::Yes, "yes"),
+            (Class::Yes, "no doubt"),
+            (Class::Yes, "good guess"),
+            (Class::No, "guess again"),
+            (Class::WeakYes, "you could say that"),
         ] {
-            assert_eq!(sureness(cue, phrase), 1.0, "{phrase}");
+            assert_eq!(sureness(class, phrase), 1.0, "{phrase}");
         }
     }
 }

@@ -1,17 +1,17 @@
 //! Every word and phrase that means something: the scene's values in all their forms, its noun and
-//! attributes, and the cues of the dialogue. Where two would match, the longer phrase wins; of two
+//! attributes, and the classes of the dialogue. Where two would match, the longer phrase wins; of two
 //! equally long ones the scene's.
 
 use std::collections::{HashMap, HashSet};
 
 use scene::{AttributeId, Role, Scene, WordId};
 
-use crate::cue::Cue;
-use crate::forms::inflected;
 use crate::hedges::sureness;
+use crate::morphology::inflected;
 use crate::normalise::normalise;
-use crate::sound::skeleton;
+use crate::phonetics::skeleton;
 use crate::spelling::SpellingIndex;
+use crate::token_class::Class;
 use crate::tokens::{Gap, Token, Tokens};
 use crate::vocabulary;
 
@@ -20,7 +20,7 @@ use crate::vocabulary;
 pub(crate) enum Sense {
     /// A value, by its place in [`Lexicon::value`].
     Value(u32),
-    Cue(Cue),
+    Class(Class),
     Unknown,
 }
 
@@ -46,7 +46,7 @@ struct Phrase {
 
 /// A phrase found in an utterance.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Found {
+pub(crate) struct PhraseMatch {
     /// How many words it takes.
     pub(crate) words: usize,
     pub(crate) sense: Sense,
@@ -77,7 +77,7 @@ impl Lexicon {
         let mut lexicon = Self { common, noun, ..Self::default() };
         lexicon.add_values(scene);
         lexicon.add_names(scene);
-        lexicon.add_cues();
+        lexicon.add_phrases();
         for phrases in lexicon.phrases.values_mut() {
             phrases.sort_by_key(|phrase| std::cmp::Reverse(phrase.rest.len()));
         }
@@ -90,12 +90,12 @@ impl Lexicon {
     }
 
     /// The longest phrase that starts at `at`.
-    pub(crate) fn longest(&self, tokens: &[Token<'_>], at: usize) -> Option<Found> {
+    pub(crate) fn longest(&self, tokens: &[Token<'_>], at: usize) -> Option<PhraseMatch> {
         let after = &tokens[at + 1..];
         let phrases = self.phrases.get(tokens[at].word)?;
         phrases.iter().find_map(|phrase| {
             let words = matched(&phrase.rest, after)?;
-            let found = Found { words: words + 1, sense: phrase.sense, sure: phrase.sure };
+            let found = PhraseMatch { words: words + 1, sense: phrase.sense, sure: phrase.sure };
             self.closes(phrase, tokens, at + 1 + words).then_some(found)
         })
     }
@@ -178,8 +178,11 @@ impl Lexicon {
         next.gap >= Gap::Pause
             || phrases.filter(|phrase| phrase.sense != Sense::Unknown).find(last).is_some_and(
                 |next| {
-                    use Cue::{Courtesy, Filler, Hedge, No, WeakYes, Yes};
-                    matches!(next.sense, Sense::Cue(Filler | Courtesy | Yes | No | WeakYes | Hedge))
+                    use Class::{Courtesy, Filler, Hedge, No, WeakYes, Yes};
+                    matches!(
+                        next.sense,
+                        Sense::Class(Filler | Courtesy | Yes | No | WeakYes | Hedge)
+                    )
                 },
             )
     }
@@ -246,22 +249,22 @@ impl Lexicon {
     fn add_names(&mut self, scene: &Scene) {
         let attributes = scene.attributes().iter();
         let attributes = attributes.flat_map(|a| std::iter::once(&a.name).chain(&a.synonyms));
-        let noun = std::iter::once((scene.noun(), Cue::Head));
-        for (name, cue) in noun.chain(attributes.map(|name| (name.as_str(), Cue::Attribute))) {
+        let noun = std::iter::once((scene.noun(), Class::Head));
+        for (name, class) in noun.chain(attributes.map(|name| (name.as_str(), Class::Attribute))) {
             let mut words = words(name);
-            self.add(&words, Sense::Cue(cue));
+            self.add(&words, Sense::Class(class));
             let Some(last) = words.pop() else { continue };
             for form in inflected(&last, false) {
                 words.push(form);
-                self.add(&words, Sense::Cue(cue));
+                self.add(&words, Sense::Class(class));
                 words.pop();
             }
         }
     }
 
-    fn add_cues(&mut self) {
-        for (cue, phrase) in vocabulary::phrases() {
-            let weak = matches!(cue, Cue::WeakYes | Cue::WeakNo) && phrase.contains(' ');
+    fn add_phrases(&mut self) {
+        for (class, phrase) in vocabulary::phrases() {
+            let weak = matches!(class, Class::WeakYes | Class::WeakNo) && phrase.contains(' ');
             let (phrase, closing) = match phrase.strip_suffix(" .") {
                 Some(phrase) => (phrase, true),
                 None => (phrase, weak),
@@ -269,9 +272,9 @@ impl Lexicon {
             let words: Vec<String> = phrase.split(' ').map(str::to_owned).collect();
             // "on the left" is a position in a row unless the scene itself knows a left.
             let is_value = |word: &String| matches!(self.word(word), Some(Sense::Value(_)));
-            if cue != Cue::Ordinal || !words.iter().any(is_value) {
-                let sure = sureness(cue, phrase);
-                self.add_phrase(&words, Sense::Cue(cue), closing, sure);
+            if class != Class::Ordinal || !words.iter().any(is_value) {
+                let sure = sureness(class, phrase);
+                self.add_phrase(&words, Sense::Class(class), closing, sure);
             }
         }
     }

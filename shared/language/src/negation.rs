@@ -1,11 +1,11 @@
 //! What a "no" or "not" is good for: an answer, a repair, a determiner, or nothing.
 
-use crate::asked::Asked;
 use crate::clauses::Clause;
-use crate::cue::{Cue, cues};
+use crate::content::{Asserted, rivals};
 use crate::lexicon::{Lexicon, Sense};
-use crate::marks::Mark;
-use crate::meaning::{Said, rivals};
+use crate::question_words::QuestionWords;
+use crate::tagger::Tag;
+use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 
 /// What a "no" does.
@@ -22,24 +22,24 @@ pub(crate) enum NoUse {
 /// Tells the uses of "no" apart by what has been said and what follows.
 pub(crate) fn use_of_no(
     lexicon: &Lexicon,
-    marks: &[Mark<'_>],
+    tags: &[Tag<'_>],
     at: usize,
-    base: &[Said<'_>],
-    asked: Asked<'_>,
+    base: &[Asserted<'_>],
+    asked: QuestionWords<'_>,
 ) -> NoUse {
-    const GOVERNORS: &[Cue] = cues![Preposition Be Want Fetch Auxiliary];
-    let governed = at > 0 && marks[at].gap <= Gap::None && marks[at - 1].is_any(GOVERNORS);
-    let next = marks.get(at + 1).filter(|next| next.gap <= Gap::None);
+    const GOVERNORS: &[Class] = classes![Preposition Be Want Fetch Auxiliary];
+    let governed = at > 0 && tags[at].gap <= Gap::None && tags[at - 1].is_any(GOVERNORS);
+    let next = tags.get(at + 1).filter(|next| next.gap <= Gap::None);
     let value = next.and_then(|next| next.value()).map(|value| lexicon.value(value));
-    if let Some(value) = value.filter(|_| marks[at].word == "no") {
+    if let Some(value) = value.filter(|_| tags[at].word == "no") {
         if governed {
             return NoUse::Determiner;
         }
         if base.is_empty() {
             let asked_about = match asked {
-                Asked::Value(_, word) => word == value.word,
-                Asked::Object(words) => words.contains(&value.word),
-                Asked::Nothing | Asked::Attribute => true,
+                QuestionWords::Value(_, word) => word == value.word,
+                QuestionWords::Object(words) => words.contains(&value.word),
+                QuestionWords::Nothing | QuestionWords::Attribute => true,
             };
             return if asked_about { NoUse::Determiner } else { NoUse::Answer };
         }
@@ -47,17 +47,17 @@ pub(crate) fn use_of_no(
             return NoUse::Determiner;
         }
     }
-    if !base.is_empty() && leads_to_value(&marks[at + 1..]) { NoUse::Repair } else { NoUse::Answer }
+    if !base.is_empty() && leads_to_value(&tags[at + 1..]) { NoUse::Repair } else { NoUse::Answer }
 }
 
 /// Whether a value is asserted soon, before the sentence ends or turns.
-fn leads_to_value(marks: &[Mark<'_>]) -> bool {
+fn leads_to_value(tags: &[Tag<'_>]) -> bool {
     const REACH: usize = 10;
-    for (n, mark) in marks.iter().take(REACH).enumerate() {
-        if mark.value().is_some() {
+    for (n, tag) in tags.iter().take(REACH).enumerate() {
+        if tag.value().is_some() {
             return true;
         }
-        if mark.is_any(cues![Not Except]) || n > 0 && mark.gap == Gap::Stop {
+        if tag.is_any(classes![Not Except]) || n > 0 && tag.gap == Gap::Stop {
             return false;
         }
     }
@@ -65,79 +65,79 @@ fn leads_to_value(marks: &[Mark<'_>]) -> bool {
 }
 
 /// "isn't it the white one", "can't you get me …": a negation in form only.
-pub(crate) fn is_rhetorical(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    let opening = &marks[clause.marks.start..at];
+pub(crate) fn is_rhetorical(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
+    let opening = &tags[clause.span.start..at];
     let inverted = match opening {
-        [.., question, verb] if question.is(Cue::Question) => is_verb(verb),
+        [.., question, verb] if question.is(Class::Question) => is_verb(verb),
         [leads @ .., verb] => {
-            is_verb(verb) && leads.iter().all(|mark| mark.is_any(cues![Filler Courtesy But]))
+            is_verb(verb) && leads.iter().all(|tag| tag.is_any(classes![Filler Courtesy But]))
         }
         [] => false,
     };
     inverted
-        && marks.get(at + 1).is_some_and(|next| {
-            next.gap <= Gap::None && next.is_any(cues![Second It First Pointer])
+        && tags.get(at + 1).is_some_and(|next| {
+            next.gap <= Gap::None && next.is_any(classes![Second It First Pointer])
         })
 }
 
-fn is_verb(mark: &Mark<'_>) -> bool {
-    mark.is_any(cues![Auxiliary Be])
+fn is_verb(tag: &Tag<'_>) -> bool {
+    tag.is_any(classes![Auxiliary Be])
 }
 
 /// "not that one", "it is not", "not right": nothing but the answer itself is denied.
-pub(crate) fn is_whole_answer(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    const LINKS: &[Cue] = cues![
+pub(crate) fn is_whole_answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
+    const LINKS: &[Class] = classes![
         Determiner Pointer Be Plain Filler Courtesy Want Auxiliary Possessive
     ];
     // "nice weather, isn't it" is not about the question.
-    let before = &marks[clause.marks.start..at];
-    if marks[at].word == "forget" || before.iter().any(|mark| mark.sense == Sense::Unknown) {
+    let before = &tags[clause.span.start..at];
+    if tags[at].word == "forget" || before.iter().any(|tag| tag.sense == Sense::Unknown) {
         return false;
     }
-    if is_not_what(marks, clause, at) || is_not_by_far(marks, clause, at) {
+    if is_not_what(tags, clause, at) || is_not_by_far(tags, clause, at) {
         return true;
     }
-    let mut rest = marks[at + 1..].iter().peekable();
-    while rest.next_if(|mark| mark.gap < Gap::Pause && mark.is_any(LINKS)).is_some() {}
-    let head = rest.next_if(|mark| {
-        let heads = [Cue::Head, Cue::It, Cue::Yes, Cue::WeakYes, Cue::Likely];
-        mark.gap < Gap::Pause && mark.is_any(&heads)
+    let mut rest = tags[at + 1..].iter().peekable();
+    while rest.next_if(|tag| tag.gap < Gap::Pause && tag.is_any(LINKS)).is_some() {}
+    let head = rest.next_if(|tag| {
+        let heads = [Class::Head, Class::It, Class::Yes, Class::WeakYes, Class::Likely];
+        tag.gap < Gap::Pause && tag.is_any(&heads)
     });
-    while rest.next_if(|mark| mark.gap < Gap::Pause && mark.is_any(cues![Plain Courtesy])).is_some()
+    while rest.next_if(|tag| tag.gap < Gap::Pause && tag.is_any(classes![Plain Courtesy])).is_some()
     {
     }
     match rest.next() {
         None => true,
         Some(next) if next.gap >= Gap::Pause => true,
-        Some(next) if head.is_some() => next.is_any(cues![
+        Some(next) if head.is_some() => next.is_any(classes![
             Determiner First Fetch Want It And But Join No Repair Filler Not Story
         ]),
-        Some(next) => next.is_any(cues![No Yes Repair But Hedge]),
+        Some(next) => next.is_any(classes![No Yes Repair But Hedge]),
     }
 }
 
 /// "not what I'm after", "that's not where it is".
-fn is_not_what(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    let [what, whose, ..] = &marks[at + 1..clause.marks.end] else { return false };
-    let ours = whose.is_any(cues![First It Possessive]) || whose.word == "it";
-    what.is(Cue::Question) && ours && denies_no_value(marks, clause, at)
+fn is_not_what(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
+    let [what, whose, ..] = &tags[at + 1..clause.span.end] else { return false };
+    let ours = whose.is_any(classes![First It Possessive]) || whose.word == "it";
+    what.is(Class::Question) && ours && denies_no_value(tags, clause, at)
 }
 
 /// "not by a mile", "not in a hundred years": how little it is so, and nothing else.
-fn is_not_by_far(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    let opens = marks[clause.marks.start..at]
+fn is_not_by_far(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
+    let opens = tags[clause.span.start..at]
         .iter()
-        .all(|mark| mark.is_any(cues![Filler Courtesy No Yes WeakNo]));
-    let next = marks[at + 1..clause.marks.end].first();
+        .all(|tag| tag.is_any(classes![Filler Courtesy No Yes WeakNo]));
+    let next = tags[at + 1..clause.span.end].first();
     opens
-        && next.is_some_and(|next| next.is(Cue::Preposition) && next.gap <= Gap::None)
-        && denies_no_value(marks, clause, at)
+        && next.is_some_and(|next| next.is(Class::Preposition) && next.gap <= Gap::None)
+        && denies_no_value(tags, clause, at)
 }
 
 /// Nothing after the negation describes an object, not even one that the scene lacks.
-fn denies_no_value(marks: &[Mark<'_>], clause: &Clause, at: usize) -> bool {
-    (at + 1..clause.marks.end).all(|at| {
-        let describes = marks[at].value().is_some() && clause.counts(at);
-        !describes && !marks[at].is_any(cues![Unlisted Head Fetch])
+fn denies_no_value(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
+    (at + 1..clause.span.end).all(|at| {
+        let describes = tags[at].value().is_some() && clause.counts(at);
+        !describes && !tags[at].is_any(classes![Unlisted Head Fetch])
     })
 }

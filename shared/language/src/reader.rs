@@ -1,18 +1,18 @@
-//! The reader: one utterance in, its meaning out.
+//! The reader: runs the pipeline on an utterance.
 
 use scene::{Intent, Question, Reading, Scene};
 
 use crate::answer::response;
-use crate::asked::Askable;
 use crate::clauses::clauses;
-use crate::heard::Heard;
+use crate::content::{Content, extract};
 use crate::hedges::hedge;
 use crate::intent::{intent, is_side_talk, unknown_words};
 use crate::lexicon::Lexicon;
-use crate::marks::marks;
-use crate::meaning::{Meaning, listen};
 use crate::normalise::normalise;
 use crate::paper::WordSpotter;
+use crate::parsed::ParsedUtterance;
+use crate::question_words::SceneQuestions;
+use crate::tagger::tag;
 use crate::tokens::Tokens;
 
 /// How utterances are read.
@@ -23,19 +23,9 @@ use crate::tokens::Tokens;
 pub enum Language {
     /// Word spotting, exactly as in section 3.6 of the paper.
     Paper,
-    /// What a careful listener takes: synonyms, negation with scope, repairs, intents.
+    /// What a careful extractor takes: synonyms, negation with scope, repairs, intents.
     #[default]
     Careful,
-}
-
-/// An utterance understood.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Understood {
-    /// What it says.
-    pub reading: Reading,
-    /// Attribute and object words that the scene lacks, as said; for the robot's reply, not for
-    /// the belief.
-    pub unknown: Vec<String>,
 }
 
 /// Reads utterances about one scene. Holds all that it needs of the scene.
@@ -44,7 +34,7 @@ pub struct Reader {
     language: Language,
     spotter: WordSpotter,
     lexicon: Lexicon,
-    askable: Askable,
+    questions: SceneQuestions,
 }
 
 impl Reader {
@@ -54,7 +44,7 @@ impl Reader {
             language,
             spotter: WordSpotter::new(scene),
             lexicon: Lexicon::new(scene),
-            askable: Askable::new(scene),
+            questions: SceneQuestions::new(scene),
         }
     }
 
@@ -63,32 +53,39 @@ impl Reader {
         self.language
     }
 
-    /// Reads an utterance that was said after `last_question`. Any text is an utterance; of one
-    /// longer than [`TEXT_CHARS_MAX`](crate::TEXT_CHARS_MAX) characters the rest is not read.
-    pub fn read(&self, text: &str, last_question: Question) -> Understood {
+    /// Returns the best reading of an utterance that followed `last_question`. Any text is an
+    /// utterance; only its first [`TEXT_CHARS_MAX`](crate::TEXT_CHARS_MAX) characters are read.
+    pub fn read(&self, text: &str, last_question: Question) -> Reading {
         match self.language {
-            Language::Paper => Understood { reading: self.spotter.read(text), unknown: Vec::new() },
+            Language::Paper => self.spotter.read(text),
             Language::Careful => {
                 let text = normalise(text);
-                let tokens = Tokens::of(&text);
-                let heard = self.listen(&tokens, last_question);
-                Understood {
-                    reading: heard.reading(),
-                    unknown: unknown_words(&heard.marks, &heard.clauses),
-                }
+                self.parse(&Tokens::of(&text), last_question).reading()
             }
         }
     }
 
-    /// The ways in which an utterance that was said after `last_question` can be understood, each
-    /// with its weight, best first; the weights sum to 1 and there are at most
-    /// [`READINGS_MAX`](crate::READINGS_MAX). The first is what [`Self::read`] gives, but for its
+    /// Returns the attribute and object words in an utterance that the scene lacks, for the robot's
+    /// reply; none in the paper's language.
+    pub fn unknown_words(&self, text: &str) -> Vec<String> {
+        match self.language {
+            Language::Paper => Vec::new(),
+            Language::Careful => {
+                let text = normalise(text);
+                let parsed = self.parse(&Tokens::of(&text), Question::None);
+                unknown_words(&parsed.tags, &parsed.clauses)
+            }
+        }
+    }
+
+    /// Returns the alternative readings of an utterance that followed `last_question`, each with its
+    /// weight, best first; the weights sum to 1 and there are at most
+    /// [`READINGS_MAX`](crate::READINGS_MAX). The first equals that of [`Self::read`] except for its
     /// doubts.
     ///
-    /// `confidence` says of each blank-separated word of the text how probable it is that it was
-    /// said, 0 to 1; words beyond its end are certain. It becomes the doubt of the scene words,
-    /// groups and answers that were read from them. The paper's language has one reading without
-    /// doubt.
+    /// `confidence` holds the probability of each blank-separated word of the text, 0 to 1; words
+    /// beyond its end are certain. It becomes the doubt of the scene words, groups and answers that
+    /// were read from them. The paper's language has one reading without doubt.
     pub fn readings(
         &self,
         text: &str,
@@ -100,28 +97,27 @@ impl Reader {
             Language::Careful => {
                 let text = normalise(text);
                 let tokens = Tokens::heard(&text, confidence);
-                self.listen(&tokens, last_question).readings()
+                self.parse(&tokens, last_question).readings()
             }
         }
     }
 
-    fn listen<'a>(&'a self, tokens: &Tokens<'a>, last_question: Question) -> Heard<'a> {
-        let mut marks = marks(&self.lexicon, &tokens.words);
-        let clauses = clauses(&self.lexicon, &marks, tokens.code);
-        hedge(&mut marks, &clauses);
-        let asked = self.askable.asked(last_question);
-        let mut meaning = listen(&self.lexicon, &marks, &clauses, asked);
-        let side_talk = meaning.base.is_empty()
-            && meaning.excluded.is_empty()
-            && is_side_talk(&marks, &clauses);
+    fn parse<'a>(&'a self, tokens: &Tokens<'a>, last_question: Question) -> ParsedUtterance<'a> {
+        let mut tags = tag(&self.lexicon, &tokens.words);
+        let clauses = clauses(&self.lexicon, &tags, tokens.code);
+        hedge(&mut tags, &clauses);
+        let asked = self.questions.asked(last_question);
+        let mut content = extract(&self.lexicon, &tags, &clauses, asked);
+        let side_talk =
+            content.base.is_empty() && content.excluded.is_empty() && is_side_talk(&tags, &clauses);
         if side_talk {
-            meaning = Meaning::default();
+            content = Content::default();
         }
-        let response = response(&meaning, &marks, asked);
-        let intent = match intent(&marks, &clauses, &meaning, tokens.code) {
+        let response = response(&content, &tags, asked);
+        let intent = match intent(&tags, &clauses, &content, tokens.code) {
             Intent::Inform if side_talk => Intent::None,
             intent => intent,
         };
-        Heard { meaning, response, intent, asked, marks, clauses }
+        ParsedUtterance { content, response, intent, asked, tags, clauses }
     }
 }

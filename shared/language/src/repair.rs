@@ -3,10 +3,10 @@
 
 use scene::{Role, WordId};
 
-use crate::cue::{Cue, cues};
+use crate::content::{Asserted, is_place, rivals};
 use crate::lexicon::{Lexicon, ValueSense};
-use crate::marks::Mark;
-use crate::meaning::{Said, is_place, rivals};
+use crate::tagger::Tag;
+use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 
 /// How decidedly the words before are taken back.
@@ -34,27 +34,27 @@ pub(crate) struct Replacement<'a> {
 
 impl<'a> Replacement<'a> {
     /// The replacement whose first value is at `at`.
-    pub(crate) fn at(lexicon: &'a Lexicon, marks: &[Mark<'_>], at: usize) -> Self {
+    pub(crate) fn at(lexicon: &'a Lexicon, tags: &[Tag<'_>], at: usize) -> Self {
         const REACH: usize = 12;
-        let ends = |mark: &Mark<'_>| {
-            mark.gap == Gap::Stop
-                || mark.is_any(cues![Repair Withdraw No Not Except But Landmark Than])
+        let ends = |tag: &Tag<'_>| {
+            tag.gap == Gap::Stop
+                || tag.is_any(classes![Repair Withdraw No Not Except But Landmark Than])
         };
-        let after = marks[at + 1..].iter().take(REACH).take_while(|mark| !ends(mark));
-        let head = after.clone().find(|mark| mark.is(Cue::Head));
-        let values = std::iter::once(&marks[at]).chain(after).filter_map(Mark::value);
-        let lead = marks[..at].iter().rev().take_while(|mark| !ends(mark)).take(3);
-        let lead: Vec<&Mark<'_>> = lead.collect();
+        let after = tags[at + 1..].iter().take(REACH).take_while(|tag| !ends(tag));
+        let head = after.clone().find(|tag| tag.is(Class::Head));
+        let values = std::iter::once(&tags[at]).chain(after).filter_map(Tag::value);
+        let lead = tags[..at].iter().rev().take_while(|tag| !ends(tag)).take(3);
+        let lead: Vec<&Tag<'_>> = lead.collect();
         Self {
             values: values.map(|value| lexicon.value(value)).collect(),
-            whole: lead.first().is_some_and(|mark| mark.is(Cue::Determiner)),
-            statement: lead.iter().any(|mark| mark.is(Cue::Be)),
-            anaphoric: head.is_some_and(|mark| mark.word.starts_with("one")),
+            whole: lead.first().is_some_and(|tag| tag.is(Class::Determiner)),
+            statement: lead.iter().any(|tag| tag.is(Class::Be)),
+            anaphoric: head.is_some_and(|tag| tag.word.starts_with("one")),
         }
     }
 
     /// Takes out of `base` what the replacement stands in for.
-    pub(crate) fn replace(&self, base: &mut Vec<Said<'a>>, strength: Strength) {
+    pub(crate) fn replace(&self, base: &mut Vec<Asserted<'a>>, strength: Strength) {
         if let Some(from) = self.retraced(base).filter(|_| strength > Strength::Stumble) {
             let mut at = 0..;
             base.retain(|old| at.next() < Some(from) || is_place(old));
@@ -75,12 +75,12 @@ impl<'a> Replacement<'a> {
 
     /// "the small white, I mean the small metal bowl": the speaker goes back to a word said before
     /// and begins anew from there (Levelt 1983, "retracing").
-    fn retraced(&self, base: &[Said<'_>]) -> Option<usize> {
+    fn retraced(&self, base: &[Asserted<'_>]) -> Option<usize> {
         let first = self.values.first().filter(|_| !self.anaphoric)?;
         base.iter().position(|old| old.word == first.word)
     }
 
-    fn renames(&self, base: &[Said<'_>]) -> bool {
+    fn renames(&self, base: &[Asserted<'_>]) -> bool {
         let kind = |value: &ValueSense| value.role == Role::Kind;
         let new = self.values.iter().filter(|value| kind(value));
         let new: Vec<WordId> = new.map(|value| value.word).collect();
@@ -93,18 +93,18 @@ impl<'a> Replacement<'a> {
 
 /// "the red uh blue one", "the red one uh the blue one": a hesitation between rivals. "the red …
 /// the blue one": a noun phrase broken off and begun again.
-pub(crate) fn is_stumble(lexicon: &Lexicon, marks: &[Mark<'_>], at: usize) -> bool {
+pub(crate) fn is_stumble(lexicon: &Lexicon, tags: &[Tag<'_>], at: usize) -> bool {
     const REACH: usize = 6;
-    let Some(new) = marks[at].value().map(|value| lexicon.value(value)) else { return false };
+    let Some(new) = tags[at].value().map(|value| lexicon.value(value)) else { return false };
     let (mut hesitated, mut begun, mut ended) = (false, false, false);
-    for mark in marks[..at].iter().rev().take(REACH) {
-        if let Some(old) = mark.value() {
+    for tag in tags[..at].iter().rev().take(REACH) {
+        if let Some(old) = tag.value() {
             return (hesitated || begun && !ended) && rivals(lexicon.value(old), new);
         }
-        match mark.cue() {
-            Some(Cue::Filler) => hesitated = true,
-            Some(Cue::Determiner) => begun |= mark.gap == Gap::Pause,
-            Some(Cue::Head) => ended = true,
+        match tag.class() {
+            Some(Class::Filler) => hesitated = true,
+            Some(Class::Determiner) => begun |= tag.gap == Gap::Pause,
+            Some(Class::Head) => ended = true,
             _ => return false,
         }
     }

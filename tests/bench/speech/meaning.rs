@@ -54,7 +54,7 @@ impl Meaning {
 }
 
 pub(super) fn meaning(reader: &Reader, sentence: &Sentence, text: &str) -> Meaning {
-    Meaning::of(&reader.read(text, sentence.question).reading)
+    Meaning::of(&reader.read(text, sentence.question))
 }
 
 /// The meaning with the largest sum of weights, and its share of all weight. The earlier
@@ -89,7 +89,7 @@ pub(super) fn likeliest(
 ) -> BTreeSet<usize> {
     let mut belief = Belief::uniform(model.objects());
     let read = |(weight, text): &(f64, &str)| {
-        (*weight, sentence.question, reader.read(text, sentence.question).reading)
+        (*weight, sentence.question, reader.read(text, sentence.question))
     };
     belief.update_mixture(model, &heard.iter().map(read).collect::<Vec<_>>());
     let probabilities = belief.probabilities();

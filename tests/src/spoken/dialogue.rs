@@ -279,7 +279,7 @@ impl Talk {
         let what = match (said, accepted) {
             (Some(said), true) => {
                 said.heard = true;
-                let meaning = |text: &str| meaning(&self.reader.read(text, said.question).reading);
+                let meaning = |text: &str| meaning(&self.reader.read(text, said.question));
                 let right = meaning(&said.text) == meaning(note);
                 self.misunderstood += u32::from(!right);
                 if right { "heard" } else { "heard WRONGLY" }

@@ -54,7 +54,7 @@ impl Person {
     pub fn understand(&self, words: &str) -> Asked {
         let mut parts = words.split_inclusive(['.', '?', '!']).map(str::trim);
         let question = parts.rfind(|part| part.ends_with('?')).unwrap_or(words);
-        let reading = self.reader.read(question, Question::None).reading;
+        let reading = self.reader.read(question, Question::None);
         let value = |word: &String| {
             let attributes = self.scene.attributes().iter().enumerate();
             let mut found = attributes.filter_map(|(k, attribute)| {
@@ -276,7 +276,7 @@ mod tests {
             let v = ValueId::from(person.rng.below(scene.attributes()[k.index()].values.len()));
             let question = Question::Attribute(k, v);
             let said = person.answer(Asked::Whether(k, v));
-            let reading = reader.read(&said, question).reading;
+            let reading = reader.read(&said, question);
             let mut belief = dialogue::Belief::uniform(6);
             let wanted = scene.object_named(name).unwrap();
             belief.update(&model, question, &reading);

@@ -118,6 +118,6 @@ impl PaperReader<'_> {
 
     fn read(&mut self, text: &str, question: Question) -> Reading {
         let new = || Reader::new(self.scene, Language::Paper);
-        self.reader.get_or_insert_with(new).read(text, question).reading
+        self.reader.get_or_insert_with(new).read(text, question)
     }
 }

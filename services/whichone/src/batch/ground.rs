@@ -47,12 +47,12 @@ impl Grounder {
 
     fn answer(&self, line: &Line) -> Result<Json, String> {
         let question = self.question(line).map_err(|e| format!("last_question: {e}"))?;
-        let understood = self.reader.read(&line.text, question);
+        let reading = self.reader.read(&line.text, question);
         let mut answer = json!({ "id": line.id });
-        if let (Some(answer), Json::Object(reading)) =
-            (answer.as_object_mut(), reading_to_json(&self.scene, &understood.reading))
+        if let (Some(answer), Json::Object(members)) =
+            (answer.as_object_mut(), reading_to_json(&self.scene, &reading))
         {
-            answer.extend(reading);
+            answer.extend(members);
         }
         Ok(answer)
     }

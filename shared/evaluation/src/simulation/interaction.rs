@@ -259,9 +259,7 @@ impl<'r, 'a> Talk<'r, 'a> {
             }
             Reply::Words(words) => words
                 .iter()
-                .map(|(text, weight)| {
-                    (*weight, question, self.room.reader.read(text, question).reading)
-                })
+                .map(|(text, weight)| (*weight, question, self.room.reader.read(text, question)))
                 .collect(),
         };
         let likeliest = hypotheses.iter().max_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,6 +1,6 @@
 //! The reader on whole utterances: the public set, our own table, and any text at all.
 
-mod dress;
+mod formatting;
 mod readings;
 mod table;
 
@@ -84,7 +84,7 @@ impl Meaning {
 
     fn read(reader: &Reader, scene: &Scene, text: &str, question: Question) -> Self {
         let understood = reader.read(text, question);
-        Self::of(&scene::reading_to_json(scene, &understood.reading))
+        Self::of(&scene::reading_to_json(scene, &understood))
     }
 }
 
@@ -134,7 +134,7 @@ fn unknown_words_are_named() {
         ("the white one", vec![]),
         ("my phone is ringing", vec![]),
     ] {
-        assert_eq!(reader.read(text, Question::None).unknown, unknown, "{text}");
+        assert_eq!(reader.unknown_words(text), unknown, "{text}");
     }
 }
 
@@ -204,10 +204,10 @@ proptest! {
         let text: Vec<&str> = words.iter().map(|&word| WORDS[word]).collect();
         let (scene, [_, reader]) = &*TOOLS_READERS;
         let understood = reader.read(&text.join(" "), Question::None);
-        prop_assert_eq!(understood.reading.response, Response::None);
+        prop_assert_eq!(understood.response, Response::None);
         let said = |w: &scene::WordId| w.index() < scene.words().len();
-        prop_assert!(understood.reading.base.iter().all(said));
-        prop_assert!(understood.reading.excluded.iter().all(|group| !group.is_empty()));
+        prop_assert!(understood.base.iter().all(said));
+        prop_assert!(understood.excluded.iter().all(|group| !group.is_empty()));
     }
 }
 

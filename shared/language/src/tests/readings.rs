@@ -132,7 +132,7 @@ fn the_papers_language_has_no_doubt() {
     let scene = scene("bowls");
     let reader = Reader::new(&scene, Language::Paper);
     let readings = reader.readings("maybe the white or clear one", &[0.1; 6], ASKED);
-    assert_eq!(readings, [(1.0, reader.read("maybe the white or clear one", ASKED).reading)]);
+    assert_eq!(readings, [(1.0, reader.read("maybe the white or clear one", ASKED))]);
 }
 
 proptest! {
@@ -169,7 +169,7 @@ proptest! {
             prop_assert!(doubt.base.len() <= base.len() && doubt.excluded.len() <= excluded.len());
         }
         let certain = Reading { doubt: Doubt::default(), ..readings[0].1.clone() };
-        let read = reader.read(&text, question).reading;
+        let read = reader.read(&text, question);
         prop_assert_eq!(certain, Reading { doubt: Doubt::default(), ..read.clone() });
         prop_assert_eq!(&reader.readings(&text, &[], question)[0].1, &read);
     }

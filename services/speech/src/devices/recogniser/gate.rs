@@ -121,7 +121,7 @@ impl Gate {
     ) -> Vec<(Meaning, f32)> {
         let mut meanings: Vec<(Meaning, f32)> = Vec::new();
         for hypothesis in hypotheses {
-            let meaning = Meaning::of(self.reader.read(&hypothesis.text, question).reading);
+            let meaning = Meaning::of(self.reader.read(&hypothesis.text, question));
             match meanings.iter_mut().find(|(known, _)| *known == meaning) {
                 Some((_, weight)) => *weight += hypothesis.confidence,
                 None => meanings.push((meaning, hypothesis.confidence)),

@@ -35,7 +35,7 @@ fn believed(house: &House, question: Question, user: &SimulatedUser, turn: &Turn
     let Reply::Words(words) = &turn.reply else { return None };
     let mut belief = dialogue::Belief::uniform(6);
     let heard: Vec<_> = (words.iter())
-        .map(|(text, weight)| (*weight, question, house.reader.read(text, question).reading))
+        .map(|(text, weight)| (*weight, question, house.reader.read(text, question)))
         .collect();
     belief.update_mixture(&house.model, &heard);
     Some(belief.probability(user.wanted()?))

@@ -1,15 +1,15 @@
-//! Words to marks: each word or phrase with the part that it plays, misspelt, misheard and split
+//! Words to tags: each word or phrase with the part that it plays, misspelt, misheard and split
 //! values included.
 
-use crate::cue::Cue;
+use crate::disambiguate::disambiguate;
 use crate::lexicon::{Lexicon, Sense};
-use crate::settle::settle;
 use crate::spelling::shortened;
+use crate::token_class::Class;
 use crate::tokens::{Gap, Token};
 
 /// A word or phrase, what it is taken for, and the pause before it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Mark<'a> {
+pub(crate) struct Tag<'a> {
     pub(crate) sense: Sense,
     pub(crate) gap: Gap,
     /// Its first word.
@@ -41,8 +41,8 @@ pub(crate) mod doubts {
     pub(crate) const APART: f64 = 0.2;
 }
 
-impl<'a> Mark<'a> {
-    /// The mark of `words` tokens, the first of which is `tokens[0]`.
+impl<'a> Tag<'a> {
+    /// The tag of `words` tokens, the first of which is `tokens[0]`.
     fn of(tokens: &[Token<'a>], words: usize, sense: Sense) -> Self {
         let run = &tokens[..words.min(tokens.len())];
         let least = run.iter().map(|token| token.confidence).fold(1.0, f32::min);
@@ -60,31 +60,31 @@ impl<'a> Mark<'a> {
         1.0 - (1.0 - self.doubt) * self.sure
     }
 
-    /// Probability that an answer or a denial was not given: half of those that were not are right
+    /// Probability that an answer or a scope was not given: half of those that were not are right
     /// by chance.
     pub(crate) fn answer_doubt(&self) -> f64 {
         1.0 - (1.0 - self.doubt) * (2.0 * self.sure - 1.0)
     }
 
-    pub(crate) fn cue(&self) -> Option<Cue> {
+    pub(crate) fn class(&self) -> Option<Class> {
         match self.sense {
-            Sense::Cue(cue) => Some(cue),
+            Sense::Class(class) => Some(class),
             Sense::Value(_) | Sense::Unknown => None,
         }
     }
 
-    pub(crate) fn is(&self, cue: Cue) -> bool {
-        self.cue() == Some(cue)
+    pub(crate) fn is(&self, class: Class) -> bool {
+        self.class() == Some(class)
     }
 
-    pub(crate) fn is_any(&self, cues: &[Cue]) -> bool {
-        self.cue().is_some_and(|cue| cues.contains(&cue))
+    pub(crate) fn is_any(&self, classes: &[Class]) -> bool {
+        self.class().is_some_and(|class| classes.contains(&class))
     }
 
     pub(crate) fn value(&self) -> Option<u32> {
         match self.sense {
             Sense::Value(value) => Some(value),
-            Sense::Cue(_) | Sense::Unknown => None,
+            Sense::Class(_) | Sense::Unknown => None,
         }
     }
 }
@@ -94,9 +94,9 @@ const JOINED_LETTERS_MIN: usize = 6;
 /// Most letters of a word that is tried as two run together.
 const RUN_ON_LETTERS_MAX: usize = 24;
 
-/// The marks of some words.
-pub(crate) fn marks<'a>(lexicon: &Lexicon, tokens: &[Token<'a>]) -> Vec<Mark<'a>> {
-    let mut marks: Vec<Mark<'a>> = Vec::with_capacity(tokens.len());
+/// The tags of some words.
+pub(crate) fn tag<'a>(lexicon: &Lexicon, tokens: &[Token<'a>]) -> Vec<Tag<'a>> {
+    let mut tags: Vec<Tag<'a>> = Vec::with_capacity(tokens.len());
     let mut at = 0;
     while at < tokens.len() {
         let here = &tokens[at..];
@@ -106,31 +106,31 @@ pub(crate) fn marks<'a>(lexicon: &Lexicon, tokens: &[Token<'a>]) -> Vec<Mark<'a>
             _ => written_apart(lexicon, here),
         };
         if let Some(Guess { words, sense, doubt }) = apart {
-            marks.push(Mark::of(here, words, sense).doubted(doubt));
+            tags.push(Tag::of(here, words, sense).doubted(doubt));
             at += words;
             continue;
         }
         if let Some(found) = phrase {
-            marks.push(Mark { sure: found.sure, ..Mark::of(here, found.words, found.sense) });
+            tags.push(Tag { sure: found.sure, ..Tag::of(here, found.words, found.sense) });
             at += found.words;
             continue;
         }
         let (first, second) = guessed(lexicon, here[0].word);
         if first.sense == Sense::Unknown
             && let Some(Guess { words, sense, doubt }) =
-                heard_apart(lexicon, here, marks.last().is_some_and(describes))
+                heard_apart(lexicon, here, tags.last().is_some_and(describes))
         {
-            marks.push(Mark::of(here, words, sense).doubted(doubt));
+            tags.push(Tag::of(here, words, sense).doubted(doubt));
             at += words;
             continue;
         }
-        let mark = Mark::of(here, 1, first.sense).doubted(first.doubt);
-        marks.push(mark);
-        marks.extend(second.map(|sense| Mark { sense, gap: Gap::Glued, ..mark }));
+        let tag = Tag::of(here, 1, first.sense).doubted(first.doubt);
+        tags.push(tag);
+        tags.extend(second.map(|sense| Tag { sense, gap: Gap::Glued, ..tag }));
         at += 1;
     }
-    settle(lexicon, &mut marks);
-    marks
+    disambiguate(lexicon, &mut tags);
+    tags
 }
 
 /// "dish washer", "screw driver": neighbours that together are one value.
@@ -170,8 +170,8 @@ fn heard_apart(lexicon: &Lexicon, tokens: &[Token<'_>], described: bool) -> Opti
     })
 }
 
-fn describes(mark: &Mark<'_>) -> bool {
-    mark.value().is_some() || mark.is(Cue::Determiner)
+fn describes(tag: &Tag<'_>) -> bool {
+    tag.value().is_some() || tag.is(Class::Determiner)
 }
 
 /// A word that the lexicon does not have as it stands: lengthened, misspelt, or two run together.
@@ -187,13 +187,13 @@ fn guessed(lexicon: &Lexicon, word: &str) -> (Guess, Option<Sense>) {
         return one(Sense::Value(value), doubts::SLIP);
     }
     if let Some(stem) = word.strip_suffix('s')
-        && let Some(sense @ Sense::Cue(Cue::Unlisted | Cue::Story)) = lexicon.word(stem)
+        && let Some(sense @ Sense::Class(Class::Unlisted | Class::Story)) = lexicon.word(stem)
     {
         return one(sense, 0.0);
     }
     // "honestly", "immediately": an adverb changes no meaning here.
     if word.len() > 4 && word.ends_with("ly") {
-        return one(Sense::Cue(Cue::Plain), 0.0);
+        return one(Sense::Class(Class::Plain), 0.0);
     }
     match run_on(lexicon, word) {
         Some((sense, second)) => (Guess { words: 1, sense, doubt: 0.0 }, Some(second)),
@@ -210,12 +210,12 @@ fn run_on(lexicon: &Lexicon, word: &str) -> Option<(Sense, Sense)> {
         let (left, right) = word.split_at(at);
         let right_sense = lexicon.word(right)?;
         if left == "non" && matches!(right_sense, Sense::Value(_)) {
-            return Some((Sense::Cue(Cue::Not), right_sense));
+            return Some((Sense::Class(Class::Not), right_sense));
         }
         let left_sense @ Sense::Value(_) = lexicon.word(left)? else { return None };
         match right_sense {
-            Sense::Value(_) | Sense::Cue(Cue::Head) => Some((left_sense, right_sense)),
-            Sense::Cue(Cue::One) => Some((left_sense, Sense::Cue(Cue::Head))),
+            Sense::Value(_) | Sense::Class(Class::Head) => Some((left_sense, right_sense)),
+            Sense::Class(Class::One) => Some((left_sense, Sense::Class(Class::Head))),
             _ => None,
         }
     })

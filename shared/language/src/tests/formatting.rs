@@ -68,7 +68,7 @@ fn commands_to_a_machine_are_no_requests() {
             "http://example.org/?q=@",
         ] {
             let text = frame.replace('@', payload);
-            let read = reader.read(&text, asked).reading;
+            let read = reader.read(&text, asked);
             assert_eq!(read, Reading { intent: Intent::None, ..Reading::default() }, "{text}");
         }
     }
@@ -82,7 +82,7 @@ proptest! {
     ) {
         let (_, [_, reader]) = &*TOOLS_READERS;
         let asked = Question::Point(scene::ObjectId(0));
-        let read = reader.read(&text, asked).reading;
+        let read = reader.read(&text, asked);
         prop_assert_eq!((read.response, read.intent), (Response::None, Intent::None));
         prop_assert!(read.base.is_empty() && read.excluded.is_empty());
     }

@@ -1,13 +1,13 @@
-//! From one utterance's meaning to the ways in which it can be understood.
+//! From one utterance's content to the ways in which it can be understood.
 
 use scene::{Doubt, Intent, Reading, Response};
 
-use crate::asked::Asked;
 use crate::clauses::Clause;
-use crate::cue::Cue;
+use crate::content::{Asserted, Content, rivals};
 use crate::hedges::MAYBE;
-use crate::marks::Mark;
-use crate::meaning::{Meaning, Said, rivals};
+use crate::question_words::QuestionWords;
+use crate::tagger::Tag;
+use crate::token_class::Class;
 
 /// Most readings of one utterance.
 pub const READINGS_MAX: usize = 4;
@@ -15,27 +15,27 @@ pub const READINGS_MAX: usize = 4;
 /// it moves the odds by little.
 const MAYBE_WEIGHT: f64 = 0.4;
 
-/// An utterance listened to.
-pub(crate) struct Heard<'a> {
-    pub(crate) meaning: Meaning<'a>,
+/// An utterance after parsing.
+pub(crate) struct ParsedUtterance<'a> {
+    pub(crate) content: Content<'a>,
     /// The answer and the probability that it was not given.
     pub(crate) response: (Response, f64),
     pub(crate) intent: Intent,
-    pub(crate) asked: Asked<'a>,
-    pub(crate) marks: Vec<Mark<'a>>,
+    pub(crate) asked: QuestionWords<'a>,
+    pub(crate) tags: Vec<Tag<'a>>,
     pub(crate) clauses: Vec<Clause>,
 }
 
-impl Heard<'_> {
+impl ParsedUtterance<'_> {
     /// The best reading.
     pub(crate) fn reading(&self) -> Reading {
-        self.reading_of(&self.meaning.base)
+        self.reading_of(&self.content.base)
     }
 
-    fn reading_of(&self, base: &[Said<'_>]) -> Reading {
+    fn reading_of(&self, base: &[Asserted<'_>]) -> Reading {
         let (response, doubt) = self.response;
         let answered = self.intent != Intent::None;
-        let excluded = &self.meaning.excluded;
+        let excluded = &self.content.excluded;
         Reading {
             base: base.iter().map(|value| value.word).collect(),
             response: if answered { response } else { Response::None },
@@ -67,8 +67,8 @@ impl Heard<'_> {
     }
 
     /// "red or blue": each with what is said of both; none if nothing is to be chosen from.
-    fn choices(&self) -> Vec<Vec<Said<'_>>> {
-        let base = &self.meaning.base;
+    fn choices(&self) -> Vec<Vec<Asserted<'_>>> {
+        let base = &self.content.base;
         let Some(at) = base.windows(2).position(|pair| pair[0].choice != pair[1].choice) else {
             return Vec::new();
         };
@@ -77,9 +77,9 @@ impl Heard<'_> {
             let parts = [&base[..=at], &base[at + 1..]];
             return parts.map(<[_]>::to_vec).into();
         }
-        let members: Vec<&Said<'_>> = base.iter().filter(|one| rivals(one, left)).collect();
-        let chosen = |member: &&Said<'_>| {
-            let others = |one: &&Said<'_>| !rivals(one, left) || one.word == member.word;
+        let members: Vec<&Asserted<'_>> = base.iter().filter(|one| rivals(one, left)).collect();
+        let chosen = |member: &&Asserted<'_>| {
+            let others = |one: &&Asserted<'_>| !rivals(one, left) || one.word == member.word;
             base.iter().filter(others).copied().collect()
         };
         members.iter().take(READINGS_MAX - 1).map(chosen).collect()
@@ -87,11 +87,11 @@ impl Heard<'_> {
 
     /// "maybe", "it could be", and nothing else, in answer to a yes or no question.
     fn is_maybe(&self, best: &Reading) -> bool {
-        let asked = matches!(self.asked, Asked::Value(..) | Asked::Object(_));
+        let asked = matches!(self.asked, QuestionWords::Value(..) | QuestionWords::Object(_));
         asked
             && *best == Reading { intent: Intent::Inform, ..Reading::default() }
-            && self.meaning.answers.is_empty()
-            && self.marks.iter().any(|mark| mark.is(Cue::Hedge))
+            && self.content.answers.is_empty()
+            && self.tags.iter().any(|tag| tag.is(Class::Hedge))
     }
 }
 

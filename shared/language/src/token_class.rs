@@ -1,8 +1,25 @@
-//! What a word or phrase that is not a value does in a sentence.
+//! Classes of the words and phrases that are not values, by their role in a sentence.
 
-/// The part that a word or phrase plays.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Cue {
+/// Declares the classes, and their names as `vocabulary/phrases.txt` has them.
+macro_rules! token_classes {
+    ($($(#[$doc:meta])* $class:ident,)+) => {
+        /// Role of a word or phrase in a sentence.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum Class { $($(#[$doc])* $class,)+ }
+
+        impl Class {
+            /// Returns the class of that name.
+            pub(crate) fn named(name: &str) -> Option<Self> {
+                match name {
+                    $(stringify!($class) => Some(Self::$class),)+
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+token_classes! {
     // Noun phrases.
     /// "the", "a", "my".
     Determiner,
@@ -41,7 +58,7 @@ pub(crate) enum Cue {
     First,
     /// "you".
     Second,
-    /// "he", "my mother": somebody or something else.
+    /// "he", "my mother": another person or thing.
     Third,
     /// "my", "his".
     Possessive,
@@ -59,7 +76,7 @@ pub(crate) enum Cue {
     Want,
     /// "put", "place": what follows is an order about something else.
     Put,
-    /// "ate", "bought": somebody tells a story.
+    /// "ate", "bought": a story.
     Story,
     /// "yesterday", "tonight".
     When,
@@ -70,7 +87,7 @@ pub(crate) enum Cue {
     /// "please", "thanks", "robot".
     Courtesy,
     /// Fixed phrases whose words do not mean what they say ("loud and clear").
-    Figure,
+    Idiom,
     /// Short replies without content for the belief ("no problem").
     Reply,
 
@@ -111,16 +128,16 @@ pub(crate) enum Cue {
 
     // Not for the robot.
     /// "on the phone", "talking to".
-    Aside,
+    SideTalk,
     /// "ignore your instructions".
     Injection,
     /// A function word of another language.
     OtherLanguage,
 }
 
-/// A set of cues, by name.
-macro_rules! cues {
-    ($($cue:ident)*) => { &[$($crate::cue::Cue::$cue),*] };
+/// A list of classes, by name.
+macro_rules! classes {
+    ($($class:ident)*) => { &[$($crate::token_class::Class::$class),*] };
 }
 
-pub(crate) use cues;
+pub(crate) use classes;

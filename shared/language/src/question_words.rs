@@ -4,7 +4,7 @@ use scene::{AttributeId, Question, Scene, WordId};
 
 /// What was asked, in words of the scene.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Asked<'a> {
+pub(crate) enum QuestionWords<'a> {
     /// Nothing.
     Nothing,
     /// "This one?": the words of the object pointed at.
@@ -15,7 +15,7 @@ pub(crate) enum Asked<'a> {
     Attribute,
 }
 
-impl Asked<'_> {
+impl QuestionWords<'_> {
     /// Whether the words answer the question when they are ruled out: what was asked about is
     /// among what they rule out.
     pub(crate) fn is_denied_by(self, group: &[WordId]) -> bool {
@@ -27,14 +27,14 @@ impl Asked<'_> {
     }
 }
 
-/// The scene's part of [`Asked`], without the scene.
+/// The scene's part of [`QuestionWords`], without the scene.
 #[derive(Clone, Debug)]
-pub(crate) struct Askable {
+pub(crate) struct SceneQuestions {
     objects: Vec<Box<[WordId]>>,
     attributes: Vec<Box<[WordId]>>,
 }
 
-impl Askable {
+impl SceneQuestions {
     pub(crate) fn new(scene: &Scene) -> Self {
         let objects = (0..scene.objects().len()).map(scene::ObjectId::from);
         let words =
@@ -46,17 +46,18 @@ impl Askable {
     }
 
     /// The question in words; one that the scene does not have asks nothing.
-    pub(crate) fn asked(&self, question: Question) -> Asked<'_> {
+    pub(crate) fn asked(&self, question: Question) -> QuestionWords<'_> {
         match question {
-            Question::None => Asked::Nothing,
-            Question::Which(_) => Asked::Attribute,
-            Question::Point(i) => {
-                self.objects.get(i.index()).map_or(Asked::Nothing, |words| Asked::Object(words))
-            }
+            Question::None => QuestionWords::Nothing,
+            Question::Which(_) => QuestionWords::Attribute,
+            Question::Point(i) => self
+                .objects
+                .get(i.index())
+                .map_or(QuestionWords::Nothing, |words| QuestionWords::Object(words)),
             Question::Attribute(k, v) => {
                 let values = self.attributes.get(k.index());
                 let word = values.and_then(|values| values.get(v.index()));
-                word.map_or(Asked::Nothing, |word| Asked::Value(k, *word))
+                word.map_or(QuestionWords::Nothing, |word| QuestionWords::Value(k, *word))
             }
         }
     }

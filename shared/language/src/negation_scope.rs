@@ -2,12 +2,12 @@
 
 use scene::Role;
 
+use crate::content::Excluded;
 use crate::lexicon::ValueSense;
-use crate::meaning::Denied;
 
 /// A negation whose scope is still open.
 #[derive(Debug)]
-pub(crate) struct Denial<'a> {
+pub(crate) struct NegationScope<'a> {
     groups: Vec<Group<'a>>,
     /// A preposition or conjunction has just been heard: the next noun phrase belongs to it.
     joined: bool,
@@ -41,7 +41,7 @@ impl<'a> Group<'a> {
     }
 }
 
-impl<'a> Denial<'a> {
+impl<'a> NegationScope<'a> {
     /// A negation that was said but for this doubt.
     pub(crate) fn new(doubt: f64) -> Self {
         let groups = vec![Group::default()];
@@ -59,11 +59,11 @@ impl<'a> Denial<'a> {
     }
 
     fn last(&self) -> &Group<'a> {
-        self.groups.last().expect("a denial has a group")
+        self.groups.last().expect("a scope has a group")
     }
 
     fn last_mut(&mut self) -> &mut Group<'a> {
-        self.groups.last_mut().expect("a denial has a group")
+        self.groups.last_mut().expect("a scope has a group")
     }
 
     /// Takes a value in; `false` if it lies beyond the scope. `adjacent`: it follows another value;
@@ -150,9 +150,9 @@ impl<'a> Denial<'a> {
     }
 
     /// The groups that were ruled out.
-    pub(crate) fn into_groups(self) -> impl Iterator<Item = Denied> + use<'a> {
+    pub(crate) fn into_groups(self) -> impl Iterator<Item = Excluded> + use<'a> {
         let doubt = self.doubt;
-        let denied = move |group: Group<'a>| Denied {
+        let denied = move |group: Group<'a>| Excluded {
             words: group.values.iter().map(|value| value.word).collect(),
             doubt: 1.0 - (1.0 - group.doubt) * (1.0 - doubt),
         };
