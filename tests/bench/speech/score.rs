@@ -108,7 +108,7 @@ impl Judge {
 
     /// The scene's words in the order of the text, a synonym as its value.
     fn scene_words(&self, sentence: &Sentence, text: &str) -> Vec<WordId> {
-        self.spotter.read(text, sentence.question).reading.base
+        self.spotter.read(text, sentence.question).base
     }
 }
 
@@ -125,7 +125,7 @@ fn spotted(
     sentence: &Sentence,
     text: &str,
 ) -> (std::collections::BTreeSet<WordId>, u8) {
-    Meaning::of(&spotter.read(text, sentence.question).reading).values()
+    Meaning::of(&spotter.read(text, sentence.question)).values()
 }
 
 /// The hypotheses of stretches that follow each other, as those of one utterance.
