@@ -11,6 +11,7 @@ mod driver;
 mod executor;
 mod goal;
 mod hindered;
+mod inspection;
 mod motion;
 mod orders;
 mod program;

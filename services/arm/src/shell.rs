@@ -1,6 +1,7 @@
 //! The arm's topics and configuration.
 
-use crate::{ArmNode, Config, In, Out};
+use crate::state::Record;
+use crate::{ArmNode, Config, In, Out, inspection};
 use config::{Driver, Settings};
 use messages::{
     ArmStatus, JointStates, MotionCommand, RobotAct, Service, TrajectoryView, WorldView, topics,
@@ -9,6 +10,7 @@ use preflight::ArmSetup;
 use robot::RobotTopics;
 use service::bus::{EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
+use service::inspection::Part;
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 
@@ -29,6 +31,14 @@ impl Program for ArmProgram {
         let setup = ArmSetup::new(settings)
             .map_err(|problems| Failure::new(Exit::Config, problems.to_string()))?;
         Ok(Config { arm: settings.arm.clone(), setup, scene: settings.scene.clone() })
+    }
+
+    fn describe(record: &Record) -> String {
+        inspection::line(record)
+    }
+
+    fn verify(_: Settings, parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
+        inspection::verify(parts)
     }
 }
 

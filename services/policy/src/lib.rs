@@ -6,6 +6,7 @@
 
 pub mod evidence;
 pub mod history;
+mod inspection;
 pub mod journal_check;
 mod kept;
 pub mod mind;

@@ -1,7 +1,8 @@
 //! The policy's topics and configuration.
 
 use crate::mind::{Assumptions, Mind};
-use crate::{In, Out, PolicyNode, kept};
+use crate::state::Record;
+use crate::{In, Out, PolicyNode, inspection, kept};
 use config::{Section, Settings};
 use dialogue::Confusion;
 use messages::{
@@ -10,6 +11,7 @@ use messages::{
 use scene::{Fnv1a, Scene};
 use service::bus::{EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
+use service::inspection::Part;
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 
@@ -33,6 +35,14 @@ impl Program for PolicyProgram {
         };
         kept::work_ahead(&mut mind, &environment.paths.policies());
         Ok(mind)
+    }
+
+    fn describe(record: &Record) -> String {
+        inspection::line(record)
+    }
+
+    fn verify(settings: Settings, parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
+        inspection::verify(&settings, parts)
     }
 }
 

@@ -5,7 +5,9 @@
 //! only once it was said to its end.
 
 pub mod devices;
+mod doctor;
 mod ears;
+mod inspection;
 mod listening;
 pub mod live;
 mod mouth;

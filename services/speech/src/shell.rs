@@ -7,7 +7,8 @@ use crate::devices::client_streams::ClientStreams;
 use crate::devices::stream::OwnVoice;
 use crate::devices::watched_folder::WatchedFolder;
 use crate::live::Live;
-use crate::{Config, In, Out, Recognised, SpeechNode};
+use crate::record::Record;
+use crate::{Config, In, Out, Recognised, SpeechNode, doctor, inspection};
 use config::Settings;
 use crossbeam_channel::Receiver;
 use language::{Language, Reader as TextReader};
@@ -18,6 +19,7 @@ use messages::{
 use service::Span;
 use service::bus::{EncodedReader, PortError, Reader, Writer};
 use service::exit::Failure;
+use service::inspection::{Finding, Part};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 use service::worker_channel::DeviceSender;
@@ -50,6 +52,18 @@ impl Program for SpeechProgram {
             utterance_bytes_max: settings.speech.utterance_bytes_max,
             gestures: settings.dialogue.gesture.enabled,
         })
+    }
+
+    fn describe(record: &Record) -> String {
+        inspection::line(record)
+    }
+
+    fn verify(_: Settings, parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
+        inspection::verify(parts)
+    }
+
+    fn doctor(settings: &Settings) -> Vec<Finding> {
+        doctor::examine(settings)
     }
 }
 

@@ -27,6 +27,7 @@ mod motion;
 mod operate;
 mod paths;
 mod planning;
+mod service_program;
 mod speak;
 mod status;
 mod study;

@@ -20,6 +20,18 @@ pub enum Exit {
 }
 
 impl Exit {
+    /// The exit whose code a process of the group ended with; `None` if a signal ended it.
+    pub fn of_process(code: Option<i32>) -> Self {
+        match code {
+            Some(0) => Self::Ok,
+            Some(64) => Self::Usage,
+            Some(70) => Self::Invariant,
+            Some(74) => Self::Storage,
+            Some(78) => Self::Config,
+            _ => Self::NotReached,
+        }
+    }
+
     /// As a process ends with it.
     pub fn code(self) -> ExitCode {
         ExitCode::from(self as u8)

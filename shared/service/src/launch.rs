@@ -18,9 +18,6 @@ use thiserror::Error;
 use crate::control::{CallError, Refusal, Reply, Request, call};
 use crate::log_file;
 
-/// Name of the supervisor's program.
-pub const PROGRAM: &str = "whichone-supervisor";
-
 /// How often a supervisor that is just starting is asked whether it listens.
 const ASK_EVERY: Duration = Duration::from_millis(5);
 
@@ -84,12 +81,9 @@ impl LaunchError {
     /// The exit code that a command line ends with.
     pub fn exit(&self) -> Exit {
         match self {
-            Self::Ended { status, .. } => match status.code() {
-                Some(64) => Exit::Usage,
-                Some(70) => Exit::Invariant,
-                Some(74) => Exit::Storage,
-                Some(78) => Exit::Config,
-                _ => Exit::NotReached,
+            Self::Ended { status, .. } => match Exit::of_process(status.code()) {
+                Exit::Ok => Exit::NotReached,
+                exit => exit,
             },
             Self::Refused(refusal) => refusal.exit(),
             Self::Io { .. } => Exit::Storage,
@@ -128,10 +122,16 @@ impl Options {
     }
 }
 
-/// The supervisor's program: beside the running one, else searched for in `PATH`.
+/// The supervisor's program; see [`program_of`].
 pub fn program() -> PathBuf {
-    let beside = env::current_exe().ok().and_then(|own| Some(own.parent()?.join(PROGRAM)));
-    beside.filter(|path| path.is_file()).unwrap_or_else(|| PROGRAM.into())
+    program_of("supervisor")
+}
+
+/// The program of a service: beside the running one, else searched for in `PATH`.
+pub fn program_of(service: &str) -> PathBuf {
+    let name = format!("whichone-{service}");
+    let beside = env::current_exe().ok().and_then(|own| Some(own.parent()?.join(&name)));
+    beside.filter(|path| path.is_file()).unwrap_or_else(|| name.into())
 }
 
 /// Becomes the supervisor, whose program is at `program` (see [`program`]). Returns only if that

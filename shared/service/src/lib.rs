@@ -9,6 +9,7 @@ pub mod control;
 mod effects;
 pub mod exit;
 pub mod group;
+pub mod inspection;
 pub mod launch;
 pub mod lifecycle;
 pub mod log_file;

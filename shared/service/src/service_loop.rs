@@ -7,6 +7,7 @@
 use crate::bus::{Bus, Ear, Identity, PortError};
 use crate::clock;
 use crate::exit::{Exit, Failure};
+use crate::inspection::{self, Finding, Part};
 use crate::lifecycle::{Environment, Lifecycle};
 use crate::logging;
 use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
@@ -27,7 +28,7 @@ const JOURNAL_BYTES: u64 = 1 << 20;
 const LOCK_PATIENCE: Span = Span::from_ms(3_000);
 
 /// A service: a node and the shell around it.
-pub trait Program {
+pub trait Program: Sized {
     /// Which service it is.
     const SERVICE: Service;
     /// Kind of record in its journal; none for a node that remembers nothing. A changed record
@@ -48,6 +49,24 @@ pub trait Program {
         environment: &Environment,
         settings: &Settings,
     ) -> Result<<Self::Node as Node>::Config, Failure>;
+
+    /// Renders a journal record as one line for `whichone journal`.
+    fn describe(_record: &Record<Self>) -> String {
+        String::new()
+    }
+
+    /// Checks the invariants of the journal, oldest part first. Returns the verified facts.
+    ///
+    /// # Errors
+    /// The first broken invariant, or settings that do not fit.
+    fn verify(_settings: Settings, _parts: &[Part<Record<Self>>]) -> Result<Vec<String>, Failure> {
+        Ok(Vec::new())
+    }
+
+    /// Examines the devices that the service needs, for `whichone doctor`.
+    fn doctor(_settings: &Settings) -> Vec<Finding> {
+        Vec::new()
+    }
 }
 
 /// The topics and devices of one node.
@@ -84,8 +103,12 @@ pub struct Context<'a, In> {
     pub environment: &'a Environment,
 }
 
-/// Runs the service until it is told to end.
+/// Runs the service until it is asked to shut down, or the inspection that the arguments name.
 pub fn run<P: Program>() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(exit) = inspection::run::<P>(&arguments) {
+        return exit.code();
+    }
     program(P::SERVICE.name(), P::ABOUT, serve::<P>)
 }
 
@@ -139,7 +162,8 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
     Loop::<P> { node, shell, journal, inbox, ear, lifecycle, ending: false }.run()
 }
 
-type Record<P> = <<P as Program>::Node as Node>::Record;
+/// Journal record of a program's node.
+pub type Record<P> = <<P as Program>::Node as Node>::Record;
 type In<P> = <<P as Program>::Node as Node>::In;
 type Out<P> = <<P as Program>::Node as Node>::Out;
 /// A journal, where the service has one, and what it held.

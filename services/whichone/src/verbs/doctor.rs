@@ -1,62 +1,40 @@
-//! `doctor`: what is missing on this machine, and the cure.
+//! `doctor`: missing dependencies of this machine, with help.
 
 use std::env;
 use std::fs;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
+use std::process::Stdio;
 
 use config::{BUILT_IN, Settings};
-use serde::Serialize;
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
-use service::launch;
+use service::inspection::{Condition, Finding};
 use service::shm_cleanup;
 
-use super::{console, leftovers, paths, up, words};
+use super::{console, leftovers, paths as locations, service_program, up, words};
 use crate::cli::ConfigArgs;
-use crate::error::Outcome;
+use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, Style};
 
-mod sound;
-
-/// One thing that was looked at.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-struct Finding {
-    what: &'static str,
-    state: State,
-    note: String,
-}
-
-/// How a thing is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-enum State {
-    /// As it should be.
-    Good,
-    /// Something is switched off by it.
-    Poor,
-    /// No group can run.
-    Bad,
-}
-
-/// Looks at everything that a group needs, and tells what is missing with its cure.
+/// Examines everything that a group needs and suggests fixes.
 pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>) -> Outcome {
-    let settings = paths::settings(args);
+    let settings = locations::settings(args);
     let mut findings = vec![
         programs(),
         folder(paths),
         match &settings {
-            Ok(settings) => good("configuration", format!("scene {}", settings.group.scene)),
-            Err(trouble) => bad("configuration", trouble.to_string()),
+            Ok(settings) => {
+                Finding::good("configuration", format!("scene {}", settings.group.scene))
+            }
+            Err(trouble) => Finding::bad("configuration", trouble.to_string()),
         },
         shared_memory(settings.as_ref().ok()),
         left_behind(paths),
     ];
     if let Ok(settings) = &settings {
         findings.push(page(paths, settings));
-        findings.push(sound::recogniser(settings));
-        findings.push(sound::voice(settings));
-        findings.push(sound::microphone(settings));
+        findings.extend(devices(settings)?);
     }
     for finding in &findings {
         if out.is_json() {
@@ -65,58 +43,55 @@ pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>
             out.line(line(finding, out.style()))?;
         }
     }
-    let ill = findings.iter().any(|finding| finding.state == State::Bad);
+    let ill = findings.iter().any(|finding| finding.state == Condition::Bad);
     Ok(if ill { Exit::NotReached } else { Exit::Ok })
+}
+
+/// The devices of the speech service, as its own program finds them.
+fn devices(settings: &Settings) -> Result<Vec<Finding>, CliError> {
+    let snapshot = service_program::Settings::write(settings)?;
+    let mut command = service_program::command("speech", "doctor");
+    command.arg("--settings").arg(snapshot.folder()).stderr(Stdio::inherit());
+    let Ok(output) = command.output() else { return Ok(Vec::new()) };
+    let lines = output.stdout.split(|&byte| byte == b'\n');
+    Ok(lines.filter_map(|line| serde_json::from_slice(line).ok()).collect())
 }
 
 fn line(finding: &Finding, style: Style) -> String {
     let mark = match finding.state {
-        State::Good => style.paint(Ink::Green, "good"),
-        State::Poor => style.paint(Ink::Yellow, "poor"),
-        State::Bad => style.paint(Ink::Red, "bad "),
+        Condition::Good => style.paint(Ink::Green, "good"),
+        Condition::Poor => style.paint(Ink::Yellow, "poor"),
+        Condition::Bad => style.paint(Ink::Red, "bad "),
     };
     let note = finding.note.replace('\n', "\n                       ");
     format!("{mark}  {:<16} {note}", finding.what)
-}
-
-fn good(what: &'static str, note: impl Into<String>) -> Finding {
-    Finding { what, state: State::Good, note: note.into() }
-}
-
-fn poor(what: &'static str, note: impl Into<String>) -> Finding {
-    Finding { what, state: State::Poor, note: note.into() }
-}
-
-fn bad(what: &'static str, note: impl Into<String>) -> Finding {
-    Finding { what, state: State::Bad, note: note.into() }
 }
 
 /// The programs of the group, beside this one.
 fn programs() -> Finding {
     let folder = env::current_exe().ok().and_then(|own| Some(own.parent()?.to_owned()));
     let folder = folder.unwrap_or_default();
-    let names = BUILT_IN.map(|name| format!("whichone-{name}"));
-    let names = names.into_iter().chain([launch::PROGRAM.to_owned()]);
+    let names = BUILT_IN.iter().chain(&["supervisor"]).map(|name| format!("whichone-{name}"));
     let missing: Vec<String> = names.filter(|name| !folder.join(name).is_file()).collect();
     if missing.is_empty() {
-        return good("programs", folder.display().to_string());
+        return Finding::good("programs", folder.display().to_string());
     }
     let cure = "build all of them: cargo build --release --workspace";
-    bad("programs", format!("{} has no {}; {cure}", folder.display(), missing.join(", ")))
+    Finding::bad("programs", format!("{} has no {}; {cure}", folder.display(), missing.join(", ")))
 }
 
 /// Where the page is, or whether it has its port.
 fn page(paths: &GroupPaths, settings: &Settings) -> Finding {
     const WHAT: &str = "console";
     if let Some(url) = console::url(paths) {
-        return good(WHAT, format!("served at {url}"));
+        return Finding::good(WHAT, format!("served at {url}"));
     }
     let wanted = settings.console.listen;
     match TcpListener::bind(wanted) {
-        Ok(_) => good(WHAT, format!("{wanted} is free")),
+        Ok(_) => Finding::good(WHAT, format!("{wanted} is free")),
         Err(error) => {
             let cure = "one of the 15 ports behind it will be taken, or set console.listen";
-            poor(WHAT, format!("{wanted}: {error}; {cure}"))
+            Finding::poor(WHAT, format!("{wanted}: {error}; {cure}"))
         }
     }
 }
@@ -128,10 +103,10 @@ fn folder(paths: &GroupPaths) -> Finding {
     let probe = home.join(format!(".doctor-{}", std::process::id()));
     let written = fs::create_dir_all(home).and_then(|()| fs::write(&probe, "x"));
     match written.and_then(|()| fs::remove_file(&probe)) {
-        Ok(()) => good(WHAT, home.display().to_string()),
+        Ok(()) => Finding::good(WHAT, home.display().to_string()),
         Err(error) => {
             let cure = "make it writable, or name another one in WHICHONE_HOME";
-            bad(WHAT, format!("{}: {error}; {cure}", home.display()))
+            Finding::bad(WHAT, format!("{}: {error}; {cure}", home.display()))
         }
     }
 }
@@ -140,12 +115,14 @@ fn shared_memory(settings: Option<&Settings>) -> Finding {
     const WHAT: &str = "shared memory";
     let needed = settings.map_or(32, |settings| settings.group.shared_memory_free_min_mib);
     if let Err(error) = shm_cleanup::check_room(needed.into()) {
-        return bad(WHAT, error.to_string());
+        return Finding::bad(WHAT, error.to_string());
     }
     let probe = Path::new("/dev/shm").join(format!("whichone-doctor-{}", std::process::id()));
     match fs::write(&probe, "x").and_then(|()| fs::remove_file(&probe)) {
-        Ok(()) => good(WHAT, format!("more than {needed} MiB are free")),
-        Err(error) => bad(WHAT, format!("/dev/shm: {error}; mount a writable tmpfs there")),
+        Ok(()) => Finding::good(WHAT, format!("more than {needed} MiB are free")),
+        Err(error) => {
+            Finding::bad(WHAT, format!("/dev/shm: {error}; mount a writable tmpfs there"))
+        }
     }
 }
 
@@ -159,10 +136,12 @@ fn left_behind(paths: &GroupPaths) -> Finding {
     };
     let dead: Vec<&str> = groups.iter().filter(dead).map(|group| group.name().as_str()).collect();
     match dead.as_slice() {
-        [] => good(WHAT, format!("none of {}", words::count(groups.len() as u64, "group"))),
+        [] => {
+            Finding::good(WHAT, format!("none of {}", words::count(groups.len() as u64, "group")))
+        }
         [first, ..] => {
             let cure = format!("remove them: whichone down --group {first}");
-            poor(WHAT, format!("of killed groups: {}; {cure}", dead.join(", ")))
+            Finding::poor(WHAT, format!("of killed groups: {}; {cure}", dead.join(", ")))
         }
     }
 }
@@ -190,19 +169,19 @@ mod tests {
         assert_eq!(left_behind(&paths).note, "none of 0 groups");
         fs::create_dir_all(paths.run()).unwrap();
         let finding = left_behind(&paths);
-        assert_eq!(finding.state, State::Poor);
+        assert_eq!(finding.state, Condition::Poor);
         assert!(finding.note.contains("whichone down --group lab"), "{}", finding.note);
     }
 
     #[test]
     fn a_folder_that_cannot_be_written_is_told_with_the_cure() {
         let (home, paths) = lab();
-        assert_eq!(folder(&paths).state, State::Good);
+        assert_eq!(folder(&paths).state, Condition::Good);
         let file = home.path().join("file");
         fs::write(&file, "").unwrap();
         let inside = GroupPaths::in_home(&file, &"lab".parse().unwrap()).unwrap();
         let finding = folder(&inside);
-        assert_eq!(finding.state, State::Bad);
+        assert_eq!(finding.state, Condition::Bad);
         assert!(finding.note.contains("WHICHONE_HOME"), "{}", finding.note);
     }
 }

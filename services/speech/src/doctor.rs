@@ -1,4 +1,4 @@
-//! Whether the robot can hear and be heard here.
+//! Examination of recogniser, voice and microphone for `whichone doctor`.
 
 use std::env;
 use std::path::PathBuf;
@@ -7,14 +7,17 @@ use std::time::{Duration, Instant};
 
 use config::{MicrophoneMode, Recogniser, Settings, Voice};
 use service::Span;
-use speech::devices::microphone::{
-    Microphone, MicrophoneEvent, MicrophoneOptions, MicrophoneState,
-};
-use speech::devices::recogniser::{PocketSphinx, PocketSphinxOptions, WhisperOptions};
-use speech::devices::stream::OwnVoice;
-use speech::devices::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
+use service::inspection::Finding;
 
-use super::{Finding, good, poor};
+use crate::devices::microphone::{Microphone, MicrophoneEvent, MicrophoneOptions, MicrophoneState};
+use crate::devices::recogniser::{PocketSphinx, PocketSphinxOptions, WhisperOptions};
+use crate::devices::stream::OwnVoice;
+use crate::devices::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
+
+/// Examines all devices as the service opens them.
+pub(crate) fn examine(settings: &Settings) -> Vec<Finding> {
+    vec![recogniser(settings), voice(settings), microphone(settings)]
+}
 
 /// A folder for what the devices write, gone with this.
 struct Work(PathBuf);
@@ -33,17 +36,19 @@ impl Drop for Work {
 }
 
 /// Opens the recogniser as the speech service does.
-pub(super) fn recogniser(settings: &Settings) -> Finding {
+fn recogniser(settings: &Settings) -> Finding {
     const WHAT: &str = "recogniser";
     if settings.speech.recogniser == Recogniser::None {
-        return good(WHAT, "switched off (speech.recogniser)");
+        return Finding::good(WHAT, "switched off (speech.recogniser)");
     }
     if settings.speech.recogniser == Recogniser::Whisper {
         let options =
             WhisperOptions::new(settings.speech.whisper_model.clone().unwrap_or_default());
         return match options.open(&settings.scene) {
-            Ok(_) => good(WHAT, format!("whisper.cpp with {}", options.model.display())),
-            Err(error) => poor(WHAT, format!("{error}; without it only typed words are heard")),
+            Ok(_) => Finding::good(WHAT, format!("whisper.cpp with {}", options.model.display())),
+            Err(error) => {
+                Finding::poor(WHAT, format!("{error}; without it only typed words are heard"))
+            }
         };
     }
     let work = Work::new("recogniser");
@@ -52,22 +57,24 @@ pub(super) fn recogniser(settings: &Settings) -> Finding {
     let options = PocketSphinxOptions { model, ..defaults };
     match PocketSphinx::open(&settings.scene, &options) {
         Ok(recogniser) if recogniser.unpronounceable().is_empty() => {
-            good(WHAT, format!("pocketsphinx with {}", options.model.display()))
+            Finding::good(WHAT, format!("pocketsphinx with {}", options.model.display()))
         }
         Ok(recogniser) => {
             let words = recogniser.unpronounceable().join(", ");
-            poor(WHAT, format!("these words of the scene cannot be heard: {words}"))
+            Finding::poor(WHAT, format!("these words of the scene cannot be heard: {words}"))
         }
-        Err(error) => poor(WHAT, format!("{error}; without it only typed words are heard")),
+        Err(error) => {
+            Finding::poor(WHAT, format!("{error}; without it only typed words are heard"))
+        }
     }
 }
 
 /// Tries the voice as the speech service does.
-pub(super) fn voice(settings: &Settings) -> Finding {
+fn voice(settings: &Settings) -> Finding {
     const WHAT: &str = "voice";
     let work = Work::new("voice");
     if settings.speech.voice == Voice::Print {
-        return good(WHAT, "switched off (speech.voice)");
+        return Finding::good(WHAT, "switched off (speech.voice)");
     }
     // Nothing is said, so nothing is to be kept.
     let options = VoiceOptions { kept: None, ..VoiceOptions::of(&settings.speech, &work.0) };
@@ -75,12 +82,12 @@ pub(super) fn voice(settings: &Settings) -> Finding {
     let (_voice, events) = voice::Voice::start(options);
     match events.recv() {
         Ok(VoiceEvent::Output(VoiceOutput::Aloud(player))) => {
-            good(WHAT, format!("{speaks} through {}", player.program))
+            Finding::good(WHAT, format!("{speaks} through {}", player.program))
         }
         Ok(VoiceEvent::Output(VoiceOutput::Text { reason })) => {
-            poor(WHAT, format!("{reason}; questions are shown and not heard"))
+            Finding::poor(WHAT, format!("{reason}; questions are shown and not heard"))
         }
-        _ => poor(WHAT, "it broke down; questions are shown and not heard"),
+        _ => Finding::poor(WHAT, "it broke down; questions are shown and not heard"),
     }
 }
 
@@ -88,10 +95,10 @@ pub(super) fn voice(settings: &Settings) -> Finding {
 const MICROPHONE_PATIENCE: Duration = Duration::from_secs(3);
 
 /// Records for a moment as the speech service does.
-pub(super) fn microphone(settings: &Settings) -> Finding {
+fn microphone(settings: &Settings) -> Finding {
     const WHAT: &str = "microphone";
     if settings.speech.microphone.mode == MicrophoneMode::Off {
-        return good(WHAT, "switched off (speech.microphone.mode)");
+        return Finding::good(WHAT, "switched off (speech.microphone.mode)");
     }
     let options = MicrophoneOptions { hands_free: true, ..MicrophoneOptions::of(&settings.speech) };
     let programs = options.programs.len();
@@ -109,7 +116,7 @@ pub(super) fn microphone(settings: &Settings) -> Finding {
         match events.recv_timeout(patience) {
             Ok(MicrophoneEvent::Status(status)) => match status.state {
                 MicrophoneState::Listening => {
-                    return good(WHAT, format!("{} records", status.note));
+                    return Finding::good(WHAT, format!("{} records", status.note));
                 }
                 MicrophoneState::Broken => failed.push(status.note),
                 _ => {}
@@ -122,5 +129,8 @@ pub(super) fn microphone(settings: &Settings) -> Finding {
         }
     }
     let why = failed.join("; ");
-    poor(WHAT, format!("{why}; connect one, or name a program in speech.microphone.command"))
+    Finding::poor(
+        WHAT,
+        format!("{why}; connect one, or name a program in speech.microphone.command"),
+    )
 }

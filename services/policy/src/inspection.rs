@@ -1,18 +1,20 @@
-//! The policy's records.
+//! Listing and verification of the policy's journal.
 
 use std::collections::BTreeMap;
 
+use config::Settings;
 use dialogue::Belief;
 use messages::{ActKind, PickOutcome};
-use policy::journal_check::refold_since;
-use policy::mind::Mind;
-use policy::state::{Act, Cause, Record};
+use service::exit::Failure;
+use service::inspection::{Part, at, count};
 
-use super::{Broken, Part, at};
-use crate::verbs::words;
+use crate::journal_check::refold_since;
+use crate::mind::Mind;
+use crate::shell::mind_of_key;
+use crate::state::{Act, Cause, Record};
 
-/// A record for people.
-pub(super) fn line(record: &Record) -> String {
+/// Renders a record as one line.
+pub(crate) fn line(record: &Record) -> String {
     let Record { cause, state, .. } = record;
     let why = match cause {
         Cause::Snapshot => "begun anew".to_owned(),
@@ -43,7 +45,8 @@ fn reasons(act: &Act) -> String {
     if act.value == 0.0 && act.alternatives.is_empty() {
         return String::new();
     }
-    let value = words::value(act.value, act.bounds);
+    let bounds = act.bounds.map(|(low, high)| format!(", best {low:.2} to {high:.2}"));
+    let value = format!("value {:.2}{}", act.value, bounds.unwrap_or_default());
     let others: Vec<String> =
         act.alternatives.iter().map(|(action, value)| format!("{action} {value:.2}")).collect();
     let before = if others.is_empty() { "" } else { ", before " };
@@ -51,14 +54,13 @@ fn reasons(act: &Act) -> String {
     format!("; {value}, {questions:.1} questions to come{before}{}", others.join(", "))
 }
 
-/// The key of the settings that the latest record was decided under; 0 of none.
-pub(super) fn settings_key(part: &Part<Record>) -> u64 {
-    part.reading.records.last().map_or(0, |record| record.state.settings_key)
-}
-
 /// Every utterance applied once and in order, every belief a distribution, no interaction with two
 /// deliveries, and every state the one that follows, bit for bit.
-pub(super) fn verify(mind: &mut Mind, parts: &[Part<Record>]) -> Result<Vec<String>, Broken> {
+pub(crate) fn verify(settings: &Settings, parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
+    let newest = parts.last().and_then(|part| part.records().last());
+    // The given settings are taken to be those at the journal's end.
+    let settings_key = newest.map_or(0, |record| record.state.settings_key);
+    let mut mind = mind_of_key(settings, settings_key)?;
     let mut delivered: BTreeMap<u64, u32> = BTreeMap::new();
     let mut applied = None;
     for part in parts {
@@ -66,20 +68,17 @@ pub(super) fn verify(mind: &mut Mind, parts: &[Part<Record>]) -> Result<Vec<Stri
             step(record, &mut applied, &mut delivered).map_err(|what| part.broken(seq, what))?;
         }
     }
-    let records = parts.iter().flat_map(|part| &part.reading.records);
-    let (total, last) = (records.clone().count(), records.last());
-    // The settings given are taken to be those that hold at the journal's end.
-    let latest = last.map_or(0, |record| record.state.settings_key);
+    let total: usize = parts.iter().map(|part| part.records().len()).sum();
     let refolded: usize =
-        parts.iter().map(|part| fold(mind, part, latest)).sum::<Result<_, _>>()?;
+        parts.iter().map(|part| fold(&mut mind, part, settings_key)).sum::<Result<_, _>>()?;
     let mut facts = vec![
-        format!("{} utterances applied, each once and in order", applied.unwrap_or(0)),
-        format!("{} deliveries, at most one in each interaction", delivered.len()),
-        format!("{refolded} states follow from those before them, bit for bit"),
+        format!("{} applied once and in order", count(applied.unwrap_or(0), "utterance")),
+        format!("delivered in {}, at most once each", count(delivered.len() as u64, "interaction")),
+        format!("{} reproduced bit for bit from the one before", count(refolded as u64, "state")),
     ];
     if refolded < total {
-        let earlier = total - refolded;
-        facts.push(format!("{earlier} earlier states are of other settings, and not folded again"));
+        let skipped = count((total - refolded) as u64, "earlier state");
+        facts.push(format!("{skipped} of other settings skipped"));
     }
     Ok(facts)
 }
@@ -122,9 +121,9 @@ fn step(
 }
 
 /// Refolds the records that were decided under the settings with that key; how many those are.
-fn fold(mind: &mut Mind, part: &Part<Record>, settings_key: u64) -> Result<usize, Broken> {
-    refold_since(mind, &part.reading.records, settings_key).map_err(|mismatch| {
-        let seq = part.reading.first_seq + mismatch.index as u64;
+fn fold(mind: &mut Mind, part: &Part<Record>, settings_key: u64) -> Result<usize, Failure> {
+    refold_since(mind, part.records(), settings_key).map_err(|mismatch| {
+        let seq = part.first_seq() + mismatch.index as u64;
         let what = format!("the state does not follow from the one before it: {}", mismatch.part);
         part.broken(seq, format!("{what} differs (with these settings)"))
     })
@@ -132,8 +131,8 @@ fn fold(mind: &mut Mind, part: &Part<Record>, settings_key: u64) -> Result<usize
 
 #[cfg(test)]
 mod tests {
+    use crate::state::{Heard, State};
     use messages::{InteractionId, PickId, UtteranceSeq};
-    use policy::state::{Heard, State};
 
     use super::*;
 
@@ -182,7 +181,7 @@ mod tests {
     fn a_belief_that_is_none_is_found() {
         let mut record = heard(1);
         record.state.open =
-            Some(policy::state::Interaction { belief: vec![0.0, f64::NAN], ..Default::default() });
+            Some(crate::state::Interaction { belief: vec![0.0, f64::NAN], ..Default::default() });
         assert!(check(&[record]).unwrap_err().contains("not a probability"));
     }
 }

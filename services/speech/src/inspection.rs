@@ -1,13 +1,14 @@
-//! The speech service's records.
+//! Listing and verification of the speech service's journal.
 
 use std::collections::HashSet;
 
-use speech::record::Record;
+use service::exit::Failure;
+use service::inspection::{Part, at, count};
 
-use super::{Broken, Part, at};
+use crate::record::Record;
 
-/// A record for people.
-pub(super) fn line(record: &Record) -> String {
+/// Renders a record as one line.
+pub(crate) fn line(record: &Record) -> String {
     match record {
         Record::Accepted(accepted) => {
             let words = accepted.hypotheses.first().map_or("", |best| best.text.as_str());
@@ -24,14 +25,14 @@ pub(super) fn line(record: &Record) -> String {
 }
 
 /// Utterances numbered without a gap, none accepted twice.
-pub(super) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Broken> {
+pub(crate) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
     let mut last = None;
     let mut keys = HashSet::new();
     for part in parts {
         for (seq, record) in part.numbered() {
             let Record::Accepted(accepted) = record else { continue };
             let number = accepted.seq.0;
-            // A journal that was begun anew says again what was not yet applied.
+            // A rotated journal repeats utterances that were not applied yet.
             let again = last.is_some_and(|last| number <= last) && seq_in_snapshot(part, seq);
             if again {
                 continue;
@@ -46,13 +47,13 @@ pub(super) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Broken> {
             last = Some(number);
         }
     }
-    let number = last.unwrap_or(0);
-    Ok(vec![format!("{number} utterances accepted, each once and without a gap")])
+    let accepted = count(last.unwrap_or(0), "utterance");
+    Ok(vec![format!("{accepted} accepted once and without a gap")])
 }
 
-/// Whether the record belongs to the summary at the beginning of a journal that was begun anew.
+/// Whether the record belongs to the summary at the beginning of a journal that was rotated.
 fn seq_in_snapshot(part: &Part<Record>, seq: u64) -> bool {
-    part.reading.first_seq > 1 && {
+    part.first_seq() > 1 && {
         let before = part.numbered().take_while(|(n, _)| *n <= seq);
         before.into_iter().all(|(_, record)| matches!(record, Record::Accepted(_)))
     }

@@ -1,7 +1,7 @@
-//! `whichone journal` on journals made here, whole and tampered with.
+//! Inspection of the policy's journal by its own program, on intact and manipulated journals.
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 
 use config::Settings;
 use journal::{Header, Journal};
@@ -11,40 +11,36 @@ use policy::state::{Asking, Cause, Heard, Record, State};
 use scene::{Reading, Response};
 use service::Time;
 
-/// A group that has only journals.
+/// A journal and a snapshot of the shipped settings in a temporary folder.
 struct Lab(tempfile::TempDir);
 
-fn shipped() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config")
+fn shipped() -> Settings {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+    preflight::load(&folder, None, &[]).expect("the shipped configuration")
 }
 
 impl Lab {
-    fn new() -> Self {
-        Self(tempfile::tempdir().expect("a folder"))
-    }
-
-    fn write(&self, records: &[Record]) {
-        let folder = self.0.path().join("lab/journal");
-        std::fs::create_dir_all(&folder).expect("a folder");
-        let header = Header { record: "policy/4".into(), group: "lab".into(), epoch: 1 };
-        let file = folder.join("policy.journal");
-        let (mut journal, _) = Journal::open(&file, &header).expect("a journal");
+    fn with(records: &[Record]) -> Self {
+        let lab = Self(tempfile::tempdir().expect("a folder"));
+        shipped().write_snapshot(lab.0.path()).expect("a disk");
+        let header = Header { record: "policy".into(), group: "lab".into(), epoch: 1 };
+        let (mut journal, _) = Journal::open(&lab.file(), &header).expect("a journal");
         for record in records {
             journal.append(record).expect("room");
             journal.sync().expect("a disk");
         }
+        lab
     }
 
-    fn journal(&self, arguments: &[&str]) -> Output {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_whichone"));
-        command.env_clear().env("WHICHONE_HOME", self.0.path());
-        command.args(["journal", "--group", "lab", "--config"]).arg(shipped()).args(arguments);
-        command.output().expect("a process")
+    fn file(&self) -> PathBuf {
+        self.0.path().join("policy.journal")
     }
 
     #[track_caller]
     fn check(&self, arguments: &[&str], code: i32, part: &str) {
-        let output = self.journal(arguments);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_whichone-policy"));
+        command.arg("journal").arg(self.file()).arg("--settings").arg(self.0.path());
+        let output = command.args(arguments).output().expect("a process");
         let text = [output.stdout, output.stderr].concat();
         let text = String::from_utf8_lossy(&text);
         assert_eq!(output.status.code(), Some(code), "{text}");
@@ -54,7 +50,7 @@ impl Lab {
 
 /// A request and an answer, as the policy records them.
 fn dialogue() -> Vec<Record> {
-    let settings = Settings::load(&shipped(), None, &[]).expect("the shipped configuration");
+    let settings = shipped();
     let mut mind: Mind = policy::shell::mind(&settings).expect("its planner");
     let white = settings.scene.word_named("white").expect("a word of the bowls");
     let request = Reading { base: vec![white], ..Reading::default() };
@@ -84,47 +80,40 @@ fn dialogue() -> Vec<Record> {
 }
 
 #[test]
-fn a_journal_that_holds_together_is_shown_and_confirmed() {
-    let lab = Lab::new();
-    lab.write(&dialogue());
-    lab.check(&["policy"], 0, "utterance 2");
+fn an_intact_journal_is_listed_and_verified() {
+    let lab = Lab::with(&dialogue());
+    lab.check(&[], 0, "utterance 2");
     lab.check(&["--json"], 0, "\"seq\":2,\"record\":{");
-    lab.check(&["--verify"], 0, "2 states follow from those before them, bit for bit");
+    lab.check(&["--verify"], 0, "2 states reproduced bit for bit from the one before");
     lab.check(&["--verify", "--json"], 0, "{\"ok\":true,\"records\":2,");
 }
 
 #[test]
-fn a_belief_that_does_not_follow_is_found_to_the_last_bit() {
-    let lab = Lab::new();
+fn verification_finds_a_belief_that_differs_in_one_bit() {
     let mut records = dialogue();
     let open = records[1].state.open.as_mut().expect("an open interaction");
     open.belief[0] = f64::from_bits(open.belief[0].to_bits() + 1);
-    lab.write(&records);
+    let lab = Lab::with(&records);
     lab.check(&["--verify"], 70, "record 2: the state does not follow");
     lab.check(&["--verify", "--json"], 70, "\"ok\":false");
 }
 
 #[test]
-fn an_utterance_applied_twice_is_found() {
-    let lab = Lab::new();
+fn verification_finds_an_utterance_that_was_applied_twice() {
     let records = dialogue();
-    lab.write(&[&records[..], &records[1..]].concat());
+    let lab = Lab::with(&[&records[..], &records[1..]].concat());
     lab.check(&["--verify"], 70, "record 3: utterance 2 applied after 2");
 }
 
 #[test]
-fn a_damaged_file_is_told_by_the_place_of_the_damage() {
-    let lab = Lab::new();
-    lab.write(&dialogue());
-    let file = lab.0.path().join("lab/journal/policy.journal");
-    let whole = std::fs::read(&file).expect("a journal");
-    let mut torn = whole.clone();
-    torn.truncate(whole.len() - 3);
-    std::fs::write(&file, &torn).expect("a disk");
+fn verification_reports_the_place_of_damage() {
+    let lab = Lab::with(&dialogue());
+    let whole = std::fs::read(lab.file()).expect("a journal");
+    std::fs::write(lab.file(), &whole[..whole.len() - 3]).expect("a disk");
     lab.check(&["--verify"], 0, "an unfinished write");
     let mut flipped = whole;
-    let in_the_first_frame = torn.len() / 4;
+    let in_the_first_frame = flipped.len() / 4;
     flipped[in_the_first_frame] ^= 1;
-    std::fs::write(&file, &flipped).expect("a disk");
+    std::fs::write(lab.file(), &flipped).expect("a disk");
     lab.check(&["--verify"], 70, "damaged at byte");
 }

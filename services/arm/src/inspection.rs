@@ -1,15 +1,16 @@
-//! The arm's records.
+//! Listing and verification of the arm's journal.
 
 use std::collections::BTreeMap;
 
-use arm::state::Record;
 use messages::pick::Pick;
 use messages::{PickId, PickOutcome, PickPhase};
+use service::exit::Failure;
+use service::inspection::{Part, at, count};
 
-use super::{Broken, Part, at};
+use crate::state::Record;
 
-/// A record for people.
-pub(super) fn line(record: &Record) -> String {
+/// Renders a record as one line.
+pub(crate) fn line(record: &Record) -> String {
     let pick = record.state.pick.as_ref().map_or("no pick".to_owned(), |pick| {
         let PickId { interaction, attempt } = pick.id;
         let object = pick.object.index();
@@ -32,7 +33,7 @@ struct Tally {
 
 /// One object per pick, no step back, and in each interaction at most one grasp that lifts and one
 /// delivery.
-pub(super) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Broken> {
+pub(crate) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
     let mut tallies: BTreeMap<u64, Tally> = BTreeMap::new();
     let mut before: Option<Pick> = None;
     for part in parts {
@@ -43,7 +44,8 @@ pub(super) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Broken> {
         }
     }
     let delivered: u32 = tallies.values().map(|tally| tally.delivered).sum();
-    Ok(vec![format!("{delivered} deliveries, at most one in each interaction")])
+    let delivered = count(delivered.into(), "interaction");
+    Ok(vec![format!("delivered in {delivered}, at most once each")])
 }
 
 fn step(

@@ -1,0 +1,270 @@
+//! Inspection of a service by its own program: `whichone journal` and `whichone doctor` run
+//! `whichone-SERVICE journal …` and `whichone-SERVICE doctor …`, so that only the service itself
+//! knows its records and its devices.
+
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use config::Settings;
+use journal::{Ending, JournalOpenError, Reading};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::exit::{Exit, Failure};
+use crate::service_loop::{Program, Record};
+
+/// One file of a journal.
+#[derive(Debug)]
+pub struct Part<R> {
+    file: PathBuf,
+    reading: Reading<R>,
+}
+
+/// One aspect of the machine that `whichone doctor` has examined.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Finding {
+    /// The aspect, e.g. `microphone`.
+    pub what: String,
+    /// Its condition.
+    pub state: Condition,
+    /// Details, with help where something is missing.
+    pub note: String,
+}
+
+/// Condition of an examined aspect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Condition {
+    /// Works.
+    Good,
+    /// Some function is unavailable.
+    Poor,
+    /// No group can run.
+    Bad,
+}
+
+impl Finding {
+    /// A working aspect.
+    pub fn good(what: &str, note: impl Into<String>) -> Self {
+        Self { what: what.to_owned(), state: Condition::Good, note: note.into() }
+    }
+
+    /// An aspect without which some function is unavailable.
+    pub fn poor(what: &str, note: impl Into<String>) -> Self {
+        Self { state: Condition::Poor, ..Self::good(what, note) }
+    }
+
+    /// An aspect without which no group can run.
+    pub fn bad(what: &str, note: impl Into<String>) -> Self {
+        Self { state: Condition::Bad, ..Self::good(what, note) }
+    }
+}
+
+impl<R> Part<R> {
+    /// The file's records with their numbers.
+    pub fn numbered(&self) -> impl Iterator<Item = (u64, &R)> {
+        (self.reading.first_seq..).zip(&self.reading.records)
+    }
+
+    /// The file's records.
+    pub fn records(&self) -> &[R] {
+        &self.reading.records
+    }
+
+    /// Number of the file's first record; above 1 after a rotation.
+    pub fn first_seq(&self) -> u64 {
+        self.reading.first_seq
+    }
+
+    /// The failure of record `seq` to keep an invariant.
+    pub fn broken(&self, seq: u64, what: impl std::fmt::Display) -> Failure {
+        let file = self.file.display();
+        Failure::new(Exit::Invariant, format!("{file}: record {seq}: {what}"))
+    }
+}
+
+impl<R: DeserializeOwned> Part<R> {
+    /// Reads one file of a journal.
+    ///
+    /// # Errors
+    /// The file cannot be read, or is not a journal of these records.
+    pub fn read(file: &Path) -> Result<Self, Failure> {
+        let reading = journal::read(file).map_err(|error| {
+            let exit = match error {
+                JournalOpenError::Io { .. } => Exit::Storage,
+                JournalOpenError::Corrupt { .. } => Exit::Invariant,
+                _ => Exit::Config,
+            };
+            Failure::new(exit, format!("{}: {error}", file.display()))
+        })?;
+        Ok(Self { file: file.to_owned(), reading })
+    }
+}
+
+/// A count with its noun, e.g. `1 record`, `2 records`.
+pub fn count(number: u64, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A time of the machine's monotonic clock, seconds, as a column of a listing.
+pub fn at(time: crate::Time) -> String {
+    format!("{:>12.3} s", time.ns() as f64 / 1e9)
+}
+
+/// Executes the inspection that the arguments name; `None` if they name none.
+pub(crate) fn run<P: Program>(arguments: &[String]) -> Option<Exit> {
+    let inspect = match arguments.first()?.as_str() {
+        "journal" => show::<P>,
+        "doctor" => examine::<P>,
+        _ => return None,
+    };
+    let mut out = BufWriter::new(io::stdout().lock());
+    let ended = Request::parse(&arguments[1..])
+        .and_then(|request| inspect(&request, &mut out))
+        .and_then(|()| out.flush().map_err(unprinted));
+    Some(match ended {
+        Ok(()) => Exit::Ok,
+        Err(failure) => {
+            if !failure.message.is_empty() {
+                let _ = writeln!(io::stderr(), "error: {failure}");
+            }
+            failure.exit
+        }
+    })
+}
+
+/// Arguments of an inspection.
+#[derive(Debug, Default, PartialEq, Eq)]
+struct Request {
+    file: PathBuf,
+    settings: PathBuf,
+    verify: bool,
+    json: bool,
+}
+
+impl Request {
+    fn parse(arguments: &[String]) -> Result<Self, Failure> {
+        let mut request = Self::default();
+        let mut words = arguments.iter();
+        while let Some(word) = words.next() {
+            match word.as_str() {
+                "--verify" => request.verify = true,
+                "--json" => request.json = true,
+                "--settings" => request.settings = words.next().map(Into::into).unwrap_or_default(),
+                file => request.file = file.into(),
+            }
+        }
+        Ok(request)
+    }
+
+    fn settings(&self) -> Result<Settings, Failure> {
+        Settings::load_snapshot(&self.settings)
+            .map_err(|error| Failure::new(Exit::Config, error.to_string()))
+    }
+}
+
+fn examine<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
+    for finding in P::doctor(&request.settings()?) {
+        json_line(out, &finding)?;
+    }
+    Ok(())
+}
+
+fn show<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
+    match request.verify {
+        true => verify::<P>(request, out),
+        false => print::<P>(request, out),
+    }
+}
+
+fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
+    #[derive(Serialize)]
+    struct Numbered<'a, R> {
+        seq: u64,
+        record: &'a R,
+    }
+    let part = Part::<Record<P>>::read(&request.file)?;
+    for (seq, record) in part.numbered() {
+        match request.json {
+            true => json_line(out, &Numbered { seq, record })?,
+            false => line(out, format_args!("{seq:>6}  {}", P::describe(record)))?,
+        }
+    }
+    out.flush().map_err(unprinted)?;
+    check_ending(&part)
+}
+
+/// A write that a kill has cut short was never acknowledged; any other damage is an error.
+fn check_ending<R>(part: &Part<R>) -> Result<(), Failure> {
+    match part.reading.ending {
+        Ending::Whole => Ok(()),
+        Ending::Torn { bytes, .. } => {
+            let _ = writeln!(io::stderr(), "ignored {bytes} bytes of an unfinished write");
+            Ok(())
+        }
+        Ending::Corrupt { at, seq, .. } => {
+            let help = "help: start anew with `whichone up --fresh`, which keeps the old file";
+            Err(part.broken(seq, format_args!("damaged at byte {at}; {help}")))
+        }
+    }
+}
+
+/// Checks the journal with its older parts, oldest first.
+fn verify<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
+    #[derive(Default, Serialize)]
+    struct Verdict {
+        ok: bool,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        broken: Option<String>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        records: Option<u64>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        facts: Option<Vec<String>>,
+    }
+    let older = (1..=journal::KEPT).rev().map(|n| numbered_file(&request.file, n));
+    let files = older.filter(|file| file.is_file()).chain([request.file.clone()]);
+    let parts: Vec<_> = files.map(|file| Part::read(&file)).collect::<Result<_, _>>()?;
+    parts.iter().try_for_each(check_ending)?;
+    let records: u64 = parts.iter().map(|part| part.records().len() as u64).sum();
+    match P::verify(request.settings()?, &parts) {
+        Ok(facts) if request.json => {
+            let (records, facts) = (Some(records), Some(facts));
+            json_line(out, &Verdict { ok: true, records, facts, ..Verdict::default() })
+        }
+        Ok(facts) => {
+            let records = count(records, "record");
+            line(out, format_args!("{}: {records} verified", request.file.display()))?;
+            facts.iter().try_for_each(|fact| line(out, format_args!("  {fact}")))
+        }
+        Err(failure) => {
+            if request.json && failure.exit == Exit::Invariant {
+                let broken = Some(failure.message.clone());
+                json_line(out, &Verdict { broken, ..Verdict::default() })?;
+            }
+            Err(failure)
+        }
+    }
+}
+
+fn json_line(out: &mut impl Write, value: &impl Serialize) -> Result<(), Failure> {
+    serde_json::to_writer(&mut *out, value).map_err(|error| unprinted(error.into()))?;
+    line(out, "")
+}
+
+fn line(out: &mut impl Write, text: impl std::fmt::Display) -> Result<(), Failure> {
+    writeln!(out, "{text}").map_err(unprinted)
+}
+
+/// A failure to print; a closed pipe is the reader's choice and not an error.
+fn unprinted(error: io::Error) -> Failure {
+    match error.kind() {
+        ErrorKind::BrokenPipe => Failure::new(Exit::Ok, ""),
+        _ => Failure::new(Exit::Storage, format!("cannot print: {error}")),
+    }
+}
+
+fn numbered_file(path: &Path, number: usize) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(format!(".{number}"));
+    name.into()
+}
