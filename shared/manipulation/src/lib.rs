@@ -1,43 +1,45 @@
-//! Kinematics of a robot with two arms of seven joints, Baxter above all: where the gripper is,
-//! which joint positions reach a pose, and how to move there and fetch an object.
+//! Motion planning for a robot with two arms of seven joints, such as Baxter: forward and inverse
+//! kinematics, collision checking, trajectories, and plans that fetch or point at an object.
 //!
-//! This crate is pure: no IO, no clock, no threads, and the same question has the same answer
-//! every time. What it returns keeps the joint limits to the last bit, the velocity, acceleration
-//! and jerk limits at every instant, and touches nothing that it was told of; what it cannot do is
-//! a typed error, never a motion.
+//! | module | contents |
+//! |---|---|
+//! | `kinematics` | chain of joints, joint limits, inverse kinematics |
+//! | `collision` | shapes of arms, body and objects, and the distances between them |
+//! | `trajectory` | joint paths, time-optimal and jerk-limited timing, stops |
+//! | `planning` | grasps, planning scenes, picks, deliveries and pointing |
+//! | `robot` | a robot from its description, with its shapes |
+//!
+//! This crate is pure: no IO, no clock, no threads; equal arguments give equal results. Plans keep
+//! the joint limits to the last bit and the velocity, acceleration and jerk limits at every
+//! instant, and touch nothing in the planning scene. What cannot be planned is a typed error.
 //!
 //! Units are metres, radians and seconds throughout; poses are in frame `base` of the robot
-//! description unless said otherwise. `<limb>_gripper` is the frame that a limb's kinematics end at;
+//! description unless stated otherwise. `<limb>_gripper` is the frame at the end of a limb's chain;
 //! on Baxter the tip of the electric gripper with extended fingers, 0.1577 m past the hand.
 //!
 //! Start at [`Robot`], then [`plan_pick`].
 
 pub mod baxter;
-mod chain;
-mod clearance;
-mod grasp;
+mod collision;
 pub mod gripper;
-mod inverse;
-mod limb;
-pub mod limits;
-mod motion;
-mod plan;
+mod kinematics;
+mod planning;
 mod robot;
 #[cfg(test)]
 mod samples;
+mod trajectory;
 
-pub use crate::robot::{Arm, Robot, Unsuitable};
-pub use chain::{Axis, Chain, Frame, Jacobian, LineError, ZeroPosture};
-pub use clearance::{ArmShape, Capsule, Clearance, Cuboid, Gap};
-pub use grasp::{Grasp, GraspError, ObjectPose};
+pub use collision::{ArmShape, Capsule, Clearance, Cuboid, Gap};
 pub use gripper::attached_pose;
-pub use inverse::{IkSolution, TOLERANCE_M, TOLERANCE_RAD, Unreachable};
-pub use limb::{JOINTS, Joints, Limb};
-pub use limits::{MotionLimits, PositionLimits};
-pub use motion::{
-    INTERVALS_MIN, Moment, Path, Stage, State, Timeline, Trajectory, TrajectoryError,
+pub use kinematics::chain::{Axis, Chain, Frame, Jacobian, LineError, ZeroPosture};
+pub use kinematics::inverse::{IkSolution, TOLERANCE_M, TOLERANCE_RAD, Unreachable};
+pub use kinematics::limb::{JOINTS, Joints, Limb};
+pub use kinematics::limits::{self, MotionLimits, PositionLimits};
+pub use planning::{
+    Arms, Grasp, GraspError, ObjectPose, PickPhase, PickPlan, PlanError, PlanSettings, PointPhase,
+    PointPlan, check_reachable, plan_delivery, plan_pick, plan_point, plan_return,
 };
-pub use plan::{
-    Arms, PickPhase, PickPlan, PlanError, PlanSettings, PointPhase, PointPlan, check_reachable,
-    plan_delivery, plan_pick, plan_point, plan_return,
+pub use robot::{Arm, Robot, Unsuitable};
+pub use trajectory::{
+    INTERVALS_MIN, Moment, Path, Stage, State, Timeline, Trajectory, TrajectoryError,
 };

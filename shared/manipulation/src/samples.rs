@@ -3,9 +3,9 @@
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
 use crate::baxter::tool;
-use crate::chain::Chain;
-use crate::limb::{Joints, Limb};
-use crate::limits::MotionLimits;
+use crate::kinematics::chain::Chain;
+use crate::kinematics::limb::{Joints, Limb};
+use crate::kinematics::limits::MotionLimits;
 use crate::robot::{Arm, Robot};
 
 /// A small generator (xorshift); tests name its seed when they fail.

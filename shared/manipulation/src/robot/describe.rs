@@ -7,10 +7,10 @@ use nalgebra::{Isometry3, Point3, Vector3};
 use robot_model::{Body as Shaped, Joint, JointKind, Limits, Robot as Description, Shape};
 
 use super::{Body, Parts, Robot};
-use crate::chain::{Axis, Chain, ZeroPosture};
-use crate::clearance::{Capsule, Cuboid};
-use crate::limb::{Joints, Limb};
-use crate::limits::{MotionLimits, PositionLimits};
+use crate::collision::{Capsule, Cuboid};
+use crate::kinematics::chain::{Axis, Chain, ZeroPosture};
+use crate::kinematics::limb::{Joints, Limb};
+use crate::kinematics::limits::{MotionLimits, PositionLimits};
 
 /// Why a described robot cannot be moved by this crate: what is missing, and the cure.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -31,7 +31,7 @@ const JERK_PER_S: f64 = 10.0;
 impl Robot {
     /// The robot of a description whose links `left_gripper` and `right_gripper` each hang on seven
     /// turning joints. Groups `left_arm` and `right_arm` have a posture `neutral`, in which the
-    /// limb rests; other postures of theirs are used as stations where the limb is clear there.
+    /// limb rests; other postures of theirs are used as via_postures where the limb is clear there.
     ///
     /// Joints without stated acceleration and jerk get 2 rad/s² and ten times that per second.
     /// What a limb carries is enclosed in capsules; what carries no limb is its body, as it stands
@@ -75,7 +75,7 @@ fn parts(description: &Description, limb: Limb) -> Result<Parts, Unsuitable> {
         limits,
         names: joints.map(|joint| joint.name.clone()),
         neutral: named(description, limb, "neutral", &joints)?,
-        stations: stations(description, limb, &joints),
+        via_postures: via_postures(description, limb, &joints),
         capsules: capsules(description, limb, &joints)?,
         may_touch: may_touch(description, limb),
     })
@@ -139,7 +139,7 @@ fn named(
     }
 }
 
-fn stations(description: &Description, limb: Limb, joints: &[&Joint; 7]) -> Vec<Joints> {
+fn via_postures(description: &Description, limb: Limb, joints: &[&Joint; 7]) -> Vec<Joints> {
     let of_limb = description.postures().iter().filter(|posture| posture.group == group(limb));
     of_limb.filter_map(|posture| named(description, limb, &posture.name, joints).ok()).collect()
 }

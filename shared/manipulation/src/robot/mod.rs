@@ -10,12 +10,12 @@ use nalgebra::Vector3;
 
 use robot_model::Robot as Description;
 
-use crate::chain::{Chain, ZeroPosture};
-use crate::clearance::ArmShape;
-use crate::clearance::{Capsule, Cuboid};
-use crate::limb::{Joints, Limb};
-use crate::limits::MotionLimits;
-use crate::plan::Arms;
+use crate::collision::ArmShape;
+use crate::collision::{Capsule, Cuboid};
+use crate::kinematics::chain::{Chain, ZeroPosture};
+use crate::kinematics::limb::{Joints, Limb};
+use crate::kinematics::limits::MotionLimits;
+use crate::planning::Arms;
 
 pub use describe::Unsuitable;
 
@@ -41,7 +41,7 @@ pub struct Arm {
     pub neutral: Joints,
     /// Postures over which it may find its way, radians: the one at rest, and others in which it is
     /// clear of itself and of the body.
-    pub stations: Vec<Joints>,
+    pub via_postures: Vec<Joints>,
     /// The shapes that enclose its links, shoulder first.
     pub(crate) enclosures: Vec<Enclosure>,
     /// Pairs of enclosures that must not touch.
@@ -74,7 +74,7 @@ struct Parts {
     limits: MotionLimits,
     names: [String; 7],
     neutral: Joints,
-    stations: Vec<Joints>,
+    via_postures: Vec<Joints>,
     /// Capsules with the joint that moves them and their link's name, in `base` at zero.
     capsules: Vec<(usize, &'static str, Capsule)>,
     /// Pairs of links that may touch.
@@ -134,7 +134,7 @@ impl Arm {
             chain,
             limits: parts.limits,
             neutral: parts.neutral,
-            stations: parts.stations,
+            via_postures: parts.via_postures,
             enclosures,
             pairs,
             body: Arc::clone(body),
@@ -143,8 +143,8 @@ impl Arm {
             let shape = ArmShape::at(&arm, q);
             !shape.to_itself(0.0).is_some() && !shape.to_trunk(0.0).is_some()
         };
-        let stations = arm.stations.iter().copied().filter(clear).collect();
-        arm.stations = stations;
+        let via_postures = arm.via_postures.iter().copied().filter(clear).collect();
+        arm.via_postures = via_postures;
         arm
     }
 

@@ -3,7 +3,7 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::Isometry3;
 
 use super::*;
-use crate::inverse::{TOLERANCE_M, TOLERANCE_RAD};
+use crate::kinematics::inverse::{TOLERANCE_M, TOLERANCE_RAD};
 use crate::samples::{Random, difference, fixture, neutral, robot};
 
 fn described(urdf: &str) -> Description {
@@ -33,7 +33,7 @@ fn limits_and_postures_are_the_facts() {
         }
         assert_eq!((arm.limits.acceleration, arm.limits.jerk), ([2.0; 7], [20.0; 7]));
         assert_eq!(arm.neutral, neutral());
-        assert_eq!(arm.stations.len(), 2, "neutral and untuck; the tuck is in the trunk");
+        assert_eq!(arm.via_postures.len(), 2, "neutral and untuck; the tuck is in the trunk");
         assert!(arm.chain.is_closed_form());
     }
 }

@@ -1,0 +1,108 @@
+//! What the gripper carries, as something that must not touch anything either.
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+
+use crate::collision::block::Block;
+use crate::collision::{ArmShape, Gap};
+use crate::planning::Obstacle;
+use crate::planning::grasp::ObjectPose;
+use crate::robot::Arm;
+
+/// A box that is fixed in the gripper, from where it stood.
+#[derive(Clone, Debug)]
+pub(crate) struct Held {
+    half: Vector3<f64>,
+    in_gripper: Isometry3<f64>,
+    /// Where it stood, metres.
+    stood: Vector3<f64>,
+    /// What stands around, each with how far it was from it there, metres: 0 from what it stands on.
+    surroundings: Vec<(Obstacle, f64)>,
+}
+
+/// What it is called where it is in the way.
+const NAME: &str = "held object";
+
+/// Distance that it keeps from the surroundings, metres.
+const APART_M: f64 = 0.003;
+
+/// What it stood nearer to than that it must not come this much nearer to as it is lifted, metres.
+const SLACK_M: f64 = 5e-4;
+
+/// It is still over its place while its centre is no further beside it than this, metres.
+const BESIDE_M: f64 = 0.005;
+
+/// The joint whose links may touch it: the wrist's, with the gripper.
+const WRIST: usize = 6;
+
+impl Held {
+    /// `object` as it stands among `surroundings`, held at `in_gripper`.
+    pub(crate) fn new(
+        object: &ObjectPose,
+        in_gripper: &Isometry3<f64>,
+        surroundings: Vec<Obstacle>,
+    ) -> Self {
+        let half = Vector3::from(object.size_m) * 0.5;
+        let stands = Block { pose: object.isometry(), half };
+        let apart = |obstacle: Obstacle| (obstacle, stands.to_cuboid(&obstacle.1));
+        let surroundings = surroundings.into_iter().map(apart).collect();
+        Self { half, in_gripper: *in_gripper, stood: stands.centre(), surroundings }
+    }
+
+    /// The box with the gripper at `gripper`.
+    pub(crate) fn block(&self, gripper: &Isometry3<f64>) -> Block {
+        Block { pose: gripper * self.in_gripper, half: self.half }
+    }
+
+    /// The gripper's rotation at which the box stands upright, turned as with the gripper at `pose`.
+    pub(crate) fn upright(&self, pose: &Isometry3<f64>) -> UnitQuaternion<f64> {
+        let along = pose.rotation * self.in_gripper.rotation * Vector3::x();
+        let yaw = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), along.y.atan2(along.x));
+        yaw * self.in_gripper.rotation.inverse()
+    }
+
+    /// The first of the surroundings that the box comes too near to; `moved_m` is how far it moves
+    /// until it is looked at again.
+    pub(crate) fn near_surroundings(&self, block: &Block, moved_m: f64) -> Option<Gap> {
+        let beside = (block.centre() - self.stood).xy().norm();
+        let margin_m = APART_M + 0.5 * moved_m;
+        self.surroundings.iter().find_map(|((name, cuboid), apart)| {
+            // Straight up from where it stood it may leave what it touched there.
+            let least = if beside < BESIDE_M { margin_m.min(apart - SLACK_M) } else { margin_m };
+            let distance_m = block.to_cuboid(cuboid);
+            (distance_m < least).then_some(Gap { distance_m, link: NAME, other: name })
+        })
+    }
+
+    /// The first part of the robot that the box comes nearer to than `margin_m`: its body, the other
+    /// arm, and the links of the arm that holds it before the wrist.
+    pub(crate) fn near_robot(
+        &self,
+        block: &Block,
+        (arm, own): (&Arm, &ArmShape<'_>),
+        (other, theirs): (&Arm, &ArmShape<'_>),
+        margin_m: f64,
+    ) -> Option<Gap> {
+        let near = |distance_m: f64, name: &'static str| {
+            (distance_m < margin_m).then_some(Gap { distance_m, link: NAME, other: name })
+        };
+        let body = &arm.body;
+        let links = |arm: &Arm, shape: &ArmShape<'_>, last: usize| {
+            let capsules = arm.enclosures.iter().zip(shape.capsules());
+            let moved = capsules.filter(|(enclosure, _)| enclosure.joint < last);
+            moved.map(|(e, capsule)| (e.link, *capsule)).collect::<Vec<_>>()
+        };
+        let own = links(arm, own, WRIST);
+        let theirs = links(other, theirs, usize::MAX);
+        let cuboids = body.cuboids.iter();
+        cuboids
+            .map(|(name, cuboid)| (block.to_cuboid(cuboid), *name))
+            .chain(
+                body.capsules
+                    .iter()
+                    .chain(&own)
+                    .chain(&theirs)
+                    .map(|(name, capsule)| (block.to_capsule(capsule), *name)),
+            )
+            .find_map(|(distance_m, name)| near(distance_m, name))
+    }
+}

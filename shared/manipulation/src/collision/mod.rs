@@ -1,0 +1,217 @@
+//! How far the arms are from themselves, each other, the body and the surroundings.
+
+use nalgebra::Vector3;
+
+use crate::kinematics::limb::{Joints, Limb};
+use crate::robot::{Arm, Robot};
+pub use shape::{Capsule, Cuboid};
+
+pub(crate) mod block;
+pub(crate) mod held;
+mod shape;
+#[cfg(test)]
+mod tests;
+
+/// Links that are fewer joints than this from the body cannot help being near it.
+const FIRST_LOOSE: usize = 2;
+
+/// The smallest distance between two groups of shapes, and which they are; or, where nothing is
+/// nearer than what was asked about, that distance and no names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// Signed distance, metres; negative where they overlap.
+    pub distance_m: f64,
+    /// The link of the arm.
+    pub link: &'static str,
+    /// What it is near to.
+    pub other: &'static str,
+}
+
+/// One arm's enclosing capsules at one posture, in `base`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArmShape<'a> {
+    arm: &'a Arm,
+    capsules: Vec<Capsule>,
+    /// A ball round each capsule.
+    balls: Vec<Ball>,
+}
+
+/// A ball that encloses a shape: two shapes are no nearer than their balls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ball {
+    centre: Vector3<f64>,
+    radius: f64,
+}
+
+impl Ball {
+    fn round_capsule(capsule: &Capsule) -> Self {
+        let half = (capsule.b - capsule.a) * 0.5;
+        Self { centre: capsule.a + half, radius: half.norm() + capsule.radius }
+    }
+
+    fn round_cuboid(cuboid: &Cuboid) -> Self {
+        let radius = 0.5 * Vector3::from(cuboid.size).norm();
+        Self { centre: Vector3::from(cuboid.centre), radius }
+    }
+
+    /// Whether the shapes in two balls may be nearer than `distance_m`.
+    #[inline]
+    fn may_be_nearer(&self, other: &Self, distance_m: f64) -> bool {
+        let reach = self.radius + other.radius + distance_m;
+        reach > 0.0 && (self.centre - other.centre).norm_squared() < reach * reach
+    }
+}
+
+impl Gap {
+    /// Nothing is nearer than `distance_m`.
+    pub const fn none(distance_m: f64) -> Self {
+        Self { distance_m, link: "", other: "" }
+    }
+
+    /// Whether something was found.
+    pub fn is_some(&self) -> bool {
+        !self.link.is_empty()
+    }
+
+    /// The smaller of two gaps.
+    pub fn min(self, other: Self) -> Self {
+        if other.distance_m < self.distance_m { other } else { self }
+    }
+}
+
+impl<'a> ArmShape<'a> {
+    /// The arm at joint positions `q`.
+    pub fn at(arm: &'a Arm, q: &Joints) -> Self {
+        let capsules = arm.capsules(q);
+        let balls = capsules.iter().map(Ball::round_capsule).collect();
+        Self { arm, capsules, balls }
+    }
+
+    /// The enclosing capsules, shoulder first.
+    pub fn capsules(&self) -> &[Capsule] {
+        &self.capsules
+    }
+
+    /// Gap between links of this arm that are at least two joints apart, if it is below `within_m`.
+    pub fn to_itself(&self, within_m: f64) -> Gap {
+        let mut gap = Gap::none(within_m);
+        for (i, j) in &self.arm.pairs {
+            if self.balls[*i].may_be_nearer(&self.balls[*j], gap.distance_m) {
+                let distance = self.capsules[*i].to_capsule(&self.capsules[*j]);
+                gap = gap.min(self.gap(distance, *i, self.arm.enclosures[*j].link));
+            }
+        }
+        gap
+    }
+
+    /// Gap to the other arm, if it is below `within_m`.
+    pub fn to_arm(&self, other: &ArmShape<'_>, within_m: f64) -> Gap {
+        let mut gap = Gap::none(within_m);
+        for (i, (own, ball)) in self.capsules.iter().zip(&self.balls).enumerate() {
+            for (j, theirs) in other.capsules.iter().enumerate() {
+                if ball.may_be_nearer(&other.balls[j], gap.distance_m) {
+                    let link = other.arm.enclosures[j].link;
+                    gap = gap.min(self.gap(own.to_capsule(theirs), i, link));
+                }
+            }
+        }
+        gap
+    }
+
+    /// Gap to torso, pedestal and head, if it is below `within_m`.
+    pub fn to_trunk(&self, within_m: f64) -> Gap {
+        let mut gap = Gap::none(within_m);
+        for (name, cuboid) in &self.arm.body.cuboids {
+            gap = gap.min(self.to_cuboid_from(FIRST_LOOSE, name, cuboid, gap.distance_m));
+        }
+        for (name, capsule) in &self.arm.body.capsules {
+            let round = Ball::round_capsule(capsule);
+            for (i, own) in self.moved_by(FIRST_LOOSE) {
+                if self.balls[i].may_be_nearer(&round, gap.distance_m) {
+                    gap = gap.min(self.gap(own.to_capsule(capsule), i, name));
+                }
+            }
+        }
+        gap
+    }
+
+    /// Gap between the whole arm and a box of the surroundings, if it is below `within_m`.
+    pub fn to_cuboid(&self, name: &'static str, cuboid: &Cuboid, within_m: f64) -> Gap {
+        self.to_cuboid_from(0, name, cuboid, within_m)
+    }
+
+    fn to_cuboid_from(
+        &self,
+        first: usize,
+        name: &'static str,
+        cuboid: &Cuboid,
+        within_m: f64,
+    ) -> Gap {
+        let round = Ball::round_cuboid(cuboid);
+        let mut gap = Gap::none(within_m);
+        for (i, own) in self.moved_by(first) {
+            if self.balls[i].may_be_nearer(&round, gap.distance_m) {
+                gap = gap.min(self.gap(own.to_cuboid(cuboid), i, name));
+            }
+        }
+        gap
+    }
+
+    /// The capsules that joint `first` and those after it move, with their numbers.
+    fn moved_by(&self, first: usize) -> impl Iterator<Item = (usize, &Capsule)> {
+        let moved = move |i: &usize| self.arm.enclosures[*i].joint >= first;
+        (0..self.capsules.len()).filter(moved).map(move |i| (i, &self.capsules[i]))
+    }
+
+    fn gap(&self, distance_m: f64, capsule: usize, other: &'static str) -> Gap {
+        Gap { distance_m, link: self.arm.enclosures[capsule].link, other }
+    }
+}
+
+/// Both arms' clearances by group, metres, negative where shapes overlap.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearance {
+    /// Arm to arm.
+    pub left_right: Gap,
+    /// Left arm to torso, pedestal and head.
+    pub left_body: Gap,
+    /// Right arm to torso, pedestal and head.
+    pub right_body: Gap,
+    /// Left arm to itself.
+    pub left_self: Gap,
+    /// Right arm to itself.
+    pub right_self: Gap,
+    /// Left arm to the nearest of the surroundings.
+    pub left_surroundings: Gap,
+    /// Right arm to the nearest of the surroundings.
+    pub right_surroundings: Gap,
+}
+
+impl Clearance {
+    /// Clearances with the arms at `left` and `right` among `surroundings`.
+    pub fn of(robot: &Robot, left: &Joints, right: &Joints, surroundings: &[Cuboid]) -> Self {
+        let left = ArmShape::at(robot.arm(Limb::Left), left);
+        let right = ArmShape::at(robot.arm(Limb::Right), right);
+        let around = |arm: &ArmShape<'_>| {
+            surroundings.iter().fold(Gap::none(f64::INFINITY), |gap, cuboid| {
+                gap.min(arm.to_cuboid("surroundings", cuboid, gap.distance_m))
+            })
+        };
+        Self {
+            left_right: left.to_arm(&right, f64::INFINITY),
+            left_body: left.to_trunk(f64::INFINITY),
+            right_body: right.to_trunk(f64::INFINITY),
+            left_self: left.to_itself(f64::INFINITY),
+            right_self: right.to_itself(f64::INFINITY),
+            left_surroundings: around(&left),
+            right_surroundings: around(&right),
+        }
+    }
+
+    /// The smallest gap within the robot.
+    pub fn robot(&self) -> Gap {
+        [self.left_body, self.right_body, self.left_self, self.right_self]
+            .into_iter()
+            .fold(self.left_right, Gap::min)
+    }
+}

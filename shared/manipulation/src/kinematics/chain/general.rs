@@ -1,0 +1,54 @@
+//! A chain of seven turning joints of any kind.
+
+use super::frame::Frame;
+use super::zero::ZeroPosture;
+use crate::kinematics::chain::trig::sin_cos;
+use crate::kinematics::limb::Joints;
+use nalgebra::Vector3;
+
+/// Each joint turns about the z axis of its own frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct General {
+    /// Each frame at zero in the one before, the first in `base`.
+    steps: [Frame; 7],
+    /// The tool in the last frame.
+    tool: Frame,
+}
+
+impl General {
+    pub(crate) fn of(posture: &ZeroPosture) -> Self {
+        let frames = posture.axes.map(|axis| {
+            let z = axis.direction;
+            // Any direction that is not z itself will do for what x is at right angles to.
+            let aside = if z.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+            let x = aside.cross(&z).normalize();
+            Frame { x, y: z.cross(&x), z, origin: axis.point }
+        });
+        let steps = std::array::from_fn(|i| {
+            if i == 0 { frames[0] } else { frames[i - 1].relative(&frames[i]) }
+        });
+        Self { steps, tool: frames[6].relative(&Frame::from(&posture.tool)) }
+    }
+
+    /// A point of the first axis, in `base`, metres.
+    pub(crate) fn shoulder(&self) -> Vector3<f64> {
+        self.steps[0].origin
+    }
+
+    /// The frames at `q`, in `base`.
+    pub(crate) fn frames(&self, q: &Joints) -> [Frame; 7] {
+        let turns = sin_cos(q);
+        let mut last = self.steps[0].turned_z(turns[0]);
+        let mut frames = [last; 7];
+        for i in 1..7 {
+            last = last.compose(&self.steps[i]).turned_z(turns[i]);
+            frames[i] = last;
+        }
+        frames
+    }
+
+    /// The tool on the last frame.
+    pub(crate) fn tool_on(&self, last: &Frame) -> Frame {
+        last.compose(&self.tool)
+    }
+}

@@ -1,0 +1,165 @@
+//! One limb's kinematic chain: forward kinematics and the geometric Jacobian.
+
+mod alternating;
+mod frame;
+mod general;
+mod line;
+pub(crate) mod trig;
+mod zero;
+
+use nalgebra::{Isometry3, SMatrix, Vector3};
+
+pub(crate) use alternating::Alternating;
+pub use frame::Frame;
+pub(crate) use frame::positive;
+use general::General;
+pub use line::LineError;
+pub use zero::{Axis, ZeroPosture};
+
+use crate::kinematics::limb::Joints;
+use crate::kinematics::limits::PositionLimits;
+
+#[cfg(test)]
+mod tests;
+
+/// Rows v_x v_y v_z w_x w_y w_z (velocity of the tool point in m/s and angular velocity in rad/s
+/// per rad/s of a joint, axes of `base`), columns `s0..w2`.
+pub type Jacobian = SMatrix<f64, 6, 7>;
+
+/// One limb from frame `base` to its tool frame, `<limb>_gripper`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chain {
+    geometry: Geometry,
+    limits: PositionLimits,
+}
+
+/// What kind of limb it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "both are large, and there are two limbs")]
+pub(crate) enum Geometry {
+    /// Like Baxter's: solved in closed form.
+    Alternating(Alternating),
+    /// Any other: solved by numbers.
+    General(General),
+}
+
+impl Chain {
+    /// The chain of a limb with these axes, tool and position limits.
+    pub fn new(posture: &ZeroPosture, limits: PositionLimits) -> Self {
+        let geometry = match Alternating::of(posture) {
+            Some(alternating) => Geometry::Alternating(alternating),
+            None => Geometry::General(General::of(posture)),
+        };
+        Self { geometry, limits }
+    }
+
+    /// The same limb with its tool frame moved by `tool`, a pose in the present tool frame.
+    pub fn with_tool(&self, tool: &Isometry3<f64>) -> Self {
+        let tool = self.forward(&[0.0; 7]) * tool;
+        let axes = match &self.geometry {
+            Geometry::Alternating(chain) => {
+                let frames = chain.frames(&[0.0; 7]);
+                std::array::from_fn(|i| Axis {
+                    point: frames[i].origin,
+                    direction: Alternating::axis(i, &frames[i]),
+                })
+            }
+            Geometry::General(chain) => chain
+                .frames(&[0.0; 7])
+                .map(|frame| Axis { point: frame.origin, direction: frame.z }),
+        };
+        Self::new(&ZeroPosture { axes, tool }, self.limits)
+    }
+
+    /// Position limits of the joints.
+    pub fn limits(&self) -> &PositionLimits {
+        &self.limits
+    }
+
+    /// Whether the limb is of Baxter's family, for which inverse kinematics are in closed form;
+    /// those of others are found by iteration, some ten times slower.
+    pub fn is_closed_form(&self) -> bool {
+        matches!(self.geometry, Geometry::Alternating(_))
+    }
+
+    /// The foot of the first axis beside the shoulder, in `base`, metres.
+    pub(crate) fn shoulder(&self) -> Vector3<f64> {
+        match &self.geometry {
+            Geometry::Alternating(chain) => chain.mount.origin,
+            Geometry::General(chain) => chain.shoulder(),
+        }
+    }
+
+    pub(crate) fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// A frame for each joint `s0..w2` that moves with it, in `base`. Where it sits and how it is
+    /// turned on its link is the chain's own choice: put what is to move with a link into its frame
+    /// at zero ([`Frame::point`]), and it will be right everywhere.
+    #[inline(always)]
+    pub fn frames(&self, q: &Joints) -> [Frame; 7] {
+        match &self.geometry {
+            Geometry::Alternating(chain) => chain.frames(q),
+            Geometry::General(chain) => chain.frames(q),
+        }
+    }
+
+    /// The tool frame in `base`, as axes and origin.
+    #[inline]
+    pub fn tool_frame(&self, q: &Joints) -> Frame {
+        match &self.geometry {
+            Geometry::Alternating(chain) => chain.tool_on(&chain.frames(q)[6]),
+            Geometry::General(chain) => chain.tool_on(&chain.frames(q)[6]),
+        }
+    }
+
+    /// Pose of `<limb>_gripper` in `base`; the quaternion has w ≥ 0.
+    pub fn forward(&self, q: &Joints) -> Isometry3<f64> {
+        self.tool_frame(q).isometry()
+    }
+
+    /// Geometric Jacobian of `<limb>_gripper` at `q`.
+    pub fn jacobian(&self, q: &Joints) -> Jacobian {
+        self.tool_and_jacobian(q).1
+    }
+
+    /// Tool frame and Jacobian together, for the price of little more than one.
+    #[inline]
+    pub fn tool_and_jacobian(&self, q: &Joints) -> (Frame, Jacobian) {
+        match &self.geometry {
+            Geometry::Alternating(chain) => {
+                let frames = chain.frames(q);
+                let tool = chain.tool_on(&frames[6]);
+                (tool, jacobian(&frames, &tool, Alternating::axis))
+            }
+            Geometry::General(chain) => {
+                let frames = chain.frames(q);
+                let tool = chain.tool_on(&frames[6]);
+                (tool, jacobian(&frames, &tool, |_, frame| frame.z))
+            }
+        }
+    }
+
+    /// Manipulability `√det(J Jᵀ)` at `q` (Yoshikawa 1985); 0 where the arm loses a direction.
+    pub fn manipulability(&self, q: &Joints) -> f64 {
+        let j = self.jacobian(q);
+        (j * j.transpose()).determinant().max(0.0).sqrt()
+    }
+}
+
+#[inline(always)]
+fn jacobian(
+    frames: &[Frame; 7],
+    tool: &Frame,
+    axis: impl Fn(usize, &Frame) -> Vector3<f64>,
+) -> Jacobian {
+    let mut jacobian = Jacobian::zeros();
+    for (i, frame) in frames.iter().enumerate() {
+        let axis = axis(i, frame);
+        let linear = axis.cross(&(tool.origin - frame.origin));
+        jacobian.fixed_view_mut::<3, 1>(0, i).copy_from(&linear);
+        jacobian.fixed_view_mut::<3, 1>(3, i).copy_from(&axis);
+    }
+    jacobian
+}

@@ -1,0 +1,151 @@
+//! The second half of a pick: lift, hand over, release, return; and the way home alone.
+
+use nalgebra::{Isometry3, Translation3};
+
+use super::error::PlanError;
+use super::fetch::{ABOVE, Carry, HAND_OVER, HOME};
+use super::pick::{PickPhase, PickPlan, planning_scene};
+use super::planning_scene::{Arms, PlanSettings, PlanningScene, Search};
+use crate::collision::Cuboid;
+use crate::gripper;
+use crate::kinematics::limb::{Joints, Limb};
+use crate::planning::grasp::ObjectPose;
+use crate::robot::Robot;
+use crate::trajectory::{Stage, Timeline, Trajectory, refuse_outside};
+
+/// Waypoints of a straight line left out at its upper end, so that the corner there has room: 3 cm.
+pub(crate) const CORNER: usize = 6;
+
+/// Seconds that the fingers rest after they closed or opened.
+const SETTLE_S: f64 = 0.2;
+
+/// The enclosing capsules end this far below the fingertips, and a little, metres.
+const BELOW_TIP_M: f64 = 0.005;
+
+/// Plans the rest of a pick for an arm that already holds `object`, given as it stood, at
+/// `object_in_gripper`: lift it if the gripper is still over its place, hand over, release, return.
+///
+/// # Errors
+/// [`PlanError`] if the hand over cannot be reached from here.
+pub fn plan_delivery(
+    robot: &Robot,
+    object: &ObjectPose,
+    object_in_gripper: &Isometry3<f64>,
+    limb: Limb,
+    arms: &Arms,
+    others: &[Cuboid],
+    settings: &PlanSettings,
+) -> Result<PickPlan, PlanError> {
+    let scene = planning_scene(robot, object, limb, arms, others, settings)?;
+    let carrying = scene.carrying(object, object_in_gripper);
+    let held = scene.chain.forward(&scene.q);
+    let above = Translation3::new(0.0, 0.0, still_to_lift_m(object, &held, settings)) * held;
+    let lift = scene.chain.line(&scene.q, &above).map_err(|line| PlanError::Line {
+        at: ABOVE,
+        limb,
+        line,
+    })?;
+    let width_m = gripper::closed_on(object.grasp_width_m);
+    let stages = deliver(&scene, &carrying, lift, width_m, Search::Yes)?;
+    let timeline = Timeline::new(limb, stages);
+    Ok(PickPlan { timeline, grasp: None, object_in_gripper: *object_in_gripper })
+}
+
+/// How much higher the gripper must go before it may leave the object's place; 0 elsewhere.
+pub(crate) fn still_to_lift_m(
+    object: &ObjectPose,
+    held: &Isometry3<f64>,
+    settings: &PlanSettings,
+) -> f64 {
+    let [x, y, _] = object.xyz_m;
+    let beside = (held.translation.x - x).hypot(held.translation.y - y);
+    if beside > object.size_m[0].hypot(object.size_m[1]) {
+        return 0.0;
+    }
+    (object.top_z_m() + settings.hover_m - held.translation.z).max(0.0)
+}
+
+/// Plans the way back to the neutral posture from wherever the arm is, fingers open. `others` is
+/// everything that stands around except what the fingers are at.
+///
+/// # Errors
+/// [`PlanError`] if every way is blocked.
+pub fn plan_return(
+    robot: &Robot,
+    limb: Limb,
+    arms: &Arms,
+    others: &[Cuboid],
+    settings: &PlanSettings,
+) -> Result<PickPlan, PlanError> {
+    let chain = &robot.arm(limb).chain;
+    refuse_outside(chain.limits(), arms.of(limb))?;
+    let at = chain.forward(arms.of(limb)).translation;
+    // Whatever the arm is over now it has reached down to without touching.
+    let place = ([at.x, at.y, at.z], at.z - BELOW_TIP_M);
+    let scene = PlanningScene::new(robot, limb, arms, others, place, settings);
+    let way = home(&scene, &scene.q, Search::Yes)?;
+    let stage = Stage {
+        phase: PickPhase::Return,
+        motion: scene.motion(HOME, &way)?,
+        width_m: (settings.open_width_m, settings.open_width_m),
+    };
+    let timeline = Timeline::new(limb, vec![stage]);
+    Ok(PickPlan { timeline, grasp: None, object_in_gripper: Isometry3::identity() })
+}
+
+/// Lift, hand over, release and return, from the low end of `lift`: `carrying` the object, and
+/// without it from the hand over on.
+pub(crate) fn deliver(
+    scene: &PlanningScene<'_>,
+    carrying: &PlanningScene<'_>,
+    lift: Vec<Joints>,
+    width_m: f64,
+    search: Search,
+) -> Result<Vec<Stage<PickPhase>>, PlanError> {
+    let above = lift[lift.len() - 1];
+    let carry = Carry::find(carrying, &above, search)?;
+    let mut waypoints = lift[..lift.len().saturating_sub(CORNER).max(1)].to_vec();
+    waypoints.push(above);
+    waypoints.extend(carry.waypoints.iter().skip(if carry.straight { CORNER } else { 1 }));
+    waypoints.push(*carry.end());
+    let whole = carrying.motion(HAND_OVER, &waypoints)?;
+    let (lift, hand_over) = whole.split(whole.time_nearest(&above));
+    let open_m = scene.settings.open_width_m;
+    let home = scene.motion(HOME, &home(scene, carry.end(), search)?)?;
+    let closed = (width_m, width_m);
+    Ok(vec![
+        Stage { phase: PickPhase::Lift, motion: lift, width_m: closed },
+        Stage { phase: PickPhase::HandOver, motion: hand_over, width_m: closed },
+        fingers(scene, PickPhase::Release, carry.end(), (width_m, open_m)),
+        Stage { phase: PickPhase::Return, motion: home, width_m: (open_m, open_m) },
+    ])
+}
+
+/// The way to the neutral posture; straight up first if something is in the way.
+fn home(
+    scene: &PlanningScene<'_>,
+    from: &Joints,
+    search: Search,
+) -> Result<Vec<Joints>, PlanError> {
+    if let Some(way) = scene.way(from, &scene.arm.neutral, Search::No) {
+        return Ok(way);
+    }
+    let pose = scene.chain.forward(from);
+    let raised = Translation3::new(0.0, 0.0, scene.settings.hover_m) * pose;
+    let mut up = scene.chain.line(from, &raised).unwrap_or_else(|_| vec![*from]);
+    let (top, neutral) = (up[up.len() - 1], &scene.arm.neutral);
+    let rest = scene.way(&top, neutral, search);
+    let rest = rest.ok_or_else(|| scene.no_path(HOME, &top, neutral))?;
+    up.extend(rest.into_iter().skip(1));
+    Ok(up)
+}
+
+pub(crate) fn fingers(
+    scene: &PlanningScene<'_>,
+    phase: PickPhase,
+    q: &Joints,
+    (from_m, to_m): (f64, f64),
+) -> Stage<PickPhase> {
+    let seconds = gripper::seconds_between(from_m, to_m) + SETTLE_S;
+    Stage { phase, motion: Trajectory::hold(q, seconds, &scene.limits), width_m: (from_m, to_m) }
+}

@@ -1,0 +1,197 @@
+//! One grasp tried with one limb: where the arm would be above it, on the way down and at the
+//! hand over.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Isometry3, UnitQuaternion, Vector3};
+
+use super::error::PlanError;
+use super::planning_scene::{PlanSettings, PlanningScene, Search};
+use crate::kinematics::limb::{Joints, Limb};
+use crate::planning::grasp::Grasp;
+
+/// How the arm holds the object: postures above the grasp and on the straight way down to it.
+#[derive(Clone, Debug)]
+pub(crate) struct Hold {
+    /// From above the grasp down to it.
+    pub(crate) descent: Vec<Joints>,
+}
+
+/// The carry from above the grasp to where the object is handed over.
+#[derive(Clone, Debug)]
+pub(crate) struct Carry {
+    pub(crate) waypoints: Vec<Joints>,
+    /// Whether the waypoints are a straight line of the gripper, 5 mm apart.
+    pub(crate) straight: bool,
+}
+
+/// Postures tried at the hand over for one turn.
+const ENDS: usize = 3;
+
+/// Turns about the vertical at the hand over: every 2°, the smallest first. Beside other objects a
+/// wide one may have no more room than that.
+const TURNS: usize = 180;
+
+/// Turns tried at which what is held is clear of everything, and how far apart they are, radians.
+const TURNS_TRIED: usize = 10;
+const TURNS_APART_RAD: f64 = 0.3;
+
+/// How far above the hand over an object is handed over, metres: no higher than needed.
+const RAISED_M: [f64; 4] = [0.0, 0.04, 0.08, 0.12];
+
+pub(crate) const ABOVE: &str = "the place above the object";
+pub(crate) const GRASP: &str = "the grasp";
+pub(crate) const LIFT: &str = "the lift";
+pub(crate) const HAND_OVER: &str = "the hand over";
+pub(crate) const HOME: &str = "the neutral posture";
+
+impl Hold {
+    /// Holds `grasp` coming straight down from `above`. Errors with how far the attempt came.
+    pub(crate) fn down(
+        scene: &PlanningScene<'_>,
+        grasp: &Grasp,
+        above: &Joints,
+    ) -> Result<Self, (usize, PlanError)> {
+        let limb = scene.limb;
+        if let Some(gap) = scene.blocked(above) {
+            return Err((1, PlanError::Blocked { at: ABOVE, limb, gap }));
+        }
+        let descent = scene
+            .chain
+            .line(above, &grasp.gripper)
+            .map_err(|line| (2, PlanError::Line { at: GRASP, limb, line }))?;
+        match scene.blocked_along(&descent) {
+            Some(gap) => Err((3, PlanError::Blocked { at: GRASP, limb, gap })),
+            None => Ok(Self { descent }),
+        }
+    }
+
+    /// The posture above the grasp.
+    pub(crate) fn above(&self) -> &Joints {
+        &self.descent[0]
+    }
+
+    /// The posture at the grasp.
+    pub(crate) fn grasp(&self) -> &Joints {
+        &self.descent[self.descent.len() - 1]
+    }
+}
+
+impl PlanSettings {
+    /// Whether a gripper at `tip_m` (frame `base`) is where `limb` hands objects over: at the place, or
+    /// straight above it where a pick had to go higher; to within `within_m` metres.
+    pub fn is_hand_over(&self, limb: Limb, tip_m: &Vector3<f64>, within_m: f64) -> bool {
+        let place = Vector3::from(self.hand_over_m(limb));
+        RAISED_M.iter().any(|up| (place + Vector3::z() * *up - tip_m).norm() < within_m)
+    }
+}
+
+impl Carry {
+    /// From `from` to the hand over, or straight above it where what is held or the hand would touch
+    /// something there.
+    pub(crate) fn find(
+        scene: &PlanningScene<'_>,
+        from: &Joints,
+        search: Search,
+    ) -> Result<Self, PlanError> {
+        let [lowest, higher @ ..] = RAISED_M;
+        let first = Self::to(scene, from, lowest, search);
+        let Err(PlanError::Blocked { .. }) = first else { return first };
+        let raised = higher.into_iter().find_map(|up| Self::to(scene, from, up, search).ok());
+        raised.map_or(first, Ok)
+    }
+
+    /// To `raised_m` above the hand over, where what is held is upright: straight, else turned about
+    /// the vertical and through joint space.
+    fn to(
+        scene: &PlanningScene<'_>,
+        from: &Joints,
+        raised_m: f64,
+        search: Search,
+    ) -> Result<Self, PlanError> {
+        let limb = scene.limb;
+        let upright = scene.upright(&scene.chain.forward(from));
+        let target = |turn: f64| {
+            let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), turn);
+            let place = Vector3::from(scene.settings.hand_over_m(limb));
+            let place = place + Vector3::z() * raised_m;
+            Isometry3::from_parts(place.into(), turn * upright)
+        };
+        if let Some(waypoints) = straight(scene, from, &target(0.0)) {
+            return Ok(Self { waypoints, straight: true });
+        }
+        let mut error = None;
+        let mut tried = Vec::with_capacity(TURNS_TRIED);
+        for turn in (0..TURNS).map(turn_of) {
+            let target = target(turn);
+            if tried.iter().any(|other: &f64| (other - turn).abs() < TURNS_APART_RAD) {
+                continue;
+            }
+            if let Some(gap) = scene.held_blocked(&target) {
+                error.get_or_insert(PlanError::Blocked { at: HAND_OVER, limb, gap });
+                continue;
+            }
+            let ends = match scene.postures(&target, from) {
+                Ok(ends) => ends,
+                Err(missed) => {
+                    let distance_m = missed.position_error_m;
+                    error.get_or_insert(PlanError::Unreachable { at: HAND_OVER, limb, distance_m });
+                    continue;
+                }
+            };
+            for (_, end) in ends.into_iter().take(ENDS) {
+                match scene.blocked(&end) {
+                    Some(gap) => error = Some(PlanError::Blocked { at: HAND_OVER, limb, gap }),
+                    None => match scene.way(from, &end, search) {
+                        Some(waypoints) => return Ok(Self { waypoints, straight: false }),
+                        None => error = Some(scene.no_path(HAND_OVER, from, &end)),
+                    },
+                }
+            }
+            tried.push(turn);
+            if tried.len() >= TURNS_TRIED {
+                break;
+            }
+        }
+        Err(error.unwrap_or(PlanError::NoPath { at: HAND_OVER, limb, gap: None }))
+    }
+
+    /// The posture at the hand over.
+    pub(crate) fn end(&self) -> &Joints {
+        &self.waypoints[self.waypoints.len() - 1]
+    }
+}
+
+/// 0, then to either side further and further, radians.
+fn turn_of(k: usize) -> f64 {
+    let side = if k % 2 == 1 { 1.0 } else { -1.0 };
+    side * k.div_ceil(2) as f64 * 2.0 * PI / TURNS as f64
+}
+
+fn straight(
+    scene: &PlanningScene<'_>,
+    from: &Joints,
+    target: &Isometry3<f64>,
+) -> Option<Vec<Joints>> {
+    let waypoints = scene.chain.line(from, target).ok()?;
+    scene.blocked_along(&waypoints).is_none().then_some(waypoints)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_object_is_handed_over_at_the_place_or_straight_above_it() {
+        let settings = PlanSettings::default();
+        for limb in Limb::BOTH {
+            let place = Vector3::from(settings.hand_over_m(limb));
+            let is_there = |x: f64, y: f64, z: f64| {
+                settings.is_hand_over(limb, &(place + Vector3::new(x, y, z)), 0.005)
+            };
+            assert!(is_there(0.0, 0.0, 0.0) && is_there(0.001, -0.001, 0.08));
+            assert!(!is_there(0.02, 0.0, 0.08) && !is_there(0.0, 0.0, -0.02));
+            assert!(!is_there(0.0, 0.0, 0.3));
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! Where an object stands and how the gripper can take hold of it from above.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
+
+use crate::collision::Cuboid;
+use crate::gripper::STROKE_M;
+use crate::kinematics::chain::positive;
+
+#[cfg(test)]
+mod tests;
+
+/// An object that stands upright in frame `base`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObjectPose {
+    /// Centre, metres.
+    pub xyz_m: [f64; 3],
+    /// Rotation about the vertical, radians.
+    pub yaw_rad: f64,
+    /// Extents along its own x, y and z, metres.
+    pub size_m: [f64; 3],
+    /// Width that the gripper closes on, metres: its thickness, or that of its rim.
+    pub grasp_width_m: f64,
+}
+
+/// One way to hold an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grasp {
+    /// Pose of `<limb>_gripper` in `base` as the fingers close: its z axis straight down, the
+    /// fingers moving along its y axis.
+    pub gripper: Isometry3<f64>,
+    /// Width between the fingers once closed, metres.
+    pub width_m: f64,
+}
+
+/// Why an object offers no grasp.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum GraspError {
+    /// The fingers do not open that wide.
+    #[error(
+        "the gripper would close on {:.0} mm but opens {:.0} mm at most",
+        width_m * 1e3,
+        STROKE_M * 1e3
+    )]
+    TooWide {
+        /// The object's grasp width, metres.
+        width_m: f64,
+    },
+    /// A number that no object has.
+    #[error("{what} must be a finite number{}", if *positive { " above zero" } else { "" })]
+    Malformed {
+        /// Which one.
+        what: &'static str,
+        /// Whether it must also be positive.
+        positive: bool,
+    },
+}
+
+/// How deep below an object's top the fingertips go, metres, where it is tall enough.
+const DEPTH_M: f64 = 0.02;
+
+/// Fingertips stay this far above what the object stands on, metres.
+const TIP_CLEAR_M: f64 = 0.003;
+
+/// Directions in which a round rim is gripped: every 30°.
+const RIM_DIRECTIONS: usize = 12;
+
+/// Extents that differ by less than this share make a footprint count as round.
+const ROUND: f64 = 0.05;
+
+impl ObjectPose {
+    /// The object's own frame in `base`.
+    pub fn isometry(&self) -> Isometry3<f64> {
+        Isometry3::from_parts(
+            Translation3::from(Vector3::from(self.xyz_m)),
+            positive(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), self.yaw_rad)),
+        )
+    }
+
+    /// Height of its top in `base`, metres.
+    pub fn top_z_m(&self) -> f64 {
+        self.xyz_m[2] + 0.5 * self.size_m[2]
+    }
+
+    /// Height of what it stands on in `base`, metres.
+    pub fn bottom_z_m(&self) -> f64 {
+        self.xyz_m[2] - 0.5 * self.size_m[2]
+    }
+
+    /// The upright box around it.
+    pub fn cuboid(&self) -> Cuboid {
+        Cuboid { centre: self.xyz_m, size: self.size_m, yaw: self.yaw_rad }
+    }
+
+    /// Every grasp from straight above: across each side that the fingers span, or, where the
+    /// object is wider than the gripper, on its rim.
+    ///
+    /// # Errors
+    /// [`GraspError`] for a width beyond the gripper's, or numbers that make no object.
+    pub fn grasps(&self) -> Result<Vec<Grasp>, GraspError> {
+        self.refuse_malformed()?;
+        if self.grasp_width_m > STROKE_M {
+            return Err(GraspError::TooWide { width_m: self.grasp_width_m });
+        }
+        let across = self.across();
+        Ok(if across.is_empty() { self.on_rim() } else { across })
+    }
+
+    fn refuse_malformed(&self) -> Result<(), GraspError> {
+        let finite = [("xyz", &self.xyz_m[..]), ("yaw", std::slice::from_ref(&self.yaw_rad))];
+        for (what, numbers) in finite {
+            if numbers.iter().any(|n| !n.is_finite()) {
+                return Err(GraspError::Malformed { what, positive: false });
+            }
+        }
+        let width = std::slice::from_ref(&self.grasp_width_m);
+        for (what, numbers) in [("size", &self.size_m[..]), ("grasp_width", width)] {
+            if numbers.iter().any(|n| !(n.is_finite() && *n > 0.0)) {
+                return Err(GraspError::Malformed { what, positive: true });
+            }
+        }
+        Ok(())
+    }
+
+    /// Over the centre, fingers closing along the narrow extents.
+    fn across(&self) -> Vec<Grasp> {
+        let z = self.tip_z(self.xyz_m[2]);
+        [1, 0]
+            .into_iter()
+            .filter(|&axis| self.size_m[axis] <= STROKE_M)
+            .flat_map(|axis| {
+                let along = self.yaw_rad + if axis == 1 { FRAC_PI_2 } else { 0.0 };
+                self.both_ways(self.xyz_m[0], self.xyz_m[1], z, along)
+            })
+            .collect()
+    }
+
+    /// On the wall of a bowl or box, one finger inside and one outside.
+    fn on_rim(&self) -> Vec<Grasp> {
+        let [x, y, _] = self.size_m;
+        let round = (x - y).abs() <= ROUND * x.max(y);
+        let count = if round { RIM_DIRECTIONS } else { 4 };
+        let z = self.tip_z(self.xyz_m[2]);
+        (0..count)
+            .flat_map(|k| {
+                let turned = 2.0 * PI * k as f64 / count as f64;
+                // The extent that this direction crosses; a round footprint has only one.
+                let extent = if round || k % 2 == 0 { x } else { y };
+                let radius = 0.5 * (extent - self.grasp_width_m);
+                let along = self.yaw_rad + turned;
+                let centre =
+                    [self.xyz_m[0] + radius * along.cos(), self.xyz_m[1] + radius * along.sin()];
+                self.both_ways(centre[0], centre[1], z, along)
+            })
+            .collect()
+    }
+
+    /// Height of the fingertips: a little below the top, not below `lowest` and never on what the
+    /// object stands on.
+    fn tip_z(&self, lowest: f64) -> f64 {
+        (self.top_z_m() - DEPTH_M).max(lowest).max(self.bottom_z_m() + TIP_CLEAR_M)
+    }
+
+    /// The gripper at a point with its fingers moving along `along`; either finger may lead.
+    fn both_ways(&self, x: f64, y: f64, z: f64, along: f64) -> [Grasp; 2] {
+        [0.0, PI].map(|turned| Grasp {
+            gripper: downward([x, y, z], along + turned),
+            width_m: self.grasp_width_m,
+        })
+    }
+}
+
+impl Grasp {
+    /// The object's pose in the gripper's frame: what stays the same while it is held.
+    pub fn object_in_gripper(&self, object: &ObjectPose) -> Isometry3<f64> {
+        self.gripper.inverse() * object.isometry()
+    }
+
+    /// The gripper `height_m` straight above the grasp.
+    pub fn raised(&self, height_m: f64) -> Isometry3<f64> {
+        Translation3::new(0.0, 0.0, height_m) * self.gripper
+    }
+}
+
+/// A gripper at `xyz` that points straight down, its y axis at `along` from the x axis of `base`.
+pub(crate) fn downward(xyz: [f64; 3], along: f64) -> Isometry3<f64> {
+    let (s, c) = along.sin_cos();
+    let y = Vector3::new(c, s, 0.0);
+    let z = -Vector3::z();
+    let rotation = Rotation3::from_basis_unchecked(&[y.cross(&z), y, z]);
+    Isometry3::from_parts(
+        Translation3::from(Vector3::from(xyz)),
+        positive(UnitQuaternion::from_rotation_matrix(&rotation)),
+    )
+}

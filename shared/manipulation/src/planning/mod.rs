@@ -1,0 +1,24 @@
+//! Plans with a purpose: fetching an object, pointing at one, returning to rest.
+
+mod check;
+mod choices;
+mod deliver;
+mod error;
+mod fetch;
+pub(crate) mod grasp;
+mod pick;
+mod planning_scene;
+mod point;
+mod posture;
+mod static_obstacles;
+#[cfg(test)]
+mod tests;
+
+pub use check::check_reachable;
+pub use deliver::{plan_delivery, plan_return};
+pub use error::PlanError;
+pub use grasp::{Grasp, GraspError, ObjectPose};
+pub use pick::{PickPhase, PickPlan, plan_pick};
+pub use planning_scene::{Arms, PlanSettings};
+pub use point::{PointPhase, PointPlan, plan_point};
+pub(crate) use static_obstacles::Obstacle;

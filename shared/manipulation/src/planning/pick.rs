@@ -1,0 +1,209 @@
+//! Fetching an object: approach, close, lift, hand over, release, return.
+
+use nalgebra::Isometry3;
+use serde::{Deserialize, Serialize};
+
+use super::choices::{Choice, Choices};
+use super::deliver::{CORNER, deliver, fingers};
+use super::error::{Furthest, PlanError};
+use super::fetch::{ABOVE, GRASP, Hold};
+use super::planning_scene::{Arms, PlanSettings, PlanningScene, Search};
+use crate::collision::Cuboid;
+use crate::gripper;
+use crate::kinematics::limb::{Joints, Limb};
+use crate::planning::grasp::{Grasp, ObjectPose};
+use crate::robot::Robot;
+use crate::trajectory::{Moment, Stage, Timeline, Trajectory, refuse_outside};
+
+/// The stages of a pick, in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PickPhase {
+    /// To above the object and straight down to it, fingers opening.
+    Approach,
+    /// The fingers close.
+    Close,
+    /// Straight up.
+    Lift,
+    /// To where the person takes the object.
+    HandOver,
+    /// The fingers open.
+    Release,
+    /// Back to the neutral posture.
+    Return,
+}
+
+/// A pick, from the arm's present posture to neutral, checked along its whole length.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PickPlan {
+    /// The stages in time.
+    pub timeline: Timeline<PickPhase>,
+    /// How the object is held; none for a plan that only returns.
+    pub grasp: Option<Grasp>,
+    /// The object's pose in the gripper's frame from the end of `Close` to the start of `Release`.
+    pub object_in_gripper: Isometry3<f64>,
+}
+
+impl PickPlan {
+    /// The limb that fetches.
+    pub fn limb(&self) -> Limb {
+        self.timeline.limb()
+    }
+
+    /// How long the whole takes, seconds.
+    pub fn duration_s(&self) -> f64 {
+        self.timeline.duration_s()
+    }
+
+    /// The state `t_s` seconds after the start.
+    pub fn at(&self, t_s: f64) -> Moment<PickPhase> {
+        self.timeline.at(t_s)
+    }
+
+    /// Whether the object moves with the gripper in this phase.
+    pub fn carries(phase: PickPhase) -> bool {
+        matches!(phase, PickPhase::Lift | PickPhase::HandOver)
+    }
+}
+
+/// Choices that are tried.
+const TRIES: usize = 64;
+
+/// Complete plans among which the best is taken, and how many there may be while all of them
+/// carry the elbow low over the table.
+const COMPARED: usize = 5;
+const COMPARED_LOW: usize = 10;
+
+/// Choices for which ways are searched for at length.
+const SEARCHED: usize = 8;
+
+/// Plans to fetch `object` with the arms at `arms`: with `limb`, or with the better one. `others` is
+/// everything else that stands around; neither the arm nor what it holds touches any of it.
+///
+/// Limbs, grasps and postures are tried in the order of their cost (seconds, closeness to joint
+/// limits, to everything around, and of the elbow to the table). Of the first complete plans the
+/// shortest is taken, one with a high elbow before any with a low one.
+///
+/// # Errors
+/// [`PlanError`] of the attempt that came furthest.
+pub fn plan_pick(
+    robot: &Robot,
+    object: &ObjectPose,
+    limb: Option<Limb>,
+    arms: &Arms,
+    others: &[Cuboid],
+    settings: &PlanSettings,
+) -> Result<PickPlan, PlanError> {
+    let scenes = planning_scenes(robot, object, limb, arms, others, settings)?;
+    let mut furthest = Furthest::default();
+    let mut choices = Choices::new(object, &scenes, &mut furthest)?;
+    let (mut best, mut found, mut lost) = (None::<(f64, PickPlan)>, 0, Vec::new());
+    for _ in 0..TRIES {
+        let Some(choice) = choices.next(&mut furthest) else { break };
+        match choice.plan(object, Search::No) {
+            Ok(plan) => {
+                let low_s = choice.scene.plan_lowness_s(&plan.timeline);
+                let cost_s = plan.duration_s() + low_s;
+                if best.as_ref().is_none_or(|(least_s, _)| cost_s < *least_s) {
+                    best = Some((cost_s, plan));
+                }
+                found += 1;
+                let high = best.as_ref().is_some_and(|(s, plan)| *s <= plan.duration_s());
+                if found >= COMPARED && high || found >= COMPARED_LOW {
+                    break;
+                }
+            }
+            Err((progress, error)) => {
+                furthest.add(progress, error);
+                choices.failed(&choice);
+                if progress >= BEYOND_HOLD && lost.len() < SEARCHED {
+                    lost.push(choice);
+                }
+            }
+        }
+    }
+    if let Some((_, plan)) = best {
+        return Ok(plan);
+    }
+    for choice in lost {
+        match choice.plan(object, Search::Yes) {
+            Ok(plan) => return Ok(plan),
+            Err((progress, error)) => furthest.add(progress, error),
+        }
+    }
+    Err(furthest.report())
+}
+
+/// Progress from which on a longer search may help: the grasp itself and its lift are possible.
+const BEYOND_HOLD: usize = 5;
+
+pub(crate) fn planning_scenes<'a>(
+    robot: &'a Robot,
+    object: &ObjectPose,
+    limb: Option<Limb>,
+    arms: &Arms,
+    others: &[Cuboid],
+    settings: &'a PlanSettings,
+) -> Result<Vec<PlanningScene<'a>>, PlanError> {
+    let mut limbs: Vec<Limb> =
+        Limb::BOTH.into_iter().filter(|side| limb.is_none_or(|limb| limb == *side)).collect();
+    // The arm on the object's own side first.
+    limbs.sort_by(|a, b| (b.side() * object.xyz_m[1]).total_cmp(&(a.side() * object.xyz_m[1])));
+    limbs
+        .into_iter()
+        .map(|limb| planning_scene(robot, object, limb, arms, others, settings))
+        .collect()
+}
+
+pub(crate) fn planning_scene<'a>(
+    robot: &'a Robot,
+    object: &ObjectPose,
+    limb: Limb,
+    arms: &Arms,
+    others: &[Cuboid],
+    settings: &'a PlanSettings,
+) -> Result<PlanningScene<'a>, PlanError> {
+    refuse_outside(robot.arm(limb).chain.limits(), arms.of(limb))?;
+    let bottom = object.bottom_z_m();
+    let scene = PlanningScene::new(robot, limb, arms, others, (object.xyz_m, bottom), settings);
+    Ok(scene.with_board_under(&object.cuboid()))
+}
+
+impl Choice<'_> {
+    fn plan(&self, object: &ObjectPose, search: Search) -> Result<PickPlan, (usize, PlanError)> {
+        let scene = self.scene;
+        let carrying = self.carrying(object);
+        let hold = self.hold(&carrying)?;
+        let limb = scene.limb;
+        let way = scene
+            .way(&scene.q, hold.above(), search)
+            .ok_or_else(|| (5, scene.no_path(ABOVE, &scene.q, hold.above())))?;
+        let width_m = gripper::closed_on(self.grasp.width_m);
+        let lift: Vec<Joints> = hold.descent.iter().rev().copied().collect();
+        let delivery = deliver(scene, &carrying, lift, width_m, search);
+        let delivery = delivery.map_err(|error| (6, error))?;
+        let approach = approach(scene, &way, &hold).map_err(|error| (7, error))?;
+        let open_m = scene.settings.open_width_m;
+        let mut stages = vec![
+            Stage { phase: PickPhase::Approach, motion: approach, width_m: (open_m, open_m) },
+            fingers(scene, PickPhase::Close, hold.grasp(), (open_m, width_m)),
+        ];
+        stages.extend(delivery);
+        Ok(PickPlan {
+            timeline: Timeline::new(limb, stages),
+            grasp: Some(self.grasp),
+            object_in_gripper: self.grasp.object_in_gripper(object),
+        })
+    }
+}
+
+/// To above the grasp and straight down in one motion, with no stop between.
+fn approach(
+    scene: &PlanningScene<'_>,
+    way: &[Joints],
+    hold: &Hold,
+) -> Result<Trajectory, PlanError> {
+    let mut waypoints = way.to_vec();
+    waypoints.extend(hold.descent.iter().skip(CORNER.min(hold.descent.len() - 1)));
+    scene.motion(GRASP, &waypoints)
+}

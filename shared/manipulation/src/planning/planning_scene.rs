@@ -1,0 +1,373 @@
+//! What a plan starts from: where both arms are, and what stands around.
+
+use nalgebra::{Isometry3, UnitQuaternion};
+
+use super::error::PlanError;
+use super::static_obstacles::{self, Obstacle};
+use crate::baxter::DEFAULT_SPEED_RATIO;
+use crate::collision::Cuboid;
+use crate::collision::block::Block;
+use crate::collision::held::Held;
+use crate::collision::{ArmShape, Gap};
+use crate::kinematics::chain::Chain;
+use crate::kinematics::limb::{Joints, Limb};
+use crate::kinematics::limits::MotionLimits;
+use crate::planning::grasp::ObjectPose;
+use crate::robot::{Arm, Robot};
+use crate::trajectory::Trajectory;
+use crate::trajectory::joint_path::{blocking, largest_change, searched, simple};
+
+/// Joint positions of both arms, radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arms {
+    /// The left arm's.
+    pub left: Joints,
+    /// The right arm's.
+    pub right: Joints,
+}
+
+impl Arms {
+    /// One arm's joint positions.
+    pub fn of(&self, limb: Limb) -> &Joints {
+        match limb {
+            Limb::Left => &self.left,
+            Limb::Right => &self.right,
+        }
+    }
+
+    /// One arm's joint positions, to be changed.
+    pub fn of_mut(&mut self, limb: Limb) -> &mut Joints {
+        match limb {
+            Limb::Left => &mut self.left,
+            Limb::Right => &mut self.right,
+        }
+    }
+}
+
+/// How the arm goes about its work. Lengths in metres, frame `base`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlanSettings {
+    /// Share of the joints' greatest velocities and accelerations, above 0 to 1.
+    pub speed_ratio: f64,
+    /// Height above the grasp from which the gripper comes straight down, and to which it lifts.
+    pub hover_m: f64,
+    /// Where the left gripper lets go of an object; the right one mirrors y. Where the object or the
+    /// hand would touch something there, it lets go up to 12 cm above.
+    pub hand_over_xyz_m: [f64; 3],
+    /// Height of the table's top. An object that stands lower (in a rack, in a drawer) lowers it.
+    pub table_z_m: f64,
+    /// Width to which the gripper opens, metres.
+    pub open_width_m: f64,
+    /// Distance from the gripper to the centre of an object that it points at.
+    pub standoff_m: f64,
+    /// How long the arm points, seconds.
+    pub point_s: f64,
+    /// Distance that the arms keep from themselves, each other and the trunk. The capsules that it
+    /// is measured between already enclose the arms.
+    pub margin_m: f64,
+}
+
+impl Default for PlanSettings {
+    fn default() -> Self {
+        Self {
+            speed_ratio: DEFAULT_SPEED_RATIO,
+            hover_m: 0.15,
+            hand_over_xyz_m: [0.80, 0.30, 0.22],
+            table_z_m: -0.155,
+            open_width_m: crate::gripper::STROKE_M,
+            standoff_m: 0.25,
+            point_s: 1.0,
+            margin_m: 0.01,
+        }
+    }
+}
+
+impl PlanSettings {
+    /// Where `limb` hands over.
+    pub(crate) fn hand_over_m(&self, limb: Limb) -> [f64; 3] {
+        let [x, y, z] = self.hand_over_xyz_m;
+        [x, limb.side() * y, z]
+    }
+}
+
+/// One limb among everything that it must not touch, and what it holds.
+#[derive(Clone)]
+pub(crate) struct PlanningScene<'a> {
+    pub(crate) limb: Limb,
+    pub(crate) arm: &'a Arm,
+    pub(crate) chain: &'a Chain,
+    /// What its joints may do at the settings' speed.
+    pub(crate) limits: MotionLimits,
+    /// Where the limb is now.
+    pub(crate) q: Joints,
+    pub(crate) settings: &'a PlanSettings,
+    other_arm: &'a Arm,
+    other: ArmShape<'a>,
+    surroundings: Vec<Obstacle>,
+    /// Which of them is the board under the object that is to be fetched.
+    board: Option<usize>,
+    held: Option<Held>,
+}
+
+impl<'a> PlanningScene<'a> {
+    /// `place_m` is where the arm is to work, and `lowest_z_m` how far down it reaches there.
+    pub(crate) fn new(
+        robot: &'a Robot,
+        limb: Limb,
+        arms: &Arms,
+        others: &[Cuboid],
+        (place_m, lowest_z_m): ([f64; 3], f64),
+        settings: &'a PlanSettings,
+    ) -> Self {
+        let mut surroundings = static_obstacles::table(settings.table_z_m, place_m, lowest_z_m);
+        surroundings.extend(static_obstacles::objects(others, settings.table_z_m));
+        let arm = robot.arm(limb);
+        Self {
+            limb,
+            arm,
+            chain: &arm.chain,
+            limits: arm.limits.at_speed_ratio(settings.speed_ratio),
+            q: *arms.of(limb),
+            settings,
+            other_arm: robot.arm(limb.other()),
+            other: ArmShape::at(robot.arm(limb.other()), arms.of(limb.other())),
+            surroundings,
+            board: None,
+            held: None,
+        }
+    }
+
+    /// Adds the board that the object to be fetched stands on, as wide as the hand.
+    pub(crate) fn with_board_under(mut self, object: &Cuboid) -> Self {
+        self.board = Some(self.surroundings.len());
+        self.surroundings.push(static_obstacles::board(object, HAND_M));
+        self
+    }
+
+    /// The same with `object`, given as it stood, in the gripper at `in_gripper`.
+    pub(crate) fn carrying(&self, object: &ObjectPose, in_gripper: &Isometry3<f64>) -> Self {
+        let mut around = self.surroundings.clone();
+        // The hand keeps off a board that may be there; what it holds, off what surely is.
+        if let Some(board) = self.board {
+            around[board] =
+                static_obstacles::board(&object.cuboid(), static_obstacles::NEIGHBOUR_M);
+        }
+        Self { held: Some(Held::new(object, in_gripper, around)), ..self.clone() }
+    }
+
+    /// Why there is no way to `at`: the arm is in something's way where it stands, or what is in
+    /// the way of the straight line to `to`.
+    pub(crate) fn no_path(&self, at: &'static str, from: &Joints, to: &Joints) -> PlanError {
+        let limb = self.limb;
+        match self.blocked(&self.q) {
+            Some(gap) => PlanError::Blocked { at: "its present posture", limb, gap },
+            None => PlanError::NoPath { at, limb, gap: blocking(from, to, &|q| self.blocked(q)) },
+        }
+    }
+
+    /// What the arm at `q`, or what it holds, would come too near to.
+    pub(crate) fn blocked(&self, q: &Joints) -> Option<Gap> {
+        self.blocked_at(&self.look(q), 0.0)
+    }
+
+    pub(crate) fn clear(&self, q: &Joints) -> bool {
+        self.blocked(q).is_none()
+    }
+
+    /// The gripper's rotation at which what it holds stands upright, turned as it is at `pose`.
+    pub(crate) fn upright(&self, pose: &Isometry3<f64>) -> UnitQuaternion<f64> {
+        self.held.as_ref().map_or(pose.rotation, |held| held.upright(pose))
+    }
+
+    /// What the object held would come too near to, besides the robot, with the gripper at `pose`.
+    pub(crate) fn held_blocked(&self, pose: &Isometry3<f64>) -> Option<Gap> {
+        let held = self.held.as_ref()?;
+        held.near_surroundings(&held.block(pose), 0.0)
+    }
+
+    /// The arm and what it holds at one posture.
+    fn look(&self, q: &Joints) -> Look<'a> {
+        let block = self.held.as_ref().map(|held| held.block(&self.chain.forward(q)));
+        Look { arm: ArmShape::at(self.arm, q), block }
+    }
+
+    /// What comes too near where nothing is looked at again before it has moved by `moved_m`.
+    fn blocked_at(&self, Look { arm, block }: &Look<'_>, moved_m: f64) -> Option<Gap> {
+        let near_m = 0.5 * moved_m;
+        let margin_m = self.settings.margin_m.max(near_m);
+        let held = || {
+            let (held, block) = (self.held.as_ref()?, block.as_ref()?);
+            held.near_surroundings(block, moved_m).or_else(|| {
+                let (own, other) = ((self.arm, arm), (self.other_arm, &self.other));
+                held.near_robot(block, own, other, margin_m)
+            })
+        };
+        let around = self.surroundings.iter();
+        around
+            .map(|(name, cuboid)| arm.to_cuboid(name, cuboid, near_m))
+            .chain([arm.to_itself(margin_m)])
+            .chain(std::iter::once_with(|| arm.to_trunk(margin_m)))
+            .chain(std::iter::once_with(|| arm.to_arm(&self.other, margin_m)))
+            .find(Gap::is_some)
+            .or_else(held)
+    }
+
+    /// How much nearer than [`ROOMY_M`] the arm at `q` is to anything, as a share of it; or what it
+    /// would touch.
+    pub(crate) fn crowding(&self, q: &Joints) -> Result<f64, Gap> {
+        let look = self.look(q);
+        if let Some(gap) = self.blocked_at(&look, 0.0) {
+            return Err(gap);
+        }
+        let arm = &look.arm;
+        let around = self.surroundings.iter();
+        let gap = around
+            .map(|(name, cuboid)| arm.to_cuboid(name, cuboid, ROOMY_M))
+            .chain([arm.to_itself(ROOMY_M), arm.to_trunk(ROOMY_M)])
+            .fold(arm.to_arm(&self.other, ROOMY_M), Gap::min);
+        Ok((ROOMY_M - gap.distance_m) / ROOMY_M)
+    }
+
+    /// Height of the elbow's lowest point above the table's top, metres.
+    pub(crate) fn elbow_m(&self, q: &Joints) -> f64 {
+        let frames = self.chain.frames(q);
+        let elbow = self.arm.enclosures.iter().filter(|e| ELBOW.contains(&e.joint));
+        let lowest = elbow
+            .map(|e| {
+                let z = |end| frames[e.joint].point(end).z;
+                z(&e.capsule.a).min(z(&e.capsule.b)) - e.capsule.radius
+            })
+            .fold(f64::INFINITY, f64::min);
+        lowest - self.settings.table_z_m
+    }
+
+    /// The first of `waypoints` that would touch something.
+    pub(crate) fn blocked_along(&self, waypoints: &[Joints]) -> Option<Gap> {
+        // Waypoints of a line are 5 mm apart; every second is enough, and the last.
+        waypoints.iter().rev().step_by(2).find_map(|q| self.blocked(q))
+    }
+
+    /// A way through joint space that touches nothing: the direct line, or over one of the arm's
+    /// via_postures; with `search` also whatever random trees find. One with room for a fast motion
+    /// before any other.
+    pub(crate) fn way(&self, from: &Joints, to: &Joints, search: Search) -> Option<Vec<Joints>> {
+        let roomy = |q: &Joints| {
+            let at_end = [from, to].iter().any(|end| largest_change(q, end) < END_RAD);
+            self.blocked_at(&self.look(q), if at_end { 0.0 } else { ROUTE_M }).is_none()
+        };
+        let clear = |q: &Joints| self.clear(q);
+        let (via_postures, limits) = (&self.arm.via_postures, self.chain.limits());
+        let known = simple(from, to, via_postures, &roomy)
+            .or_else(|| simple(from, to, via_postures, &clear));
+        known.or_else(|| match search {
+            Search::No => None,
+            Search::Yes => {
+                searched(from, to, limits, &roomy).or_else(|| searched(from, to, limits, &clear))
+            }
+        })
+    }
+
+    /// The motion through `waypoints`, its whole length checked. Where a fast one with wide corners
+    /// would come too near to something, one with stops at its corners, and then a slow one, which
+    /// needs less room.
+    pub(crate) fn motion(
+        &self,
+        at: &'static str,
+        waypoints: &[Joints],
+    ) -> Result<Trajectory, PlanError> {
+        let limb = self.limb;
+        let mut gap = None;
+        for (blend_rad, speed_ratio) in MANNERS {
+            let limits = self.limits.at_speed_ratio(speed_ratio);
+            let motion = Trajectory::through(waypoints, blend_rad, &limits)?;
+            gap = self.blocked_during(&motion);
+            if gap.is_none() {
+                return Ok(motion);
+            }
+        }
+        Err(gap.map_or(PlanError::NoPath { at, limb, gap }, |gap| PlanError::Blocked {
+            at,
+            limb,
+            gap,
+        }))
+    }
+
+    /// What comes too near during a motion. It is looked at [`CHECK_S`] apart; whatever moves
+    /// between two looks is never further from one of them than half of its way.
+    fn blocked_during(&self, motion: &Trajectory) -> Option<Gap> {
+        let checks = (motion.duration_s() / CHECK_S).ceil() as usize;
+        let at = |k: usize| self.look(&motion.sample(k as f64 * CHECK_S).0);
+        let (mut now, mut before_m) = (at(0), 0.0);
+        for k in 1..=checks + 1 {
+            let next = at(k);
+            let moved_m = now.moved_m(&next);
+            if let Some(gap) = self.blocked_at(&now, f64::max(before_m, moved_m)) {
+                return Some(gap);
+            }
+            (now, before_m) = (next, moved_m);
+        }
+        None
+    }
+
+    /// Least seconds from one posture to another at the settings' speed: a bound, for choosing.
+    pub(crate) fn seconds_between(&self, from: &Joints, to: &Joints) -> f64 {
+        let limits = &self.limits;
+        (0..7)
+            .map(|j| {
+                let (v, a) = (limits.velocity[j], limits.acceleration[j]);
+                let way = (from[j] - to[j]).abs();
+                // A trapezoid of speed, or a triangle where there is no time to reach the limit.
+                if way > v * v / a { way / v + v / a } else { 2.0 * (way / a).sqrt() }
+            })
+            .fold(0.0, f64::max)
+    }
+}
+
+/// The arm and what it holds at one posture.
+struct Look<'a> {
+    arm: ArmShape<'a>,
+    block: Option<Block>,
+}
+
+impl Look<'_> {
+    /// The furthest that any point is from where it is in another look, metres.
+    fn moved_m(&self, other: &Self) -> f64 {
+        let arm = self.arm.capsules().iter().zip(other.arm.capsules());
+        let arm = arm.map(|(a, b)| (a.a - b.a).norm().max((a.b - b.b).norm()));
+        let corners = |look: &Self| look.block.into_iter().flat_map(Block::corners);
+        let held = corners(self).zip(corners(other)).map(|(a, b)| (a - b).norm());
+        arm.chain(held).fold(0.0, f64::max)
+    }
+}
+
+/// Clearance beyond which more of it is worth nothing, metres.
+const ROOMY_M: f64 = 0.05;
+
+/// The joints whose links are the elbow: the upper arm's turn and the elbow's own.
+const ELBOW: std::ops::RangeInclusive<usize> = 2..=3;
+
+/// How a motion is tried: corners begin so far before and end so far after a waypoint, radians of
+/// joint distance, at so large a share of the speed. Wide ones are passed without a stop; at sharp
+/// ones the arm all but stops.
+const MANNERS: [(f64, f64); 3] = [(0.15, 1.0), (0.005, 1.0), (0.005, 0.35)];
+
+/// Room that a fast motion needs around it, twice over, metres.
+const ROUTE_M: f64 = 0.03;
+
+/// So near to its ends a way needs none: the largest joint's change, radians.
+const END_RAD: f64 = 0.25;
+
+/// How far the hand reaches round the gripper's axis, and some, metres.
+const HAND_M: f64 = 0.1;
+
+/// Time between two checks of a motion, seconds.
+const CHECK_S: f64 = 0.02;
+
+/// Whether a way may be searched for at length.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Search {
+    /// Direct lines and known via_postures only: microseconds to milliseconds.
+    No,
+    /// Random trees as well: up to some tenths of a second.
+    Yes,
+}

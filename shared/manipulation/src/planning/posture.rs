@@ -1,0 +1,93 @@
+//! Which of the postures that reach a pose is taken: seven joints leave a choice.
+//!
+//! The cost of a posture is in seconds: those that the arm takes to it, and what it is worth to stay
+//! away from joint limits, from everything that the arm could touch, and with the elbow high. Near
+//! its limits an arm has little room to go on from; a low elbow sweeps over the table.
+
+use nalgebra::Isometry3;
+
+use super::planning_scene::PlanningScene;
+use crate::collision::Gap;
+use crate::kinematics::inverse::Unreachable;
+use crate::kinematics::limb::Joints;
+use crate::trajectory::Timeline;
+
+/// Seconds that a posture at a joint limit is worse than one [`FREE_RAD`] away from all.
+const LIMIT_S: f64 = 1.0;
+
+/// Distance to a joint limit beyond which more is worth nothing, radians.
+const FREE_RAD: f64 = 0.2;
+
+/// Seconds that a posture that all but touches something is worse than one with room around it.
+const CROWDED_S: f64 = 1.0;
+
+/// Seconds that an elbow on the table would be worse than one [`LOW_M`] above it. More than any way
+/// over which it can be avoided takes.
+const ELBOW_S: f64 = 6.0;
+
+/// Height above the table from which an elbow is not low, metres.
+pub(crate) const LOW_M: f64 = 0.1;
+
+/// Postures of one pose that are looked at, and how far apart they are at least, radians: neighbours
+/// fare alike.
+const POSTURES: usize = 12;
+const APART_RAD: f64 = 0.3;
+
+impl PlanningScene<'_> {
+    /// What `q` costs from `from`, seconds, but for what is around it.
+    pub(crate) fn cost_s(&self, from: &Joints, q: &Joints) -> f64 {
+        let margin_rad = self.chain.limits().margin_rad(q);
+        let confined = ((FREE_RAD - margin_rad) / FREE_RAD).clamp(0.0, 1.0);
+        self.seconds_between(from, q) + LIMIT_S * confined + self.lowness_s(q)
+    }
+
+    /// What is around `q` costs, seconds; or what it would touch.
+    pub(crate) fn crowding_s(&self, q: &Joints) -> Result<f64, Gap> {
+        self.crowding(q).map(|share| CROWDED_S * share)
+    }
+
+    /// What the elbow's height at `q` costs, seconds.
+    fn lowness_s(&self, q: &Joints) -> f64 {
+        ELBOW_S * ((LOW_M - self.elbow_m(q)) / LOW_M).clamp(0.0, 1.0)
+    }
+
+    /// What the lowest elbow of a whole plan costs, seconds.
+    pub(crate) fn plan_lowness_s<P: Copy + PartialEq>(&self, timeline: &Timeline<P>) -> f64 {
+        let looks = (timeline.duration_s() / LOOK_S).ceil() as usize;
+        let cost_s = |k: usize| self.lowness_s(&timeline.at(k as f64 * LOOK_S).q);
+        // What the arm begins with is not the plan's to choose.
+        let begin_s = cost_s(0);
+        (1..=looks).map(cost_s).fold(0.0, |worst: f64, s| worst.max(s - begin_s))
+    }
+
+    /// Postures that take the gripper to `target`, cheapest from `from` first, each with its cost
+    /// but for what is around it.
+    ///
+    /// # Errors
+    /// The nearest miss, if none does.
+    pub(crate) fn postures(
+        &self,
+        target: &Isometry3<f64>,
+        from: &Joints,
+    ) -> Result<Vec<(f64, Joints)>, Unreachable> {
+        let mut all = self.chain.solutions(target);
+        if all.is_empty() {
+            all.push(self.chain.nearest(target, from)?.q);
+        }
+        let mut all: Vec<_> = all.into_iter().map(|q| (self.cost_s(from, &q), q)).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut chosen: Vec<(f64, Joints)> = Vec::with_capacity(POSTURES);
+        for posture in all {
+            let apart = |other: &(f64, Joints)| {
+                (0..7).any(|j| (other.1[j] - posture.1[j]).abs() > APART_RAD)
+            };
+            if chosen.len() < POSTURES && chosen.iter().all(apart) {
+                chosen.push(posture);
+            }
+        }
+        Ok(chosen)
+    }
+}
+
+/// Time between two looks at the elbow along a plan, seconds.
+const LOOK_S: f64 = 0.1;

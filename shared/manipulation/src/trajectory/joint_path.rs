@@ -1,0 +1,254 @@
+//! Ways through joint space that touch nothing.
+
+use crate::kinematics::limb::Joints;
+use crate::kinematics::limits::PositionLimits;
+
+/// Joint distance between two checks along a line, the largest joint's change, radians. The
+/// gripper moves less than 6 cm between them and half of that from the nearer one.
+const CHECK_RAD: f64 = 0.05;
+
+/// Longest edge of the search trees, radians.
+const REACH_RAD: f64 = 0.4;
+
+/// Nodes that both search trees may have together.
+const NODES_MAX: usize = 3000;
+
+/// Random postures tried before giving up, when nearly every edge is blocked.
+const SAMPLES_MAX: usize = 3000;
+
+/// How far beside the straight line between two postures ways are looked for first, radians.
+const BESIDE_RAD: f64 = 0.6;
+
+/// Attempts to cut corners off a way that was found by searching.
+const SHORTCUTS: usize = 60;
+
+/// Waypoints from `from` to `to` such that `clear` holds along the straight lines between them:
+/// the direct line, or the shortest over one of `via_postures`.
+pub(crate) fn simple(
+    from: &Joints,
+    to: &Joints,
+    via_postures: &[Joints],
+    clear: &impl Fn(&Joints) -> bool,
+) -> Option<Vec<Joints>> {
+    if line_clear(from, to, clear) {
+        return Some(vec![*from, *to]);
+    }
+    via_postures
+        .iter()
+        .filter(|via| line_clear(from, via, clear) && line_clear(via, to, clear))
+        .min_by(|a, b| length(&[*from, **a, *to]).total_cmp(&length(&[*from, **b, *to])))
+        .map(|via| vec![*from, *via, *to])
+}
+
+/// The same, found by growing random trees from both ends (RRT-Connect, Kuffner and LaValle 2000),
+/// then shortened. The random numbers are the same every time.
+pub(crate) fn searched(
+    from: &Joints,
+    to: &Joints,
+    limits: &PositionLimits,
+    clear: &impl Fn(&Joints) -> bool,
+) -> Option<Vec<Joints>> {
+    if clear(from) && clear(to) { Trees::new(*from, *to).run(limits, clear) } else { None }
+}
+
+/// The first thing that `blocked` finds along the straight line.
+pub(crate) fn blocking<G>(
+    from: &Joints,
+    to: &Joints,
+    blocked: &impl Fn(&Joints) -> Option<G>,
+) -> Option<G> {
+    let steps = (largest_change(from, to) / CHECK_RAD).ceil().max(1.0) as usize;
+    (0..=steps).find_map(|k| blocked(&mix(from, to, k as f64 / steps as f64)))
+}
+
+/// Whether `clear` holds along the straight line, both ends included.
+fn line_clear(from: &Joints, to: &Joints, clear: &impl Fn(&Joints) -> bool) -> bool {
+    let steps = (largest_change(from, to) / CHECK_RAD).ceil().max(1.0) as usize;
+    (0..=steps).all(|k| clear(&mix(from, to, k as f64 / steps as f64)))
+}
+
+/// The largest change of any joint, radians.
+pub(crate) fn largest_change(a: &Joints, b: &Joints) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+fn distance(a: &Joints, b: &Joints) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+}
+
+fn length(points: &[Joints]) -> f64 {
+    points.windows(2).map(|w| distance(&w[0], &w[1])).sum()
+}
+
+fn mix(a: &Joints, b: &Joints, share: f64) -> Joints {
+    if share >= 1.0 {
+        return *b;
+    }
+    std::array::from_fn(|j| a[j] + (b[j] - a[j]) * share)
+}
+
+/// A node of a tree: a posture and the node it was reached from.
+type Tree = Vec<(Joints, usize)>;
+
+struct Trees {
+    trees: [Tree; 2],
+    random: Random,
+}
+
+impl Trees {
+    fn new(from: Joints, to: Joints) -> Self {
+        Self { trees: [vec![(from, 0)], vec![(to, 0)]], random: Random(0x9E37_79B9_7F4A_7C15) }
+    }
+
+    /// Grows the trees in turn towards random postures and each other.
+    fn run(
+        mut self,
+        limits: &PositionLimits,
+        clear: &impl Fn(&Joints) -> bool,
+    ) -> Option<Vec<Joints>> {
+        let (mut growing, mut samples) = (0, 0);
+        while self.trees[0].len() + self.trees[1].len() < NODES_MAX {
+            samples += 1;
+            if samples > SAMPLES_MAX {
+                break;
+            }
+            // Most ways need only a bend: every second sample is beside the straight line.
+            let sample = match samples % 2 {
+                0 => self.random.beside(&self.trees[0][0].0, &self.trees[1][0].0, limits),
+                _ => self.random.posture(limits),
+            };
+            if let Some(reached) = extend(&mut self.trees[growing], &sample, clear) {
+                let other = 1 - growing;
+                while let Some(node) = extend(&mut self.trees[other], &reached, clear) {
+                    if node == reached {
+                        return Some(self.joined(clear));
+                    }
+                }
+            }
+            growing = 1 - growing;
+        }
+        None
+    }
+
+    /// The way through the newest node of both trees, from start to goal, shortened.
+    fn joined(&mut self, clear: &impl Fn(&Joints) -> bool) -> Vec<Joints> {
+        let mut way = to_root(&self.trees[0]);
+        way.reverse();
+        way.extend(to_root(&self.trees[1]).into_iter().skip(1));
+        for _ in 0..SHORTCUTS {
+            if way.len() < 3 {
+                break;
+            }
+            let i = self.random.below(way.len() - 2);
+            let j = i + 2 + self.random.below(way.len() - i - 2);
+            if line_clear(&way[i], &way[j], clear) {
+                way.drain(i + 1..j);
+            }
+        }
+        way
+    }
+}
+
+/// Adds a node one edge from the nearest towards `target`; the new posture, if the edge is clear.
+fn extend(tree: &mut Tree, target: &Joints, clear: &impl Fn(&Joints) -> bool) -> Option<Joints> {
+    let (index, near) = tree
+        .iter()
+        .enumerate()
+        .min_by(|a, b| distance(&a.1.0, target).total_cmp(&distance(&b.1.0, target)))
+        .map(|(i, node)| (i, node.0))?;
+    let length = distance(&near, target);
+    if length < 1e-9 {
+        return None;
+    }
+    let next = mix(&near, target, (REACH_RAD / length).min(1.0));
+    line_clear(&near, &next, clear).then(|| {
+        tree.push((next, index));
+        next
+    })
+}
+
+fn to_root(tree: &Tree) -> Vec<Joints> {
+    let mut index = tree.len() - 1;
+    let mut way = vec![tree[index].0];
+    while index != 0 {
+        index = tree[index].1;
+        way.push(tree[index].0);
+    }
+    way
+}
+
+/// A small generator (xorshift), so that the same question has the same answer.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn below(&mut self, n: usize) -> usize {
+        ((self.next() * n as f64) as usize).min(n.saturating_sub(1))
+    }
+
+    /// A posture within [`BESIDE_RAD`] of the line between two, in every joint.
+    fn beside(&mut self, a: &Joints, b: &Joints, limits: &PositionLimits) -> Joints {
+        let share = self.next();
+        let on_line = mix(a, b, share);
+        limits.clamp(&on_line.map(|q| q + BESIDE_RAD * (2.0 * self.next() - 1.0)))
+    }
+
+    fn posture(&mut self, limits: &PositionLimits) -> Joints {
+        let share = std::array::from_fn(|_| self.next());
+        limits.at(&share)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::full;
+
+    /// A wall across the first two joints with a gap at the far end of the second.
+    fn walled(q: &Joints) -> bool {
+        !((q[0] - 0.3).abs() < 0.1 && q[1] > -1.5)
+    }
+
+    const FROM: Joints = [-0.5, 0.5, 0.0, 1.0, 0.0, 0.5, 0.0];
+    const TO: Joints = [1.0, 0.5, 0.0, 1.0, 0.0, 0.5, 0.0];
+
+    #[test]
+    fn the_direct_line_is_preferred() {
+        let via_posture = [0.0; 7];
+        assert_eq!(simple(&FROM, &TO, &[via_posture], &|_| true), Some(vec![FROM, TO]));
+    }
+
+    #[test]
+    fn a_station_beyond_the_wall_is_used() {
+        let (useless, open) = ([0.0; 7], [0.3, -2.0, 0.0, 1.0, 0.0, 0.5, 0.0]);
+        // The straight lines to the gap's middle still cut the wall's corner; the bend of a wider
+        // gap does not.
+        let clear = |q: &Joints| !((q[0] - 0.3).abs() < 0.02 && q[1] > -1.5);
+        assert_eq!(simple(&FROM, &TO, &[useless, open], &clear), Some(vec![FROM, open, TO]));
+        assert_eq!(simple(&FROM, &TO, &[useless], &clear), None);
+    }
+
+    #[test]
+    fn a_search_finds_the_gap_and_is_the_same_every_time() {
+        let way = searched(&FROM, &TO, &full().position, &walled).expect("there is a gap");
+        assert_eq!((way[0], way[way.len() - 1]), (FROM, TO));
+        for pair in way.windows(2) {
+            for k in 0..=200 {
+                assert!(walled(&mix(&pair[0], &pair[1], f64::from(k) / 200.0)), "{way:?}");
+            }
+        }
+        assert_eq!(searched(&FROM, &TO, &full().position, &walled), Some(way));
+    }
+
+    #[test]
+    fn no_way_is_found_where_there_is_none() {
+        assert_eq!(searched(&FROM, &TO, &full().position, &|q| (q[0] - 0.3).abs() > 0.1), None);
+        assert_eq!(searched(&FROM, &TO, &full().position, &|q| *q != TO), None);
+    }
+}
