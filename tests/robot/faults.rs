@@ -3,7 +3,7 @@
 use crate::world::World;
 use dialogue::Rng;
 use messages::robot::DrillKind;
-use messages::{Hindrance, MotionOrder, PickOutcome, PickPhase};
+use messages::{MotionInhibit, MotionOrder, PickOutcome, PickPhase};
 use service::Span;
 
 #[test]
@@ -15,7 +15,7 @@ fn joint_states_that_stay_away_halt_the_arm_until_they_are_back() {
         world.run(0.3);
         world.drill(DrillKind::Silence, 1.0);
         world.run(0.9);
-        assert_eq!((world.hindrance(), world.status().moving), (Hindrance::Stale, 0));
+        assert_eq!((world.hindrance(), world.status().moving), (MotionInhibit::Stale, 0));
         world.run_until("over", |w| w.phase() == PickPhase::Done);
         world.assert_delivered_once();
     }
@@ -117,10 +117,10 @@ fn a_robot_that_comes_late_is_waited_for() {
     world.kill_arm();
     world.start_arm();
     world.run(0.5);
-    assert_eq!(world.hindrance(), Hindrance::Unheard);
+    assert_eq!(world.hindrance(), MotionInhibit::Unheard);
     world.start_robot();
     world.run(0.5);
-    assert_eq!(world.hindrance(), Hindrance::Disabled);
+    assert_eq!(world.hindrance(), MotionInhibit::Disabled);
     world.drill(DrillKind::Enable, 0.0);
     world.run_until("over", |w| w.phase() == PickPhase::Done);
     world.assert_delivered_once();

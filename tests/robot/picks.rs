@@ -3,7 +3,7 @@
 use crate::world::World;
 use arm::Order;
 use messages::robot::{Command, DrillKind};
-use messages::{Hindrance, PickOutcome, PickPhase};
+use messages::{MotionInhibit, PickOutcome, PickPhase};
 use service::Span;
 
 #[test]
@@ -18,7 +18,7 @@ fn six_bowls_are_brought_one_after_another() {
         assert_eq!(world.grasps, 1, "object {object}");
     }
     world.run_until("at rest", |w| w.status().moving == 0);
-    assert_eq!(world.hindrance(), Hindrance::None);
+    assert_eq!(world.hindrance(), MotionInhibit::None);
 }
 
 #[test]
@@ -37,7 +37,7 @@ fn every_scene_and_a_slow_and_noisy_robot_are_no_trouble() {
 fn grippers_are_calibrated_before_anything_moves() {
     let mut world = World::new(&[]);
     world.pick(1, 2);
-    world.run_until("calibrating", |w| w.hindrance() == Hindrance::Calibrating);
+    world.run_until("calibrating", |w| w.hindrance() == MotionInhibit::Calibrating);
     world.run_until("moving", |w| w.phase() == PickPhase::Moving);
     let words: Vec<Command> = gripper_commands(&world);
     assert!(words.len() >= 2 && words.iter().all(|word| *word == Command::Calibrate), "{words:?}");

@@ -3,7 +3,7 @@
 use crate::world::World;
 use arm::Order;
 use messages::robot::DrillKind;
-use messages::{Hindrance, MotionOrder, PickPhase};
+use messages::{MotionInhibit, MotionOrder, PickPhase};
 use service::{Span, Time};
 
 /// Faster than this a joint moves, rad/s: ten deviations of the velocity's noise.
@@ -49,7 +49,7 @@ fn the_red_button_latches_and_after_resume_the_pick_goes_on() {
     world.run(1.5);
     world.drill(DrillKind::PressEstop, 0.0);
     world.run_until("latched", |w| w.status().stopped == 1);
-    assert_eq!(world.hindrance(), Hindrance::Stopped);
+    assert_eq!(world.hindrance(), MotionInhibit::Stopped);
     let pressed = world.now;
     world.run(1.0);
     world.motion(MotionOrder::Resume);
@@ -58,7 +58,7 @@ fn the_red_button_latches_and_after_resume_the_pick_goes_on() {
     world.drill(DrillKind::ReleaseEstop, 0.0);
     world.drill(DrillKind::Reset, 0.0);
     world.run(0.3);
-    assert_eq!((world.status().stopped, world.hindrance()), (1, Hindrance::Disabled));
+    assert_eq!((world.status().stopped, world.hindrance()), (1, MotionInhibit::Disabled));
     assert_nothing_is_commanded_since(&world, pressed);
     world.drill(DrillKind::Enable, 0.0);
     world.run(1.0);

@@ -1,14 +1,14 @@
 //! The arm's process, the robot's, what each remembers, and what passes between them.
 
 use arm::state::ArmState;
-use arm::{ArmNode, In, Order, Out, Told};
+use arm::{ArmNode, In, Order, Out, Report};
 use baxter::BaxterNode;
 use baxter::robot::Robot;
 use config::Settings;
 use messages::WireCode;
 use messages::robot::{Drill, DrillKind, JointState};
 use messages::{
-    ActKind, ArmStatus, Hindrance, MotionCommand, MotionOrder, PickOutcome, PickPhase, RobotAct,
+    ActKind, ArmStatus, MotionCommand, MotionInhibit, MotionOrder, PickOutcome, PickPhase, RobotAct,
 };
 use service::lifecycle::Environment;
 use service::service_loop::Program;
@@ -156,8 +156,8 @@ impl World {
         *self.statuses.last().unwrap()
     }
 
-    pub(crate) fn hindrance(&self) -> Hindrance {
-        Hindrance::from_code(self.status().hindrance).unwrap()
+    pub(crate) fn hindrance(&self) -> MotionInhibit {
+        MotionInhibit::from_code(self.status().hindrance).unwrap()
     }
 
     /// The pick's object was brought, after one grasp that held.
@@ -197,7 +197,7 @@ impl World {
     fn pass_robot(&mut self, events: Vec<Event<baxter::In>>) {
         let Some(node) = &mut self.robot else { return };
         let held =
-            |robot: &Robot| manipulation::Limb::BOTH.map(|l| robot.table().held(l).is_some());
+            |robot: &Robot| manipulation::Limb::BOTH.map(|l| robot.objects().held(l).is_some());
         let before = held(node.robot());
         let mut effects = Effects::default();
         events.into_iter().for_each(|event| node.on(event, self.now, &mut effects));
@@ -215,7 +215,7 @@ impl World {
                 self.joint_states.push(**state);
             }
             if self.arm.is_some() {
-                self.to_arm.extend(tells(told).map(In::Robot));
+                self.to_arm.extend(report(told).map(In::Robot));
             }
         }
     }
@@ -230,12 +230,12 @@ fn hears(order: Order) -> baxter::In {
     }
 }
 
-fn tells(out: baxter::Out) -> Option<Told> {
+fn report(out: baxter::Out) -> Option<Report> {
     match out {
-        baxter::Out::Joints(state) => Some(Told::Joints(state)),
-        baxter::Out::Assembly(state) => Some(Told::Assembly(state)),
-        baxter::Out::Gripper(limb, state) => Some(Told::Gripper(limb, state)),
-        baxter::Out::Properties(limb, own) => Some(Told::Properties(limb, own)),
+        baxter::Out::Joints(state) => Some(Report::Joints(state)),
+        baxter::Out::Assembly(state) => Some(Report::Assembly(state)),
+        baxter::Out::Gripper(limb, state) => Some(Report::Gripper(limb, state)),
+        baxter::Out::Properties(limb, own) => Some(Report::Properties(limb, own)),
         baxter::Out::Endpoint(..) => None,
     }
 }

@@ -1,4 +1,4 @@
-//! The seam to what really moves: a robot, or the kinematic model of one.
+//! Interface to the hardware: a robot, or the kinematic model of one.
 
 mod baxter;
 mod kinematic;
@@ -8,81 +8,81 @@ pub use kinematic::KinematicArm;
 
 use crate::state::{Posture, side};
 use manipulation::{Joints, Limb, Robot};
-use messages::Hindrance;
+use messages::MotionInhibit;
 use messages::robot::{
     AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, JointCommand,
     JointState, JointTrajectoryPoint, SpeedRatio,
 };
 use service::{Span, Time};
 
-/// What moves. The executor commands it a hundred times a second and believes what it measures, so
-/// a driver of a real robot has the same two things to do: pass the set point on, and report what
-/// the robot's own sensors say. What only a real robot has, a model leaves at its default.
+/// A robot or its model. The executor commands it a hundred times a second and trusts its sensors, so
+/// a driver of a real robot has the same two tasks: forward the set point, and report what
+/// the robot's sensors measure. Methods for real robots have defaults for a model.
 ///
 /// A motion that belongs to a phase of a pick is commanded only in a pass after the one that made
 /// the phase durable, so a driver may act on a command at once.
 pub trait ArmDriver {
-    /// What the robot feels now.
+    /// Returns the present measurements.
     fn measured(&self) -> Measured;
 
-    /// Has one limb be somewhere now. It is called for every step of a motion and not while nothing
-    /// moves: a limb that is commanded nothing stays where it is. `seconds` have passed since the
+    /// Commands one limb. It is called for every step of a motion and not while nothing
+    /// moves: a limb without a command stays where it is. `seconds` have passed since the
     /// limb's last command, or since its motion began.
     fn command(&mut self, command: &Command, seconds: f64);
 
-    /// Takes what the robot told.
-    fn hear(&mut self, _told: &Told, _now: Time) {}
+    /// Handles a report of the robot.
+    fn on_report(&mut self, _report: &Report, _now: Time) {}
 
-    /// A pass begins; `may_calibrate` says which grippers, left first, hold nothing that a
+    /// Begins a pass; `may_calibrate` marks the grippers, left first, that hold nothing a
     /// calibration would drop.
     fn begin_pass(&mut self, _now: Time, _may_calibrate: [bool; 2]) {}
 
-    /// A pass ends: limbs that were commanded nothing in it are held where they are. Everything
-    /// that the robot is to be told.
+    /// Ends a pass: limbs without a command are held where they are. Returns the
+    /// orders to the robot.
     fn end_pass(&mut self, _now: Time) -> Vec<Order> {
         Vec::new()
     }
 
-    /// What keeps the robot from moving at all.
-    fn hindrance(&self) -> Hindrance {
-        Hindrance::None
+    /// Returns the reason why the robot cannot move at all.
+    fn inhibit(&self) -> MotionInhibit {
+        MotionInhibit::None
     }
 
-    /// Why the limb that moves does not move as it was commanded to.
+    /// Returns the fault of a limb that does not follow its commands.
     fn fault(&self) -> Option<Fault> {
         None
     }
 
-    /// Whether a motion that ended with `command`, `late_s` seconds ago, has ended for the robot
+    /// Returns whether a motion that ended with `command`, `late_s` seconds ago, has ended for the robot
     /// too.
     ///
     /// # Errors
-    /// It has not within the time that it may take.
+    /// It has not ended in time.
     fn has_arrived(&mut self, _command: &Command, _late_s: f64) -> Result<bool, Fault> {
         Ok(true)
     }
 
-    /// Whether joints and fingers stand still, so that a plan can begin where they are.
+    /// Returns whether joints and fingers stand still, so that a plan can start there.
     fn is_still(&self) -> bool {
         true
     }
 
-    /// Gives up what was commanded: the limbs are held where they are.
+    /// Drops the commands and holds the limbs where they are.
     fn hold_here(&mut self) {}
 
-    /// Something was heard that the next step of a motion should not wait for.
+    /// Returns whether a new report should trigger a step at once.
     fn is_fresh(&self) -> bool {
         false
     }
 
-    /// Longest time between two passes, also while nothing moves; none where standing needs no
+    /// Returns the longest time between two passes, also at rest; `None` if standing needs no
     /// commands.
     fn beat(&self) -> Option<Span> {
         None
     }
 }
 
-/// What a robot feels: both limbs, left first.
+/// Measurements of both limbs, left first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// Joints and fingers.
@@ -91,38 +91,38 @@ pub struct Measured {
     pub velocity: [Joints; 2],
     /// Joint torques, newton metres.
     pub effort: [Joints; 2],
-    /// Whether something is between the fingers; none where the robot cannot tell.
+    /// Whether an object is between the fingers; `None` if the robot cannot sense it.
     pub holding: [Option<bool>; 2],
-    /// When it was so, where the robot's sensors say; none before they were heard.
+    /// Time and source of the measurement.
     pub at: Source,
-    /// How far a joint that stands where it should may be from there, radians.
+    /// Largest deviation of a joint at its goal, radians.
     pub accuracy_rad: f64,
 }
 
-/// Where a measurement comes from.
+/// Source of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// From a model: it is so whenever it is looked at.
+    /// A model: always up to date.
     Model,
-    /// From sensors, at that time.
+    /// Sensors, at that time.
     Sensors(Time),
-    /// From nowhere yet: the posture is what the journal remembers.
+    /// The journal: no report yet.
     Memory,
 }
 
 impl Measured {
-    /// Whether the limb is in the neutral posture, where it rests.
+    /// Returns whether the limb is in its neutral posture.
     pub fn is_at_rest(&self, robot: &Robot, limb: Limb) -> bool {
         self.posture.is_at_rest(robot, limb, self.accuracy_rad)
     }
 
-    /// Whether any limb's fingers hold something for certain.
+    /// Returns whether the limb's fingers hold something, if known.
     pub fn holds(&self, limb: Limb) -> Option<bool> {
         self.holding[side(limb)]
     }
 }
 
-/// Where a limb is to be.
+/// Set point of a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Command {
     /// The limb.
@@ -135,60 +135,60 @@ pub struct Command {
     pub qdd: Joints,
     /// Seconds since the motion began.
     pub t_s: f64,
-    /// What the fingers are to do.
+    /// Command to the fingers.
     pub fingers: Fingers,
 }
 
-/// What the fingers are to do; they move at their own speed.
+/// Command to the fingers, which move at their own speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fingers {
     /// Stay as they are.
     Stay,
-    /// Go to a width, metres, letting go of what they hold.
+    /// Open to a width, metres, releasing what they hold.
     Open(f64),
     /// Close on an object.
     Grip(Grip),
 }
 
-/// What a model of the fingers closes on. A real robot's fingers find out by themselves.
+/// The object that a model of the fingers closes on; real fingers sense it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
     /// Width of the object, metres.
     pub object_m: f64,
-    /// How far beside the middle of the fingers it stands, metres.
+    /// Its offset from the middle between the fingers, metres.
     pub offset_m: f64,
 }
 
-/// What a robot tells.
+/// A report of the robot.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Told {
-    /// Its joints, or some of them.
+pub enum Report {
+    /// Joint states, of all or some joints.
     Joints(Box<JointState>),
-    /// How it is as a whole.
+    /// State of the whole robot.
     Assembly(AssemblyState),
-    /// How a gripper is.
+    /// State of a gripper.
     Gripper(Limb, Box<EndEffectorState>),
-    /// What is mounted.
+    /// Properties of a mounted gripper.
     Properties(Limb, Box<EndEffectorProperties>),
 }
 
-/// What a robot is told.
+/// An order to the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Order {
-    /// Where the joints of a limb are to be.
+    /// Joint positions of a limb.
     Joints(Limb, Box<JointCommand>),
-    /// Where the limb's motion is, how fast, and how it accelerates.
+    /// Feed-forward position, velocity and acceleration.
     FeedForward(Limb, Box<JointTrajectoryPoint>),
-    /// The share of its velocity that a limb may use.
+    /// Share of its velocity that a limb may use.
     SpeedRatio(Limb, SpeedRatio),
-    /// What a gripper is to do.
+    /// Command to a gripper.
     Gripper(Limb, Box<EndEffectorCommand>),
 }
 
-/// A motion was not carried out as it was commanded.
+/// A motion that the robot did not carry out as commanded.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Fault {
-    /// A joint left the path: something is in the way, or the robot is slower than it should be.
+    /// A joint left the path: an obstacle, or the robot is slower than it should be.
     #[error(
         "{limb}_{joint} is {error_rad:.3} rad from its path, {tolerance_rad:.3} at most \
          (arm.baxter.path_tolerance_rad)"
@@ -203,7 +203,7 @@ pub enum Fault {
         /// The bound, radians.
         tolerance_rad: f64,
     },
-    /// A joint did not come to where its motion ends.
+    /// A joint did not reach its goal.
     #[error(
         "{limb}_{joint} is {error_rad:.4} rad from its goal {late_s:.1} s after it should be \
          there, {tolerance_rad:.4} at most (arm.baxter.goal_tolerance_rad, goal_time_s)"
@@ -217,15 +217,15 @@ pub enum Fault {
         error_rad: f64,
         /// The bound, radians.
         tolerance_rad: f64,
-        /// How late it was, seconds.
+        /// Its delay, seconds.
         late_s: f64,
     },
-    /// The fingers did not do what they were told.
-    #[error("the {limb} gripper has not done what it was told within {late_s:.1} s")]
+    /// The fingers did not complete their command.
+    #[error("the {limb} gripper did not complete its command within {late_s:.1} s")]
     Fingers {
         /// The limb.
         limb: Limb,
-        /// How late they were, seconds.
+        /// Their delay, seconds.
         late_s: f64,
     },
 }

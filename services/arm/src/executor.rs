@@ -1,22 +1,22 @@
-//! Carries programs out: which step the arm is in and how far, one program at a time.
+//! Executes one program at a time: the current step and the time within it.
 
 use crate::driver::{ArmDriver, Command, Fault, Fingers};
 use manipulation::{Limb, Trajectory};
-use messages::{Hindrance, MotionPhase, PickId, PickPhase};
+use messages::{MotionInhibit, MotionPhase, PickId, PickPhase};
 use scene::ObjectId;
 use std::collections::VecDeque;
 
-/// A motion that ends faster than this goes on in the next step, rad/s.
+/// A motion that ends faster than this flows into the next step, rad/s.
 const FLOWS_RAD_S: f64 = 1e-6;
 
-/// What a program is for.
+/// Purpose of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// To fetch what was ordered.
+    /// Fetch the ordered object.
     Pick(PickId),
-    /// To aim at an object.
+    /// Aim at an object.
     Aim(ObjectId),
-    /// To bring a limb to rest.
+    /// Bring a limb to rest.
     Return,
 }
 
@@ -31,41 +31,41 @@ pub(crate) struct Program {
 /// One motion of the arm and its fingers.
 #[derive(Clone, Debug)]
 pub(crate) struct Step {
-    /// What it is for.
+    /// Kind of motion.
     pub(crate) kind: MotionPhase,
-    /// The phase that has to be durable before the step begins, if it belongs to a pick.
+    /// Phase of a pick that must be durable before the step begins.
     pub(crate) phase: Option<PickPhase>,
     pub(crate) motion: Trajectory,
     pub(crate) fingers: Fingers,
 }
 
-/// What the arm does.
+/// Execution state.
 #[derive(Clone, Debug, Default)]
 pub(crate) enum Executor {
-    /// Nothing.
+    /// Ready.
     #[default]
     Standing,
-    /// A program, `t_s` seconds into its first step, whose motion ended `late_s` seconds ago.
+    /// Running a program, `t_s` seconds into its first step, whose motion ended `late_s` seconds ago.
     Running { program: Program, t_s: f64, late_s: f64 },
-    /// It comes to rest, on the path that it was on.
+    /// Coming to rest on the planned path.
     Halting { limb: Limb, motion: Trajectory, t_s: f64, late_s: f64 },
 }
 
-/// What came of a stretch of time.
+/// Result of advancing in time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Progress {
-    /// The time was used up.
+    /// Still running.
     Under,
-    /// A step ended with so many seconds left; the next one has not begun.
+    /// A step ended with this many seconds left; the next one has not begun.
     Ended(MotionPhase, f64),
     /// A halt ended.
     Halted,
-    /// A motion did not end as it should have; nothing is being done any more.
+    /// A motion did not end as commanded; the executor stands.
     Failed(Fault),
 }
 
 impl Program {
-    /// Simulated seconds that its steps take.
+    /// Returns the duration of its steps, simulated seconds.
     pub(crate) fn duration_s(&self) -> f64 {
         self.steps.iter().map(|step| step.motion.duration_s()).sum()
     }
@@ -76,7 +76,7 @@ impl Executor {
         *self = Self::Running { program, t_s: 0.0, late_s: 0.0 };
     }
 
-    /// What the running program is for.
+    /// Returns the purpose of the running program.
     pub(crate) fn purpose(&self) -> Option<Purpose> {
         self.program().map(|program| program.purpose)
     }
@@ -92,14 +92,14 @@ impl Executor {
         matches!(self, Self::Standing)
     }
 
-    /// The rest of the program is for something else from here on.
+    /// Changes the purpose of the rest of the program.
     pub(crate) fn change_purpose(&mut self, to: Purpose) {
         if let Self::Running { program, .. } = self {
             program.purpose = to;
         }
     }
 
-    /// Gives the program up and brings the arm to rest as soon as its limits allow.
+    /// Aborts the program and brings the arm to rest as fast as its limits allow.
     pub(crate) fn halt(&mut self) {
         let Self::Running { program, t_s, .. } = self else { return };
         *self = match program.steps.front() {
@@ -111,21 +111,21 @@ impl Executor {
         };
     }
 
-    /// Gives up what is being done, at once.
+    /// Aborts everything at once.
     pub(crate) fn stand(&mut self) {
         *self = Self::Standing;
     }
 
-    /// Goes on for `seconds`, at most to the end of the step.
+    /// Advances by `seconds`, at most to the end of the step.
     pub(crate) fn advance(&mut self, seconds: f64, driver: &mut dyn ArmDriver) -> Progress {
         match self {
             Self::Standing => Progress::Under,
             Self::Halting { limb, motion, t_s, late_s } => {
                 let how = (*limb, Fingers::Stay);
                 let ended = follow(motion, (t_s, late_s), seconds, how, driver);
-                let deaf = driver.hindrance() != Hindrance::None && *late_s > 0.0;
-                // An arm that was told to stop and hangs on is an arm that stands, and so is one
-                // that cannot be felt.
+                let deaf = driver.inhibit() != MotionInhibit::None && *late_s > 0.0;
+                // An arm that does not settle after a stop command counts as standing, and so does one
+                // without sensor data.
                 if let (Ok(None), false) = (ended, deaf) {
                     return Progress::Under;
                 }
@@ -157,18 +157,18 @@ impl Executor {
         }
     }
 
-    /// Steps of the program that are not over.
+    /// Returns the number of unfinished steps.
     pub(crate) fn steps_left(&self) -> usize {
         self.program().map_or(0, |program| program.steps.len())
     }
 
-    /// Simulated seconds until the program ends.
+    /// Returns the simulated seconds until the program ends.
     pub(crate) fn seconds_left(&self) -> f64 {
         let Self::Running { program, t_s, .. } = self else { return 0.0 };
         (program.duration_s() - t_s).max(0.0)
     }
 
-    /// Simulated seconds until the object is handed over.
+    /// Returns the simulated seconds until the handover.
     pub(crate) fn seconds_to_hand_over(&self) -> f64 {
         let Self::Running { program, t_s, .. } = self else { return 0.0 };
         let before = program.steps.iter().take_while(|step| step.kind != MotionPhase::Return);
@@ -177,8 +177,8 @@ impl Executor {
     }
 }
 
-/// Follows a motion for `seconds`; it has been followed for `t_s` and should have ended `late_s` ago.
-/// How many seconds were left when it ended, none while it has not.
+/// Follows a motion from `t_s` on for `seconds`; `late_s` is the time since its planned end.
+/// Returns the seconds left when it ended, `None` while it has not.
 fn follow(
     motion: &Trajectory,
     (t_s, late_s): (&mut f64, &mut f64),
@@ -196,7 +196,7 @@ fn follow(
     if seconds < remaining_s {
         return Ok(None);
     }
-    // Where one motion was cut in two the arm does not come to rest between them.
+    // A motion that was split in two does not come to rest in between.
     if qd.iter().any(|v| v.abs() > FLOWS_RAD_S) {
         return Ok(Some(seconds - passed_s));
     }

@@ -1,31 +1,31 @@
-//! What is to be done next. The goal follows from the state, the standing act and where the arm is;
-//! when it changes under a motion, the arm halts and plans anew from there.
+//! Choice of the next goal, from the state, the standing act and the arm's posture;
+//! when it changes during a motion, the arm halts and replans from there.
 
 use crate::executor::{Executor, Program, Purpose};
 use crate::program::{Planner, Refusal};
 use crate::recover::{Next, next};
 use crate::{ArmNode, Fx};
 use manipulation::Limb;
-use messages::{Hindrance, PickOutcome, PickPhase};
+use messages::{MotionInhibit, PickOutcome, PickPhase};
 use scene::ObjectId;
 use service::{Span, Time};
 
-/// How long the arm stands where it finds no way to rest, before it looks for one again.
+/// Delay before another search for a path to rest.
 const RETRY_EVERY: Span = Span::from_ms(5_000);
 
-/// What could not be done.
+/// Goals for which planning failed.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Setbacks {
-    /// Not possible from where the arm stood; to be tried again from rest.
+pub(crate) struct PlanFailures {
+    /// Not possible from the arm's posture; to be retried from rest.
     from_rest: Option<Purpose>,
-    /// Nothing can aim at it.
+    /// Object that no limb can aim at.
     aim: Option<ObjectId>,
-    /// No way to rest was found; not to be looked for before.
+    /// Earliest time of another search for a path to rest.
     retry_rest: Option<Time>,
 }
 
-impl Setbacks {
-    /// The policy asks about another object.
+impl PlanFailures {
+    /// Forgets the failed aim when the policy asks about another object.
     pub(crate) fn forget_aim(&mut self, before: Option<ObjectId>, after: Option<ObjectId>) {
         if before != after {
             self.aim = None;
@@ -38,7 +38,7 @@ impl Setbacks {
 }
 
 impl ArmNode {
-    /// Sets out for what is wanted, or halts what is not.
+    /// Starts the wanted goal, or halts a motion for another one.
     pub(crate) fn decide(&mut self, now: Time, fx: &mut Fx) {
         let wanted = self.wanted(now);
         match &self.executor {
@@ -46,38 +46,38 @@ impl ArmNode {
                 self.executor.halt();
             }
             Executor::Running { .. } | Executor::Halting { .. } => {}
-            // Plans begin where the joints are, so they have to be somewhere.
-            Executor::Standing if !self.can_set_out() => {}
+            // A plan starts at the present posture, so the joints must stand still.
+            Executor::Standing if !self.can_start() => {}
             Executor::Standing => {
                 let restocks = self.config.arm.restock && !self.state.gone.is_empty();
                 if restocks && self.limb_away().is_none() {
                     self.rest(now, fx);
                 }
                 if let Some(purpose) = wanted {
-                    self.set_out(purpose, now, fx);
+                    self.start_goal(purpose, now, fx);
                 }
             }
         }
     }
 
-    /// A limb that is not at rest, or on its way there.
+    /// Returns a limb that is not at rest.
     pub(crate) fn limb_away(&self) -> Option<Limb> {
         let measured = self.driver.measured();
         let robot = &self.config.setup.robot;
         Limb::BOTH.into_iter().find(|limb| !measured.is_at_rest(robot, *limb))
     }
 
-    fn can_set_out(&self) -> bool {
-        self.driver.hindrance() == Hindrance::None && self.driver.is_still()
+    fn can_start(&self) -> bool {
+        self.driver.inhibit() == MotionInhibit::None && self.driver.is_still()
     }
 
-    /// What the arm should be doing now; none: stand.
+    /// Returns the present goal; `None` means standing.
     fn wanted(&self, now: Time) -> Option<Purpose> {
-        if self.state.stopped || self.ending || self.driver.hindrance() != Hindrance::None {
+        if self.state.stopped || self.ending || self.driver.inhibit() != MotionInhibit::None {
             return None;
         }
         let returning = self.executor.purpose() == Some(Purpose::Return);
-        let away = returning || self.limb_away().is_some() && self.setbacks.way_to_rest(now);
+        let away = returning || self.limb_away().is_some() && self.plan_failures.way_to_rest(now);
         match self.goal() {
             Some(goal) if !(away && self.comes_after_rest(goal)) => Some(goal),
             None if self.state.waits_for_person => None,
@@ -85,17 +85,17 @@ impl ArmNode {
         }
     }
 
-    /// What the arm is to do besides resting.
+    /// Returns the goal other than resting.
     fn goal(&self) -> Option<Purpose> {
         if let Some(pick) = self.state.open_pick() {
             return Some(Purpose::Pick(pick.id));
         }
-        let aim = self.act.aim.filter(|object| self.setbacks.aim != Some(*object))?;
+        let aim = self.act.aim.filter(|object| self.plan_failures.aim != Some(*object))?;
         let stands = self.config.arm.restock || !self.state.gone.contains(&aim);
         (stands && !self.state.waits_for_person).then_some(Purpose::Aim(aim))
     }
 
-    /// Whether the arm is to rest first: no plan was found from elsewhere, or the object is still
+    /// Returns whether the arm must rest first: no plan was found from elsewhere, or the object is still
     /// with the person, who puts it back once the arm is at rest.
     fn comes_after_rest(&self, goal: Purpose) -> bool {
         let object = match goal {
@@ -104,10 +104,10 @@ impl ArmNode {
             Purpose::Return => None,
         };
         let with_person = object.is_some_and(|object| self.state.gone.contains(&object));
-        self.setbacks.from_rest == Some(goal) || self.config.arm.restock && with_person
+        self.plan_failures.from_rest == Some(goal) || self.config.arm.restock && with_person
     }
 
-    fn set_out(&mut self, purpose: Purpose, now: Time, fx: &mut Fx) {
+    fn start_goal(&mut self, purpose: Purpose, now: Time, fx: &mut Fx) {
         if purpose == self.aimed.map_or(Purpose::Return, Purpose::Aim) && self.aimed.is_some() {
             return;
         }
@@ -136,18 +136,18 @@ impl ArmNode {
         tracing::info!(?purpose, %limb, seconds, steps = steps.join(", "), "planned");
         self.aimed = None;
         if purpose != Purpose::Return {
-            self.setbacks.from_rest = None;
+            self.plan_failures.from_rest = None;
         }
         let object = match purpose {
             Purpose::Pick(_) => self.state.open_pick().map(|pick| pick.object),
             Purpose::Aim(object) => Some(object),
             Purpose::Return => None,
         };
-        self.course.begin(&program, object, &self.config);
+        self.motion_view.begin(&program, object, &self.config);
         self.executor.start(program);
     }
 
-    /// The program for the open pick, if it is to move; what needs no motion is done at once.
+    /// Returns the program for the open pick if it needs motion; what needs none is done at once.
     fn plan_pick(&mut self, now: Time, fx: &mut Fx) -> Option<Result<Program, Refusal>> {
         let pick = *self.state.open_pick()?;
         let (limb, held) = (self.state.limb, self.state.held);
@@ -185,23 +185,23 @@ impl ArmNode {
         })
     }
 
-    /// Goes on where there is no program: from rest, or not at all.
+    /// Handles a goal without a program: retry from rest, or give up.
     fn refuse(&mut self, purpose: Purpose, refusal: Refusal, now: Time, fx: &mut Fx) {
-        let from_rest = self.limb_away().is_some() && self.setbacks.way_to_rest(now);
+        let from_rest = self.limb_away().is_some() && self.plan_failures.way_to_rest(now);
         match purpose {
             Purpose::Return => {
                 tracing::error!(%refusal, "no way to rest; the arm stands where it is");
-                self.setbacks.retry_rest = Some(now + RETRY_EVERY);
+                self.plan_failures.retry_rest = Some(now + RETRY_EVERY);
             }
             _ if from_rest => {
                 tracing::info!(?purpose, %refusal, "not from here; the arm goes to rest first");
-                self.setbacks.from_rest = Some(purpose);
+                self.plan_failures.from_rest = Some(purpose);
                 self.urgent = true;
             }
             Purpose::Aim(object) => {
                 let name = self.name(object);
                 tracing::warn!(name, %refusal, "cannot point at the object");
-                self.setbacks.aim = Some(object);
+                self.plan_failures.aim = Some(object);
             }
             Purpose::Pick(_) => {
                 let Some(pick) = self.state.open_pick().copied() else { return };

@@ -1,39 +1,38 @@
-//! The arm: fetches the ordered object exactly once, points at objects, and stops when told.
+//! The arm service: fetches the ordered object exactly once, points at objects, and stops on request.
 //!
 //! [`ArmNode`] is the reducer. Invariant: a motion that belongs to a phase of a pick is commanded
-//! only once that phase is durable, and what is to be done next depends on durable facts and
-//! sensors alone, so the arm can be killed at any instant and goes on from there. The runtime
+//! only once that phase is durable, and the next action depends on durable facts and
+//! sensors alone, so the arm can be killed at any instant and resumes from there. The service loop
 //! commits between two ticks and calls at most one tick between two commits; that is what "once
 //! durable" rests on: a phase is recorded in one tick and its motion begins in a later one.
 
-mod course;
 mod driver;
 mod executor;
 mod goal;
-mod hindered;
 mod inspection;
 mod motion;
+mod motion_inhibit;
 mod orders;
 mod program;
 mod publish;
 pub mod recover;
 pub mod shell;
 pub mod state;
+mod trajectory_view;
 mod world;
 
 #[cfg(test)]
 mod tests;
 
 pub use driver::{
-    ArmDriver, BaxterDriver, Command, Fault, Fingers, Grip, KinematicArm, Measured, Order, Source,
-    Told,
+    ArmDriver, BaxterDriver, Command, Fault, Fingers, Grip, KinematicArm, Measured, Order, Report,
+    Source,
 };
 
-use course::Course;
 use executor::Executor;
-use goal::Setbacks;
+use goal::PlanFailures;
 use messages::{
-    ArmStatus, Hindrance, JointStates, MotionCommand, RobotAct, TrajectoryView, WorldView,
+    ArmStatus, JointStates, MotionCommand, MotionInhibit, RobotAct, TrajectoryView, WorldView,
 };
 use orders::StandingAct;
 use preflight::ArmSetup;
@@ -41,44 +40,45 @@ use publish::{Facts, Publisher};
 use scene::{ObjectId, Scene};
 use service::{Effects, Event, Node, NodeError, Span, Time};
 use state::{ArmState, Cause, Record};
+use trajectory_view::MotionView;
 use world::World;
 
-/// What arrives.
+/// Inputs of the arm.
 #[derive(Clone, Debug, PartialEq)]
 pub enum In {
-    /// From the policy: what to do.
+    /// Act of the policy.
     Act(Box<RobotAct>),
-    /// From speech and clients: stop, or go on.
+    /// Stop or resume, from speech and clients.
     Motion(MotionCommand),
-    /// From the robot, where there is one: what it measures.
-    Robot(Told),
+    /// Report of a real robot.
+    Robot(Report),
 }
 
-/// What is published.
+/// Outputs of the arm.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Out {
-    /// To policy and speech: how far a pick has come, and what is aimed at.
+    /// Progress of a pick and the object aimed at, to policy and speech.
     Status(ArmStatus),
-    /// To clients: where the joints are.
+    /// Joint states, to clients.
     Joints(Box<JointStates>),
-    /// To clients: where the objects are.
+    /// Poses of the objects, to clients.
     World(Box<WorldView>),
-    /// To clients: which way the gripper is going.
+    /// Planned path of the gripper, to clients.
     Trajectory(Box<TrajectoryView>),
-    /// To the robot, where there is one: what it is to do.
+    /// Command to a real robot.
     Robot(Order),
 }
 
 type Fx = Effects<Out, Record>;
 
-/// What the arm is configured with.
+/// Configuration of the arm.
 #[derive(Clone, Debug)]
 pub struct Config {
     /// Driver, time scale, grasps, and the simulated world.
     pub arm: config::Arm,
     /// Robot, limb and settings of motions.
     pub setup: ArmSetup,
-    /// The objects and their places.
+    /// Objects and their places.
     pub scene: Scene,
 }
 
@@ -90,19 +90,19 @@ pub struct ArmNode {
     driver: Box<dyn ArmDriver>,
     executor: Executor,
     publisher: Publisher,
-    course: Course,
+    motion_view: MotionView,
     act: StandingAct,
-    /// What the gripper aims at, standing still.
+    /// Object that the gripper aims at, standing still.
     aimed: Option<ObjectId>,
-    setbacks: Setbacks,
-    /// When the motion was last carried on.
+    plan_failures: PlanFailures,
+    /// Time of the last motion step.
     stepped: Time,
     recorded: Time,
-    /// Something is to be done in the next pass, or by the end of this one.
+    /// Requests another pass at once.
     urgent: bool,
     scene_changed: bool,
-    /// What kept the robot from moving in the pass before.
-    hindrance: Hindrance,
+    /// Reason why the robot could not move in the previous pass.
+    inhibit: MotionInhibit,
     ending: bool,
 }
 
@@ -127,9 +127,9 @@ impl Node for ArmNode {
     fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
         match event {
             Event::Started => self.begin(now, fx),
-            Event::Message(In::Motion(command)) => self.obey(&command, now, fx),
-            Event::Message(In::Act(act)) => self.hear(&act, now, fx),
-            Event::Message(In::Robot(told)) => self.driver.hear(&told, now),
+            Event::Message(In::Motion(command)) => self.on_motion_command(&command, now, fx),
+            Event::Message(In::Act(act)) => self.on_act(&act, now, fx),
+            Event::Message(In::Robot(report)) => self.driver.on_report(&report, now),
             Event::Tick => self.tick(now, fx),
             Event::Shutdown => {
                 self.ending = true;
@@ -166,18 +166,18 @@ impl ArmNode {
         Self {
             world: World::new(&config.setup.robot, &config.scene),
             publisher: Publisher::new(&config.arm),
-            course: Course::default(),
+            motion_view: MotionView::default(),
             state: settled.unwrap_or(state),
             driver,
             executor: Executor::default(),
             act: StandingAct::default(),
             aimed: None,
-            setbacks: Setbacks::default(),
+            plan_failures: PlanFailures::default(),
             stepped: Time(0),
             recorded: Time(0),
             urgent: false,
             scene_changed,
-            hindrance: Hindrance::None,
+            inhibit: MotionInhibit::None,
             ending: false,
             config,
         }
@@ -190,8 +190,8 @@ impl ArmNode {
 
     fn begin(&mut self, now: Time, fx: &mut Fx) {
         (self.stepped, self.recorded, self.urgent) = (now, now, true);
-        // The monotonic clock begins anew with the machine; an order of its last life must not
-        // outrank those of this one.
+        // The monotonic clock restarts with the machine; an order of the previous boot must not
+        // outrank those of this boot.
         if self.state.obeyed > now {
             self.state.obeyed = Time(0);
         }
@@ -200,7 +200,7 @@ impl ArmNode {
             self.record(Cause::SceneChanged, now, fx);
         }
         if let Some(pick) = self.state.open_pick() {
-            tracing::info!(pick = ?pick.id, phase = ?pick.phase, "a pick is open; going on with it");
+            tracing::info!(pick = ?pick.id, phase = ?pick.phase, "resuming an open pick");
         }
         self.publish(now, fx);
     }
@@ -208,10 +208,10 @@ impl ArmNode {
     fn tick(&mut self, now: Time, fx: &mut Fx) {
         self.urgent = false;
         let seconds = self.passed_s(now);
-        self.feel(now, fx);
+        self.read_sensors(now, fx);
         self.decide(now, fx);
         self.step(seconds, now, fx);
-        self.hint(now, fx);
+        self.record_progress(now, fx);
         if self.ending && self.executor.is_standing() {
             self.record(Cause::Shutdown, now, fx);
             fx.exit();
@@ -229,15 +229,15 @@ impl ArmNode {
             executor: &self.executor,
             world: &self.world,
             aimed: aims.then_some(self.act.id),
-            hindrance: self.driver.hindrance(),
+            inhibit: self.driver.inhibit(),
         };
         self.publisher.tick(&facts, now, fx);
-        if let Some(view) = self.course.news(&self.executor, now) {
+        if let Some(view) = self.motion_view.update(&self.executor, now) {
             fx.publish(Out::Trajectory(Box::new(view)));
         }
     }
 
-    /// Has the state be remembered, with the joints where they are now.
+    /// Appends the state to the journal, with the present joint positions.
     fn record(&mut self, cause: Cause, at: Time, fx: &mut Fx) {
         self.state.posture = self.driver.measured().posture;
         self.recorded = at;

@@ -1,4 +1,4 @@
-//! Time passes: the program goes on, and the pick with it from phase to phase.
+//! Progress of the program in time, and of the pick from phase to phase.
 
 use crate::driver::Fault;
 use crate::executor::{Progress, Purpose};
@@ -8,21 +8,21 @@ use manipulation::Limb;
 use messages::{MotionPhase, PickOutcome, PickPhase};
 use service::{Span, Time};
 
-/// Longest stretch of a motion that is made up for at once. A process that was suspended goes on
-/// from where it was, as a robot does whose controller was silent.
+/// Longest time step of a motion. A process that was suspended resumes
+/// from the same point, as a robot does whose controller was silent.
 const STRETCH_MAX: Span = Span::from_ms(50);
-/// How often the joints are remembered while they move.
-const HINT_EVERY: Span = Span::from_ms(200);
+/// Interval between journal records of moving joints.
+const PROGRESS_EVERY: Span = Span::from_ms(200);
 
 impl ArmNode {
-    /// Simulated seconds since the last step.
+    /// Returns the simulated seconds since the last step.
     pub(crate) fn passed_s(&mut self, now: Time) -> f64 {
         let passed = now.since(self.stepped).min(STRETCH_MAX);
         self.stepped = now;
         passed.s() * self.config.arm.time_scale
     }
 
-    /// Carries the motion on, over as many steps as the time allows, but never into a phase that is
+    /// Advances the motion, over as many steps as the time allows, but never into a phase that is
     /// not durable yet.
     pub(crate) fn step(&mut self, mut seconds: f64, now: Time, fx: &mut Fx) {
         loop {
@@ -42,10 +42,10 @@ impl ArmNode {
         }
     }
 
-    /// Remembers the joints from time to time; between two joint states, so that none of them waits
+    /// Records the moving joints at intervals, between two joint states, so that none of them waits
     /// for the disk.
-    pub(crate) fn hint(&mut self, now: Time, fx: &mut Fx) {
-        if self.executor.is_standing() || now < self.recorded + HINT_EVERY {
+    pub(crate) fn record_progress(&mut self, now: Time, fx: &mut Fx) {
+        if self.executor.is_standing() || now < self.recorded + PROGRESS_EVERY {
             return;
         }
         if self.publisher.joints_are_due(&self.driver.measured(), now) {
@@ -55,7 +55,7 @@ impl ArmNode {
         self.record(Cause::Moved, now, fx);
     }
 
-    /// Whether the next step begins a phase that has to be made durable first. If so, it has been
+    /// Returns whether the next step begins a phase that must become durable first. If so, it has been
     /// recorded and the step begins in a later tick.
     fn enters_phase(&mut self, now: Time, fx: &mut Fx) -> bool {
         let Some(program) = self.executor.program() else { return false };
@@ -73,11 +73,11 @@ impl ArmNode {
         true
     }
 
-    /// The fingers have closed: either the object is held from here on, or they closed on nothing.
+    /// Handles closed fingers: either they hold the object, or they closed on nothing.
     pub(crate) fn hold(&mut self, limb: Limb, now: Time, fx: &mut Fx) {
         let measured = self.driver.measured();
         let Some(object) = self.state.open_pick().map(|pick| pick.object) else { return };
-        // A gripper that cannot tell is trusted as long as nothing has interrupted it.
+        // A gripper without a sensor is trusted as long as nothing has interrupted it.
         if measured.holds(limb) == Some(false) {
             return self.miss(now, fx);
         }
@@ -85,26 +85,26 @@ impl ArmNode {
         self.enter(PickPhase::Holding, limb, now, fx);
     }
 
-    /// The fingers have closed on nothing. The gripper goes up and comes down once more, as often
-    /// as is tried; then the pick is over, with nothing in the gripper.
+    /// Handles a missed grasp. The gripper goes up and comes down again, as often
+    /// as configured; then the pick ends with an empty gripper.
     fn miss(&mut self, now: Time, fx: &mut Fx) {
         self.state.misses += 1;
         let (misses, attempts) = (self.state.misses, self.config.arm.grasp.attempts);
         self.executor.stand();
         if misses < attempts {
-            tracing::warn!(misses, attempts, "the fingers have closed on nothing; once more");
+            tracing::warn!(misses, attempts, "missed grasp; retrying");
             self.urgent = true;
             return self.record(Cause::Missed, now, fx);
         }
-        tracing::error!(misses, "the fingers have closed on nothing; the grasp is given up");
+        tracing::error!(misses, "missed grasp; giving up");
         self.end(PickOutcome::Missed, now, fx);
     }
 
-    /// The robot does not do what it is commanded: it is held where it is until a person has looked.
+    /// Holds a robot that does not follow its commands until an operator has checked it.
     pub(crate) fn block(&mut self, fault: &Fault, now: Time, fx: &mut Fx) {
         tracing::error!(
             %fault,
-            "the arm halts; look what is in its way, then: whichone resume-motion"
+            "motion blocked; halting; help: clear the obstacle, then: whichone resume-motion"
         );
         self.executor.stand();
         self.driver.hold_here();
@@ -121,7 +121,7 @@ impl ArmNode {
         if pick.phase < phase {
             pick.phase = phase;
         }
-        tracing::info!(id = ?pick.id, ?phase, %limb, "pick goes on");
+        tracing::info!(id = ?pick.id, ?phase, %limb, "pick phase");
         self.state.limb = Some(limb);
         self.urgent = true;
         self.record(Cause::Phase, now, fx);
@@ -131,7 +131,7 @@ impl ArmNode {
     pub(crate) fn end(&mut self, outcome: PickOutcome, now: Time, fx: &mut Fx) {
         let Some(pick) = &mut self.state.pick else { return };
         (pick.phase, pick.outcome) = (PickPhase::Done, outcome);
-        tracing::info!(id = ?pick.id, object = pick.object.0, ?outcome, "pick is over");
+        tracing::info!(id = ?pick.id, object = pick.object.0, ?outcome, "pick ended");
         let asks_for_person = [PickOutcome::Interrupted, PickOutcome::Blocked];
         self.state.waits_for_person = asks_for_person.contains(&outcome);
         self.urgent = true;
@@ -157,7 +157,7 @@ impl ArmNode {
         }
     }
 
-    /// The arm has come to rest: people put back what they were given, where they do.
+    /// Handles the arm at rest: with restocking, people have put the objects back.
     pub(crate) fn rest(&mut self, now: Time, fx: &mut Fx) {
         if self.config.arm.restock && self.limb_away().is_none() {
             self.state.gone.clear();

@@ -1,4 +1,4 @@
-//! What the arm is told: acts of the policy, and the motion stop.
+//! Orders to the arm: acts of the policy, and the motion stop.
 
 use crate::state::Cause;
 use crate::{ArmNode, Fx};
@@ -9,19 +9,19 @@ use messages::{
 use scene::{ObjectId, Question};
 use service::Time;
 
-/// What matters of the policy's latest act.
+/// The relevant part of the policy's latest act.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct StandingAct {
     pub(crate) id: ActId,
-    /// The object that it asks about by pointing.
+    /// Object that a pointing question asks about.
     pub(crate) aim: Option<ObjectId>,
 }
 
 impl ArmNode {
-    /// Takes the policy's act, which is sent again and again while it stands.
-    pub(crate) fn hear(&mut self, act: &RobotAct, now: Time, fx: &mut Fx) {
+    /// Handles the policy's act, which is republished while it stands.
+    pub(crate) fn on_act(&mut self, act: &RobotAct, now: Time, fx: &mut Fx) {
         let id = ActId(act.act);
-        // Objects have numbers of their own in each scene. The act comes again, and counts once the
+        // Object ids differ between scenes. The act is republished and counts once the
         // arm has been restarted with that scene.
         if id < self.act.id || act.scene_key != self.config.scene.key() {
             return;
@@ -29,7 +29,7 @@ impl ArmNode {
         let is_new = id != self.act.id;
         let (Ok(kind), Ok(question)) = (act.kind(), Question::try_from(act.question)) else {
             if is_new {
-                tracing::warn!(%id, "an act that makes no sense is ignored");
+                tracing::warn!(%id, "invalid act ignored");
             }
             self.act = StandingAct { id, aim: None };
             return;
@@ -39,7 +39,7 @@ impl ArmNode {
             _ => None,
         };
         if is_new {
-            self.setbacks.forget_aim(self.act.aim, aim);
+            self.plan_failures.forget_aim(self.act.aim, aim);
             self.urgent = true;
         }
         self.act = StandingAct { id, aim };
@@ -58,13 +58,13 @@ impl ArmNode {
                 self.record(Cause::Ordered, now, fx);
             }
             Order::Conflict if is_new => {
-                tracing::error!(?id, object = object.0, "the pick is known with another object");
+                tracing::error!(?id, object = object.0, "pick id already used with another object");
             }
             Order::Conflict | Order::Known | Order::Busy | Order::Obsolete => {}
         }
     }
 
-    /// Gives the pick up, unless the gripper closes on the object already: then it is delivered.
+    /// Cancels the pick, unless the gripper already closes on the object: then it is delivered.
     fn cancel(&mut self, id: PickId, object: ObjectId, now: Time, fx: &mut Fx) {
         match judge(self.state.pick.as_ref(), id, object) {
             Order::Known => {
@@ -73,10 +73,10 @@ impl ArmNode {
                     self.end(PickOutcome::Cancelled, now, fx);
                 }
             }
-            // The order itself never came through. It must not be obeyed when it does.
+            // The order itself has not arrived yet. It must be ignored when it does.
             Order::Accept => {
                 self.take_on(id, object, (PickPhase::Done, PickOutcome::Cancelled));
-                tracing::info!(?id, "pick given up before it was known");
+                tracing::info!(?id, "pick cancelled before its order arrived");
                 self.record(Cause::Ordered, now, fx);
             }
             Order::Busy | Order::Obsolete | Order::Conflict => {}
@@ -89,37 +89,37 @@ impl ArmNode {
         object: ObjectId,
         (phase, outcome): (PickPhase, PickOutcome),
     ) {
-        self.person_has_looked();
+        self.acknowledge_interruption();
         self.state.pick = Some(Pick { id, object, phase, outcome });
         (self.state.limb, self.state.misses) = (None, 0);
         self.urgent = true;
     }
 
-    /// Obeys the motion stop, and its release.
-    pub(crate) fn obey(&mut self, command: &MotionCommand, now: Time, fx: &mut Fx) {
+    /// Handles the motion stop and its release.
+    pub(crate) fn on_motion_command(&mut self, command: &MotionCommand, now: Time, fx: &mut Fx) {
         let given = Time(command.given_ns);
         let order = command.order.get();
         if given <= self.state.obeyed {
             return;
         }
         if order == MotionOrder::Resume && given > now {
-            tracing::warn!("a release of the motion stop from the future is ignored");
+            tracing::warn!("motion stop release with a future timestamp ignored");
             return;
         }
-        // A time in the future would outrank every honest order that follows.
+        // A time in the future would outrank every later order.
         self.state.obeyed = given.min(now);
         self.state.stopped = order == MotionOrder::Stop;
         match order {
             MotionOrder::Stop => self.executor.halt(),
-            MotionOrder::Resume => self.person_has_looked(),
+            MotionOrder::Resume => self.acknowledge_interruption(),
         }
-        tracing::info!(?order, "motion order obeyed");
+        tracing::info!(?order, "motion order applied");
         self.urgent = true;
         self.record(Cause::Motion(order), now, fx);
     }
 
-    /// A person has looked at what was interrupted, and has taken what the gripper held.
-    fn person_has_looked(&mut self) {
+    /// Clears an interruption that a person has handled; what the gripper held was taken out.
+    fn acknowledge_interruption(&mut self) {
         if !std::mem::take(&mut self.state.waits_for_person) {
             return;
         }

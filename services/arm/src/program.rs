@@ -1,4 +1,4 @@
-//! Turns what is to be done into programs, from wherever the arm stands.
+//! Plans programs for the arm's goals, from any posture.
 
 use crate::driver::{Fingers, Grip, Measured};
 use crate::executor::{Program, Purpose, Step};
@@ -16,47 +16,47 @@ use nalgebra::Translation3;
 use scene::ObjectId;
 use std::collections::VecDeque;
 
-/// Everything that a plan depends on.
+/// Inputs of a plan.
 pub(crate) struct Planner<'a> {
     pub(crate) robot: &'a Robot,
     pub(crate) settings: &'a PlanSettings,
-    /// How grasps are tried.
+    /// Settings of grasps.
     pub(crate) grasps: &'a Grasps,
-    /// The limb to be used; none: the better one.
+    /// Configured limb; `None` means the better one.
     pub(crate) limb: Option<Limb>,
     pub(crate) world: &'a World,
     pub(crate) state: &'a ArmState,
     pub(crate) measured: &'a Measured,
 }
 
-/// Why there is no program.
+/// Reason for a missing program.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub(crate) enum Refusal {
-    /// The scene gives it no place.
+    /// The scene has no place for the object.
     #[error("it has no place in the scene")]
     NoPlace,
     /// A person took it.
-    #[error("it was handed over and nobody has put it back (arm.restock is off)")]
+    #[error("it was handed over and has not been put back (arm.restock is off)")]
     Gone,
-    /// The limb for it is not the one that is away from rest: that one has to come home first.
+    /// The other limb is away from rest and must return first.
     #[error("the other limb is away from rest")]
     OtherLimb,
-    /// The kinematics find no motion.
+    /// No motion was found.
     #[error(transparent)]
     Plan(#[from] PlanError),
 }
 
-/// The last seconds of an approach, in which the fingers must be open already.
+/// Last seconds of an approach, in which the fingers must already be open.
 const DESCENT_S: f64 = 1.0;
 /// Seconds that the fingers rest after they opened.
 const SETTLE_S: f64 = 0.2;
-/// The gripper is at the hand over when it is this near, metres.
+/// Largest distance from the handover position that counts as at it, metres.
 const HAND_OVER_M: f64 = 0.005;
-/// How far the gripper moves with a joint at most, metres per radian.
+/// Largest motion of the gripper with a joint, metres per radian.
 const REACH_M: f64 = 1.2;
-/// How far the gripper goes up before it goes to rest, where there is no way from lower, metres.
+/// Rises of the gripper before it returns to rest, tried if there is no path from lower, metres.
 const RISES_M: [f64; 2] = [0.05, 0.15];
-/// How far before and after a waypoint a corner is rounded, radians of joint distance.
+/// Distance before and after a waypoint at which a corner is rounded, radians of joint distance.
 const BLEND_RAD: f64 = 0.15;
 
 impl Planner<'_> {
@@ -68,7 +68,7 @@ impl Planner<'_> {
             return Err(Refusal::Gone);
         }
         let start = self.start(Some(pick.object), 0.0);
-        let plan = self.narrowly(|settings| {
+        let plan = self.with_reduced_margin(|settings| {
             plan_pick(self.robot, object, self.limb, &start.arms, &start.obstacles, settings)
         })?;
         self.refuse_other(plan.limb())?;
@@ -88,7 +88,7 @@ impl Planner<'_> {
         let in_gripper = from_array(&held.in_gripper);
         let others = self.world.obstacles(self.state, None);
         let arms = self.arms();
-        let plan = self.narrowly(|settings| {
+        let plan = self.with_reduced_margin(|settings| {
             plan_delivery(self.robot, object, &in_gripper, held.limb, &arms, &others, settings)
         })?;
         let steps = plan.timeline.stages().iter().map(|stage| self.pick_step(stage)).collect();
@@ -109,7 +109,7 @@ impl Planner<'_> {
     pub(crate) fn aim(&self, object: ObjectId) -> Result<Program, Refusal> {
         let place = self.world.place(object).ok_or(Refusal::NoPlace)?;
         let start = self.start(None, 0.0);
-        let plan = self.narrowly(|settings| {
+        let plan = self.with_reduced_margin(|settings| {
             plan_point(self.robot, place.xyz_m, self.limb, &start.arms, &start.obstacles, settings)
         })?;
         self.refuse_other(plan.limb())?;
@@ -132,7 +132,7 @@ impl Planner<'_> {
 
     fn rest_from(&self, limb: Limb, rise_m: f64) -> Result<Program, Refusal> {
         let start = self.start(None, rise_m);
-        let plan = self.narrowly(|settings| {
+        let plan = self.with_reduced_margin(|settings| {
             plan_return(self.robot, limb, &start.arms, &start.obstacles, settings)
         })?;
         let holds = self.state.held.is_some_and(|held| held.limb == limb);
@@ -144,16 +144,16 @@ impl Planner<'_> {
         Ok(Program { purpose: Purpose::Return, limb, steps })
     }
 
-    /// Whether `limb` has its gripper where objects are handed over.
+    /// Returns whether the gripper of `limb` is at the handover position.
     pub(crate) fn is_at_hand_over(&self, limb: Limb) -> bool {
         let within_m = HAND_OVER_M + REACH_M * self.measured.accuracy_rad;
         self.settings.is_hand_over(limb, &self.tip(limb).vector, within_m)
     }
 
-    /// Plans with the configured margin or, where something is in the way of a limb that is away
+    /// Plans with the configured margin or, if something blocks a limb that is away
     /// from rest, without one: an arm that was halted between two of the points at which its motion
     /// was checked, or that is measured a little beside them, may stand a hair inside the margin.
-    fn narrowly<T>(
+    fn with_reduced_margin<T>(
         &self,
         plan: impl Fn(&PlanSettings) -> Result<T, PlanError>,
     ) -> Result<T, PlanError> {
@@ -171,7 +171,7 @@ impl Planner<'_> {
         if rests { Ok(()) } else { Err(Refusal::OtherLimb) }
     }
 
-    /// What the limb's joints may do at the configured speed.
+    /// Returns the limb's motion limits at the configured speed.
     fn limits(&self, limb: Limb) -> MotionLimits {
         self.robot.arm(limb).limits.at_speed_ratio(self.settings.speed_ratio)
     }
@@ -211,18 +211,18 @@ impl Planner<'_> {
     }
 }
 
-/// What a plan starts from.
+/// Start of a plan.
 struct Start {
-    /// The steps before it.
+    /// Steps before it.
     steps: VecDeque<Step>,
-    /// Where the arms are after those.
+    /// Arms after those steps.
     arms: Arms,
-    /// What stands around.
+    /// Obstacles.
     obstacles: Vec<Cuboid>,
 }
 
 impl Planner<'_> {
-    /// Where plans begin: with the limb that is away from rest clear of every object, and `rise_m`
+    /// Returns the start of a plan: with a limb that is away from rest clear of every object, and `rise_m`
     /// higher than it is. It may stand among them, stopped or killed on its way down; what it then
     /// touches it leaves as it came, straight up with open fingers.
     fn start(&self, fetched: Option<ObjectId>, rise_m: f64) -> Start {
@@ -239,7 +239,7 @@ impl Planner<'_> {
             steps.extend((!holds && opening.motion.duration_s() > 0.0).then_some(opening));
             steps.push_back(Step { kind: MotionPhase::Clear, phase: None, motion: up, fingers });
         }
-        // What it touches even so cannot be kept clear of; it is left by the way there is.
+        // An object that it still touches cannot be an obstacle.
         let shape = ArmShape::at(self.robot.arm(limb), arms.of(limb));
         let obstacles = others.into_iter().filter(|cuboid| !touches(&shape, cuboid)).collect();
         Start { steps, arms, obstacles }
@@ -284,8 +284,8 @@ impl Planner<'_> {
         Step { kind, phase, motion: stage.motion.clone(), fingers }
     }
 
-    /// What the fingers close on. Where the object stands is drawn from the pick and the attempt
-    /// at it, so that an arm that was killed meets it where it was.
+    /// Returns the object between the fingers. Its offset is drawn from the pick and the attempt
+    /// at it, so that a killed arm finds it in the same place.
     fn grip(&self, object_m: f64) -> Grip {
         let key = self
             .state

@@ -1,4 +1,4 @@
-//! What the arm tells the others, and how often.
+//! Publication of joints, world and status, and its rates.
 
 use crate::driver::{Measured, Source};
 use crate::executor::{Executor, Purpose};
@@ -7,12 +7,12 @@ use crate::world::World;
 use crate::{Fx, Out};
 use manipulation::{JOINTS, Limb, gripper};
 use messages::WireCode;
-use messages::{ActId, ArmStatus, Hindrance, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates};
+use messages::{ActId, ArmStatus, JOINT_STATE_LEN, JOINT_STATE_NAMES, JointStates, MotionInhibit};
 use service::{Span, Time};
 
-/// How often the status is sent again while nothing changes.
+/// Interval of an unchanged status.
 const STATUS_EVERY: Span = Span::from_ms(250);
-/// How often the world is sent while the arm moves, and while it stands.
+/// Interval of the world view while the arm moves, and while it stands.
 const WORLD_EVERY: (Span, Span) = (Span::from_ms(100), Span::from_ms(1_000));
 
 /// Publishes joints, world and status when they are due.
@@ -21,23 +21,23 @@ pub(crate) struct Publisher {
     sources: [Option<(usize, usize)>; JOINT_STATE_LEN],
     /// Simulated seconds per second.
     time_scale: f64,
-    /// The beat of a model's joint states; sensors have their own.
+    /// Period of a model's joint states; sensors have their own.
     joints: Every,
-    /// When the sensors' joints were so that were published last.
+    /// Sensor time of the joints published last.
     joints_at: Time,
     world_sent: Option<Time>,
     status_due: Time,
     status: ArmStatus,
 }
 
-/// Everything that is told.
+/// Inputs of a publication.
 pub(crate) struct Facts<'a> {
     pub(crate) state: &'a ArmState,
     pub(crate) measured: &'a Measured,
     pub(crate) executor: &'a Executor,
     pub(crate) world: &'a World,
     pub(crate) aimed: Option<ActId>,
-    pub(crate) hindrance: Hindrance,
+    pub(crate) inhibit: MotionInhibit,
 }
 
 impl Publisher {
@@ -53,19 +53,19 @@ impl Publisher {
         }
     }
 
-    /// When something is due next while the arm stands. While it moves it has to be looked at more
+    /// Returns the next publication time of a standing arm. A moving one is stepped more
     /// often anyway.
     pub(crate) fn deadline(&self) -> Time {
         let world = self.world_sent.map_or(Time(0), |sent| sent + WORLD_EVERY.1);
         self.joints.next.min(self.status_due).min(world)
     }
 
-    /// Whether joint states are due.
+    /// Returns whether joint states are due.
     pub(crate) fn joints_are_due(&self, measured: &Measured, now: Time) -> bool {
         self.joints_due(measured, now).is_some()
     }
 
-    /// When the joints were so whose state is due: a model's in its beat, those of sensors when
+    /// Returns the time of the joint states that are due: a model's periodically, those of sensors when
     /// there are new ones.
     fn joints_due(&self, measured: &Measured, now: Time) -> Option<Time> {
         match measured.at {
@@ -91,7 +91,7 @@ impl Publisher {
         self.tell(facts, now, fx);
     }
 
-    /// Publishes the status where it has changed or is due, and the world where what it holds has.
+    /// Publishes the status when changed or due, and the world when the held object has changed.
     pub(crate) fn tell(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
         let status = self.status(facts);
         let changed = ArmStatus { remaining_s: self.status.remaining_s, ..status } != self.status;
@@ -119,7 +119,7 @@ impl Publisher {
             aimed_act: facts.aimed.map_or(0, |act| act.0),
             stopped: state.stopped.into(),
             moving: (!executor.is_standing()).into(),
-            hindrance: facts.hindrance.code(),
+            hindrance: facts.inhibit.code(),
             remaining_s: seconds / self.time_scale,
             ..ArmStatus::default()
         };
@@ -147,14 +147,14 @@ impl Publisher {
     }
 }
 
-/// Limb and joint that a joint state's name stands for.
+/// Returns limb and joint of a joint state's name.
 fn source(name: &str) -> Option<(usize, usize)> {
     let (limb, joint) = name.split_once('_')?;
     let joint = JOINTS.iter().position(|own| *own == joint)?;
     Some((side(Limb::named(limb)?), joint))
 }
 
-/// A steady beat.
+/// A periodic timer.
 #[derive(Clone, Copy, Debug)]
 struct Every {
     period: Span,
@@ -162,7 +162,7 @@ struct Every {
 }
 
 impl Every {
-    /// Whether the beat is due; the next one is a period after it, or after now where that has
+    /// Returns whether the timer is due; the next time is a period later, or a period after now if that has
     /// passed already.
     fn is_due(&mut self, now: Time) -> bool {
         if now < self.next {

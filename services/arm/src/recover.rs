@@ -1,5 +1,5 @@
-//! What to do with a pick that is open and does not move: after a restart, and just so after a
-//! motion stop. The answer depends on durable facts and sensors alone, never on what the arm did
+//! Recovery of an open pick that does not move, after a restart or after a
+//! motion stop. It depends on durable facts and sensors alone, never on what the arm did
 //! last in memory.
 
 use crate::Config;
@@ -10,21 +10,21 @@ use messages::{PickOutcome, PickPhase};
 use scene::Scene;
 use service::NodeError;
 
-/// How to go on with an open pick.
+/// Next action of an open pick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
-    /// Fetch the object from where the arm is. Nothing has been grasped, so closing (once more) is
-    /// no second grasp.
+    /// Fetch the object from the present posture. Nothing has been grasped, so closing (again) is
+    /// not a second grasp.
     Fetch,
-    /// Bring what is held to the person.
+    /// Bring the held object to the person.
     Deliver,
-    /// Let go: the gripper is where the person takes the object.
+    /// Open the fingers: the gripper is at the handover.
     Release,
-    /// Stay and say so: a person must look.
+    /// Stop and report an interruption: a person must check.
     Interrupt,
 }
 
-/// The table. `holding` is what the gripper's sensor says, `at_hand_over` whether the gripper is
+/// Decision table. `holding` is the gripper's sensor reading, `at_hand_over` whether the gripper is
 /// where objects are handed over.
 pub fn next(phase: PickPhase, holding: Option<bool>, at_hand_over: bool) -> Next {
     match (phase, holding) {
@@ -37,10 +37,10 @@ pub fn next(phase: PickPhase, holding: Option<bool>, at_hand_over: bool) -> Next
     }
 }
 
-/// The state that the journal ends with; the first one where it is empty.
+/// Returns the last state of the journal, or the initial state if it is empty.
 ///
 /// # Errors
-/// The journal's joints are not where joints can be.
+/// The journal's joint positions are outside the joint limits.
 pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, NodeError> {
     let first =
         || ArmState::first(&config.setup.robot, config.scene.key(), config.setup.plan.open_width_m);
@@ -61,7 +61,7 @@ pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, Node
     }
 }
 
-/// The state for a scene with other objects, if the journal's is of another scene. What stood, was
+/// Returns the state for a scene with other objects, if the journal's is of another scene. What stood, was
 /// held or was ordered there means nothing here.
 pub fn other_scene(state: &ArmState, scene: &Scene) -> Option<ArmState> {
     if state.scene_key == scene.key() {
@@ -75,7 +75,7 @@ pub fn other_scene(state: &ArmState, scene: &Scene) -> Option<ArmState> {
     Some(next)
 }
 
-/// How a pick ends whose scene was taken away.
+/// Returns the outcome of a pick whose scene was replaced.
 fn outcome(pick: &Pick) -> PickOutcome {
     match pick.phase {
         PickPhase::Done => pick.outcome,

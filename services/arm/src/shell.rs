@@ -23,7 +23,7 @@ pub struct ArmProgram;
 impl Program for ArmProgram {
     const SERVICE: Service = Service::Arm;
     const RECORD: Option<&'static str> = Some("arm/2");
-    const ABOUT: &'static str = "fetches objects and points at them, and stops when told";
+    const ABOUT: &'static str = "fetches objects, points at them, and stops on request";
     type Node = ArmNode;
     type Shell = ArmShell;
 
@@ -51,7 +51,7 @@ pub struct ArmShell {
     joints: Writer<JointStates>,
     world: EncodedWriter<WorldView>,
     trajectory: EncodedWriter<TrajectoryView>,
-    /// The robot's own topics, where there is a robot.
+    /// Topics of a real robot.
     robot: Option<RobotTopics>,
 }
 
@@ -73,7 +73,7 @@ impl Shell<ArmNode> for ArmShell {
     fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
         self.motion.drain(|message| take(In::Motion(*message)))?;
         self.acts.drain(|message| take(In::Act(Box::new(*message))))?;
-        self.robot.iter().try_for_each(|robot| robot.drain(|told| take(In::Robot(told))))
+        self.robot.iter().try_for_each(|robot| robot.drain(|report| take(In::Robot(report))))
     }
 
     fn publish(&mut self, output: Out) -> Result<(), PortError> {

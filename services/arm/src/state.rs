@@ -1,4 +1,4 @@
-//! Everything that the arm must not forget. It is small, so each journal record holds it whole, and
+//! Durable state of the arm. It is small, so each journal record holds all of it, and
 //! recovery reads one record.
 
 use manipulation::{Joints, Limb, Robot};
@@ -19,17 +19,17 @@ pub struct ArmState {
     pub pick: Option<Pick>,
     /// The limb that the latest pick moves; none before it moves.
     pub limb: Option<Limb>,
-    /// How often the fingers have closed on nothing in the latest pick.
+    /// Missed grasps in the latest pick.
     pub misses: u32,
-    /// What the gripper holds. Only while the pick is `Holding`, or was interrupted then.
+    /// Object in the gripper. Only while the pick is `Holding`, or was interrupted then.
     pub held: Option<Held>,
-    /// Objects that a person has taken and nobody has put back, in order.
+    /// Objects that a person has taken and not put back, in order.
     pub gone: Vec<ObjectId>,
     /// Whether the motion stop is latched.
     pub stopped: bool,
-    /// When the motion order was given that was obeyed last.
+    /// Time at which the latest applied motion order was given.
     pub obeyed: Time,
-    /// Whether the arm waits where a pick was interrupted until a person has looked: until the next
+    /// Whether the arm waits after an interrupted pick until a person has checked it: until the next
     /// order, or the release of a motion stop.
     pub waits_for_person: bool,
 }
@@ -48,7 +48,7 @@ pub struct Posture {
 pub struct Held {
     /// The object.
     pub object: ObjectId,
-    /// Whose gripper.
+    /// Limb of the gripper.
     pub limb: Limb,
     /// Pose of the object in frame `<limb>_gripper`: x, y, z in metres, quaternion x, y, z, w.
     pub in_gripper: [f64; 7],
@@ -57,28 +57,28 @@ pub struct Held {
 /// Why a record was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Cause {
-    /// The journal begins anew here; the state is to be taken as it is.
+    /// The journal starts here; the state is complete.
     Snapshot,
-    /// The group was started with another scene: the objects are other ones.
+    /// The group was started with another scene, so with other objects.
     SceneChanged,
-    /// A pick was ordered, or given up before it was known.
+    /// A pick was ordered, or cancelled before its order arrived.
     Ordered,
-    /// The pick has come to its next phase; the motion of that phase follows.
+    /// The pick has reached its next phase; the motion of that phase follows.
     Phase,
-    /// The fingers have closed on nothing, and the grasp is tried again.
+    /// A missed grasp, to be retried.
     Missed,
     /// The pick is over.
     Ended,
     /// The motion stop was latched or released, by order or because the robot's own emergency stop
     /// holds.
     Motion(MotionOrder),
-    /// A hint: how far a motion has come.
+    /// Progress of a motion.
     Moved,
-    /// Both limbs are at rest, and people have put back what they put back.
+    /// Both limbs are at rest, and objects were restocked if configured.
     Rested,
-    /// The robot did not move as it was commanded to; a person must look.
+    /// The robot did not move as commanded; an operator must check it.
     Blocked,
-    /// The service was told to end.
+    /// Shutdown on request.
     Shutdown,
 }
 
@@ -111,14 +111,14 @@ impl ArmState {
         }
     }
 
-    /// The pick that is not over yet.
+    /// Returns the pick in progress.
     pub fn open_pick(&self) -> Option<&Pick> {
         self.pick.as_ref().filter(|pick| pick.phase != PickPhase::Done)
     }
 }
 
 impl Posture {
-    /// Whether the limb is in the neutral posture, where it rests, each joint to `accuracy_rad`.
+    /// Returns whether the limb is in its neutral posture, each joint to `accuracy_rad`.
     pub fn is_at_rest(&self, robot: &Robot, limb: Limb, accuracy_rad: f64) -> bool {
         let (joints, neutral) = (&self.joints[side(limb)], &robot.arm(limb).neutral);
         joints.iter().zip(neutral).all(|(q, rest)| (q - rest).abs() < accuracy_rad)

@@ -1,4 +1,4 @@
-//! Where the objects are: in their places, in a gripper, or taken.
+//! Places of the objects: where they stood, in a gripper, or taken.
 
 use crate::driver::Measured;
 use crate::state::{ArmState, Held, side};
@@ -21,12 +21,12 @@ impl World {
         Self { robot: robot.clone(), places: places.collect() }
     }
 
-    /// Where the object has its place; none if it has none, or the scene has no such object.
+    /// Returns the object's place, if the scene has the object and a place for it.
     pub(crate) fn place(&self, object: ObjectId) -> Option<&ObjectPose> {
         self.places.get(object.index()).and_then(Option::as_ref)
     }
 
-    /// The objects that stand in their places, but for one.
+    /// Returns the objects that stand in their places, except one.
     pub(crate) fn standing(
         &self,
         state: &ArmState,
@@ -40,12 +40,12 @@ impl World {
         })
     }
 
-    /// The boxes round the objects that stand in their places, but for one.
+    /// Returns the boxes around the objects that stand in their places, except one.
     pub(crate) fn obstacles(&self, state: &ArmState, except: Option<ObjectId>) -> Vec<Cuboid> {
         self.standing(state, except).map(ObjectPose::cuboid).collect()
     }
 
-    /// `object` in the gripper that has closed on it.
+    /// Returns `object` as held by the gripper that has closed on it.
     pub(crate) fn grasped(
         &self,
         object: ObjectId,
@@ -57,7 +57,7 @@ impl World {
         Some(Held { object, limb, in_gripper: to_array(&in_gripper) })
     }
 
-    /// The world as clients see it.
+    /// Returns the world view for clients.
     pub(crate) fn view(&self, state: &ArmState, measured: &Measured, now: Time) -> WorldView {
         let joints = &measured.posture.joints;
         let grippers =
@@ -98,7 +98,7 @@ fn to_array(pose: &Isometry3<f64>) -> [f64; 7] {
     [p.x, p.y, p.z, r.x, r.y, r.z, r.w]
 }
 
-/// The pose that [`Held::in_gripper`] stands for.
+/// Returns the pose stored in [`Held::in_gripper`].
 pub(crate) fn from_array([x, y, z, i, j, k, w]: &[f64; 7]) -> Isometry3<f64> {
     let rotation = UnitQuaternion::from_quaternion(Quaternion::new(*w, *i, *j, *k));
     Isometry3::from_parts(Translation3::new(*x, *y, *z), rotation)

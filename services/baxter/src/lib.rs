@@ -6,13 +6,13 @@
 //! where they are while the process is dead.
 
 pub mod assembly;
-pub mod drill;
+pub mod fault_injection;
 pub mod fingers;
+pub mod object_world;
+mod publish;
 pub mod robot;
 pub mod servo;
 pub mod shell;
-pub mod table;
-mod tell;
 
 use manipulation::Limb;
 use messages::robot::{
@@ -101,7 +101,7 @@ impl Node for BaxterNode {
     fn on(&mut self, event: Event<In>, now: Time, fx: &mut Effects<Out, Body>) {
         match event {
             Event::Started => self.next = now,
-            Event::Message(message) => self.robot.hear(&message, now),
+            Event::Message(message) => self.robot.on_message(&message, now),
             Event::Tick => self.tick(now, fx),
             Event::Shutdown => {
                 fx.append(self.robot.body());
@@ -132,7 +132,7 @@ impl BaxterNode {
             return self.remember(now, fx);
         }
         self.told = true;
-        self.robot.tell(self.beat, now).into_iter().for_each(|told| fx.publish(told));
+        self.robot.reports(self.beat, now).into_iter().for_each(|told| fx.publish(told));
         self.beat += 1;
         self.next = self.next + BEAT;
         if self.next <= now {

@@ -2,9 +2,9 @@
 
 use crate::assembly::Assembly;
 use crate::fingers::{Event, Fingers};
+use crate::object_world::{ObjectWorld, Whereabouts};
 use crate::servo::{Servo, Target};
-use crate::table::{Table, Whereabouts};
-use crate::{Config, In, Out, tell};
+use crate::{Config, In, Out, publish};
 use dialogue::Rng;
 use manipulation::{Joints, Limb, gripper};
 use messages::robot::{Drill, DrillKind, JointCommand, JointMode, JointTrajectoryPoint};
@@ -46,7 +46,7 @@ pub struct Robot {
     pub(crate) random: Rng,
     /// No joint states before.
     pub(crate) silent_until: Time,
-    table: Table,
+    objects: ObjectWorld,
     closings: u64,
     /// Closings that will find nothing.
     misses: u64,
@@ -64,12 +64,12 @@ impl Robot {
             joints: Limb::BOTH.map(|limb| config.robot.arm(limb).neutral),
             fingers: Default::default(),
             assembly: Assembly::new(config.simulated.enabled),
-            objects: Table::new(&config.scene).now,
+            objects: ObjectWorld::new(&config.scene).now,
             closings: 0,
         });
-        let mut table = Table::new(&config.scene);
-        if body.scene_key == scene_key && body.objects.len() == table.now.len() {
-            table.now = body.objects;
+        let mut objects = ObjectWorld::new(&config.scene);
+        if body.scene_key == scene_key && body.objects.len() == objects.now.len() {
+            objects.now = body.objects;
         }
         Self {
             servos: Limb::BOTH.map(|limb| {
@@ -80,7 +80,7 @@ impl Robot {
             assembly: body.assembly,
             random: Rng::new(config.simulated.seed),
             silent_until: Time(0),
-            table,
+            objects,
             closings: body.closings,
             misses: 0,
             obstructed_until: Time(0),
@@ -97,18 +97,18 @@ impl Robot {
             joints: [self.servos[0].q, self.servos[1].q],
             fingers: self.fingers.clone(),
             assembly: self.assembly,
-            objects: self.table.now.clone(),
+            objects: self.objects.now.clone(),
             closings: self.closings,
         }
     }
 
     /// How often fingers have closed on an object that they then held.
-    pub fn table(&self) -> &Table {
-        &self.table
+    pub fn objects(&self) -> &ObjectWorld {
+        &self.objects
     }
 
     /// Takes a message.
-    pub fn hear(&mut self, message: &In, now: Time) {
+    pub fn on_message(&mut self, message: &In, now: Time) {
         self.advance(now);
         match message {
             In::Drill(drill) => self.drill(drill, now),
@@ -144,13 +144,13 @@ impl Robot {
             }
         }
         if self.config.restock && Limb::BOTH.into_iter().all(|limb| self.rests(limb)) {
-            self.table.restock();
+            self.objects.restock();
         }
     }
 
     /// What it tells in the beat number `beat`, a hundred of them a second.
-    pub fn tell(&mut self, beat: u64, now: Time) -> Vec<Out> {
-        tell::all(self, beat, now)
+    pub fn reports(&mut self, beat: u64, now: Time) -> Vec<Out> {
+        publish::all(self, beat, now)
     }
 
     fn command(&mut self, limb: Limb, command: &JointCommand) {
@@ -193,16 +193,16 @@ impl Robot {
                 self.misses = self.misses.saturating_sub(1);
                 let offset_m = self.placement_error_m();
                 let opening_m = self.fingers[i].width_m;
-                let found = self.table.between(&tip, opening_m, offset_m).filter(|_| !missed);
+                let found = self.objects.between(&tip, opening_m, offset_m).filter(|_| !missed);
                 self.fingers[i].meet(found.map(|(_, width_m)| width_m));
             }
             Event::Holds => {
                 let wide_m = gripper::STROKE_M;
-                if let Some((object, _)) = self.table.between(&tip, wide_m, 0.0) {
-                    self.table.take(object, limb);
+                if let Some((object, _)) = self.objects.between(&tip, wide_m, 0.0) {
+                    self.objects.take(object, limb);
                 }
             }
-            Event::LetsGo => self.table.let_go(limb, &tip),
+            Event::LetsGo => self.objects.let_go(limb, &tip),
         }
     }
 

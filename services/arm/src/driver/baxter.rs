@@ -1,6 +1,6 @@
 //! A Baxter behind its own topics.
 //!
-//! The driver holds the newest of what the robot told, and leaves what it is to be told. It is as
+//! The driver keeps the newest reports of the robot and returns the orders to it. It is as
 //! pure as the arm itself: time comes with each call, messages go out with the pass.
 //!
 //! Joints are commanded in position mode, which keeps the robot's own collision avoidance; raw
@@ -11,13 +11,13 @@ mod gripper;
 #[cfg(test)]
 mod tests;
 
-use super::{ArmDriver, Command, Fault, Fingers, Measured, Order, Source, Told};
+use super::{ArmDriver, Command, Fault, Fingers, Measured, Order, Report, Source};
 use crate::Config;
 use crate::state::{ArmState, side};
 use config::Baxter;
 use gripper::{Condition, Gripper};
 use manipulation::{JOINTS, Joints, Limb, PositionLimits, Robot};
-use messages::Hindrance;
+use messages::MotionInhibit;
 use messages::robot::{
     AssemblyState, JointCommand, JointMode, JointState, JointTrajectoryPoint, SpeedRatio,
 };
@@ -28,13 +28,13 @@ use service::{Span, Time};
 const BEAT: Span = Span::from_ms(15);
 /// Shortest time between two commands to a limb.
 const COMMAND_EVERY: Span = Span::from_ms(5);
-/// Age beyond which the robot's own state says nothing.
+/// Age beyond which the robot's state is stale.
 const STALE: Span = Span::from_ms(1_000);
-/// How often the robot is told the speed ratio; one that was restarted has forgotten it.
+/// Interval of the speed ratio command; a restarted robot has lost it.
 const RATIO_EVERY: Span = Span::from_ms(1_000);
-/// How long fingers may take for what they were told, seconds: the SDK's own patience.
+/// Timeout of a finger command, seconds: the SDK's own timeout.
 const FINGERS_MAX_S: f64 = 5.0;
-/// A joint that is measured this far outside its limits stands on them, radians.
+/// A joint measured at most this far outside its limits counts as on them, radians.
 const LIMIT_SLACK_RAD: f64 = 0.03;
 /// A joint state from further in the future than this has the stamp of another clock.
 const CLOCK_SLACK: Span = Span::from_ms(100);
@@ -47,21 +47,21 @@ pub struct BaxterDriver {
     /// The limbs whose grippers are used, left first.
     used: [bool; 2],
     measured: Measured,
-    /// When the newest joint state was, and when that of another clock was complained about.
+    /// Time of the newest joint state.
     joints_at: Option<Time>,
     assembly: Option<(AssemblyState, Time)>,
     grippers: [Gripper; 2],
     limbs: [Set; 2],
     now: Time,
-    hindrance: Hindrance,
-    ratio_told: Option<Time>,
+    inhibit: MotionInhibit,
+    ratio_sent: Option<Time>,
     fresh: bool,
 }
 
-/// What a limb is commanded.
+/// Command state of a limb.
 #[derive(Clone, Copy, Debug, Default)]
 struct Set {
-    /// Where it is to be; none before it was heard, or since it could not be commanded.
+    /// Commanded positions; `None` before the first report, or while it accepts no commands.
     q: Option<Joints>,
     /// The command of this pass.
     command: Option<Command>,
@@ -73,7 +73,7 @@ struct Set {
 }
 
 impl BaxterDriver {
-    /// A driver that has heard nothing yet: until it does, the posture is the one that the journal
+    /// A driver before the first report: until then, the posture is the one that the journal
     /// remembers.
     pub fn new(config: &Config, state: &ArmState) -> Self {
         let settings = config.arm.baxter;
@@ -96,16 +96,16 @@ impl BaxterDriver {
             grippers: Default::default(),
             limbs: [Set::default(); 2],
             now: Time(0),
-            hindrance: Hindrance::Unheard,
-            ratio_told: None,
+            inhibit: MotionInhibit::Unheard,
+            ratio_sent: None,
             fresh: false,
         }
     }
 
-    fn hear_joints(&mut self, state: &JointState, now: Time) {
+    fn on_joints(&mut self, state: &JointState, now: Time) {
         let joints = match state.joints() {
             Ok(joints) => joints,
-            Err(error) => return tracing::warn!(%error, "a joint state that makes no sense"),
+            Err(error) => return tracing::warn!(%error, "invalid joint state ignored"),
         };
         let mut posture = self.measured.posture.joints;
         let (mut velocity, mut effort) = (self.measured.velocity, self.measured.effort);
@@ -116,7 +116,7 @@ impl BaxterDriver {
             effort[limb][joint] = torque;
             found += 1;
         }
-        // Messages of fingers, and of parts of the robot, say nothing about the arms as a whole.
+        // Messages of fingers, and of parts of the robot, do not update the arms.
         if found < 2 * JOINTS.len() {
             return;
         }
@@ -143,41 +143,41 @@ impl BaxterDriver {
         })
     }
 
-    fn find_hindrance(&self, now: Time) -> Hindrance {
-        let Some((assembly, heard)) = &self.assembly else { return Hindrance::Unheard };
-        let Some(joints_at) = self.joints_at else { return Hindrance::Unheard };
+    fn find_inhibit(&self, now: Time) -> MotionInhibit {
+        let Some((assembly, heard)) = &self.assembly else { return MotionInhibit::Unheard };
+        let Some(joints_at) = self.joints_at else { return MotionInhibit::Unheard };
         if assembly.stopped != 0 {
-            return Hindrance::Stopped;
+            return MotionInhibit::Stopped;
         }
         if assembly.error != 0 {
-            return Hindrance::Error;
+            return MotionInhibit::Error;
         }
         if assembly.enabled == 0 {
-            return Hindrance::Disabled;
+            return MotionInhibit::Disabled;
         }
         let stale = now.since(joints_at) > Span::from_s(self.settings.stale_s);
         if stale || now.since(*heard) > STALE {
-            return Hindrance::Stale;
+            return MotionInhibit::Stale;
         }
         let conditions = self.used_grippers().map(|gripper| gripper.condition(now));
         let worst = conditions.map(|condition| match condition {
-            Condition::Ready => (0, Hindrance::None),
-            Condition::Uncalibrated => (1, Hindrance::Calibrating),
-            Condition::Faulty => (2, Hindrance::Gripper),
-            Condition::Stale => (3, Hindrance::Stale),
-            Condition::Unheard => (4, Hindrance::Unheard),
+            Condition::Ready => (0, MotionInhibit::None),
+            Condition::Uncalibrated => (1, MotionInhibit::Calibrating),
+            Condition::Faulty => (2, MotionInhibit::Gripper),
+            Condition::Stale => (3, MotionInhibit::Stale),
+            Condition::Unheard => (4, MotionInhibit::Unheard),
         });
-        worst.max_by_key(|(rank, _)| *rank).map_or(Hindrance::None, |(_, hindrance)| hindrance)
+        worst.max_by_key(|(rank, _)| *rank).map_or(MotionInhibit::None, |(_, inhibit)| inhibit)
     }
 
     fn used_grippers(&self) -> impl Iterator<Item = &Gripper> {
         self.grippers.iter().zip(self.used).filter_map(|(gripper, used)| used.then_some(gripper))
     }
 
-    /// Whether the robot obeys commands at all.
-    fn obeys(&self) -> bool {
-        use Hindrance::{Calibrating, Gripper, None, Stale};
-        matches!(self.hindrance, None | Stale | Gripper | Calibrating)
+    /// Returns whether the robot accepts commands.
+    fn accepts_commands(&self) -> bool {
+        use MotionInhibit::{Calibrating, Gripper, None, Stale};
+        matches!(self.inhibit, None | Stale | Gripper | Calibrating)
     }
 
     fn measured_of(&self, limb: usize) -> Joints {
@@ -218,10 +218,10 @@ impl BaxterDriver {
     }
 
     fn tell_ratio(&mut self, now: Time, orders: &mut Vec<Order>) {
-        if self.ratio_told.is_some_and(|told| now.since(told) < RATIO_EVERY) {
+        if self.ratio_sent.is_some_and(|told| now.since(told) < RATIO_EVERY) {
             return;
         }
-        self.ratio_told = Some(now);
+        self.ratio_sent = Some(now);
         let ratio = SpeedRatio { data: self.settings.speed_ratio };
         orders.extend(Limb::BOTH.map(|limb| Order::SpeedRatio(limb, ratio)));
     }
@@ -233,7 +233,7 @@ impl ArmDriver for BaxterDriver {
     }
 
     fn command(&mut self, command: &Command, _: f64) {
-        if !self.obeys() {
+        if !self.accepts_commands() {
             return;
         }
         let i = side(command.limb);
@@ -242,28 +242,28 @@ impl ArmDriver for BaxterDriver {
         self.grippers[i].want(command.fingers, self.now);
     }
 
-    fn hear(&mut self, told: &Told, now: Time) {
-        match told {
-            Told::Joints(state) => self.hear_joints(state, now),
-            Told::Assembly(state) => self.assembly = Some((*state, now)),
-            Told::Gripper(limb, state) => {
+    fn on_report(&mut self, report: &Report, now: Time) {
+        match report {
+            Report::Joints(state) => self.on_joints(state, now),
+            Report::Assembly(state) => self.assembly = Some((*state, now)),
+            Report::Gripper(limb, state) => {
                 let gripper = &mut self.grippers[side(*limb)];
-                gripper.hear_state(state, now);
+                gripper.on_state(state, now);
                 if let Some(width_m) = gripper.width_m() {
                     self.measured.posture.width_m[side(*limb)] = width_m;
                 }
             }
-            Told::Properties(limb, properties) => {
-                self.grippers[side(*limb)].hear_properties(properties);
+            Report::Properties(limb, properties) => {
+                self.grippers[side(*limb)].on_properties(properties);
             }
         }
     }
 
     fn begin_pass(&mut self, now: Time, may_calibrate: [bool; 2]) {
         (self.now, self.fresh) = (now, false);
-        self.hindrance = self.find_hindrance(now);
+        self.inhibit = self.find_inhibit(now);
         self.measured.holding = std::array::from_fn(|i| self.grippers[i].holding(now));
-        if !self.obeys() {
+        if !self.accepts_commands() {
             self.hold_here();
             self.grippers.iter_mut().for_each(Gripper::forget);
             return;
@@ -278,7 +278,7 @@ impl ArmDriver for BaxterDriver {
 
     fn end_pass(&mut self, now: Time) -> Vec<Order> {
         let mut orders = Vec::new();
-        if !self.obeys() {
+        if !self.accepts_commands() {
             return orders;
         }
         self.tell_ratio(now, &mut orders);
@@ -290,8 +290,8 @@ impl ArmDriver for BaxterDriver {
         orders
     }
 
-    fn hindrance(&self) -> Hindrance {
-        self.hindrance
+    fn inhibit(&self) -> MotionInhibit {
+        self.inhibit
     }
 
     fn fault(&self) -> Option<Fault> {

@@ -7,7 +7,7 @@ use manipulation::gripper;
 /// Distance of a joint from the neutral posture that still counts as rest, radians.
 const ACCURACY_RAD: f64 = 1e-6;
 
-/// The kinematic model: the joints are where they were commanded to be, the fingers move at their
+/// The kinematic model: the joints follow commands exactly, the fingers move at their
 /// speed, and a grip takes hold where [`gripper::catches`] says so.
 #[derive(Clone, Debug)]
 pub struct KinematicArm {
@@ -55,7 +55,7 @@ impl ArmDriver for KinematicArm {
                 grip[i] = None;
                 target_m
             }
-            // What is between the fingers is decided as they begin to close.
+            // The object between the fingers is decided when they begin to close.
             Fingers::Grip(on) => *grip[i].get_or_insert_with(|| {
                 let caught = gripper::catches(*width_m, on.object_m, on.offset_m);
                 if caught { gripper::closed_on(on.object_m) } else { 0.0 }

@@ -1,6 +1,6 @@
 //! The arm's side of the robot's own topics.
 
-use crate::driver::{Order, Told};
+use crate::driver::{Order, Report};
 use crate::state::side;
 use manipulation::Limb;
 use messages::robot::{
@@ -37,15 +37,15 @@ impl RobotTopics {
         })
     }
 
-    pub(super) fn drain(&self, mut take: impl FnMut(Told)) -> Result<(), PortError> {
+    pub(super) fn drain(&self, mut take: impl FnMut(Report)) -> Result<(), PortError> {
         // The robot as a whole first: joints mean nothing on one that has been switched off.
-        self.assembly.drain(|state| take(Told::Assembly(*state)))?;
+        self.assembly.drain(|state| take(Report::Assembly(*state)))?;
         for limb in Limb::BOTH {
             let i = side(limb);
-            self.properties[i].drain(|own| take(Told::Properties(limb, Box::new(*own))))?;
-            self.grippers[i].drain(|state| take(Told::Gripper(limb, Box::new(*state))))?;
+            self.properties[i].drain(|own| take(Report::Properties(limb, Box::new(*own))))?;
+            self.grippers[i].drain(|state| take(Report::Gripper(limb, Box::new(*state))))?;
         }
-        self.joints.drain(|state| take(Told::Joints(Box::new(*state))))
+        self.joints.drain(|state| take(Report::Joints(Box::new(*state))))
     }
 
     pub(super) fn send(&self, order: &Order) -> Result<(), PortError> {

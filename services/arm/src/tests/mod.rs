@@ -1,14 +1,14 @@
 //! The arm in a simulated process on a robot that outlives it.
 
-mod course;
 mod fetch;
 mod grasp;
 mod kills;
 mod orders;
 mod point;
+mod publish;
 mod robot;
 mod stop;
-mod telling;
+mod trajectory_view;
 
 use crate::driver::ArmDriver;
 use crate::recover;

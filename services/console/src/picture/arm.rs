@@ -1,7 +1,7 @@
 //! The arm and the things around it.
 
 use messages::WireCode;
-use messages::{ArmStatus, Hindrance, PickOutcome, PickPhase, TrajectoryView, WorldView};
+use messages::{ArmStatus, MotionInhibit, PickOutcome, PickPhase, TrajectoryView, WorldView};
 use scene::Scene;
 use serde_json::{Value as Json, json};
 use service::Time;
@@ -19,7 +19,7 @@ pub(super) fn section(scene: &Scene, arm: &ArmStatus) -> Json {
         "attempt": arm.attempt,
         "moving": arm.moving != 0,
         "stopped": arm.stopped != 0,
-        "hindrance": Hindrance::from_code(arm.hindrance).ok(),
+        "hindrance": MotionInhibit::from_code(arm.hindrance).ok(),
         "remaining_s": (arm.remaining_s * 10.0).round() / 10.0,
         "aimed": arm.aimed_act != 0,
     })

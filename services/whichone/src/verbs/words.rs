@@ -1,6 +1,6 @@
 //! Amounts and conditions in words.
 
-use messages::Hindrance;
+use messages::MotionInhibit;
 
 /// A length of time, e.g. `340 ms`, `12.3 s`, `4 min`, `3 h 20 min`, `2 d 5 h`.
 pub(super) fn time(seconds: f64) -> String {
@@ -22,16 +22,16 @@ pub(super) fn memory(kib: u64) -> String {
 }
 
 /// What keeps the robot from moving, where something does.
-pub(super) fn hindrance(hindrance: Hindrance) -> Option<&'static str> {
+pub(super) fn hindrance(hindrance: MotionInhibit) -> Option<&'static str> {
     match hindrance {
-        Hindrance::None => None,
-        Hindrance::Stopped => Some("the robot's emergency stop holds"),
-        Hindrance::Error => Some("the robot has a fault"),
-        Hindrance::Disabled => Some("the robot is disabled"),
-        Hindrance::Unheard => Some("the robot is not heard"),
-        Hindrance::Stale => Some("the robot's joint states are too old"),
-        Hindrance::Gripper => Some("a gripper has a fault"),
-        Hindrance::Calibrating => Some("a gripper is being calibrated"),
+        MotionInhibit::None => None,
+        MotionInhibit::Stopped => Some("the robot's emergency stop holds"),
+        MotionInhibit::Error => Some("the robot has a fault"),
+        MotionInhibit::Disabled => Some("the robot is disabled"),
+        MotionInhibit::Unheard => Some("the robot is not heard"),
+        MotionInhibit::Stale => Some("the robot's joint states are too old"),
+        MotionInhibit::Gripper => Some("a gripper has a fault"),
+        MotionInhibit::Calibrating => Some("a gripper is being calibrated"),
     }
 }
 

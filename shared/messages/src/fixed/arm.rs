@@ -28,7 +28,7 @@ wire_codes!(PickOutcome {
 
 wire_enum! {
     /// What keeps the robot from moving at all, the gravest where there are several.
-    Hindrance {
+    MotionInhibit {
         /// Nothing.
         None = 0,
         /// An emergency stop holds.
@@ -67,8 +67,8 @@ wire_struct! {
         stopped: u8,
         /// 1 while any joint moves.
         moving: u8,
-        /// [`Hindrance`].
-        hindrance: Code<Hindrance>,
+        /// [`MotionInhibit`].
+        hindrance: Code<MotionInhibit>,
         /// Zero.
         reserved: [u8; 3],
         /// Expected seconds until the pick is done, 0 where none runs.

@@ -26,31 +26,31 @@ const SENDER: &str = "whichone";
 pub(super) struct Gripper {
     state: Option<(EndEffectorState, Time)>,
     properties: Option<EndEffectorProperties>,
-    /// What it was told last, and when first.
+    /// Latest command, and the time when it was first sent.
     told: Option<(Command, EndEffectorCommand, Time)>,
-    /// When it confirmed that.
+    /// Time of its confirmation.
     handled: Option<Time>,
     sent: Option<Time>,
     sequence: u32,
 }
 
-/// What a gripper keeps the robot from.
+/// Condition of a gripper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Condition {
-    /// Nothing.
+    /// Ready.
     Ready,
-    /// Not heard yet.
+    /// No report yet.
     Unheard,
-    /// Not heard for a while.
+    /// No report for a while.
     Stale,
     /// A fault, or not the electric gripper.
     Faulty,
-    /// It has to be calibrated.
+    /// Needs calibration.
     Uncalibrated,
 }
 
 impl Gripper {
-    pub(super) fn hear_state(&mut self, state: &EndEffectorState, now: Time) {
+    pub(super) fn on_state(&mut self, state: &EndEffectorState, now: Time) {
         self.state = Some((*state, now));
         let confirmed = self.told.is_some_and(|(_, message, _)| state.has_handled(&message));
         if confirmed && self.handled.is_none() {
@@ -58,7 +58,7 @@ impl Gripper {
         }
     }
 
-    pub(super) fn hear_properties(&mut self, properties: &EndEffectorProperties) {
+    pub(super) fn on_properties(&mut self, properties: &EndEffectorProperties) {
         self.properties = Some(*properties);
     }
 
@@ -81,7 +81,7 @@ impl Gripper {
         self.state.map(|(state, _)| gripper::width_m(f64::from(state.position)))
     }
 
-    /// Whether something is between the fingers. Fingers that stopped at nothing wider than the
+    /// Returns whether something is between the fingers. Fingers that stopped at nothing wider than the
     /// dead zone have closed on themselves.
     pub(super) fn holding(&self, now: Time) -> Option<bool> {
         let (state, heard) = self.state?;
@@ -106,7 +106,7 @@ impl Gripper {
         self.state.is_some_and(|(state, _)| is(state.moving))
     }
 
-    /// Whether the fingers have done what they were told.
+    /// Returns whether the fingers have completed their command.
     pub(super) fn has_settled(&self, now: Time) -> bool {
         let Some((command, ..)) = self.told else { return !self.is_moving() };
         let (Some((state, _)), Some(handled)) = (self.state, self.handled) else { return false };
@@ -120,7 +120,7 @@ impl Gripper {
         !is(state.moving) && (done || now.since(handled) > SETTLED_AFTER && !waits(command))
     }
 
-    /// Has the fingers do what a motion wants of them.
+    /// Commands the fingers of a motion.
     pub(super) fn want(&mut self, fingers: Fingers, now: Time) {
         let controls_grip = self.properties.is_some_and(|p| p.controls_grip != 0);
         let controls_position = self.properties.is_none_or(|p| p.controls_position != 0);
@@ -136,17 +136,17 @@ impl Gripper {
         }
     }
 
-    /// Has it calibrated; again where that does not come to an end.
+    /// Starts calibration, again after a timeout.
     pub(super) fn calibrate(&mut self, now: Time) {
         let told = self.told.filter(|(command, ..)| *command == Command::Calibrate);
         if told.is_some_and(|(.., since)| now.since(since) > CALIBRATION_MAX) {
-            tracing::warn!("the gripper has not calibrated; it is told once more");
+            tracing::warn!("gripper calibration timed out; retrying");
             self.told = None;
         }
         self.tell(Command::Calibrate, now);
     }
 
-    /// The command that is to be sent now.
+    /// Returns the command to send now.
     pub(super) fn due(&mut self, now: Time) -> Option<EndEffectorCommand> {
         let (_, mut message, _) = self.told.filter(|_| self.handled.is_none())?;
         if self.sent.is_some_and(|sent| now.since(sent) < RESEND_EVERY) {
@@ -157,7 +157,7 @@ impl Gripper {
         Some(message)
     }
 
-    /// Forgets what it was told, so that it is told anew.
+    /// Forgets the latest command, so that the next one is sent.
     pub(super) fn forget(&mut self) {
         (self.told, self.handled, self.sent) = (None, None, None);
     }
@@ -179,12 +179,12 @@ fn is(tristate: Code<Tristate>) -> bool {
     tristate == Tristate::True
 }
 
-/// Whether the command closes the fingers, so that it ends where they meet something or each other.
+/// Returns whether the command closes the fingers, so that it ends where they meet something or each other.
 fn closes(command: Command) -> bool {
     matches!(command, Command::Grip) || matches!(command, Command::Go(goal) if goal <= 0.0)
 }
 
-/// Whether the command's end is seen in the state, and not only in that nothing moves any more.
+/// Returns whether the end of the command shows in the state, not only in the end of motion.
 fn waits(command: Command) -> bool {
     matches!(command, Command::Calibrate)
 }

@@ -56,19 +56,19 @@ impl Bench {
         JointState::new(self.now.ns(), &joints).unwrap()
     }
 
-    fn hear_all(&mut self) {
-        self.driver.hear(&Told::Assembly(self.assembly), self.now);
+    fn report_all(&mut self) {
+        self.driver.on_report(&Report::Assembly(self.assembly), self.now);
         for limb in Limb::BOTH {
             let state = Box::new(self.grippers[side(limb)]);
-            self.driver.hear(&Told::Gripper(limb, state), self.now);
+            self.driver.on_report(&Report::Gripper(limb, state), self.now);
         }
-        self.driver.hear(&Told::Joints(Box::new(self.joint_state())), self.now);
+        self.driver.on_report(&Report::Joints(Box::new(self.joint_state())), self.now);
     }
 
     /// A pass 10 ms after the one before, in which the robot is heard.
     fn pass(&mut self, command: Option<Command>) -> Vec<Order> {
         self.now = self.now + Span::from_ms(10);
-        self.hear_all();
+        self.report_all();
         self.deaf_pass(command)
     }
 
@@ -113,7 +113,7 @@ fn joints_are_found_by_name_and_fingers_disturb_nothing() {
     assert_eq!(at, Source::Sensors(bench.now));
     let later = bench.now.ns() + 5_000_000;
     let finger = JointState::new(later, &[("l_gripper_l_finger_joint", [0.01; 3])]).unwrap();
-    bench.driver.hear(&Told::Joints(Box::new(finger)), Time(later));
+    bench.driver.on_report(&Report::Joints(Box::new(finger)), Time(later));
     assert_eq!(
         (bench.driver.measured().at, bench.driver.measured().posture.joints),
         (at, bench.joints)
@@ -135,10 +135,10 @@ fn a_standing_limb_is_held_and_one_that_is_taken_elsewhere_stays_there() {
 #[test]
 fn whatever_keeps_the_robot_from_moving_keeps_it_from_being_told() {
     let off = AssemblyState { enabled: 0, ..AssemblyState::default() };
-    for (assembly, hindrance) in [
-        (off, Hindrance::Disabled),
-        (AssemblyState { error: 1, ..off }, Hindrance::Error),
-        (AssemblyState { error: 1, stopped: 1, ..off }, Hindrance::Stopped),
+    for (assembly, inhibit) in [
+        (off, MotionInhibit::Disabled),
+        (AssemblyState { error: 1, ..off }, MotionInhibit::Error),
+        (AssemblyState { error: 1, stopped: 1, ..off }, MotionInhibit::Stopped),
     ] {
         let mut bench = Bench::new();
         bench.pass(None);
@@ -146,7 +146,7 @@ fn whatever_keeps_the_robot_from_moving_keeps_it_from_being_told() {
         assert!(commanded(&bench.pass(Some(command)), Limb::Left).is_some());
         bench.assembly = assembly;
         assert_eq!(bench.pass(Some(command)), []);
-        assert_eq!(bench.driver.hindrance(), hindrance);
+        assert_eq!(bench.driver.inhibit(), inhibit);
         bench.assembly = AssemblyState { enabled: 1, ..AssemblyState::default() };
         let here = bench.joints[0].to_vec();
         assert_eq!(commanded(&bench.pass(None), Limb::Left), Some(here), "held where it is");
@@ -156,16 +156,16 @@ fn whatever_keeps_the_robot_from_moving_keeps_it_from_being_told() {
 #[test]
 fn silence_is_noticed_after_its_time_and_stamps_of_another_clock_do_not_hide_it() {
     let mut bench = Bench::new();
-    assert_eq!(bench.driver.hindrance(), Hindrance::Unheard);
+    assert_eq!(bench.driver.inhibit(), MotionInhibit::Unheard);
     let mut future = bench.joint_state();
     future.stamp_ns = u64::MAX;
     bench.pass(None);
-    bench.driver.hear(&Told::Joints(Box::new(future)), bench.now);
+    bench.driver.on_report(&Report::Joints(Box::new(future)), bench.now);
     let heard = bench.now;
-    for (after_ms, hindrance) in [(140, Hindrance::None), (160, Hindrance::Stale)] {
+    for (after_ms, inhibit) in [(140, MotionInhibit::None), (160, MotionInhibit::Stale)] {
         bench.now = heard + Span::from_ms(after_ms);
         bench.deaf_pass(None);
-        assert_eq!(bench.driver.hindrance(), hindrance);
+        assert_eq!(bench.driver.inhibit(), inhibit);
     }
 }
 
@@ -175,7 +175,7 @@ fn a_joint_state_that_makes_no_sense_is_no_joint_state() {
     bench.pass(None);
     bench.joints[0][0] = f64::NAN;
     let state = bench.joint_state();
-    bench.driver.hear(&Told::Joints(Box::new(state)), bench.now);
+    bench.driver.on_report(&Report::Joints(Box::new(state)), bench.now);
     assert!(bench.driver.measured().posture.joints[0][0].is_finite());
 }
 
@@ -288,11 +288,11 @@ fn an_uncalibrated_gripper_is_calibrated_unless_it_may_hold_something() {
     bench.grippers[0].calibrated = Tristate::False.code();
     let message = word(&bench.pass(None)).unwrap();
     assert_eq!(message.read(), Ok(Word::Calibrate));
-    assert_eq!(bench.driver.hindrance(), Hindrance::Calibrating);
+    assert_eq!(bench.driver.inhibit(), MotionInhibit::Calibrating);
     let mut bench = Bench::new();
     bench.grippers[0].calibrated = Tristate::False.code();
     bench.now = bench.now + Span::from_ms(10);
-    bench.hear_all();
+    bench.report_all();
     bench.driver.begin_pass(bench.now, [false, true]);
     assert_eq!(word(&bench.driver.end_pass(bench.now)), None);
 }

@@ -1,7 +1,7 @@
 //! The picture as lines of text.
 
 use messages::WireCode;
-use messages::{ArmStatus, Hindrance, PickOutcome, PickPhase, PolicyView};
+use messages::{ArmStatus, MotionInhibit, PickOutcome, PickPhase, PolicyView};
 use scene::Scene;
 use service::status::GroupState;
 use service::status::{Actual, Wanted};
@@ -185,7 +185,7 @@ fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
         let stop = style.paint(Ink::Red, "STOPPED (whichone resume-motion)");
         return format!("arm {does} {stop}");
     }
-    if let Some(why) = Hindrance::from_code(arm.hindrance).ok().and_then(words::hindrance) {
+    if let Some(why) = MotionInhibit::from_code(arm.hindrance).ok().and_then(words::hindrance) {
         return format!("arm {does} {}", style.paint(Ink::Red, why));
     }
     let moves = if arm.moving != 0 { ", moving" } else { "" };

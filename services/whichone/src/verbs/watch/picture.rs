@@ -3,7 +3,7 @@
 use messages::WireCode;
 use std::collections::VecDeque;
 
-use messages::{ArmStatus, Hindrance, PickOutcome, PickPhase, Receipt, ReceiptStatus};
+use messages::{ArmStatus, MotionInhibit, PickOutcome, PickPhase, Receipt, ReceiptStatus};
 use scene::{Scene, question_to_json};
 use serde_json::{Map, Value as Json, json};
 use service::Time;
@@ -167,7 +167,7 @@ fn arm_to_json(scene: &Scene, arm: &ArmStatus) -> Json {
         "outcome": PickOutcome::from_code(arm.outcome).ok(),
         "moving": arm.moving != 0,
         "stopped": arm.stopped != 0,
-        "hindrance": Hindrance::from_code(arm.hindrance).ok(),
+        "hindrance": MotionInhibit::from_code(arm.hindrance).ok(),
         "remaining_s": arm.remaining_s,
     })
 }

@@ -25,14 +25,14 @@ pub enum Whereabouts {
 
 /// The objects.
 #[derive(Clone, Debug)]
-pub struct Table {
+pub struct ObjectWorld {
     /// As they stand at first; none for one that has no place.
     places: Vec<Option<ObjectPose>>,
     /// Where they are.
     pub now: Vec<Whereabouts>,
 }
 
-impl Table {
+impl ObjectWorld {
     /// The scene's objects in their places.
     pub fn new(scene: &Scene) -> Self {
         let pose = |p: &scene::Placement| ObjectPose {

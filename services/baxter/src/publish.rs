@@ -1,8 +1,8 @@
 //! What the robot tells, as often and in such an order as the real one does.
 
 use crate::Out;
+use crate::object_world::to_array;
 use crate::robot::{Robot, side};
-use crate::table::to_array;
 use manipulation::{Limb, gripper};
 use messages::FixedText;
 use messages::robot::{EndEffectorProperties, EndpointState, JointState, Measurement, UiType};

@@ -1,4 +1,4 @@
-//! Which way the gripper is going, for people to see.
+//! View of the planned trajectory of the gripper, for clients.
 
 use crate::Config;
 use crate::executor::{Executor, Program, Purpose};
@@ -8,25 +8,25 @@ use messages::{PhaseWay, TRAJECTORY_POINTS_MAX, TrajectoryView};
 use scene::ObjectId;
 use service::{Span, Time};
 
-/// Points of a moving phase at most: one each few centimetres of the longest way.
+/// Most points of a moving phase: one every few centimetres of the longest path.
 const PHASE_POINTS_MAX: usize = 48;
-/// Joints that turn less between two ends stand still, radians.
+/// Largest change of a joint that counts as standing still, radians.
 const STILL_RAD: f64 = 1e-9;
 
-/// The way of the motion under way, and what of it was told.
+/// Trajectory of the current motion, and what of it was published.
 #[derive(Debug, Default)]
-pub(crate) struct Course {
+pub(crate) struct MotionView {
     view: TrajectoryView,
-    /// Seconds that the whole takes by the clock.
+    /// Duration of the whole, seconds of real time.
     duration_s: f64,
     /// Simulated seconds per second.
     time_scale: f64,
-    /// Steps that were left when it was told last; none: it has to be told.
+    /// Steps left when it was last published; `None` before the first time.
     told: Option<usize>,
 }
 
-impl Course {
-    /// A program begins, for `object` where it is for one.
+impl MotionView {
+    /// Starts the view of a program, with its object if it has one.
     pub(crate) fn begin(&mut self, program: &Program, object: Option<ObjectId>, config: &Config) {
         let pick = match program.purpose {
             Purpose::Pick(id) => Some(id),
@@ -45,9 +45,9 @@ impl Course {
         };
     }
 
-    /// What is to be told now: the way as a motion begins or enters its next step, an empty one as
-    /// it ends, nothing while nothing has changed.
-    pub(crate) fn news(&mut self, executor: &Executor, now: Time) -> Option<TrajectoryView> {
+    /// Returns the view to publish: the trajectory when a motion starts or enters its next step, an
+    /// empty one when it ends, `None` while nothing has changed.
+    pub(crate) fn update(&mut self, executor: &Executor, now: Time) -> Option<TrajectoryView> {
         let left = executor.steps_left();
         if self.told.replace(left) == Some(left) {
             return None;
@@ -61,7 +61,7 @@ impl Course {
     }
 }
 
-/// The gripper's way in each step, evenly in time.
+/// Samples the gripper's path in each step, evenly in time.
 fn phases(program: &Program, arm: &Arm, time_scale: f64) -> Vec<PhaseWay> {
     let most = (TRAJECTORY_POINTS_MAX / program.steps.len().max(1)).clamp(2, PHASE_POINTS_MAX);
     let mut begin_s = 0.0;
@@ -78,7 +78,7 @@ fn phases(program: &Program, arm: &Arm, time_scale: f64) -> Vec<PhaseWay> {
     program.steps.iter().take(TRAJECTORY_POINTS_MAX / 2).map(&mut way).collect()
 }
 
-/// Whether the arm is where it began all along.
+/// Returns whether the arm stands still for the whole motion.
 fn stands(motion: &Trajectory) -> bool {
     let at = |share: f64| motion.sample(share * motion.duration_s()).0;
     let first = at(0.0);

@@ -1,0 +1,93 @@
+//! Reasons why the robot cannot move, and their effect on a motion.
+
+use crate::state::Cause;
+use crate::{ArmNode, Fx};
+use manipulation::Limb;
+use messages::{MotionInhibit, MotionOrder, PickPhase};
+use service::Time;
+
+impl ArmNode {
+    /// Reads the robot's sensors before a decision: whether it can move, and whether it moves as
+    /// commanded.
+    pub(crate) fn read_sensors(&mut self, now: Time, fx: &mut Fx) {
+        self.driver.begin_pass(now, self.may_calibrate());
+        let inhibit = self.driver.inhibit();
+        if inhibit != self.inhibit {
+            self.inhibit = inhibit;
+            log(inhibit);
+        }
+        match inhibit {
+            MotionInhibit::Stopped | MotionInhibit::Error | MotionInhibit::Disabled => {
+                self.stand_still(now, fx);
+            }
+            _ => {}
+        }
+        if inhibit == MotionInhibit::Stopped && !self.state.stopped {
+            self.state.stopped = true;
+            self.record(Cause::Motion(MotionOrder::Stop), now, fx);
+        }
+        if let Some(fault) = self.driver.fault() {
+            self.block(&fault, now, fx);
+        }
+    }
+
+    /// Drops the motion of a robot that has stopped and accepts no commands.
+    fn stand_still(&mut self, now: Time, fx: &mut Fx) {
+        if !self.executor.is_standing() {
+            self.executor.stand();
+            self.record(Cause::Moved, now, fx);
+        }
+    }
+
+    /// Returns the grippers, left first, that hold nothing a calibration would drop.
+    fn may_calibrate(&self) -> [bool; 2] {
+        let phase = self.state.open_pick().map(|pick| pick.phase);
+        let grasps = matches!(phase, Some(PickPhase::Closing | PickPhase::Holding));
+        Limb::BOTH.map(|limb| {
+            let held = self.state.held.is_some_and(|held| held.limb == limb);
+            let grasping = grasps && self.state.limb == Some(limb);
+            !held && !grasping
+        })
+    }
+}
+
+fn log(inhibit: MotionInhibit) {
+    match inhibit {
+        MotionInhibit::None => tracing::info!("the robot can move"),
+        MotionInhibit::Calibrating => tracing::info!("a gripper is not calibrated yet"),
+        _ => tracing::warn!(help = help(inhibit), "{}", description(inhibit)),
+    }
+}
+
+fn description(inhibit: MotionInhibit) -> &'static str {
+    match inhibit {
+        MotionInhibit::None | MotionInhibit::Calibrating => "",
+        MotionInhibit::Stopped => "the robot's emergency stop holds; the motion stop is latched",
+        MotionInhibit::Error => "the robot has a fault",
+        MotionInhibit::Disabled => "the robot is disabled",
+        MotionInhibit::Unheard => "no messages from the robot, or from a part of it",
+        MotionInhibit::Stale => "joint states are stale; halting",
+        MotionInhibit::Gripper => "a gripper has a fault, or is not the electric one",
+    }
+}
+
+/// Remedy for the operator.
+fn help(inhibit: MotionInhibit) -> &'static str {
+    match inhibit {
+        MotionInhibit::None | MotionInhibit::Calibrating => "",
+        MotionInhibit::Stopped => {
+            "release the button, reset and enable the robot, then: whichone resume-motion"
+        }
+        MotionInhibit::Error => "check the robot, then reset and enable it",
+        MotionInhibit::Disabled => "enable the robot; the arm then resumes",
+        MotionInhibit::Unheard => {
+            "start the robot's bridge or whichone-baxter; with one gripper only, set arm.limb"
+        }
+        MotionInhibit::Stale => {
+            "check the robot's bridge and network; the arm resumes with fresh joint states"
+        }
+        MotionInhibit::Gripper => {
+            "reset the gripper, or set arm.limb to the limb with a working one"
+        }
+    }
+}
