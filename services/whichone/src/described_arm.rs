@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
+use diagnostics::TextFile;
 use manipulation::{Chain, JOINTS, Joints, Limb};
 use nalgebra::Isometry3;
 use robot_model::{Joint, Robot};
@@ -102,9 +103,8 @@ fn subtree(robot: &Robot, first: usize) -> Vec<usize> {
 
 fn read(path: &Path) -> Result<Robot, CliError> {
     let text = std::fs::read_to_string(path).map_err(|error| CliError::file(path, &error))?;
-    Robot::parse(&text, None).map_err(|faults| {
-        CliError::new(Exit::Config, faults.in_files(&path.display().to_string(), ""))
-    })
+    let urdf = TextFile::new(path.display().to_string(), text);
+    Ok(Robot::read(&urdf, None)?)
 }
 
 #[cfg(test)]

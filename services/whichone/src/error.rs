@@ -2,8 +2,7 @@
 
 use std::io;
 
-use config::Problems;
-use scene::Problem;
+use diagnostics::Diagnostics;
 use service::bus::{BusError, PortError};
 use service::client::ClientError;
 use service::control::{CallError, Refusal};
@@ -84,15 +83,8 @@ impl From<Refusal> for CliError {
     }
 }
 
-impl From<Problems> for CliError {
-    fn from(problems: Problems) -> Self {
-        Self::new(Exit::Config, problems.to_string())
-    }
-}
-
-impl From<Vec<Problem>> for CliError {
-    fn from(problems: Vec<Problem>) -> Self {
-        let lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
-        Self::new(Exit::Config, lines.join("\n"))
+impl From<Diagnostics> for CliError {
+    fn from(diagnostics: Diagnostics) -> Self {
+        Self::new(Exit::Config, diagnostics.to_string())
     }
 }

@@ -1,7 +1,8 @@
-//! Scenes by path, in either form.
+//! Scene files, in TOML or JSON.
 
 use std::path::Path;
 
+use diagnostics::{Diagnostic, Diagnostics};
 use scene::Scene;
 
 use crate::error::CliError;
@@ -9,18 +10,19 @@ use crate::error::CliError;
 /// Reads a scene file: JSON where the text begins with a brace, else TOML.
 ///
 /// # Errors
-/// The file cannot be read, or everything that is wrong with it.
+/// The file cannot be read, or every problem of its text.
 pub fn load(path: &Path) -> Result<Scene, CliError> {
     let text = std::fs::read_to_string(path).map_err(|error| CliError::file(path, &error))?;
     Ok(read(&path.display().to_string(), &text)?)
 }
 
-fn read(file: &str, text: &str) -> Result<Scene, Vec<scene::Problem>> {
+fn read(file: &str, text: &str) -> Result<Scene, Diagnostics> {
     if !text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
         return Scene::from_toml(file, text);
     }
     let json = serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| {
-        vec![scene::Problem::new(file, "", format!("is not JSON: {error}"), "mend it there")]
+        let line = u32::try_from(error.line()).ok();
+        Diagnostic::new(file, "", format!("invalid JSON: {error}"), "correct it there").at(line)
     })?;
     Scene::from_json(file, &json)
 }
@@ -30,7 +32,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn both_forms_are_told_apart_by_their_content() {
+    fn toml_and_json_are_distinguished_by_content() {
         let json = r#" {"objects":[{"name":"a","attributes":{"color":"red"}}]}"#;
         let scene = read("s", json).unwrap();
         assert_eq!(scene.objects().len(), 1);
@@ -40,11 +42,11 @@ mod tests {
     }
 
     #[test]
-    fn every_problem_is_told_with_its_file() {
-        let broken = [("{", "is not JSON"), ("name = ", "s:"), ("{\"objects\":[]}", "s:")];
+    fn errors_name_the_file() {
+        let broken = [("{", "invalid JSON"), ("name = ", "s:"), ("{\"objects\":[]}", "s:")];
         for (text, part) in broken {
-            let told = CliError::from(read("s", text).unwrap_err()).to_string();
-            assert!(told.contains(part) && told.starts_with("s:"), "{text}: {told}");
+            let error = CliError::from(read("s", text).unwrap_err()).to_string();
+            assert!(error.contains(part) && error.starts_with("s:"), "{text}: {error}");
         }
         let trouble = load(Path::new("/nowhere/scene.toml")).unwrap_err();
         assert!(trouble.to_string().starts_with("/nowhere/scene.toml: "));

@@ -1,6 +1,6 @@
 //! `arm.toml`: which arm, how it moves, and where it brings things.
 
-use crate::fields::Fields;
+use diagnostics::Fields;
 
 /// The arm.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
-use crate::fields::Fields;
+use diagnostics::Fields;
 
 /// The operator's page.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Console {
         && token.is_none()
         && !listen.ip().is_loopback()
     {
-        let what = format!("{} is beyond this machine, and there is no token", listen.ip());
+        let what = format!("{} accepts other machines, and there is no token", listen.ip());
         f.problem("listen", what, "set console.token, or listen at 127.0.0.1");
     }
     Console {
@@ -55,12 +55,8 @@ fn token(f: &mut Fields<'_>) -> Option<String> {
     let token = f.optional_text("token")?;
     let fits = (12..=200).contains(&token.len()) && token.chars().all(|c| c.is_ascii_graphic());
     if !fits {
-        let cure = "use 12 to 200 letters, digits and signs without blanks";
-        f.problem(
-            "token",
-            "is too short to keep anybody out, too long, or holds a blank or an accent",
-            cure,
-        );
+        let help = "choose a longer one, or remove spaces and accents";
+        f.problem("token", "expected 12 to 200 ASCII characters without spaces", help);
     }
     Some(token)
 }
@@ -71,7 +67,7 @@ fn language(f: &mut Fields<'_>) -> String {
     let plain =
         language.len() <= 16 && language.chars().all(|c| c.is_ascii_alphanumeric() || c == '-');
     if !plain && !f.is_wrong("language") {
-        let what = format!("`{language}` is no name of a language");
+        let what = format!("`{language}` is not a language code");
         f.problem("language", what, "use e.g. \"en\"");
     }
     language

@@ -4,9 +4,9 @@ use dialogue::user_model::Reaction;
 use dialogue::{Actions, Attribution, Costs, Fault, Mode, Params, Prior, TurnTaking};
 use language::Language;
 
-use crate::fields::Fields;
 use crate::gesture::{self, Gesture};
 use crate::prior;
+use diagnostics::Fields;
 
 /// The dialogue.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,9 +113,9 @@ fn reaction(f: &mut Fields<'_>, median_s: &'static str, log_sd: &'static str) ->
 
 /// The model's own checks, for the values that are numbers at all.
 fn tell(faults: Vec<Fault>, f: &mut Fields<'_>) {
-    for (key, what, cure) in faults {
+    for (key, what, help) in faults {
         if !f.is_wrong(key) {
-            f.problem(key, what, cure);
+            f.problem(key, what, help);
         }
     }
 }

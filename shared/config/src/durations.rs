@@ -7,10 +7,10 @@ use scene::Scene;
 use toml::Value;
 
 use crate::dialogue::CostsFrom;
-use crate::layer::{Node, Source, Table};
-use crate::problems::Report;
 use crate::resolved::to_toml;
 use crate::{Dialogue, Settings};
+use diagnostics::Report;
+use diagnostics::{Node, Source, Table};
 
 /// Table of the durations in a snapshot.
 pub(crate) const TABLE: &str = "durations";
@@ -41,17 +41,14 @@ pub(crate) fn read(
     let fits = read.filter(|durations| durations.check(&model).is_empty());
     if fits.is_none() {
         let what = "the durations of this scene are missing";
-        let cure = "stop the group and start it again";
-        report.add(source.problem(&[TABLE.to_owned()], what.to_owned(), cure));
+        let help = "stop the group and start it again";
+        report.add(source.diagnostic(&[TABLE.to_owned()], what.to_owned(), help));
     }
     fits
 }
 
 /// Adds the durations to a snapshot.
 pub(crate) fn write(durations: &Durations, tree: &mut Table) {
-    let Ok(Value::Table(lists)) = Value::try_from(durations) else { return };
-    let mut table = Table::empty(tree.source.clone());
-    let leaves = lists.into_iter().map(|(key, list)| (key, Node::Leaf(list, tree.source.clone())));
-    table.entries.extend(leaves);
-    tree.entries.push((TABLE.to_owned(), Node::Table(table)));
+    let Ok(values) = Value::try_from(durations) else { return };
+    tree.entries.push((TABLE.to_owned(), Node::from_toml(values, &tree.source)));
 }

@@ -3,9 +3,9 @@
 use dialogue::gesture::{Direction, Gestures};
 use scene::Scene;
 
-use crate::fields::Fields;
-use crate::layer::Table;
-use crate::problems::Report;
+use diagnostics::Fields;
+use diagnostics::Report;
+use diagnostics::Table;
 
 /// How pointing gestures are understood.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,15 +28,15 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Gesture {
         std_theta_rad: f.any_number("std_theta_rad"),
         stray: f.any_number("stray"),
     };
-    for (key, what, cure) in model.check() {
+    for (key, what, help) in model.check() {
         if !f.is_wrong(key) {
-            f.problem(key, what, cure);
+            f.problem(key, what, help);
         }
     }
     let person_xyz_m = f.triple("person_xyz");
     if !f.is_wrong("person_xyz") && person_xyz_m.iter().any(|x| x.abs() > PERSON_MAX_M) {
-        let what = format!("{person_xyz_m:?} is out of range");
-        f.problem("person_xyz", what, format!("use metres from -{PERSON_MAX_M} to {PERSON_MAX_M}"));
+        let what = format!("expected -{PERSON_MAX_M} to {PERSON_MAX_M} m, found {person_xyz_m:?}");
+        f.problem("person_xyz", what, "");
     }
     Gesture { enabled, model, person_xyz_m }
 }
@@ -54,7 +54,7 @@ pub(crate) fn check(scene: &Scene, gesture: &Gesture, tree: &Table, report: &mut
     for (object, _) in objects.filter(inside) {
         let path = ["dialogue", "gesture", "person_xyz"];
         let what = format!("the person stands where `{}` does", object.name);
-        let cure = "use a place from which people see the objects, e.g. [1.6, 0.0, 0.45]";
-        report.add(tree.source_of(&path).problem(&path.map(str::to_owned), what, cure));
+        let help = "use a place from which people see the objects, e.g. [1.6, 0.0, 0.45]";
+        report.add(tree.source_of(&path).diagnostic(&path.map(str::to_owned), what, help));
     }
 }

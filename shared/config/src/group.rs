@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use crate::fields::Fields;
 use crate::services::{self, Service};
+use diagnostics::Fields;
 
 /// The process group.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,8 +70,8 @@ fn restart(f: &mut Fields<'_>) -> RestartLimits {
     if whole && limits.backoff_max < limits.backoff_first {
         let keys = ["backoff_max_ms", "backoff_first_ms"];
         let key = if f.is_built_in(&keys[..1]) { keys[1] } else { keys[0] };
-        let cure = "raise backoff_max_ms or lower backoff_first_ms";
-        f.problem(key, "the first pause is longer than the longest", cure);
+        let help = "raise backoff_max_ms or lower backoff_first_ms";
+        f.problem(key, "the first pause is longer than backoff_max_ms", help);
     }
     limits
 }
@@ -85,9 +85,9 @@ fn log(f: &mut Fields<'_>) -> Log {
     if !f.is_wrong("level")
         && let Some(wrong) = log.level.split(',').find(|part| !is_directive(part))
     {
-        let what = format!("`{}` is no log level", wrong.trim());
-        let cure = format!("use one of {}, or NAME=LEVEL,…", LEVELS.join(", "));
-        f.problem("level", what, cure);
+        let what = format!("`{}` is not a log level", wrong.trim());
+        let help = format!("use one of {}, or NAME=LEVEL,…", LEVELS.join(", "));
+        f.problem("level", what, help);
     }
     log
 }

@@ -1,7 +1,7 @@
 //! The settings of a group: read once, checked as a whole, and the same for every service.
 //!
 //! Invariant: a [`Settings`] is complete and consistent. Reading either yields one or every
-//! problem at once, each with its file, key and cure; no service ever meets a wrong value.
+//! problem at once, each with its file, key and help; no service ever meets a wrong value.
 //!
 //! Values come in layers, each over the one before: the defaults (the files of `config/` as they
 //! were when this was built), the files of the configuration folder, a profile, and overrides from
@@ -12,23 +12,16 @@ mod arm;
 mod console;
 mod dialogue;
 mod durations;
-mod fields;
+mod files;
 mod gesture;
 mod group;
-mod layer;
 mod load;
-mod named;
-mod nearest;
 mod prior;
-mod problems;
 mod resolved;
-mod robot_files;
-mod scene_file;
 mod services;
 mod snapshot;
 mod speech;
 pub mod study;
-mod text_file;
 
 #[cfg(test)]
 mod tests;
@@ -36,21 +29,20 @@ mod tests;
 use std::path::{Path, PathBuf};
 
 use ::dialogue::Durations;
+use diagnostics::{Diagnostic, Diagnostics, Report, Source, Table, TextFile};
 use scene::Scene;
 
 pub use crate::arm::{Arm, Baxter, Driver, Grasps, Limb, Motion, Simulated};
 pub use crate::console::Console;
 pub use crate::dialogue::{CostsFrom, Dialogue};
+pub use crate::files::RobotFiles;
 pub use crate::gesture::Gesture;
 pub use crate::group::{Group, Log, RestartLimits};
-pub use crate::problems::Problems;
 pub use crate::resolved::{Origin, Section};
-pub use crate::robot_files::RobotFiles;
 pub use crate::services::{BUILT_IN, OPTIONAL, Restart, Service};
 pub use crate::snapshot::SNAPSHOT_FILE;
 pub use crate::speech::{Microphone, MicrophoneMode, Recogniser, Speech, Voice};
 pub use crate::study::Study;
-pub use crate::text_file::TextFile;
 
 use crate::resolved::Resolved;
 
@@ -87,7 +79,7 @@ impl Settings {
         dir: &Path,
         profile: Option<&str>,
         overrides: &[(String, String)],
-    ) -> Result<Self, Problems> {
+    ) -> Result<Self, Diagnostics> {
         load::load(dir, profile, overrides)
     }
 
@@ -102,20 +94,33 @@ impl Settings {
         &self.resolved.scene
     }
 
+    /// A problem with the value at a dotted key of the scene file.
+    pub fn scene_diagnostic(
+        &self,
+        key: impl Into<String>,
+        what: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Diagnostic {
+        let TextFile { label, text } = self.scene_file();
+        let table = Table::parse(text, &Source::new(label.as_str(), 0), &mut Report::default());
+        let table = table.unwrap_or_else(|| Table::empty(Source::new(label.as_str(), 0)));
+        table.diagnostic(key, what, help)
+    }
+
     /// The files that describe the robot.
     pub fn robot_files(&self) -> &RobotFiles {
         &self.resolved.robot
     }
 
     /// A problem with the value at a key, located in the file that it came from.
-    pub fn problem(
+    pub fn diagnostic(
         &self,
         key: &[&str],
         what: impl Into<String>,
-        cure: impl Into<String>,
-    ) -> scene::Problem {
+        help: impl Into<String>,
+    ) -> Diagnostic {
         let path: Vec<String> = key.iter().map(|part| (*part).to_owned()).collect();
-        self.resolved.tree.source_of(key).problem(&path, what, cure)
+        self.resolved.tree.source_of(key).diagnostic(&path, what, help)
     }
 
     /// Where the sound of the robot's latest sentences is kept, if anywhere: where the operator says,

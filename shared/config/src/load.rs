@@ -1,35 +1,25 @@
-//! From a folder of files to settings.
+//! Loading: layers of files into checked settings.
 
-use std::fs;
-use std::io;
 use std::path::Path;
 
-use scene::Problem;
+use diagnostics::{Diagnostic, Diagnostics, Fields, Node, Report, Source, Table, suggestion};
+use scene::Scene;
 use toml::Value;
 
-use crate::fields::Fields;
-use crate::layer::{Node, Source, Table};
-use crate::named::Named;
-use crate::problems::{Problems, Report};
+use crate::files::{Files, names, one_of, read_text};
 use crate::resolved::{self, Resolved, Section};
-use crate::robot_files::{self, RobotFiles};
-use crate::scene_file;
-use crate::text_file::TextFile;
-use crate::{
-    Settings, arm, console, dialogue, durations, gesture, group, nearest, services, speech, study,
-};
+use crate::{Settings, arm, console, dialogue, durations, gesture, group, services, speech, study};
 
 pub(crate) fn load(
     dir: &Path,
     profile: Option<&str>,
     overrides: &[(String, String)],
-) -> Result<Settings, Problems> {
-    let mut report = Report::default();
+) -> Result<Settings, Diagnostics> {
     if !dir.is_dir() {
-        let cure = "name a folder with group.toml and its neighbours";
-        report.add(Problem::new(dir.display().to_string(), "", "is not a folder", cure));
-        return report.verdict(None);
+        let help = "name a folder that contains group.toml";
+        return Err(Diagnostic::new(dir.display().to_string(), "", "not a folder", help).into());
     }
+    let mut report = Report::default();
     let mut layers = Vec::new();
     for section in Section::ALL {
         layers.extend(section_file(dir, section, &mut report));
@@ -42,24 +32,8 @@ pub(crate) fn load(
     for layer in layers {
         tree.merge(layer, &mut Vec::new(), &mut report);
     }
-    let files = find_files(dir, &tree, &mut report);
+    let files = Files::find(dir, &tree, &mut report);
     check(tree, report, files, None)
-}
-
-/// The files that the settings name; none where there was a problem with one.
-#[derive(Clone, Debug)]
-pub(crate) struct Files {
-    pub(crate) scene: Option<TextFile>,
-    pub(crate) robot: Option<RobotFiles>,
-}
-
-fn find_files(dir: &Path, tree: &Table, report: &mut Report) -> Files {
-    let scene = Named::find(tree, ["group", "scene"]);
-    let robot = Named::find(tree, ["arm", "robot"]);
-    Files {
-        scene: scene.and_then(|named| scene_file::find(dir, &named, report)),
-        robot: robot.and_then(|named| robot_files::find(dir, &named, report)),
-    }
 }
 
 /// Durations as a snapshot holds them, and the snapshot.
@@ -72,7 +46,7 @@ pub(crate) fn check(
     mut report: Report,
     files: Files,
     measured: Option<Measured>,
-) -> Result<Settings, Problems> {
+) -> Result<Settings, Diagnostics> {
     services::complete(tree.table_at("group"), &mut report);
     let mut fields = Fields::new(&tree, Vec::new(), &mut report);
     let group = fields.table("group", group::read);
@@ -83,42 +57,20 @@ pub(crate) fn check(
     let console = fields.table("console", console::read);
     fields.finish();
     let Files { scene: file, robot } = files;
-    let scene = file.as_ref().and_then(|file| scene_file::read(file, &mut report));
+    let read = file.as_ref().map(|file| Scene::from_toml(&file.label, &file.text));
+    let scene = read.and_then(|read| read.map_err(|found| report.extend(found)).ok());
     if let Some(scene) = &scene {
         gesture::check(scene, &dialogue.gesture, &tree, &mut report);
     }
     let settings = file.zip(scene).zip(robot).map(|((file, scene), robot)| {
         // Other problems would be reported again as missing durations.
-        let durations = measured.filter(|_| report.is_empty()).and_then(|(node, source)| {
+        let durations = measured.filter(|_| report.count() == 0).and_then(|(node, source)| {
             durations::read(node, &dialogue, &scene, &source, &mut report)
         });
         let resolved = Resolved { tree, scene: file, robot };
         Settings { group, dialogue, speech, arm, study, console, scene, durations, resolved }
     });
     report.verdict(settings)
-}
-
-/// A text file; an absent one is `None` without a problem.
-pub(crate) fn read_text(path: &Path, report: &mut Report) -> Option<String> {
-    match fs::read_to_string(path) {
-        Ok(text) => Some(text),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-        Err(error) => {
-            let what = format!("cannot be read: {error}");
-            report.add(Problem::new(path.display().to_string(), "", what, "mend or remove it"));
-            None
-        }
-    }
-}
-
-/// Names of the files in a folder with an ending, sorted, without it.
-pub(crate) fn names(folder: &Path, ending: &str) -> Vec<String> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut names: Vec<String> = entries
-        .filter_map(|entry| Some(entry.file_name().to_str()?.strip_suffix(ending)?.to_owned()))
-        .collect();
-    names.sort();
-    names
 }
 
 fn section_file(dir: &Path, section: Section, report: &mut Report) -> Option<Table> {
@@ -133,10 +85,10 @@ fn profile_file(dir: &Path, name: &str, report: &mut Report) -> Option<Table> {
     let folder = dir.join("profiles");
     let names = names(&folder, ".toml");
     if !names.iter().any(|known| known == name) {
-        let known: Vec<&str> = names.iter().map(String::as_str).collect();
-        let what = format!("there is no profile `{name}`");
-        let file = folder.display().to_string();
-        report.add(Problem::new(file, "", what, nearest::cure(name, &known)));
+        let known = names.iter().map(String::as_str);
+        let help = suggestion(name, known.clone(), || one_of(known));
+        let what = format!("no profile `{name}`");
+        report.add(Diagnostic::new(folder.display().to_string(), "", what, help));
         return None;
     }
     let path = folder.join(format!("{name}.toml"));
@@ -147,13 +99,13 @@ fn profile_file(dir: &Path, name: &str, report: &mut Report) -> Option<Table> {
 fn override_layer(key: &str, value: &str, report: &mut Report) -> Option<Table> {
     let mut parts: Vec<&str> = key.split('.').collect();
     if parts.len() < 2 || parts.iter().any(|part| part.trim().is_empty()) {
-        let what = "is not a key with its section";
-        let cure = "write SECTION.KEY=VALUE, e.g. arm.speed_ratio=0.4";
-        report.add(Problem::new("--set", key, what, cure));
+        let what = "not a key with its section";
+        let help = "write SECTION.KEY=VALUE, e.g. arm.speed_ratio=0.4";
+        report.add(Diagnostic::new("--set", key, what, help));
         return None;
     }
     let last = parts.pop().unwrap_or_default();
-    let leaf = Node::Leaf(value_of(value), Source::new("--set", 0));
+    let leaf = Node::from_toml(value_of(value), &Source::new("--set", 0));
     let mut layer = wrapped(last, leaf);
     for part in parts.into_iter().rev() {
         layer = wrapped(part, Node::Table(layer));
@@ -161,7 +113,7 @@ fn override_layer(key: &str, value: &str, report: &mut Report) -> Option<Table> 
     Some(layer)
 }
 
-/// The value as TOML reads it; anything else is a text, so that no quotes are needed in a shell.
+/// The value as TOML reads it; anything else is a string, so that a shell needs no quotes.
 fn value_of(text: &str) -> Value {
     let table = toml::from_str::<toml::Table>(&format!("v = {text}"));
     match table.ok().filter(|table| table.len() == 1).and_then(|mut table| table.remove("v")) {

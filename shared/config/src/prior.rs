@@ -2,7 +2,7 @@
 
 use dialogue::{Prior, PriorObjects};
 
-use crate::fields::Fields;
+use diagnostics::Fields;
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Prior {
     let objects = [("uniform", PriorObjects::Uniform), ("history", PriorObjects::History)];

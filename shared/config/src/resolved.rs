@@ -1,9 +1,9 @@
 //! The layers merged: what the settings were made of.
 
-use crate::layer::{Node, Source, Table};
-use crate::problems::Report;
-use crate::robot_files::RobotFiles;
-use crate::text_file::TextFile;
+use crate::files::RobotFiles;
+use diagnostics::Report;
+use diagnostics::TextFile;
+use diagnostics::{Node, Source, Table};
 
 /// A part of the settings with a file of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -121,10 +121,10 @@ fn collect(table: &Table, path: &mut Vec<String>, origins: &mut Vec<Origin>) {
         path.push(key.clone());
         match node {
             Node::Table(table) => collect(table, path, origins),
-            Node::Leaf(value, source) => origins.push(Origin {
+            value => origins.push(Origin {
                 key: path.join("."),
                 value: value.to_string(),
-                from: source.label.to_string(),
+                from: value.source().label.to_string(),
             }),
         }
         path.pop();

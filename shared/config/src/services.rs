@@ -2,10 +2,11 @@
 
 use std::time::Duration;
 
-use crate::fields::Fields;
-use crate::layer::{Node, Source, Table};
-use crate::nearest;
-use crate::problems::Report;
+use crate::files::one_of;
+use diagnostics::Fields;
+use diagnostics::Report;
+use diagnostics::suggestion;
+use diagnostics::{Node, Source, Table};
 
 /// The services that every group has, in the order in which they are listed.
 pub const BUILT_IN: [&str; 5] = ["speech", "grounding", "policy", "arm", "console"];
@@ -90,8 +91,8 @@ fn one(name: &str, f: &mut Fields<'_>) -> Service {
     let command = f.optional_command("command");
     let knows_its_program = BUILT_IN.contains(&name) || OPTIONAL.contains(&name);
     if command.is_none() && !f.is_wrong("command") && !knows_its_program {
-        let cure = "write `command = [\"program\", \"argument\"]`";
-        f.problem("command", "missing: only built-in services know their program", cure);
+        let help = "write `command = [\"program\", \"argument\"]`";
+        f.problem("command", "missing: only built-in services have a default program", help);
     }
     let watchdog = f.seconds("watchdog_s", 0.0..=3600.0);
     Service {
@@ -118,11 +119,11 @@ fn check_name(name: &str, f: &mut Fields<'_>) {
     let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     let fits = (1..=NAME_LEN_MAX).contains(&name.len()) && !name.starts_with('-');
     if !fits || !name.chars().all(allowed) {
-        let cure =
+        let help =
             format!("use 1 to {NAME_LEN_MAX} of a-z, 0-9 and -, beginning with a letter or digit");
-        f.problem_at(&[], "is no name for a service", cure);
+        f.problem_at(&[], "not a valid name of a service", help);
     } else if name == "supervisor" {
-        f.problem_at(&[], "is the name of the supervisor itself", "choose another one");
+        f.problem_at(&[], "this name is reserved for the supervisor", "choose another one");
     }
 }
 
@@ -133,7 +134,11 @@ fn check_order(services: &[Service], f: &mut Fields<'_>) {
         for missing in service.after.iter().filter(|other| !names.contains(&other.as_str())) {
             let what = format!("there is no service `{missing}`");
             let key = ["services", &service.name, "after"];
-            f.problem_at(&key, what, nearest::cure(missing, &names));
+            f.problem_at(
+                &key,
+                what,
+                suggestion(missing, names.iter().copied(), || one_of(names.iter().copied())),
+            );
         }
     }
     if let Some(mut cycle) = cycle(services) {

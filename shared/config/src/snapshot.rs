@@ -5,16 +5,15 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use scene::Problem;
-use toml::Value;
+use diagnostics::Diagnostic;
 
-use crate::layer::{Node, Source, Table};
-use crate::load::{self, Files};
-use crate::problems::{Problems, Report};
+use crate::files::{Files, RobotFiles, read_text};
+use crate::load;
 use crate::resolved::{self, Resolved, to_toml};
-use crate::robot_files::RobotFiles;
-use crate::text_file::TextFile;
 use crate::{Settings, durations};
+use diagnostics::TextFile;
+use diagnostics::{Diagnostics, Report};
+use diagnostics::{Node, Source, Table};
 
 /// Name of the snapshot in a group's run folder.
 pub const SNAPSHOT_FILE: &str = "settings.toml";
@@ -61,26 +60,26 @@ impl Settings {
     ///
     /// # Errors
     /// Every problem at once; there are none in a snapshot of the same version.
-    pub fn load_snapshot(run_dir: &Path) -> Result<Self, Problems> {
+    pub fn load_snapshot(run_dir: &Path) -> Result<Self, Diagnostics> {
         let path = run_dir.join(SNAPSHOT_FILE);
         let label = path.display().to_string();
         let mut report = Report::default();
-        let Some(text) = load::read_text(&path, &mut report) else {
-            report.add(Problem::new(label, "", "is missing", "start the group"));
+        let Some(text) = read_text(&path, &mut report) else {
+            report.add(Diagnostic::new(label, "", "no such file", "start the group"));
             return report.verdict(None);
         };
         let source = Source::new(label.as_str(), 0);
         let Some(mut layer) = Table::parse(&text, &source, &mut report) else {
             return report.verdict(None);
         };
-        let measured = take(&mut layer, durations::TABLE);
+        let measured = layer.take(durations::TABLE);
         let scene = take_file(&mut layer, SCENE);
         let urdf = take_file(&mut layer, URDF);
         let srdf = take_file(&mut layer, SRDF);
         for (key, what, file) in [(SCENE, "the scene", &scene), (URDF, "the robot", &urdf)] {
             if file.is_none() {
-                let cure = "stop the group and start it again";
-                report.add(Problem::new(&*label, key, format!("{what} is missing"), cure));
+                let help = "stop the group and start it again";
+                report.add(Diagnostic::new(&*label, key, format!("{what} is missing"), help));
             }
         }
         let files = Files { scene, robot: urdf.map(|urdf| RobotFiles { urdf, srdf }) };
@@ -91,24 +90,15 @@ impl Settings {
 }
 
 fn put_file(tree: &mut Table, key: &str, file: &TextFile) {
-    let mut table = Table::empty(tree.source.clone());
-    for (key, text) in [("file", &file.label), ("text", &file.text)] {
-        let leaf = Node::Leaf(Value::String(text.clone()), tree.source.clone());
-        table.entries.push((key.to_owned(), leaf));
-    }
+    let source = &tree.source;
+    let entries = [("file", &file.label), ("text", &file.text)]
+        .map(|(key, text)| (key.to_owned(), Node::text(text, source)));
+    let table = Table { entries: entries.into(), source: source.clone() };
     tree.entries.push((key.to_owned(), Node::Table(table)));
 }
 
-fn take(layer: &mut Table, key: &str) -> Option<Node> {
-    let at = layer.entries.iter().position(|(found, _)| found == key)?;
-    Some(layer.entries.remove(at).1)
-}
-
 fn take_file(layer: &mut Table, key: &str) -> Option<TextFile> {
-    let node = take(layer, key)?;
-    let text = |key| match node.as_table()?.get(key)? {
-        Node::Leaf(Value::String(text), _) => Some(text.clone()),
-        _ => None,
-    };
+    let node = layer.take(key)?;
+    let text = |key| node.as_table()?.get(key)?.as_text().map(str::to_owned);
     Some(TextFile { label: text("file")?, text: text("text")? })
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::fields::Fields;
+use diagnostics::Fields;
 
 /// Hearing and speaking.
 #[derive(Clone, Debug, PartialEq)]
@@ -168,23 +168,23 @@ const UTTERANCE_BYTES_MAX: u32 = 16_384;
 fn voice_name(f: &mut Fields<'_>, voice: Voice) -> String {
     let name = f.text("voice_name");
     if voice == Voice::Flite && f.is_built_in(&["voice_name"]) {
-        let cure = "set voice_name to one that `flite -lv` lists, e.g. `slt`";
-        f.problem("voice", format!("flite has no voice `{name}`"), cure);
+        let help = "set voice_name to one that `flite -lv` lists, e.g. `slt`";
+        f.problem("voice", format!("flite has no voice `{name}`"), help);
     }
     name
 }
 
 fn voice_command(f: &mut Fields<'_>, voice: Voice) -> Option<Vec<String>> {
-    const CURE: &str = "write `voice_command = [\"program\", \"{text}\", \"{wav}\"]`";
+    const HELP: &str = "write `voice_command = [\"program\", \"{text}\", \"{wav}\"]`";
     let words = f.optional_command("voice_command");
     match &words {
         None if voice == Voice::Command => {
-            f.problem("voice", "`command` needs a voice_command", CURE);
+            f.problem("voice", "`command` needs a voice_command", HELP);
         }
         Some(words) => {
             for slot in ["{text}", "{wav}"] {
                 if words.iter().skip(1).all(|word| !word.contains(slot)) {
-                    f.problem("voice_command", format!("lacks {slot}"), CURE);
+                    f.problem("voice_command", format!("expected the slot {slot}"), HELP);
                 }
             }
         }
@@ -196,8 +196,8 @@ fn voice_command(f: &mut Fields<'_>, voice: Voice) -> Option<Vec<String>> {
 fn recogniser_command(f: &mut Fields<'_>, recogniser: Recogniser) -> Option<Vec<String>> {
     let command = f.optional_command("recogniser_command");
     if recogniser == Recogniser::Command && command.is_none() {
-        let cure = "write `recogniser_command = [\"program\", \"argument\"]`";
-        f.problem("recogniser", "`command` needs a recogniser_command", cure);
+        let help = "write `recogniser_command = [\"program\", \"argument\"]`";
+        f.problem("recogniser", "`command` needs a recogniser_command", help);
     }
     command
 }
@@ -205,8 +205,8 @@ fn recogniser_command(f: &mut Fields<'_>, recogniser: Recogniser) -> Option<Vec<
 fn whisper_model(f: &mut Fields<'_>, recogniser: Recogniser) -> Option<PathBuf> {
     let model = f.absolute("whisper_model");
     if recogniser == Recogniser::Whisper && model.is_none() {
-        let cure = "write `whisper_model = \"/path/to/ggml-model.bin\"`";
-        f.problem("recogniser", "`whisper` needs a whisper_model", cure);
+        let help = "write `whisper_model = \"/path/to/ggml-model.bin\"`";
+        f.problem("recogniser", "`whisper` needs a whisper_model", help);
     }
     model
 }

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use config::{CostsFrom, Problems, Settings};
+use config::{CostsFrom, Settings};
+use diagnostics::{Diagnostics, Report};
 use dialogue::Durations;
-use scene::{Problem, Scene};
+use scene::Scene;
 
 use crate::{ArmSetup, Extent, MotionError, Motions, Pace, Voice, measure, reach};
 
@@ -18,20 +19,18 @@ pub fn load(
     dir: &Path,
     profile: Option<&str>,
     overrides: &[(String, String)],
-) -> Result<Settings, Problems> {
+) -> Result<Settings, Diagnostics> {
     let mut settings = Settings::load(dir, profile, overrides)?;
     let setup = ArmSetup::new(&settings)?;
-    let unreachable = reach::check(&settings, &setup);
-    if !unreachable.is_empty() {
-        return Err(unreachable.into());
-    }
+    let mut report = Report::default();
+    reach::check(&settings, &setup, &mut report);
+    report.verdict(Some(()))?;
     if settings.dialogue.costs_from == CostsFrom::Robot {
         let pointing = settings.dialogue.actions.point();
         let measured = durations(&settings, &setup, &settings.scene, pointing);
         settings.durations = Some(measured.map_err(|error| {
-            let cure = "move it, or set costs.from of the dialogue to \"config\"";
-            let file = &*settings.scene_file().label;
-            Problems::from(Problem::new(file, "objects", error.to_string(), cure))
+            let help = "move it, or set costs.from of the dialogue to \"config\"";
+            Diagnostics::from(settings.scene_diagnostic("objects", error.to_string(), help))
         })?);
     }
     Ok(settings)

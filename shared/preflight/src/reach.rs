@@ -1,20 +1,20 @@
 //! Reachability of the objects of a scene.
 
 use config::Settings;
+use diagnostics::{Diagnostic, Report};
 use manipulation::{ObjectPose, PlanError, PlanSettings, check_reachable, gripper};
-use scene::{Placement, Problem};
+use scene::Placement;
 
 use crate::ArmSetup;
 
-/// Returns a problem for every object without a place, and for every one that the arm cannot bring.
-pub(crate) fn check(settings: &Settings, setup: &ArmSetup) -> Vec<Problem> {
-    let mut problems = Vec::new();
-    let placed = placed(settings, &mut problems);
-    check_widths(&placed, settings, setup, &mut problems);
+/// Reports every object without a place, and every one that the arm cannot bring.
+pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) {
+    let placed = placed(settings, report);
+    check_widths(&placed, settings, setup, report);
     let poses: Vec<ObjectPose> = placed.iter().map(|(_, pose)| *pose).collect();
     let found = check_reachable(&setup.robot, &poses, setup.limb, &setup.plan);
     if found.iter().all(Result::is_ok) {
-        return problems;
+        return;
     }
     let mut hand_over = None;
     let elsewhere = reachable_elsewhere(&poses, setup);
@@ -25,17 +25,18 @@ pub(crate) fn check(settings: &Settings, setup: &ArmSetup) -> Vec<Problem> {
             continue;
         }
         let key = if matches!(error, PlanError::Grasp(_)) { "grasp_width" } else { "xyz" };
-        let cure = "move it, or change limb, hover_m or table_z_m of the arm";
-        problems.push(of_object(settings, *n, key, &reason(&error, setup), cure));
+        let help = "move it, or change limb, hover_m or table_z_m of the arm";
+        report.add(of_object(settings, *n, key, &reason(&error, setup), help));
     }
-    problems.extend(hand_over.map(|error| hand_over_problem(settings, &error)));
-    problems
+    if let Some(error) = hand_over {
+        report.add(hand_over_problem(settings, &error));
+    }
 }
 
 /// A problem with the object at `n`.
-fn of_object(settings: &Settings, n: usize, key: &str, what: &str, cure: &str) -> Problem {
+fn of_object(settings: &Settings, n: usize, key: &str, what: &str, help: &str) -> Diagnostic {
     let what = format!("`{}` {what}", settings.scene.objects()[n].name);
-    Problem::new(&*settings.scene_file().label, format!("objects[{n}].{key}"), what, cure)
+    settings.scene_diagnostic(format!("objects[{n}].{key}"), what, help)
 }
 
 /// Reports every object that the gripper could hold but not with these settings: the fingers do not
@@ -44,12 +45,12 @@ fn check_widths(
     placed: &[(usize, ObjectPose)],
     settings: &Settings,
     setup: &ArmSetup,
-    problems: &mut Vec<Problem>,
+    report: &mut Report,
 ) {
     let open_m = setup.plan.open_width_m;
     for (n, pose) in placed {
         let width_m = pose.grasp_width_m;
-        let (what, cure) = if width_m > open_m && width_m <= gripper::STROKE_M {
+        let (what, help) = if width_m > open_m && width_m <= gripper::STROKE_M {
             let what = format!("is wider than the fingers open: {:.1} mm", open_m * 1e3);
             (what, "raise grip_open_percent of the arm")
         } else if width_m > 0.0 && !gripper::is_felt(width_m) {
@@ -59,20 +60,20 @@ fn check_widths(
         } else {
             continue;
         };
-        problems.push(of_object(settings, *n, "grasp_width", &what, cure));
+        report.add(of_object(settings, *n, "grasp_width", &what, help));
     }
 }
 
 /// The objects that have a place, with their positions in the scene.
-fn placed(settings: &Settings, problems: &mut Vec<Problem>) -> Vec<(usize, ObjectPose)> {
+fn placed(settings: &Settings, report: &mut Report) -> Vec<(usize, ObjectPose)> {
     let mut placed = Vec::new();
     for (n, object) in settings.scene.objects().iter().enumerate() {
         match object.placement {
             Some(placement) => placed.push((n, pose(&placement))),
             None => {
                 let what = "has no place, so it cannot be fetched";
-                let cure = "add `xyz`, `size` and `grasp_width`";
-                problems.push(of_object(settings, n, "xyz", what, cure));
+                let help = "add `xyz`, `size` and `grasp_width`";
+                report.add(of_object(settings, n, "xyz", what, help));
             }
         }
     }
@@ -103,11 +104,11 @@ fn reachable_elsewhere(poses: &[ObjectPose], setup: &ArmSetup) -> Vec<bool> {
     check_reachable(&setup.robot, poses, setup.limb, &plan).iter().map(Result::is_ok).collect()
 }
 
-fn hand_over_problem(settings: &Settings, error: &PlanError) -> Problem {
+fn hand_over_problem(settings: &Settings, error: &PlanError) -> Diagnostic {
     let [x, y, z] = PlanSettings::default().hand_over_xyz_m;
-    let cure = format!("use a place in front of the robot, e.g. [{x}, {y}, {z}]");
+    let help = format!("use a place in front of the robot, e.g. [{x}, {y}, {z}]");
     let what = format!("objects cannot be brought: {error}");
-    settings.problem(&["arm", "hand_over_xyz"], what, cure)
+    settings.diagnostic(&["arm", "hand_over_xyz"], what, help)
 }
 
 /// Converts the placement of a scene's object.

@@ -1,9 +1,9 @@
 //! The configured arm as the planner of motions takes it.
 
-use config::{Problems, RobotFiles, Settings};
+use config::{RobotFiles, Settings};
+use diagnostics::{Diagnostic, Diagnostics};
 use manipulation::{Limb, PlanSettings, Robot, gripper};
-use robot_model::{BAXTER_SRDF, BAXTER_URDF, Document};
-use scene::Problem;
+use robot_model::{BAXTER_SRDF, BAXTER_URDF};
 
 /// Robot, limb and settings of motions.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +21,7 @@ impl ArmSetup {
     ///
     /// # Errors
     /// Every fault of the description, or the parts that an arm needs and it lacks.
-    pub fn new(settings: &Settings) -> Result<Self, Problems> {
+    pub fn new(settings: &Settings) -> Result<Self, Diagnostics> {
         let robot = robot(settings.robot_files())?;
         Ok(Self { robot, limb: limb(settings.arm.limb), plan: plan_settings(&settings.arm.motion) })
     }
@@ -50,22 +50,12 @@ fn plan_settings(motion: &config::Motion) -> PlanSettings {
 }
 
 /// Reads the description; the built-in one is parsed once per process.
-fn robot(files: &RobotFiles) -> Result<Robot, Problems> {
+fn robot(files: &RobotFiles) -> Result<Robot, Diagnostics> {
     let srdf = files.srdf.as_ref().map(|file| file.text.as_str());
     if files.urdf.text == BAXTER_URDF && srdf == Some(BAXTER_SRDF) {
         return Ok(Robot::baxter().clone());
     }
-    let description = robot_model::Robot::parse(&files.urdf.text, srdf).map_err(|faults| {
-        let problem = |fault: &robot_model::Fault| {
-            let file = match (fault.document, &files.srdf) {
-                (Document::Srdf, Some(srdf)) => &srdf.label,
-                _ => &files.urdf.label,
-            };
-            let place = format!("line {}, {}", fault.line, fault.element);
-            Problem::new(file, place, &fault.problem, &fault.cure)
-        };
-        Problems::from(faults.all().iter().map(problem).collect::<Vec<_>>())
-    })?;
+    let description = robot_model::Robot::read(&files.urdf, files.srdf.as_ref())?;
     Robot::from_description(&description)
-        .map_err(|error| Problem::new(&*files.urdf.label, "", error.what, error.cure).into())
+        .map_err(|error| Diagnostic::new(&*files.urdf.label, "", error.what, error.cure).into())
 }

@@ -1,7 +1,7 @@
 //! A robot as its description file says it is: links, joints, limits, shapes and named postures.
 //!
 //! [`Robot::parse`] reads a URDF, and an SRDF beside it for named postures and for the links that
-//! may touch. It reports every fault of the two texts at once, each with its line and its cure.
+//! may touch. It reports every fault of the two texts at once, each with its line and its help.
 //! [`Robot::baxter`] is the robot that is built in, from the very files in `config/robots`.
 //!
 //! This crate is pure: no IO, no clock, no threads. Units are metres, radians, kilograms and
@@ -18,14 +18,12 @@
 
 mod builtin;
 mod chain;
-mod fault;
 mod model;
 mod poses;
 mod read;
 
 pub use builtin::{BAXTER_SRDF, BAXTER_URDF};
 pub use chain::{Jacobian, SerialChain, UnknownLink};
-pub use fault::{Document, Fault, Faults};
 pub use model::{
     Body, Inertial, Joint, JointKind, Limits, Link, Mimic, Posture, Rgba, Robot, Shape,
 };

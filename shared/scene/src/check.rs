@@ -1,16 +1,28 @@
-//! From what a text says to a scene that holds: every invariant of [`Scene`] is checked here, for
-//! both syntaxes, and every breach is reported.
+//! Checks of every invariant of [`Scene`], for both syntaxes.
 
 use std::collections::HashMap;
 
-use crate::problem::Report;
+use diagnostics::{Report, Table, suggestion};
+
 use crate::{Attribute, Object, Placement, Scene, Value, ValueId, WordId, wording};
 
-/// How many of anything a 16-bit index can name.
+/// A table while its meaning is checked.
+pub(crate) struct Checks<'a> {
+    pub(crate) table: &'a Table,
+    pub(crate) report: &'a mut Report,
+}
+
+impl Checks<'_> {
+    fn add(&mut self, key: impl Into<String>, what: impl Into<String>, help: impl Into<String>) {
+        self.report.add(self.table.diagnostic(key, what, help));
+    }
+}
+
+/// Most entries that a 16-bit index can name.
 const COUNT_MAX: usize = 65_535;
 
-/// A scene as written: typed, nothing else promised. An empty name stands for one that was
-/// missing or empty; the reader has complained about it already.
+/// A scene as written: typed, not yet checked. An empty name stands for one that was missing or
+/// empty, which the reader has reported.
 pub(crate) struct Draft {
     pub(crate) name: String,
     pub(crate) noun: String,
@@ -50,8 +62,8 @@ pub(crate) struct DraftObject {
 }
 
 impl Draft {
-    /// The scene; `None` only after a problem that leaves nothing to build.
-    pub(crate) fn check(self, report: &mut Report) -> Option<Scene> {
+    /// Returns the scene; `None` only after a problem that makes it impossible to build.
+    pub(crate) fn check(self, report: &mut Checks<'_>) -> Option<Scene> {
         self.check_counts(report);
         self.check_attribute_names(report);
         for attribute in &self.attributes {
@@ -72,10 +84,10 @@ impl Draft {
         counted.then(|| self.build(words, places))
     }
 
-    fn check_counts(&self, report: &mut Report) {
-        let count = |key: &str, n: usize, one: &str, report: &mut Report| {
+    fn check_counts(&self, report: &mut Checks<'_>) {
+        let count = |key: &str, n: usize, one: &str, report: &mut Checks<'_>| {
             if n == 0 {
-                report.add(key, format!("no {key}"), format!("add at least one `{one}`"));
+                report.add(key, "expected at least one, found none", format!("add `{one}`"));
             }
             if n > COUNT_MAX {
                 report.add(key, format!("{n} are too many"), format!("use at most {COUNT_MAX}"));
@@ -87,14 +99,14 @@ impl Draft {
             let key = format!("{}.values", attribute.key);
             let n = attribute.values.len();
             if n == 0 {
-                report.add(key, "no values", "list at least one");
+                report.add(key, "expected at least one value, found none", "list it");
             } else if n > COUNT_MAX {
                 report.add(key, format!("{n} are too many"), format!("use at most {COUNT_MAX}"));
             }
         }
     }
 
-    fn check_attribute_names(&self, report: &mut Report) {
+    fn check_attribute_names(&self, report: &mut Checks<'_>) {
         let mut seen = HashMap::new();
         for attribute in self.attributes.iter().filter(|attribute| !attribute.name.is_empty()) {
             if let Some(first) = seen.insert(&attribute.name, &attribute.key) {
@@ -104,8 +116,8 @@ impl Draft {
         }
     }
 
-    /// Checks the objects; gives each one's values by attribute.
-    fn check_objects(&self, report: &mut Report) -> Vec<Vec<Option<ValueId>>> {
+    /// Checks the objects; returns the values of each by attribute.
+    fn check_objects(&self, report: &mut Checks<'_>) -> Vec<Vec<Option<ValueId>>> {
         let attributes: HashMap<&str, usize> = (self.attributes.iter().enumerate())
             .map(|(k, attribute)| (attribute.name.as_str(), k))
             .collect();
@@ -125,8 +137,10 @@ impl Draft {
             for (name, value) in &object.attributes {
                 let key = format!("{}.attributes.{name}", object.key);
                 let Some(&k) = attributes.get(name.as_str()) else {
-                    let cure = format!("use one of {}", self.attribute_names());
-                    report.add(key, format!("unknown attribute `{name}`"), cure);
+                    let known = self.attributes.iter().map(|attribute| &*attribute.name);
+                    let help =
+                        suggestion(name, known.clone(), || format!("use one of {}", names(known)));
+                    report.add(key, format!("unknown attribute `{name}`"), help);
                     continue;
                 };
                 match values[k].get(value.as_str()) {
@@ -134,18 +148,17 @@ impl Draft {
                     Some(_) => {}
                     None => {
                         let what = format!("`{value}` is not a value of `{name}`");
-                        let list = names(self.attributes[k].values.iter().map(|v| &*v.name));
-                        report.add(key, what, format!("use one of {list} or list it there"));
+                        let known = self.attributes[k].values.iter().map(|v| &*v.name);
+                        let help = suggestion(value, known.clone(), || {
+                            format!("use one of {} or list it there", names(known))
+                        });
+                        report.add(key, what, help);
                     }
                 }
             }
             places.push(row);
         }
         places
-    }
-
-    fn attribute_names(&self) -> String {
-        names(self.attributes.iter().map(|attribute| &*attribute.name))
     }
 
     /// `V`, in order of first appearance.
@@ -192,13 +205,13 @@ fn build_attribute(attribute: DraftAttribute, ids: &HashMap<String, WordId>) -> 
     }
 }
 
-/// The wordings of a file, or those of everybody.
+/// The wordings of a file, or else the default ones.
 fn wordings(own: Vec<String>, common: &[&str]) -> Vec<String> {
     if own.is_empty() { common.iter().map(|text| (*text).to_owned()).collect() } else { own }
 }
 
 /// Within one attribute every name and synonym must lead to one value, upper case aside.
-fn check_values(attribute: &DraftAttribute, report: &mut Report) {
+fn check_values(attribute: &DraftAttribute, report: &mut Checks<'_>) {
     let mut owners: HashMap<String, &str> = HashMap::new();
     for value in attribute.values.iter().filter(|value| !value.name.is_empty()) {
         if owners.insert(value.name.to_lowercase(), &value.key).is_some() {
@@ -212,7 +225,7 @@ fn check_values(attribute: &DraftAttribute, report: &mut Report) {
             let key = format!("{}.synonyms[{n}]", value.key);
             if *owner != value.key {
                 let what = format!("synonym `{synonym}` already stands for {owner}");
-                report.add(key, what, "let it stand for one value");
+                report.add(key, what, "assign it to one value");
             } else if value.synonyms[..n].iter().any(|other| other == synonym) {
                 report.add(key, format!("synonym `{synonym}` is listed twice"), "list it once");
             }
@@ -220,42 +233,42 @@ fn check_values(attribute: &DraftAttribute, report: &mut Report) {
     }
 }
 
-/// Longest wording of a question, in characters: nobody listens for longer.
+/// Longest wording of a question, in characters.
 const WORDING_CHARS_MAX: usize = 120;
 
-fn check_wording(attribute: &DraftAttribute, report: &mut Report) {
+fn check_wording(attribute: &DraftAttribute, report: &mut Checks<'_>) {
     const SLOTS: [&str; 3] = ["{value}", "{attribute}", "{noun}"];
     let (yes_no, which) =
         (format!("{}.ask_yes_no", attribute.key), format!("{}.ask_which", attribute.key));
     for (key, text) in keyed(&yes_no, &attribute.ask_yes_no) {
         if !text.contains("{value}") {
-            report.add(key, "does not say {value}", "write {value} where it belongs");
+            report.add(key, "expected the slot {value}", "write {value} for the value");
         }
     }
     check_texts(&yes_no, &attribute.ask_yes_no, &SLOTS, report);
     check_texts(&which, &attribute.ask_which, &SLOTS, report);
     for (key, text) in keyed(&which, &attribute.ask_which) {
         if text.contains("{value}") {
-            report.add(key, "an open question has no {value}", "remove {value}");
+            report.add(key, "an open question cannot contain {value}", "remove it");
         }
     }
 }
 
-/// What holds for every wording: slots that exist, a length to listen to, each once.
-fn check_texts(key: &str, texts: &[String], slots: &[&str], report: &mut Report) {
+/// Checks every wording: known slots, length, duplicates.
+fn check_texts(key: &str, texts: &[String], slots: &[&str], report: &mut Checks<'_>) {
     for (n, (key, text)) in keyed(key, texts).enumerate() {
         if let Some(slot) = wording::unknown_slot(text, slots) {
             let last = slots.len() - 1;
-            let cure = match slots.len() {
+            let help = match slots.len() {
                 1 => format!("the only slot is {}", slots[0]),
                 _ => format!("the slots are {} and {}", slots[..last].join(", "), slots[last]),
             };
-            report.add(&key, format!("unknown slot {slot}"), cure);
+            report.add(&key, format!("unknown slot {slot}"), help);
         }
         let chars = text.chars().count();
         if chars > WORDING_CHARS_MAX {
-            let cure = format!("ask it in at most {WORDING_CHARS_MAX}");
-            report.add(&key, format!("{chars} characters are long to listen to"), cure);
+            let help = format!("use at most {WORDING_CHARS_MAX}");
+            report.add(&key, format!("{chars} characters are too long"), help);
         }
         if texts[..n].contains(text) {
             report.add(&key, "the same wording is listed twice", "list it once");
@@ -270,7 +283,7 @@ fn keyed<'a>(key: &str, texts: &'a [String]) -> impl Iterator<Item = (String, &'
     texts.iter().enumerate().map(keyed)
 }
 
-/// The first few names, for a cure that fits a line.
+/// The first few names, for help that fits on a line.
 fn names<'a>(all: impl Iterator<Item = &'a str>) -> String {
     const SHOWN_MAX: usize = 8;
     let names: Vec<&str> = all.filter(|name| !name.is_empty()).take(SHOWN_MAX + 1).collect();

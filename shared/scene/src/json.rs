@@ -5,23 +5,30 @@
 //! `xyz`, `yaw`, `size` and `grasp_width` as in the scene file. Without `values`, every value is
 //! listed in the order in which the objects bring it up.
 
+use diagnostics::{Diagnostics, Fields, Node, Report, Source, Table};
 use serde_json::{Map, Value as Json, json};
 
-use crate::check::{Draft, DraftAttribute, DraftObject, DraftValue};
-use crate::fields::{Fields, Node, text};
-use crate::problem::Report;
-use crate::toml_form::{object_attributes, placement};
-use crate::{Object, Problem, Scene};
+use crate::check::{Checks, Draft, DraftAttribute, DraftObject, DraftValue};
+use crate::toml_form::object;
+use crate::{Object, Scene};
 
 impl Scene {
-    /// Reads the JSON form; `file` only names it in problems.
+    /// Reads the JSON form; `file` is its name in diagnostics.
     ///
     /// # Errors
     /// Every problem at once.
-    pub fn from_json(file: &str, json: &Json) -> Result<Self, Vec<Problem>> {
-        let mut report = Report::new(file);
-        let draft = draft(json.into(), &mut report);
-        let scene = draft.and_then(|draft| draft.check(&mut report));
+    pub fn from_json(file: &str, json: &Json) -> Result<Self, Diagnostics> {
+        let mut report = Report::default();
+        let source = Source::new(file, 0);
+        let table = match Node::from_json(json, &source) {
+            Node::Table(table) => table,
+            other => {
+                let what = format!("expected a table, found {}", other.type_name());
+                return Err(source.diagnostic(&[], what, "").into());
+            }
+        };
+        let draft = draft(&table, &mut report);
+        let scene = draft.check(&mut Checks { table: &table, report: &mut report });
         report.verdict(scene)
     }
 
@@ -69,61 +76,36 @@ impl Scene {
     }
 }
 
-fn draft(root: Node, report: &mut Report) -> Option<Draft> {
-    let mut fields = Fields::open(String::new(), root, report)?;
-    let name = fields.optional_text("name", report);
-    let noun = fields.optional_text("noun", report);
-    let objects = fields.list("objects", report);
-    let values = fields.take("values");
-    let synonyms = fields.take("synonyms");
-    fields.finish(report);
-    let objects: Vec<DraftObject> = (objects.into_iter().enumerate())
-        .filter_map(|(n, node)| object(format!("objects[{n}]"), node, report))
-        .collect();
-    let mut attributes = match values {
-        Some(node) => listed(node, report),
-        None => derived(&objects),
-    };
-    if let Some(node) = synonyms {
-        add_synonyms(&mut attributes, node, report);
-    }
-    Some(Draft {
-        name: name.unwrap_or_else(|| "scene".to_owned()),
-        noun: noun.unwrap_or_else(|| "object".to_owned()),
-        ask_wanted: Vec::new(),
-        ask_point: Vec::new(),
-        attributes,
-        objects,
-    })
+fn draft(table: &Table, report: &mut Report) -> Draft {
+    let mut f = Fields::new(table, Vec::new(), report);
+    let name = f.optional_text("name").unwrap_or_else(|| "scene".to_owned());
+    let noun = f.optional_text("noun").unwrap_or_else(|| "object".to_owned());
+    let objects = f.list("objects", "", object);
+    let listed = f.optional_table("values", listed);
+    let mut attributes = listed.unwrap_or_else(|| derived(&objects));
+    f.optional_table("synonyms", |f| add_synonyms(&mut attributes, f));
+    f.finish();
+    Draft { name, noun, ask_wanted: Vec::new(), ask_point: Vec::new(), attributes, objects }
 }
 
-fn object(key: String, node: Node, report: &mut Report) -> Option<DraftObject> {
-    let mut fields = Fields::open(key.clone(), node, report)?;
-    let name = fields.text("name", report).unwrap_or_default();
-    let attributes = object_attributes(&mut fields, report);
-    let placement = placement(&mut fields, report);
-    fields.finish(report);
-    Some(DraftObject { key, name, attributes, placement })
-}
-
-fn attribute(key: String, name: String, values: Vec<DraftValue>) -> DraftAttribute {
+fn plain(key: String, name: String, values: Vec<DraftValue>) -> DraftAttribute {
     let (synonyms, ask_yes_no, ask_which) = (Vec::new(), Vec::new(), Vec::new());
     DraftAttribute { key, name, synonyms, ask_yes_no, ask_which, values }
 }
 
-/// The attributes as `values` lists them.
-fn listed(node: Node, report: &mut Report) -> Vec<DraftAttribute> {
-    let Some(table) = Fields::open("values".to_owned(), node, report) else { return Vec::new() };
-    (table.into_entries().into_iter())
-        .map(|(key, name, node)| {
-            let values = texts(&key, node, report);
-            let values = values.into_iter().map(|(key, name)| DraftValue::plain(key, name));
-            attribute(key, name, values.collect())
-        })
-        .collect()
+/// The attributes of `values`.
+fn listed(f: &mut Fields<'_>) -> Vec<DraftAttribute> {
+    let mut attributes = Vec::new();
+    for name in f.names() {
+        let key = f.key_of(name);
+        let values = f.texts(name).into_iter().enumerate();
+        let value = |(n, text)| DraftValue::plain(format!("{key}[{n}]"), text);
+        attributes.push(plain(key.clone(), name.to_owned(), values.map(value).collect()));
+    }
+    attributes
 }
 
-/// The attributes that the objects bring up.
+/// The attributes and values in the order in which the objects mention them.
 fn derived(objects: &[DraftObject]) -> Vec<DraftAttribute> {
     let mut attributes: Vec<DraftAttribute> = Vec::new();
     let mut seen = std::collections::HashSet::new();
@@ -134,7 +116,7 @@ fn derived(objects: &[DraftObject]) -> Vec<DraftAttribute> {
             }
             let key = format!("{}.attributes.{name}", object.key);
             let k = attributes.iter().position(|a| a.name == *name).unwrap_or_else(|| {
-                attributes.push(attribute(key.clone(), name.clone(), Vec::new()));
+                attributes.push(plain(key.clone(), name.clone(), Vec::new()));
                 attributes.len() - 1
             });
             attributes[k].values.push(DraftValue::plain(key, value.clone()));
@@ -143,34 +125,22 @@ fn derived(objects: &[DraftObject]) -> Vec<DraftAttribute> {
     attributes
 }
 
-fn add_synonyms(attributes: &mut [DraftAttribute], node: Node, report: &mut Report) {
-    let Some(table) = Fields::open("synonyms".to_owned(), node, report) else { return };
-    for (key, name, node) in table.into_entries() {
-        let Some(attribute) = attributes.iter_mut().find(|a| a.name == name) else {
-            report.add(key, format!("unknown attribute `{name}`"), "use one of `values`");
+/// Adds `synonyms` to the values that they belong to.
+fn add_synonyms(attributes: &mut [DraftAttribute], f: &mut Fields<'_>) {
+    for name in f.names() {
+        let Some(attribute) = attributes.iter_mut().find(|attribute| attribute.name == name) else {
+            f.allow(&[name]);
+            f.problem(name, "unknown attribute", "use one of `values`");
             continue;
         };
-        let Some(values) = Fields::open(key, node, report) else { continue };
-        for (key, name, node) in values.into_entries() {
-            let synonyms = texts(&key, node, report).into_iter().map(|(_, synonym)| synonym);
-            match attribute.values.iter_mut().find(|value| value.name == name) {
-                Some(value) => value.synonyms.extend(synonyms),
-                None => report.add(key, format!("unknown value `{name}`"), "list it in `values`"),
+        f.optional_table(name, |f| {
+            for value_name in f.names() {
+                let synonyms = f.texts(value_name);
+                match attribute.values.iter_mut().find(|value| value.name == value_name) {
+                    Some(value) => value.synonyms.extend(synonyms),
+                    None => f.problem(value_name, "unknown value", "list it in `values`"),
+                }
             }
-        }
+        });
     }
-}
-
-/// The strings of a list, each with its dotted key.
-fn texts(key: &str, node: Node, report: &mut Report) -> Vec<(String, String)> {
-    let Node::List(items) = node else {
-        report.add(key, "expected a list of strings", "write `[\"…\"]`");
-        return Vec::new();
-    };
-    (items.into_iter().enumerate())
-        .filter_map(|(n, item)| {
-            let key = format!("{key}[{n}]");
-            text(&key, item, report).map(|text| (key, text))
-        })
-        .collect()
 }

@@ -9,12 +9,10 @@
 
 mod check;
 mod describe;
-mod fields;
 mod ids;
 mod json;
 mod key;
 mod model;
-mod problem;
 mod question;
 mod question_json;
 mod reading;
@@ -27,7 +25,6 @@ mod tests;
 pub use ids::{AttributeId, ObjectId, ValueId, WordId};
 pub use key::Fnv1a;
 pub use model::{Attribute, Object, Placement, Role, Scene, Value};
-pub use problem::Problem;
 pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};
 pub use reading::{Doubt, Intent, Reading, Response};

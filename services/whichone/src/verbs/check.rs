@@ -1,6 +1,7 @@
 //! `check`: whether a configuration is right, and what would run.
 
-use config::{Problems, Settings};
+use config::Settings;
+use diagnostics::Diagnostics;
 use serde_json::{Value as Json, json};
 use service::exit::Exit;
 
@@ -33,10 +34,10 @@ pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
     }
 }
 
-fn refused(problems: &Problems, out: &mut Output<'_>) -> Outcome {
+fn refused(problems: &Diagnostics, out: &mut Output<'_>) -> Outcome {
     if out.is_json() {
         let problems: Vec<Json> = (problems.iter())
-            .map(|p| json!({ "file": p.file, "key": p.key, "what": p.what, "cure": p.cure }))
+            .map(|p| json!({ "file": p.file, "key": p.key, "what": p.what, "cure": p.help }))
             .collect();
         out.json(&json!({ "ok": false, "problems": problems }))?;
     } else {

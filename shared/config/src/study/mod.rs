@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use crate::fields::Fields;
+use diagnostics::Fields;
 
 mod item;
 mod protocol;
@@ -109,10 +109,14 @@ fn item(f: &mut Fields<'_>) -> Item {
     };
     let plain = |c: char| c.is_ascii_alphanumeric() || c == '_';
     if !f.is_wrong("id") && !item.id.chars().all(plain) {
-        f.problem("id", format!("`{}` is no column name", item.id), "use letters, digits and _");
+        f.problem("id", format!("`{}` is not a column name", item.id), "use letters, digits and _");
     }
     if !f.is_wrong("kind") && item.kind == Kind::Choice && item.options.len() < 2 {
-        f.problem("options", "offers nothing to choose", "write `options = [\"one\", \"two\"]`");
+        f.problem(
+            "options",
+            "expected at least two options",
+            "write `options = [\"one\", \"two\"]`",
+        );
     }
     if item.kind != Kind::Likert {
         item.points = 0;

@@ -1,18 +1,18 @@
 //! Configuration folders as people write them, right and wrong.
 
 mod console;
+mod invalid;
 mod layering;
 mod robots;
 mod snapshot;
 mod study;
-mod wrong;
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use crate::{Problems, Settings};
+use crate::{Diagnostics, Settings};
 
 /// The folder that is shipped.
 fn shipped() -> PathBuf {
@@ -61,7 +61,7 @@ impl Folder {
         &self,
         profile: Option<&str>,
         overrides: &[(&str, &str)],
-    ) -> Result<Settings, Problems> {
+    ) -> Result<Settings, Diagnostics> {
         let overrides: Vec<_> =
             overrides.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
         Settings::load(self.path(), profile, &overrides)

@@ -24,15 +24,3 @@ fn the_files_of_a_named_robot_are_part_of_the_snapshot() {
     assert_ne!(usual.section_text(Section::Arm), settings.section_text(Section::Arm));
     assert_eq!(usual.section_text(Section::Speech), settings.section_text(Section::Speech));
 }
-
-#[test]
-fn an_unknown_robot_gets_a_suggestion() {
-    let folder = Folder::new(&[("robots/sawyer.urdf", URDF), ("arm.toml", "robot = 'sawer'")]);
-    let complaints = folder.complaints(None, &[]);
-    assert_eq!(complaints.len(), 1);
-    assert!(
-        complaints[0].starts_with("arm.toml: robot: there is no robot `sawer`"),
-        "{complaints:?}"
-    );
-    assert!(complaints[0].ends_with("(did you mean `sawyer`?)"), "{complaints:?}");
-}

@@ -1,12 +1,12 @@
 //! Joints: kind, axis and limits.
 
+use diagnostics::suggestion;
 use nalgebra::{Isometry3, Unit, Vector3};
 use roxmltree::Node;
 
 use crate::model::{JointKind, Limits};
 
 use super::reader::{Reader, child};
-use super::spelling;
 
 /// A joint as the file writes it: other parts are still names.
 pub(super) struct Written<'a> {
@@ -51,14 +51,14 @@ fn kind<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, element: &str) -> Joint
         [JointKind::Fixed, JointKind::Revolute, JointKind::Continuous, JointKind::Prismatic];
     let text = node.attribute("type").unwrap_or_default().trim();
     KINDS.into_iter().find(|kind| kind.name() == text).unwrap_or_else(|| {
-        let problem = match text {
+        let what = match text {
             "" => "it has no type".to_owned(),
             "floating" | "planar" => format!("its type {text} is not supported"),
             _ => format!("its type {text:?} is unknown"),
         };
         let otherwise = "write type=\"fixed\", \"revolute\", \"continuous\" or \"prismatic\"";
-        let cure = spelling::cure(text, KINDS.iter().map(|kind| kind.name()), otherwise);
-        reader.fault(node, element, problem, cure);
+        let help = suggestion(text, KINDS.iter().map(|kind| kind.name()), || otherwise.to_owned());
+        reader.problem(node, element, what, help);
         JointKind::Fixed
     })
 }
@@ -70,8 +70,8 @@ fn end<'a>(
     element: &str,
     which: &'static str,
 ) -> &'a str {
-    let cure = format!("write <{which} link=\"…\"/>");
-    match reader.part(node, element, which, &cure) {
+    let help = format!("write <{which} link=\"…\"/>");
+    match reader.part(node, element, which, &help) {
         Some(end) => reader.text(end, element, "link"),
         None => "",
     }
@@ -80,7 +80,7 @@ fn end<'a>(
 fn axis<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, element: &str) -> Unit<Vector3<f64>> {
     let Some(written) = child(node, "axis") else { return Vector3::x_axis() };
     let Some(xyz) = reader.numbers_if_any::<3>(written, element, "xyz") else {
-        reader.fault(written, element, "<axis> has no xyz", "write xyz=\"x y z\"");
+        reader.problem(written, element, "<axis> has no xyz", "write xyz=\"x y z\"");
         return Vector3::x_axis();
     };
     let axis = Vector3::from(xyz);
@@ -102,8 +102,13 @@ fn limits<'a>(
     let turns_for_ever = kind == JointKind::Continuous;
     let Some(limit) = child(node, "limit") else {
         if !turns_for_ever {
-            let cure = "write <limit lower=\"…\" upper=\"…\" velocity=\"…\" effort=\"…\"/>";
-            reader.fault(node, element, format!("it is {} and has no <limit>", kind.name()), cure);
+            let help = "write <limit lower=\"…\" upper=\"…\" velocity=\"…\" effort=\"…\"/>";
+            reader.problem(
+                node,
+                element,
+                format!("it is {} and has no <limit>", kind.name()),
+                help,
+            );
         }
         return None;
     };
@@ -126,13 +131,13 @@ fn range<'a>(reader: &mut Reader<'a>, limit: Node<'a, 'a>, element: &str) -> (f6
     let lower = reader.number_if_any(limit, element, "lower");
     let upper = reader.number_if_any(limit, element, "upper");
     if lower.is_none() && upper.is_none() {
-        let cure = "write both, or make the joint continuous or fixed";
-        reader.fault(limit, element, "<limit> has neither lower nor upper", cure);
+        let help = "write both, or make the joint continuous or fixed";
+        reader.problem(limit, element, "<limit> has neither lower nor upper", help);
     }
     let (lower, upper) = (lower.unwrap_or(0.0), upper.unwrap_or(0.0));
     if lower > upper {
-        let problem = format!("<limit> has lower={lower} above upper={upper}");
-        reader.fault(limit, element, problem, "exchange them");
+        let what = format!("<limit> has lower={lower} above upper={upper}");
+        reader.problem(limit, element, what, "exchange them");
     }
     (lower, upper)
 }

@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
+use diagnostics::suggestion;
 use nalgebra::{Matrix3, Vector3};
 use roxmltree::Node;
 
 use crate::model::{Body, Inertial, Link, Rgba, Shape};
 
 use super::reader::{Reader, child, children};
-use super::spelling;
 
 /// Colours by name; a material may also be a picture, which has none.
 pub(super) type Materials<'a> = HashMap<&'a str, Option<Rgba>>;
@@ -61,17 +61,22 @@ fn colour_of<'a>(
     }
     let known = materials.get(name).copied();
     if known.is_none() {
-        let problem = format!("<material> {name:?} is not defined");
+        let what = format!("<material> {name:?} is not defined");
         let otherwise = "give it a <color rgba=\"…\"/>, or leave it out";
-        let cure = spelling::cure(name, materials.keys().copied(), otherwise);
-        reader.fault(node, element, problem, cure);
+        let help = suggestion(name, materials.keys().copied(), || otherwise.to_owned());
+        reader.problem(node, element, what, help);
     }
     known.flatten()
 }
 
 fn rgba<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, element: &str) -> Rgba {
     let Some(rgba) = reader.numbers_if_any::<4>(node, element, "rgba") else {
-        reader.fault(node, element, "<color> has no rgba", "write rgba=\"red green blue opacity\"");
+        reader.problem(
+            node,
+            element,
+            "<color> has no rgba",
+            "write rgba=\"red green blue opacity\"",
+        );
         return Rgba::default();
     };
     if rgba.iter().any(|part| !(0.0..=1.0).contains(part)) {
@@ -105,11 +110,11 @@ fn body<'a>(
 ) -> Option<Body> {
     let origin = reader.origin(node, element);
     let kind = node.tag_name().name();
-    let cure =
+    let help =
         format!("write what the <{kind}> is, e.g. <geometry><sphere radius=\"…\"/></geometry>");
-    let geometry = reader.part(node, element, "geometry", &cure)?;
+    let geometry = reader.part(node, element, "geometry", &help)?;
     let Some(shape) = geometry.children().find(Node::is_element) else {
-        reader.fault(geometry, element, "<geometry> is empty", cure);
+        reader.problem(geometry, element, "<geometry> is empty", help);
         return None;
     };
     let shape = read_shape(reader, shape, element)?;
@@ -120,7 +125,12 @@ fn read_shape<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, element: &str) ->
     Some(match node.tag_name().name() {
         "box" => {
             let Some(size) = reader.numbers_if_any::<3>(node, element, "size") else {
-                reader.fault(node, element, "<box> has no size", "write size=\"x y z\" in metres");
+                reader.problem(
+                    node,
+                    element,
+                    "<box> has no size",
+                    "write size=\"x y z\" in metres",
+                );
                 return None;
             };
             if size.iter().any(|edge| *edge < 0.0) {
@@ -140,9 +150,9 @@ fn read_shape<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, element: &str) ->
         "sphere" => Shape::Sphere { radius: reader.magnitude(node, element, "radius", false) },
         "mesh" => Shape::Mesh { file: reader.text(node, element, "filename").to_owned() },
         other => {
-            let problem = format!("<geometry> has the unknown shape <{other}>");
-            let cure = "use <box>, <cylinder>, <capsule>, <sphere> or <mesh>";
-            reader.fault(node, element, problem, cure);
+            let what = format!("<geometry> has the unknown shape <{other}>");
+            let help = "use <box>, <cylinder>, <capsule>, <sphere> or <mesh>";
+            reader.problem(node, element, what, help);
             return None;
         }
     })

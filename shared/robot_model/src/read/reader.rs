@@ -1,26 +1,21 @@
 //! Attributes with their checks; every fault is noted, and reading goes on with a harmless value.
 
+use diagnostics::{Diagnostic, Diagnostics, Report, TextFile};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use roxmltree::{Document as Xml, Node};
 
-use crate::fault::{Document, Fault, Faults};
-
 pub(super) struct Reader<'a> {
-    document: Document,
+    file: &'a str,
     xml: &'a Xml<'a>,
-    faults: Vec<Fault>,
+    report: Report,
 }
 
-/// The text as XML.
-pub(super) fn document(text: &str, document: Document) -> Result<Xml<'_>, Faults> {
-    Xml::parse(text).map_err(|error| {
-        Faults(vec![Fault {
-            document,
-            line: error.pos().row,
-            element: "document".to_owned(),
-            problem: format!("it is not well-formed XML: {error}"),
-            cure: "correct the markup there".to_owned(),
-        }])
+/// Parses the XML of a file.
+pub(super) fn document(file: &TextFile) -> Result<Xml<'_>, Diagnostic> {
+    Xml::parse(&file.text).map_err(|error| {
+        let what = format!("malformed XML: {error}");
+        Diagnostic::new(&file.label, "document", what, "correct the markup there")
+            .at(Some(error.pos().row))
     })
 }
 
@@ -38,36 +33,34 @@ pub(super) fn child<'a>(node: Node<'a, 'a>, name: &'static str) -> Option<Node<'
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn new(document: Document, xml: &'a Xml<'a>) -> Self {
-        Self { document, xml, faults: Vec::new() }
+    pub(super) fn new(file: &'a TextFile, xml: &'a Xml<'a>) -> Self {
+        Self { file: &file.label, xml, report: Report::default() }
     }
 
-    /// Notes a fault of `element` at the line of `node`.
-    pub(super) fn fault(
+    /// Reports a problem with `element` at the line of `node`.
+    pub(super) fn problem(
         &mut self,
         node: Node<'_, '_>,
         element: &str,
-        problem: impl Into<String>,
-        cure: impl Into<String>,
+        what: impl Into<String>,
+        help: impl Into<String>,
     ) {
-        self.faults.push(Fault {
-            document: self.document,
-            line: self.xml.text_pos_at(node.range().start).row,
-            element: element.to_owned(),
-            problem: problem.into(),
-            cure: cure.into(),
-        });
+        let line = self.xml.text_pos_at(node.range().start).row;
+        self.report.add(Diagnostic::new(self.file, element, what, help).at(Some(line)));
     }
 
-    /// How many faults there are so far.
+    /// Number of problems so far.
     pub(super) fn count(&self) -> usize {
-        self.faults.len()
+        self.report.count()
     }
 
-    /// All faults by line.
-    pub(super) fn into_faults(mut self) -> Faults {
-        self.faults.sort_by_key(|fault| fault.line);
-        Faults(self.faults)
+    /// Returns `value` if there is no problem.
+    ///
+    /// # Errors
+    /// Every problem, by line.
+    pub(super) fn verdict<T>(mut self, value: Option<T>) -> Result<T, Diagnostics> {
+        self.report.sort_by_line();
+        self.report.verdict(value)
     }
 
     /// The document's element; anything but `<robot>` is a fault.
@@ -75,7 +68,7 @@ impl<'a> Reader<'a> {
         let root = self.xml.root_element();
         if !root.has_tag_name("robot") {
             let found = format!("it begins with <{}>", root.tag_name().name());
-            self.fault(root, "document", found, "its first element must be <robot name=\"…\">");
+            self.problem(root, "document", found, "its first element must be <robot name=\"…\">");
         }
         root
     }
@@ -91,7 +84,7 @@ impl<'a> Reader<'a> {
     pub(super) fn name(&mut self, node: Node<'a, 'a>, element: &str) -> &'a str {
         let name = node.attribute("name").unwrap_or_default().trim();
         if name.is_empty() {
-            self.fault(node, element, "it has no name", "write name=\"…\"");
+            self.problem(node, element, "it has no name", "write name=\"…\"");
         }
         name
     }
@@ -165,8 +158,8 @@ impl<'a> Reader<'a> {
         let text = node.attribute(key)?;
         let numbers: Option<Vec<f64>> = text.split_whitespace().map(finite).collect();
         Some(numbers.and_then(|numbers| numbers.try_into().ok()).unwrap_or_else(|| {
-            let cure = format!("write {N} finite numbers with spaces between them");
-            self.unreadable(node, element, key, text, &cure);
+            let help = format!("write {N} finite numbers with spaces between them");
+            self.unreadable(node, element, key, text, &help);
             [0.0; N]
         }))
     }
@@ -188,18 +181,18 @@ impl<'a> Reader<'a> {
         node: Node<'a, 'a>,
         element: &str,
         name: &'static str,
-        cure: &str,
+        help: &str,
     ) -> Option<Node<'a, 'a>> {
         let found = child(node, name);
         if found.is_none() {
-            self.fault(node, element, format!("it has no <{name}>"), cure);
+            self.problem(node, element, format!("it has no <{name}>"), help);
         }
         found
     }
 
     fn missing(&mut self, node: Node<'_, '_>, element: &str, key: &str, what: &str) {
         let tag = node.tag_name().name();
-        self.fault(
+        self.problem(
             node,
             element,
             format!("<{tag}> has no {key}"),
@@ -213,10 +206,10 @@ impl<'a> Reader<'a> {
         element: &str,
         key: &str,
         text: &str,
-        cure: &str,
+        help: &str,
     ) {
         let tag = node.tag_name().name();
-        self.fault(node, element, format!("<{tag}> has {key}={text:?}"), cure);
+        self.problem(node, element, format!("<{tag}> has {key}={text:?}"), help);
     }
 }
 

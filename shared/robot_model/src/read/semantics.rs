@@ -2,26 +2,25 @@
 
 use std::collections::HashMap;
 
+use diagnostics::{Diagnostics, TextFile, suggestion};
 use roxmltree::Node;
 
-use crate::fault::{Document, Faults};
 use crate::model::{Posture, Robot};
 
 use super::reader::{self, Reader, children};
-use super::spelling;
 
 /// Adds what the text says to the robot.
-pub(super) fn read(srdf: &str, robot: &mut Robot) -> Result<(), Faults> {
-    let xml = reader::document(srdf, Document::Srdf)?;
-    let mut reader = Reader::new(Document::Srdf, &xml);
+pub(super) fn read(srdf: &TextFile, robot: &mut Robot) -> Result<(), Diagnostics> {
+    let xml = reader::document(srdf)?;
+    let mut reader = Reader::new(srdf, &xml);
     let root = reader.root();
     if reader.count() > 0 {
-        return Err(reader.into_faults());
+        return reader.verdict(None);
     }
     let name = reader.name(root, "robot");
     if !name.is_empty() && name != robot.name {
-        let problem = format!("it is about {name:?}, the URDF about {:?}", robot.name);
-        reader.fault(root, "robot", problem, "use the files of one robot");
+        let what = format!("it describes {name:?}, the URDF describes {:?}", robot.name);
+        reader.problem(root, "robot", what, "use the files of one robot");
     }
     let indices: HashMap<&str, usize> = robot
         .joints
@@ -36,18 +35,14 @@ pub(super) fn read(srdf: &str, robot: &mut Robot) -> Result<(), Faults> {
         if postures[..i].iter().any(|other| (&other.name, &other.group) == (&one.name, &one.group))
         {
             let element = format!("group_state {:?}", one.name);
-            let problem = format!("group {:?} has it twice", one.group);
-            reader.fault(node, &element, problem, "rename one of them");
+            let what = format!("group {:?} has it twice", one.group);
+            reader.problem(node, &element, what, "rename one of them");
         }
     }
     let may_touch = children(root, "disable_collisions")
         .filter_map(|node| pair(&mut reader, node, robot))
         .collect();
-    if reader.count() > 0 {
-        return Err(reader.into_faults());
-    }
-    robot.postures = postures;
-    robot.may_touch = may_touch;
+    (robot.postures, robot.may_touch) = reader.verdict(Some((postures, may_touch)))?;
     Ok(())
 }
 
@@ -67,22 +62,22 @@ fn posture<'a>(
             continue;
         }
         let Some(&index) = indices.get(joint) else {
-            let problem = format!("the robot has no joint {joint:?}");
+            let what = format!("the robot has no joint {joint:?}");
             let known = robot.joints.iter().map(|known| known.name.as_str());
-            let cure = spelling::cure(joint, known, "correct the name, or remove it");
-            reader.fault(entry, &element, problem, cure);
+            let help = suggestion(joint, known, || "correct the name, or remove it".to_owned());
+            reader.problem(entry, &element, what, help);
             continue;
         };
         if positions.iter().any(|(other, _)| *other == index) {
-            let problem = format!("it sets joint {joint:?} twice");
-            reader.fault(entry, &element, problem, "remove one of them");
+            let what = format!("it sets joint {joint:?} twice");
+            reader.problem(entry, &element, what, "remove one of them");
         }
         if let Some(limits) = robot.joints[index].limits
             && !(limits.lower..=limits.upper).contains(&position)
         {
-            let problem = format!("joint {joint:?} is at {position}, outside its limits");
-            let cure = format!("write a value from {} to {}", limits.lower, limits.upper);
-            reader.fault(entry, &element, problem, cure);
+            let what = format!("joint {joint:?} is at {position}, outside its limits");
+            let help = format!("write a value from {} to {}", limits.lower, limits.upper);
+            reader.problem(entry, &element, what, help);
         }
         positions.push((index, position));
     }
@@ -95,10 +90,11 @@ fn pair<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, robot: &Robot) -> Optio
         let name = reader.text(node, element, key);
         let index = robot.link_index(name);
         if index.is_none() && !name.is_empty() {
-            let problem = format!("the robot has no link {name:?}");
+            let what = format!("the robot has no link {name:?}");
             let known = robot.links.iter().map(|known| known.name.as_str());
-            let cure = spelling::cure(name, known, "correct the name, or remove the pair");
-            reader.fault(node, element, problem, cure);
+            let help =
+                suggestion(name, known, || "correct the name, or remove the pair".to_owned());
+            reader.problem(node, element, what, help);
         }
         index
     });

@@ -1,4 +1,4 @@
-//! "Did you mean …?"
+//! Misspelt elements and attributes.
 
 use roxmltree::Node;
 
@@ -48,9 +48,8 @@ const KNOWN: [Known; 20] = [
     ("mimic", &["joint", "multiplier", "offset"], &[]),
 ];
 
-/// Notes every element and attribute that is a slip of the fingers away from one that is read:
-/// passed over in silence, it would leave a robot that is not the one that was meant. Others belong
-/// to other programs.
+/// Reports every element and attribute whose name is almost one that is read: ignored, it would
+/// give another robot than the one intended. All others belong to other programs.
 pub(super) fn check<'a>(reader: &mut Reader<'a>, root: Node<'a, 'a>) {
     let mut waiting = vec![(root, "robot".to_owned())];
     while let Some((node, element)) = waiting.pop() {
@@ -61,15 +60,15 @@ pub(super) fn check<'a>(reader: &mut Reader<'a>, root: Node<'a, 'a>) {
         for attribute in node.attributes().filter(|attribute| attribute.namespace().is_none()) {
             let name = attribute.name();
             if let Some(meant) = misspelt(name, attributes) {
-                let problem = format!("<{kind}> has {name}");
-                reader.fault(node, &element, problem, format!("did you mean {meant}?"));
+                let what = format!("<{kind}> has {name}");
+                reader.problem(node, &element, what, format!("did you mean {meant}?"));
             }
         }
         for child in node.children().filter(Node::is_element) {
             let name = child.tag_name().name();
             if let Some(meant) = misspelt(name, children) {
-                let problem = format!("<{kind}> has <{name}>");
-                reader.fault(child, &element, problem, format!("did you mean <{meant}>?"));
+                let what = format!("<{kind}> has <{name}>");
+                reader.problem(child, &element, what, format!("did you mean <{meant}>?"));
             } else if children.contains(&name) {
                 let named = child.attribute("name").filter(|_| kind == "robot");
                 let own = named.map(|own| format!("{name} {own:?}"));
@@ -80,43 +79,5 @@ pub(super) fn check<'a>(reader: &mut Reader<'a>, root: Node<'a, 'a>) {
 }
 
 fn misspelt(name: &str, known: &[&'static str]) -> Option<&'static str> {
-    if known.contains(&name) { None } else { nearest(name, known.iter().copied()) }
-}
-
-/// The cure for a name that is not among `known`: the one that was meant, or else what is said.
-pub(super) fn cure<'a>(
-    wrong: &str,
-    known: impl Iterator<Item = &'a str>,
-    otherwise: impl Into<String>,
-) -> String {
-    match nearest(wrong, known) {
-        Some(near) => format!("did you mean {near:?}?"),
-        None => otherwise.into(),
-    }
-}
-
-/// The known name that `wrong` is a slip of the fingers away from.
-fn nearest<'a>(wrong: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let allowed = (wrong.chars().count() / 3).min(3);
-    let distance = |name: &str| strsim::osa_distance(&wrong.to_lowercase(), &name.to_lowercase());
-    known
-        .map(|name| (distance(name), name))
-        .min()
-        .filter(|(distance, _)| *distance <= allowed)
-        .map(|(_, name)| name)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn slips_are_recognised_and_strangers_are_not() {
-        let known = ["left_hand", "left_wrist", "base"];
-        assert_eq!(nearest("lefthand", known.into_iter()), Some("left_hand"));
-        assert_eq!(nearest("Base", known.into_iter()), Some("base"));
-        assert_eq!(nearest("right_hand", known.into_iter()), None);
-        assert_eq!(nearest("", known.into_iter()), None);
-        assert_eq!(cure("x", [].into_iter(), "describe it"), "describe it");
-    }
+    if known.contains(&name) { None } else { diagnostics::nearest(name, known.iter().copied()) }
 }

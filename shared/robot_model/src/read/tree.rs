@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
+use diagnostics::suggestion;
 use roxmltree::Node;
 
 use crate::model::{Joint, JointKind, Link, Mimic, Robot};
 
 use super::joint::Written;
 use super::reader::Reader;
-use super::spelling;
 
 type Links<'a> = Vec<(Link, Node<'a, 'a>)>;
 type Joints<'a> = Vec<(Written<'a>, Node<'a, 'a>)>;
@@ -48,8 +48,8 @@ fn indices<'n, 'a: 'n>(
         }
         if places.insert(name.to_owned(), index).is_some() {
             let kind = node.tag_name().name();
-            let problem = "there is another one of this name";
-            reader.fault(node, &format!("{kind} {name:?}"), problem, "rename one of them");
+            let what = "its name is used twice";
+            reader.problem(node, &format!("{kind} {name:?}"), what, "rename one of them");
         }
     }
     places
@@ -66,17 +66,20 @@ fn carriers(
     for (index, (joint, node)) in joints.iter().enumerate() {
         for (which, name) in [("parent", joint.parent), ("child", joint.child)] {
             if !name.is_empty() && !places.contains_key(name) {
-                let problem = format!("its {which} {name:?} is not a link");
+                let what = format!("its {which} {name:?} is not a link");
                 let otherwise = format!("describe <link name={name:?}/>, or correct the name");
-                let cure = spelling::cure(name, places.keys().map(String::as_str), otherwise);
-                reader.fault(*node, &joint.element, problem, cure);
+                let help =
+                    suggestion(name, places.keys().map(String::as_str), || otherwise.to_owned());
+                reader.problem(*node, &joint.element, what, help);
             }
         }
         let Some(&child) = places.get(joint.child) else { continue };
         if let Some(other) = carriers[child].replace(index) {
-            let problem =
-                format!("its child {:?} already hangs on {}", joint.child, joints[other].0.element);
-            reader.fault(*node, &joint.element, problem, "a link has one parent: remove one joint");
+            let what = format!(
+                "its child {:?} is already carried by {}",
+                joint.child, joints[other].0.element
+            );
+            reader.problem(*node, &joint.element, what, "a link has one parent: remove one joint");
         }
     }
     carriers
@@ -91,17 +94,17 @@ fn rules(
     let mut rules = Vec::with_capacity(joints.len());
     for (start, (joint, node)) in joints.iter().enumerate() {
         let mut rule = Mimic { joint: start, multiplier: 1.0, offset: 0.0 };
-        let mut problem = None;
-        let mut cure = "name a joint that moves by itself".to_owned();
+        let mut what = None;
+        let mut help = "name a joint that mimics no other".to_owned();
         for _ in 0..=joints.len() {
             let Some(next) = joints[rule.joint].0.mimic else { break };
             let Some(&followed) = names.get(next.joint) else {
                 // An end that another joint names wrongly is told at that joint.
                 if rule.joint == start && !next.joint.is_empty() {
-                    problem = Some(format!("it mimics {:?}, which is not a joint", next.joint));
+                    what = Some(format!("it mimics {:?}, which is not a joint", next.joint));
                     let others =
                         names.keys().map(String::as_str).filter(|name| *name != joint.name);
-                    cure = spelling::cure(next.joint, others, cure);
+                    help = suggestion(next.joint, others, || help.to_owned());
                 }
                 break;
             };
@@ -111,16 +114,16 @@ fn rules(
                 offset: rule.multiplier * next.offset + rule.offset,
             };
             if followed == start {
-                problem = Some("the joints that it mimics lead back to it".to_owned());
+                what = Some("it mimics itself through other joints".to_owned());
                 break;
             }
         }
         if rule.joint != start && joints[rule.joint].0.kind == JointKind::Fixed {
             let followed = joints[rule.joint].0.name;
-            problem = Some(format!("it mimics {followed:?}, which does not move"));
+            what = Some(format!("it mimics {followed:?}, which does not move"));
         }
-        if let Some(problem) = problem {
-            reader.fault(*node, &joint.element, problem, cure);
+        if let Some(what) = what {
+            reader.problem(*node, &joint.element, what, help);
         }
         rules.push(joint.mimic.map(|_| rule));
     }
@@ -141,10 +144,9 @@ fn order(
     if let [first, _, ..] = roots[..] {
         for &loose in &roots[1..] {
             let (link, node) = &links[loose];
-            let problem =
-                format!("nothing carries it, as nothing carries {:?}", links[first].0.name);
-            let cure = "a robot has one root: join this link to another with a <joint>";
-            reader.fault(*node, &format!("link {:?}", link.name), problem, cure);
+            let what = format!("no joint carries it, nor link {:?}", links[first].0.name);
+            let help = "a robot has one root: join this link to another with a <joint>";
+            reader.problem(*node, &format!("link {:?}", link.name), what, help);
         }
     }
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); links.len()];
@@ -190,14 +192,14 @@ fn loop_from(
     };
     let members = &way[first..];
     let (joint, node) = &joints[members[0]];
-    let problem = match members {
+    let what = match members {
         [_] => format!("it joins {:?} to itself", joint.child),
         _ => {
             let names: Vec<&str> = members.iter().rev().map(|&m| joints[m].0.name).collect();
-            format!("the joints {} lead round in a circle", names.join(", "))
+            format!("the joints {} form a loop", names.join(", "))
         }
     };
-    reader.fault(*node, &joint.element, problem, "links form a tree: give it another parent");
+    reader.problem(*node, &joint.element, what, "links must form a tree: give it another parent");
 }
 
 fn assembled(

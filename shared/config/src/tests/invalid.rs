@@ -1,0 +1,86 @@
+//! Invalid configurations: every kind of error is reported with file, line, key and help, and all of
+//! them at once. `invalid.txt` holds each file and what it leads to; `UPDATE_EXPECT=1 cargo test -p
+//! config` rewrites the latter.
+
+use expect_test::{expect, expect_file};
+
+use super::{Folder, ONE_BOWL};
+
+#[test]
+fn invalid_files_get_every_diagnostic_with_line_and_help() {
+    let mut found = String::new();
+    for case in include_str!("invalid.txt").split("--- ").skip(1) {
+        let (file, rest) = case.split_once('\n').unwrap();
+        let text = rest.split_once("\n+++\n").unwrap().0;
+        let complaints = Folder::new(&[(file, text)]).complaints(None, &[]).join("\n");
+        found += &format!("--- {file}\n{text}\n+++\n{complaints}\n");
+    }
+    expect_file!["invalid.txt"].assert_eq(&found);
+}
+
+#[test]
+fn a_person_may_stand_anywhere_if_gestures_are_off() {
+    let inside = "[gesture]\nenabled = false\nperson_xyz = [0.7, 0.2, -0.125]";
+    assert!(Folder::new(&[("dialogue.toml", inside)]).load(None, &[]).is_ok());
+}
+
+#[test]
+fn unknown_profiles_scenes_and_robots_get_a_suggestion() {
+    let folder = Folder::new(&[
+        ("profiles/lab.toml", ""),
+        ("profiles/ci.toml", "[amr]"),
+        ("robots/sawyer.urdf", "<robot/>"),
+    ]);
+    let overrides = [("group.scene", "bowl"), ("arm.robot", "sawer")];
+    expect![[r#"
+        profiles: no profile `lap`; help: did you mean `lab`?
+        --set: group.scene: no scene `bowl`: there is no scenes/bowl.toml; help: did you mean `bowls`?
+        --set: arm.robot: no robot `sawer`: there is no robots/sawer.urdf; help: did you mean `sawyer`?"#]].assert_eq(&folder.complaints(Some("lap"), &overrides).join("\n"));
+    expect!["profiles/ci.toml:1: amr: unknown key; help: did you mean `arm`?"]
+        .assert_eq(&folder.complaints(Some("ci"), &[]).join("\n"));
+}
+
+#[test]
+fn invalid_overrides_are_reported() {
+    let folder = Folder::new(&[]);
+    let overrides =
+        [("limb", "left"), ("arm..limb", "left"), ("arms.limb", "left"), ("arm.speed_ratio", "9")];
+    expect![[r#"
+        --set: limb: not a key with its section; help: write SECTION.KEY=VALUE, e.g. arm.speed_ratio=0.4
+        --set: arm..limb: not a key with its section; help: write SECTION.KEY=VALUE, e.g. arm.speed_ratio=0.4
+        --set: arm.speed_ratio: expected a value from 0.05 to 1, found 9
+        --set: arms: unknown key; help: did you mean `arm`?"#]].assert_eq(&folder.complaints(None, &overrides).join("\n"));
+}
+
+#[test]
+fn a_missing_folder_is_reported() {
+    let missing = Folder::new(&[]).path().join("cofnig");
+    let error = crate::Settings::load(&missing, None, &[]).unwrap_err().to_string();
+    assert!(error.contains("cofnig: not a folder"), "{error}");
+}
+
+#[test]
+fn errors_of_all_layers_are_reported_at_once() {
+    let bowls = format!("{ONE_BOWL}colour_blind = true\n");
+    let folder = Folder::new(&[
+        ("group.toml", "scnee = 'bowls'\n[log]\nlevel = 'inof'"),
+        ("dialogue.toml", "alpha = 0\nmode = 'far'\n[turns]\nrepeats_max = -1"),
+        ("speech.toml", "voice_words_per_minute = 9000"),
+        ("arm.toml", "limb = 'both'\nhover_m = 'high'"),
+        ("profiles/odd.toml", "[speech]\nvoise = 'print'"),
+        ("scenes/bowls.toml", &bowls),
+    ]);
+    let complaints = folder.complaints(Some("odd"), &[("arm.restock", "maybe")]);
+    expect![[r#"
+        group.toml:3: log.level: `inof` is not a log level; help: use one of off, error, warn, info, debug, trace, or NAME=LEVEL,…
+        group.toml:1: scnee: unknown key; help: did you mean `scene`?
+        dialogue.toml:1: alpha: 0 is not a smoothing weight; help: use a number above 0, e.g. 0.2
+        dialogue.toml:2: mode: expected one of remote, present, found `far`
+        dialogue.toml:4: turns.repeats_max: expected a value from 0 to 100, found -1
+        speech.toml:1: voice_words_per_minute: expected a value from 80 to 450, found 9000
+        profiles/odd.toml:2: speech.voise: unknown key; help: did you mean `voice`?
+        arm.toml:1: limb: expected one of auto, left, right, found `both`
+        arm.toml:2: hover_m: expected a finite number, found a string; help: write digits, e.g. `1.5`
+        --set: arm.restock: expected a boolean, found a string; help: write `true` or `false`
+        scenes/bowls.toml:15: objects[0].colour_blind: unknown key; help: remove it; the keys here are name, attributes, xyz, size, grasp_width, yaw"#]].assert_eq(&complaints.join("\n"));
+}

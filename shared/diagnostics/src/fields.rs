@@ -1,0 +1,386 @@
+//! Reading of a table key by key, each with its type and range. A wrong value is reported and read
+//! as a placeholder, so that one pass finds every problem.
+
+use std::fmt::Display;
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use crate::source::quoted;
+use crate::{Node, Report, Scalar, Table, nearest, suggestion};
+
+/// A table while it is read. Keys that no reader asks for are reported by [`Fields::finish`].
+#[derive(Debug)]
+pub struct Fields<'a> {
+    table: &'a Table,
+    path: Vec<String>,
+    known: Vec<&'a str>,
+    wrong: Vec<String>,
+    report: &'a mut Report,
+}
+
+const COMMAND: &str = "write `[\"one\", \"two\"]`";
+const QUOTES: &str = "write it in double quotes";
+
+impl<'a> Fields<'a> {
+    /// Reads a table whose key is `path`.
+    pub fn new(table: &'a Table, path: Vec<String>, report: &'a mut Report) -> Self {
+        Self { table, path, known: Vec::new(), wrong: Vec::new(), report }
+    }
+
+    /// Reads a number within the range.
+    pub fn number(&mut self, key: &'a str, range: RangeInclusive<f64>) -> f64 {
+        let number = self.any_number(key);
+        if !self.is_wrong(key) && !range.contains(&number) {
+            self.out_of_range(key, number, range.start(), range.end());
+        }
+        number
+    }
+
+    /// Reads a finite number.
+    pub fn any_number(&mut self, key: &'a str) -> f64 {
+        let number = self.required(key).map(Node::as_number);
+        self.typed(key, number, "a finite number", "write digits, e.g. `1.5`")
+    }
+
+    /// Reads a length of time in seconds within the range.
+    pub fn seconds(&mut self, key: &'a str, range: RangeInclusive<f64>) -> Duration {
+        Duration::try_from_secs_f64(self.number(key, range)).unwrap_or_default()
+    }
+
+    /// Reads an integer within the range.
+    pub fn whole<T>(&mut self, key: &'a str, range: RangeInclusive<T>) -> T
+    where
+        T: TryFrom<i64> + PartialOrd + Copy + Display + Default,
+    {
+        let integer = self.required(key).map(|node| match node {
+            Node::Scalar(Scalar::Integer(number), _) => Some(*number),
+            _ => None,
+        });
+        let number = self.typed(key, integer, "an integer", "write digits alone, e.g. `5`");
+        match T::try_from(number) {
+            _ if self.is_wrong(key) => T::default(),
+            Ok(number) if range.contains(&number) => number,
+            _ => {
+                self.out_of_range(key, number, range.start(), range.end());
+                T::default()
+            }
+        }
+    }
+
+    /// Reads a boolean.
+    pub fn flag(&mut self, key: &'a str) -> bool {
+        let flag = self.required(key).map(|node| match node {
+            Node::Scalar(Scalar::Boolean(flag), _) => Some(*flag),
+            _ => None,
+        });
+        self.typed(key, flag, "a boolean", "write `true` or `false`")
+    }
+
+    /// Reads a string that is not blank.
+    pub fn text(&mut self, key: &'a str) -> String {
+        let node = self.required(key);
+        node.and_then(|node| self.text_of(key, node)).unwrap_or_default()
+    }
+
+    /// Reads a string that may be absent. An empty one counts as absent, so that a layer can take
+    /// back the string of another.
+    pub fn optional_text(&mut self, key: &'a str) -> Option<String> {
+        let node = self.optional(key)?;
+        let text = self.typed(key, Some(node.as_text().map(str::to_owned)), "a string", QUOTES);
+        (!text.is_empty()).then_some(text)
+    }
+
+    /// Reads a path that may be absent. It must be absolute: services run in other folders than the
+    /// one where it was written.
+    pub fn absolute(&mut self, key: &'a str) -> Option<PathBuf> {
+        let path = PathBuf::from(self.optional_text(key)?);
+        if !path.is_absolute() {
+            self.problem(key, "not an absolute path", "begin it with `/`");
+        }
+        Some(path)
+    }
+
+    /// Reads a list of strings that are not blank; absent is the same as empty.
+    pub fn texts(&mut self, key: &'a str) -> Vec<String> {
+        let mut texts = Vec::new();
+        for (n, item) in self.items(key, "a list of strings", COMMAND).iter().enumerate() {
+            texts.extend(self.text_of(&format!("{}[{n}]", quoted(key)), item));
+        }
+        texts
+    }
+
+    /// Reads one string or a list of at least one; absent is an empty list.
+    pub fn one_or_more_texts(&mut self, key: &'a str) -> Vec<String> {
+        match self.optional(key) {
+            None => Vec::new(),
+            Some(Node::List(items, _)) => {
+                if items.is_empty() {
+                    self.problem(key, "an empty list", "write at least one string or remove it");
+                }
+                self.texts(key)
+            }
+            Some(node) => self.text_of(key, node).into_iter().collect(),
+        }
+    }
+
+    /// Reads a program and its arguments, which may be absent; an empty list counts as absent.
+    pub fn optional_command(&mut self, key: &'a str) -> Option<Vec<String>> {
+        let command = self.texts(key);
+        (!command.is_empty()).then_some(command)
+    }
+
+    /// Reads three finite numbers.
+    pub fn triple(&mut self, key: &'a str) -> [f64; 3] {
+        const HELP: &str = "write `[x, y, z]`";
+        let Some(node) = self.required(key) else { return [0.0; 3] };
+        let Node::List(items, _) = node else {
+            return self.other_type(key, "three finite numbers", node, HELP);
+        };
+        let numbers: Vec<f64> = items.iter().filter_map(Node::as_number).collect();
+        if let Some(n) = items.iter().position(|item| item.as_number().is_none()) {
+            let item = format!("{}[{n}]", quoted(key));
+            self.other_type(&item, "a finite number", &items[n], HELP)
+        } else if let Ok(triple) = numbers.try_into() {
+            triple
+        } else {
+            let what = format!("expected three finite numbers, found {}", items.len());
+            self.problem(key, what, HELP);
+            [0.0; 3]
+        }
+    }
+
+    /// Reads one of the named choices.
+    pub fn choice<T: Copy>(&mut self, key: &'a str, choices: &[(&str, T)]) -> T {
+        let text = self.text(key);
+        match choices.iter().find(|(name, _)| *name == text) {
+            Some((_, choice)) => return *choice,
+            None if self.is_wrong(key) => {}
+            None => self.not_one_of(key, &text, &choices.iter().map(|c| c.0).collect::<Vec<_>>()),
+        }
+        choices[0].1
+    }
+
+    /// Reads a table with fixed keys, which may be absent.
+    pub fn optional_table<T>(
+        &mut self,
+        key: &'a str,
+        read: impl FnOnce(&mut Fields<'_>) -> T,
+    ) -> Option<T> {
+        let node = self.optional(key)?;
+        let Node::Table(table) = node else {
+            let help = format!("write a table `[{}]`", self.key_of(key));
+            self.other_type::<()>(key, "a table", node, &help);
+            return None;
+        };
+        let mut fields = Fields::new(table, self.path_of(&quoted(key)), self.report);
+        let read = read(&mut fields);
+        fields.finish();
+        Some(read)
+    }
+
+    /// Reads a table with fixed keys.
+    ///
+    /// # Panics
+    /// If it is missing: for tables that have defaults.
+    pub fn table<T>(&mut self, key: &'a str, read: impl FnOnce(&mut Fields<'_>) -> T) -> T {
+        let read = self.optional_table(key, read);
+        read.unwrap_or_else(|| panic!("{} has defaults", self.path_of(key).join(".")))
+    }
+
+    /// Reads a table whose keys are the user's names, each with a table.
+    pub fn each<T>(
+        &mut self,
+        key: &'a str,
+        mut read: impl FnMut(&str, &mut Fields<'_>) -> T,
+    ) -> Vec<T> {
+        let all = self.optional_table(key, |f| {
+            let names = f.names();
+            names.into_iter().filter_map(|name| f.optional_table(name, |f| read(name, f))).collect()
+        });
+        all.unwrap_or_default()
+    }
+
+    /// Reads a list of tables, each over `defaults`, TOML; absent is the same as empty. An item that
+    /// is a string is short for a table with that `name`.
+    pub fn list<T>(
+        &mut self,
+        key: &'a str,
+        defaults: &str,
+        mut read: impl FnMut(&mut Fields<'_>) -> T,
+    ) -> Vec<T> {
+        let help = format!("write a table `[[{key}]]` for each");
+        let mut all = Vec::new();
+        for (n, item) in self.items(key, "a list of tables", &help).iter().enumerate() {
+            let item_key = format!("{}[{n}]", quoted(key));
+            let over = match item {
+                Node::Table(over) => over.clone(),
+                Node::Scalar(Scalar::Text(_), source) if defaults.is_empty() => Table {
+                    entries: vec![("name".to_owned(), item.clone())],
+                    source: source.clone(),
+                },
+                _ => {
+                    let expected =
+                        if defaults.is_empty() { "a string or a table" } else { "a table" };
+                    self.other_type::<()>(&item_key, expected, item, &help);
+                    continue;
+                }
+            };
+            let mut table = Table::parse(defaults, &item.source().clone(), self.report)
+                .unwrap_or_else(|| panic!("the defaults of {key} are TOML"));
+            table.source = over.source.clone();
+            let mut path = self.path_of(&item_key);
+            table.merge(over, &mut path, self.report);
+            let mut fields = Fields::new(&table, path, self.report);
+            all.push(read(&mut fields));
+            fields.finish();
+        }
+        all
+    }
+
+    /// The names of all keys.
+    pub fn names(&self) -> Vec<&'a str> {
+        self.table.entries.iter().map(|(name, _)| name.as_str()).collect()
+    }
+
+    /// Returns true if the table has the key.
+    pub fn has(&self, key: &str) -> bool {
+        self.table.get(key).is_some()
+    }
+
+    /// The dotted key of this table.
+    pub fn key(&self) -> String {
+        self.table.source.key(&self.path)
+    }
+
+    /// The dotted key of an entry of this table.
+    pub fn key_of(&self, name: &str) -> String {
+        self.table.source.key(&self.path_of(&quoted(name)))
+    }
+
+    /// Accepts keys without reading them.
+    pub fn allow(&mut self, keys: &[&'a str]) {
+        self.known.extend(keys);
+    }
+
+    /// Reports the keys that no reader asked for.
+    pub fn finish(self) {
+        for (key, node) in &self.table.entries {
+            if !self.known.contains(&key.as_str()) {
+                let help = suggestion(key, self.known.iter().copied(), || {
+                    format!("remove it; the keys here are {}", self.known.join(", "))
+                });
+                let path = self.path_of(&quoted(key));
+                self.report.add(node.source().diagnostic(&path, "unknown key", help));
+            }
+        }
+    }
+
+    /// Returns true if `key` had a problem; further checks would only repeat it.
+    pub fn is_wrong(&self, key: &str) -> bool {
+        self.wrong.iter().any(|wrong| {
+            wrong.strip_prefix(key).is_some_and(|rest| rest.is_empty() || rest.starts_with('['))
+        })
+    }
+
+    /// Reports a problem with the value at `key`, or at an item `key[n]` of it.
+    pub fn problem(&mut self, key: &str, what: impl Into<String>, help: impl Into<String>) {
+        self.wrong.push(key.to_owned());
+        let list = key.split('[').next().unwrap_or(key);
+        let source = self.table.source_of(&[list]);
+        self.report.add(source.diagnostic(&self.path_of(key), what, help));
+    }
+
+    /// Reports a problem with the value at `keys` below this table; with the table itself for no
+    /// keys.
+    pub fn problem_at(&mut self, keys: &[&str], what: impl Into<String>, help: impl Into<String>) {
+        let keys_owned = keys.iter().map(|key| (*key).to_owned());
+        let path: Vec<String> = self.path.iter().cloned().chain(keys_owned).collect();
+        self.report.add(self.table.source_of(keys).diagnostic(&path, what, help));
+    }
+
+    /// Returns true for a default. Of two values that contradict each other, the one that the user
+    /// wrote is reported.
+    pub fn is_built_in(&self, keys: &[&str]) -> bool {
+        self.table.source_of(keys).is_built_in()
+    }
+
+    /// Reports that `found` at `key` is not among `known`.
+    pub fn not_one_of(&mut self, key: &str, found: &str, known: &[&str]) {
+        let what = format!("expected one of {}, found `{found}`", known.join(", "));
+        let help = nearest(found, known.iter().copied())
+            .map_or_else(String::new, |near| format!("did you mean `{near}`?"));
+        self.problem(key, what, help);
+    }
+
+    fn optional(&mut self, key: &'a str) -> Option<&'a Node> {
+        self.known.push(key);
+        self.table.get(key)
+    }
+
+    fn required(&mut self, key: &'a str) -> Option<&'a Node> {
+        let node = self.optional(key);
+        if node.is_none() {
+            self.problem(key, "missing", format!("add `{key} = …`"));
+        }
+        node
+    }
+
+    /// The items of a list, empty if it is absent.
+    fn items(&mut self, key: &'a str, expected: &str, help: &str) -> &'a [Node] {
+        match self.optional(key) {
+            None => &[],
+            Some(Node::List(items, _)) => items,
+            Some(node) => {
+                self.other_type::<()>(key, expected, node, help);
+                &[]
+            }
+        }
+    }
+
+    fn text_of(&mut self, key: &str, node: &Node) -> Option<String> {
+        let text = match node.as_text() {
+            Some(text) => text,
+            None => return self.other_type(key, "a string", node, QUOTES),
+        };
+        if text.trim().is_empty() {
+            self.problem(key, "expected text, found an empty string", "write at least one letter");
+            return None;
+        }
+        Some(text.to_owned())
+    }
+
+    /// A value that was converted from the node at `key`: missing, or of another type, or right.
+    fn typed<T: Default>(
+        &mut self,
+        key: &'a str,
+        value: Option<Option<T>>,
+        expected: &str,
+        help: &str,
+    ) -> T {
+        match (value, self.table.get(key)) {
+            (Some(Some(value)), _) => value,
+            (Some(None), Some(node)) => self.other_type(key, expected, node, help),
+            _ => T::default(),
+        }
+    }
+
+    fn other_type<T: Default>(&mut self, key: &str, expected: &str, node: &Node, help: &str) -> T {
+        self.problem(key, format!("expected {expected}, found {}", node.type_name()), help);
+        T::default()
+    }
+
+    fn out_of_range(
+        &mut self,
+        key: &str,
+        found: impl Display,
+        least: impl Display,
+        most: impl Display,
+    ) {
+        self.problem(key, format!("expected a value from {least} to {most}, found {found}"), "");
+    }
+
+    fn path_of(&self, key: &str) -> Vec<String> {
+        self.path.iter().cloned().chain([key.to_owned()]).collect()
+    }
+}

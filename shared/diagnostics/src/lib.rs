@@ -1,0 +1,24 @@
+//! Diagnostics of text files that people write, and the reader of TOML and JSON that produces them.
+//!
+//! A [`Diagnostic`] names the file, the line, the key, what was found and how to fix it. Readers
+//! collect all of them in a [`Report`] instead of stopping at the first. Scenes, settings and robot
+//! descriptions share these types, so that every error looks alike.
+//!
+//! This crate is pure: no IO, no clock, no threads.
+//!
+//! | contents | file |
+//! |---|---|
+//! | one diagnostic, a list of them, and their collection | `diagnostic.rs` |
+//! | values with the place that they were read from | `source.rs` |
+//! | reading a table key by key, with types and ranges | `fields.rs` |
+//! | "did you mean" | `spelling.rs` |
+
+mod diagnostic;
+mod fields;
+mod source;
+mod spelling;
+
+pub use diagnostic::{Diagnostic, Diagnostics, Report};
+pub use fields::Fields;
+pub use source::{Node, Scalar, Source, Table, TextFile};
+pub use spelling::{nearest, suggestion};

@@ -1,0 +1,446 @@
+//! Values with the place that they were read from, so that layers of settings can be merged and a
+//! diagnostic still points at the text that has to change.
+
+use std::fmt;
+use std::sync::Arc;
+
+use serde::de::Deserialize;
+use serde::ser::{Serialize, SerializeMap, Serializer};
+use serde_json::Value as Json;
+use toml::de::{DeTable, DeValue, ValueDeserializer};
+use toml::{Spanned, Value};
+
+use crate::{Diagnostic, Report};
+
+/// A text file and its name in diagnostics.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TextFile {
+    /// Path, or a description of a built-in file.
+    pub label: String,
+    /// Its text.
+    pub text: String,
+}
+
+impl TextFile {
+    /// A text with a name.
+    pub fn new(label: impl Into<String>, text: impl Into<String>) -> Self {
+        Self { label: label.into(), text: text.into() }
+    }
+}
+
+/// Where a value was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// Path of the file, or another name.
+    pub label: Arc<str>,
+    /// Line, from 1, if there is a file.
+    pub line: Option<u32>,
+    /// Leading parts of a key that the file leaves out: `arm.toml` says `limb` for `arm.limb`.
+    omits: usize,
+}
+
+/// The label of values that no file contains.
+const BUILT_IN: &str = "built-in defaults";
+
+impl Source {
+    /// A source whose keys leave out the first `omits` parts.
+    pub fn new(label: impl Into<Arc<str>>, omits: usize) -> Self {
+        Self { label: label.into(), line: None, omits }
+    }
+
+    /// The source of defaults.
+    pub fn built_in() -> Self {
+        Self::new(BUILT_IN, 0)
+    }
+
+    /// Returns true for defaults.
+    pub fn is_built_in(&self) -> bool {
+        &*self.label == BUILT_IN
+    }
+
+    /// The key of `path` as this source writes it.
+    pub fn key(&self, path: &[String]) -> String {
+        path.get(self.omits..).unwrap_or_default().join(".")
+    }
+
+    /// A diagnostic at `path`.
+    pub fn diagnostic(
+        &self,
+        path: &[String],
+        what: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Diagnostic {
+        Diagnostic::new(&*self.label, self.key(path), what, help).at(self.line)
+    }
+
+    fn at(&self, line: Option<u32>) -> Self {
+        Self { line: line.filter(|_| !self.is_built_in()), ..self.clone() }
+    }
+}
+
+/// A scalar value.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Scalar {
+    /// A string.
+    Text(String),
+    /// An integer.
+    Integer(i64),
+    /// Any other number.
+    Float(f64),
+    /// A boolean.
+    Boolean(bool),
+    /// A value of a type that no reader takes, by the name of its type.
+    Other(&'static str),
+}
+
+/// A value with its source.
+#[derive(Clone, Debug)]
+pub enum Node {
+    /// A scalar.
+    Scalar(Scalar, Source),
+    /// A list.
+    List(Vec<Node>, Source),
+    /// A table.
+    Table(Table),
+}
+
+/// A table in the order of its text.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// Keys and values.
+    pub entries: Vec<(String, Node)>,
+    /// Where the table was written.
+    pub source: Source,
+}
+
+impl Node {
+    /// A string.
+    pub fn text(text: impl Into<String>, source: &Source) -> Self {
+        Self::Scalar(Scalar::Text(text.into()), source.clone())
+    }
+
+    /// Where the value was written.
+    pub fn source(&self) -> &Source {
+        match self {
+            Self::Scalar(_, source) | Self::List(_, source) | Self::Table(Table { source, .. }) => {
+                source
+            }
+        }
+    }
+
+    /// The table, if it is one.
+    pub fn as_table(&self) -> Option<&Table> {
+        if let Self::Table(table) = self { Some(table) } else { None }
+    }
+
+    /// The string, if it is one.
+    pub fn as_text(&self) -> Option<&str> {
+        if let Self::Scalar(Scalar::Text(text), _) = self { Some(text) } else { None }
+    }
+
+    /// The finite number, if it is one.
+    pub fn as_number(&self) -> Option<f64> {
+        match self {
+            Self::Scalar(Scalar::Float(number), _) => number.is_finite().then_some(*number),
+            #[expect(
+                clippy::cast_precision_loss,
+                reason = "lengths, angles and settings are small"
+            )]
+            Self::Scalar(Scalar::Integer(number), _) => Some(*number as f64),
+            _ => None,
+        }
+    }
+
+    /// The type of the value, with its article.
+    pub fn type_name(&self) -> &'static str {
+        match self {
+            Self::Scalar(Scalar::Text(_), _) => "a string",
+            Self::Scalar(Scalar::Integer(_), _) => "an integer",
+            Self::Scalar(Scalar::Float(number), _) if number.is_finite() => "a number",
+            Self::Scalar(Scalar::Float(_), _) => "a number that is not finite",
+            Self::Scalar(Scalar::Boolean(_), _) => "a boolean",
+            Self::Scalar(Scalar::Other(name), _) => name,
+            Self::List(..) => "a list",
+            Self::Table(_) => "a table",
+        }
+    }
+
+    /// The value with a source; no tables keep an order of their own.
+    pub fn from_toml(value: Value, source: &Source) -> Self {
+        let scalar = match value {
+            Value::String(text) => Scalar::Text(text),
+            Value::Integer(number) => Scalar::Integer(number),
+            Value::Float(number) => Scalar::Float(number),
+            Value::Boolean(flag) => Scalar::Boolean(flag),
+            Value::Datetime(_) => Scalar::Other("a date"),
+            Value::Array(items) => {
+                let items = items.into_iter().map(|item| Self::from_toml(item, source)).collect();
+                return Self::List(items, source.clone());
+            }
+            Value::Table(table) => {
+                let entries = table.into_iter().map(|(k, v)| (k, Self::from_toml(v, source)));
+                return Self::Table(Table { entries: entries.collect(), source: source.clone() });
+            }
+        };
+        Self::Scalar(scalar, source.clone())
+    }
+
+    /// A JSON value with a source.
+    pub fn from_json(json: &Json, source: &Source) -> Self {
+        let scalar = match json {
+            Json::String(text) => Scalar::Text(text.clone()),
+            Json::Number(number) => number.as_i64().map_or_else(
+                || Scalar::Float(number.as_f64().unwrap_or(f64::NAN)),
+                Scalar::Integer,
+            ),
+            Json::Bool(flag) => Scalar::Boolean(*flag),
+            Json::Null => Scalar::Other("null"),
+            Json::Array(items) => {
+                let items = items.iter().map(|item| Self::from_json(item, source)).collect();
+                return Self::List(items, source.clone());
+            }
+            Json::Object(map) => {
+                let entries = map.iter().map(|(k, v)| (k.clone(), Self::from_json(v, source)));
+                return Self::Table(Table { entries: entries.collect(), source: source.clone() });
+            }
+        };
+        Self::Scalar(scalar, source.clone())
+    }
+
+    fn merge(&mut self, over: Self, path: &mut Vec<String>, report: &mut Report) {
+        match (self, over) {
+            (Self::Table(below), Self::Table(over)) => below.merge(over, path, report),
+            (below, over) if below.as_table().is_none() && over.as_table().is_none() => {
+                *below = over;
+            }
+            (below, over) => {
+                let what = format!("expected {}, found {}", below.type_name(), over.type_name());
+                let help = match below {
+                    Self::Table(_) => format!("write a table `[{}]`", over.source().key(path)),
+                    _ => format!("write `{} = …`", path[path.len() - 1]),
+                };
+                report.add(over.source().diagnostic(path, what, help));
+            }
+        }
+    }
+}
+
+impl Table {
+    /// A table without entries.
+    pub fn empty(source: Source) -> Self {
+        Self { entries: Vec::new(), source }
+    }
+
+    /// The value at a key.
+    pub fn get(&self, key: &str) -> Option<&Node> {
+        self.entries.iter().find(|(name, _)| name == key).map(|(_, node)| node)
+    }
+
+    /// Removes and returns the value at a key.
+    pub fn take(&mut self, key: &str) -> Option<Node> {
+        let at = self.entries.iter().position(|(name, _)| name == key)?;
+        Some(self.entries.remove(at).1)
+    }
+
+    /// The source of the value at a path below this table, or of the nearest table above it.
+    pub fn source_of(&self, path: &[&str]) -> &Source {
+        let mut source = &self.source;
+        let mut table = Some(self);
+        for key in path {
+            let node = table.and_then(|table| table.get(key));
+            source = node.map_or(source, Node::source);
+            table = node.and_then(Node::as_table);
+        }
+        source
+    }
+
+    /// The table at `key`, added if it is missing.
+    ///
+    /// # Panics
+    /// If the value at `key` is not a table.
+    pub fn table_at(&mut self, key: &str) -> &mut Self {
+        let at = self.entries.iter().position(|(name, _)| name == key).unwrap_or_else(|| {
+            let empty = Self::empty(self.source.clone());
+            self.entries.push((key.to_owned(), Node::Table(empty)));
+            self.entries.len() - 1
+        });
+        match &mut self.entries[at].1 {
+            Node::Table(table) => table,
+            _ => panic!("`{key}` is not a table"),
+        }
+    }
+
+    /// Parses TOML; every syntax error is reported.
+    pub fn parse(text: &str, source: &Source, report: &mut Report) -> Option<Self> {
+        let lines = Lines::of(text);
+        let (table, errors) = DeTable::parse_recoverable(text);
+        if errors.is_empty() {
+            let mut parser = Parser { lines, source, path: Vec::new(), report };
+            return Some(parser.table(table.into_inner(), source.clone()));
+        }
+        for error in errors {
+            let offset = error.span().map_or(0, |span| span.start);
+            let (key, message) =
+                (format!("column {}", lines.column(text, offset)), error.message());
+            let syntax = Diagnostic::new(&*source.label, key, message, "correct the TOML here");
+            report.add(syntax.at(Some(lines.line(offset))));
+        }
+        None
+    }
+
+    /// Merges `over` into this table: values replace values, tables are merged key by key. `path` is
+    /// the key of this table.
+    pub fn merge(&mut self, over: Self, path: &mut Vec<String>, report: &mut Report) {
+        for (key, node) in over.entries {
+            path.push(key);
+            match self.entries.iter_mut().find(|(name, _)| Some(name) == path.last()) {
+                None => self.entries.push((path[path.len() - 1].clone(), node)),
+                Some((_, below)) => below.merge(node, path, report),
+            }
+            path.pop();
+        }
+    }
+
+    /// A diagnostic at a dotted key of this table, with the line of the value that it names, or of
+    /// the nearest value that contains it.
+    pub fn diagnostic(
+        &self,
+        key: impl Into<String>,
+        what: impl Into<String>,
+        help: impl Into<String>,
+    ) -> Diagnostic {
+        let key = key.into();
+        let line = self.line_of(&key);
+        Diagnostic::new(&*self.source.label, key, what, help).at(line)
+    }
+
+    fn line_of(&self, key: &str) -> Option<u32> {
+        let inside = |(name, node): &'_ (String, Node)| {
+            let rest = key.strip_prefix(quoted(name).as_str())?;
+            rest.is_empty().then(|| node.source().line).or_else(|| node.line_within(rest))
+        };
+        self.entries.iter().find_map(inside).unwrap_or(self.source.line)
+    }
+}
+
+impl Node {
+    /// The line of what `rest` of a dotted key names in this value; none if `rest` does not continue
+    /// a key here.
+    fn line_within(&self, rest: &str) -> Option<Option<u32>> {
+        match self {
+            Self::Table(table) => Some(table.line_of(rest.strip_prefix('.')?)),
+            Self::List(items, source) => {
+                let (n, rest) = rest.strip_prefix('[')?.split_once(']')?;
+                let item = n.parse::<usize>().ok().and_then(|n| items.get(n));
+                let line = |item: &Self| item.line_within(rest).unwrap_or(item.source().line);
+                Some(item.map_or(source.line, line))
+            }
+            Self::Scalar(_, source) => rest.starts_with(['.', '[']).then_some(source.line),
+        }
+    }
+}
+
+/// A key as TOML writes it, in quotes where they are needed.
+pub(crate) fn quoted(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    if !name.is_empty() && name.chars().all(bare) { name.to_owned() } else { format!("{name:?}") }
+}
+
+/// Conversion of a parsed text, which keeps the order of keys: the parser sorts them, but knows
+/// their positions.
+struct Parser<'a> {
+    lines: Lines,
+    source: &'a Source,
+    path: Vec<String>,
+    report: &'a mut Report,
+}
+
+impl Parser<'_> {
+    fn table(&mut self, table: DeTable<'_>, source: Source) -> Table {
+        let mut entries: Vec<(Spanned<_>, Spanned<DeValue<'_>>)> = table.into_iter().collect();
+        entries.sort_by_key(|(key, _)| key.span().start);
+        let mut read = Table::empty(source);
+        for (key, value) in entries {
+            let line = self.lines.line(key.span().start);
+            let key = key.into_inner().into_owned();
+            self.path.push(key.clone());
+            read.entries.extend(self.node(value, line).map(|node| (key, node)));
+            self.path.pop();
+        }
+        read
+    }
+
+    fn node(&mut self, value: Spanned<DeValue<'_>>, line: u32) -> Option<Node> {
+        let source = self.source.at(Some(line));
+        let span = value.span();
+        match value.into_inner() {
+            DeValue::Table(table) => Some(Node::Table(self.table(table, source))),
+            DeValue::Array(items) => {
+                let item = |item: Spanned<DeValue<'_>>| {
+                    let line = self.lines.line(item.span().start);
+                    self.node(item, line)
+                };
+                Some(Node::List(items.into_iter().filter_map(item).collect(), source))
+            }
+            leaf => match Value::deserialize(ValueDeserializer::from(Spanned::new(span, leaf))) {
+                Ok(value) => Some(Node::from_toml(value, &source)),
+                Err(error) => {
+                    let help = "write a value that TOML can hold";
+                    let (label, key) = (&*source.label, self.path.join("."));
+                    let found = Diagnostic::new(label, key, error.message(), help);
+                    self.report.add(found.at(source.line));
+                    None
+                }
+            },
+        }
+    }
+}
+
+/// Byte offsets at which the lines of a text begin.
+struct Lines(Vec<usize>);
+
+impl Lines {
+    fn of(text: &str) -> Self {
+        let after = text.match_indices('\n').map(|(at, _)| at + 1);
+        Self(std::iter::once(0).chain(after).collect())
+    }
+
+    fn line(&self, offset: usize) -> u32 {
+        u32::try_from(self.0.partition_point(|start| *start <= offset)).unwrap_or(u32::MAX)
+    }
+
+    /// The column of an offset, from 1, in characters.
+    fn column(&self, text: &str, offset: usize) -> usize {
+        let start = self.0[self.line(offset) as usize - 1];
+        text.get(start..offset).map_or(0, |before| before.chars().count()) + 1
+    }
+}
+
+impl Serialize for Table {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.entries.len()))?;
+        self.entries.iter().try_for_each(|(key, node)| map.serialize_entry(key, node))?;
+        map.end()
+    }
+}
+
+impl Serialize for Node {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Scalar(Scalar::Text(text), _) => serializer.serialize_str(text),
+            Self::Scalar(Scalar::Integer(number), _) => serializer.serialize_i64(*number),
+            Self::Scalar(Scalar::Float(number), _) => serializer.serialize_f64(*number),
+            Self::Scalar(Scalar::Boolean(flag), _) => serializer.serialize_bool(*flag),
+            Self::Scalar(Scalar::Other(name), _) => serializer.serialize_str(name),
+            Self::List(items, _) => items.serialize(serializer),
+            Self::Table(table) => table.serialize(serializer),
+        }
+    }
+}
+
+/// The value as TOML.
+impl fmt::Display for Node {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        Value::try_from(self).map_err(|_| fmt::Error)?.fmt(f)
+    }
+}
