@@ -16,6 +16,8 @@ use config::Settings;
 use journal::{Header, Journal, JournalOpenError};
 use messages::Service;
 use serde::{Serialize, de::DeserializeOwned};
+use std::ops::ControlFlow;
+use std::os::fd::BorrowedFd;
 use std::process::ExitCode;
 
 /// Events of one pass; what is left waits for the next, so that beats and signals are not held up.
@@ -159,7 +161,10 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
         worker_channel::channel().map_err(|e| Failure::new(Exit::NotReached, e.to_string()))?;
     let context = Context { bus: &bus, settings: &settings, devices, environment: &environment };
     let shell = P::Shell::open(&context)?;
-    Loop::<P> { node, shell, journal, inbox, ear, lifecycle, ending: false }.run()
+    let mut service = Loop::<P> { node, shell, journal, inbox, ear, effects: Effects::default() };
+    service.node.on(Event::Started, clock::now(), &mut service.effects);
+    service.commit()?;
+    drive(lifecycle, &mut service)
 }
 
 /// Journal record of a program's node.
@@ -201,54 +206,98 @@ fn open_journal<P: Program>(environment: &Environment) -> Result<Recovered<P>, F
     }
 }
 
+/// What the main loop drives: one pass after the other until the service has shut down.
+pub trait Cycle {
+    /// Returns the descriptors that end the sleep, and when it ends at the latest.
+    fn wake(&self, now: Time) -> (Vec<BorrowedFd<'_>>, Time);
+
+    /// Begins to shut down; further passes follow until one breaks the loop.
+    fn shut_down(&mut self);
+
+    /// Takes what has arrived, decides and publishes; breaks once the service has shut down.
+    ///
+    /// # Errors
+    /// What the service cannot go on without is lost.
+    fn pass(&mut self) -> Result<ControlFlow<()>, Failure>;
+
+    /// Returns whether the service does its work: without a beat the supervisor restarts it.
+    fn health(&mut self, now: Time) -> Health;
+}
+
+/// Whether a service does its work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Health {
+    /// It does; its oldest unprocessed input arrived then.
+    Working(Option<Time>),
+    /// A part of it hangs.
+    Stuck,
+}
+
+/// Drives a service until it has shut down.
+///
+/// # Errors
+/// As [`Cycle::pass`].
+pub fn drive(mut lifecycle: Lifecycle, cycle: &mut impl Cycle) -> Result<(), Failure> {
+    lifecycle.ready();
+    tracing::info!("ready");
+    let mut is_ending = false;
+    loop {
+        let now = clock::now();
+        let (fds, until) = cycle.wake(now);
+        lifecycle.wait(&fds, until.min(lifecycle.next_beat(now)).since(now));
+        if !is_ending && lifecycle.told_to_end() {
+            is_ending = true;
+            lifecycle.stopping();
+            cycle.shut_down();
+        }
+        let flow = cycle.pass()?;
+        let now = clock::now();
+        if let Health::Working(pending_since) = cycle.health(now) {
+            lifecycle.beat(now, pending_since);
+        }
+        if flow.is_break() {
+            tracing::info!("shut down on request");
+            return Ok(());
+        }
+    }
+}
+
 struct Loop<P: Program> {
     node: P::Node,
     shell: P::Shell,
     journal: Option<Journal<Record<P>>>,
     inbox: DeviceReceiver<In<P>>,
     ear: Ear,
-    lifecycle: Lifecycle,
-    ending: bool,
+    effects: Effects<Out<P>, Record<P>>,
+}
+
+impl<P: Program> Cycle for Loop<P> {
+    fn wake(&self, now: Time) -> (Vec<BorrowedFd<'_>>, Time) {
+        let latest = now + LOOK_EVERY;
+        let until = self.node.deadline().map_or(latest, |deadline| deadline.min(latest));
+        (vec![self.ear.fd(), self.inbox.fd()], until)
+    }
+
+    fn shut_down(&mut self) {
+        self.node.on(Event::Shutdown, clock::now(), &mut self.effects);
+    }
+
+    fn pass(&mut self) -> Result<ControlFlow<()>, Failure> {
+        self.take_in()?;
+        self.commit()?;
+        Ok(if self.effects.exits() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    }
+
+    fn health(&mut self, _now: Time) -> Health {
+        Health::Working(self.node.pending_since())
+    }
 }
 
 impl<P: Program> Loop<P> {
-    fn run(mut self) -> Result<(), Failure> {
-        let mut effects = Effects::default();
-        self.node.on(Event::Started, clock::now(), &mut effects);
-        self.commit(&mut effects)?;
-        self.lifecycle.ready();
-        tracing::info!("ready");
-        loop {
-            self.wait();
-            self.pass(&mut effects)?;
-            self.commit(&mut effects)?;
-            self.lifecycle.beat(clock::now(), self.node.pending_since());
-            if effects.exits() {
-                tracing::info!("ended as told");
-                return Ok(());
-            }
-        }
-    }
-
-    /// Sleeps until something waits, a deadline passes, or it is time to look anyway.
-    fn wait(&self) {
-        let now = clock::now();
-        let until = [self.node.deadline(), Some(self.lifecycle.next_beat(now))]
-            .into_iter()
-            .flatten()
-            .fold(now + LOOK_EVERY, Time::min);
-        self.lifecycle.wait(&[self.ear.fd(), self.inbox.fd()], until.since(now));
-    }
-
     /// Feeds everything that waits to the node.
-    fn pass(&mut self, effects: &mut Effects<Out<P>, Record<P>>) -> Result<(), Failure> {
+    fn take_in(&mut self) -> Result<(), Failure> {
         self.ear.clear();
         self.inbox.clear();
-        if !self.ending && self.lifecycle.told_to_end() {
-            self.ending = true;
-            self.lifecycle.stopping();
-            self.node.on(Event::Shutdown, clock::now(), effects);
-        }
         let mut arrived = Vec::new();
         self.shell.drain(&mut |message| arrived.push(message))?;
         while arrived.len() < PASS_EVENTS_MAX
@@ -257,17 +306,17 @@ impl<P: Program> Loop<P> {
             arrived.push(message);
         }
         for message in arrived {
-            self.node.on(Event::Message(message), clock::now(), effects);
+            self.node.on(Event::Message(message), clock::now(), &mut self.effects);
         }
         if self.node.deadline().is_some_and(|deadline| deadline <= clock::now()) {
-            self.node.on(Event::Tick, clock::now(), effects);
+            self.node.on(Event::Tick, clock::now(), &mut self.effects);
         }
         Ok(())
     }
 
     /// Makes the pass durable, then visible. Never the other way round.
-    fn commit(&mut self, effects: &mut Effects<Out<P>, Record<P>>) -> Result<(), Failure> {
-        let records = effects.take_records();
+    fn commit(&mut self) -> Result<(), Failure> {
+        let records = self.effects.take_records();
         if let Some(journal) = &mut self.journal
             && !records.is_empty()
         {
@@ -277,7 +326,7 @@ impl<P: Program> Loop<P> {
             }
             journal.sync().map_err(|e| storage(e.to_string()))?;
         }
-        for output in effects.take_outputs() {
+        for output in self.effects.take_outputs() {
             self.shell.publish(output)?;
         }
         self.shorten()

@@ -1,45 +1,47 @@
-//! The main loop's work: what arrives on the topics is folded into the picture, what viewers ask for
-//! is carried out, and what has changed is pinned on the board.
+//! The main loop's work: folds what arrives on the topics into the view model, carries out the
+//! commands of viewers, and puts what has changed on the board.
 
-mod correcting;
-mod kept;
+mod corrections;
 mod motion;
-mod ports;
-mod saying;
+mod submissions;
 pub(crate) mod supervisor;
+mod topics;
+mod transcript_store;
 
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use config::Settings;
-use messages::{Injection, JointStates, MotionCommand, topics};
-use serde_json::Value as Json;
+use messages::topics::{INJECTION, MOTION};
+use messages::{Injection, JointStates, MotionCommand};
 use service::bus::{EncodedWriter, Writer};
 use service::client::Client;
 use service::clock;
 use service::exit::Failure;
 use service::group::GroupPaths;
+use service::view::{drain, quiet};
 use service::worker_channel::DeviceReceiver;
 use service::{Span, Time};
 
-use crate::hub::command::{Command, Motion, Verb, Words};
+use crate::hub::command::{Command, Motion, Verb, typed};
+use crate::hub::outbound::{Interim, Joints, PageMessage};
 use crate::hub::{Hub, ViewerId};
-use crate::picture::{self, Now, Picture, Transcript};
 use crate::server::App;
 use crate::server::routes::sound_file;
 use crate::study::Study;
+use crate::view_model::{Now, Transcript, ViewModel};
 use crate::voice::Voice;
-use kept::Kept;
 use motion::Motions;
-use ports::{Ports, all, quiet};
-use saying::Saying;
+use submissions::Submissions;
+use topics::Topics;
+use transcript_store::TranscriptStore;
 
-/// Commands of viewers that are taken in one pass; the rest waits for the next.
+/// Most commands of one pass; the rest waits for the next.
 const COMMANDS_MAX: usize = 128;
-/// How often joints are sent while they move, and while they rest.
+/// How often joints are sent, moving and at rest.
 const JOINTS_EVERY: (Span, Span) = (Span::from_ms(33), Span::from_ms(500));
-/// A smaller change of every joint is none, radians or percent.
+/// Joints that change by less are at rest, radians or percent.
 const STILL: f64 = 1e-4;
 
 /// Everything that the main loop owns.
@@ -48,25 +50,25 @@ pub struct Bridge {
     app: Arc<App>,
     paths: GroupPaths,
     client: Client,
-    ports: Ports,
+    topics: Topics,
     injections: EncodedWriter<Injection>,
     motion: Writer<MotionCommand>,
-    picture: Picture,
+    model: ViewModel,
     voice: Voice,
     study: Study,
-    saying: Saying,
+    submissions: Submissions,
     motions: Motions,
-    kept: Kept,
+    store: TranscriptStore,
     voice_dir: Option<PathBuf>,
     /// The joints that were sent last, and when.
     joints: Option<(JointStates, Time)>,
     newest_joints: Option<JointStates>,
 }
 
-/// The ends of the ways to the main loop.
+/// The receiving ends of the channels to the main loop.
 #[derive(Debug)]
 pub struct Inbox {
-    /// What viewers ask for.
+    /// Commands of viewers.
     pub commands: DeviceReceiver<Command>,
     /// Orders to the motion stop.
     pub motions: DeviceReceiver<Motion>,
@@ -85,18 +87,18 @@ impl Bridge {
         study: Study,
     ) -> Result<Self, Failure> {
         let bus = client.bus();
-        let kept = Kept::in_folder(&paths.run());
-        let transcript = Transcript::after(kept.read(), now().unix_ms);
+        let store = TranscriptStore::in_folder(&paths.run());
+        let transcript = Transcript::after(store.read(), now().unix_ms);
         Ok(Self {
-            ports: Ports::open(bus)?,
-            injections: bus.encoded_writer(&topics::INJECTION)?,
-            motion: bus.writer(&topics::MOTION)?,
-            picture: Picture::new(settings.scene.clone(), transcript),
+            topics: Topics::open(bus)?,
+            injections: bus.encoded_writer(&INJECTION)?,
+            motion: bus.writer(&MOTION)?,
+            model: ViewModel::new(settings.scene.clone(), transcript),
             voice: Voice::default(),
             study,
-            saying: Saying::default(),
+            submissions: Submissions::default(),
             motions: Motions::default(),
-            kept,
+            store,
             voice_dir: app.voice_dir.clone(),
             paths: paths.clone(),
             app,
@@ -106,20 +108,20 @@ impl Bridge {
         })
     }
 
-    /// One pass: stops first, then what has arrived, then what viewers ask for, then what is new.
+    /// Runs one pass: orders to the motion stop, what has arrived, commands, sections.
     pub fn pass(&mut self, inbox: &Inbox) {
         self.orders(inbox);
         let now = now();
         self.take_in(now);
         self.orders(inbox);
         self.carry_out(inbox, now);
-        self.go_on(now);
+        self.advance(now);
         self.show(now);
     }
 
-    /// Whether something waits for an answer, so that the next look should come soon.
+    /// Returns whether something waits for an answer, so that the next pass should come soon.
     pub fn is_busy(&self) -> bool {
-        !self.saying.is_empty() || self.motions.is_waiting()
+        !self.submissions.is_empty() || self.motions.is_waiting()
     }
 
     fn hub(&self) -> &Hub {
@@ -134,61 +136,50 @@ impl Bridge {
         }
     }
 
-    /// Causes before effects, as far as one look can tell: utterances, what was understood, what was
-    /// decided, what is said. What is pending comes before the view, which is the newer of the two.
+    /// Takes in what has arrived, causes before effects as far as one look can tell.
     fn take_in(&mut self, now: Now) {
-        for receipt in all(&self.ports.receipts) {
-            self.saying.answered(&receipt, &self.app.hub);
-            self.picture.see_receipt(&receipt, now);
+        let Self { topics, model, .. } = self;
+        let (observations, acts) = (drain(&topics.observations), drain(&topics.acts));
+        let arrived = topics.latest.take();
+        for receipt in &arrived.receipts {
+            self.submissions.on_receipt(receipt, &self.app.hub);
+            model.on_receipt(receipt, now);
         }
-        for observation in all(&self.ports.observations) {
-            self.picture.see_observation(&observation);
-        }
-        for act in all(&self.ports.acts) {
-            self.picture.see_act(&act);
-        }
-        if let Some(activity) = quiet(self.ports.activity.latest()) {
-            self.picture.see_activity(activity);
-        }
-        if let Some(presented) = quiet(self.ports.presented.latest()) {
+        observations.iter().for_each(|observation| model.on_observation(observation));
+        acts.iter().for_each(|act| model.on_act(act));
+        arrived.activity.into_iter().for_each(|activity| model.on_activity(activity));
+        if let Some(presented) = arrived.presented {
             let line = format!("line-{}-{}.wav", presented.prompt, presented.presentation);
             let sound = self.voice_dir.as_deref().and_then(|folder| sound_file(folder, &line));
-            let has_sound = sound.is_some_and(|file| file.is_file());
-            self.picture.see_presented(presented, has_sound, now);
+            model.on_presented(presented, sound.is_some_and(|file| file.is_file()), now);
         }
-        if let Some(hearing) = quiet(self.ports.hearing.latest()) {
-            self.picture.see_hearing(hearing);
-        }
-        for (status, sent) in self.ports.stamped_statuses() {
+        arrived.hearing.into_iter().for_each(|hearing| model.on_hearing(hearing));
+        for (status, sent) in arrived.statuses {
             self.motions.confirm(&status, sent, &self.app.hub);
-            self.picture.see_arm(status, now);
+            model.on_arm(status, now);
         }
-        if let Some(world) = quiet(self.ports.worlds.latest()) {
-            self.picture.see_world(world);
-        }
-        if let Some(trajectory) = quiet(self.ports.trajectories.latest()) {
-            self.picture.see_trajectory(trajectory);
-        }
-        if let Some(view) = quiet(self.ports.views.latest()) {
-            self.picture.see_view(view, now);
-            self.follow_scene();
-        }
-        if let Some(joints) = quiet(self.ports.joints.latest()) {
-            self.newest_joints = Some(joints);
-        }
-        for partial in all(&self.ports.partials) {
+        quiet(topics.worlds.latest()).into_iter().for_each(|world| model.on_world(world));
+        let trajectory = quiet(topics.trajectories.latest());
+        trajectory.into_iter().for_each(|trajectory| model.on_trajectory(trajectory));
+        self.newest_joints = quiet(topics.joints.latest()).or(self.newest_joints);
+        for partial in drain(&topics.partials) {
             let number = self.voice.stream_of(partial.request()).map(|(_, number)| number);
-            let (stream, frame) = picture::partial(&partial, number);
-            self.hub().board.partial(&stream, frame);
+            let key: String = partial.stream.iter().map(|byte| format!("{byte:02x}")).collect();
+            let message = PageMessage::Partial(Interim::new(&partial, number));
+            self.app.hub.board.partial(&key, message.to_text());
+        }
+        if let Some(view) = arrived.view {
+            model.on_view(view, now);
+            self.follow_scene();
         }
     }
 
-    /// A scene that was changed under way: the snapshot is of the new one before the policy is.
+    /// Follows a reload: the snapshot has the new scene before the policy has.
     fn follow_scene(&mut self) {
-        if self.picture.is_of_another_scene()
+        if self.model.is_of_another_scene()
             && let Ok(settings) = Settings::load_snapshot(&self.paths.run())
         {
-            self.picture.set_scene(settings.scene);
+            self.model.set_scene(settings.scene);
         }
     }
 
@@ -200,74 +191,60 @@ impl Bridge {
                 Command::Do(viewer, id, verb) => self.carry_out_verb(viewer, id, verb, now),
                 Command::Sound(viewer, frame) => {
                     if let Err(why) = self.voice.frame(&self.client, viewer, frame) {
-                        let told = serde_json::json!({ "t": "error", "error": why });
-                        self.hub().send(viewer, told.to_string());
+                        self.hub().error(viewer, &why);
                     }
                 }
                 Command::Left(viewer) => self.voice.left(viewer),
-                Command::Group(Ok(group)) => self.picture.see_group(*group, now),
-                Command::Group(Err(why)) => tracing::debug!(why, "the supervisor says nothing"),
+                Command::Group(Ok(group)) => self.model.on_group(*group, now),
+                Command::Group(Err(why)) => tracing::debug!(why, "no status from the supervisor"),
             }
         }
     }
 
     fn carry_out_verb(&mut self, viewer: ViewerId, id: u64, verb: Verb, now: Now) {
-        let refused = match verb {
+        let (scene, latest) = (self.model.scene(), self.model.latest());
+        let words = match verb {
+            Verb::Say(words) => Ok(words),
+            Verb::NotThat => corrections::not_that(scene, latest).map(|words| typed(&words)),
+            Verb::StartOver => corrections::start_over(latest).map(typed),
             Verb::Study(verb, arguments) => {
-                let outcome = self.study.verb(viewer, &verb, &arguments, &self.picture, now);
-                return self.hub().answer(viewer, id, outcome);
+                let outcome = self.study.command(&verb, &arguments, &self.model, now);
+                return self.hub().answer(viewer, id, outcome.map(Some));
             }
-            verb => self.say(Some((viewer, id)), verb, now),
         };
-        if let Err(why) = refused {
+        let submitted =
+            words.and_then(|words| self.submissions.add(Some((viewer, id)), words, now.at));
+        if let Err(why) = submitted {
             self.hub().answer(viewer, id, Err(why));
         }
     }
 
-    /// Says something to the robot, for a viewer or for the study.
-    fn say(&mut self, viewer: Option<(ViewerId, u64)>, verb: Verb, now: Now) -> Result<(), String> {
-        let words = match verb {
-            Verb::Say(words) => words,
-            Verb::NotThat | Verb::StartOver => {
-                let (view, arm) = (self.picture.view(), self.picture.arm());
-                match verb {
-                    Verb::NotThat => typed(&correcting::not_that(self.picture.scene(), view, arm)?),
-                    _ => typed(correcting::start_over(view)?),
-                }
-            }
-            Verb::Study(..) => return Err("a study does not ask itself".to_owned()),
-        };
-        self.saying.add(viewer, words, now.at)
-    }
-
-    fn go_on(&mut self, now: Now) {
-        self.saying.pass(&self.injections, &self.app.hub, now.at);
+    fn advance(&mut self, now: Now) {
+        self.submissions.pass(&self.injections, &self.app.hub, now.at);
         self.motions.pass(&self.motion, &self.app.hub, now.at);
-        for (viewer, frame) in self.voice.pass(&self.client, now.at) {
-            self.hub().send(viewer, frame);
+        self.voice.pass(&self.app.hub, now.at);
+        for event in self.model.take_events() {
+            self.study.on_event(&event, &self.model, now);
         }
-        for event in self.picture.take_events() {
-            self.study.event(&event, &self.picture, now);
-        }
-        for verb in self.study.pass(&self.picture, now) {
-            if let Err(why) = self.say(None, verb, now) {
-                tracing::warn!(why, "the study could not say something");
+        for words in self.study.pass(&self.model, now) {
+            if let Err(why) = self.submissions.add(None, words, now.at) {
+                tracing::warn!(why, "the study's words are not submitted");
             }
         }
     }
 
     fn show(&mut self, now: Now) {
-        let sections = self.picture.sections(now);
-        let study = self.study.section(&self.picture, now).map(|study| ("study", study));
-        for (name, value) in sections.into_iter().chain(study) {
-            self.hub().board.section(name, &Json::to_string(&value));
+        let sections = self.model.sections(now);
+        let study = self.study.section(&self.model, now).map(|study| ("study", study));
+        for (name, text) in sections.into_iter().chain(study) {
+            self.hub().board.section(name, &text);
         }
-        for line in self.picture.transcript().take_changed() {
-            self.kept.note();
+        for line in self.model.transcript().take_changed() {
+            self.store.mark_changed();
             self.hub().board.line(line.id, &line.to_text());
         }
-        self.kept.write(self.picture.transcript().lines(), now.at);
-        for stages in self.picture.latency().take_news() {
+        self.store.write(self.model.transcript().lines(), now.at);
+        for stages in self.model.latency().take_news() {
             self.hub().metrics.latency.observe(stages.total / 1e3);
         }
         self.show_joints(now.at);
@@ -285,17 +262,13 @@ impl Bridge {
         });
         if due {
             self.joints = Some((newest, now));
-            self.hub().board.joints(picture::joints(&newest));
+            let message = PageMessage::Joints(Joints::new(&newest));
+            self.hub().board.joints(message.to_text());
         }
     }
 }
 
-fn typed(text: &str) -> Words {
-    let alternatives = Vec::new();
-    Words { text: text.to_owned(), alternatives, spoken: false, began: None, ended: None }
-}
-
-/// Both clocks.
+/// Reads both clocks.
 pub(crate) fn now() -> Now {
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     Now { at: clock::now(), unix_ms: unix.as_millis() as u64 }

@@ -1,18 +1,18 @@
-//! Orders to the motion stop, on their way to the arm.
+//! Orders to the motion stop that the arm has not confirmed.
 
 use messages::{ArmStatus, MotionCommand, MotionOrder};
-use serde_json::json;
 use service::bus::Writer;
 use service::{Span, Time};
 
 use crate::hub::Hub;
 use crate::hub::command::Motion;
+use crate::hub::outbound::Answer;
 
-/// How often an order that is not obeyed yet is given again.
+/// How often an unconfirmed order is repeated.
 const RESEND_EVERY: Span = Span::from_ms(50);
-/// How long it is waited for.
+/// How long the arm may take to confirm an order.
 const PATIENCE: Span = Span::from_ms(5_000);
-/// Orders that wait at a time; the latest holds.
+/// Most orders that wait for a confirmation; the latest is in force.
 const ORDERS_MAX: usize = 64;
 
 /// Orders that the arm has not confirmed.
@@ -30,7 +30,7 @@ struct Latest {
 }
 
 impl Motions {
-    /// Gives an order, at once.
+    /// Sends an order at once.
     pub(super) fn order(
         &mut self,
         motion: Motion,
@@ -38,7 +38,7 @@ impl Motions {
         hub: &Hub,
         now: Time,
     ) {
-        // Who wanted something else is overruled by the latest.
+        // The latest order overrules contrary ones.
         let overruled = |waiting: &Motion| waiting.stop != motion.stop;
         for old in self.waiting.extract_if(.., |waiting| overruled(waiting)) {
             hub.answer(old.viewer, old.id, Err("overruled by another order".to_owned()));
@@ -55,23 +55,24 @@ impl Motions {
         self.latest.is_some()
     }
 
-    /// The arm has said something at `sent`. What it said before the order is no answer to it.
+    /// Takes in a status that the arm sent at `sent`; one from before the order does not confirm it.
     pub(super) fn confirm(&mut self, status: &ArmStatus, sent: Time, hub: &Hub) {
         let Some(latest) = self.latest.filter(|latest| sent >= latest.given) else { return };
         if (status.stopped != 0) == latest.stop {
             self.latest = None;
             for motion in self.waiting.drain(..) {
-                hub.answer(motion.viewer, motion.id, Ok(json!({ "stopped": latest.stop })));
+                let answer = Answer::Motion { stopped: latest.stop };
+                hub.answer(motion.viewer, motion.id, Ok(Some(answer)));
             }
         }
     }
 
-    /// Gives the order again until it is obeyed, or gives up.
+    /// Repeats the order until it is confirmed, or gives up.
     pub(super) fn pass(&mut self, writer: &Writer<MotionCommand>, hub: &Hub, now: Time) {
         let Some(latest) = &mut self.latest else { return };
         if now >= latest.given + PATIENCE {
             let why =
-                "the arm does not answer; use its emergency stop and see the list of services";
+                "the arm does not answer; help: use its emergency stop, and see the list of services";
             for motion in self.waiting.drain(..) {
                 hub.answer(motion.viewer, motion.id, Err(why.to_owned()));
             }
@@ -83,7 +84,7 @@ impl Motions {
     }
 }
 
-/// The time of giving stays: the arm ignores what is older than the last that it obeyed.
+/// Sends an order with its original time: the arm ignores orders older than the last that it obeyed.
 fn send(latest: Latest, writer: &Writer<MotionCommand>) {
     let order = if latest.stop { MotionOrder::Stop } else { MotionOrder::Resume };
     let command = MotionCommand {
@@ -92,6 +93,6 @@ fn send(latest: Latest, writer: &Writer<MotionCommand>) {
         ..MotionCommand::default()
     };
     if let Err(error) = writer.send(&command) {
-        tracing::warn!(%error, "order to the motion stop not sent yet");
+        tracing::warn!(%error, "motion stop order not sent");
     }
 }

@@ -1,16 +1,16 @@
-//! What the supervisor knows, asked on a thread of its own: it may take its time to answer.
+//! The connection to the supervisor, on a thread of its own: answers may take a while.
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError};
-use serde_json::Value as Json;
-use service::control::{Reply, Request, call};
 use service::group::GroupPaths;
 use service::worker_channel::DeviceSender;
+use service::control::{Reply, Request, call};
 
 use crate::hub::ViewerId;
 use crate::hub::command::Command;
+use crate::hub::outbound::Answer;
 use crate::server::App;
 
 /// How often the supervisor is asked.
@@ -18,11 +18,10 @@ const ASK_EVERY: Duration = Duration::from_secs(1);
 /// How long it may take to answer.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// A restart that a viewer asks for.
+/// A restart that a viewer has requested.
 pub(crate) type Restart = (ViewerId, u64, String);
 
-/// Asks for the group's status every second, and for restarts as they come, until nobody can ask for
-/// them any more.
+/// Requests the group's status every second, and restarts as they come, until their senders are gone.
 pub(crate) fn watch(
     paths: &GroupPaths,
     app: &Arc<App>,
@@ -36,15 +35,15 @@ pub(crate) fn watch(
             Ok(other) => Err(format!("{other:?}")),
             Err(error) => Err(error.to_string()),
         };
-        // A full inbox will hear of it a second later.
+        // A full inbox gets the next status a second later.
         let _ = main_loop.offer(Command::Group(status));
         match restarts.recv_timeout(ASK_EVERY) {
             Ok((viewer, id, service)) => {
                 let restart = Request::Restart { service, original: false, wait_ms: 0 };
                 let outcome = match call(&socket, &restart, PATIENCE) {
-                    Ok(Reply::Done { message }) => Ok(serde_json::json!({ "message": message })),
+                    Ok(Reply::Done { message }) => Ok(Some(Answer::Supervisor { message })),
                     Ok(Reply::Refused(refusal)) => Err(refusal.message),
-                    Ok(_) => Ok(Json::Null),
+                    Ok(_) => Ok(None),
                     Err(error) => Err(error.to_string()),
                 };
                 let Some(app) = hub.upgrade() else { return };

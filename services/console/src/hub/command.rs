@@ -1,4 +1,4 @@
-//! What viewers ask the bridge to do.
+//! Commands of viewers to the main loop.
 
 use serde_json::Value as Json;
 use service::Time;
@@ -10,51 +10,57 @@ use crate::voice::PcmFrame;
 /// A message to the main loop.
 #[derive(Debug)]
 pub enum Command {
-    /// Something to be done and answered once, under the number that the page gave it.
+    /// A command that is answered once, under the number that the page gave it.
     Do(ViewerId, u64, Verb),
     /// Sound of a viewer's microphone.
     Sound(ViewerId, PcmFrame),
     /// A viewer has gone.
     Left(ViewerId),
-    /// What the supervisor says of the group, or why it says nothing.
+    /// The supervisor's status of the group, or why there is none.
     Group(Result<Box<GroupStatus>, String>),
 }
 
-/// What the dialogue and the study are asked to do.
+/// What a viewer commands.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verb {
     /// Says something to the robot.
     Say(Words),
-    /// "Not that one", whatever is meant by "that" just now.
+    /// Denies what the robot asks about or is fetching.
     NotThat,
-    /// Begins the dialogue anew.
+    /// Makes the robot forget the request.
     StartOver,
-    /// A verb of the study's, without its prefix, with its arguments.
+    /// A command of the study, without its prefix, with its arguments.
     Study(String, Json),
 }
 
 /// Words for the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Words {
-    /// What was said.
+    /// The text.
     pub text: String,
-    /// What may have been said instead, with weights; of a browser's recogniser.
+    /// Other hypotheses of a browser's recogniser, with weights.
     pub alternatives: Vec<(String, f64)>,
-    /// Whether a browser's recogniser has heard it, rather than that it was typed.
+    /// Whether a browser's recogniser has heard it; else it was typed.
     pub spoken: bool,
-    /// When the person began, if that is known.
+    /// When the user began, if known.
     pub began: Option<Time>,
-    /// When the person had ended, if that is known.
+    /// When the user ended, if known.
     pub ended: Option<Time>,
 }
 
-/// An order to the motion stop: handled before everything else.
+/// Returns words that were typed.
+pub fn typed(text: &str) -> Words {
+    let alternatives = Vec::new();
+    Words { text: text.to_owned(), alternatives, spoken: false, began: None, ended: None }
+}
+
+/// An order to the motion stop; handled before everything else.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
-    /// Who gave it.
+    /// Whose it is.
     pub viewer: ViewerId,
     /// The number that the page gave it.
     pub id: u64,
-    /// Whether the arm is to stop, or may go on.
+    /// Whether to latch the stop; else to release it.
     pub stop: bool,
 }

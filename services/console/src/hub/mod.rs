@@ -1,9 +1,10 @@
-//! What bridge and server share: the board, the viewers, who is in control, and the ways to the main
+//! What bridge and server share: the board, the viewers, who is in control, and the channels to the main
 //! loop.
 
 pub mod board;
 pub mod command;
 pub mod lease;
+pub mod outbound;
 mod viewers;
 
 #[cfg(test)]
@@ -12,7 +13,7 @@ mod tests;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use serde_json::{Value as Json, json};
+use serde::Serialize;
 use service::worker_channel::DeviceSender;
 use service::{Span, Time};
 use tokio::sync::{mpsc, watch};
@@ -21,8 +22,10 @@ use crate::server::metrics::Metrics;
 use board::Board;
 use command::{Command, Motion, Verb};
 use lease::{Lease, Taken};
+use outbound::{Answer, Done, PageMessage};
 use viewers::Viewers;
-pub use viewers::{Letter, Role};
+pub use service::view::ms;
+pub use viewers::{OutboundFrame, Role};
 
 /// A viewer's number, in a page `v3`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -44,13 +47,23 @@ impl std::str::FromStr for ViewerId {
 
 /// What goes from the hub to the main loop and to the supervisor.
 #[derive(Debug)]
-pub struct Ways {
+pub struct Channels {
     /// To the main loop.
     pub commands: DeviceSender<Command>,
     /// To the main loop, before everything else.
     pub motions: DeviceSender<Motion>,
     /// To the thread that talks to the supervisor: restarts that viewers ask for.
     pub restarts: crossbeam_channel::Sender<(ViewerId, u64, String)>,
+}
+
+/// The section `control`.
+#[derive(Debug, Serialize)]
+struct ControlSection<'a> {
+    operator: Option<String>,
+    name: Option<&'a String>,
+    viewers: usize,
+    asked_by: Option<String>,
+    expires_ms: Option<f64>,
 }
 
 /// What bridge and server share.
@@ -60,7 +73,7 @@ pub struct Hub {
     pub board: Board,
     /// What is counted.
     pub metrics: Metrics,
-    ways: Ways,
+    channels: Channels,
     control: Mutex<Control>,
     viewers_max: usize,
     ending: watch::Sender<bool>,
@@ -78,12 +91,12 @@ struct Control {
 
 impl Hub {
     /// A hub without viewers.
-    pub fn new(ways: Ways, viewers_max: usize, handover: Span) -> Self {
+    pub fn new(channels: Channels, viewers_max: usize, handover: Span) -> Self {
         let control = Control { viewers: Viewers::default(), lease: Lease::new(handover) };
         let hub = Self {
             board: Board::default(),
             metrics: Metrics::default(),
-            ways,
+            channels,
             control: Mutex::new(control),
             viewers_max,
             ending: watch::Sender::new(false),
@@ -103,7 +116,7 @@ impl Hub {
         name: &str,
         session: &str,
         role: Role,
-    ) -> Result<(ViewerId, mpsc::Receiver<Letter>), String> {
+    ) -> Result<(ViewerId, mpsc::Receiver<OutboundFrame>), String> {
         let mut control = self.control();
         let known = control.viewers.has_session(session);
         if !known && control.viewers.len() >= self.viewers_max {
@@ -112,10 +125,10 @@ impl Hub {
                 "{most} pages are open already; close one, or raise console.viewers_max"
             ));
         }
-        let (viewer, letters) = control.viewers.add(name.to_owned(), session.to_owned(), role);
+        let (viewer, frames) = control.viewers.add(name.to_owned(), session.to_owned(), role);
         control.lease.joined(viewer, session, role == Role::Operator);
         self.show(&control);
-        Ok((viewer, letters))
+        Ok((viewer, frames))
     }
 
     /// A page has gone.
@@ -126,7 +139,7 @@ impl Hub {
         self.show(&control);
         drop(control);
         // Whoever streams is missed by the silence too.
-        let _ = self.ways.commands.offer(Command::Left(viewer));
+        let _ = self.channels.commands.offer(Command::Left(viewer));
     }
 
     /// Pages that are open.
@@ -144,30 +157,30 @@ impl Hub {
     }
 
     /// Sends a frame to one viewer; one that does not read is shut out.
-    pub fn send(&self, viewer: ViewerId, frame: String) {
+    pub fn send(&self, viewer: ViewerId, message: &PageMessage<'_>) {
         let mut control = self.control();
         let Some(there) = control.viewers.get(viewer) else { return };
         if let Err(mpsc::error::TrySendError::Full(_)) =
-            there.mailbox.try_send(Letter::Frame(frame))
+            there.mailbox.try_send(OutboundFrame::Text(message.to_text()))
         {
             tracing::warn!(%viewer, "shut out: it does not read its answers");
             control.viewers.remove(viewer);
         }
     }
 
-    /// Answers what a viewer has asked for.
-    pub fn answer(&self, viewer: ViewerId, id: u64, outcome: Result<Json, String>) {
-        let mut frame = json!({ "t": "done", "id": id, "ok": outcome.is_ok() });
-        match outcome {
-            Ok(Json::Object(more)) => {
-                if let Some(frame) = frame.as_object_mut() {
-                    frame.extend(more);
-                }
-            }
-            Ok(_) => {}
-            Err(error) => frame["error"] = error.into(),
-        }
-        self.send(viewer, frame.to_string());
+    /// Answers a command of a viewer.
+    pub fn answer(&self, viewer: ViewerId, id: u64, outcome: Result<Option<Answer>, String>) {
+        let (answer, error) = match &outcome {
+            Ok(answer) => (answer.clone(), None),
+            Err(error) => (None, Some(error.as_str())),
+        };
+        let done = Done { id, ok: outcome.is_ok(), error, answer };
+        self.send(viewer, &PageMessage::Done(done));
+    }
+
+    /// Reports to a viewer that a message of its made no sense.
+    pub fn error(&self, viewer: ViewerId, error: &str) {
+        self.send(viewer, &PageMessage::Error { error });
     }
 
     /// Asks the bridge for something; the answer comes by [`Hub::answer`].
@@ -177,7 +190,7 @@ impl Hub {
         if let (Err(why), false) = (self.must_hold(viewer), is_free) {
             return self.answer(viewer, id, Err(why));
         }
-        if self.ways.commands.offer(Command::Do(viewer, id, verb)).is_err() {
+        if self.channels.commands.offer(Command::Do(viewer, id, verb)).is_err() {
             self.answer(viewer, id, Err("the console is busy; try again".to_owned()));
         }
     }
@@ -189,7 +202,7 @@ impl Hub {
         {
             return self.answer(viewer, id, Err(why));
         }
-        if self.ways.motions.offer(Motion { viewer, id, stop }).is_err() {
+        if self.channels.motions.offer(Motion { viewer, id, stop }).is_err() {
             self.answer(viewer, id, Err("the console is busy; use the emergency stop".to_owned()));
         }
     }
@@ -199,7 +212,7 @@ impl Hub {
         if let Err(why) = self.must_hold(viewer) {
             return self.answer(viewer, id, Err(why));
         }
-        if self.ways.restarts.try_send((viewer, id, service)).is_err() {
+        if self.channels.restarts.try_send((viewer, id, service)).is_err() {
             self.answer(viewer, id, Err("the supervisor is busy; try again".to_owned()));
         }
     }
@@ -210,7 +223,7 @@ impl Hub {
     /// Why it is not taken.
     pub fn sound(&self, viewer: ViewerId, frame: crate::voice::PcmFrame) -> Result<(), String> {
         self.must_hold(viewer)?;
-        let offered = self.ways.commands.offer(Command::Sound(viewer, frame));
+        let offered = self.channels.commands.offer(Command::Sound(viewer, frame));
         offered.map_err(|_| "sound was lost: the console is busy".to_owned())
     }
 
@@ -225,11 +238,13 @@ impl Hub {
         };
         self.show(&control);
         drop(control);
-        let told = taken.map(|taken| match taken {
-            Taken::Granted => json!({ "granted": true }),
-            Taken::Asked(until) => json!({ "granted": false, "expires_ms": ms(until) }),
+        let answer = taken.map(|taken| match taken {
+            Taken::Granted => Answer::Control { granted: true, expires_ms: None },
+            Taken::Asked(until) => {
+                Answer::Control { granted: false, expires_ms: Some(ms(until)) }
+            }
         });
-        self.answer(viewer, id, told.map_err(str::to_owned));
+        self.answer(viewer, id, answer.map(Some).map_err(str::to_owned));
     }
 
     /// The operator hands control to another viewer.
@@ -256,13 +271,13 @@ impl Hub {
         &self,
         viewer: ViewerId,
         change: impl FnOnce(&Viewers, &mut Lease) -> Result<(), String>,
-    ) -> Result<Json, String> {
+    ) -> Result<Option<Answer>, String> {
         self.must_hold(viewer)?;
         let mut control = self.control();
         let Control { viewers, lease } = &mut *control;
         change(viewers, lease)?;
         self.show(&control);
-        Ok(Json::Null)
+        Ok(None)
     }
 
     fn must_hold(&self, viewer: ViewerId) -> Result<(), String> {
@@ -308,14 +323,16 @@ impl Hub {
         let operator = lease.operator();
         let name = operator.and_then(|operator| viewers.get(operator)).map(|there| &there.name);
         let asked = lease.asked();
-        let section = json!({
-            "operator": operator.map(|operator| operator.to_string()),
-            "name": name,
-            "viewers": viewers.len(),
-            "asked_by": asked.map(|(by, _)| by.to_string()),
-            "expires_ms": asked.map(|(_, until)| ms(until)),
-        });
-        self.board.section("control", &section.to_string());
+        let section = ControlSection {
+            operator: operator.map(|operator| operator.to_string()),
+            name,
+            viewers: viewers.len(),
+            asked_by: asked.map(|(by, _)| by.to_string()),
+            expires_ms: asked.map(|(_, until)| ms(until)),
+        };
+        // Every section can be written.
+        let text = serde_json::to_string(&section).unwrap_or_default();
+        self.board.section("control", &text);
         self.metrics.viewers.set(viewers.len() as i64);
     }
 
@@ -323,9 +340,4 @@ impl Hub {
         // A lease is changed in one step: what a panic has left behind is whole.
         self.control.lock().unwrap_or_else(PoisonError::into_inner)
     }
-}
-
-/// Milliseconds of the monotonic clock, as pages know it.
-pub fn ms(at: Time) -> f64 {
-    at.ns() as f64 / 1e6
 }

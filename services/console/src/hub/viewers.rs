@@ -1,4 +1,4 @@
-//! Who looks on.
+//! The pages that are open.
 
 use std::collections::BTreeMap;
 
@@ -6,26 +6,26 @@ use tokio::sync::mpsc;
 
 use super::ViewerId;
 
-/// What is put into a viewer's mailbox.
+/// What is sent to one viewer alone.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Letter {
-    /// A frame for its page.
-    Frame(String),
-    /// The same page is open anew somewhere else; this one ends.
+pub enum OutboundFrame {
+    /// A text frame for its page.
+    Text(String),
+    /// The same page is open elsewhere; this one ends.
     Replaced,
 }
 
-/// Answers that wait for a viewer to read them. One that has more does not read.
-const MAILBOX: usize = 64;
+/// Frames that wait for a viewer; one with more does not read and is disconnected.
+const QUEUE_MAX: usize = 64;
 
-/// What a page wishes to be.
+/// The role that a page asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// In control, if nobody is.
+    /// The operator, if there is none.
     Operator,
-    /// Looks on, and may ask for control.
+    /// A viewer, who may ask for control.
     Viewer,
-    /// A display that nobody acts from.
+    /// A display without controls.
     Screen,
 }
 
@@ -41,7 +41,7 @@ pub(super) struct Viewer {
     pub(super) name: String,
     pub(super) session: String,
     pub(super) role: Role,
-    pub(super) mailbox: mpsc::Sender<Letter>,
+    pub(super) queue: mpsc::Sender<OutboundFrame>,
 }
 
 impl Viewers {
@@ -50,28 +50,28 @@ impl Viewers {
         name: String,
         session: String,
         role: Role,
-    ) -> (ViewerId, mpsc::Receiver<Letter>) {
+    ) -> (ViewerId, mpsc::Receiver<OutboundFrame>) {
         self.replace(&session);
         self.last += 1;
-        let (mailbox, letters) = mpsc::channel(MAILBOX);
-        self.open.insert(ViewerId(self.last), Viewer { name, session, role, mailbox });
-        (ViewerId(self.last), letters)
+        let (queue, frames) = mpsc::channel(QUEUE_MAX);
+        self.open.insert(ViewerId(self.last), Viewer { name, session, role, queue });
+        (ViewerId(self.last), frames)
     }
 
-    /// Ends what is still open of a session that comes anew: an old connection that nobody has seen
-    /// break, or a page that was doubled.
+    /// Ends the connection that a session still has: a broken one that was not noticed, or that of a
+    /// duplicated page.
     fn replace(&mut self, session: &str) {
         self.open.retain(|_, open| {
             let replaced = open.session == session;
             if replaced {
-                // A full mailbox is closed with its owner all the same.
-                let _ = open.mailbox.try_send(Letter::Replaced);
+                // A full queue is closed with its owner all the same.
+                let _ = open.queue.try_send(OutboundFrame::Replaced);
             }
             !replaced
         });
     }
 
-    /// Forgets a viewer; its socket ends once it has no mailbox.
+    /// Forgets a viewer; its socket ends once its queue is dropped.
     pub(super) fn remove(&mut self, viewer: ViewerId) -> bool {
         self.open.remove(&viewer).is_some()
     }

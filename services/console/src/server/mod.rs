@@ -1,4 +1,4 @@
-//! The web server: the page's files, the sockets, and what programs ask for.
+//! The web server: the page's files, sockets, and the API for programs.
 
 mod access;
 mod assets;
@@ -9,6 +9,7 @@ pub mod message;
 pub mod metrics;
 pub mod routes;
 mod socket;
+pub mod web;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -21,10 +22,10 @@ use axum::http::{Method, Response, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Redirect};
 use axum::routing::get;
-use serde_json::Value as Json;
 use tokio::net::TcpListener;
 
 use crate::hub::Hub;
+use crate::hub::outbound::PageSettings;
 pub use access::Access;
 
 /// How often the server shows that its tasks make progress.
@@ -39,8 +40,8 @@ pub struct App {
     pub access: Access,
     /// The group's name.
     pub group: String,
-    /// What a page is told at its beginning.
-    pub settings: Json,
+    /// Settings that concern pages.
+    pub settings: PageSettings,
     /// The robot's description (URDF).
     pub urdf: String,
     /// Where the sound of the robot's sentences lies.

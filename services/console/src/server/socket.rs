@@ -1,4 +1,4 @@
-//! One page's socket: what it says goes to the hub, what is new on the board goes to it.
+//! The socket of one page: its messages go to the hub, changes of the board go to it.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -6,7 +6,6 @@ use std::time::Duration;
 use axum::extract::ws::{CloseFrame, Message as Frame, WebSocket, close_code};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
-use serde_json::json;
 use service::clock;
 use tokio::sync::mpsc;
 use tokio::time::{Instant, interval_at, timeout};
@@ -14,18 +13,19 @@ use tokio::time::{Instant, interval_at, timeout};
 use super::App;
 use super::message::{self, Do, Hello, Message, PROTOCOL};
 use crate::hub::board::Cursor;
-use crate::hub::{Hub, Letter, ViewerId, ms};
+use crate::hub::outbound::{PageMessage, Welcome};
+use crate::hub::{Hub, OutboundFrame, ViewerId, ms};
 use crate::voice::PcmFrame;
 
 /// How long a page has for its first message.
 const HELLO_PATIENCE: Duration = Duration::from_secs(10);
 /// How long a frame may wait for a page that does not read.
 const READ_PATIENCE: Duration = Duration::from_secs(10);
-/// A page that says nothing for this long, not even that it is there, is gone.
+/// Longest silence of a page, pongs included.
 const SILENCE_MAX: Duration = Duration::from_secs(60);
-/// The code that tells a page that it was replaced by another one of its session.
+/// Close code of a page that was replaced by another one of its session.
 const REPLACED: u16 = 4001;
-/// How often a page is asked whether it is there.
+/// How often a page is pinged.
 const PROBE_EVERY: Duration = Duration::from_secs(20);
 
 type Out = SplitSink<WebSocket, Frame>;
@@ -39,17 +39,17 @@ pub(super) async fn serve(socket: WebSocket, app: Arc<App>) {
         Err(why) => return refuse(&mut out, close_code::POLICY, &why).await,
     };
     let Hello { session, name, last_line, role } = hello;
-    let (viewer, letters) = match app.hub.join(&name, &session, role) {
+    let (viewer, outbound) = match app.hub.join(&name, &session, role) {
         Ok(joined) => joined,
         Err(why) => return refuse(&mut out, close_code::AGAIN, &why).await,
     };
-    tracing::info!(%viewer, ?role, "a page has come");
+    tracing::info!(%viewer, ?role, "a page has connected");
     let ended = tokio::select! {
-        ended = write(&mut out, letters, viewer, last_line, &app) => ended,
+        ended = write(&mut out, outbound, viewer, last_line, &app) => ended,
         ended = read(&mut into, viewer, &app.hub) => ended,
     };
     app.hub.leave(viewer, clock::now());
-    tracing::info!(%viewer, "a page has gone: {ended}");
+    tracing::info!(%viewer, "a page has disconnected: {ended}");
     let (code, reason) = match ended {
         Ended::Console => (close_code::AWAY, "the console ends"),
         Ended::Slow => {
@@ -75,7 +75,7 @@ impl std::fmt::Display for Ended {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Page => "it was closed",
-            Self::Replaced => "it is open anew",
+            Self::Replaced => "it is open elsewhere",
             Self::Slow => "it did not read",
             Self::Console => "the console ends",
         })
@@ -86,13 +86,13 @@ async fn first(into: &mut In) -> Result<Hello, String> {
     let said = timeout(HELLO_PATIENCE, into.next()).await;
     match said.map_err(|_| "no hello within 10 s")? {
         Some(Ok(Frame::Text(text))) => message::hello(&text),
-        _ => Err("the first message is a hello".to_owned()),
+        _ => Err("expected a hello first".to_owned()),
     }
 }
 
 async fn refuse(out: &mut Out, code: u16, why: &str) {
-    let told = json!({ "t": "error", "error": why }).to_string();
-    let _ = timeout(READ_PATIENCE, out.send(Frame::Text(told.into()))).await;
+    let text = PageMessage::Error { error: why }.to_text();
+    let _ = timeout(READ_PATIENCE, out.send(Frame::Text(text.into()))).await;
     close(out, code, why).await;
 }
 
@@ -107,7 +107,7 @@ async fn close(out: &mut Out, code: u16, reason: &str) {
 
 async fn write(
     out: &mut Out,
-    mut letters: mpsc::Receiver<Letter>,
+    mut outbound: mpsc::Receiver<OutboundFrame>,
     viewer: ViewerId,
     last_line: u64,
     app: &App,
@@ -128,9 +128,9 @@ async fn write(
         tokio::select! {
             changed = changed.changed() => if changed.is_err() { return Ended::Console },
             _ = ending.wait_for(|ending| *ending) => return Ended::Console,
-            letter = letters.recv() => match letter {
-                Some(Letter::Frame(frame)) => frames.push(Frame::Text(frame.into())),
-                Some(Letter::Replaced) => return Ended::Replaced,
+            frame = outbound.recv() => match letter {
+                Some(OutboundFrame::Text(frame)) => frames.push(Frame::Text(frame.into())),
+                Some(OutboundFrame::Replaced) => return Ended::Replaced,
                 None => return Ended::Slow,
             },
             _ = probe.tick() => frames.push(Frame::Ping(Vec::new().into())),
@@ -155,17 +155,16 @@ async fn send(out: &mut Out, frame: Frame, hub: &Hub) -> Result<(), Ended> {
 }
 
 fn welcome(viewer: ViewerId, app: &App) -> String {
-    json!({
-        "t": "welcome",
-        "protocol": PROTOCOL,
-        "viewer": viewer.to_string(),
-        "version": env!("CARGO_PKG_VERSION"),
-        "group": app.group,
-        "server_ms": ms(clock::now()),
-        "first_line": app.hub.board.first_line(),
-        "settings": app.settings,
-    })
-    .to_string()
+    let welcome = Welcome {
+        protocol: PROTOCOL,
+        viewer: viewer.to_string(),
+        version: env!("CARGO_PKG_VERSION"),
+        group: &app.group,
+        server_ms: ms(clock::now()),
+        first_line: app.hub.board.first_line(),
+        settings: &app.settings,
+    };
+    PageMessage::Welcome(welcome).to_text()
 }
 
 async fn read(into: &mut In, viewer: ViewerId, hub: &Hub) -> Ended {
@@ -175,7 +174,7 @@ async fn read(into: &mut In, viewer: ViewerId, hub: &Hub) -> Ended {
             Ok(Some(Ok(Frame::Binary(bytes)))) => {
                 let taken = PcmFrame::read(&bytes).and_then(|frame| hub.sound(viewer, frame));
                 if let Err(why) = taken {
-                    error(viewer, hub, &why);
+                    hub.error(viewer, &why);
                 }
             }
             Ok(Some(Ok(Frame::Ping(_) | Frame::Pong(_)))) => {}
@@ -188,8 +187,7 @@ fn text_frame(text: &str, viewer: ViewerId, hub: &Hub) {
     let now = clock::now();
     match message::message(text, now) {
         Ok(Message::Ping(at)) => {
-            let pong = json!({ "t": "pong", "at": at, "server_ms": ms(now) });
-            hub.send(viewer, pong.to_string());
+            hub.send(viewer, &PageMessage::Pong { at: &at, server_ms: ms(now) });
         }
         Ok(Message::Do(id, what)) => match what {
             Do::Ask(verb) => hub.ask(viewer, id, verb),
@@ -200,10 +198,6 @@ fn text_frame(text: &str, viewer: ViewerId, hub: &Hub) {
             Do::Restart(service) => hub.restart(viewer, id, service),
         },
         Ok(Message::Wrong(id, why)) => hub.answer(viewer, id, Err(why)),
-        Err(why) => error(viewer, hub, &why),
+        Err(why) => hub.error(viewer, &why),
     }
-}
-
-fn error(viewer: ViewerId, hub: &Hub, why: &str) {
-    hub.send(viewer, json!({ "t": "error", "error": why }).to_string());
 }

@@ -1,24 +1,24 @@
-//! Studies with people, run from the console.
+//! User studies, run from the console.
 //!
-//! [`Study`] lives on the main thread: it is given the `do` verbs that begin with `study.`
-//! ([`Study::verb`]), everything that happens in the picture ([`Study::event`]), and a moment in every
-//! pass ([`Study::pass`]). What it shows is the section `study` ([`Study::section`]); what it serves
-//! over HTTP are [`routes`] below `/study/`.
+//! [`Study`] lives on the main thread: it handles the commands that begin with `study.`
+//! ([`Study::command`]) and the events of the dialogue ([`Study::on_event`]), and is called in every
+//! pass ([`Study::pass`]). It shows the section `study` ([`Study::section`]) and serves [`routes`]
+//! below `/study/`.
 //!
-//! The rules are in `desk.rs` and `watch.rs`, which are pure. Whatever they decide is written into the
-//! participant's journal, synced, and only then taken in and answered; so a console that is killed goes
-//! on where it was.
+//! The rules are in `study_controller.rs` and `trial_monitor.rs`, which are pure. Their events are
+//! written into the participant's journal and synced before they are applied and answered, so that a
+//! console that is killed resumes where it was.
 
-mod desk;
+mod study_controller;
 mod files;
 mod http;
-mod request;
+mod command;
 mod section;
-mod seen;
-mod switcher;
+mod robot_state;
+mod planner_switch;
 #[cfg(test)]
 mod tests;
-mod watch;
+mod trial_monitor;
 
 use std::path::PathBuf;
 
@@ -26,53 +26,54 @@ use config::Settings;
 use evaluation::user_study::{Entry, Event, Source};
 use messages::{Receipt, Source as Way};
 use scene::Question;
-use serde_json::{Value as Json, json};
+use serde_json::Value as Json;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::{Span, Time};
 
-use crate::hub::command::{Verb, Words};
-use crate::hub::{ViewerId, ms};
-use crate::picture::{Now, Picture, PictureEvent};
-use desk::Desk;
+use crate::hub::command::{Words, typed};
+use crate::hub::ms;
+use crate::hub::outbound::Answer;
+use crate::view_model::{DialogueEvent, Now, ViewModel, missing};
+use study_controller::StudyController;
 use files::Files;
-use seen::Seen;
-use switcher::Switcher;
-use watch::{Said, Wish};
+use robot_state::RobotState;
+use planner_switch::PlannerSwitch;
+use section::StudySection;
+use trial_monitor::{DialogueLine, RobotRequest};
 
 pub use http::routes;
 
-/// How often the same wish is made again while it does not come true.
-const WISH_EVERY: Span = Span::from_ms(2_000);
-/// … and one to the supervisor.
+/// How often the same request is made again while it does not come true.
+const REQUEST_EVERY: Span = Span::from_ms(2_000);
+/// How often an unfulfilled request to the supervisor is repeated.
 const ORDER_EVERY: Span = Span::from_ms(10_000);
-/// Words by which what stands is called off.
+/// Words that cancel an open interaction.
 const CANCEL: &str = "never mind";
 
-/// The study, where there is one.
+/// The study, where one is configured.
 #[derive(Debug)]
 pub struct Study(Option<Running>);
 
 #[derive(Debug)]
 struct Running {
-    desk: Desk,
+    controller: StudyController,
     files: Files,
-    switcher: Switcher,
+    switch: PlannerSwitch,
     fault_ms: f64,
-    /// The latest wish, and when it was made.
-    wished: Option<(Wish, Time)>,
-    /// What keeps the study from going on, for the experimenter.
+    /// The latest request, and when it was made.
+    requested: Option<(RobotRequest, Time)>,
+    /// What keeps the study from continuing, for the experimenter.
     trouble: Option<String>,
-    shown: Option<String>,
 }
 
-/// The folder of the study's data.
+/// Returns the folder of the study's data.
 pub fn folder(settings: &Settings, paths: &GroupPaths) -> PathBuf {
     settings.study.data_dir.clone().unwrap_or_else(|| paths.study())
 }
 
 impl Study {
-    /// Reads the settings, and goes on with who was there.
+    /// Reads the settings and recovers the participants.
     ///
     /// # Errors
     /// The data cannot be read.
@@ -83,18 +84,17 @@ impl Study {
         let mut files = Files::in_folder(folder(settings, paths));
         let people = files.recover().map_err(|why| Failure::new(Exit::Storage, why))?;
         let policy = std::env::current_exe().map(|own| own.with_file_name("whichone-policy"));
-        let switcher = policy.and_then(|policy| Switcher::start(paths.control_socket(), policy));
-        let switcher = switcher
+        let switch = policy.and_then(|policy| PlannerSwitch::start(paths.control_socket(), policy));
+        let switch = switch
             .map_err(|error| Failure::new(Exit::NotReached, format!("study's thread: {error}")))?;
         let protocol = settings.study.protocol.clone();
         Ok(Self(Some(Running {
-            desk: Desk::new(protocol, paths.name().to_string(), people),
+            controller: StudyController::new(protocol, paths.name().to_string(), people),
             files,
-            switcher,
+            switch,
             fault_ms: 1e3 * settings.study.fault.as_secs_f64(),
-            wished: None,
+            requested: None,
             trouble: None,
-            shown: None,
         })))
     }
 
@@ -103,116 +103,116 @@ impl Study {
         self.0.is_some()
     }
 
-    /// Does what a page asks for; its answer's fields.
+    /// Carries out a command of a page.
     ///
     /// # Errors
-    /// Why not, in a sentence with the cure.
-    pub fn verb(
+    /// Why not, in a sentence.
+    pub fn command(
         &mut self,
-        _viewer: ViewerId,
         verb: &str,
         arguments: &Json,
-        picture: &Picture,
+        model: &ViewModel,
         now: Now,
-    ) -> Result<Json, String> {
-        let cure = "set study.enabled, and reload the group";
-        let study = self.0.as_mut().ok_or_else(|| format!("there is no study: {cure}"))?;
-        let seen = study.seen(picture, now);
-        study.verb(verb, arguments, &seen)
+    ) -> Result<Answer, String> {
+        let help = "set study.enabled, and reload the group";
+        let study = self.0.as_mut().ok_or_else(|| format!("no study is running; help: {help}"))?;
+        let robot = study.robot(model, now);
+        study.command(verb, arguments, &robot)
     }
 
-    /// Something has happened.
-    pub fn event(&mut self, event: &PictureEvent, picture: &Picture, now: Now) {
+    /// Takes in an event of the dialogue.
+    pub fn on_event(&mut self, event: &DialogueEvent, model: &ViewModel, now: Now) {
         let Some(study) = &mut self.0 else { return };
         let said = match event {
-            PictureEvent::Heard(receipt) => heard(receipt),
-            PictureEvent::Said { prompt, presentation, question, text, .. }
+            DialogueEvent::Heard(receipt) => heard(receipt),
+            DialogueEvent::Presented { prompt, presentation, question, text, .. }
                 if *question != Question::None =>
             {
                 let (prompt, presentation, words) = (*prompt, *presentation, text.clone());
-                Some(Said::Asked { prompt, presentation, words })
+                Some(DialogueLine::Asked { prompt, presentation, words })
             }
             _ => None,
         };
-        let seen = study.seen(picture, now);
-        if let Some((id, event)) = said.and_then(|said| study.desk.said(&said, &seen)) {
+        let robot = study.robot(model, now);
+        if let Some((id, event)) = said.and_then(|said| study.controller.said(&said, &robot)) {
             study.note(&id, vec![event], now.unix_ms);
         }
     }
 
-    /// Time has passed: what the study wants the dialogue to do, as a viewer would.
-    pub fn pass(&mut self, picture: &Picture, now: Now) -> Vec<Verb> {
+    /// Takes in the robot's state; returns what is to be said to the robot.
+    pub fn pass(&mut self, model: &ViewModel, now: Now) -> Vec<Words> {
         let Some(study) = &mut self.0 else { return Vec::new() };
-        let seen = study.seen(picture, now);
+        let robot = study.robot(model, now);
         study.take_results(now.unix_ms);
-        if let Some((id, event)) = study.desk.look(&seen, study.fault_ms) {
+        if let Some((id, event)) = study.controller.look(&robot, study.fault_ms) {
             study.note(&id, vec![event], now.unix_ms);
         }
-        study.wish(&seen, now)
+        study.request(&robot, now)
     }
 
-    /// The section `study`; none while it is as it was.
-    pub fn section(&mut self, picture: &Picture, now: Now) -> Option<Json> {
-        let study = self.0.as_mut()?;
-        let seen = study.seen(picture, now);
-        let section = section::section(&study.desk, &seen, study.trouble.as_deref());
-        let text = section.to_string();
-        (study.shown.as_ref() != Some(&text)).then(|| {
-            study.shown = Some(text);
-            section
-        })
+    /// Returns the section `study` as JSON text.
+    pub fn section(&self, model: &ViewModel, now: Now) -> Option<String> {
+        let study = self.0.as_ref()?;
+        let robot = study.robot(model, now);
+        let section = StudySection::new(&study.controller, &robot, study.trouble.as_deref());
+        serde_json::to_string(&section).ok()
     }
 }
 
 impl Running {
-    fn seen<'a>(&self, picture: &'a Picture, now: Now) -> Seen<'a> {
-        Seen {
+    fn robot<'a>(&self, model: &'a ViewModel, now: Now) -> RobotState<'a> {
+        RobotState {
             at: now.unix_ms,
             ms: ms(now.at),
-            scene: picture.scene(),
-            view: picture.view(),
-            missing: seen::missing(picture.group()),
-            arm_is_busy: seen::arm_is_busy(picture.arm()),
-            is_switching: self.switcher.is_busy() || self.desk.owing().is_some(),
+            scene: model.scene(),
+            view: model.latest().view.as_ref(),
+            missing: model.group().and_then(missing).map(|service| service.name.as_str()),
+            arm_is_busy: robot_state::arm_is_busy(model.latest().arm.as_ref()),
+            is_switching: self.switch.is_busy() || self.controller.owing().is_some(),
         }
     }
 
-    fn verb(&mut self, verb: &str, arguments: &Json, seen: &Seen<'_>) -> Result<Json, String> {
-        let page = request::page(arguments)?;
+    fn command(
+        &mut self,
+        verb: &str,
+        arguments: &Json,
+        robot: &RobotState<'_>,
+    ) -> Result<Answer, String> {
+        let page = command::page(arguments)?;
         if verb == "find" {
-            let found = self.desk.of_page(&page);
-            return Ok(json!({
-                "participant": found.map(evaluation::user_study::Participant::id),
-                "stage": found.map(|person| person.stage.name()),
-            }));
+            let found = self.controller.of_page(&page);
+            return Ok(Answer::Found {
+                participant: found.map(|person| person.id().to_owned()),
+                stage: found.map(|person| person.stage.name()),
+            });
         }
-        let ask = request::read(verb, arguments)?;
-        let (id, events) = self.desk.ask(&page, &ask, seen, request::seed())?;
-        self.write(&id, events, seen.at).map_err(|error| {
+        let command = command::read(verb, arguments)?;
+        let (id, events) = self.controller.handle(&page, &command, robot, command::seed())?;
+        self.write(&id, events, robot.at).map_err(|error| {
             tracing::error!(participant = id, %error, "the study's data is not written");
             format!("The data cannot be written: {error}. Please tell the experimenter.")
         })?;
-        Ok(json!({ "participant": id }))
+        Ok(Answer::Participant { participant: id })
     }
 
-    /// Writes events down, and takes them in once they are on the disk.
+    /// Writes events to the journal and applies them once they are on the disk.
     fn write(&mut self, id: &str, events: Vec<Event>, at: u64) -> std::io::Result<()> {
         if events.is_empty() {
             return Ok(());
         }
         let entries: Vec<Entry> = events.into_iter().map(|event| Entry { at, event }).collect();
-        match (&entries[..], self.desk.people().iter().find(|person| person.id() == id)) {
+        match (&entries[..], self.controller.people().iter().find(|person| person.id() == id)) {
             ([deleted @ Entry { event: Event::Deleted, .. }], Some(person)) => {
-                self.files.replace(id, &desk::kept(person, deleted))?;
+                self.files.replace(id, &study_controller::kept(person, deleted))?;
             }
             _ => self.files.append(id, &entries)?,
         }
         self.trouble = None;
-        entries.iter().for_each(|entry| self.desk.apply(id, entry));
+        entries.iter().for_each(|entry| self.controller.apply(id, entry));
         Ok(())
     }
 
-    /// As [`Running::write`], where nobody waits for it: it comes again with the next look.
+    /// As [`Running::write`], where no page waits for an answer: the next pass repeats it.
     fn note(&mut self, id: &str, events: Vec<Event>, at: u64) {
         if let Err(error) = self.write(id, events, at) {
             tracing::error!(participant = id, %error, "the study's data is not written");
@@ -221,61 +221,51 @@ impl Running {
     }
 
     fn take_results(&mut self, at: u64) {
-        match self.switcher.result() {
-            Some((Wish::Restore(id), Ok(()))) => self.note(&id, vec![Event::Restored], at),
-            Some((wish, Err(why))) => {
-                tracing::warn!(?wish, why, "the policy is not switched");
+        match self.switch.result() {
+            Some((RobotRequest::Restore(id), Ok(()))) => self.note(&id, vec![Event::Restored], at),
+            Some((request, Err(why))) => {
+                tracing::warn!(?request, why, "the policy is not switched");
                 self.trouble = Some(format!("the policy cannot be switched: {why}"));
             }
             Some((_, Ok(()))) | None => {}
         }
     }
 
-    fn wish(&mut self, seen: &Seen<'_>, now: Now) -> Vec<Verb> {
-        let Some(wish) = self.desk.wish(seen) else {
-            self.wished = None;
+    fn request(&mut self, robot: &RobotState<'_>, now: Now) -> Vec<Words> {
+        let Some(request) = self.controller.request(robot) else {
+            self.requested = None;
             return Vec::new();
         };
-        let every = if wish == Wish::Cancel { WISH_EVERY } else { ORDER_EVERY };
-        let is_due = match &self.wished {
-            Some((before, at)) => *before != wish || now.at >= *at + every,
+        let every = if request == RobotRequest::Cancel { REQUEST_EVERY } else { ORDER_EVERY };
+        let is_due = match &self.requested {
+            Some((before, at)) => *before != request || now.at >= *at + every,
             None => true,
         };
-        if !is_due || self.switcher.is_busy() {
+        if !is_due || self.switch.is_busy() {
             return Vec::new();
         }
-        self.wished = Some((wish.clone(), now.at));
-        match &wish {
-            Wish::Cancel => return vec![Verb::Say(cancel())],
-            Wish::Switch(planner) => {
+        self.requested = Some((request.clone(), now.at));
+        match &request {
+            RobotRequest::Cancel => return vec![typed(CANCEL)],
+            RobotRequest::Switch(planner) => {
                 // Before it is done, so that it is given back whatever happens in between.
                 let event = Event::Switched { planner: planner.clone() };
-                let active = self.desk.active().map(|person| person.id().to_owned());
+                let active = self.controller.active().map(|person| person.id().to_owned());
                 active.into_iter().for_each(|id| self.note(&id, vec![event.clone()], now.unix_ms));
             }
-            Wish::Restore(_) => {}
+            RobotRequest::Restore(_) => {}
         }
-        self.switcher.order(wish);
+        self.switch.order(request);
         Vec::new()
     }
 }
 
-fn heard(receipt: &Receipt) -> Option<Said> {
+fn heard(receipt: &Receipt) -> Option<DialogueLine> {
     let is_typed = receipt.source == Way::Text.code();
-    (receipt.seq > 0).then(|| Said::Heard {
+    (receipt.seq > 0).then(|| DialogueLine::Heard {
         seq: receipt.seq,
         source: if is_typed { Source::Typed } else { Source::Voice },
         onset_ms: ms(Time(receipt.onset_ns)),
         words: receipt.note.as_str().unwrap_or_default().to_owned(),
     })
-}
-
-fn cancel() -> Words {
-    Words {
-        text: CANCEL.to_owned(),
-        alternatives: Vec::new(),
-        spoken: false,
-        began: None,
-        ended: None,
-    }
 }

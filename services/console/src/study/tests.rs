@@ -1,6 +1,6 @@
 //! The study's rules: every path of verbs and of what the robot does.
 
-mod world;
+mod simulated_study;
 
 use dialogue::Rng;
 use evaluation::user_study::{Event, Participant, Protocol, Stage, Status, Verdict};
@@ -8,46 +8,46 @@ use messages::Outcome;
 use scene::Scene;
 use serde_json::{Map, json};
 
-use super::desk::{Ask, Desk};
-use super::watch::Wish;
-use world::{FAULT_MS, PAGE, World, protocol};
+use super::study_controller::{Command, StudyController};
+use super::trial_monitor::RobotRequest;
+use simulated_study::{FAULT_MS, PAGE, SimulatedStudy, protocol};
 
 fn quick(points: u8) -> Map<String, serde_json::Value> {
     Map::from_iter([("quick".to_owned(), json!(points))])
 }
 
 /// From the beginning to the thanks, every interaction right.
-fn take_part(world: &mut World) {
-    world.ask(&Ask::Begin).unwrap();
-    world.ask(&Ask::Consent).unwrap();
+fn take_part(study: &mut SimulatedStudy) {
+    study.ask(&Command::Begin).unwrap();
+    study.ask(&Command::Consent).unwrap();
     let mut seq = 0;
-    while world.stage() != Some(Stage::Questionnaire) {
-        world.ask(&Ask::Next).unwrap();
-        if world.stage() != Some(Stage::Drawn) {
+    while study.stage() != Some(Stage::Questionnaire) {
+        study.ask(&Command::Next).unwrap();
+        if study.stage() != Some(Stage::Drawn) {
             continue;
         }
-        world.grant();
-        world.ask(&Ask::Start).unwrap();
+        study.grant();
+        study.ask(&Command::Start).unwrap();
         seq += 1;
-        world.say(seq);
-        world.ms += 5e3;
-        world.view.decision = "pick".to_owned();
-        world.look();
-        let desired = world.desired();
-        world.end(Outcome::Delivered, Some(&desired));
-        world.look();
-        world.check();
+        study.say(seq);
+        study.ms += 5e3;
+        study.view.decision = "pick".to_owned();
+        study.look();
+        let desired = study.desired();
+        study.end(Outcome::Delivered, Some(&desired));
+        study.look();
+        study.check();
     }
-    world.ask(&Ask::Answer(quick(4))).unwrap();
-    world.grant();
-    world.check();
+    study.ask(&Command::Answer(quick(4))).unwrap();
+    study.grant();
+    study.check();
 }
 
 #[test]
 fn somebody_takes_part_from_the_consent_to_the_thanks() {
-    let mut world = World::new(protocol());
-    take_part(&mut world);
-    let person = world.desk.of_page(PAGE).unwrap();
+    let mut study = SimulatedStudy::new(protocol());
+    take_part(&mut study);
+    let person = study.controller.of_page(PAGE).unwrap();
     assert_eq!((person.status(), person.counted().count()), (Status::Complete, 4));
     assert_eq!(person.trials.len(), 5, "one of practice");
     let policies: Vec<&str> = person.counted().map(|t| t.step.policy.as_str()).collect();
@@ -55,80 +55,80 @@ fn somebody_takes_part_from_the_consent_to_the_thanks() {
     let trial = &person.trials[1];
     assert_eq!((trial.verdict(), trial.seconds()), (Some(Verdict::Right), Some(10.0)));
     assert_eq!((trial.questions(), trial.utterances()), (2, 3));
-    assert_eq!((person.switched.clone(), world.view.planner.as_str()), (None, "lookahead"));
+    assert_eq!((person.switched.clone(), study.view.planner.as_str()), (None, "lookahead"));
     assert_eq!(person.answers["quick"], 4);
 }
 
 #[test]
 fn the_second_participant_waits_and_the_first_one_resumes() {
-    let mut world = World::new(protocol());
-    let code = world.ask(&Ask::Begin).unwrap();
-    assert_eq!(world.ask(&Ask::Begin), Ok(code.clone()), "a reload changes nothing");
+    let mut study = SimulatedStudy::new(protocol());
+    let code = study.ask(&Command::Begin).unwrap();
+    assert_eq!(study.ask(&Command::Begin), Ok(code.clone()), "a reload changes nothing");
     let other = "f".repeat(32);
-    assert!(world.ask_as(&other, &Ask::Begin).unwrap_err().contains("wait"));
-    assert!(world.ask_as(&other, &Ask::Consent).is_err());
-    assert!(world.ask_as(&other, &Ask::Resume("WRONG".to_owned())).is_err());
-    world.ask_as(&other, &Ask::Resume(code.to_lowercase())).unwrap();
-    world.ask_as(&other, &Ask::Consent).unwrap();
-    assert!(world.ask(&Ask::Next).is_err(), "the first page has lost it");
-    world.ask_as(&other, &Ask::Close(code)).unwrap();
-    world.ask(&Ask::Begin).unwrap();
-    world.check();
+    assert!(study.ask_as(&other, &Command::Begin).unwrap_err().contains("wait"));
+    assert!(study.ask_as(&other, &Command::Consent).is_err());
+    assert!(study.ask_as(&other, &Command::Resume("WRONG".to_owned())).is_err());
+    study.ask_as(&other, &Command::Resume(code.to_lowercase())).unwrap();
+    study.ask_as(&other, &Command::Consent).unwrap();
+    assert!(study.ask(&Command::Next).is_err(), "the first page has lost it");
+    study.ask_as(&other, &Command::Close(code)).unwrap();
+    study.ask(&Command::Begin).unwrap();
+    study.check();
 }
 
 #[test]
 fn nothing_begins_before_the_robot_is_ready_and_what_stands_is_called_off() {
-    let mut world = World::new(protocol());
-    world.ask(&Ask::Begin).unwrap();
-    world.ask(&Ask::Consent).unwrap();
-    world.view.interaction = 7;
-    world.ask(&Ask::Next).unwrap();
-    assert!(world.ask(&Ask::Start).is_err());
-    assert_eq!(world.desk.wish(&world.seen()), Some(Wish::Cancel));
-    world.end(Outcome::Cancelled, None);
-    world.missing = Some("arm");
-    assert!(world.ask(&Ask::Start).is_err());
-    world.missing = None;
-    world.view.planner = "optimal".to_owned();
-    assert_eq!(world.desk.wish(&world.seen()), Some(Wish::Switch("lookahead".to_owned())));
-    assert!(world.ask(&Ask::Start).is_err());
-    world.grant();
-    world.ask(&Ask::Start).unwrap();
-    let trial = world.desk.active().unwrap().trial().unwrap();
-    assert_eq!((trial.after, world.stage()), (7, Some(Stage::Running)));
+    let mut study = SimulatedStudy::new(protocol());
+    study.ask(&Command::Begin).unwrap();
+    study.ask(&Command::Consent).unwrap();
+    study.view.interaction = 7;
+    study.ask(&Command::Next).unwrap();
+    assert!(study.ask(&Command::Start).is_err());
+    assert_eq!(study.controller.request(&study.robot()), Some(RobotRequest::Cancel));
+    study.end(Outcome::Cancelled, None);
+    study.missing = Some("arm");
+    assert!(study.ask(&Command::Start).is_err());
+    study.missing = None;
+    study.view.planner = "optimal".to_owned();
+    assert_eq!(study.controller.request(&study.robot()), Some(RobotRequest::Switch("lookahead".to_owned())));
+    assert!(study.ask(&Command::Start).is_err());
+    study.grant();
+    study.ask(&Command::Start).unwrap();
+    let trial = study.controller.active().unwrap().trial().unwrap();
+    assert_eq!((trial.after, study.stage()), (7, Some(Stage::Running)));
 }
 
 /// The policy of the one before is given back first: else it would go in the middle of an interaction.
 #[test]
 fn the_next_participant_waits_until_the_policy_is_given_back() {
-    let mut world = World::new(Protocol { warmup: 0, ..protocol() });
-    let id = world.ask(&Ask::Begin).unwrap();
-    world.write(&id, vec![Event::Switched { planner: "lookahead".to_owned() }]);
-    world.ask(&Ask::Withdraw(false)).unwrap();
+    let mut study = SimulatedStudy::new(Protocol { warmup: 0, ..protocol() });
+    let id = study.ask(&Command::Begin).unwrap();
+    study.write(&id, vec![Event::Switched { planner: "lookahead".to_owned() }]);
+    study.ask(&Command::Withdraw(false)).unwrap();
     let next = "e".repeat(32);
-    for ask in [Ask::Begin, Ask::Consent, Ask::Next] {
-        world.ask_as(&next, &ask).unwrap();
+    for ask in [Command::Begin, Command::Consent, Command::Next] {
+        study.ask_as(&next, &ask).unwrap();
     }
-    let trial = world.desk.active().unwrap().trial().unwrap();
-    world.view.planner = trial.step.policy.clone();
-    assert!(world.ask_as(&next, &Ask::Start).is_err());
-    assert_eq!(world.desk.wish(&world.seen()), Some(Wish::Restore(id)));
-    world.grant();
-    world.ask_as(&next, &Ask::Start).unwrap();
+    let trial = study.controller.active().unwrap().trial().unwrap();
+    study.view.planner = trial.step.policy.clone();
+    assert!(study.ask_as(&next, &Command::Start).is_err());
+    assert_eq!(study.controller.request(&study.robot()), Some(RobotRequest::Restore(id)));
+    study.grant();
+    study.ask_as(&next, &Command::Start).unwrap();
 }
 
 /// A participant who has just begun an interaction.
-fn running(seconds_max: f64) -> World {
-    let mut world = World::new(Protocol { seconds_max, warmup: 0, ..protocol() });
-    world.ask(&Ask::Begin).unwrap();
-    world.ask(&Ask::Consent).unwrap();
-    world.ask(&Ask::Next).unwrap();
-    world.ask(&Ask::Start).unwrap();
-    world
+fn running(seconds_max: f64) -> SimulatedStudy {
+    let mut study = SimulatedStudy::new(Protocol { seconds_max, warmup: 0, ..protocol() });
+    study.ask(&Command::Begin).unwrap();
+    study.ask(&Command::Consent).unwrap();
+    study.ask(&Command::Next).unwrap();
+    study.ask(&Command::Start).unwrap();
+    study
 }
 
-fn outcome_of(world: &World) -> String {
-    let person = world.desk.of_page(PAGE).unwrap();
+fn outcome_of(study: &SimulatedStudy) -> String {
+    let person = study.controller.of_page(PAGE).unwrap();
     let json = evaluation::user_study::to_json(std::slice::from_ref(person));
     json["participants"][0]["trials"][0]["outcome"].as_str().unwrap().to_owned()
 }
@@ -143,107 +143,107 @@ fn each_end_of_an_interaction_is_told_from_the_others() {
         (Outcome::SceneChanged, "fault"),
     ];
     for (outcome, name) in ends {
-        let mut world = running(60.0);
-        world.say(1);
-        world.end(outcome, None);
-        world.look();
-        assert_eq!((outcome_of(&world).as_str(), world.stage()), (name, Some(Stage::Over)));
+        let mut study = running(60.0);
+        study.say(1);
+        study.end(outcome, None);
+        study.look();
+        assert_eq!((outcome_of(&study).as_str(), study.stage()), (name, Some(Stage::Over)));
     }
-    let mut world = running(60.0);
-    world.say(1);
-    world.end(Outcome::Delivered, Some("not what was desired"));
-    world.look();
-    assert_eq!(outcome_of(&world), "wrong");
+    let mut study = running(60.0);
+    study.say(1);
+    study.end(Outcome::Delivered, Some("not what was desired"));
+    study.look();
+    assert_eq!(outcome_of(&study), "wrong");
 }
 
 #[test]
 fn what_lasts_too_long_is_ended_and_called_off() {
     for says in [true, false] {
-        let mut world = running(60.0);
+        let mut study = running(60.0);
         if says {
-            world.say(1);
+            study.say(1);
         }
-        world.ms += 59e3;
-        world.look();
-        assert_eq!(world.stage(), Some(Stage::Running));
-        world.ms += 2e3;
-        world.look();
-        assert_eq!(outcome_of(&world), "too_long");
-        assert_eq!(world.desk.wish(&world.seen()), says.then_some(Wish::Cancel));
+        study.ms += 59e3;
+        study.look();
+        assert_eq!(study.stage(), Some(Stage::Running));
+        study.ms += 2e3;
+        study.look();
+        assert_eq!(outcome_of(&study), "too_long");
+        assert_eq!(study.controller.request(&study.robot()), says.then_some(RobotRequest::Cancel));
     }
 }
 
 #[test]
 fn technical_faults_spoil_an_interaction_and_it_is_repeated() {
-    let faults: [fn(&mut World); 5] = [
-        |world| {
-            world.missing = Some("grounding");
-            world.look();
-            world.ms += FAULT_MS + 1.0;
+    let faults: [fn(&mut SimulatedStudy); 5] = [
+        |study| {
+            study.missing = Some("grounding");
+            study.look();
+            study.ms += FAULT_MS + 1.0;
         },
-        |world| world.view.planner = "optimal".to_owned(),
-        |world| {
+        |study| study.view.planner = "optimal".to_owned(),
+        |study| {
             let text = include_str!("../../../../config/scenes/tools.toml");
-            world.scene = Scene::from_toml("tools.toml", text).unwrap();
+            study.scene = Scene::from_toml("tools.toml", text).unwrap();
         },
-        |world| {
-            world.end(Outcome::Cancelled, None);
-            world.say(2);
-            world.end(Outcome::Cancelled, None);
+        |study| {
+            study.end(Outcome::Cancelled, None);
+            study.say(2);
+            study.end(Outcome::Cancelled, None);
         },
-        |world| {
-            let id = world.desk.active().unwrap().id().to_owned();
-            world.ask_as("", &Ask::Spoilt(id, "the lights went out".to_owned())).unwrap();
+        |study| {
+            let id = study.controller.active().unwrap().id().to_owned();
+            study.ask_as("", &Command::Spoilt(id, "the lights went out".to_owned())).unwrap();
         },
     ];
     for (n, fault) in faults.into_iter().enumerate() {
-        let mut world = running(600.0);
-        world.say(1);
-        fault(&mut world);
-        world.look();
-        assert_eq!(outcome_of(&world), "fault", "{n}");
-        let person = world.desk.active().unwrap();
+        let mut study = running(600.0);
+        study.say(1);
+        fault(&mut study);
+        study.look();
+        assert_eq!(outcome_of(&study), "fault", "{n}");
+        let person = study.controller.active().unwrap();
         assert_eq!((person.counted().count(), person.next_step()), (0, Some(0)), "{n}");
-        world.check();
+        study.check();
     }
-    let mut world = running(600.0);
-    world.missing = Some("policy");
-    world.look();
-    world.ms += FAULT_MS - 1.0;
-    world.look();
-    world.missing = None;
-    world.look();
-    assert_eq!(world.stage(), Some(Stage::Running), "it was back in time");
+    let mut study = running(600.0);
+    study.missing = Some("policy");
+    study.look();
+    study.ms += FAULT_MS - 1.0;
+    study.look();
+    study.missing = None;
+    study.look();
+    assert_eq!(study.stage(), Some(Stage::Running), "it was back in time");
 }
 
 #[test]
 fn somebody_withdraws_and_may_have_the_data_deleted() {
-    let mut world = running(60.0);
-    world.view.planner = "lookahead".to_owned();
-    let id = world.desk.active().unwrap().id().to_owned();
-    world.write(&id, vec![Event::Switched { planner: "entropy".to_owned() }]);
-    world.say(1);
-    world.ask(&Ask::Withdraw(false)).unwrap();
-    assert_eq!(world.desk.people()[0].status(), Status::Withdrawn);
-    assert_eq!(world.desk.wish(&world.seen()), Some(Wish::Restore(id.clone())));
-    world.ask(&Ask::Withdraw(true)).unwrap();
-    let person = &world.desk.people()[0];
+    let mut study = running(60.0);
+    study.view.planner = "lookahead".to_owned();
+    let id = study.controller.active().unwrap().id().to_owned();
+    study.write(&id, vec![Event::Switched { planner: "entropy".to_owned() }]);
+    study.say(1);
+    study.ask(&Command::Withdraw(false)).unwrap();
+    assert_eq!(study.controller.people()[0].status(), Status::Withdrawn);
+    assert_eq!(study.controller.request(&study.robot()), Some(RobotRequest::Restore(id.clone())));
+    study.ask(&Command::Withdraw(true)).unwrap();
+    let person = &study.controller.people()[0];
     assert_eq!((person.status(), person.trials.len()), (Status::Deleted, 0));
     assert_eq!(person.switched.as_deref(), Some("entropy"), "it is still to be given back");
-    assert!(world.disk[0].1.iter().all(|entry| !entry.to_line().contains("heard")));
-    world.check();
-    assert!(world.ask(&Ask::Next).is_err());
+    assert!(study.disk[0].1.iter().all(|entry| !entry.to_line().contains("heard")));
+    study.check();
+    assert!(study.ask(&Command::Next).is_err());
 }
 
 #[test]
 fn what_somebody_left_standing_is_called_off() {
-    let mut world = running(60.0);
-    world.say(1);
-    let id = world.desk.active().unwrap().id().to_owned();
-    world.ask_as("", &Ask::Close(id)).unwrap();
-    assert_eq!(world.desk.wish(&world.seen()), Some(Wish::Cancel));
-    world.grant();
-    assert_eq!(world.desk.wish(&world.seen()), None);
+    let mut study = running(60.0);
+    study.say(1);
+    let id = study.controller.active().unwrap().id().to_owned();
+    study.ask_as("", &Command::Close(id)).unwrap();
+    assert_eq!(study.controller.request(&study.robot()), Some(RobotRequest::Cancel));
+    study.grant();
+    assert_eq!(study.controller.request(&study.robot()), None);
 }
 
 /// Any verbs in any order, with a robot and services that do as they please, and a console that is
@@ -253,20 +253,20 @@ fn whatever_is_asked_and_happens_the_data_only_grows_and_folds_again() {
     let mut ends = [0_u32; 2];
     for seed in 0..300 {
         let mut rng = Rng::new(seed);
-        let mut world = World::new(Protocol { interactions: 1, ..protocol() });
+        let mut study = SimulatedStudy::new(Protocol { interactions: 1, ..protocol() });
         let mut before: Vec<(String, usize)> = Vec::new();
         for step in 0..250 {
-            random_step(&mut world, &mut rng, step);
-            world.check();
+            random_step(&mut study, &mut rng, step);
+            study.check();
             for (id, lines) in before.drain(..) {
-                let (_, entries) = world.disk.iter().find(|(known, _)| *known == id).unwrap();
+                let (_, entries) = study.disk.iter().find(|(known, _)| *known == id).unwrap();
                 let deleted =
                     matches!(entries.last().unwrap().event, Event::Deleted | Event::Restored);
                 assert!(entries.len() >= lines || deleted, "data only grows");
             }
-            before = world.disk.iter().map(|(id, entries)| (id.clone(), entries.len())).collect();
+            before = study.disk.iter().map(|(id, entries)| (id.clone(), entries.len())).collect();
         }
-        for person in world.desk.people() {
+        for person in study.controller.people() {
             ends[0] += u32::from(person.status() == Status::Complete);
             ends[1] += u32::from(person.status() == Status::Withdrawn);
         }
@@ -274,51 +274,51 @@ fn whatever_is_asked_and_happens_the_data_only_grows_and_folds_again() {
     assert!(ends[0] > 50 && ends[1] > 50, "both are met often: {ends:?}");
 }
 
-fn random_step(world: &mut World, rng: &mut Rng, step: u64) {
-    world.ms += 1e3 * rng.uniform() * 8.0;
+fn random_step(study: &mut SimulatedStudy, rng: &mut Rng, step: u64) {
+    study.ms += 1e3 * rng.uniform() * 8.0;
     let names = ["white", "white2", "clear", "metal"];
     match rng.below(18) {
         0..=7 => {
-            let id = world.desk.people().last().map_or(String::new(), |p| p.id().to_owned());
+            let id = study.controller.people().last().map_or(String::new(), |p| p.id().to_owned());
             let asks = [
-                Ask::Begin,
-                Ask::Consent,
-                Ask::Next,
-                Ask::Next,
-                Ask::Start,
-                Ask::Start,
-                Ask::Answer(quick(1 + rng.below(6) as u8)),
-                Ask::Answer(quick(3)),
-                Ask::Resume(id.clone()),
+                Command::Begin,
+                Command::Consent,
+                Command::Next,
+                Command::Next,
+                Command::Start,
+                Command::Start,
+                Command::Answer(quick(1 + rng.below(6) as u8)),
+                Command::Answer(quick(3)),
+                Command::Resume(id.clone()),
             ];
             // Refusals are part of the walk.
-            let _ = world.ask(&asks[rng.below(asks.len())]);
+            let _ = study.ask(&asks[rng.below(asks.len())]);
         }
         8 if rng.below(12) == 0 => {
-            let id = world.desk.people().last().map_or(String::new(), |p| p.id().to_owned());
+            let id = study.controller.people().last().map_or(String::new(), |p| p.id().to_owned());
             let asks = [
-                Ask::Withdraw(rng.below(4) == 0),
-                Ask::Close(id.clone()),
-                Ask::Spoilt(id.clone(), "a test".to_owned()),
-                Ask::Delete(id),
+                Command::Withdraw(rng.below(4) == 0),
+                Command::Close(id.clone()),
+                Command::Spoilt(id.clone(), "a test".to_owned()),
+                Command::Delete(id),
             ];
-            let _ = world.ask(&asks[rng.below(asks.len())]);
+            let _ = study.ask(&asks[rng.below(asks.len())]);
         }
-        9..=11 => world.say(step),
+        9..=11 => study.say(step),
         12 | 13 => {
             let object =
-                if rng.below(2) == 0 { world.desired() } else { names[rng.below(4)].into() };
-            world.end(Outcome::Delivered, Some(&object));
+                if rng.below(2) == 0 { study.desired() } else { names[rng.below(4)].into() };
+            study.end(Outcome::Delivered, Some(&object));
         }
-        14 => world.missing = (rng.below(4) == 0).then_some("arm"),
-        15 | 16 => world.grant(),
+        14 => study.missing = (rng.below(4) == 0).then_some("arm"),
+        15 | 16 => study.grant(),
         _ => {
             // Killed, and up again.
-            let people = world.disk.iter().filter_map(|(_, entries)| Participant::fold(entries));
+            let people = study.disk.iter().filter_map(|(_, entries)| Participant::fold(entries));
             let people = people.collect();
-            world.desk =
-                Desk::new(Protocol { interactions: 1, ..protocol() }, "lab".to_owned(), people);
+            study.controller =
+                StudyController::new(Protocol { interactions: 1, ..protocol() }, "lab".to_owned(), people);
         }
     }
-    world.look();
+    study.look();
 }

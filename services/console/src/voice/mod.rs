@@ -1,17 +1,15 @@
-//! Sound of viewers on its way to the robot.
+//! Audio streams from viewers to the robot.
 //!
 //! The server reads a binary frame of the socket into a [`PcmFrame`] and hands it, if its viewer is in
-//! control, to the main loop, which owns every topic. There [`Voice`] gets it with
-//! [`Voice::frame`], is let work in every pass with [`Voice::pass`], and is told with
-//! [`Voice::left`] that a viewer has gone. What it returns is sent to the viewer as it is.
+//! control, to the main loop, which owns every topic. There [`Voice`] forwards it ([`Voice::frame`])
+//! and returns receipts ([`Voice::pass`]).
 //!
-//! Invariant: each stream that has begun is ended towards the robot, which is repeated until the robot
-//! has said that it is over or has been silent for [`PATIENCE`].
+//! Invariant: each stream that has begun is ended towards the robot; the end is repeated until the
+//! robot confirms it or has been silent for [`PATIENCE`].
 
 mod frame;
-mod ledger;
-mod receipts;
-mod times;
+mod stream_table;
+mod timestamps;
 
 use messages::{AudioChunk, RequestKey};
 use service::audio::AudioStream;
@@ -19,44 +17,41 @@ use service::client::Client;
 use service::clock;
 use service::{Span, Time};
 
-use crate::hub::ViewerId;
+use crate::hub::outbound::{PageMessage, StreamReceipt};
+use crate::hub::{Hub, ViewerId};
 pub use frame::PcmFrame;
-use ledger::{Ledger, Name, Step};
-use times::Times;
+use stream_table::{FrameKind, Name, StreamTable};
+use timestamps::Timestampstamps;
 
-/// How often the robot is told that a stream has ended.
+/// How often the end of a stream is repeated.
 const AGAIN: Span = Span::from_ms(250);
-/// How long the robot may take to say that a stream is over.
+/// How long the robot may take to confirm the end of a stream.
 const PATIENCE: Span = Span::from_ms(20_000);
 
-/// A frame for one viewer.
-pub type Letter = (ViewerId, String);
-
-/// The streams of all viewers. Lives on the main thread.
+/// The streams of all viewers.
 #[derive(Debug, Default)]
 pub struct Voice {
-    ledger: Ledger,
+    table: StreamTable,
     streams: Vec<Stream>,
-    letters: Vec<Letter>,
 }
 
-/// A stream that the robot has not said to be over.
+/// A stream whose end the robot has not confirmed.
 #[derive(Debug)]
 struct Stream {
     name: Name,
     audio: AudioStream,
-    times: Times,
-    /// Since when it has ended, and when the robot was told last.
+    timestamps: Timestamps,
+    /// When it ended, and when the end was sent last.
     ended: Option<(Time, Time)>,
-    /// Nobody is there any more whom its receipts would interest.
+    /// Whether its viewer has gone.
     deserted: bool,
 }
 
 impl Voice {
-    /// Takes in a piece of sound.
+    /// Forwards a frame of sound.
     ///
     /// # Errors
-    /// Why it goes nowhere, for its viewer.
+    /// It cannot be forwarded.
     pub fn frame(
         &mut self,
         client: &Client,
@@ -64,16 +59,16 @@ impl Voice {
         frame: PcmFrame,
     ) -> Result<(), String> {
         let (now, name) = (clock::now(), (viewer, frame.stream));
-        let gap = match self.ledger.take(name, frame.before, frame.samples.len())? {
-            Step::Ignore => return Ok(()),
-            Step::GoOn(gap) => gap,
-            Step::Begin => {
+        let gap = match self.table.take(name, frame.before, frame.samples.len())? {
+            FrameKind::Ignore => return Ok(()),
+            FrameKind::GoOn(gap) => gap,
+            FrameKind::Begin => {
                 if let Err(why) = self.begin(client, name) {
-                    self.ledger.forget(name);
+                    self.table.forget(name);
                     return Err(why);
                 }
-                // A page that opens another stream has lost sight of the one before.
-                self.ledger.others(name).into_iter().for_each(|other| self.end(other, now));
+                // A page has one stream at a time.
+                self.table.others(name).into_iter().for_each(|other| self.end(other, now));
                 0
             }
         };
@@ -89,41 +84,40 @@ impl Voice {
 
     fn begin(&mut self, client: &Client, name: Name) -> Result<(), String> {
         let audio = AudioStream::open(client, 0)
-            .map_err(|error| format!("the robot cannot be spoken to: {error}"))?;
-        let times = Times::default();
-        self.streams.push(Stream { name, audio, times, ended: None, deserted: false });
+            .map_err(|error| format!("cannot reach the speech service: {error}"))?;
+        let timestamps = Timestamps::default();
+        self.streams.push(Stream { name, audio, timestamps, ended: None, deserted: false });
         Ok(())
     }
 
     fn end(&mut self, name: Name, now: Time) {
-        self.ledger.end(name);
+        self.table.end(name);
         for stream in self.streams.iter_mut().filter(|stream| stream.name == name) {
             stream.end(now);
         }
     }
 
-    /// Looks what became of the streams: receipts and what else their viewers are to be told.
-    pub fn pass(&mut self, _client: &Client, now: Time) -> Vec<Letter> {
-        let Self { ledger, streams, letters } = self;
+    /// Forwards the receipts of the streams to their viewers, and forgets those that are over.
+    pub fn pass(&mut self, hub: &Hub, now: Time) {
+        let Self { table, streams } = self;
         streams.retain_mut(|stream| {
-            let goes_on = stream.pass(now, letters);
-            if !goes_on {
-                ledger.forget(stream.name);
+            let continues = stream.pass(hub, now);
+            if !continues {
+                table.forget(stream.name);
             }
-            goes_on
+            continues
         });
-        std::mem::take(letters)
     }
 
-    /// A viewer has gone: its streams end.
+    /// Ends the streams of a viewer that has gone.
     pub fn left(&mut self, viewer: ViewerId) {
         let now = clock::now();
-        self.ledger.of(viewer).into_iter().for_each(|name| self.end(name, now));
+        self.table.of(viewer).into_iter().for_each(|name| self.end(name, now));
         let own = self.streams.iter_mut().filter(|stream| stream.name.0 == viewer);
         own.for_each(|stream| stream.deserted = true);
     }
 
-    /// Whose stream it is that the robot knows by this key, and the number that the page gave it.
+    /// Returns the viewer and the page's number of the stream with this key.
     pub fn stream_of(&self, key: RequestKey) -> Option<(ViewerId, u32)> {
         self.streams.iter().find(|stream| stream.audio.key() == key).map(|stream| stream.name)
     }
@@ -135,34 +129,34 @@ impl Stream {
         let echo_free = u8::from(frame.echo_free) * AudioChunk::ECHO_FREE;
         self.audio.set_flags(held | echo_free);
         self.audio.skip(gap);
-        let taken = self.times.taken(frame.taken, frame.before, frame.samples.len(), now);
+        let taken = self.timestamps.taken(frame.taken, frame.before, frame.samples.len(), now);
         self.audio.send(taken, &frame.samples).map_err(|error| error.to_string())
     }
 
     fn end(&mut self, now: Time) {
         self.ended = self.ended.or(Some((now, now)));
-        self.tell_end(now);
+        self.send_end(now);
     }
 
-    fn tell_end(&mut self, now: Time) {
-        // One that is lost is told again.
+    fn send_end(&mut self, now: Time) {
+        // A lost one is repeated.
         let _ = self.audio.end(now);
     }
 
-    /// Returns whether there is more to come.
-    fn pass(&mut self, now: Time, letters: &mut Vec<Letter>) -> bool {
+    /// Returns whether more is to come.
+    fn pass(&mut self, hub: &Hub, now: Time) -> bool {
         let (viewer, number) = self.name;
-        let mut tell = |frame: String| {
+        let send = |receipt: StreamReceipt<'_>| {
             if !self.deserted {
-                letters.push((viewer, frame));
+                hub.send(viewer, &PageMessage::Receipt(receipt));
             }
         };
         match self.audio.receipts() {
             Ok(receipts) => {
-                receipts.iter().for_each(|receipt| tell(receipts::frame(number, receipt)));
+                receipts.iter().for_each(|r| send(StreamReceipt::new(number, r)));
             }
             Err(error) => {
-                tell(receipts::lost(number, &error.to_string()));
+                send(StreamReceipt::lost(number, &error.to_string()));
                 return false;
             }
         }
@@ -171,12 +165,13 @@ impl Stream {
         }
         match &mut self.ended {
             Some((since, _)) if now >= *since + PATIENCE => {
-                tell(receipts::lost(number, "the robot's hearing does not answer; say it again"));
+                let why = "the speech service does not answer; help: say it again";
+                send(StreamReceipt::lost(number, why));
                 return false;
             }
-            Some((_, told)) if now >= *told + AGAIN => {
-                *told = now;
-                self.tell_end(now);
+            Some((_, sent)) if now >= *sent + AGAIN => {
+                *sent = now;
+                self.send_end(now);
             }
             _ => {}
         }

@@ -31,13 +31,13 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
     let mut waiting = Waiting::new(told_before(paths));
     loop {
         conversation.look()?;
-        if let Some(ended) = waiting.look(conversation.seen()) {
+        if let Some(ended) = waiting.look(conversation.latest()) {
             remember(paths, ended.interaction.0)?;
             return tell(&ended, out);
         }
         let answer = |user: &mut TruthfulUser| {
             user.look(conversation.scene());
-            user.answer(conversation.seen())
+            user.answer(conversation.latest())
         };
         if let Some(answer) = user.as_mut().and_then(answer) {
             conversation.say(&answer)?;
@@ -83,7 +83,7 @@ pub(super) fn sentence(ended: &Ended) -> String {
 fn tell_timeout(conversation: &Conversation, started: Instant, out: &mut Output<'_>) -> Outcome {
     let seconds = started.elapsed().as_secs_f64();
     if out.is_json() {
-        let questions = conversation.seen().view.as_ref().map_or(0, |view| view.questions);
+        let questions = conversation.latest().view.as_ref().map_or(0, |view| view.questions);
         out.json(&json!({
             "object": null,
             "questions": questions,

@@ -109,13 +109,13 @@ impl<'a, 'b> Chat<'a, 'b> {
                 self.refused(&receipt)?;
             }
         }
-        let words = self.conversation.seen().words();
+        let words = self.conversation.latest().presented_line();
         let words = words.map(|(said, text)| (said, text.to_owned()));
         if let Some((said, text)) = words
             && self.printed != Some(said)
         {
             // What was said before this chat began is over, unless a question stands.
-            let seen = self.conversation.seen();
+            let seen = self.conversation.latest();
             let stands = seen.view.as_ref().is_some_and(|view| view.interaction != 0);
             let news = self.ended.is_some() || stands;
             self.printed = Some(said);
@@ -148,7 +148,7 @@ impl<'a, 'b> Chat<'a, 'b> {
     }
 
     fn outcome(&mut self) -> Result<(), CliError> {
-        let Some(view) = &self.conversation.seen().view else { return Ok(()) };
+        let Some(view) = &self.conversation.latest().view else { return Ok(()) };
         let last = view.last.clone();
         let id = last.as_ref().map_or(0, |last| last.interaction.0);
         let before = self.ended.replace(id);
@@ -189,7 +189,7 @@ impl<'a, 'b> Chat<'a, 'b> {
     }
 
     fn is_over(&self) -> bool {
-        let seen = self.conversation.seen();
+        let seen = self.conversation.latest();
         let rests = seen.view.as_ref().is_some_and(|view| view.interaction == 0);
         let asks = seen.open_question().is_some();
         self.conversation.is_heard() && seen.is_settled() && (rests || asks)
@@ -198,7 +198,7 @@ impl<'a, 'b> Chat<'a, 'b> {
     /// How long to stay once all is over: until the robot's last words are said, but they may have
     /// been cut short.
     fn farewell(&self) -> Duration {
-        let view = self.conversation.seen().view.as_ref();
+        let view = self.conversation.latest().view.as_ref();
         let said = self.printed.map(|(prompt, _)| prompt);
         match view.is_some_and(|view| Some(view.prompt) == said || view.text.is_empty()) {
             true => Duration::from_millis(50),

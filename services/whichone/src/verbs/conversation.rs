@@ -1,8 +1,7 @@
-//! A client that follows the dialogue: what the policy thinks, what is being said and heard, what
-//! the arm does.
+//! A client that follows the dialogue of a running group and may take part in it.
 //!
 //! Invariant: nothing here waits for a service. Topics outlive the services that write them, so a
-//! service that is killed and started again is only quiet for a while.
+//! service that is restarted is only silent for a while.
 
 use std::collections::{HashSet, VecDeque};
 use std::os::unix::fs::MetadataExt;
@@ -10,27 +9,22 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use config::Settings;
-use messages::{
-    Activity, ArmStatus, Hearing, Injection, PolicyView, Presented, Receipt, RequestKey, Sound,
-    topics,
-};
+use messages::{Injection, PolicyView, Receipt, RequestKey, Sound, topics};
 use scene::Scene;
 use service::Span;
-use service::bus::{EncodedReader, EncodedWriter, PortError, Reader};
+use service::bus::EncodedWriter;
 use service::client::{Client, random_key};
 use service::clock;
 use service::exit::Exit;
 use service::group::GroupPaths;
+use service::view::{Latest, LatestTopics, quiet};
 
 use crate::error::CliError;
 
-mod seen;
-
-pub(super) use seen::Seen;
 #[cfg(test)]
-pub(super) use seen::example;
+pub(super) mod example;
 
-/// How often whoever follows a dialogue looks at it.
+/// How often a client looks at the dialogue.
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(5);
 /// How long the policy may be silent before it is taken to be down.
 const FIRST_PATIENCE: Duration = Duration::from_secs(1);
@@ -41,18 +35,13 @@ const CHECK_EVERY: Duration = Duration::from_secs(1);
 
 /// A client of one group.
 pub(super) struct Conversation {
-    views: EncodedReader<PolicyView>,
-    presented: Reader<Presented>,
-    activity: Reader<Activity>,
-    hearing: Reader<Hearing>,
-    receipts: Reader<Receipt>,
-    statuses: Reader<ArmStatus>,
+    topics: LatestTopics,
     injections: Option<EncodedWriter<Injection>>,
     /// Words on their way to the robot, first to last; only the first has been sent.
     saying: VecDeque<Words>,
     /// Keys of everything said here.
     own: HashSet<RequestKey>,
-    seen: Seen,
+    latest: Latest,
     scene: Scene,
     may_be_absent: bool,
     paths: GroupPaths,
@@ -74,19 +63,13 @@ impl Conversation {
     /// It does not run, or is of another build.
     pub(super) fn join(paths: &GroupPaths) -> Result<Self, CliError> {
         let client = Client::join(paths)?;
-        let bus = client.bus();
         let settings = Settings::load_snapshot(&paths.run())?;
         Ok(Self {
-            views: client.views()?,
-            presented: bus.reader(&topics::PRESENTED)?,
-            activity: bus.reader(&topics::ACTIVITY)?,
-            hearing: bus.reader(&topics::HEARING)?,
-            receipts: bus.reader(&topics::RECEIPT)?,
-            statuses: bus.reader(&topics::STATUS)?,
+            topics: LatestTopics::open(client.bus())?,
             injections: None,
             saying: VecDeque::new(),
             own: HashSet::new(),
-            seen: Seen::default(),
+            latest: Latest::default(),
             scene: settings.scene,
             may_be_absent: settings.dialogue.prior.absent > 0.0,
             paths: paths.clone(),
@@ -96,9 +79,9 @@ impl Conversation {
         })
     }
 
-    /// What has been seen so far.
-    pub(super) fn seen(&self) -> &Seen {
-        &self.seen
+    /// Returns the latest message of every topic.
+    pub(super) fn latest(&self) -> &Latest {
+        &self.latest
     }
 
     /// The scene that the dialogue is about.
@@ -140,7 +123,7 @@ impl Conversation {
     /// The group has ended.
     pub(super) fn first_look(&mut self) -> Result<(), CliError> {
         let until = Instant::now() + FIRST_PATIENCE;
-        while Instant::now() < until && self.seen.view.is_none() {
+        while Instant::now() < until && self.latest.view.is_none() {
             self.look()?;
             thread::sleep(LOOK_EVERY);
         }
@@ -174,23 +157,16 @@ impl Conversation {
         if self.checked.elapsed() >= CHECK_EVERY {
             self.check()?;
         }
-        let mut receipts = Vec::new();
-        quiet(self.receipts.drain(|receipt| receipts.push(*receipt)).map(Some));
-        for receipt in &receipts {
-            self.seen.receipt(receipt);
+        let arrived = self.topics.take();
+        if let Some(view) = &arrived.view {
+            self.follow_scene(view);
+        }
+        self.latest.update(&arrived);
+        for receipt in &arrived.receipts {
             self.answered(receipt.request());
         }
-        // What is pending is looked at before the view, so that the view is the newer of the two.
-        self.seen.activity = quiet(self.activity.latest()).or(self.seen.activity);
-        self.seen.presented = quiet(self.presented.latest()).unwrap_or(self.seen.presented);
-        self.seen.hearing = quiet(self.hearing.latest()).or(self.seen.hearing);
-        self.seen.arm = quiet(self.statuses.latest()).or(self.seen.arm);
-        if let Some(view) = quiet(self.views.latest()) {
-            self.follow_scene(&view);
-            self.seen.view = Some(view);
-        }
         self.send();
-        Ok(receipts)
+        Ok(arrived.receipts)
     }
 
     fn answered(&mut self, key: RequestKey) {
@@ -221,18 +197,12 @@ impl Conversation {
     /// Notices a scene that was changed under way. The snapshot is of the new scene before the
     /// policy is, so that one look at it for each new key is enough.
     fn follow_scene(&mut self, view: &PolicyView) {
-        let before = self.seen.view.as_ref().map_or(self.scene.key(), |view| view.scene_key);
+        let before = self.latest.view.as_ref().map_or(self.scene.key(), |view| view.scene_key);
         let is_news = view.scene_key != before && view.scene_key != self.scene.key();
         if is_news && let Ok(settings) = Settings::load_snapshot(&self.paths.run()) {
             self.scene = settings.scene;
         }
     }
-}
-
-/// A connection that breaks as a service dies is made anew by the next one; until then there is
-/// nothing to take.
-fn quiet<T>(result: Result<Option<T>, PortError>) -> Option<T> {
-    result.ok().flatten()
 }
 
 fn folder(paths: &GroupPaths) -> Option<u64> {

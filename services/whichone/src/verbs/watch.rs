@@ -1,4 +1,4 @@
-//! `watch`: the robot's belief, the dialogue, the arm and the services, live.
+//! `watch`: live view of belief, dialogue, arm and services.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -13,27 +13,27 @@ use crate::cli::WatchArgs;
 use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
-use picture::Picture;
-
 mod frame;
-mod picture;
+mod model;
 
-/// How often a picture is drawn.
+use model::WatchModel;
+
+/// How often the screen is redrawn.
 const FRAME_EVERY: Duration = Duration::from_millis(200);
 /// How often the supervisor is asked.
 const STATUS_EVERY: Duration = Duration::from_secs(1);
-/// How long the supervisor may take; the last answer stands until there is another.
+/// How long the supervisor may take; the latest answer is shown until the next.
 const STATUS_PATIENCE: Duration = Duration::from_millis(500);
-/// How long one picture may wait for the services' first messages.
+/// How long `--once` waits for the services' first messages.
 const FIRST_PATIENCE: Duration = Duration::from_secs(1);
 
-/// Shows a picture of the group, again and again until interrupted.
+/// Shows the group, once or until interrupted.
 pub(super) fn watch(paths: &GroupPaths, args: &WatchArgs, out: &mut Output<'_>) -> Outcome {
-    let mut picture = Picture::new(Conversation::join(paths)?);
-    look_up(&mut picture);
+    let mut model = WatchModel::new(Conversation::join(paths)?);
+    ask_supervisor(&mut model);
     if args.once {
-        gather(&mut picture)?;
-        draw_once(&picture, out)?;
+        gather(&mut model)?;
+        draw_once(&model, out)?;
         return Ok(Exit::Ok);
     }
     let interrupt = Interrupt::listen()?;
@@ -41,7 +41,7 @@ pub(super) fn watch(paths: &GroupPaths, args: &WatchArgs, out: &mut Output<'_>) 
     if screen {
         out.text(frame::BEGIN)?;
     }
-    let ended = follow(&mut picture, &interrupt, screen, out);
+    let ended = follow(&mut model, &interrupt, screen, out);
     if screen {
         out.text(frame::END)?;
     }
@@ -49,23 +49,23 @@ pub(super) fn watch(paths: &GroupPaths, args: &WatchArgs, out: &mut Output<'_>) 
 }
 
 fn follow(
-    picture: &mut Picture,
+    model: &mut WatchModel,
     interrupt: &Interrupt,
     screen: bool,
     out: &mut Output<'_>,
 ) -> Result<(), CliError> {
     let (mut drawn, mut asked) = (None::<Instant>, Instant::now());
     while !interrupt.is_told() {
-        picture.look()?;
+        model.look()?;
         if asked.elapsed() >= STATUS_EVERY {
-            look_up(picture);
+            ask_supervisor(model);
             asked = Instant::now();
         }
         if drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME_EVERY) {
             if screen {
-                out.text(&frame::redraw(&frame::lines(picture, out.style(), columns())))?;
+                out.text(&frame::redraw(&frame::lines(model, out.style(), columns())))?;
             } else {
-                draw_once(picture, out)?;
+                draw_once(model, out)?;
             }
             drawn = Some(Instant::now());
         }
@@ -74,33 +74,33 @@ fn follow(
     Ok(())
 }
 
-fn draw_once(picture: &Picture, out: &mut Output<'_>) -> Result<(), CliError> {
+fn draw_once(model: &WatchModel, out: &mut Output<'_>) -> Result<(), CliError> {
     if out.is_json() {
-        return out.json(&picture.to_json());
+        return out.json(&model.view());
     }
-    let lines = frame::lines(picture, out.style(), columns());
+    let lines = frame::lines(model, out.style(), columns());
     lines.into_iter().try_for_each(|line| out.line(line))
 }
 
-/// Looks until every service has been heard of, but not for ever.
-fn gather(picture: &mut Picture) -> Result<(), CliError> {
+/// Waits until every service has published something, up to [`FIRST_PATIENCE`].
+fn gather(model: &mut WatchModel) -> Result<(), CliError> {
     let until = Instant::now() + FIRST_PATIENCE;
-    while Instant::now() < until && !picture.is_complete() {
-        picture.look()?;
+    while Instant::now() < until && !model.is_complete() {
+        model.look()?;
         thread::sleep(LOOK_EVERY);
     }
     Ok(())
 }
 
-fn look_up(picture: &mut Picture) {
-    let socket = picture.paths().control_socket();
+fn ask_supervisor(model: &mut WatchModel) {
+    let socket = model.paths().control_socket();
     if let Ok(Reply::Status(status)) = call(&socket, &Request::Status, STATUS_PATIENCE) {
-        picture.status = Some(*status);
+        model.status = Some(*status);
     }
 }
 
-/// Width of the terminal, characters; what most have where it does not say.
+/// Returns the width of the terminal, characters; 80 where it is not known.
 fn columns() -> usize {
-    let told = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
-    told.filter(|columns| (20..=400).contains(columns)).unwrap_or(80)
+    let given = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    given.filter(|columns| (20..=400).contains(columns)).unwrap_or(80)
 }

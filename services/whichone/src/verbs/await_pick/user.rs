@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use dialogue::{Answer, Model, Params};
 use scene::{Question, Scene};
 
-use crate::verbs::conversation::Seen;
+use service::view::Latest;
 
 /// Somebody who wants one object and answers every question once it was asked to its end.
 pub(super) struct TruthfulUser {
@@ -48,7 +48,7 @@ impl TruthfulUser {
     ///
     /// Nothing is said while earlier words are not yet applied, because the question may be
     /// answered already, and an answer that comes after the end would be a new request.
-    pub(super) fn answer(&mut self, seen: &Seen) -> Option<String> {
+    pub(super) fn answer(&mut self, seen: &Latest) -> Option<String> {
         let question = seen.open_question().filter(|_| seen.is_settled())?;
         let view = seen.view.as_ref()?;
         let is_of_scene = view.scene_key == self.scene.key() && self.scene.contains(view.question);

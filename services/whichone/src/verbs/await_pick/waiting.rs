@@ -2,7 +2,7 @@
 
 use messages::Ended;
 
-use crate::verbs::conversation::Seen;
+use service::view::Latest;
 
 /// Looks in a row that must find everything applied before an old outcome is told. The services
 /// publish their parts of one step within microseconds, but not at once.
@@ -24,7 +24,7 @@ impl Waiting {
     }
 
     /// The end that was waited for, if it has come.
-    pub(super) fn look(&mut self, seen: &Seen) -> Option<Ended> {
+    pub(super) fn look(&mut self, seen: &Latest) -> Option<Ended> {
         let view = seen.view.as_ref()?;
         if let Some(goal) = self.goal {
             return view.last.clone().filter(|last| last.interaction.0 >= goal);
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     /// Which interaction's end is told after all these looks, and at which of them.
-    fn told(before: u64, looks: &[Seen]) -> Option<(usize, u64)> {
+    fn told(before: u64, looks: &[Latest]) -> Option<(usize, u64)> {
         let mut waiting = Waiting::new(before);
         let ends = looks.iter().map(|seen| waiting.look(seen)).enumerate();
         ends.into_iter().find_map(|(n, ended)| Some((n, ended?.interaction.0)))
@@ -91,6 +91,6 @@ mod tests {
 
     #[test]
     fn nothing_is_told_before_something_is_seen() {
-        assert_eq!(told(0, &[Seen::default(), Seen::default(), Seen::default()]), None);
+        assert_eq!(told(0, &[Latest::default(), Latest::default(), Latest::default()]), None);
     }
 }

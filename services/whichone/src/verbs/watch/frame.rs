@@ -1,13 +1,14 @@
-//! The picture as lines of text.
+//! `watch` as lines of text.
 
 use messages::WireCode;
 use messages::{ArmStatus, MotionInhibit, PickOutcome, PickPhase, PolicyView};
 use scene::Scene;
+use service::view::Speaker;
 use service::status::GroupState;
 use service::status::{Actual, Wanted};
 use service::status::{GroupStatus, ServiceStatus};
 
-use super::picture::{Picture, Speaker, object_name};
+use super::model::{WatchModel, object_name};
 use crate::output::{Ink, Style};
 use crate::verbs::{await_pick, hearing, words};
 
@@ -27,21 +28,21 @@ pub(super) fn redraw(lines: &[String]) -> String {
     format!("\x1b[H{lines}\x1b[J")
 }
 
-/// The picture, no line wider than `columns`.
-pub(super) fn lines(picture: &Picture, style: Style, columns: usize) -> Vec<String> {
-    let scene = picture.scene();
-    let seen = picture.seen();
-    let mut lines = head(scene, picture.status.as_ref(), style);
+/// Returns the lines of one frame, none wider than `columns`.
+pub(super) fn lines(model: &WatchModel, style: Style, columns: usize) -> Vec<String> {
+    let scene = model.scene();
+    let latest = model.latest();
+    let mut lines = head(scene, model.status.as_ref(), style);
     lines.push(String::new());
-    match &seen.view {
+    match &latest.view {
         Some(view) => lines.extend(dialogue(scene, view, style, columns)),
         None => lines.push(style.paint(Ink::Yellow, "the policy is silent").to_string()),
     }
     lines.push(String::new());
-    lines.extend(said(picture, style, columns));
+    lines.extend(said(model, style, columns));
     lines.push(String::new());
-    lines.extend(seen.hearing.as_ref().map(|hearing| hearing::line(hearing, style)));
-    lines.push(match &seen.arm {
+    lines.extend(latest.hearing.as_ref().map(|hearing| hearing::line(hearing, style)));
+    lines.push(match &latest.arm {
         Some(arm) => arm_line(scene, arm, style),
         None => style.paint(Ink::Yellow, "the arm is silent").to_string(),
     });
@@ -149,16 +150,16 @@ fn bar(p: f64, length: usize) -> String {
     format!("{}{}", "█".repeat(eighths / 8), EIGHTHS[eighths % 8])
 }
 
-fn said(picture: &Picture, style: Style, columns: usize) -> Vec<String> {
+fn said(model: &WatchModel, style: Style, columns: usize) -> Vec<String> {
     let line = |(speaker, text): &(Speaker, String)| {
         let text = cut(text, columns.saturating_sub(8));
         match speaker {
             Speaker::Person => format!("   you  {text}"),
-            Speaker::Unmeant => style.paint(Ink::Dim, format!("        {text}")).to_string(),
+            Speaker::Unmeant | Speaker::System => style.paint(Ink::Dim, format!("        {text}")).to_string(),
             Speaker::Robot => format!(" {}  {text}", style.paint(Ink::Cyan, "robot")),
         }
     };
-    picture.said.iter().map(line).collect()
+    model.said.iter().map(line).collect()
 }
 
 fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {

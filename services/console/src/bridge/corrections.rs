@@ -1,0 +1,122 @@
+//! "Not that" and "start over" with one click: the utterance that each stands for.
+//!
+//! Pure. Both become words that a user could say too, so that they are in the transcript and in the
+//! journal, and do nothing that a dialogue could not.
+
+use messages::{ArmStatus, PickPhase, PolicyView};
+use scene::{ObjectId, Question, Scene};
+use service::view::Latest;
+
+/// Answers a question.
+const NO: &str = "no";
+/// Withdraws a request.
+const NEVER_MIND: &str = "never mind";
+/// Forgets what was said.
+const START_OVER: &str = "start over";
+
+/// Returns the words that deny what the robot asks about or is fetching. A fetched object is named,
+/// so that it is denied before the robot has announced it, too.
+///
+/// # Errors
+/// The robot asks and fetches nothing.
+pub(super) fn not_that(scene: &Scene, latest: &Latest) -> Result<String, String> {
+    let view = open(latest).ok_or(NOTHING)?;
+    match (view.decision.as_str(), view.question) {
+        ("pick", _) => {
+            let object = ObjectId::from(fetched(view, latest.arm.as_ref()));
+            let is_known = view.scene_key == scene.key() && object.index() < scene.objects().len();
+            is_known
+                .then(|| format!("no, not the {}", scene.describe(object)))
+                .ok_or(NOTHING.into())
+        }
+        ("ask", Question::Attribute(..) | Question::Point(_)) => Ok(NO.to_owned()),
+        ("ask", _) => Err("this is not a yes/no question; help: say which one it is".to_owned()),
+        _ => Err(NOTHING.to_owned()),
+    }
+}
+
+fn open(latest: &Latest) -> Option<&PolicyView> {
+    latest.view.as_ref().filter(|view| view.interaction != 0)
+}
+
+/// Returns the object of the pick under way: the arm's, or the most likely one where the order may not
+/// have reached the arm.
+fn fetched(view: &PolicyView, arm: Option<&ArmStatus>) -> usize {
+    let over = [PickPhase::Idle.code(), PickPhase::Done.code()];
+    let arm = arm.filter(|arm| arm.interaction == view.interaction && !over.contains(&arm.phase));
+    let by_belief = |a: &usize, b: &usize| view.belief[*a].total_cmp(&view.belief[*b]);
+    let likeliest = || (0..view.belief.len()).max_by(by_belief).unwrap_or(usize::MAX);
+    arm.map_or_else(likeliest, |arm| arm.object as usize)
+}
+
+const NOTHING: &str = "the robot neither asks about an object nor fetches one";
+
+/// Returns the words that make the robot forget the request, or withdraw a pick.
+///
+/// # Errors
+/// No request is open.
+pub(super) fn start_over(latest: &Latest) -> Result<&'static str, String> {
+    let view = open(latest).ok_or("no request is open; help: say what you want")?;
+    let fetches = matches!(view.decision.as_str(), "pick" | "cancel");
+    Ok(if fetches { NEVER_MIND } else { START_OVER })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use scene::{AttributeId, ValueId};
+
+    const BOWLS: &str = include_str!("../../../../config/scenes/bowls.toml");
+
+    fn scene() -> Scene {
+        Scene::from_toml("bowls.toml", BOWLS).unwrap()
+    }
+
+    fn latest(decision: &str, question: Question) -> Latest {
+        let view = PolicyView {
+            interaction: 3,
+            decision: decision.to_owned(),
+            question,
+            scene_key: scene().key(),
+            belief: vec![0.1, 0.6, 0.3],
+            ..PolicyView::default()
+        };
+        Latest { view: Some(view), ..Latest::default() }
+    }
+
+    fn with(latest: &Latest, change: impl FnOnce(&mut PolicyView)) -> Latest {
+        let mut latest = latest.clone();
+        latest.view.as_mut().into_iter().for_each(change);
+        latest
+    }
+
+    #[test]
+    fn corrections_deny_the_question_or_the_fetched_object() {
+        let value = Question::Attribute(AttributeId::from(0), ValueId::from(0));
+        let (picks, idle) = (latest("pick", Question::None), Latest::default());
+        let moves = PickPhase::Moving.code();
+        let arm = ArmStatus { interaction: 3, object: 5, phase: moves, ..ArmStatus::default() };
+        let fetches = Latest { arm: Some(arm), ..picks.clone() };
+        for (latest, expected) in [
+            (latest("ask", value), Some("no")),
+            (latest("ask", Question::Point(ObjectId::from(1))), Some("no")),
+            (latest("ask", Question::Which(AttributeId::from(0))), None),
+            (picks, Some("no, not the white bowl on the counter")),
+            (fetches.clone(), Some("no, not the clear bowl")),
+            (with(&fetches, |view| view.scene_key = 0), None),
+            (with(&fetches, |view| view.interaction = 0), None),
+            (idle, None),
+        ] {
+            assert_eq!(not_that(&scene(), &latest).ok().as_deref(), expected, "{latest:?}");
+        }
+    }
+
+    #[test]
+    fn corrections_start_over_or_withdraw_a_pick() {
+        let asks = latest("ask", Question::Point(ObjectId::from(0)));
+        assert_eq!(start_over(&asks).unwrap(), "start over");
+        assert_eq!(start_over(&latest("pick", Question::None)).unwrap(), "never mind");
+        assert!(start_over(&with(&asks, |view| view.interaction = 0)).is_err());
+        assert!(start_over(&Latest::default()).is_err());
+    }
+}

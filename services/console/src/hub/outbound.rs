@@ -1,0 +1,286 @@
+//! What the console sends to pages: text frames with JSON.
+
+use messages::{JointStates, Partial, Receipt, ReceiptStatus};
+use serde::Serialize;
+use serde_json::Value as Json;
+use service::Time;
+
+use super::ms;
+
+/// A message to a page.
+#[derive(Debug, Serialize)]
+#[serde(tag = "t", rename_all = "snake_case")]
+pub enum PageMessage<'a> {
+    /// The first message.
+    Welcome(Welcome<'a>),
+    /// The answer to a ping.
+    Pong {
+        /// The page's own time, as it sent it.
+        at: &'a Json,
+        /// The server's time, milliseconds.
+        server_ms: f64,
+    },
+    /// The answer to a command.
+    Done(Done<'a>),
+    /// A message or frame that made no sense.
+    Error {
+        /// What was wrong.
+        error: &'a str,
+    },
+    /// States of the joints.
+    Joints(Joints),
+    /// The interim text of an utterance.
+    Partial(Interim<'a>),
+    /// The receipt of a part of a stream.
+    Receipt(StreamReceipt<'a>),
+}
+
+/// What a page needs at first.
+#[derive(Debug, Serialize)]
+pub struct Welcome<'a> {
+    /// Version of the protocol.
+    pub protocol: u64,
+    /// The page's number.
+    pub viewer: String,
+    /// Version of the console.
+    pub version: &'a str,
+    /// The group's name.
+    pub group: &'a str,
+    /// The server's time, milliseconds.
+    pub server_ms: f64,
+    /// First line of the transcript.
+    pub first_line: u64,
+    /// What is switched on.
+    pub settings: &'a PageSettings,
+}
+
+/// Settings that concern pages.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct PageSettings {
+    /// The language where the page has chosen none.
+    pub language: String,
+    /// What the robot can do with sound.
+    pub voice: VoiceSettings,
+    /// Whether a study runs.
+    pub study: bool,
+}
+
+/// What the robot can do with sound.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct VoiceSettings {
+    /// Whether it recognises speech.
+    pub recogniser: bool,
+    /// Whether it speaks.
+    pub voice: bool,
+}
+
+/// The answer to a command, under the number that the page gave it.
+#[derive(Debug, Serialize)]
+pub struct Done<'a> {
+    /// The command's number.
+    pub id: u64,
+    /// Whether it was carried out.
+    pub ok: bool,
+    /// Why not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<&'a str>,
+    /// More about it.
+    #[serde(flatten)]
+    pub answer: Option<Answer>,
+}
+
+/// What a command has come to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Answer {
+    /// An utterance was accepted.
+    Accepted {
+        /// Its number.
+        seq: u64,
+    },
+    /// The motion stop has changed.
+    Motion {
+        /// Whether it is latched.
+        stopped: bool,
+    },
+    /// The viewer has control, or asks for it.
+    Control {
+        /// Whether it has control.
+        granted: bool,
+        /// When it gets control unless the operator keeps it, milliseconds.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        expires_ms: Option<f64>,
+    },
+    /// What the supervisor has done.
+    Supervisor {
+        /// In words.
+        message: String,
+    },
+    /// Whom a page of the study is about, and at which stage it is.
+    Found {
+        /// The participant's code.
+        participant: Option<String>,
+        /// The stage's name.
+        stage: Option<&'static str>,
+    },
+    /// Whom a verb of the study has concerned.
+    Participant {
+        /// The participant's code.
+        participant: String,
+    },
+}
+
+/// States of the joints, with as many digits as can be seen.
+#[derive(Debug, Serialize)]
+pub struct Joints {
+    at_ms: f64,
+    q: Vec<f64>,
+    grip: Vec<f64>,
+}
+
+/// The interim text of an utterance.
+#[derive(Debug, Serialize)]
+pub struct Interim<'a> {
+    stream: Option<u32>,
+    text: &'a str,
+    over: bool,
+    onset_ms: f64,
+}
+
+/// What the robot made of a part of a stream.
+#[derive(Debug, Serialize)]
+pub struct StreamReceipt<'a> {
+    stream: u32,
+    status: ReceiptStatus,
+    text: &'a str,
+    #[serde(flatten)]
+    heard: Option<Heard>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    utterances: Option<Option<u32>>,
+}
+
+/// An utterance of a stream.
+#[derive(Debug, Serialize)]
+struct Heard {
+    seq: Option<u64>,
+    confidence: f32,
+    snr_db: f32,
+    onset_ms: Option<f64>,
+    ended_ms: Option<f64>,
+}
+
+impl PageMessage<'_> {
+    /// Returns the message as JSON text.
+    pub fn to_text(&self) -> String {
+        // Every message can be written.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}
+
+impl Joints {
+    /// Rounds the states.
+    pub fn new(joints: &JointStates) -> Self {
+        let round = |number: f64, scale: f64| (number * scale).round() / scale;
+        Self {
+            at_ms: ms(Time(joints.at_ns)),
+            q: joints.position.iter().map(|q| round(*q, 1e5)).collect(),
+            grip: joints.gripper_percent.iter().map(|grip| round(*grip, 10.0)).collect(),
+        }
+    }
+}
+
+impl<'a> Interim<'a> {
+    /// Reads a message about stream `stream` of the page; an utterance that is over has no text.
+    pub fn new(partial: &'a Partial, stream: Option<u32>) -> Self {
+        let over = partial.over != 0;
+        let text = partial.text.as_str().unwrap_or_default();
+        let text = if over { "" } else { text };
+        Self { stream, text, over, onset_ms: ms(Time(partial.onset_ns)) }
+    }
+}
+
+impl<'a> StreamReceipt<'a> {
+    /// Reads a receipt about stream `stream` of the page.
+    pub fn new(stream: u32, receipt: &'a Receipt) -> Self {
+        let status = ReceiptStatus::from_code(receipt.status).unwrap_or(ReceiptStatus::Refused);
+        let time = |ns: u64| (ns > 0).then(|| ms(Time(ns)));
+        Self {
+            stream,
+            status,
+            text: receipt.note.as_str().unwrap_or_default(),
+            heard: Some(Heard {
+                seq: receipt.utterance().map(|seq| seq.0),
+                confidence: receipt.confidence,
+                snr_db: receipt.snr_db,
+                onset_ms: time(receipt.onset_ns),
+                ended_ms: time(receipt.end_ns),
+            }),
+            utterances: (status == ReceiptStatus::Over).then_some(Some(receipt.segments)),
+        }
+    }
+
+    /// Ends a stream whose outcome is unknown, for the reason `why`.
+    pub fn lost(stream: u32, why: &'a str) -> Self {
+        let status = ReceiptStatus::Over;
+        Self { stream, status, text: why, heard: None, utterances: Some(None) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::FixedText;
+    use serde_json::json;
+
+    fn read(message: PageMessage<'_>) -> Json {
+        serde_json::from_str(&message.to_text()).unwrap()
+    }
+
+    #[test]
+    fn page_messages_keep_their_keys() {
+        let mut states = JointStates { at_ns: 1_500_000, ..JointStates::default() };
+        states.position[3] = 0.123_456_789;
+        states.gripper_percent = [99.99, 0.0];
+        let joints = read(PageMessage::Joints(Joints::new(&states)));
+        assert_eq!((&joints["t"], &joints["at_ms"]), (&json!("joints"), &json!(1.5)));
+        assert_eq!((&joints["q"][3], &joints["grip"]), (&json!(0.12346), &json!([100.0, 0.0])));
+        let accepted = Receipt {
+            seq: 4,
+            onset_ns: 2_500_000,
+            end_ns: 1_002_500_000,
+            confidence: 0.5,
+            snr_db: 21.0,
+            note: FixedText::truncated("the white one"),
+            ..Receipt::default()
+        };
+        let status = ReceiptStatus::Over.code();
+        let over = Receipt { status, segments: 2, ..Receipt::default() };
+        let done = |answer| Done { id: 9, ok: true, error: None, answer };
+        for (message, expected) in [
+            (
+                PageMessage::Receipt(StreamReceipt::new(7, &accepted)),
+                json!({ "t": "receipt", "stream": 7, "status": "accepted", "text": "the white one",
+                        "seq": 4, "confidence": 0.5, "snr_db": 21.0, "onset_ms": 2.5,
+                        "ended_ms": 1002.5 }),
+            ),
+            (
+                PageMessage::Receipt(StreamReceipt::new(7, &over)),
+                json!({ "t": "receipt", "stream": 7, "status": "over", "text": "", "seq": null,
+                        "confidence": 0.0, "snr_db": 0.0, "onset_ms": null, "ended_ms": null,
+                        "utterances": 2 }),
+            ),
+            (
+                PageMessage::Receipt(StreamReceipt::lost(7, "no answer")),
+                json!({ "t": "receipt", "stream": 7, "status": "over", "text": "no answer",
+                        "utterances": null }),
+            ),
+            (
+                PageMessage::Done(done(Some(Answer::Accepted { seq: 7 }))),
+                json!({ "t": "done", "id": 9, "ok": true, "seq": 7 }),
+            ),
+            (PageMessage::Done(done(None)), json!({ "t": "done", "id": 9, "ok": true })),
+        ] {
+            assert_eq!(read(message), expected);
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! What the study makes of what it sees: how the running interaction goes, and what it wants of the
+//! robot. Pure.
+
+use evaluation::user_study::{Event, Fault, Participant, Source, Stage, Trial, Verdict};
+use messages::{Ended, Outcome, PolicyView};
+
+use super::study_controller::StudyController;
+use super::robot_state::{NotReady, RobotState};
+
+/// Utterances and questions of an interaction that are written down.
+const LINES_MAX: usize = 500;
+
+/// What the study wants of the robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum RobotRequest {
+    /// What stands is to be called off.
+    Cancel,
+    /// The policy is to decide by that planner.
+    Switch(String),
+    /// The policy is to be given its configured planner back, after that participant.
+    Restore(String),
+}
+
+/// Something that was said.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum DialogueLine {
+    /// By the participant.
+    Heard {
+        /// The utterance's number.
+        seq: u64,
+        /// By which way.
+        source: Source,
+        /// When it began; 0 where that is not known.
+        onset_ms: f64,
+        /// The words.
+        words: String,
+    },
+    /// By the robot.
+    Asked {
+        /// The question's number.
+        prompt: u64,
+        /// How often it was asked before, and once.
+        presentation: u32,
+        /// The words.
+        words: String,
+    },
+}
+
+impl StudyController {
+    /// The running interaction.
+    fn running(&self) -> Option<(&Participant, &Trial)> {
+        let person = self.active().filter(|person| person.stage == Stage::Running)?;
+        Some((person, person.trial()?))
+    }
+
+    /// What follows from something that was said.
+    pub(super) fn said(&self, said: &DialogueLine, robot: &RobotState<'_>) -> Option<(String, Event)> {
+        let (person, trial) = self.running()?;
+        if trial.said.len() + trial.asked.len() >= LINES_MAX {
+            return None;
+        }
+        let kept = |words: &str| person.begun.protocol.keep_words.then(|| words.to_owned());
+        let event = match said {
+            DialogueLine::Heard { seq, source, onset_ms, words } => {
+                let onset_ms = if *onset_ms > 0.0 { *onset_ms } else { robot.ms };
+                let (seq, source, accepted_ms) = (*seq, *source, robot.ms);
+                Event::Heard { seq, source, onset_ms, accepted_ms, words: kept(words) }
+            }
+            DialogueLine::Asked { prompt, presentation, words } => {
+                let (prompt, presentation) = (*prompt, *presentation);
+                Event::Asked { prompt, presentation, words: kept(words) }
+            }
+        };
+        Some((person.id().to_owned(), event))
+    }
+
+    /// What follows from what is robot; ask again once it is written down.
+    pub(super) fn look(&mut self, robot: &RobotState<'_>, fault_ms: f64) -> Option<(String, Event)> {
+        match robot.missing {
+            None => self.missing_since = None,
+            Some(_) => _ = self.missing_since.get_or_insert(robot.ms),
+        }
+        let away_ms = self.missing_since.map_or(0.0, |since| robot.ms - since);
+        let (person, trial) = self.running()?;
+        let event = spoilt(trial, robot, away_ms > fault_ms)
+            .or_else(|| ended(trial, robot))
+            .or_else(|| too_long(trial, robot, person.begun.protocol.seconds_max))
+            .or_else(|| decided(trial, robot));
+        Some((person.id().to_owned(), event?))
+    }
+
+    /// What the study wants of the robot just now.
+    pub(super) fn request(&self, robot: &RobotState<'_>) -> Option<RobotRequest> {
+        let view = robot.view?;
+        if let Some(person) = self.owing() {
+            return Some(RobotRequest::Restore(person.id().to_owned()));
+        }
+        let Some(person) = self.active() else { return self.left_standing(view) };
+        let trial = person.trial()?;
+        match person.stage {
+            Stage::Drawn => match robot.not_ready(&trial.step.policy) {
+                Some(NotReady::Busy) if view.interaction != 0 => Some(RobotRequest::Cancel),
+                Some(NotReady::Planner) if view.interaction != 0 => Some(RobotRequest::Cancel),
+                Some(NotReady::Planner) if view.planner == trial.step.policy => None,
+                Some(NotReady::Planner) => Some(RobotRequest::Switch(trial.step.policy.clone())),
+                _ => None,
+            },
+            Stage::Over if view.interaction != 0 => Some(RobotRequest::Cancel),
+            _ => None,
+        }
+    }
+
+    /// Somebody who has ended, and for whom the policy was switched and not yet given back.
+    pub(super) fn owing(&self) -> Option<&Participant> {
+        let owes = |person: &&Participant| person.stage.is_final() && person.switched.is_some();
+        self.people().iter().find(owes)
+    }
+
+    /// The interaction of somebody who went away in the middle.
+    fn left_standing(&self, view: &PolicyView) -> Option<RobotRequest> {
+        let trial = self.people().last()?.trial()?;
+        let left = trial.end.is_none() && trial.started_at.is_some();
+        (left && view.interaction == trial.after + 1).then_some(RobotRequest::Cancel)
+    }
+}
+
+fn spoilt(trial: &Trial, robot: &RobotState<'_>, is_away: bool) -> Option<Event> {
+    let fault = |fault, why: String| Some(Event::Faulted { fault, why });
+    if is_away {
+        let name = robot.missing.unwrap_or_default();
+        return fault(Fault::Service, format!("the service {name} was away for too long"));
+    }
+    if robot.scene_key() != trial.drawn.scene_key {
+        return fault(Fault::Scene, "the scene was changed".to_owned());
+    }
+    let view = robot.view?;
+    if view.planner != trial.step.policy {
+        return fault(Fault::Planner, format!("the policy decides by {}", view.planner));
+    }
+    let latest = robot.latest_interaction();
+    let ended = view.last.as_ref().map_or(0, |last| last.interaction);
+    if latest < trial.after {
+        return fault(Fault::Missed, "the robot was started afresh".to_owned());
+    }
+    if ended > trial.after + 1 {
+        return fault(Fault::Missed, "the console was away as it ended".to_owned());
+    }
+    None
+}
+
+/// The robot has ended it.
+fn ended(trial: &Trial, robot: &RobotState<'_>) -> Option<Event> {
+    let last = robot.view?.last.as_ref().filter(|last| last.interaction == trial.after + 1)?;
+    let verdict = match last.outcome {
+        Outcome::Delivered if last.name.as_ref() == Some(&trial.drawn.object) => Verdict::Right,
+        Outcome::Delivered => Verdict::Wrong,
+        Outcome::Failed => Verdict::Failed,
+        Outcome::Cancelled => Verdict::Cancelled,
+        Outcome::Abandoned => Verdict::Abandoned,
+        Outcome::NotHere => Verdict::NotHere,
+        Outcome::SceneChanged => {
+            let why = "the scene was changed".to_owned();
+            return Some(Event::Faulted { fault: Fault::Scene, why });
+        }
+    };
+    Some(Event::Ended {
+        verdict,
+        interaction: last.interaction,
+        object: last.name.clone(),
+        questions: last.questions,
+        utterances: utterances(last),
+        seconds: Some(last.seconds),
+        ended_ms: robot.ms,
+    })
+}
+
+fn utterances(last: &Ended) -> u32 {
+    let (first, latest) = last.utterances;
+    u32::try_from(latest.saturating_sub(first) + 1).unwrap_or(u32::MAX)
+}
+
+/// It lasts longer than it may: from the first utterance, or from the start where nothing was said.
+fn too_long(trial: &Trial, robot: &RobotState<'_>, seconds_max: f64) -> Option<Event> {
+    let waited_ms = match trial.said.first() {
+        Some(said) => robot.ms - said.onset_ms,
+        None => robot.at.saturating_sub(trial.started_at?) as f64,
+    };
+    let view = robot.view.filter(|view| view.interaction == trial.after + 1);
+    (waited_ms > 1e3 * seconds_max).then(|| Event::Ended {
+        verdict: Verdict::TooLong,
+        interaction: view.map_or(0, |view| view.interaction),
+        object: None,
+        questions: view.map_or(0, |view| view.questions),
+        utterances: 0,
+        seconds: None,
+        ended_ms: robot.ms,
+    })
+}
+
+fn decided(trial: &Trial, robot: &RobotState<'_>) -> Option<Event> {
+    let view = robot.view.filter(|view| view.interaction == trial.after + 1)?;
+    let is_new = trial.decided_ms.is_none() && view.decision == "pick";
+    is_new.then_some(Event::Decided { decided_ms: robot.ms })
+}

@@ -1,0 +1,232 @@
+//! Latency of the robot's answers: from the end of an utterance to its text, to its meaning, to a
+//! decision, to the first sound.
+
+use std::collections::VecDeque;
+
+use messages::{Observation, Presented, Receipt, RobotAct};
+use serde::Serialize;
+
+/// Answers over which the quantiles are taken.
+const KEPT: usize = 500;
+/// Utterances without an answer.
+const OPEN_MAX: usize = 32;
+/// Longest time from a meaning to the decision about it, nanoseconds: the robot defers a decision for
+/// ten seconds at most. A question after a longer silence is not an answer.
+const DECIDED_NS_MAX: u64 = 11_000_000_000;
+
+/// The stages of one answer, milliseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Stages {
+    /// From the end of the utterance to its text.
+    #[serde(rename = "heard_ms")]
+    pub heard: f64,
+    /// From the text to its meaning.
+    #[serde(rename = "understood_ms")]
+    pub understood: f64,
+    /// From the meaning to a decision.
+    #[serde(rename = "decided_ms")]
+    pub decided: f64,
+    /// From the decision to the first sound.
+    #[serde(rename = "spoken_ms")]
+    pub spoken: f64,
+    /// All of it.
+    #[serde(rename = "total_ms")]
+    pub total: f64,
+}
+
+/// The section `latency`: stages of the latest answer and their quantiles.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(super) struct LatencySection {
+    last: Option<Stages>,
+    p50: Option<Stages>,
+    p99: Option<Stages>,
+    count: u64,
+}
+
+/// The latest answers.
+#[derive(Clone, Debug, Default)]
+pub struct Latency {
+    open: VecDeque<Open>,
+    done: VecDeque<Stages>,
+    count: u64,
+    news: Vec<Stages>,
+}
+
+/// An utterance without an answer, nanoseconds; 0 for unknown.
+#[derive(Clone, Copy, Debug, Default)]
+struct Open {
+    seq: u64,
+    end: u64,
+    accepted: u64,
+    grounded: u64,
+    prompt: u64,
+    decided: u64,
+}
+
+impl Latency {
+    /// Takes in that an utterance was accepted.
+    pub(super) fn on_receipt(&mut self, receipt: &Receipt) {
+        if receipt.seq > 0 && receipt.end_ns > 0 {
+            self.open(receipt.seq).into_iter().for_each(|open| open.end = receipt.end_ns);
+        }
+    }
+
+    /// Takes in that it was understood.
+    pub(super) fn on_observation(&mut self, observation: &Observation) {
+        if let Some(open) = self.open(observation.seq) {
+            (open.accepted, open.grounded) = (observation.accepted_ns, observation.grounded_ns);
+        }
+    }
+
+    /// Takes in the decision about it.
+    pub(super) fn on_act(&mut self, act: &RobotAct) {
+        let open = self.open.iter_mut().find(|open| open.seq == act.utterance);
+        if let Some(open) = open.filter(|open| open.prompt == 0 && act.presentation == 1) {
+            (open.prompt, open.decided) = (act.prompt, act.decided_ns);
+        }
+    }
+
+    /// Takes in that the robot speaks.
+    pub(super) fn on_presented(&mut self, presented: &Presented) {
+        if presented.prompt == 0 || presented.presentation != 1 {
+            return;
+        }
+        let prompt = presented.prompt;
+        let Some(at) = self.open.iter().position(|open| open.prompt == prompt) else { return };
+        let open = self.open.remove(at).unwrap_or_default();
+        // Earlier utterances are not answered any more.
+        self.open.retain(|other| other.seq > open.seq);
+        self.finish(&open, presented.started_ns);
+    }
+
+    fn finish(&mut self, open: &Open, started: u64) {
+        let marks = [open.end, open.accepted, open.grounded, open.decided, started];
+        let is_late = open.decided.saturating_sub(open.grounded) > DECIDED_NS_MAX;
+        if marks[0] == 0 || !marks.is_sorted() || is_late {
+            return;
+        }
+        let ms = |from: usize| (marks[from + 1] - marks[from]) as f64 / 1e6;
+        let total = (started - open.end) as f64 / 1e6;
+        let stages =
+            Stages { heard: ms(0), understood: ms(1), decided: ms(2), spoken: ms(3), total };
+        if self.done.len() == KEPT {
+            self.done.pop_front();
+        }
+        self.done.push_back(stages);
+        self.count += 1;
+        self.news.push(stages);
+    }
+
+    /// Takes the answers since the last call.
+    pub fn take_news(&mut self) -> Vec<Stages> {
+        std::mem::take(&mut self.news)
+    }
+
+    /// Returns an utterance's entry, made where there is none.
+    fn open(&mut self, seq: u64) -> Option<&mut Open> {
+        if let Some(at) = self.open.iter().position(|open| open.seq == seq) {
+            return self.open.get_mut(at);
+        }
+        if self.open.len() == OPEN_MAX {
+            self.open.pop_front();
+        }
+        self.open.push_back(Open { seq, ..Open::default() });
+        self.open.back_mut()
+    }
+
+    /// Returns the section, to a tenth of a millisecond.
+    pub(super) fn section(&self) -> LatencySection {
+        let quantile = |q: f64| self.quantiles(q).map(Stages::rounded);
+        LatencySection {
+            last: self.done.back().map(|stages| stages.rounded()),
+            p50: quantile(0.5),
+            p99: quantile(0.99),
+            count: self.count,
+        }
+    }
+
+    /// Returns the quantile of each stage.
+    fn quantiles(&self, q: f64) -> Option<Stages> {
+        let of = |stage: fn(&Stages) -> f64| {
+            let mut all: Vec<f64> = self.done.iter().map(stage).collect();
+            all.sort_by(f64::total_cmp);
+            let last = all.len().checked_sub(1)?;
+            all.get((last as f64 * q).round() as usize).copied()
+        };
+        Some(Stages {
+            heard: of(|s| s.heard)?,
+            understood: of(|s| s.understood)?,
+            decided: of(|s| s.decided)?,
+            spoken: of(|s| s.spoken)?,
+            total: of(|s| s.total)?,
+        })
+    }
+}
+
+impl Stages {
+    fn rounded(self) -> Self {
+        let round = |ms: f64| (ms * 10.0).round() / 10.0;
+        Self {
+            heard: round(self.heard),
+            understood: round(self.understood),
+            decided: round(self.decided),
+            spoken: round(self.spoken),
+            total: round(self.total),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn answer(latency: &mut Latency, seq: u64, ms: [u64; 5]) {
+        let ns = ms.map(|ms| ms * 1_000_000);
+        latency.on_receipt(&Receipt { seq, end_ns: ns[0], ..Receipt::default() });
+        let (accepted_ns, grounded_ns) = (ns[1], ns[2]);
+        let understood = Observation { seq, accepted_ns, grounded_ns, ..Observation::default() };
+        latency.on_observation(&understood);
+        let decided_ns = ns[3];
+        let (prompt, presentation) = (seq + 100, 1);
+        let act =
+            RobotAct { utterance: seq, prompt, presentation, decided_ns, ..RobotAct::default() };
+        latency.on_act(&act);
+        let presented =
+            Presented { prompt, presentation, started_ns: ns[4], ..Presented::default() };
+        latency.on_presented(&presented);
+        latency.on_presented(&presented);
+    }
+
+    #[test]
+    fn latency_counts_each_answer_once() {
+        let mut latency = Latency::default();
+        answer(&mut latency, 1, [100, 700, 705, 725, 745]);
+        let expected =
+            Stages { heard: 600.0, understood: 5.0, decided: 20.0, spoken: 20.0, total: 645.0 };
+        assert_eq!(latency.take_news(), [expected]);
+        assert_eq!(latency.section().count, 1);
+        assert_eq!(latency.section().p99.unwrap().total, 645.0);
+    }
+
+    #[test]
+    fn latency_ignores_inconsistent_times() {
+        let mut latency = Latency::default();
+        answer(&mut latency, 1, [100, 90, 705, 725, 745]);
+        answer(&mut latency, 2, [0, 90, 705, 725, 745]);
+        answer(&mut latency, 3, [100, 700, 705, 29_725, 29_745]);
+        assert_eq!(latency.section().count, 0);
+        assert_eq!(latency.section().last, None);
+    }
+
+    #[test]
+    fn latency_quantiles_cover_the_latest_five_hundred() {
+        let mut latency = Latency::default();
+        (1..=1_000).for_each(|n| answer(&mut latency, n, [1, 2, 3, 4, 4 + n]));
+        assert_eq!(latency.section().p50.unwrap().spoken, 751.0);
+        assert_eq!(latency.section().p99.unwrap().spoken, 995.0);
+        assert_eq!(latency.section().count, 1_000);
+        (2_000..3_000)
+            .for_each(|seq| latency.on_receipt(&Receipt { seq, end_ns: 1, ..Receipt::default() }));
+        assert_eq!(latency.open.len(), OPEN_MAX);
+    }
+}

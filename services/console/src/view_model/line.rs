@@ -1,0 +1,58 @@
+//! A line of the transcript.
+
+use messages::Outcome;
+use serde::{Deserialize, Serialize};
+use service::view::Speaker;
+
+/// A line of the transcript; keys that do not apply are left out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Line {
+    /// Rises from line to line, also over restarts of the console.
+    pub id: u64,
+    /// Time, milliseconds of the monotonic clock.
+    pub at_ms: f64,
+    /// Time, milliseconds since 1970.
+    pub unix_ms: u64,
+    /// Who said it.
+    pub who: Speaker,
+    /// The words.
+    pub text: String,
+    /// Source of an utterance: typed, browser, microphone, stream, file, gesture.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
+    /// Number of the utterance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seq: Option<u64>,
+    /// Probability of the text among all that it may have been.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub confidence: Option<f32>,
+    /// What it may mean, most likely first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub understood: Vec<Meaning>,
+    /// The question that it answers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub answers: Option<String>,
+    /// Outcome of the interaction that has ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outcome: Option<Outcome>,
+    /// The robot's prompt, and which presentation of it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub said: Option<(u64, u32)>,
+}
+
+/// One way to understand an utterance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Meaning {
+    /// In words: `yes · small · not white`.
+    pub text: String,
+    /// Its probability.
+    pub weight: f64,
+}
+
+impl Line {
+    /// Returns the line as JSON.
+    pub fn to_text(&self) -> String {
+        // Every part of a line can be written.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}

@@ -1,0 +1,276 @@
+//! The view model: folds messages into the sections that pages show.
+//!
+//! Pure: no IO, no clock, no thread. Messages come in any order and more than once (a service that is
+//! restarted repeats its latest); folding one twice changes nothing.
+
+mod event;
+mod latency;
+mod line;
+mod prompts;
+mod sections;
+mod services;
+mod transcript;
+mod turn;
+mod understood;
+
+#[cfg(test)]
+mod tests;
+
+use messages::{
+    Activity, ArmStatus, Hearing, Observation, PolicyView, Presented, Receipt, RobotAct,
+    TrajectoryView, WorldView,
+};
+use scene::Scene;
+use serde::Serialize;
+use service::Time;
+use service::view::{ArmView, DialogueView, HearingView, Latest};
+use service::status::GroupStatus;
+
+pub use event::DialogueEvent;
+pub use latency::{Latency, Stages};
+pub use line::{Line, Meaning};
+pub use transcript::Transcript;
+pub use turn::{Turn, TurnState};
+
+use sections::{
+    SceneSection, SpeakingSection, TrajectorySection, TurnSection, WorldSection, labels,
+};
+pub(crate) use services::missing;
+
+/// A moment on both clocks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Now {
+    /// The monotonic clock.
+    pub at: Time,
+    /// Milliseconds since 1970.
+    pub unix_ms: u64,
+}
+
+/// Everything that pages show, at one moment.
+#[derive(Debug)]
+pub struct ViewModel {
+    scene: Scene,
+    /// Short descriptions of the scene's objects.
+    labels: Vec<String>,
+    latest: Latest,
+    world: Option<WorldView>,
+    trajectory: TrajectoryView,
+    group: Option<GroupStatus>,
+    /// Whether the sound of the line that is being presented can be fetched.
+    has_sound: bool,
+    prompts: prompts::Prompts,
+    transcript: Transcript,
+    latency: Latency,
+    /// The turn, and when its state began.
+    turn: Option<(Turn, Time)>,
+    events: Vec<DialogueEvent>,
+    /// Whether a message has arrived since the sections were made last.
+    is_changed: bool,
+    is_scene_changed: bool,
+}
+
+impl ViewModel {
+    /// Makes the view model of a dialogue about `scene`, continuing a transcript.
+    pub fn new(scene: Scene, transcript: Transcript) -> Self {
+        Self {
+            labels: labels(&scene),
+            scene,
+            latest: Latest::default(),
+            world: None,
+            trajectory: TrajectoryView::default(),
+            group: None,
+            has_sound: false,
+            prompts: prompts::Prompts::default(),
+            transcript,
+            latency: Latency::default(),
+            turn: None,
+            events: Vec::new(),
+            is_changed: true,
+            is_scene_changed: true,
+        }
+    }
+
+    /// Returns the scene that is shown.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Returns the latest message of every topic.
+    pub fn latest(&self) -> &Latest {
+        &self.latest
+    }
+
+    /// Returns the supervisor's latest status of the group.
+    pub fn group(&self) -> Option<&GroupStatus> {
+        self.group.as_ref()
+    }
+
+    /// Returns the transcript.
+    pub fn transcript(&mut self) -> &mut Transcript {
+        &mut self.transcript
+    }
+
+    /// Returns the latency of the answers.
+    pub fn latency(&mut self) -> &mut Latency {
+        &mut self.latency
+    }
+
+    /// Returns whether the policy is about another scene than is shown: the settings have changed.
+    pub fn is_of_another_scene(&self) -> bool {
+        self.latest.view.as_ref().is_some_and(|view| view.scene_key != self.scene.key())
+    }
+
+    /// Replaces the scene.
+    pub fn set_scene(&mut self, scene: Scene) {
+        self.labels = labels(&scene);
+        self.scene = scene;
+        (self.is_changed, self.is_scene_changed) = (true, true);
+    }
+
+    /// Takes in what the policy believes and decides.
+    pub fn on_view(&mut self, view: PolicyView, now: Now) {
+        self.is_changed = true;
+        if let Some(ended) = &view.last
+            && self.transcript.on_end(&self.scene, &self.labels, ended, now)
+            && self.latest.view.is_some()
+        {
+            self.events.push(DialogueEvent::Ended(ended.clone()));
+        }
+        self.latest.view = Some(view);
+    }
+
+    /// Takes in what the policy has decided.
+    pub fn on_act(&mut self, act: &RobotAct) {
+        self.is_changed = true;
+        self.latency.on_act(act);
+        self.prompts.remember(act);
+    }
+
+    /// Takes in the presentation of the robot's latest line, and whether its sound is stored.
+    pub fn on_presented(&mut self, presented: Presented, has_sound: bool, now: Now) {
+        self.is_changed = true;
+        self.latency.on_presented(&presented);
+        self.latest.presented = presented;
+        self.has_sound = has_sound;
+        if let Some(prompt) = self.prompts.of(&presented)
+            && self.transcript.on_presented(&presented, prompt, now)
+        {
+            self.events.push(DialogueEvent::Presented {
+                prompt: presented.prompt,
+                presentation: presented.presentation,
+                question: prompt.question,
+                text: prompt.text.clone(),
+            });
+        }
+    }
+
+    /// Takes in the receipt of an utterance.
+    pub fn on_receipt(&mut self, receipt: &Receipt, now: Now) {
+        self.is_changed = true;
+        self.latency.on_receipt(receipt);
+        self.latest.on_receipt(receipt);
+        if self.transcript.on_receipt(receipt, now) && receipt.seq > 0 {
+            self.events.push(DialogueEvent::Heard(Box::new(*receipt)));
+        }
+    }
+
+    /// Takes in what an utterance was understood to mean.
+    pub fn on_observation(&mut self, observation: &Observation) {
+        self.is_changed = true;
+        self.latency.on_observation(observation);
+        let open = self.latest.view.as_ref().map_or(0, |view| view.interaction);
+        let understood = understood::read(&self.scene, observation, &self.prompts, open);
+        if let Some(understood) = understood {
+            self.transcript.on_understood(observation.seq, understood);
+        }
+    }
+
+    /// Takes in whether a user is speaking.
+    pub fn on_activity(&mut self, activity: Activity) {
+        self.is_changed = true;
+        self.latest.activity = Some(activity);
+    }
+
+    /// Takes in how well the robot hears.
+    pub fn on_hearing(&mut self, hearing: Hearing) {
+        self.is_changed = true;
+        self.latest.hearing = Some(hearing);
+    }
+
+    /// Takes in what the arm does.
+    pub fn on_arm(&mut self, arm: ArmStatus, now: Now) {
+        self.is_changed = true;
+        let was_stopped = self.latest.arm.is_some_and(|arm| arm.stopped != 0);
+        let is_stopped = arm.stopped != 0;
+        if is_stopped != was_stopped {
+            self.transcript.on_motion_stop(is_stopped, now);
+        }
+        self.latest.arm = Some(arm);
+    }
+
+    /// Takes in where the objects are.
+    pub fn on_world(&mut self, world: WorldView) {
+        self.is_changed = true;
+        self.world = Some(world);
+    }
+
+    /// Takes in the planned trajectory of the gripper.
+    pub fn on_trajectory(&mut self, trajectory: TrajectoryView) {
+        self.is_changed = true;
+        self.trajectory = trajectory;
+    }
+
+    /// Takes in the supervisor's status of the group.
+    pub fn on_group(&mut self, group: GroupStatus, now: Now) {
+        self.is_changed = true;
+        for (service, is_back) in services::transitions(self.group.as_ref(), &group) {
+            self.transcript.on_service(service, is_back, now);
+        }
+        self.group = Some(group);
+    }
+
+    /// Takes the events since the last call.
+    pub fn take_events(&mut self) -> Vec<DialogueEvent> {
+        std::mem::take(&mut self.events)
+    }
+
+    /// Returns the sections as JSON text, once after each change of anything; the board finds out
+    /// which of them differ from before.
+    pub fn sections(&mut self, now: Now) -> Vec<(&'static str, String)> {
+        if !std::mem::take(&mut self.is_changed) {
+            return Vec::new();
+        }
+        let mut sections = Sections(Vec::new());
+        if std::mem::take(&mut self.is_scene_changed) {
+            sections.put("scene", Some(SceneSection::new(&self.scene, &self.labels)));
+        }
+        let Latest { view, presented, hearing, arm, .. } = &self.latest;
+        let view = view.as_ref().filter(|view| view.scene_key == self.scene.key());
+        sections.put("dialogue", view.map(|view| DialogueView::new(&self.scene, view)));
+        let speaking = self.prompts.of(presented);
+        let speaking = speaking.map(|p| SpeakingSection::new(p, presented, self.has_sound));
+        sections.put("speaking", Some(speaking));
+        sections.put("hearing", hearing.as_ref().map(HearingView::new));
+        sections.put("arm", arm.as_ref().map(|arm| ArmView::new(&self.scene, arm)));
+        sections.put("world", self.world.as_ref().map(WorldSection::new));
+        sections.put("trajectory", Some(TrajectorySection::new(&self.trajectory)));
+        sections.put("group", self.group.as_ref());
+        sections.put("latency", Some(self.latency.section()));
+        let turn = turn::turn(&self.latest, self.group.as_ref());
+        let since = self.turn.filter(|(before, _)| before.state == turn.state);
+        let since = since.map_or(now.at, |(_, since)| since);
+        self.turn = Some((turn, since));
+        sections.put("turn", Some(TurnSection::new(turn, since)));
+        sections.0
+    }
+}
+
+struct Sections(Vec<(&'static str, String)>);
+
+impl Sections {
+    fn put<T: Serialize>(&mut self, name: &'static str, section: Option<T>) {
+        // Every section can be written.
+        let text = section.and_then(|section| serde_json::to_string(&section).ok());
+        self.0.extend(text.map(|text| (name, text)));
+    }
+}

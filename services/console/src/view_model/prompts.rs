@@ -1,0 +1,56 @@
+//! The robot's latest lines, by prompt.
+
+use std::collections::VecDeque;
+
+use messages::{ActKind, Presented, RobotAct};
+use scene::Question;
+
+/// Prompts that are remembered.
+const PROMPTS_MAX: usize = 32;
+
+/// The latest prompts.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Prompts(VecDeque<Prompt>);
+
+/// A line of the robot's.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Prompt {
+    pub(super) id: u64,
+    pub(super) presentation: u32,
+    pub(super) question: Question,
+    pub(super) interaction: u64,
+    pub(super) text: String,
+}
+
+impl Prompts {
+    pub(super) fn remember(&mut self, act: &RobotAct) {
+        let text = act.text.as_str().unwrap_or_default();
+        let known = self.0.iter().any(|p| (p.id, p.presentation) == (act.prompt, act.presentation));
+        if act.prompt == 0 || text.is_empty() || known {
+            return;
+        }
+        if self.0.len() == PROMPTS_MAX {
+            self.0.pop_front();
+        }
+        let question = Question::try_from(act.question).unwrap_or_default();
+        let asks = act.kind() == Ok(ActKind::Ask);
+        self.0.push_back(Prompt {
+            id: act.prompt,
+            presentation: act.presentation,
+            question: if asks { question } else { Question::None },
+            interaction: act.interaction,
+            text: text.to_owned(),
+        });
+    }
+
+    /// Returns the line that is being presented or was presented last.
+    pub(super) fn of(&self, presented: &Presented) -> Option<&Prompt> {
+        self.find(presented.prompt, presented.presentation)
+    }
+
+    /// Returns one presentation of a prompt, or another one where that was not seen.
+    pub(super) fn find(&self, id: u64, presentation: u32) -> Option<&Prompt> {
+        let of_prompt = || self.0.iter().filter(move |prompt| prompt.id == id);
+        of_prompt().find(|prompt| prompt.presentation == presentation).or(of_prompt().next_back())
+    }
+}

@@ -1,0 +1,192 @@
+//! Sections of the page that only the console has: scene, objects, trajectory, speaking and turn. The
+//! others are those of [`service::view`].
+
+use messages::{MotionPhase, PresentationState, Presented, TrajectoryView, WorldView};
+use scene::{ObjectId, Scene};
+use serde::{Serialize, Serializer};
+use service::Time;
+
+use super::prompts::Prompt;
+use super::turn::{Actor, Turn, TurnState};
+use crate::hub::ms;
+
+/// The section `scene`.
+#[derive(Debug, Serialize)]
+pub(super) struct SceneSection<'a> {
+    key: String,
+    name: &'a str,
+    noun: &'a str,
+    attributes: Vec<Attribute<'a>>,
+    objects: Vec<Object<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct Attribute<'a> {
+    name: &'a str,
+    values: Vec<Value<'a>>,
+}
+
+#[derive(Debug, Serialize)]
+struct Value<'a> {
+    name: &'a str,
+    spoken: &'a str,
+}
+
+#[derive(Debug, Serialize)]
+struct Object<'a> {
+    name: &'a str,
+    label: &'a str,
+    #[serde(serialize_with = "map")]
+    attributes: Vec<(&'a str, &'a str)>,
+    xyz: Option<[f64; 3]>,
+    size: Option<[f64; 3]>,
+    yaw: Option<f64>,
+}
+
+impl<'a> SceneSection<'a> {
+    pub(super) fn new(scene: &'a Scene, labels: &'a [String]) -> Self {
+        let attributes = scene.attributes().iter().map(|attribute| Attribute {
+            name: &attribute.name,
+            values: (attribute.values.iter())
+                .map(|value| Value { name: &value.name, spoken: &value.spoken })
+                .collect(),
+        });
+        let objects = scene.objects().iter().zip(labels).map(|(object, label)| {
+            let values = scene.attributes().iter().zip(&object.values);
+            Object {
+                name: &object.name,
+                label,
+                attributes: values
+                    .filter_map(|(attribute, value)| {
+                        let value = &attribute.values[(*value)?.index()];
+                        Some((attribute.name.as_str(), value.name.as_str()))
+                    })
+                    .collect(),
+                xyz: object.placement.map(|placed| placed.xyz),
+                size: object.placement.map(|placed| placed.size),
+                yaw: object.placement.map(|placed| placed.yaw),
+            }
+        });
+        Self {
+            key: format!("{:016x}", scene.key()),
+            name: scene.name(),
+            noun: scene.noun(),
+            attributes: attributes.collect(),
+            objects: objects.collect(),
+        }
+    }
+}
+
+fn map<S: Serializer>(pairs: &[(&str, &str)], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(pairs.iter().copied())
+}
+
+/// Returns a description of each object; those with the same description are numbered.
+pub(super) fn labels(scene: &Scene) -> Vec<String> {
+    let described: Vec<String> =
+        (0..scene.objects().len()).map(|i| scene.describe(ObjectId::from(i))).collect();
+    let same = |among: &[String], i: usize| among.iter().filter(|s| **s == described[i]).count();
+    (0..described.len())
+        .map(|i| match same(&described, i) {
+            1 => described[i].clone(),
+            _ => format!("{} {}", described[i], same(&described[..i], i) + 1),
+        })
+        .collect()
+}
+
+/// The section `world`; poses to a tenth of a millimetre.
+#[derive(Debug, Serialize)]
+pub(super) struct WorldSection {
+    objects: Vec<Option<[f64; 7]>>,
+    held: Option<u16>,
+    grippers: [[f64; 7]; 2],
+}
+
+impl WorldSection {
+    pub(super) fn new(world: &WorldView) -> Self {
+        let pose = |pose: [f64; 7]| pose.map(|number| (number * 1e4).round() / 1e4);
+        Self {
+            objects: world.objects.iter().map(|object| object.map(pose)).collect(),
+            held: world.held,
+            grippers: world.grippers.map(pose),
+        }
+    }
+}
+
+/// The section `trajectory`; places to a millimetre, times to a millisecond.
+#[derive(Debug, Serialize)]
+pub(super) struct TrajectorySection {
+    pick: Option<String>,
+    limb: &'static str,
+    phases: Vec<Phase>,
+    began_ms: Option<f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct Phase {
+    name: MotionPhase,
+    points: Vec<[f64; 3]>,
+    t_s: Vec<f64>,
+}
+
+impl TrajectorySection {
+    /// Makes the section; none while no planned motion is under way.
+    pub(super) fn new(trajectory: &TrajectoryView) -> Option<Self> {
+        let digits = |number: f64| (number * 1e3).round() / 1e3;
+        let phases = trajectory.phases.iter().map(|phase| Phase {
+            name: phase.phase,
+            points: phase.points_m.iter().map(|point| point.map(digits)).collect(),
+            t_s: phase.t_s.iter().copied().map(digits).collect(),
+        });
+        let TrajectoryView { interaction, attempt, .. } = trajectory;
+        (!trajectory.phases.is_empty()).then(|| Self {
+            pick: (*interaction != 0).then(|| format!("{interaction}.{attempt}")),
+            limb: if trajectory.limb == 0 { "left" } else { "right" },
+            phases: phases.collect(),
+            began_ms: (trajectory.began_ns != 0).then(|| ms(Time(trajectory.began_ns))),
+        })
+    }
+}
+
+/// The section `speaking`: the line that is being presented or was presented last.
+#[derive(Debug, Serialize)]
+pub(super) struct SpeakingSection<'a> {
+    prompt: u64,
+    presentation: u32,
+    text: &'a str,
+    url: Option<String>,
+    began_ms: f64,
+    ended_ms: Option<f64>,
+    state: Option<PresentationState>,
+}
+
+impl<'a> SpeakingSection<'a> {
+    pub(super) fn new(prompt: &'a Prompt, presented: &Presented, has_sound: bool) -> Self {
+        let Presented { prompt: id, presentation, started_ns, ended_ns, state, .. } = *presented;
+        Self {
+            prompt: id,
+            presentation,
+            text: &prompt.text,
+            url: has_sound.then(|| format!("/voice/line-{id}-{presentation}.wav")),
+            began_ms: ms(Time(started_ns)),
+            ended_ms: (ended_ns > 0).then(|| ms(Time(ended_ns))),
+            state: PresentationState::from_code(state).ok(),
+        }
+    }
+}
+
+/// The section `turn`.
+#[derive(Debug, Serialize)]
+pub(super) struct TurnSection {
+    who: Actor,
+    state: TurnState,
+    since_ms: f64,
+    onset_ms: Option<f64>,
+}
+
+impl TurnSection {
+    pub(super) fn new(turn: Turn, since: Time) -> Self {
+        let Turn { who, state, onset } = turn;
+        Self { who, state, since_ms: ms(since), onset_ms: onset.map(ms) }
+    }
+}

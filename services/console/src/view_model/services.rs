@@ -1,0 +1,73 @@
+//! Services that the group has lost or that are back.
+
+use service::status::Actual;
+use service::status::{GroupStatus, ServiceStatus};
+
+/// Returns the services that were lost or are back since the status before, and which of both. One
+/// that was restarted in between is back.
+pub(super) fn transitions<'a>(
+    before: Option<&GroupStatus>,
+    after: &'a GroupStatus,
+) -> Vec<(&'a ServiceStatus, bool)> {
+    let Some(before) = before else { return Vec::new() };
+    let changed = after.services.iter().filter_map(|now| {
+        let was = before.services.iter().find(|was| was.name == now.name)?;
+        let (was_ready, is_ready) = (was.actual == Actual::Ready, now.actual == Actual::Ready);
+        let is_another = now.incarnation != was.incarnation;
+        match (was_ready, is_ready) {
+            (true, false) => Some((now, false)),
+            (_, true) if is_another && was.incarnation > 0 => Some((now, true)),
+            (false, true) if was.incarnation > 0 && was.restarts > 0 => Some((now, true)),
+            _ => None,
+        }
+    });
+    changed.collect()
+}
+
+/// Returns a service that the dialogue needs and that is not ready.
+pub(crate) fn missing(group: &GroupStatus) -> Option<&ServiceStatus> {
+    const NEEDED: [&str; 4] = ["speech", "grounding", "policy", "arm"];
+    let mut needed = group.services.iter().filter(|service| NEEDED.contains(&&*service.name));
+    needed.find(|service| service.actual != Actual::Ready)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::{Value as Json, json};
+
+    fn group(services: &[(&str, &str, u32)]) -> GroupStatus {
+        let services: Vec<Json> = services
+            .iter()
+            .map(|(name, actual, incarnation)| {
+                json!({ "name": name, "wanted": "up", "actual": actual, "incarnation": incarnation,
+                        "restarts": incarnation.saturating_sub(1) })
+            })
+            .collect();
+        let group = json!({
+            "name": "lab", "state": "ready", "supervisor_pid": 7, "version": "0", "epoch": 1,
+            "uptime_s": 1.0, "scene": "bowls", "config": "/c", "strays_killed": 0,
+            "services": services,
+        });
+        serde_json::from_value(group).unwrap()
+    }
+
+    fn changes(before: &GroupStatus, after: &GroupStatus) -> Vec<(String, bool)> {
+        transitions(Some(before), after).into_iter().map(|(s, back)| (s.name.clone(), back)).collect()
+    }
+
+    #[test]
+    fn services_lost_and_back_are_reported() {
+        let well = group(&[("arm", "ready", 1), ("policy", "ready", 1)]);
+        let lost = group(&[("arm", "backoff", 1), ("policy", "ready", 1)]);
+        let back = group(&[("arm", "ready", 2), ("policy", "ready", 1)]);
+        assert!(changes(&well, &well).is_empty() && transitions(None, &lost).is_empty());
+        assert_eq!(changes(&well, &lost), [("arm".to_owned(), false)]);
+        assert_eq!(changes(&lost, &back), [("arm".to_owned(), true)]);
+        assert_eq!(changes(&well, &back), [("arm".to_owned(), true)], "lost and back between two statuses");
+        let begins = group(&[("arm", "starting", 1), ("policy", "ready", 1)]);
+        assert!(changes(&begins, &well).is_empty(), "a first start is not reported");
+        assert_eq!(missing(&lost).map(|service| service.name.as_str()), Some("arm"));
+        assert!(missing(&well).is_none());
+    }
+}

@@ -1,0 +1,222 @@
+//! The transcript: the latest lines of the dialogue, each under a number of its own.
+
+use std::collections::{BTreeSet, VecDeque};
+
+use messages::{Ended, Outcome, PresentationState, Presented, Receipt, ReceiptStatus, Source};
+use scene::{ObjectId, Scene};
+use service::Time;
+use service::view::Speaker;
+use service::status::ServiceStatus;
+
+use super::Now;
+use super::line::Line;
+use super::prompts::Prompt;
+use super::understood::Understood;
+use crate::hub::board::LINES_MAX;
+use crate::hub::ms;
+
+/// Utterances whose meaning has come before their receipt.
+const EARLY_MAX: usize = 16;
+
+/// The latest lines.
+#[derive(Debug)]
+pub struct Transcript {
+    lines: VecDeque<Line>,
+    next: u64,
+    changed: BTreeSet<u64>,
+    /// Meanings of utterances whose receipt has not come yet.
+    early: VecDeque<(u64, Understood)>,
+    /// The latest interaction whose end was noted.
+    ended: u64,
+}
+
+impl Transcript {
+    /// Continues the lines of an earlier console. Without any, numbers begin above those of every
+    /// earlier transcript, as time has passed since.
+    pub fn after(lines: Vec<Line>, unix_ms: u64) -> Self {
+        let last = lines.iter().map(|line| line.id).max();
+        Self {
+            next: last.map_or(unix_ms.max(1), |last| last + 1),
+            changed: lines.iter().map(|line| line.id).collect(),
+            lines: lines.into(),
+            early: VecDeque::new(),
+            ended: 0,
+        }
+    }
+
+    /// Returns all lines.
+    pub fn lines(&self) -> impl Iterator<Item = &Line> {
+        self.lines.iter()
+    }
+
+    /// Takes the lines that are new or have changed since the last call.
+    pub fn take_changed(&mut self) -> Vec<Line> {
+        let changed = std::mem::take(&mut self.changed);
+        self.lines.iter().filter(|line| changed.contains(&line.id)).cloned().collect()
+    }
+
+    /// Takes in the receipt of an utterance; returns whether it is new.
+    pub(super) fn on_receipt(&mut self, receipt: &Receipt, now: Now) -> bool {
+        let text = receipt.note.as_str().unwrap_or_default();
+        let spoken = receipt.snr_db > 0.0 || receipt.confidence < 1.0;
+        let line = match ReceiptStatus::from_code(receipt.status) {
+            Ok(ReceiptStatus::Accepted) => Line {
+                seq: Some(receipt.seq),
+                source: source(receipt).to_owned(),
+                confidence: spoken.then_some(receipt.confidence),
+                ..self.blank(Speaker::Person, text, now)
+            },
+            Ok(ReceiptStatus::NotForMe) => Line {
+                source: source(receipt).to_owned(),
+                ..self.blank(Speaker::Unmeant, text, now)
+            },
+            _ => return false,
+        };
+        let began = ms(Time(receipt.onset_ns));
+        let line = Line { at_ms: if receipt.onset_ns > 0 { began } else { line.at_ms }, ..line };
+        let is_known = self.lines.iter().any(|other| match line.seq {
+            Some(_) => other.seq == line.seq,
+            None => other.who == line.who && other.at_ms == line.at_ms,
+        });
+        if is_known {
+            return false;
+        }
+        let seq = line.seq;
+        self.push(line);
+        if let Some(seq) = seq
+            && let Some(at) = self.early.iter().position(|(early, _)| *early == seq)
+            && let Some((_, understood)) = self.early.remove(at)
+        {
+            self.on_understood(seq, understood);
+        }
+        true
+    }
+
+    /// Takes in what an utterance was understood to mean.
+    pub(super) fn on_understood(&mut self, seq: u64, understood: Understood) {
+        let Some(line) = self.lines.iter_mut().rfind(|line| line.seq == Some(seq)) else {
+            if self.early.len() == EARLY_MAX {
+                self.early.pop_front();
+            }
+            return self.early.push_back((seq, understood));
+        };
+        let Understood { meanings, answers } = understood;
+        if line.understood != meanings || line.answers != answers {
+            (line.understood, line.answers) = (meanings, answers);
+            self.changed.insert(line.id);
+        }
+    }
+
+    /// Takes in a line of the robot; returns whether it is new.
+    pub(super) fn on_presented(&mut self, presented: &Presented, prompt: &Prompt, now: Now) -> bool {
+        let said = (presented.prompt, presented.presentation);
+        let has_begun = PresentationState::from_code(presented.state).is_ok_and(PresentationState::has_begun);
+        let is_known = self.lines.iter().any(|line| line.said == Some(said));
+        if is_known || !has_begun {
+            return false;
+        }
+        let at_ms = ms(Time(presented.started_ns));
+        let line = self.blank(Speaker::Robot, &prompt.text, now);
+        self.push(Line { at_ms, said: Some(said), ..line });
+        true
+    }
+
+    /// Takes in the end of an interaction; returns whether it is new.
+    pub(super) fn on_end(
+        &mut self,
+        scene: &Scene,
+        labels: &[String],
+        ended: &Ended,
+        now: Now,
+    ) -> bool {
+        let is_first = self.ended == 0;
+        if ended.interaction <= self.ended {
+            return false;
+        }
+        self.ended = ended.interaction;
+        // One that ended before this console started is not new, nor one that its predecessor noted.
+        if is_first && self.lines.iter().any(|line| line.outcome.is_some()) {
+            return false;
+        }
+        let object = ended.name.as_deref().map(|name| {
+            let object = scene.object_named(name).map(ObjectId::index);
+            object.and_then(|at| labels.get(at)).map_or(name, String::as_str)
+        });
+        let object = object.unwrap_or("nothing");
+        let what = match ended.outcome {
+            Outcome::Delivered => format!("Handed over: {object}"),
+            Outcome::Failed => format!("Could not fetch: {object}"),
+            Outcome::Cancelled => "The request was withdrawn".to_owned(),
+            Outcome::Abandoned => "Given up: no answer came, or no question helped".to_owned(),
+            Outcome::SceneChanged => {
+                "The scene was changed, and none of the candidates is left".to_owned()
+            }
+            Outcome::NotHere => "The robot concluded that the object is not here".to_owned(),
+        };
+        let s = if ended.questions == 1 { "" } else { "s" };
+        let text = format!("{what} ({} question{s}, {:.1} s)", ended.questions, ended.seconds);
+        let line = self.blank(Speaker::System, &text, now);
+        self.push(Line { outcome: Some(ended.outcome), ..line });
+        true
+    }
+
+    /// Takes in that the motion stop was latched or released.
+    pub(super) fn on_motion_stop(&mut self, stopped: bool, now: Now) {
+        self.note(if stopped { "The arm was stopped" } else { "The arm may move again" }, now);
+    }
+
+    /// Takes in that a service was lost or is back.
+    pub(super) fn on_service(&mut self, service: &ServiceStatus, is_back: bool, now: Now) {
+        let name = &service.name;
+        let exit = service.last_exit.as_ref().filter(|_| is_back);
+        let how = exit.map(|exit| format!(" (previous run ended with {})", exit.text));
+        let what = if is_back { "is back" } else { "is not running" };
+        self.note(&format!("{name} {what}{}", how.unwrap_or_default()), now);
+    }
+
+    /// Adds a note about an event.
+    fn note(&mut self, text: &str, now: Now) {
+        let line = self.blank(Speaker::System, text, now);
+        self.push(line);
+    }
+
+    fn blank(&self, who: Speaker, text: &str, now: Now) -> Line {
+        Line {
+            id: self.next,
+            at_ms: ms(now.at),
+            unix_ms: now.unix_ms,
+            who,
+            text: text.to_owned(),
+            source: String::new(),
+            seq: None,
+            confidence: None,
+            understood: Vec::new(),
+            answers: None,
+            outcome: None,
+            said: None,
+        }
+    }
+
+    fn push(&mut self, line: Line) {
+        self.next = line.id + 1;
+        self.changed.insert(line.id);
+        if self.lines.len() == LINES_MAX {
+            self.lines.pop_front();
+        }
+        self.lines.push_back(line);
+    }
+}
+
+/// Returns the name of an utterance's source.
+fn source(receipt: &Receipt) -> &'static str {
+    match Source::from_code(receipt.source) {
+        Ok(Source::Text) => "typed",
+        Ok(Source::Wav) => "file",
+        // Segments of a stream are not counted before it is over.
+        Ok(Source::Microphone) if receipt.segments == 0 => "stream",
+        Ok(Source::Microphone) => "microphone",
+        Ok(Source::Browser) => "browser",
+        Ok(Source::Gesture) => "gesture",
+        Err(_) => "",
+    }
+}

@@ -1,0 +1,104 @@
+//! Timestamps of a viewer's samples, robust against wrong clocks.
+
+use service::{Span, Time};
+
+/// Nanoseconds of one sample.
+const SAMPLE_NS: u64 = 62_500;
+/// How long sound may have been on its way.
+const OLDEST: Span = Span::from_ms(3_000);
+/// A clock that is this far from where the samples before put it has jumped.
+const JUMP: Span = Span::from_ms(100);
+
+/// The times of one stream.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Timestamps {
+    /// The number of a sample, when it was taken, and whether the viewer said so.
+    known: Option<(u64, Time, bool)>,
+}
+
+impl Timestamps {
+    /// When sample `number`, the first of `count`, was taken: as `claimed`, if that can be. Sound that
+    /// would be of the future, or older than three seconds, and a clock that jumps while the samples
+    /// go on, are put right by the samples before, else by when this arrived.
+    pub(super) fn taken(
+        &mut self,
+        claimed: Time,
+        number: u64,
+        count: usize,
+        arrived: Time,
+    ) -> Time {
+        let latest = Time(arrived.ns().saturating_sub(count as u64 * SAMPLE_NS));
+        let earliest = Time(arrived.ns().saturating_sub(OLDEST.0));
+        let can_be = |time: Time| (earliest..=latest).contains(&time);
+        let expected = self.known.and_then(|(known, time, said)| {
+            let since = number.checked_sub(known)?.checked_mul(SAMPLE_NS)?;
+            let time = Time(time.ns().checked_add(since)?);
+            can_be(time).then_some((time, said))
+        });
+        let (taken, said) = match expected {
+            Some((time, true)) if !can_be(claimed) || apart(claimed, time) > JUMP => (time, true),
+            Some((time, false)) if !can_be(claimed) => (time, false),
+            _ if can_be(claimed) => (claimed, true),
+            _ => (latest, false),
+        };
+        self.known = Some((number, taken, said));
+        taken
+    }
+}
+
+fn apart(a: Time, b: Time) -> Span {
+    Span(a.ns().abs_diff(b.ns()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TENTH: usize = 1_600;
+
+    fn ms(ms: u64) -> Time {
+        Time(ms * 1_000_000)
+    }
+
+    /// The times of tenths of a second of which the first was taken at 100 s, each of which arrives
+    /// 150 ms after it began, with what the viewer's clock says of them.
+    fn times(claimed_ms: &[u64]) -> Vec<u64> {
+        let mut timestamps = Timestamps::default();
+        let taken = claimed_ms.iter().enumerate().map(|(n, claimed)| {
+            let (number, arrived) = (n as u64 * TENTH as u64, ms(100_150 + n as u64 * 100));
+            timestamps.taken(ms(*claimed), number, TENTH, arrived).ns() / 1_000_000
+        });
+        taken.collect()
+    }
+
+    #[test]
+    fn a_clock_that_is_right_is_believed() {
+        assert_eq!(times(&[100_000, 100_101, 100_199]), [100_000, 100_101, 100_199]);
+    }
+
+    #[test]
+    fn sound_of_the_future_or_of_long_ago_was_taken_just_before_it_came() {
+        assert_eq!(times(&[200_000, 200_100]), [100_050, 100_150]);
+        assert_eq!(times(&[5, 96_000]), [100_050, 100_150]);
+    }
+
+    #[test]
+    fn a_clock_that_jumps_is_put_right_by_the_samples() {
+        let jumps = [100_000, 98_500, 98_600, 100_300, 99_000_000];
+        assert_eq!(times(&jumps), [100_000, 100_100, 100_200, 100_300, 100_400]);
+    }
+
+    #[test]
+    fn a_clock_that_is_put_right_is_believed_again() {
+        assert_eq!(times(&[0, 100_090, 100_190]), [100_050, 100_090, 100_190]);
+    }
+
+    #[test]
+    fn numbers_that_make_no_sense_do_no_harm() {
+        let mut timestamps = Timestamps::default();
+        assert_eq!(timestamps.taken(ms(10), u64::MAX, TENTH, ms(1_000)), ms(10));
+        assert_eq!(timestamps.taken(Time(u64::MAX), 0, TENTH, Time(5)), Time(0));
+        timestamps.taken(ms(10), 0, TENTH, ms(1_000));
+        assert_eq!(timestamps.taken(Time(u64::MAX), u64::MAX, TENTH, ms(1_100)), ms(1_000));
+    }
+}

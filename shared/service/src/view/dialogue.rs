@@ -1,0 +1,158 @@
+use messages::{Outcome, PolicyView};
+use scene::{Question, Scene};
+use serde::ser::{Serialize, Serializer};
+
+/// What the policy believes and decides.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct DialogueView<'a> {
+    /// The open interaction, 0 for none.
+    pub interaction: u64,
+    /// Highest utterance that is part of it.
+    pub applied: u64,
+    /// Probability of each object, by name, in the scene's order.
+    #[serde(serialize_with = "map")]
+    pub belief: Vec<(&'a str, f64)>,
+    /// Probability that the wanted object is not here.
+    pub absent: f64,
+    /// What the robot has learnt about its user.
+    pub person: Option<UserView>,
+    /// The decision in force: `ask`, `pick`, `wait`, `say` or `cancel`.
+    pub decision: &'a str,
+    /// The question in force; none where it is of another scene.
+    pub question: Option<QuestionView<'a>>,
+    /// Prompt of the robot's latest line, 0 for none.
+    pub prompt: u64,
+    /// The robot's latest line.
+    pub text: &'a str,
+    /// Expected discounted return of the decision.
+    pub value: f64,
+    /// Name of the planner that decides.
+    pub planner: &'a str,
+    /// Certified lower and upper bound on the best policy's value.
+    pub bounds: Option<(f64, f64)>,
+    /// The best other actions.
+    pub alternatives: Vec<AlternativeView<'a>>,
+    /// Questions asked in the open interaction.
+    pub questions: u32,
+    /// Expected number of further questions.
+    pub expected_questions: f64,
+    /// The latest interaction that has ended.
+    pub last: Option<EndedView<'a>>,
+}
+
+/// What the robot has learnt about its user.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct UserView {
+    /// Probability that a question is answered.
+    pub p_l: f64,
+    /// Probability that an answer is wrong.
+    pub epsilon: f64,
+}
+
+/// A question, in the scene's names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum QuestionView<'a> {
+    /// No question.
+    None,
+    /// "Is it this one?"
+    Point {
+        /// The object's name.
+        object: &'a str,
+    },
+    /// "Is it white?"
+    Attr {
+        /// The attribute's name.
+        attribute: &'a str,
+        /// The value's name.
+        value: &'a str,
+    },
+    /// "What colour is it?"
+    Which {
+        /// The attribute's name.
+        attribute: &'a str,
+    },
+}
+
+/// An action that the planner has weighed.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct AlternativeView<'a> {
+    /// The action.
+    pub action: &'a str,
+    /// Its expected discounted return.
+    pub value: f64,
+}
+
+/// The end of an interaction.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct EndedView<'a> {
+    /// Which one.
+    pub interaction: u64,
+    /// Name of the object that was picked or tried.
+    pub object: Option<&'a str>,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Questions that were asked.
+    pub questions: u32,
+    /// Time from the first utterance to the end, seconds.
+    pub seconds: f64,
+}
+
+impl<'a> DialogueView<'a> {
+    /// Makes the view of what the policy has published; objects by their names in `scene`.
+    pub fn new(scene: &'a Scene, view: &'a PolicyView) -> Self {
+        let names = scene.objects().iter().map(|object| object.name.as_str());
+        Self {
+            interaction: view.interaction,
+            applied: view.applied,
+            belief: names.zip(view.belief.iter().copied()).collect(),
+            absent: view.absent,
+            person: view.person.map(|(p_l, epsilon)| UserView { p_l, epsilon }),
+            decision: &view.decision,
+            question: QuestionView::new(scene, view.question),
+            prompt: view.prompt,
+            text: &view.text,
+            value: view.value,
+            planner: &view.planner,
+            bounds: view.bounds,
+            alternatives: view
+                .alternatives
+                .iter()
+                .map(|(action, value)| AlternativeView { action, value: *value })
+                .collect(),
+            questions: view.questions,
+            expected_questions: view.expected_questions,
+            last: view.last.as_ref().map(|last| EndedView {
+                interaction: last.interaction,
+                object: last.name.as_deref(),
+                outcome: last.outcome,
+                questions: last.questions,
+                seconds: last.seconds,
+            }),
+        }
+    }
+}
+
+impl<'a> QuestionView<'a> {
+    /// Names a question's parts; none where it is not of this scene.
+    pub fn new(scene: &'a Scene, question: Question) -> Option<Self> {
+        scene.contains(question).then(|| match question {
+            Question::None => Self::None,
+            Question::Point(object) => Self::Point { object: &scene.object(object).name },
+            Question::Attribute(attribute, value) => {
+                let attribute = &scene.attributes()[attribute.index()];
+                Self::Attr {
+                    attribute: &attribute.name,
+                    value: &attribute.values[value.index()].name,
+                }
+            }
+            Question::Which(attribute) => {
+                Self::Which { attribute: &scene.attributes()[attribute.index()].name }
+            }
+        })
+    }
+}
+
+fn map<S: Serializer, V: Serialize>(pairs: &[(&str, V)], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(pairs.iter().map(|(name, value)| (name, value)))
+}

@@ -1,0 +1,39 @@
+use messages::{EarState, Hearing, MicrophoneState};
+use serde::Serialize;
+
+/// How well the robot hears.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HearingView<'a> {
+    /// State of the microphone.
+    pub microphone: Option<MicrophoneState>,
+    /// State of the recogniser.
+    pub recogniser: Option<EarState>,
+    /// Loudness, dB of full scale.
+    pub level_db: f32,
+    /// How far the latest utterance stood above the noise, dB; none before one was measured.
+    pub snr_db: Option<f32>,
+    /// Sounds that wait for recognition.
+    pub pending: u32,
+    /// Restarts of the microphone's program.
+    pub restarts: u32,
+    /// Utterances that were lost.
+    pub dropped: u32,
+    /// The microphone's program, or why there is none.
+    pub note: &'a str,
+}
+
+impl<'a> HearingView<'a> {
+    /// Makes the view of a message, levels to whole decibels.
+    pub fn new(hearing: &'a Hearing) -> Self {
+        Self {
+            microphone: MicrophoneState::from_code(hearing.microphone).ok(),
+            recogniser: EarState::from_code(hearing.ear).ok(),
+            level_db: hearing.level_db.round(),
+            snr_db: (hearing.measured != 0).then(|| hearing.snr_db.round()),
+            pending: hearing.pending,
+            restarts: hearing.restarts,
+            dropped: hearing.dropped,
+            note: hearing.note.as_str().unwrap_or_default(),
+        }
+    }
+}

@@ -1,0 +1,149 @@
+use messages::{
+    Activity, ArmStatus, Hearing, PolicyView, PresentationState, Presented, Receipt, ReceiptStatus,
+    topics,
+};
+
+use crate::Time;
+use crate::bus::{Bus, BusError, EncodedReader, PortError, Reader, WireMessage};
+
+/// A prompt and which presentation of it.
+pub type PromptId = (u64, u32);
+
+/// Readers of the topics that tell how the dialogue stands.
+#[derive(Debug)]
+pub struct LatestTopics {
+    views: EncodedReader<PolicyView>,
+    presented: Reader<Presented>,
+    activity: Reader<Activity>,
+    hearing: Reader<Hearing>,
+    receipts: Reader<Receipt>,
+    statuses: Reader<ArmStatus>,
+}
+
+/// What has arrived since the last look.
+#[derive(Clone, Debug, Default)]
+pub struct Arrived {
+    /// Receipts of every client's utterances.
+    pub receipts: Vec<Receipt>,
+    /// Statuses of the arm, with when they were sent.
+    pub statuses: Vec<(ArmStatus, Time)>,
+    /// How far the newest utterance has come.
+    pub activity: Option<Activity>,
+    /// The presentation of the robot's latest line.
+    pub presented: Option<Presented>,
+    /// How well the robot hears.
+    pub hearing: Option<Hearing>,
+    /// What the policy believes and decides.
+    pub view: Option<PolicyView>,
+}
+
+/// The latest message of every topic.
+#[derive(Clone, Debug, Default)]
+pub struct Latest {
+    /// What the policy believes and decides.
+    pub view: Option<PolicyView>,
+    /// The presentation of the robot's latest line.
+    pub presented: Presented,
+    /// What is still to be applied.
+    pub activity: Option<Activity>,
+    /// How well the robot hears.
+    pub hearing: Option<Hearing>,
+    /// What the arm does.
+    pub arm: Option<ArmStatus>,
+    /// Highest utterance that was accepted.
+    pub accepted: u64,
+}
+
+impl LatestTopics {
+    /// Opens the topics.
+    ///
+    /// # Errors
+    /// A topic of another schema, or no shared memory.
+    pub fn open(bus: &Bus) -> Result<Self, BusError> {
+        Ok(Self {
+            views: bus.encoded_reader(&topics::VIEW)?,
+            presented: bus.reader(&topics::PRESENTED)?,
+            activity: bus.reader(&topics::ACTIVITY)?,
+            hearing: bus.reader(&topics::HEARING)?,
+            receipts: bus.reader(&topics::RECEIPT)?,
+            statuses: bus.reader(&topics::STATUS)?,
+        })
+    }
+
+    /// Takes what has arrived. What is pending is read before the view, which is the newer of both.
+    pub fn take(&self) -> Arrived {
+        let mut statuses = Vec::new();
+        let receipts = drain(&self.receipts);
+        let activity = quiet(self.activity.latest());
+        let presented = quiet(self.presented.latest());
+        let hearing = quiet(self.hearing.latest());
+        let taken = self
+            .statuses
+            .drain_stamped(|status, stamp| statuses.push((*status, Time(stamp.sent_ns))));
+        quiet(taken.map(Some));
+        let view = quiet(self.views.latest());
+        Arrived { receipts, statuses, activity, presented, hearing, view }
+    }
+}
+
+impl Latest {
+    /// Takes in what has arrived.
+    pub fn update(&mut self, arrived: &Arrived) {
+        arrived.receipts.iter().for_each(|receipt| self.on_receipt(receipt));
+        self.activity = arrived.activity.or(self.activity);
+        self.presented = arrived.presented.unwrap_or(self.presented);
+        self.hearing = arrived.hearing.or(self.hearing);
+        self.arm = arrived.statuses.last().map(|(status, _)| *status).or(self.arm);
+        if let Some(view) = &arrived.view {
+            self.view = Some(view.clone());
+        }
+    }
+
+    /// Takes in the receipt of an utterance.
+    pub fn on_receipt(&mut self, receipt: &Receipt) {
+        if receipt.status == ReceiptStatus::Accepted.code() {
+            self.accepted = self.accepted.max(receipt.seq);
+        }
+    }
+
+    /// Returns whether the view is up to date: no utterance is accepted and not yet applied, and no
+    /// sound is still being recognised.
+    pub fn is_settled(&self) -> bool {
+        let applied = self.view.as_ref().is_some_and(|view| view.applied >= self.accepted);
+        applied && self.activity.is_some_and(|activity| activity.pending == 0)
+    }
+
+    /// Returns the question in force, once it has been presented completely.
+    pub fn open_question(&self) -> Option<PromptId> {
+        let view = self.view.as_ref()?;
+        let Presented { prompt, presentation, state, .. } = self.presented;
+        let is_asked = view.interaction != 0
+            && view.decision == "ask"
+            && prompt == view.prompt
+            && state == PresentationState::Ended.code();
+        is_asked.then_some((prompt, presentation))
+    }
+
+    /// Returns the line that is being presented or was presented last, if it is still the robot's
+    /// latest.
+    pub fn presented_line(&self) -> Option<(PromptId, &str)> {
+        let view = self.view.as_ref()?;
+        let Presented { prompt, presentation, state, .. } = self.presented;
+        let has_begun = PresentationState::from_code(state).is_ok_and(PresentationState::has_begun);
+        let latest = has_begun && prompt != 0 && prompt == view.prompt && !view.text.is_empty();
+        latest.then_some(((prompt, presentation), view.text.as_str()))
+    }
+}
+
+/// Takes every message that waits on a topic.
+pub fn drain<T: WireMessage + Copy>(reader: &Reader<T>) -> Vec<T> {
+    let mut all = Vec::new();
+    quiet(reader.drain(|message| all.push(*message)).map(Some));
+    all
+}
+
+/// Ignores a broken connection: the service's next incarnation opens another, and until then there is
+/// nothing to take.
+pub fn quiet<T>(result: Result<Option<T>, PortError>) -> Option<T> {
+    result.ok().flatten()
+}

@@ -1,0 +1,117 @@
+//! The view's keys are a contract with scripts and pages. `WHICHONE_BLESS=1` rewrites the golden
+//! file.
+
+use super::*;
+use messages::{
+    Activity, ArmStatus, Ended, FixedText, Hearing, MotionInhibit, MicrophoneState, Outcome, PickPhase,
+    PolicyView, PresentationState, Presented, Receipt, ReceiptStatus,
+};
+use scene::{AttributeId, Question, Scene, ValueId};
+
+const BOWLS: &str = include_str!("../../../../config/scenes/bowls.toml");
+const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/view.json");
+
+fn policy_view(scene: &Scene) -> PolicyView {
+    PolicyView {
+        scene_key: scene.key(),
+        applied: 3,
+        interaction: 7,
+        belief: vec![0.5, 0.25, 0.125, 0.125, 0.0, 0.0],
+        absent: 0.0,
+        person: Some((0.9, 0.05)),
+        question: Question::Attribute(AttributeId::from(0), ValueId::from(0)),
+        prompt: 5,
+        text: "Is it white?".to_owned(),
+        decision: "ask".to_owned(),
+        value: 41.25,
+        bounds: Some((41.0, 41.5)),
+        questions: 1,
+        expected_questions: 0.5,
+        planner: "lookahead".to_owned(),
+        last: Some(Ended {
+            interaction: 6,
+            object: Some(1),
+            name: Some("white2".to_owned()),
+            outcome: Outcome::Delivered,
+            questions: 2,
+            seconds: 12.5,
+            utterances: (1, 2),
+        }),
+        ..PolicyView::default()
+    }
+}
+
+fn asked() -> Latest {
+    let scene = Scene::from_toml("bowls.toml", BOWLS).unwrap();
+    let state = PresentationState::Ended.code();
+    let presented = Presented { prompt: 5, presentation: 1, state, ..Presented::default() };
+    let activity = Some(Activity::default());
+    Latest {
+        view: Some(policy_view(&scene)),
+        presented,
+        activity,
+        accepted: 3,
+        ..Latest::default()
+    }
+}
+
+#[test]
+fn view_keeps_its_keys() {
+    let scene = Scene::from_toml("bowls.toml", BOWLS).unwrap();
+    let policy = policy_view(&scene);
+    let hearing = Hearing {
+        microphone: MicrophoneState::Listening.code(),
+        level_db: -31.4,
+        note: FixedText::truncated("arecord"),
+        ..Hearing::default()
+    };
+    let arm = ArmStatus {
+        interaction: 7,
+        object: 1,
+        phase: PickPhase::Moving.code(),
+        hindrance: MotionInhibit::None.code(),
+        moving: 1,
+        remaining_s: 3.26,
+        ..ArmStatus::default()
+    };
+    let view = View {
+        dialogue: Some(DialogueView::new(&scene, &policy)),
+        said: vec![SaidView { who: Speaker::Robot, text: "Is it white?" }],
+        hearing: Some(HearingView::new(&hearing)),
+        arm: Some(ArmView::new(&scene, &arm)),
+        group: Some(&()),
+    };
+    let text = serde_json::to_string_pretty(&view).unwrap() + "\n";
+    if std::env::var_os("WHICHONE_BLESS").is_some() {
+        std::fs::write(GOLDEN, &text).unwrap();
+    }
+    let golden = std::fs::read_to_string(GOLDEN).unwrap();
+    assert_eq!(text, golden, "if the change is intended, run this test with WHICHONE_BLESS=1");
+}
+
+#[test]
+fn latest_is_settled_once_the_view_holds_every_accepted_utterance() {
+    let settled = asked();
+    assert!(settled.is_settled());
+    assert!(!Latest { accepted: 4, ..settled.clone() }.is_settled());
+    let recognising = Some(Activity { pending: 1, ..Activity::default() });
+    assert!(!Latest { activity: recognising, ..settled.clone() }.is_settled());
+    assert!(!Latest { activity: None, ..settled.clone() }.is_settled());
+    assert!(!Latest { view: None, ..settled }.is_settled());
+    for (status, settles) in [(ReceiptStatus::Refused, true), (ReceiptStatus::Accepted, false)] {
+        let mut latest = asked();
+        latest.on_receipt(&Receipt { seq: 9, status: status.code(), ..Receipt::default() });
+        assert_eq!(latest.is_settled(), settles, "{status:?}");
+    }
+}
+
+#[test]
+fn latest_question_is_open_from_the_end_of_its_presentation() {
+    let mut latest = asked();
+    assert_eq!(latest.open_question(), Some((5, 1)));
+    latest.presented.state = PresentationState::Speaking.code();
+    assert_eq!(latest.open_question(), None);
+    assert_eq!(latest.presented_line(), Some(((5, 1), "Is it white?")));
+    latest.presented.prompt = 4;
+    assert_eq!(latest.presented_line(), None);
+}
