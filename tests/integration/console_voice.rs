@@ -78,7 +78,7 @@ fn said(text: &str, behind_s: f64) -> Vec<i16> {
 fn listening(settings: &[&str]) -> (Group, Page) {
     let group = Group::up(settings);
     let mut page = group.page(&Visitor::operator(1));
-    page.until_part("speech", |speech| speech["hearing"]["ear"] == "ready");
+    page.until_part("hearing", |hearing| hearing["recogniser"] == "ready");
     page.until_part("turn", |turn| turn["state"] != "down");
     (group, page)
 }
@@ -237,7 +237,7 @@ fn a_stream_outlives_the_service_that_hears_it() {
     let before = group.incarnation("speech");
     group.signal("speech", rustix::process::Signal::KILL);
     group.wait_for_restart("speech", before);
-    page.until_part("speech", |speech| speech["hearing"]["ear"] == "ready");
+    page.until_part("hearing", |hearing| hearing["recogniser"] == "ready");
     let mut stream = Stream::begin(&mut page, 2);
     stream.send(&mut page, HELD, &said("get me the small white bowl", 0.3), |ms| ms);
     stream.end(&mut page, HELD);

@@ -107,7 +107,7 @@ impl Page {
     pub fn open(place: &str, visitor: &Visitor<'_>) -> Result<Self, String> {
         let mut page = Self::connect(place, visitor)?;
         let Visitor { session, role, last_line, .. } = visitor;
-        page.send(&json!({ "t": "hello", "protocol": 1, "session": session, "name": "test",
+        page.send(&json!({ "t": "hello", "protocol": 2, "session": session, "name": "test",
                            "last_line": last_line, "role": role }));
         let until = Instant::now() + PATIENCE;
         while page.welcome.is_null() {
@@ -277,7 +277,7 @@ impl Page {
         loop {
             let (seen, asked) = self.until("question or end", |page| {
                 let (dialogue, turn) = (page.parts.get("dialogue")?, page.parts.get("turn")?);
-                let speaking = &page.parts.get("speech")?["speaking"];
+                let speaking = page.parts.get("speaking")?;
                 let asked = (speaking["prompt"].as_u64(), speaking["presentation"].as_u64());
                 let is_asked = turn["state"] == "asked"
                     && dialogue["prompt"].as_u64() == asked.0
@@ -289,7 +289,7 @@ impl Page {
                 return seen;
             }
             answered = Some(asked);
-            let text = self.answer_for(&seen["question_about"], object);
+            let text = self.answer_for(&seen["question"], object);
             let done = self.ask("say", &json!({ "text": text }));
             assert!(done["ok"] == true, "{text}: {done}");
             said = done["seq"].as_u64().unwrap_or(said);

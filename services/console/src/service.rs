@@ -74,15 +74,15 @@ impl Console {
             access: Access::new(settings.console.token.clone()),
             group: paths.name().to_string(),
             settings: page_settings(settings, &study),
-            urdf: settings.robot_urdf().to_owned(),
+            urdf: settings.robot_files().urdf.text.clone(),
             voice_dir: settings.voice_dir(&paths.run()),
             study_dir: study::folder(settings, paths),
         });
         bridge::supervisor::watch(paths, &app, restart_inbox, commands)
             .map_err(failed("supervisor's thread"))?;
         let address: SocketAddr = settings.console.listen;
-        let web = Web::new(&app, address, paths.console_url())
-            .map_err(failed("web server's threads"))?;
+        let web =
+            Web::new(&app, address, paths.console_url()).map_err(failed("web server's threads"))?;
         let bridge = Bridge::open(Arc::clone(&app), client, paths, settings, study)?;
         let inbox = Inbox { commands: command_inbox, motions: motion_inbox };
         Ok(Self { app, bridge, inbox, web, is_ending: false })

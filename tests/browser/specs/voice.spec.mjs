@@ -69,7 +69,7 @@ test.describe("while the robot speaks at length", () => {
     await page.mouse.up();
     // Its sound would last more than half a minute.
     await until("the end of the sentence", async () => {
-      const { speaking } = (await group.state()).speech;
+      const { speaking } = await group.state();
       return speaking?.prompt !== 1 || speaking.presentation > 1 || speaking.ended_ms;
     });
   });

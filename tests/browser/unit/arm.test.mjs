@@ -256,13 +256,12 @@ describe("words and thoughts", () => {
 
   it("marks the likeliest object and those that are asked about", () => {
     const dialogue = {
-      belief: [0.8, 0.2],
-      question: {},
-      question_about: { attribute: "color", value: "clear" },
+      belief: { a: 0.8, b: 0.2 },
+      question: { type: "attr", attribute: "color", value: "clear" },
     };
     const [a, b] = thoughtsOf(dialogue, scene);
     assert.deepEqual([a.best, a.asked, b.best, b.asked], [true, false, false, true]);
-    const pointed = thoughtsOf({ ...dialogue, question_about: { object: "a" } }, scene);
+    const pointed = thoughtsOf({ ...dialogue, question: { type: "point", object: "a" } }, scene);
     assert.deepEqual(
       pointed.map(({ asked }) => asked),
       [true, false],
@@ -270,10 +269,7 @@ describe("words and thoughts", () => {
   });
 
   it("marks none while all are equally likely, or nothing is asked", () => {
-    const even = thoughtsOf(
-      { belief: [0.5, 0.5], question: null, question_about: { object: "a" } },
-      scene,
-    );
+    const even = thoughtsOf({ belief: { a: 0.5, b: 0.5 }, question: { type: "none" } }, scene);
     assert.ok(even.every(({ best, asked }) => !best && !asked));
     assert.deepEqual(thoughtsOf(undefined, undefined), []);
   });

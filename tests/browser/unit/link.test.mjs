@@ -55,7 +55,7 @@ function open(options = {}) {
 
 function welcome(socket, more = {}) {
   socket.accept();
-  socket.say({ t: "welcome", protocol: 1, viewer: "v1", server_ms: 5_000, ...more });
+  socket.say({ t: "welcome", protocol: 2, viewer: "v1", server_ms: 5_000, ...more });
 }
 
 afterEach(() => {
@@ -72,7 +72,7 @@ describe("the link", () => {
     socket.accept();
     assert.deepEqual(socket.sent[0], {
       t: "hello",
-      protocol: 1,
+      protocol: 2,
       session: SESSION,
       name: "",
       role: "viewer",

@@ -1,4 +1,5 @@
 import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
 import { describe, it } from "node:test";
 import { drawingOf } from "../../../services/console/page/js/model/drawing.js";
 import { health } from "../../../services/console/page/js/model/health.js";
@@ -10,10 +11,10 @@ import {
   readable,
 } from "../../../services/console/page/js/model/ranking.js";
 import {
+  actionWords,
   answers,
   proof,
   ranked,
-  readAction,
   toCome,
 } from "../../../services/console/page/js/model/reasons.js";
 import { banner, whoControls } from "../../../services/console/page/js/model/turn.js";
@@ -118,28 +119,38 @@ describe("reasons", () => {
   const dialogue = {
     decision: "ask",
     text: "Sorry: is it big?",
-    question_about: { text: "Is it big?" },
+    question: { type: "attr", attribute: "size", value: "big" },
     value: 41,
-    belief: [0.1, 0.8, 0.1],
+    belief: { white: 0.1, clear: 0.8, metal: 0.1 },
     alternatives: [
-      { action: "pick clear", value: -9 },
-      { action: "ask: Is it white?", value: 40 },
-      { action: "wait", value: 41 },
+      { action: { type: "pick", object: "clear" }, value: -9 },
+      { action: { type: "attr", attribute: "color", value: "clear" }, value: 40 },
+      { action: { type: "wait" }, value: 41 },
     ],
   };
+  const words = (action) => actionWords(action, SCENE);
 
-  it("read actions with the labels of objects", () => {
-    assert.deepEqual(readAction("pick clear", SCENE), { kind: "pick", text: "clear bowl" });
-    assert.deepEqual(readAction("pick gone", SCENE), { kind: "pick", text: "gone" });
-    assert.deepEqual(readAction("ask: Is it x?", SCENE), { kind: "ask", text: "Is it x?" });
-    assert.equal(readAction("conclude that it is not here", SCENE).kind, "absent");
-    assert.deepEqual(readAction("dance", SCENE), { kind: "other", text: "dance" });
+  it("render typed actions by the strings, in the scene's words", () => {
+    assert.deepEqual(words({ type: "pick", object: "clear" }).args, { object: "clear bowl" });
+    assert.deepEqual(words({ type: "point", object: "gone" }).args, { object: "gone" });
+    const asks = { type: "attr", attribute: "color", value: "clear" };
+    assert.deepEqual(words(asks), { key: "action.attr", args: { value: "see-through" } });
+    assert.deepEqual(words({ type: "not_here" }), { key: "action.not_here", args: {} });
+  });
+
+  it("have a string for every action in every language", () => {
+    const types = ["wait", "not_here", "say", "pick", "point", "attr", "which"];
+    for (const code of ["en", "de"]) {
+      const path = `../../../services/console/page/strings/${code}.json`;
+      const strings = JSON.parse(readFileSync(new URL(path, import.meta.url), "utf8"));
+      for (const type of types) assert.ok(strings[`action.${type}`], `${code} ${type}`);
+    }
   });
 
   it("are the best first, the chosen one before its equals, with bars of their worth", () => {
-    const rows = ranked(dialogue, SCENE);
-    const texts = rows.map((row) => row.action.text || row.action.kind);
-    assert.deepEqual(texts, ["Is it big?", "wait", "Is it white?", "clear bowl"]);
+    const rows = ranked(dialogue);
+    const types = rows.map((row) => row.action.type);
+    assert.deepEqual(types, ["attr", "wait", "attr", "pick"]);
     assert.deepEqual(
       rows.map((row) => row.chosen),
       [true, false, false, false],
@@ -151,9 +162,9 @@ describe("reasons", () => {
 
   it("of a pick name what is picked", () => {
     const picks = { ...dialogue, decision: "pick", alternatives: [] };
-    assert.equal(ranked(picks, SCENE)[0].action.text, "clear bowl");
-    assert.equal(ranked(picks, SCENE, "metal")[0].action.text, "metal bowl");
-    assert.equal(ranked(picks, SCENE)[0].length, 1);
+    assert.deepEqual(ranked(picks)[0].action, { type: "pick", object: "clear" });
+    assert.deepEqual(ranked(picks, "metal")[0].action, { type: "pick", object: "metal" });
+    assert.equal(ranked(picks)[0].length, 1);
   });
 
   it("say what is proven", () => {
@@ -242,12 +253,14 @@ describe("how an object is drawn", () => {
 });
 
 describe("health in a line", () => {
-  const of = (...states) => health(states.map((state, i) => ({ name: `s${i}`, state })));
+  const of = (...states) =>
+    health(states.map((actual, i) => ({ name: `s${i}`, actual, wanted: "up" })));
 
   it("names the gravest", () => {
     assert.deepEqual(of("ready", "ready"), { tone: "good", key: "health.good", args: { n: 2 } });
     assert.equal(of("ready", "starting").args.names, "s1");
     assert.deepEqual(of("held", "starting").args, { names: "s0", n: 1 });
+    assert.equal(of("ready", "down").args.names, "s1", "it waits");
     assert.equal(of().key, "services.none");
     assert.equal(health(undefined).tone, "busy");
   });
@@ -314,7 +327,10 @@ describe("stop", () => {
     await pressed;
     assert.deepEqual([link.reconnects, state()], [1, "undelivered"]);
     link.come();
-    assert.equal(link.sent.length, 2);
+    assert.deepEqual([link.sent.length, state()], [2, "undelivered"], "the warning stays");
+    link.sent[1].ok({});
+    await new Promise(setImmediate);
+    assert.equal(state(), "idle");
   });
 
   it("tells a refusal, and does not repeat it", async () => {

@@ -94,9 +94,9 @@ test("every fault has words with a cure in every language", async () => {
     ...devices.map((name) => microphoneFault({ name })),
     ...codes.map(recognitionFault),
     standingFault({ secure: false }),
-    standingFault({ secure: true, ear: "off" }),
+    standingFault({ secure: true, state: "off" }),
   ];
-  assert.equal(standingFault({ secure: true, ear: "ready", recogniser: true }), null);
+  assert.equal(standingFault({ secure: true, state: "ready", recogniser: true }), null);
   for (const language of ["en", "de"]) {
     const file = new URL(`${PAGE}/strings/${language}.json`, import.meta.url);
     const strings = JSON.parse(await readFile(file, "utf8"));

@@ -6,7 +6,7 @@ import { LinkError, Requests } from "./link/requests.js";
 export { LinkError };
 
 /** Version of the protocol that this page speaks. */
-const PROTOCOL = 1;
+const PROTOCOL = 2;
 /** Between two pings, milliseconds. */
 const PING_MS = 2_000;
 /**

@@ -1,17 +1,19 @@
 // @ts-check
-/** How long the robot's word that it stops is waited for, milliseconds. */
+/** How long the robot may take to confirm a stop, milliseconds. */
 const CONFIRM_MS = 1_500;
 
 /**
- * Stops the robot's motion, at once and until it is sure: where there is no connection or no answer,
- * the page says so and sends it again as soon as it can. Its state is the store's section `stop`:
- * `idle`, `sent`, `undelivered`.
+ * Stops the robot's motion. Without a connection or a confirmation the page says so, and sends the
+ * stop again until it is confirmed. The state is the store's section `stop`: `idle`, `sent`, or
+ * `undelivered` until a confirmation comes.
  * @param {{link: any, store: any}} context
- * @param {(error: Error) => void} refused hears why the robot did not take it
+ * @param {(error: Error) => void} refused called with the reason of a refusal
  * @returns {() => void} presses stop
  */
 export function stopper({ link, store }, refused) {
   let wanted = false;
+  /** Whether a stop was sent and not confirmed in time: the warning stays until it is. */
+  let late = false;
   const tell = (state) => {
     if (store.get("stop")?.state !== state) store.set("stop", { state });
   };
@@ -26,19 +28,19 @@ export function stopper({ link, store }, refused) {
         tell("idle");
         return refused(error);
       }
+      late ||= error.code === "late";
       tell("undelivered");
       if (error.code === "late") link.reconnect();
     }
   };
   store.set("stop", { state: "idle" });
   link.on("status", ({ state }) => {
-    if (wanted && state === "up" && store.get("stop")?.state === "undelivered") {
-      tell("sent");
-      send();
-    }
+    if (!wanted || state !== "up" || store.get("stop")?.state !== "undelivered") return;
+    if (!late) tell("sent");
+    send();
   });
   return () => {
-    wanted = true;
+    [wanted, late] = [true, false];
     const sent = send();
     if (link.isUp) tell("sent");
     return sent;
@@ -49,7 +51,7 @@ export function stopper({ link, store }, refused) {
 const TWICE_MS = 900;
 
 /**
- * Whether a press of Escape means stop: the second of two, or any while the arm moves.
+ * Returns whether a press of Escape means stop: the second of two, or any while the arm moves.
  * @param {number|null} beforeMs when it was last pressed
  * @param {number} nowMs
  * @param {boolean} moving

@@ -42,8 +42,9 @@ fn open(latest: &Latest) -> Option<&PolicyView> {
 /// Returns the object of the pick under way: the arm's, or the most likely one where the order may not
 /// have reached the arm.
 fn fetched(view: &PolicyView, arm: Option<&ArmStatus>) -> usize {
-    let over = [PickPhase::Idle.code(), PickPhase::Done.code()];
-    let arm = arm.filter(|arm| arm.interaction == view.interaction && !over.contains(&arm.phase));
+    let over = [PickPhase::Idle, PickPhase::Done];
+    let arm =
+        arm.filter(|arm| arm.interaction == view.interaction && !over.contains(&arm.phase.get()));
     let by_belief = |a: &usize, b: &usize| view.belief[*a].total_cmp(&view.belief[*b]);
     let likeliest = || (0..view.belief.len()).max_by(by_belief).unwrap_or(usize::MAX);
     arm.map_or_else(likeliest, |arm| arm.object as usize)
@@ -84,7 +85,7 @@ mod tests {
         Latest { view: Some(view), ..Latest::default() }
     }
 
-    fn with(latest: &Latest, change: impl FnOnce(&mut PolicyView)) -> Latest {
+    fn with(latest: &Latest, change: impl FnMut(&mut PolicyView)) -> Latest {
         let mut latest = latest.clone();
         latest.view.as_mut().into_iter().for_each(change);
         latest
@@ -94,7 +95,7 @@ mod tests {
     fn corrections_deny_the_question_or_the_fetched_object() {
         let value = Question::Attribute(AttributeId::from(0), ValueId::from(0));
         let (picks, idle) = (latest("pick", Question::None), Latest::default());
-        let moves = PickPhase::Moving.code();
+        let moves = PickPhase::Moving.into();
         let arm = ArmStatus { interaction: 3, object: 5, phase: moves, ..ArmStatus::default() };
         let fetches = Latest { arm: Some(arm), ..picks.clone() };
         for (latest, expected) in [

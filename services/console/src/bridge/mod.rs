@@ -136,7 +136,7 @@ impl Bridge {
         }
     }
 
-    /// Takes in what has arrived, causes before effects as far as one look can tell.
+    /// Takes in what has arrived, causes before effects as far as one pass can order them.
     fn take_in(&mut self, now: Now) {
         let Self { topics, model, .. } = self;
         let (observations, acts) = (drain(&topics.observations), drain(&topics.acts));

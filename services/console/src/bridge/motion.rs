@@ -71,8 +71,7 @@ impl Motions {
     pub(super) fn pass(&mut self, writer: &Writer<MotionCommand>, hub: &Hub, now: Time) {
         let Some(latest) = &mut self.latest else { return };
         if now >= latest.given + PATIENCE {
-            let why =
-                "the arm does not answer; help: use its emergency stop, and see the list of services";
+            let why = "the arm does not answer; help: use its emergency stop, and see the list of services";
             for motion in self.waiting.drain(..) {
                 hub.answer(motion.viewer, motion.id, Err(why.to_owned()));
             }
@@ -89,7 +88,7 @@ fn send(latest: Latest, writer: &Writer<MotionCommand>) {
     let order = if latest.stop { MotionOrder::Stop } else { MotionOrder::Resume };
     let command = MotionCommand {
         given_ns: latest.given.ns(),
-        order: order.code(),
+        order: order.into(),
         ..MotionCommand::default()
     };
     if let Err(error) = writer.send(&command) {

@@ -88,11 +88,9 @@ impl Submissions {
         };
         let Some((viewer, id)) = self.0.swap_remove(at).viewer else { return };
         let note = receipt.note.as_str().unwrap_or_default();
-        let outcome = match ReceiptStatus::from_code(receipt.status) {
-            Ok(ReceiptStatus::Accepted) => Ok(Some(Answer::Accepted { seq: receipt.seq })),
-            Ok(ReceiptStatus::NotForMe) => {
-                Err(format!("heard, but not taken for a request: {note}"))
-            }
+        let outcome = match receipt.status.get() {
+            ReceiptStatus::Accepted => Ok(Some(Answer::Accepted { seq: receipt.seq })),
+            ReceiptStatus::NotForMe => Err(format!("heard, but not taken for a request: {note}")),
             _ => Err(note.to_owned()),
         };
         hub.answer(viewer, id, outcome);

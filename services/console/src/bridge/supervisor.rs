@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError};
+use service::control::{Reply, Request, call};
 use service::group::GroupPaths;
 use service::worker_channel::DeviceSender;
-use service::control::{Reply, Request, call};
 
 use crate::hub::ViewerId;
 use crate::hub::command::Command;

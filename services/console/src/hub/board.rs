@@ -1,16 +1,16 @@
-//! What everybody may see, as text, each part with the revision of its last change.
+//! The board: the newest state for every viewer, as text, each part with the revision of its change.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use tokio::sync::watch;
 
-/// Lines of the transcript that are kept.
+/// Most lines of the transcript.
 pub const LINES_MAX: usize = 200;
-/// Utterances being spoken at a time that are shown.
+/// Most interim texts at a time.
 const PARTIALS_MAX: usize = 8;
 
-/// The newest text of everything, bounded whatever happens.
+/// The newest text of every part; bounded.
 #[derive(Debug)]
 pub struct Board {
     state: Mutex<State>,
@@ -32,7 +32,7 @@ struct Item {
     text: Arc<str>,
 }
 
-/// How far a viewer has come.
+/// The state that a viewer has.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cursor {
     revision: u64,
@@ -41,7 +41,7 @@ pub struct Cursor {
 }
 
 impl Cursor {
-    /// A viewer who has seen nothing but the transcript up to a line.
+    /// Makes the cursor of a viewer that has the transcript up to a line.
     pub fn after_line(last_line: u64) -> Self {
         Self { revision: 0, last_line }
     }
@@ -54,12 +54,12 @@ impl Default for Board {
 }
 
 impl Board {
-    /// Tells that something has changed.
+    /// Returns a receiver that changes with the board.
     pub fn watch(&self) -> watch::Receiver<u64> {
         self.changed.subscribe()
     }
 
-    /// Sets a section to a JSON value as text. Whether it is another than before.
+    /// Sets a section to JSON text; returns whether it has changed.
     pub fn section(&self, name: &'static str, text: &str) -> bool {
         let mut state = self.state();
         let next = state.revision + 1;
@@ -69,7 +69,7 @@ impl Board {
             Some((_, before)) => *before = item,
             None => state.sections.push((name, item)),
         }
-        self.tell(&mut state);
+        self.publish(&mut state);
         true
     }
 
@@ -77,10 +77,10 @@ impl Board {
     pub fn joints(&self, frame: String) {
         let mut state = self.state();
         state.joints = Some(Item { revision: state.revision + 1, text: frame.into() });
-        self.tell(&mut state);
+        self.publish(&mut state);
     }
 
-    /// Sets the frame of what is being said in one stream.
+    /// Sets the frame with the interim text of one stream.
     pub fn partial(&self, stream: &str, frame: String) {
         let mut state = self.state();
         state.partials.retain(|(known, _)| known != stream);
@@ -89,7 +89,7 @@ impl Board {
         }
         let item = Item { revision: state.revision + 1, text: frame.into() };
         state.partials.push_back((stream.to_owned(), item));
-        self.tell(&mut state);
+        self.publish(&mut state);
     }
 
     /// Adds a line to the transcript, or replaces the one of that number.
@@ -105,15 +105,15 @@ impl Board {
                 state.lines.push_back((id, item));
             }
         }
-        self.tell(&mut state);
+        self.publish(&mut state);
     }
 
-    /// Number of the first line that is kept, 0 where there is none.
+    /// Returns the number of the first line, 0 for none.
     pub fn first_line(&self) -> u64 {
         self.state().lines.front().map_or(0, |(id, _)| *id)
     }
 
-    /// The frames that bring a viewer up to date.
+    /// Returns the frames that bring a viewer up to date.
     pub fn news(&self, cursor: &mut Cursor) -> Vec<String> {
         let state = self.state();
         let since = cursor.revision;
@@ -139,7 +139,7 @@ impl Board {
         frames
     }
 
-    /// Every section as one JSON object, and the transcript.
+    /// Returns every section and the transcript as one JSON object.
     pub fn all(&self) -> String {
         let state = self.state();
         let parts = state.sections.iter().map(|(name, item)| format!("\"{name}\":{}", item.text));
@@ -149,13 +149,13 @@ impl Board {
         format!("{{{}{comma}\"lines\":[{}]}}", parts.join(","), lines.join(","))
     }
 
-    fn tell(&self, state: &mut State) {
+    fn publish(&self, state: &mut State) {
         state.revision += 1;
         self.changed.send_replace(state.revision);
     }
 
     fn state(&self) -> MutexGuard<'_, State> {
-        // Every change is one assignment: what a panic has left behind is whole.
+        // Every change is one assignment, so that a panic leaves a consistent state.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -165,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_viewer_gets_everything_once_and_then_what_changed() {
+    fn board_sends_everything_once_and_then_changes() {
         let board = Board::default();
         assert!(board.section("arm", "1") && board.section("turn", "2"));
         board.line(7, "{}");
@@ -175,13 +175,13 @@ mod tests {
             [r#"{"t":"state","parts":{"arm":1,"turn":2}}"#, r#"{"t":"lines","lines":[{}]}"#]
         );
         assert!(board.news(&mut cursor).is_empty());
-        assert!(!board.section("arm", "1"), "the same again is no news");
+        assert!(!board.section("arm", "1"), "an equal section is not published");
         assert!(board.section("arm", "3") && board.section("arm", "4"));
         assert_eq!(board.news(&mut cursor), [r#"{"t":"state","parts":{"arm":4}}"#]);
     }
 
     #[test]
-    fn lines_go_on_where_a_viewer_was_and_replace_each_other() {
+    fn board_lines_continue_after_the_viewers_last_line() {
         let board = Board::default();
         (1..=300).for_each(|id| board.line(id, &id.to_string()));
         assert_eq!(board.first_line(), 101);
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn partials_of_one_stream_replace_each_other() {
+    fn board_keeps_the_newest_interim_text_of_a_stream() {
         let board = Board::default();
         let mut cursor = Cursor::default();
         for stream in ["a", "b", "a"] {
@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn all_is_one_object() {
+    fn board_state_is_one_object() {
         let board = Board::default();
         assert_eq!(board.all(), r#"{"lines":[]}"#);
         board.section("arm", "1");

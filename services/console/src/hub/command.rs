@@ -20,7 +20,7 @@ pub enum Command {
     Group(Result<Box<GroupStatus>, String>),
 }
 
-/// What a viewer commands.
+/// A command for dialogue or study.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verb {
     /// Says something to the robot.
@@ -57,7 +57,7 @@ pub fn typed(text: &str) -> Words {
 /// An order to the motion stop; handled before everything else.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
-    /// Whose it is.
+    /// The viewer who gave it.
     pub viewer: ViewerId,
     /// The number that the page gave it.
     pub id: u64,

@@ -1,4 +1,4 @@
-//! Who is in control: one viewer at a time, and how control changes hands.
+//! The lease of control: one viewer at a time, and how control changes hands.
 //!
 //! Pure: times come from outside.
 
@@ -6,10 +6,10 @@ use service::{Span, Time};
 
 use super::ViewerId;
 
-/// How long control waits for a page that is being loaded again.
+/// How long a page may take to reload without losing control.
 pub const RELOAD: Span = Span::from_ms(15_000);
 
-/// Who holds control, and who asks for it.
+/// The holder of control, and the viewer who has requested it.
 #[derive(Clone, Debug)]
 pub struct Lease {
     holder: Option<Holder>,
@@ -31,7 +31,7 @@ struct Asked {
     until: Time,
 }
 
-/// What became of a wish for control.
+/// The result of a request for control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
     /// It has control.
@@ -41,28 +41,28 @@ pub enum Taken {
 }
 
 impl Lease {
-    /// Nobody in control; `handover` is how long an operator has to answer.
+    /// Makes a lease without holder; `handover` is how long an operator has to answer.
     pub fn new(handover: Span) -> Self {
         Self { holder: None, asked: None, handover }
     }
 
-    /// The operator; one whose page is being loaded again still is.
+    /// Returns the operator, also while its page reloads.
     pub fn operator(&self) -> Option<ViewerId> {
         self.holder.as_ref().map(|holder| holder.viewer)
     }
 
-    /// Who asks for control, and when it gets it.
+    /// Returns the viewer who has requested control, and when it gets it.
     pub fn asked(&self) -> Option<(ViewerId, Time)> {
         self.asked.map(|asked| (asked.by, asked.until))
     }
 
-    /// Whether the viewer is in control.
+    /// Returns whether the viewer is in control.
     pub fn holds(&self, viewer: ViewerId) -> bool {
         self.operator() == Some(viewer)
     }
 
-    /// A viewer has come. The session that had control goes on with it; whoever `wants` it gets it
-    /// if nobody has it.
+    /// Admits a viewer. The session in control keeps it; a viewer that `wants` control gets a free
+    /// lease.
     pub fn joined(&mut self, viewer: ViewerId, session: &str, wants: bool) {
         match &mut self.holder {
             Some(holder) if holder.session == session => {
@@ -74,7 +74,7 @@ impl Lease {
         }
     }
 
-    /// A viewer has gone.
+    /// Removes a viewer.
     pub fn left(&mut self, viewer: ViewerId, now: Time) {
         if self.asked.is_some_and(|asked| asked.by == viewer) {
             self.asked = None;
@@ -84,10 +84,10 @@ impl Lease {
         }
     }
 
-    /// A viewer wishes for control.
+    /// Requests control for a viewer.
     ///
     /// # Errors
-    /// Somebody else has asked before.
+    /// Another viewer has asked before.
     pub fn take(
         &mut self,
         viewer: ViewerId,
@@ -101,7 +101,9 @@ impl Lease {
             return Ok(Taken::Granted);
         }
         match self.asked {
-            Some(asked) if asked.by != viewer => Err("somebody else has asked; try again soon"),
+            Some(asked) if asked.by != viewer => {
+                Err("another viewer has requested control; help: try again soon")
+            }
             Some(asked) => Ok(Taken::Asked(asked.until)),
             None => {
                 let until = now + self.handover;
@@ -121,13 +123,13 @@ impl Lease {
         self.asked = None;
     }
 
-    /// When something happens by itself.
+    /// Returns when the lease changes next without a request.
     pub fn deadline(&self) -> Option<Time> {
         let away = self.holder.as_ref().and_then(|holder| holder.away).map(|away| away + RELOAD);
         self.asked.map(|asked| asked.until).into_iter().chain(away).min()
     }
 
-    /// Time has passed. `session` tells the session of a viewer. Whether anything has changed.
+    /// Advances the lease to `now`; returns whether it has changed. `session` returns a viewer's session.
     pub fn tick(&mut self, now: Time, session: impl Fn(ViewerId) -> Option<String>) -> bool {
         if self.deadline().is_none_or(|deadline| now < deadline) {
             return false;
@@ -171,17 +173,17 @@ mod tests {
     }
 
     #[test]
-    fn the_first_wish_gets_it() {
+    fn lease_is_granted_to_the_first_request() {
         let mut lease = Lease::new(Span::from_ms(10_000));
         lease.joined(C, "c", false);
-        assert_eq!(lease.operator(), None, "who only looks is not asked to act");
+        assert_eq!(lease.operator(), None, "a viewer is not made operator");
         lease.joined(A, "a", true);
         lease.joined(B, "b", true);
         assert!(lease.holds(A) && !lease.holds(B));
     }
 
     #[test]
-    fn a_page_that_is_loaded_again_keeps_it() {
+    fn lease_survives_a_reload() {
         let mut lease = lease();
         lease.left(A, at(1));
         assert!(!pass(&mut lease, 15));
@@ -193,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn one_that_stays_away_loses_it() {
+    fn lease_ends_after_a_long_absence() {
         let mut lease = lease();
         lease.left(A, at(1));
         assert!(pass(&mut lease, 16));
@@ -202,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn the_operator_is_asked_and_may_give_or_keep() {
+    fn lease_may_be_given_or_kept_on_request() {
         let mut lease = lease();
         assert_eq!(lease.take(B, "b", at(1)), Ok(Taken::Asked(at(11))));
         assert_eq!(
@@ -219,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn without_an_answer_it_goes_over() {
+    fn lease_changes_hands_without_an_answer() {
         let mut lease = lease();
         assert_eq!(lease.take(B, "b", at(1)), Ok(Taken::Asked(at(11))));
         assert!(!pass(&mut lease, 10));
@@ -228,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn who_asked_and_left_gets_nothing() {
+    fn lease_request_ends_with_its_viewer() {
         let mut lease = lease();
         assert!(lease.take(B, "b", at(1)).is_ok());
         lease.left(B, at(2));
@@ -237,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn an_absent_operator_is_not_waited_for_longer_than_a_reload() {
+    fn lease_of_an_absent_operator_ends_after_the_reload_time() {
         let mut lease = lease();
         lease.left(A, at(0));
         assert_eq!(lease.take(B, "b", at(9)), Ok(Taken::Asked(at(19))));

@@ -1,5 +1,5 @@
-//! What bridge and server share: the board, the viewers, who is in control, and the channels to the main
-//! loop.
+//! The hub between bridge and server: the board, the viewers, the lease of control, and the channels
+//! to the main loop.
 
 pub mod board;
 pub mod command;
@@ -23,8 +23,8 @@ use board::Board;
 use command::{Command, Motion, Verb};
 use lease::{Lease, Taken};
 use outbound::{Answer, Done, PageMessage};
-use viewers::Viewers;
 pub use service::view::ms;
+use viewers::Viewers;
 pub use viewers::{OutboundFrame, Role};
 
 /// A viewer's number, in a page `v3`.
@@ -45,7 +45,7 @@ impl std::str::FromStr for ViewerId {
     }
 }
 
-/// What goes from the hub to the main loop and to the supervisor.
+/// Channels to the main loop and to the supervisor's thread.
 #[derive(Debug)]
 pub struct Channels {
     /// To the main loop.
@@ -66,12 +66,12 @@ struct ControlSection<'a> {
     expires_ms: Option<f64>,
 }
 
-/// What bridge and server share.
+/// Shared by bridge and server.
 #[derive(Debug)]
 pub struct Hub {
-    /// What everybody may see.
+    /// The state for every viewer.
     pub board: Board,
-    /// What is counted.
+    /// Metrics.
     pub metrics: Metrics,
     channels: Channels,
     control: Mutex<Control>,
@@ -79,7 +79,7 @@ pub struct Hub {
     ending: watch::Sender<bool>,
     /// Beats of the web server's tasks.
     progress: AtomicU64,
-    /// When the main loop was last well, nanoseconds.
+    /// Time of the main loop's last pass, nanoseconds.
     alive: AtomicU64,
 }
 
@@ -107,10 +107,10 @@ impl Hub {
         hub
     }
 
-    /// A page has come: its number, and what is sent to it alone.
+    /// Admits a page; returns its number and the frames for it alone.
     ///
     /// # Errors
-    /// As many pages are open as there may be.
+    /// The maximum of open pages is reached.
     pub fn join(
         &self,
         name: &str,
@@ -122,7 +122,7 @@ impl Hub {
         if !known && control.viewers.len() >= self.viewers_max {
             let most = self.viewers_max;
             return Err(format!(
-                "{most} pages are open already; close one, or raise console.viewers_max"
+                "{most} pages are open; help: close one, or raise console.viewers_max"
             ));
         }
         let (viewer, frames) = control.viewers.add(name.to_owned(), session.to_owned(), role);
@@ -131,23 +131,23 @@ impl Hub {
         Ok((viewer, frames))
     }
 
-    /// A page has gone.
+    /// Removes a page.
     pub fn leave(&self, viewer: ViewerId, now: Time) {
         let mut control = self.control();
         control.viewers.remove(viewer);
         control.lease.left(viewer, now);
         self.show(&control);
         drop(control);
-        // Whoever streams is missed by the silence too.
+        // A lost `Left` is covered by the timeout of the stream.
         let _ = self.channels.commands.offer(Command::Left(viewer));
     }
 
-    /// Pages that are open.
+    /// Returns the number of open pages.
     pub fn viewers(&self) -> usize {
         self.control().viewers.len()
     }
 
-    /// Lets time pass for who is in control.
+    /// Advances the lease.
     pub fn tick(&self, now: Time) {
         let mut control = self.control();
         let Control { viewers, lease } = &mut *control;
@@ -156,14 +156,14 @@ impl Hub {
         }
     }
 
-    /// Sends a frame to one viewer; one that does not read is shut out.
+    /// Sends a message to one viewer; one that does not read is disconnected.
     pub fn send(&self, viewer: ViewerId, message: &PageMessage<'_>) {
         let mut control = self.control();
         let Some(there) = control.viewers.get(viewer) else { return };
         if let Err(mpsc::error::TrySendError::Full(_)) =
-            there.mailbox.try_send(OutboundFrame::Text(message.to_text()))
+            there.queue.try_send(OutboundFrame::Text(message.to_text()))
         {
-            tracing::warn!(%viewer, "shut out: it does not read its answers");
+            tracing::warn!(%viewer, "disconnected: it does not read its answers");
             control.viewers.remove(viewer);
         }
     }
@@ -183,19 +183,19 @@ impl Hub {
         self.send(viewer, &PageMessage::Error { error });
     }
 
-    /// Asks the bridge for something; the answer comes by [`Hub::answer`].
+    /// Passes a command to the bridge, which answers by [`Hub::answer`].
     pub fn ask(&self, viewer: ViewerId, id: u64, verb: Verb) {
-        // A study has an authority of its own: its participant's page.
+        // A study checks its participant's page instead.
         let is_free = matches!(verb, Verb::Study(..));
         if let (Err(why), false) = (self.must_hold(viewer), is_free) {
             return self.answer(viewer, id, Err(why));
         }
         if self.channels.commands.offer(Command::Do(viewer, id, verb)).is_err() {
-            self.answer(viewer, id, Err("the console is busy; try again".to_owned()));
+            self.answer(viewer, id, Err("the console is busy; help: try again".to_owned()));
         }
     }
 
-    /// Stops the arm, for whoever asks; lets it go on, for the operator.
+    /// Latches the motion stop for every viewer, releases it for the operator.
     pub fn motion(&self, viewer: ViewerId, id: u64, stop: bool) {
         if let Err(why) = self.must_hold(viewer)
             && !stop
@@ -203,46 +203,48 @@ impl Hub {
             return self.answer(viewer, id, Err(why));
         }
         if self.channels.motions.offer(Motion { viewer, id, stop }).is_err() {
-            self.answer(viewer, id, Err("the console is busy; use the emergency stop".to_owned()));
+            self.answer(
+                viewer,
+                id,
+                Err("the console is busy; help: use the robot's emergency stop".to_owned()),
+            );
         }
     }
 
-    /// Has a service started anew.
+    /// Restarts a service.
     pub fn restart(&self, viewer: ViewerId, id: u64, service: String) {
         if let Err(why) = self.must_hold(viewer) {
             return self.answer(viewer, id, Err(why));
         }
         if self.channels.restarts.try_send((viewer, id, service)).is_err() {
-            self.answer(viewer, id, Err("the supervisor is busy; try again".to_owned()));
+            self.answer(viewer, id, Err("the supervisor is busy; help: try again".to_owned()));
         }
     }
 
-    /// Hands on sound of the operator's; anybody else's is refused.
+    /// Passes on sound of the operator.
     ///
     /// # Errors
-    /// Why it is not taken.
+    /// The viewer is not the operator, or the console is busy.
     pub fn sound(&self, viewer: ViewerId, frame: crate::voice::PcmFrame) -> Result<(), String> {
         self.must_hold(viewer)?;
         let offered = self.channels.commands.offer(Command::Sound(viewer, frame));
         offered.map_err(|_| "sound was lost: the console is busy".to_owned())
     }
 
-    /// A viewer wishes for control.
+    /// Handles a viewer's request for control.
     pub fn take_control(&self, viewer: ViewerId, id: u64, now: Time) {
         let mut control = self.control();
         let Control { viewers, lease } = &mut *control;
         let taken = match viewers.get(viewer) {
             Some(there) if there.role != Role::Screen => lease.take(viewer, &there.session, now),
-            Some(_) => Err("a screen only shows; open the console's own page to take control"),
+            Some(_) => Err("a screen has no controls; help: open the console's own page"),
             None => return,
         };
         self.show(&control);
         drop(control);
         let answer = taken.map(|taken| match taken {
             Taken::Granted => Answer::Control { granted: true, expires_ms: None },
-            Taken::Asked(until) => {
-                Answer::Control { granted: false, expires_ms: Some(ms(until)) }
-            }
+            Taken::Asked(until) => Answer::Control { granted: false, expires_ms: Some(ms(until)) },
         });
         self.answer(viewer, id, answer.map(Some).map_err(str::to_owned));
     }
@@ -251,14 +253,14 @@ impl Hub {
     pub fn give_control(&self, viewer: ViewerId, id: u64, to: ViewerId) {
         let given = self.change(viewer, |viewers, lease| {
             let there = viewers.get(to).filter(|there| there.role != Role::Screen);
-            let there = there.ok_or_else(|| format!("{to} is not there, or only a screen"))?;
+            let there = there.ok_or_else(|| format!("{to} is not an open page, or a screen"))?;
             lease.give(to, &there.session);
             Ok(())
         });
         self.answer(viewer, id, given);
     }
 
-    /// The operator keeps control although somebody asks for it.
+    /// The operator keeps control despite a request.
     pub fn keep_control(&self, viewer: ViewerId, id: u64) {
         let kept = self.change(viewer, |_, lease| {
             lease.keep();
@@ -283,37 +285,37 @@ impl Hub {
     fn must_hold(&self, viewer: ViewerId) -> Result<(), String> {
         match self.control().lease.operator() {
             Some(operator) if operator == viewer => Ok(()),
-            Some(operator) => Err(format!("{operator} is in control; ask for it first")),
-            None => Err("nobody is in control; take it first".to_owned()),
+            Some(operator) => Err(format!("{operator} is in control; help: request control first")),
+            None => Err("there is no operator; help: take control first".to_owned()),
         }
     }
 
-    /// The server is told to end.
+    /// Ends the server.
     pub fn end(&self) {
         self.ending.send_replace(true);
     }
 
-    /// Tells when the server is to end.
+    /// Returns a receiver that is true once the server is to end.
     pub fn ending(&self) -> watch::Receiver<bool> {
         self.ending.subscribe()
     }
 
-    /// The web server's tasks make progress.
+    /// Counts progress of the web server's tasks.
     pub fn advance(&self) {
         self.progress.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// How far the web server's tasks have come.
+    /// Returns the progress of the web server's tasks.
     pub fn progress(&self) -> u64 {
         self.progress.load(Ordering::Relaxed)
     }
 
-    /// The main loop was well at this time.
+    /// Notes a pass of the main loop.
     pub fn alive(&self, now: Time) {
         self.alive.store(now.ns(), Ordering::Relaxed);
     }
 
-    /// When the main loop was last well.
+    /// Returns the time of the main loop's last pass.
     pub fn alive_at(&self) -> Time {
         Time(self.alive.load(Ordering::Relaxed))
     }
@@ -337,7 +339,7 @@ impl Hub {
     }
 
     fn control(&self) -> MutexGuard<'_, Control> {
-        // A lease is changed in one step: what a panic has left behind is whole.
+        // A lease is changed in one step, so that a panic leaves a consistent state.
         self.control.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,4 +1,4 @@
-//! What the console sends to pages: text frames with JSON.
+//! Messages to pages: text frames with JSON.
 
 use messages::{JointStates, Partial, Receipt, ReceiptStatus};
 use serde::Serialize;
@@ -24,7 +24,7 @@ pub enum PageMessage<'a> {
     Done(Done<'a>),
     /// A message or frame that made no sense.
     Error {
-        /// What was wrong.
+        /// The error.
         error: &'a str,
     },
     /// States of the joints.
@@ -35,7 +35,7 @@ pub enum PageMessage<'a> {
     Receipt(StreamReceipt<'a>),
 }
 
-/// What a page needs at first.
+/// The first message to a page.
 #[derive(Debug, Serialize)]
 pub struct Welcome<'a> {
     /// Version of the protocol.
@@ -50,7 +50,7 @@ pub struct Welcome<'a> {
     pub server_ms: f64,
     /// First line of the transcript.
     pub first_line: u64,
-    /// What is switched on.
+    /// Settings that concern the page.
     pub settings: &'a PageSettings,
 }
 
@@ -59,13 +59,13 @@ pub struct Welcome<'a> {
 pub struct PageSettings {
     /// The language where the page has chosen none.
     pub language: String,
-    /// What the robot can do with sound.
+    /// Voice settings.
     pub voice: VoiceSettings,
     /// Whether a study runs.
     pub study: bool,
 }
 
-/// What the robot can do with sound.
+/// Voice settings that concern pages.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct VoiceSettings {
     /// Whether it recognises speech.
@@ -81,15 +81,15 @@ pub struct Done<'a> {
     pub id: u64,
     /// Whether it was carried out.
     pub ok: bool,
-    /// Why not.
+    /// The reason of a refusal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<&'a str>,
-    /// More about it.
+    /// The result.
     #[serde(flatten)]
     pub answer: Option<Answer>,
 }
 
-/// What a command has come to.
+/// The result of a command.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Answer {
@@ -111,19 +111,19 @@ pub enum Answer {
         #[serde(skip_serializing_if = "Option::is_none")]
         expires_ms: Option<f64>,
     },
-    /// What the supervisor has done.
+    /// The supervisor's answer.
     Supervisor {
         /// In words.
         message: String,
     },
-    /// Whom a page of the study is about, and at which stage it is.
+    /// The participant of a page of the study, and the stage.
     Found {
         /// The participant's code.
         participant: Option<String>,
         /// The stage's name.
         stage: Option<&'static str>,
     },
-    /// Whom a verb of the study has concerned.
+    /// The participant that a command of the study concerned.
     Participant {
         /// The participant's code.
         participant: String,
@@ -147,7 +147,7 @@ pub struct Interim<'a> {
     onset_ms: f64,
 }
 
-/// What the robot made of a part of a stream.
+/// The receipt of a part of an audio stream.
 #[derive(Debug, Serialize)]
 pub struct StreamReceipt<'a> {
     stream: u32,
@@ -202,7 +202,7 @@ impl<'a> Interim<'a> {
 impl<'a> StreamReceipt<'a> {
     /// Reads a receipt about stream `stream` of the page.
     pub fn new(stream: u32, receipt: &'a Receipt) -> Self {
-        let status = ReceiptStatus::from_code(receipt.status).unwrap_or(ReceiptStatus::Refused);
+        let status = receipt.status.get();
         let time = |ns: u64| (ns > 0).then(|| ms(Time(ns)));
         Self {
             stream,
@@ -253,7 +253,7 @@ mod tests {
             note: FixedText::truncated("the white one"),
             ..Receipt::default()
         };
-        let status = ReceiptStatus::Over.code();
+        let status = ReceiptStatus::Over.into();
         let over = Receipt { status, segments: 2, ..Receipt::default() };
         let done = |answer| Done { id: 9, ok: true, error: None, answer };
         for (message, expected) in [

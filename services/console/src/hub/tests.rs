@@ -34,7 +34,7 @@ fn hub_obeys_the_operator_but_lets_every_viewer_stop() {
     assert!(matches!(commands.take(), Some(Command::Do(_, 1, Verb::NotThat))));
     hub.ask(other, 2, Verb::NotThat);
     assert!(commands.take().is_none());
-    assert_eq!(received(&mut to_other)["error"], "v1 is in control; ask for it first");
+    assert_eq!(received(&mut to_other)["error"], "v1 is in control; help: request control first");
     hub.motion(other, 3, false);
     assert!(motions.take().is_none() && received(&mut to_other)["ok"] == false);
     hub.motion(other, 4, true);

@@ -6,7 +6,7 @@ use tokio::sync::mpsc;
 
 use super::ViewerId;
 
-/// What is sent to one viewer alone.
+/// A frame for one viewer alone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OutboundFrame {
     /// A text frame for its page.

@@ -1,4 +1,4 @@
-//! Who may come in: pages of this console, and who knows the token where there is one.
+//! Access rules: the console's own pages, and the token where one is set.
 //!
 //! Pure: decided by a request's headers.
 
@@ -14,19 +14,19 @@ pub struct Access {
 }
 
 impl Access {
-    /// Open to everybody who reaches it, or only to who knows the token.
+    /// Makes the rules: open to every client, or to those with the token.
     pub fn new(token: Option<String>) -> Self {
         Self { token }
     }
 
-    /// Whether the request is addressed to this console. Without a token it is only reached from
-    /// this machine, and a name of elsewhere that leads here is a trick of another site's.
+    /// Returns whether the request is addressed to this console. Without a token it is only reached
+    /// from this machine; another host name here is an attack by another site (DNS rebinding).
     pub fn is_addressed(&self, headers: &HeaderMap) -> bool {
         let Some(host) = text(headers, &header::HOST) else { return false };
         self.token.is_some() || is_this_machine(host)
     }
 
-    /// Whether the visitor knows the token, by a cookie or as a bearer.
+    /// Returns whether the request carries the token, in a cookie or as a bearer.
     pub fn is_known(&self, headers: &HeaderMap) -> bool {
         let Some(token) = &self.token else { return true };
         let bearer = text(headers, &header::AUTHORIZATION);
@@ -40,8 +40,7 @@ impl Access {
         bearer.is_some_and(|said| same(said, token)) || pairs.any(|said| same(said, &hex(token)))
     }
 
-    /// Whether the request comes from a page of this console's: what it says of its origin is where
-    /// it goes to.
+    /// Returns whether the request comes from a page of this console: its origin is its host.
     pub fn is_own(headers: &HeaderMap) -> bool {
         let (Some(origin), Some(host)) =
             (text(headers, &header::ORIGIN), text(headers, &header::HOST))
@@ -52,7 +51,7 @@ impl Access {
         place.is_some_and(|place| place.eq_ignore_ascii_case(host))
     }
 
-    /// The cookie for a visitor who said the right token.
+    /// Returns the cookie for a visitor with the right token.
     pub fn cookie_for(&self, said: &str) -> Option<String> {
         let token = self.token.as_ref().filter(|token| same(said, token))?;
         Some(format!("{COOKIE}={}; Path=/; HttpOnly; SameSite=Strict", hex(token)))
@@ -73,14 +72,14 @@ fn is_this_machine(host: &str) -> bool {
     name.eq_ignore_ascii_case("localhost") || name.parse().is_ok_and(is_loopback)
 }
 
-/// Compared in the same time wherever they differ.
+/// Compares in constant time.
 fn same(said: &str, wanted: &str) -> bool {
     let (said, wanted) = (said.as_bytes(), wanted.as_bytes());
     let differ = said.iter().zip(wanted).fold(0, |differ, (a, b)| differ | (a ^ b));
     said.len() == wanted.len() && differ == 0
 }
 
-/// A cookie holds no sign that would need quotes.
+/// Encodes a text for a cookie, which would need quotes otherwise.
 fn hex(text: &str) -> String {
     text.bytes().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -98,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_token_only_this_machine_is_addressed() {
+    fn access_without_a_token_is_for_this_machine_only() {
         let open = Access::new(None);
         for host in ["localhost:8377", "127.0.0.1:9", "[::1]:8377", "LOCALHOST", "127.0.0.1"] {
             assert!(open.is_addressed(&headers(&[("host", host)])), "{host}");
@@ -113,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn the_token_opens_as_a_bearer_or_by_the_cookie_of_a_login() {
+    fn access_accepts_the_token_as_bearer_or_cookie() {
         let access = guarded();
         assert!(!access.is_known(&HeaderMap::new()));
         assert!(access.is_known(&headers(&[("authorization", "Bearer correct-horse")])));
@@ -127,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn only_its_own_pages_may_open_a_socket() {
+    fn access_knows_the_consoles_own_pages() {
         let own = |origin, host| Access::is_own(&headers(&[("origin", origin), ("host", host)]));
         assert!(own("http://localhost:8377", "localhost:8377"));
         assert!(own("https://robot.lab", "robot.lab"));

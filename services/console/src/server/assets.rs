@@ -1,4 +1,4 @@
-//! The page's files, as they lie in the program.
+//! The page's files, embedded in the program.
 
 use axum::body::Body;
 use axum::http::{HeaderMap, Response, StatusCode, header};
@@ -17,7 +17,7 @@ pub(super) struct Asset {
 /// Every file of the page's, by path.
 pub(super) static ALL: &[Asset] = include!(concat!(env!("OUT_DIR"), "/assets.rs"));
 
-/// The file at a path; folders and pages by their short names.
+/// Returns the file at a path; pages also by their short names.
 pub(super) fn find(path: &str) -> Option<&'static Asset> {
     let path = match path.trim_start_matches('/') {
         "" => "index.html",
@@ -29,19 +29,19 @@ pub(super) fn find(path: &str) -> Option<&'static Asset> {
     ALL.binary_search_by(|asset| asset.path.cmp(path)).ok().map(|at| &ALL[at])
 }
 
-/// Whether a file is given to whoever has not said the token: what the login page is made of.
+/// Returns whether a file is served without the token: what the login page is made of.
 pub(super) fn is_open(path: &str) -> bool {
     let folders = ["/css/", "/js/", "/strings/"];
     path == "/login" || path == "/icon.svg" || folders.iter().any(|folder| path.starts_with(folder))
 }
 
 impl Asset {
-    /// The answer to a request with these headers.
+    /// Returns the response to a request with these headers.
     pub(super) fn respond(&self, asked: &HeaderMap) -> Response<Body> {
         let said = |name| asked.get(name).and_then(|value| value.to_str().ok()).unwrap_or("");
         let mut response = Response::builder()
             .header(header::ETAG, self.tag)
-            // A new build is noticed at the next load, and what has not changed is not sent again.
+            // The next load finds a new build; unchanged files are not sent again.
             .header(header::CACHE_CONTROL, "no-cache")
             .header(header::VARY, "accept-encoding");
         let known = said(header::IF_NONE_MATCH).split(',').any(|tag| tag.trim() == self.tag);
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pages_are_found_by_their_short_names_and_nothing_outside() {
+    fn assets_are_found_by_short_names_and_never_outside() {
         assert_eq!(find("/").map(|asset| asset.path), Some("index.html"));
         assert!(ALL.is_sorted_by_key(|asset| asset.path));
         for path in ["/../Cargo.toml", "/index.html/", "//etc/passwd", "/js"] {
@@ -81,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_known_is_not_sent_again() {
+    fn assets_are_not_sent_again_for_a_known_tag() {
         let index = find("/").unwrap();
         let mut asked = HeaderMap::new();
         let response = index.respond(&asked);
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn only_who_takes_gzip_gets_it() {
+    fn assets_are_compressed_on_request() {
         assert!(accepts_gzip(" gzip") && accepts_gzip("gzip;q=0.5"));
         assert!(!accepts_gzip("br") && !accepts_gzip("gzip; q=0"));
     }

@@ -1,10 +1,10 @@
-//! What every answer says to the browser: run nothing that is not ours, and show us in no frame.
+//! Security headers of every response: no foreign scripts, no framing.
 
 use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
 
 /// Adds the headers to an answer to a request that was addressed to `host`.
 pub(super) fn secure(headers: &mut HeaderMap, host: Option<&str>) {
-    // `'self'` covers sockets of the same place in newer browsers only.
+    // `'self'` covers sockets of the same host in newer browsers only.
     let plain =
         |host: &&str| host.bytes().all(|b| b.is_ascii_alphanumeric() || b".-:[]".contains(&b));
     let sockets = host.filter(plain).map(|host| format!(" ws://{host} wss://{host}"));
@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_but_ours_may_run() {
+    fn headers_forbid_foreign_scripts() {
         let mut headers = HeaderMap::new();
         secure(&mut headers, Some("localhost:8377"));
         let policy = headers[header::CONTENT_SECURITY_POLICY].to_str().unwrap().to_owned();

@@ -1,5 +1,5 @@
-//! Finding a port. A page finds its console again at the port that it had, so a console that is
-//! started anew first tries its predecessor's; after that the configured one and those behind it.
+//! The search for a port: first that of the console's previous incarnation, so that pages find it
+//! again, then the configured one and those after it.
 
 use std::io;
 use std::net::{SocketAddr, TcpListener};
@@ -8,10 +8,10 @@ use std::path::Path;
 /// Ports that are tried from the configured one on.
 const PORTS: u16 = 16;
 
-/// Binds the first free one of the ports to be tried.
+/// Binds the first free one of these ports.
 ///
 /// # Errors
-/// The address is not this machine's, or every port is taken: the configured one's trouble.
+/// The address is not this machine's, or every port is taken.
 pub fn bind(configured: SocketAddr, predecessor: Option<SocketAddr>) -> io::Result<TcpListener> {
     let before = predecessor.filter(|before| before.ip() == configured.ip());
     if let Some(listener) = before.and_then(|before| bound(before).ok()) {
@@ -32,7 +32,7 @@ fn bound(address: SocketAddr) -> io::Result<TcpListener> {
     Ok(listener)
 }
 
-/// The address at which pages are opened in this machine's browser.
+/// Returns the URL for a browser on this machine.
 pub fn url(address: SocketAddr) -> String {
     match address.ip().is_unspecified() {
         true => format!("http://localhost:{}/", address.port()),
@@ -40,7 +40,7 @@ pub fn url(address: SocketAddr) -> String {
     }
 }
 
-/// The address of the console before this one, as it left it.
+/// Reads the address of the previous incarnation.
 pub fn predecessor(file: &Path, configured: SocketAddr) -> Option<SocketAddr> {
     let text = std::fs::read_to_string(file).ok()?;
     let place = text.trim().strip_prefix("http://")?.strip_suffix('/')?;
@@ -57,7 +57,7 @@ mod tests {
     }
 
     #[test]
-    fn a_taken_port_makes_room_for_the_next() {
+    fn listen_takes_the_next_free_port() {
         let taken = bind(any(), None).unwrap();
         let address = taken.local_addr().unwrap();
         let next = bind(address, None).unwrap().local_addr().unwrap();
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn the_predecessors_port_comes_first() {
+    fn listen_prefers_the_previous_port() {
         let first = bind(any(), None).unwrap();
         let before = first.local_addr().unwrap();
         drop(first);
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn an_open_address_is_shown_as_this_machine() {
+    fn listen_shows_an_unspecified_address_as_localhost() {
         assert_eq!(url("0.0.0.0:80".parse().unwrap()), "http://localhost:80/");
         assert_eq!(url("[::1]:8377".parse().unwrap()), "http://[::1]:8377/");
     }

@@ -1,4 +1,4 @@
-//! Saying the token.
+//! Login with the token.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,10 +12,10 @@ use super::{Access, App};
 
 /// Longest form, bytes.
 const FORM_MAX: usize = 2_048;
-/// How long a wrong token is thought about: guessing takes for ever.
+/// Delay after a wrong token, against guessing.
 const PAUSE: Duration = Duration::from_secs(1);
 
-/// Sets the cookie of who says the right token.
+/// Sets the cookie for the right token.
 pub(super) async fn login(
     State(app): State<Arc<App>>,
     headers: HeaderMap,
@@ -37,7 +37,7 @@ pub(super) async fn login(
     }
 }
 
-/// A field of a form as browsers send it.
+/// Returns a field of a URL-encoded form.
 fn field(form: &str, name: &str) -> Option<String> {
     let mut pairs = form.split('&').filter_map(|pair| pair.split_once('='));
     let (_, value) = pairs.find(|(key, _)| *key == name)?;
@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_form_is_read_as_browsers_write_it() {
+    fn login_reads_a_url_encoded_form() {
         let form = "a=b&token=p%26a+b%25%C3%A9%zz";
         assert_eq!(field(form, "token").as_deref(), Some("p&a b%é%zz"));
         assert_eq!(field("token=%ff", "token"), None);

@@ -1,4 +1,4 @@
-//! What pages say: text frames with JSON, checked key by key.
+//! Messages of pages: text frames with JSON, checked key by key.
 
 use serde_json::Value as Json;
 use service::Time;
@@ -9,10 +9,10 @@ use crate::hub::{Role, ViewerId};
 /// Longest frame that a page may send, bytes.
 pub const FRAME_BYTES_MAX: usize = 64 << 10;
 /// The version of this protocol.
-pub const PROTOCOL: u64 = 1;
-/// Other wordings that a browser's recogniser may offer.
+pub const PROTOCOL: u64 = 2;
+/// Most alternatives of a browser's recogniser.
 const ALTERNATIVES_MAX: usize = 5;
-/// How long ago something may have been said, milliseconds.
+/// Longest time since an utterance, milliseconds.
 const OLDEST_MS: f64 = 120_000.0;
 
 /// The first message of a page.
@@ -20,31 +20,31 @@ const OLDEST_MS: f64 = 120_000.0;
 pub struct Hello {
     /// Kept by the page through its reloads.
     pub session: String,
-    /// What the person at the page is called.
+    /// The user's name.
     pub name: String,
     /// The last line of the transcript that the page has.
     pub last_line: u64,
-    /// What it wishes to be.
+    /// The role that it asks for.
     pub role: Role,
 }
 
 /// A later message of a page.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
-    /// To be answered at once, with the page's own time.
+    /// A ping with the page's own time.
     Ping(Json),
-    /// Something to be done, under a number.
+    /// A command, under a number.
     Do(u64, Do),
-    /// A verb that makes no sense, under a number.
+    /// An invalid command, under a number.
     Wrong(u64, String),
 }
 
-/// Something to be done.
+/// A command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Do {
-    /// The dialogue's and the study's.
+    /// For dialogue or study.
     Ask(Verb),
-    /// Stop the arm, or let it go on.
+    /// Stop the arm, or release the stop.
     Motion(bool),
     /// Take control.
     Take,
@@ -52,24 +52,22 @@ pub enum Do {
     Give(ViewerId),
     /// Keep control.
     Keep,
-    /// Start a service anew.
+    /// Restart a service.
     Restart(String),
 }
 
 /// Reads the first message.
 ///
 /// # Errors
-/// What keeps it from being one.
+/// The message is invalid.
 pub fn hello(text: &str) -> Result<Hello, String> {
     let json = object(text)?;
     if json["t"] != "hello" {
-        return Err("the first message is a hello".to_owned());
+        return Err("expected a hello first".to_owned());
     }
     if json["protocol"] != PROTOCOL {
         let theirs = &json["protocol"];
-        return Err(format!(
-            "the page speaks protocol {theirs}, this console {PROTOCOL}; load the page again"
-        ));
+        return Err(format!("expected protocol {PROTOCOL}, found {theirs}; help: reload the page"));
     }
     let session = json["session"].as_str().unwrap_or_default();
     if session.len() != 32 || !session.bytes().all(|b| b.is_ascii_hexdigit()) {
@@ -91,7 +89,7 @@ pub fn hello(text: &str) -> Result<Hello, String> {
 /// Reads a later message; `now` bounds the times in it.
 ///
 /// # Errors
-/// What keeps it from being one.
+/// The message is invalid.
 pub fn message(text: &str, now: Time) -> Result<Message, String> {
     let json = object(text)?;
     match json["t"].as_str() {
@@ -104,14 +102,15 @@ pub fn message(text: &str, now: Time) -> Result<Message, String> {
                 Err(why) => Message::Wrong(id, why),
             })
         }
-        Some("hello") => Err("a hello comes first, and once".to_owned()),
+        Some("hello") => Err("hello: expected once, at first".to_owned()),
         Some(other) => Err(format!("t: `{other}` is not one of ping, do")),
         None => Err("t: expected a text".to_owned()),
     }
 }
 
 fn object(text: &str) -> Result<Json, String> {
-    let json: Json = serde_json::from_str(text).map_err(|error| format!("no JSON: {error}"))?;
+    let json: Json =
+        serde_json::from_str(text).map_err(|error| format!("invalid JSON: {error}"))?;
     if json.is_object() { Ok(json) } else { Err("expected an object".to_owned()) }
 }
 
@@ -135,7 +134,7 @@ fn what(json: &Json, now: Time) -> Result<Do, String> {
         }
         _ => match verb.strip_prefix("study.") {
             Some(verb) => Do::Ask(Verb::Study(verb.to_owned(), json.clone())),
-            None => return Err(format!("do: `{verb}` is nothing that this console does")),
+            None => return Err(format!("do: unknown command `{verb}`")),
         },
     })
 }
@@ -143,7 +142,7 @@ fn what(json: &Json, now: Time) -> Result<Do, String> {
 fn words(json: &Json, now: Time) -> Result<Words, String> {
     let text = json["text"].as_str().ok_or("text: expected a text")?.trim();
     if text.is_empty() {
-        return Err("text: there are no words in it".to_owned());
+        return Err("text: expected words, found none".to_owned());
     }
     let spoken = match json["source"].as_str() {
         Some("browser") => true,
@@ -159,7 +158,7 @@ fn words(json: &Json, now: Time) -> Result<Words, String> {
     Ok(Words { text: text.to_owned(), alternatives: alternatives(json)?, spoken, began, ended })
 }
 
-/// A time of the last minutes; one that is a little ahead is now.
+/// Reads a time of the last two minutes; one slightly ahead becomes `now`.
 fn moment(json: &Json, key: &str, now: Time) -> Result<Option<Time>, String> {
     let value = &json[key];
     if value.is_null() {
@@ -209,15 +208,15 @@ mod tests {
     }
 
     #[test]
-    fn a_hello_is_read_and_checked() {
+    fn message_hello_is_checked() {
         let session = "0123456789abcdef0123456789ABCDEF";
-        let good = json!({"t": "hello", "protocol": 1, "session": session, "name": "Ada",
+        let good = json!({"t": "hello", "protocol": 2, "session": session, "name": "Ada",
                           "last_line": 7, "role": "operator"});
         let read = hello(&good.to_string()).unwrap();
         assert_eq!((read.last_line, read.role, read.name.as_str()), (7, Role::Operator, "Ada"));
         for (key, bad) in [
             ("t", json!("do")),
-            ("protocol", json!(2)),
+            ("protocol", json!(1)),
             ("session", json!("short")),
             ("role", json!("king")),
         ] {
@@ -228,25 +227,25 @@ mod tests {
     }
 
     #[test]
-    fn words_come_with_their_times() {
+    fn message_say_carries_times_and_alternatives() {
         let json = json!({"t": "do", "id": 3, "do": "say", "text": " the red one ",
                           "began_ms": 999_000.5, "ended_ms": 1_000_200.0, "source": "browser",
                           "alternatives": [{"text": "the bed one", "weight": 0.2}]});
         let Ok(Message::Do(3, Do::Ask(Verb::Say(words)))) = read(json) else { panic!() };
         assert_eq!(words.text, "the red one");
         assert_eq!(words.began, Some(Time(999_000_500_000)));
-        assert_eq!(words.ended, Some(NOW), "a little ahead is now");
+        assert_eq!(words.ended, Some(NOW), "slightly ahead becomes now");
         assert!(words.spoken && words.alternatives == [("the bed one".to_owned(), 0.2)]);
     }
 
     #[test]
-    fn what_makes_no_sense_is_told_under_its_number() {
+    fn message_errors_name_the_key() {
         let say = |key: &str, value: Json| {
             let mut json = json!({"t": "do", "id": 3, "do": "say", "text": "a"});
             json[key] = value;
             wrong(json)
         };
-        assert!(say("text", json!("  ")).contains("no words"));
+        assert!(say("text", json!("  ")).contains("found none"));
         assert!(say("began_ms", json!(5)).contains("two minutes"));
         assert!(say("began_ms", json!("x")).contains("began_ms"));
         assert!(say("source", json!("radio")).contains("radio"));

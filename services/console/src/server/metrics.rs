@@ -1,4 +1,4 @@
-//! What is counted, as Prometheus reads it.
+//! Metrics in the format of Prometheus.
 
 use prometheus_client::encoding::text::encode;
 use prometheus_client::metrics::counter::Counter;
@@ -6,12 +6,12 @@ use prometheus_client::metrics::gauge::Gauge;
 use prometheus_client::metrics::histogram::{Histogram, exponential_buckets};
 use prometheus_client::registry::Registry;
 
-/// Everything that is counted.
+/// The console's metrics.
 #[derive(Clone, Debug)]
 pub struct Metrics {
     /// Pages that are open.
     pub viewers: Gauge,
-    /// Pages shut out because they did not read.
+    /// Pages disconnected because they did not read.
     pub dropped: Counter,
     /// Frames sent to pages.
     pub frames: Counter,
@@ -37,11 +37,11 @@ impl Default for Metrics {
 }
 
 impl Metrics {
-    /// The text that Prometheus fetches.
+    /// Returns the text that Prometheus fetches.
     pub fn text(&self) -> String {
         let mut registry = Registry::with_prefix("whichone_console");
         registry.register("viewers", "Pages that are open", self.viewers.clone());
-        let dropped = "Pages shut out because they did not read";
+        let dropped = "Pages disconnected because they did not read";
         registry.register("viewers_dropped", dropped, self.dropped.clone());
         registry.register("frames", "Frames sent to pages", self.frames.clone());
         registry.register("bytes", "Bytes of frames sent to pages", self.bytes.clone());
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counters_are_told_under_their_names() {
+    fn metrics_are_exported_under_their_names() {
         let metrics = Metrics::default();
         metrics.viewers.set(3);
         metrics.frames.inc_by(2);
@@ -72,7 +72,7 @@ mod tests {
             "whichone_console_frames_total 2",
             "whichone_console_answer_seconds_count 1",
         ] {
-            assert!(text.lines().any(|told| told == line), "{line} in\n{text}");
+            assert!(text.lines().any(|printed| printed == line), "{line} in\n{text}");
         }
     }
 }

@@ -28,15 +28,15 @@ use crate::hub::Hub;
 use crate::hub::outbound::PageSettings;
 pub use access::Access;
 
-/// How often the server shows that its tasks make progress.
+/// How often the server reports progress.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 
 /// What the server serves.
 #[derive(Debug)]
 pub struct App {
-    /// What it shares with the main loop.
+    /// Shared with the main loop.
     pub hub: Hub,
-    /// Who may come in.
+    /// Access rules.
     pub access: Access,
     /// The group's name.
     pub group: String,
@@ -44,13 +44,13 @@ pub struct App {
     pub settings: PageSettings,
     /// The robot's description (URDF).
     pub urdf: String,
-    /// Where the sound of the robot's sentences lies.
+    /// Folder with the sound of the robot's lines.
     pub voice_dir: Option<PathBuf>,
-    /// Where the data of studies lies.
+    /// Folder with the data of studies.
     pub study_dir: PathBuf,
 }
 
-/// Serves at a listener until the hub is told to end.
+/// Serves a listener until the hub ends.
 ///
 /// # Errors
 /// The listener fails.
@@ -67,7 +67,7 @@ pub async fn serve(listener: TcpListener, app: Arc<App>) -> std::io::Result<()> 
     });
     let served = axum::serve(listener, router(app))
         .with_graceful_shutdown(async move {
-            // Where nobody can tell it to end any more, it is time to end.
+            // A hub that is gone ends the server, too.
             let _ = ending.wait_for(|ending| *ending).await;
         })
         .await;
@@ -85,15 +85,14 @@ fn router(app: Arc<App>) -> Router {
         .merge(crate::study::routes())
         .fallback(routes::asset)
         .layer(middleware::from_fn_with_state(Arc::clone(&app), admit))
-        // What comes below is open to whoever has not said the token yet.
+        // The routes below are open without the token.
         .route("/healthz", get(routes::health))
         .route("/login", get(routes::asset).post(login::login))
         .layer(middleware::from_fn_with_state(Arc::clone(&app), address))
         .with_state(app)
 }
 
-/// Lets in who knows the token; others get the files that the login page is made of, which hold
-/// nothing of this robot.
+/// Requires the token, except for the files of the login page, which hold no data of this robot.
 async fn admit(State(app): State<Arc<App>>, request: Request, next: Next) -> Response<Body> {
     if assets::is_open(request.uri().path()) || app.access.is_known(request.headers()) {
         return next.run(request).await;
@@ -105,17 +104,19 @@ async fn admit(State(app): State<Arc<App>>, request: Request, next: Next) -> Res
     if wants_page && request.method() == Method::GET {
         return Redirect::to("/login").into_response();
     }
-    (StatusCode::UNAUTHORIZED, "say the token: Authorization: Bearer TOKEN\n").into_response()
+    (StatusCode::UNAUTHORIZED, "token required; help: Authorization: Bearer TOKEN\n")
+        .into_response()
 }
 
-/// Turns away what is not addressed to this console, and adds what every answer says.
+/// Rejects requests that are not addressed to this console, and adds the security headers.
 async fn address(State(app): State<Arc<App>>, request: Request, next: Next) -> Response<Body> {
     let host = request.headers().get(header::HOST);
     let host = host.and_then(|host| host.to_str().ok()).map(str::to_owned);
     let mut response = if app.access.is_addressed(request.headers()) {
         next.run(request).await
     } else {
-        let why = "this console serves its own machine; use http://localhost and its port\n";
+        let why =
+            "this console serves its own machine only; help: use http://localhost and its port\n";
         (StatusCode::MISDIRECTED_REQUEST, why).into_response()
     };
     headers::secure(response.headers_mut(), host.as_deref());

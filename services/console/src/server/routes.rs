@@ -1,4 +1,4 @@
-//! The answers to single requests.
+//! Responses to single requests.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,9 +14,9 @@ use service::clock;
 use super::message::FRAME_BYTES_MAX;
 use super::{Access, App, assets, socket as sockets};
 
-/// Longest silence of the main loop in which the console is well.
+/// Longest silence of a healthy main loop.
 const WELL: Span = Span::from_ms(3_000);
-/// Largest sound of a sentence, bytes: minutes.
+/// Largest sound of a line, bytes.
 const SOUND_MAX: u64 = 16 << 20;
 
 pub(super) async fn socket(
@@ -47,7 +47,7 @@ pub(super) async fn metrics(State(app): State<Arc<App>>) -> Response<Body> {
 pub(super) async fn health(State(app): State<Arc<App>>) -> Response<Body> {
     let silent = clock::now().since(app.hub.alive_at());
     match silent > WELL {
-        true => (StatusCode::SERVICE_UNAVAILABLE, "the main loop stands still\n").into_response(),
+        true => (StatusCode::SERVICE_UNAVAILABLE, "the main loop hangs\n").into_response(),
         false => (StatusCode::OK, "ready\n").into_response(),
     }
 }
@@ -57,9 +57,9 @@ pub(super) async fn urdf(State(app): State<Arc<App>>) -> Response<Body> {
     (kind, app.urdf.clone()).into_response()
 }
 
-/// The sound of a sentence of the robot's.
+/// Serves the sound of a line of the robot.
 pub(super) async fn voice(State(app): State<Arc<App>>, Path(line): Path<String>) -> Response<Body> {
-    let none = || (StatusCode::NOT_FOUND, "no such sentence is kept\n").into_response();
+    let none = || (StatusCode::NOT_FOUND, "sound not found\n").into_response();
     let Some(file) = app.voice_dir.as_deref().and_then(|folder| sound_file(folder, &line)) else {
         return none();
     };
@@ -76,7 +76,7 @@ pub(super) async fn voice(State(app): State<Arc<App>>, Path(line): Path<String>)
     }
 }
 
-/// The file of a sentence, `line-PROMPT-PRESENTATION.wav` and nothing else.
+/// Returns the file of a line: `line-PROMPT-PRESENTATION.wav` only.
 pub fn sound_file(folder: &std::path::Path, line: &str) -> Option<PathBuf> {
     let numbers = line.strip_prefix("line-")?.strip_suffix(".wav")?;
     let (prompt, presentation) = numbers.split_once('-')?;
@@ -100,7 +100,7 @@ fn missing(headers: &HeaderMap) -> Response<Body> {
     let accepts = headers.get(header::ACCEPT).and_then(|accepts| accepts.to_str().ok());
     let page =
         assets::find("/404.html").filter(|_| accepts.is_some_and(|a| a.contains("text/html")));
-    let plain = || (StatusCode::NOT_FOUND, "there is no such page\n").into_response();
+    let plain = || (StatusCode::NOT_FOUND, "page not found\n").into_response();
     page.map_or_else(plain, |page| {
         let mut response = page.respond(&HeaderMap::new());
         *response.status_mut() = StatusCode::NOT_FOUND;
@@ -114,7 +114,7 @@ mod tests {
     use std::path::Path as FilePath;
 
     #[test]
-    fn only_sentences_are_files() {
+    fn routes_serve_sounds_of_lines_only() {
         let folder = FilePath::new("/f");
         assert_eq!(sound_file(folder, "line-12-1.wav"), Some(PathBuf::from("/f/line-12-1.wav")));
         for bad in [

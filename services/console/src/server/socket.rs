@@ -19,7 +19,7 @@ use crate::voice::PcmFrame;
 
 /// How long a page has for its first message.
 const HELLO_PATIENCE: Duration = Duration::from_secs(10);
-/// How long a frame may wait for a page that does not read.
+/// How long a page may take to read a frame.
 const READ_PATIENCE: Duration = Duration::from_secs(10);
 /// Longest silence of a page, pongs included.
 const SILENCE_MAX: Duration = Duration::from_secs(60);
@@ -62,7 +62,7 @@ pub(super) async fn serve(socket: WebSocket, app: Arc<App>) {
     close(&mut out, code, reason).await;
 }
 
-/// Why a socket has ended.
+/// The reason for the end of a socket.
 #[derive(Clone, Copy, Debug)]
 enum Ended {
     Page,
@@ -128,7 +128,7 @@ async fn write(
         tokio::select! {
             changed = changed.changed() => if changed.is_err() { return Ended::Console },
             _ = ending.wait_for(|ending| *ending) => return Ended::Console,
-            frame = outbound.recv() => match letter {
+            frame = outbound.recv() => match frame {
                 Some(OutboundFrame::Text(frame)) => frames.push(Frame::Text(frame.into())),
                 Some(OutboundFrame::Replaced) => return Ended::Replaced,
                 None => return Ended::Slow,

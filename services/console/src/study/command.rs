@@ -1,4 +1,4 @@
-//! The verbs of the study as pages say them.
+//! Commands of the study as pages send them.
 
 use serde_json::Value as Json;
 
@@ -7,10 +7,10 @@ use super::study_controller::Command;
 /// Longest reason that the experimenter may give, characters.
 const WHY_MAX: usize = 200;
 
-/// The secret of the page that asks.
+/// Returns the secret of a page.
 ///
 /// # Errors
-/// It has none.
+/// It is missing or invalid.
 pub(super) fn page(arguments: &Json) -> Result<String, String> {
     let page = arguments["page"].as_str().unwrap_or_default();
     if page.len() != 32 || !page.bytes().all(|byte| byte.is_ascii_hexdigit()) {
@@ -19,10 +19,10 @@ pub(super) fn page(arguments: &Json) -> Result<String, String> {
     Ok(page.to_owned())
 }
 
-/// What is asked for.
+/// Reads a command.
 ///
 /// # Errors
-/// There is no such verb, or it lacks something.
+/// An unknown command, or a missing argument.
 pub(super) fn read(verb: &str, arguments: &Json) -> Result<Command, String> {
     let text = |key: &str| {
         let text = arguments[key].as_str().filter(|text| !text.trim().is_empty());
@@ -47,14 +47,14 @@ pub(super) fn read(verb: &str, arguments: &Json) -> Result<Command, String> {
         "delete" => Command::Delete(text("participant")?),
         other => {
             return Err(format!(
-                "there is no study.{other}; there are find, begin, resume, consent, next, start, \
+                "unknown command study.{other}; help: use find, begin, resume, consent, next, start, \
                  answer, withdraw, close, spoilt and delete"
             ));
         }
     })
 }
 
-/// A seed that nobody can foresee.
+/// Returns an unpredictable seed.
 pub(super) fn seed() -> u64 {
     let key = service::client::random_key().0;
     key.iter().take(8).fold(0, |seed, byte| (seed << 8) | u64::from(*byte))
@@ -66,7 +66,7 @@ mod tests {
     use serde_json::json;
 
     #[test]
-    fn verbs_are_read_with_what_they_need() {
+    fn study_commands_are_read_with_their_arguments() {
         assert_eq!(read("next", &json!({})), Ok(Command::Next));
         assert_eq!(read("withdraw", &json!({ "delete": true })), Ok(Command::Withdraw(true)));
         let spoilt = read("spoilt", &json!({ "participant": "ABCDEF" })).unwrap();

@@ -9,13 +9,13 @@
 //! written into the participant's journal and synced before they are applied and answered, so that a
 //! console that is killed resumes where it was.
 
-mod study_controller;
+mod command;
 mod files;
 mod http;
-mod command;
-mod section;
-mod robot_state;
 mod planner_switch;
+mod robot_state;
+mod section;
+mod study_controller;
 #[cfg(test)]
 mod tests;
 mod trial_monitor;
@@ -35,11 +35,11 @@ use crate::hub::command::{Words, typed};
 use crate::hub::ms;
 use crate::hub::outbound::Answer;
 use crate::view_model::{DialogueEvent, Now, ViewModel, missing};
-use study_controller::StudyController;
 use files::Files;
-use robot_state::RobotState;
 use planner_switch::PlannerSwitch;
+use robot_state::RobotState;
 use section::StudySection;
+use study_controller::StudyController;
 use trial_monitor::{DialogueLine, RobotRequest};
 
 pub use http::routes;
@@ -261,7 +261,7 @@ impl Running {
 }
 
 fn heard(receipt: &Receipt) -> Option<DialogueLine> {
-    let is_typed = receipt.source == Way::Text.code();
+    let is_typed = receipt.source == Way::Text;
     (receipt.seq > 0).then(|| DialogueLine::Heard {
         seq: receipt.seq,
         source: if is_typed { Source::Typed } else { Source::Voice },

@@ -60,7 +60,7 @@ impl RobotState<'_> {
 
     /// Returns the number of the latest interaction, open or ended; 0 for none.
     pub(super) fn latest_interaction(&self) -> u64 {
-        let ended = |view: &PolicyView| view.last.as_ref().map_or(0, |last| last.interaction);
+        let ended = |view: &PolicyView| view.last.as_ref().map_or(0, |last| last.interaction.0);
         self.view.map_or(0, |view| view.interaction.max(ended(view)))
     }
 
@@ -72,6 +72,6 @@ impl RobotState<'_> {
 
 /// Returns whether the arm moves or is stopped.
 pub(super) fn arm_is_busy(arm: Option<&ArmStatus>) -> bool {
-    let still = [PickPhase::Idle.code(), PickPhase::Done.code()];
-    arm.is_some_and(|arm| !still.contains(&arm.phase) || arm.stopped != 0)
+    let still = [PickPhase::Idle, PickPhase::Done];
+    arm.is_some_and(|arm| !still.contains(&arm.phase.get()) || arm.stopped != 0)
 }

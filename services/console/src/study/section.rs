@@ -48,7 +48,7 @@ struct TrialView<'a> {
     scene_key: &'a str,
     waits_for: Option<&'static str>,
     started_at: Option<u64>,
-    said: usize,
+    said: u32,
     questions: usize,
     outcome: Option<&'static str>,
     fault: Option<&'a str>,

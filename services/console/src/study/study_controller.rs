@@ -25,9 +25,9 @@ pub(super) struct StudyController {
 /// What is asked for, by a participant's page (which has a secret of its own) or the experimenter.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Command {
-    /// Somebody begins.
+    /// A participant begins.
     Begin,
-    /// Somebody goes on under the code that the page showed.
+    /// A participant resumes by code.
     Resume(String),
     /// The participant agrees.
     Consent,
@@ -51,7 +51,7 @@ pub(super) enum Command {
 pub(super) type Outcome = Result<(String, Vec<Event>), String>;
 
 impl StudyController {
-    /// A controller that goes on with these people.
+    /// Makes the controller of a study with these participants.
     pub(super) fn new(protocol: Protocol, group: String, people: Vec<Participant>) -> Self {
         Self { protocol, group, people, missing_since: None }
     }
@@ -94,8 +94,14 @@ impl StudyController {
     /// What follows from what is asked for; `seed` is fresh.
     ///
     /// # Errors
-    /// Why it cannot be, in a sentence with the cure.
-    pub(super) fn handle(&self, page: &str, command: &Command, robot: &RobotState<'_>, seed: u64) -> Outcome {
+    /// The command is not possible now.
+    pub(super) fn handle(
+        &self,
+        page: &str,
+        command: &Command,
+        robot: &RobotState<'_>,
+        seed: u64,
+    ) -> Outcome {
         match command {
             Command::Begin => self.begin(page, seed),
             Command::Resume(code) => self.resume(page, code),
@@ -121,7 +127,7 @@ impl StudyController {
     fn begin(&self, page: &str, seed: u64) -> Outcome {
         match self.active() {
             Some(person) if person.session == page => return Ok((person.id().to_owned(), vec![])),
-            Some(_) => return Err("Somebody is taking part just now. Please wait.".to_owned()),
+            Some(_) => return Err("Another participant is active. Please wait.".to_owned()),
             None => {}
         }
         let mut seed = seed;
@@ -145,7 +151,7 @@ impl StudyController {
     fn resume(&self, page: &str, code: &str) -> Outcome {
         let person = self.active().filter(|person| person.id().eq_ignore_ascii_case(code.trim()));
         let Some(person) = person else {
-            return Err("Nobody with this code is taking part just now.".to_owned());
+            return Err("No active participant has this code.".to_owned());
         };
         let is_new = person.session != page;
         let resumed = is_new.then(|| Event::Resumed { session: page.to_owned() });
@@ -158,7 +164,7 @@ impl StudyController {
         events: impl FnOnce(&Participant) -> Result<Vec<Event>, String>,
     ) -> Outcome {
         let person = self.people.iter().find(|person| person.id() == id);
-        let person = person.ok_or_else(|| format!("there is no participant {id}"))?;
+        let person = person.ok_or_else(|| format!("unknown participant {id}"))?;
         Ok((id.to_owned(), events(person)?))
     }
 
@@ -173,7 +179,9 @@ impl StudyController {
             (Command::Withdraw(false), Stage::Withdrawn) => Vec::new(),
             (Command::Withdraw(false), _) => vec![Event::Withdrawn],
             (Command::Consent, Stage::Consent) => vec![Event::Consented],
-            (Command::Next, Stage::Instructions) => vec![Event::Instructed, self.drawn(person, robot)?],
+            (Command::Next, Stage::Instructions) => {
+                vec![Event::Instructed, self.drawn(person, robot)?]
+            }
             (Command::Next, Stage::Over) => self.after_interaction(person, robot)?,
             (Command::Start, Stage::Drawn) => vec![start(person, robot)?],
             (Command::Start, Stage::Running) => Vec::new(),

@@ -90,7 +90,10 @@ fn nothing_begins_before_the_robot_is_ready_and_what_stands_is_called_off() {
     assert!(study.ask(&Command::Start).is_err());
     study.missing = None;
     study.view.planner = "optimal".to_owned();
-    assert_eq!(study.controller.request(&study.robot()), Some(RobotRequest::Switch("lookahead".to_owned())));
+    assert_eq!(
+        study.controller.request(&study.robot()),
+        Some(RobotRequest::Switch("lookahead".to_owned()))
+    );
     assert!(study.ask(&Command::Start).is_err());
     study.grant();
     study.ask(&Command::Start).unwrap();
@@ -316,8 +319,11 @@ fn random_step(study: &mut SimulatedStudy, rng: &mut Rng, step: u64) {
             // Killed, and up again.
             let people = study.disk.iter().filter_map(|(_, entries)| Participant::fold(entries));
             let people = people.collect();
-            study.controller =
-                StudyController::new(Protocol { interactions: 1, ..protocol() }, "lab".to_owned(), people);
+            study.controller = StudyController::new(
+                Protocol { interactions: 1, ..protocol() },
+                "lab".to_owned(),
+                people,
+            );
         }
     }
     study.look();

@@ -4,8 +4,8 @@
 use evaluation::user_study::{Event, Fault, Participant, Source, Stage, Trial, Verdict};
 use messages::{Ended, Outcome, PolicyView};
 
-use super::study_controller::StudyController;
 use super::robot_state::{NotReady, RobotState};
+use super::study_controller::StudyController;
 
 /// Utterances and questions of an interaction that are written down.
 const LINES_MAX: usize = 500;
@@ -54,7 +54,11 @@ impl StudyController {
     }
 
     /// What follows from something that was said.
-    pub(super) fn said(&self, said: &DialogueLine, robot: &RobotState<'_>) -> Option<(String, Event)> {
+    pub(super) fn said(
+        &self,
+        said: &DialogueLine,
+        robot: &RobotState<'_>,
+    ) -> Option<(String, Event)> {
         let (person, trial) = self.running()?;
         if trial.said.len() + trial.asked.len() >= LINES_MAX {
             return None;
@@ -75,7 +79,11 @@ impl StudyController {
     }
 
     /// What follows from what is robot; ask again once it is written down.
-    pub(super) fn look(&mut self, robot: &RobotState<'_>, fault_ms: f64) -> Option<(String, Event)> {
+    pub(super) fn look(
+        &mut self,
+        robot: &RobotState<'_>,
+        fault_ms: f64,
+    ) -> Option<(String, Event)> {
         match robot.missing {
             None => self.missing_since = None,
             Some(_) => _ = self.missing_since.get_or_insert(robot.ms),
@@ -110,13 +118,13 @@ impl StudyController {
         }
     }
 
-    /// Somebody who has ended, and for whom the policy was switched and not yet given back.
+    /// Returns a participant who has ended and whose planner is still to be restored.
     pub(super) fn owing(&self) -> Option<&Participant> {
         let owes = |person: &&Participant| person.stage.is_final() && person.switched.is_some();
         self.people().iter().find(owes)
     }
 
-    /// The interaction of somebody who went away in the middle.
+    /// Cancels the open interaction of a participant who has left.
     fn left_standing(&self, view: &PolicyView) -> Option<RobotRequest> {
         let trial = self.people().last()?.trial()?;
         let left = trial.end.is_none() && trial.started_at.is_some();
@@ -138,7 +146,7 @@ fn spoilt(trial: &Trial, robot: &RobotState<'_>, is_away: bool) -> Option<Event>
         return fault(Fault::Planner, format!("the policy decides by {}", view.planner));
     }
     let latest = robot.latest_interaction();
-    let ended = view.last.as_ref().map_or(0, |last| last.interaction);
+    let ended = view.last.as_ref().map_or(0, |last| last.interaction.0);
     if latest < trial.after {
         return fault(Fault::Missed, "the robot was started afresh".to_owned());
     }
@@ -150,7 +158,7 @@ fn spoilt(trial: &Trial, robot: &RobotState<'_>, is_away: bool) -> Option<Event>
 
 /// The robot has ended it.
 fn ended(trial: &Trial, robot: &RobotState<'_>) -> Option<Event> {
-    let last = robot.view?.last.as_ref().filter(|last| last.interaction == trial.after + 1)?;
+    let last = robot.view?.last.as_ref().filter(|last| last.interaction.0 == trial.after + 1)?;
     let verdict = match last.outcome {
         Outcome::Delivered if last.name.as_ref() == Some(&trial.drawn.object) => Verdict::Right,
         Outcome::Delivered => Verdict::Wrong,
@@ -165,7 +173,7 @@ fn ended(trial: &Trial, robot: &RobotState<'_>) -> Option<Event> {
     };
     Some(Event::Ended {
         verdict,
-        interaction: last.interaction,
+        interaction: last.interaction.0,
         object: last.name.clone(),
         questions: last.questions,
         utterances: utterances(last),
@@ -176,7 +184,7 @@ fn ended(trial: &Trial, robot: &RobotState<'_>) -> Option<Event> {
 
 fn utterances(last: &Ended) -> u32 {
     let (first, latest) = last.utterances;
-    u32::try_from(latest.saturating_sub(first) + 1).unwrap_or(u32::MAX)
+    u32::try_from(latest.0.saturating_sub(first.0) + 1).unwrap_or(u32::MAX)
 }
 
 /// It lasts longer than it may: from the first utterance, or from the start where nothing was said.

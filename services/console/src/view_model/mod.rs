@@ -23,8 +23,8 @@ use messages::{
 use scene::Scene;
 use serde::Serialize;
 use service::Time;
-use service::view::{ArmView, DialogueView, HearingView, Latest};
 use service::status::GroupStatus;
+use service::view::{ArmView, DialogueView, HearingView, Latest};
 
 pub use event::DialogueEvent;
 pub use latency::{Latency, Stages};

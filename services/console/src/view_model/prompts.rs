@@ -33,7 +33,7 @@ impl Prompts {
             self.0.pop_front();
         }
         let question = Question::try_from(act.question).unwrap_or_default();
-        let asks = act.kind() == Ok(ActKind::Ask);
+        let asks = act.kind == ActKind::Ask;
         self.0.push_back(Prompt {
             id: act.prompt,
             presentation: act.presentation,

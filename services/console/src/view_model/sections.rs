@@ -157,7 +157,7 @@ pub(super) struct SpeakingSection<'a> {
     url: Option<String>,
     began_ms: f64,
     ended_ms: Option<f64>,
-    state: Option<PresentationState>,
+    state: PresentationState,
 }
 
 impl<'a> SpeakingSection<'a> {
@@ -170,7 +170,7 @@ impl<'a> SpeakingSection<'a> {
             url: has_sound.then(|| format!("/voice/line-{id}-{presentation}.wav")),
             began_ms: ms(Time(started_ns)),
             ended_ms: (ended_ns > 0).then(|| ms(Time(ended_ns))),
-            state: PresentationState::from_code(state).ok(),
+            state: state.get(),
         }
     }
 }

@@ -53,7 +53,10 @@ mod tests {
     }
 
     fn changes(before: &GroupStatus, after: &GroupStatus) -> Vec<(String, bool)> {
-        transitions(Some(before), after).into_iter().map(|(s, back)| (s.name.clone(), back)).collect()
+        transitions(Some(before), after)
+            .into_iter()
+            .map(|(s, back)| (s.name.clone(), back))
+            .collect()
     }
 
     #[test]
@@ -64,7 +67,11 @@ mod tests {
         assert!(changes(&well, &well).is_empty() && transitions(None, &lost).is_empty());
         assert_eq!(changes(&well, &lost), [("arm".to_owned(), false)]);
         assert_eq!(changes(&lost, &back), [("arm".to_owned(), true)]);
-        assert_eq!(changes(&well, &back), [("arm".to_owned(), true)], "lost and back between two statuses");
+        assert_eq!(
+            changes(&well, &back),
+            [("arm".to_owned(), true)],
+            "lost and back between two statuses"
+        );
         let begins = group(&[("arm", "starting", 1), ("policy", "ready", 1)]);
         assert!(changes(&begins, &well).is_empty(), "a first start is not reported");
         assert_eq!(missing(&lost).map(|service| service.name.as_str()), Some("arm"));

@@ -1,12 +1,12 @@
 //! Messages folded into the view model, in the order and number in which services really send them.
 
 use super::*;
-use scene::{AttributeId, Question, Reading, Response, ValueId};
 use messages::{
-    ActKind, Ended, FixedText, Interpretation, MicrophoneState, Outcome, PickPhase, PresentationState,
-    ReceiptStatus, WireReading,
+    ActKind, Ended, FixedText, InteractionId, Interpretation, MicrophoneState, Outcome, PickPhase,
+    PresentationState, ReceiptStatus, UtteranceSeq, WireReading,
 };
-use serde_json::{Map, Value as Json, json};
+use scene::{AttributeId, Question, Reading, Response, ValueId};
+use serde_json::{Map, Value as Json};
 use service::view::Speaker;
 
 const BOWLS: &str = include_str!("../../../../config/scenes/bowls.toml");
@@ -27,7 +27,7 @@ fn now(s: u64) -> Now {
 fn receipt(seq: u64, status: ReceiptStatus, text: &str) -> Receipt {
     Receipt {
         seq,
-        status: status.code(),
+        status: status.into(),
         confidence: 1.0,
         onset_ns: seq * 1_000_000_000,
         end_ns: seq * 1_000_000_000,
@@ -41,7 +41,7 @@ fn asks(prompt: u64, interaction: u64) -> RobotAct {
         prompt,
         interaction,
         presentation: 1,
-        kind: ActKind::Ask.code(),
+        kind: ActKind::Ask.into(),
         question: WHITE.into(),
         scene_key: scene().key(),
         text: FixedText::truncated("Is it the white one?"),
@@ -50,7 +50,7 @@ fn asks(prompt: u64, interaction: u64) -> RobotAct {
 }
 
 fn said(prompt: u64, presentation: u32) -> Presented {
-    let state = PresentationState::Ended.code();
+    let state = PresentationState::Ended.into();
     Presented { prompt, presentation, started_ns: 5, ended_ns: 6, state, ..Presented::default() }
 }
 
@@ -58,7 +58,7 @@ fn said(prompt: u64, presentation: u32) -> Presented {
 fn no(seq: u64, prompt: u64) -> Observation {
     let reading = Reading { response: Response::No, ..Reading::default() };
     let means =
-        |question, reading| WireReading::new(&Interpretation { weight: 1.0, question, reading }).0;
+        |answers, reading| WireReading::new(&Interpretation { weight: 1.0, answers, reading }).0;
     let mut observation = Observation {
         seq,
         scene_key: scene().key(),
@@ -82,13 +82,13 @@ fn view(interaction: u64, last: Option<Ended>) -> PolicyView {
 
 fn delivered(interaction: u64) -> Ended {
     Ended {
-        interaction,
-        object: Some(1),
+        interaction: InteractionId(interaction),
+        object: Some(1.into()),
         name: Some("white2".to_owned()),
         outcome: Outcome::Delivered,
         questions: 1,
         seconds: 2.5,
-        utterances: (1, 2),
+        utterances: (UtteranceSeq(1), UtteranceSeq(2)),
     }
 }
 
@@ -199,9 +199,12 @@ fn view_model_sections_keep_their_keys() {
     model.on_receipt(&receipt(1, ReceiptStatus::Accepted, "get me the bowl"), now(1));
     model.on_act(&asks(4, 1));
     model.on_presented(said(4, 1), true, now(2));
-    model.on_view(PolicyView { belief: vec![0.5, 0.5, 0.0, 0.0, 0.0, 0.0], ..view(1, None) }, now(2));
-    model.on_hearing(Hearing { microphone: MicrophoneState::Off.code(), ..Hearing::default() });
-    model.on_arm(ArmStatus { phase: PickPhase::Idle.code(), ..ArmStatus::default() }, now(2));
+    model.on_view(
+        PolicyView { belief: vec![0.5, 0.5, 0.0, 0.0, 0.0, 0.0], ..view(1, None) },
+        now(2),
+    );
+    model.on_hearing(Hearing { microphone: MicrophoneState::Off.into(), ..Hearing::default() });
+    model.on_arm(ArmStatus { phase: PickPhase::Idle.into(), ..ArmStatus::default() }, now(2));
     let world = WorldView {
         at_ns: 1,
         objects: vec![Some([0.5, 0.0, 0.1, 0.0, 0.0, 0.0, 1.0]), None],

@@ -2,11 +2,11 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-use messages::{Ended, Outcome, PresentationState, Presented, Receipt, ReceiptStatus, Source};
+use messages::{Ended, Outcome, Presented, Receipt, ReceiptStatus, Source};
 use scene::{ObjectId, Scene};
 use service::Time;
-use service::view::Speaker;
 use service::status::ServiceStatus;
+use service::view::Speaker;
 
 use super::Now;
 use super::line::Line;
@@ -59,14 +59,14 @@ impl Transcript {
     pub(super) fn on_receipt(&mut self, receipt: &Receipt, now: Now) -> bool {
         let text = receipt.note.as_str().unwrap_or_default();
         let spoken = receipt.snr_db > 0.0 || receipt.confidence < 1.0;
-        let line = match ReceiptStatus::from_code(receipt.status) {
-            Ok(ReceiptStatus::Accepted) => Line {
+        let line = match receipt.status.get() {
+            ReceiptStatus::Accepted => Line {
                 seq: Some(receipt.seq),
                 source: source(receipt).to_owned(),
                 confidence: spoken.then_some(receipt.confidence),
                 ..self.blank(Speaker::Person, text, now)
             },
-            Ok(ReceiptStatus::NotForMe) => Line {
+            ReceiptStatus::NotForMe => Line {
                 source: source(receipt).to_owned(),
                 ..self.blank(Speaker::Unmeant, text, now)
             },
@@ -108,9 +108,14 @@ impl Transcript {
     }
 
     /// Takes in a line of the robot; returns whether it is new.
-    pub(super) fn on_presented(&mut self, presented: &Presented, prompt: &Prompt, now: Now) -> bool {
+    pub(super) fn on_presented(
+        &mut self,
+        presented: &Presented,
+        prompt: &Prompt,
+        now: Now,
+    ) -> bool {
         let said = (presented.prompt, presented.presentation);
-        let has_begun = PresentationState::from_code(presented.state).is_ok_and(PresentationState::has_begun);
+        let has_begun = presented.state.get().has_begun();
         let is_known = self.lines.iter().any(|line| line.said == Some(said));
         if is_known || !has_begun {
             return false;
@@ -130,10 +135,10 @@ impl Transcript {
         now: Now,
     ) -> bool {
         let is_first = self.ended == 0;
-        if ended.interaction <= self.ended {
+        if ended.interaction.0 <= self.ended {
             return false;
         }
-        self.ended = ended.interaction;
+        self.ended = ended.interaction.0;
         // One that ended before this console started is not new, nor one that its predecessor noted.
         if is_first && self.lines.iter().any(|line| line.outcome.is_some()) {
             return false;
@@ -209,14 +214,13 @@ impl Transcript {
 
 /// Returns the name of an utterance's source.
 fn source(receipt: &Receipt) -> &'static str {
-    match Source::from_code(receipt.source) {
-        Ok(Source::Text) => "typed",
-        Ok(Source::Wav) => "file",
+    match receipt.source.get() {
+        Source::Text => "typed",
+        Source::Wav => "file",
         // Segments of a stream are not counted before it is over.
-        Ok(Source::Microphone) if receipt.segments == 0 => "stream",
-        Ok(Source::Microphone) => "microphone",
-        Ok(Source::Browser) => "browser",
-        Ok(Source::Gesture) => "gesture",
-        Err(_) => "",
+        Source::Microphone if receipt.segments == 0 => "stream",
+        Source::Microphone => "microphone",
+        Source::Browser => "browser",
+        Source::Gesture => "gesture",
     }
 }

@@ -3,8 +3,8 @@
 use messages::{ArmStatus, MicrophoneState, PickPhase, PresentationState};
 use serde::Serialize;
 use service::Time;
-use service::view::Latest;
 use service::status::GroupStatus;
+use service::view::Latest;
 
 use super::services;
 
@@ -79,7 +79,7 @@ pub(super) fn turn(latest: &Latest, group: Option<&GroupStatus>) -> Turn {
             return plain(Robot, Understanding);
         }
     }
-    if presented.state == PresentationState::Speaking.code() {
+    if presented.state == PresentationState::Speaking {
         return plain(Robot, Speaking);
     }
     if arm.is_some_and(is_fetching) {
@@ -90,15 +90,15 @@ pub(super) fn turn(latest: &Latest, group: Option<&GroupStatus>) -> Turn {
     match decision {
         "ask" if open => {
             let said = view.is_some_and(|view| view.prompt == presented.prompt)
-                && presented.state == PresentationState::Ended.code();
+                && presented.state == PresentationState::Ended;
             if said { plain(Person, Asked) } else { plain(Robot, Understanding) }
         }
         // A pick that is called off is the arm's turn, too, until it has left the object.
         "pick" | "cancel" if open => plain(Arm, Moving),
         _ if arm.is_some_and(|arm| arm.moving != 0) => plain(Arm, Moving),
         _ => {
-            let listens = hearing
-                .is_some_and(|hearing| hearing.microphone == MicrophoneState::Listening.code());
+            let listens =
+                hearing.is_some_and(|hearing| hearing.microphone == MicrophoneState::Listening);
             if listens { plain(Person, Listening) } else { plain(Nobody, Idle) }
         }
     }
@@ -106,7 +106,7 @@ pub(super) fn turn(latest: &Latest, group: Option<&GroupStatus>) -> Turn {
 
 fn is_fetching(arm: &ArmStatus) -> bool {
     use PickPhase::{Accepted, Closing, Holding, Moving};
-    [Accepted, Moving, Closing, Holding].iter().any(|phase| phase.code() == arm.phase)
+    [Accepted, Moving, Closing, Holding].iter().any(|phase| arm.phase == *phase)
 }
 
 #[cfg(test)]
@@ -120,10 +120,15 @@ mod tests {
     }
 
     fn said(prompt: u64, state: PresentationState) -> Presented {
-        Presented { prompt, state: state.code(), ..Presented::default() }
+        Presented { prompt, state: state.into(), ..Presented::default() }
     }
 
-    fn latest(view: PolicyView, presented: Presented, activity: Activity, arm: ArmStatus) -> Latest {
+    fn latest(
+        view: PolicyView,
+        presented: Presented,
+        activity: Activity,
+        arm: ArmStatus,
+    ) -> Latest {
         let (view, activity, arm) = (Some(view), Some(activity), Some(arm));
         Latest { view, presented, activity, arm, ..Latest::default() }
     }
@@ -138,8 +143,8 @@ mod tests {
         let nothing = Presented::default();
         let ended = |prompt| said(prompt, PresentationState::Ended);
         let speaking = said(4, PresentationState::Speaking);
-        let holds = ArmStatus { phase: PickPhase::Holding.code(), moving: 1, ..still };
-        let done = ArmStatus { phase: PickPhase::Done.code(), ..still };
+        let holds = ArmStatus { phase: PickPhase::Holding.into(), moving: 1, ..still };
+        let done = ArmStatus { phase: PickPhase::Done.into(), ..still };
         for (view, presented, activity, arm, expected) in [
             (view(0, "wait", 0), nothing, quiet, still, (Nobody, Idle)),
             (view(0, "wait", 0), nothing, speaks, still, (Person, Hearing)),
@@ -168,7 +173,7 @@ mod tests {
 
     #[test]
     fn turn_shows_an_open_microphone() {
-        let microphone = MicrophoneState::Listening.code();
+        let microphone = MicrophoneState::Listening.into();
         let hearing = Some(Hearing { microphone, ..Hearing::default() });
         let (quiet, still) = (Activity::default(), ArmStatus::default());
         let latest = latest(view(0, "wait", 0), Presented::default(), quiet, still);

@@ -1,4 +1,4 @@
-//! A piece of sound as a page sends it.
+//! A frame of sound as a page sends it.
 
 use service::Time;
 use service::clock;
@@ -8,18 +8,18 @@ const HEADER: usize = 24;
 /// Samples of one frame at most: a tenth of a second.
 const SAMPLES_MAX: usize = 1_600;
 
-/// A piece of a viewer's stream of sound: one channel, 16 000 samples a second.
+/// A frame of a viewer's audio stream: one channel, 16 000 samples a second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PcmFrame {
     /// The stream ends with this frame.
     pub end: bool,
-    /// The person holds a key while speaking.
+    /// The user holds a key while speaking.
     pub held: bool,
     /// The robot's own voice is not in it.
     pub echo_free: bool,
     /// Number of the stream, made by the page.
     pub stream: u32,
-    /// When the first sample was taken, monotonic clock.
+    /// Time of the first sample, monotonic clock.
     pub taken: Time,
     /// Samples of the stream before this frame.
     pub before: u64,
@@ -33,16 +33,18 @@ impl PcmFrame {
     /// byte first.
     ///
     /// # Errors
-    /// What keeps it from being one.
+    /// The frame is invalid.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let Some((header, sound)) = bytes.split_at_checked(HEADER) else {
-            return Err(format!("a frame of sound has a header of {HEADER} bytes"));
+            return Err(format!("expected a header of {HEADER} bytes in a frame of sound"));
         };
         let [1, flags @ 0..=7, 0, 0, ..] = *header else {
-            return Err("the header of a frame of sound begins with 1, flags, 0, 0".to_owned());
+            return Err("expected 1, flags, 0, 0 at the start of a frame of sound".to_owned());
         };
         if sound.len() % 2 != 0 || sound.len() / 2 > SAMPLES_MAX {
-            return Err(format!("a frame of sound holds up to {SAMPLES_MAX} samples of 2 bytes"));
+            return Err(format!(
+                "expected at most {SAMPLES_MAX} samples of 2 bytes in a frame of sound"
+            ));
         }
         let eight = |at: usize| {
             let mut eight = [0; 8];
@@ -51,7 +53,7 @@ impl PcmFrame {
         };
         let taken_ms = f64::from_le_bytes(eight(8));
         if !taken_ms.is_finite() || taken_ms < 0.0 {
-            return Err("the time of a frame of sound is no time".to_owned());
+            return Err("invalid time in a frame of sound".to_owned());
         }
         Ok(Self {
             end: flags & 1 != 0,
@@ -80,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_is_read_as_it_was_written() {
+    fn pcm_frame_is_read_as_written() {
         let read = PcmFrame::read(&frame(3, &[-2, 513])).unwrap();
         let expected = PcmFrame {
             end: true,
@@ -95,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_frame_is_refused() {
+    fn pcm_frame_rejects_invalid_bytes() {
         let mut nan = frame(0, &[]);
         nan[8..16].copy_from_slice(&f64::NAN.to_le_bytes());
         let odd = [frame(0, &[1]), vec![0]].concat();

@@ -21,7 +21,7 @@ use crate::hub::outbound::{PageMessage, StreamReceipt};
 use crate::hub::{Hub, ViewerId};
 pub use frame::PcmFrame;
 use stream_table::{FrameKind, Name, StreamTable};
-use timestamps::Timestampstamps;
+use timestamps::Timestamps;
 
 /// How often the end of a stream is repeated.
 const AGAIN: Span = Span::from_ms(250);
@@ -61,7 +61,7 @@ impl Voice {
         let (now, name) = (clock::now(), (viewer, frame.stream));
         let gap = match self.table.take(name, frame.before, frame.samples.len())? {
             FrameKind::Ignore => return Ok(()),
-            FrameKind::GoOn(gap) => gap,
+            FrameKind::Next(gap) => gap,
             FrameKind::Begin => {
                 if let Err(why) = self.begin(client, name) {
                     self.table.forget(name);

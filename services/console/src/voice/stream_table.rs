@@ -37,7 +37,12 @@ impl StreamTable {
     ///
     /// # Errors
     /// Too many streams, or too large a gap.
-    pub(super) fn take(&mut self, name: Name, before: u64, count: usize) -> Result<FrameKind, String> {
+    pub(super) fn take(
+        &mut self,
+        name: Name,
+        before: u64,
+        count: usize,
+    ) -> Result<FrameKind, String> {
         let next = before.checked_add(count as u64).ok_or("a stream of sound is too long")?;
         let Some(entry) = self.0.iter_mut().find(|entry| entry.name == name) else {
             if self.0.len() >= STREAMS_MAX {

@@ -4,22 +4,22 @@ use service::{Span, Time};
 
 /// Nanoseconds of one sample.
 const SAMPLE_NS: u64 = 62_500;
-/// How long sound may have been on its way.
+/// Longest time that sound may take to arrive.
 const OLDEST: Span = Span::from_ms(3_000);
-/// A clock that is this far from where the samples before put it has jumped.
+/// A clock that deviates more from the samples before has jumped.
 const JUMP: Span = Span::from_ms(100);
 
 /// The times of one stream.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Timestamps {
-    /// The number of a sample, when it was taken, and whether the viewer said so.
+    /// The number of a sample, its time, and whether the viewer claimed that time.
     known: Option<(u64, Time, bool)>,
 }
 
 impl Timestamps {
-    /// When sample `number`, the first of `count`, was taken: as `claimed`, if that can be. Sound that
-    /// would be of the future, or older than three seconds, and a clock that jumps while the samples
-    /// go on, are put right by the samples before, else by when this arrived.
+    /// Returns when sample `number`, the first of `count`, was recorded: as `claimed`, if that is
+    /// plausible. Times in the future or older than three seconds, and jumps of the clock within a
+    /// stream, are replaced from the samples before, else from the time of arrival.
     pub(super) fn taken(
         &mut self,
         claimed: Time,
@@ -60,8 +60,8 @@ mod tests {
         Time(ms * 1_000_000)
     }
 
-    /// The times of tenths of a second of which the first was taken at 100 s, each of which arrives
-    /// 150 ms after it began, with what the viewer's clock says of them.
+    /// Returns the timestamps of frames of 100 ms, the first recorded at 100 s, each arriving 150 ms
+    /// after its beginning, for what the viewer's clock claims.
     fn times(claimed_ms: &[u64]) -> Vec<u64> {
         let mut timestamps = Timestamps::default();
         let taken = claimed_ms.iter().enumerate().map(|(n, claimed)| {
@@ -72,29 +72,29 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_is_right_is_believed() {
+    fn timestamps_follow_a_right_clock() {
         assert_eq!(times(&[100_000, 100_101, 100_199]), [100_000, 100_101, 100_199]);
     }
 
     #[test]
-    fn sound_of_the_future_or_of_long_ago_was_taken_just_before_it_came() {
+    fn timestamps_replace_implausible_times_by_the_arrival() {
         assert_eq!(times(&[200_000, 200_100]), [100_050, 100_150]);
         assert_eq!(times(&[5, 96_000]), [100_050, 100_150]);
     }
 
     #[test]
-    fn a_clock_that_jumps_is_put_right_by_the_samples() {
+    fn timestamps_replace_jumps_by_the_samples_before() {
         let jumps = [100_000, 98_500, 98_600, 100_300, 99_000_000];
         assert_eq!(times(&jumps), [100_000, 100_100, 100_200, 100_300, 100_400]);
     }
 
     #[test]
-    fn a_clock_that_is_put_right_is_believed_again() {
+    fn timestamps_follow_a_corrected_clock() {
         assert_eq!(times(&[0, 100_090, 100_190]), [100_050, 100_090, 100_190]);
     }
 
     #[test]
-    fn numbers_that_make_no_sense_do_no_harm() {
+    fn timestamps_survive_arbitrary_numbers() {
         let mut timestamps = Timestamps::default();
         assert_eq!(timestamps.taken(ms(10), u64::MAX, TENTH, ms(1_000)), ms(10));
         assert_eq!(timestamps.taken(Time(u64::MAX), 0, TENTH, Time(5)), Time(0));

@@ -4,7 +4,6 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use messages::{EarState, Hearing, MicrophoneState, topics};
-use serde_json::{Value as Json, json};
 use service::client::Client;
 use service::group::GroupPaths;
 
@@ -73,20 +72,6 @@ pub(super) fn line(hearing: &Hearing, style: Style) -> String {
         line += &format!("; {} utterances were lost", hearing.dropped);
     }
     line
-}
-
-/// The same for programs.
-pub(super) fn to_json(hearing: &Hearing) -> Json {
-    json!({
-        "microphone": MicrophoneState::from_code(hearing.microphone).ok(),
-        "recogniser": EarState::from_code(hearing.ear).ok(),
-        "level_db": hearing.level_db,
-        "snr_db": (hearing.measured != 0).then_some(hearing.snr_db),
-        "pending": hearing.pending,
-        "restarts": hearing.restarts,
-        "dropped": hearing.dropped,
-        "note": hearing.note.as_str().ok(),
-    })
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use service::group::GroupPaths;
 use service::status::GroupState;
 use service::status::{Actual, Wanted};
 use service::status::{GroupStatus, ServiceStatus};
+use service::view::HearingView;
 
 use super::operate::{Unanswered, status_of};
 use super::{console, hearing, words};
@@ -24,7 +25,7 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     if out.is_json() {
         let mut json = serde_json::to_value(&status).unwrap_or_default();
         json["console"] = console::url(paths).into();
-        json["hearing"] = hearing.as_ref().map(hearing::to_json).into();
+        json["hearing"] = json!(hearing.as_ref().map(HearingView::new));
         out.json(&json)?;
     } else {
         let mut lines = lines(&status, out.style());

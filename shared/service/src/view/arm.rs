@@ -14,15 +14,15 @@ pub struct ArmView<'a> {
     /// Name of the object that it picks or picked.
     pub object: Option<&'a str>,
     /// Phase of the pick.
-    pub phase: Option<PickPhase>,
+    pub phase: PickPhase,
     /// Outcome of the latest pick.
-    pub outcome: Option<PickOutcome>,
+    pub outcome: PickOutcome,
     /// Whether a joint moves.
     pub moving: bool,
     /// Whether the motion stop is latched.
     pub stopped: bool,
     /// What keeps the robot from moving.
-    pub hindrance: Option<MotionInhibit>,
+    pub hindrance: MotionInhibit,
     /// Time left until the pick is done, seconds.
     pub remaining_s: f64,
     /// Whether it points at an object.
@@ -37,11 +37,11 @@ impl<'a> ArmView<'a> {
             interaction: arm.interaction,
             attempt: arm.attempt,
             object: object.map(|object| object.name.as_str()),
-            phase: PickPhase::from_code(arm.phase).ok(),
-            outcome: PickOutcome::from_code(arm.outcome).ok(),
+            phase: arm.phase.get(),
+            outcome: arm.outcome.get(),
             moving: arm.moving != 0,
             stopped: arm.stopped != 0,
-            hindrance: MotionInhibit::from_code(arm.hindrance).ok(),
+            hindrance: arm.hindrance.get(),
             remaining_s: rounded(arm.remaining_s, 1),
             aimed: arm.aimed_act != 0,
         }

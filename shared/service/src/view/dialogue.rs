@@ -123,7 +123,7 @@ impl<'a> DialogueView<'a> {
             questions: view.questions,
             expected_questions: view.expected_questions,
             last: view.last.as_ref().map(|last| EndedView {
-                interaction: last.interaction,
+                interaction: last.interaction.0,
                 object: last.name.as_deref(),
                 outcome: last.outcome,
                 questions: last.questions,

@@ -5,9 +5,9 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HearingView<'a> {
     /// State of the microphone.
-    pub microphone: Option<MicrophoneState>,
+    pub microphone: MicrophoneState,
     /// State of the recogniser.
-    pub recogniser: Option<EarState>,
+    pub recogniser: EarState,
     /// Loudness, dB of full scale.
     pub level_db: f32,
     /// How far the latest utterance stood above the noise, dB; none before one was measured.
@@ -26,8 +26,8 @@ impl<'a> HearingView<'a> {
     /// Makes the view of a message, levels to whole decibels.
     pub fn new(hearing: &'a Hearing) -> Self {
         Self {
-            microphone: MicrophoneState::from_code(hearing.microphone).ok(),
-            recogniser: EarState::from_code(hearing.ear).ok(),
+            microphone: hearing.microphone.get(),
+            recogniser: hearing.ear.get(),
             level_db: hearing.level_db.round(),
             snr_db: (hearing.measured != 0).then(|| hearing.snr_db.round()),
             pending: hearing.pending,

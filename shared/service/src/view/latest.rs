@@ -101,7 +101,7 @@ impl Latest {
 
     /// Takes in the receipt of an utterance.
     pub fn on_receipt(&mut self, receipt: &Receipt) {
-        if receipt.status == ReceiptStatus::Accepted.code() {
+        if receipt.status == ReceiptStatus::Accepted {
             self.accepted = self.accepted.max(receipt.seq);
         }
     }
@@ -120,7 +120,7 @@ impl Latest {
         let is_asked = view.interaction != 0
             && view.decision == "ask"
             && prompt == view.prompt
-            && state == PresentationState::Ended.code();
+            && state == PresentationState::Ended;
         is_asked.then_some((prompt, presentation))
     }
 
@@ -129,7 +129,7 @@ impl Latest {
     pub fn presented_line(&self) -> Option<(PromptId, &str)> {
         let view = self.view.as_ref()?;
         let Presented { prompt, presentation, state, .. } = self.presented;
-        let has_begun = PresentationState::from_code(state).is_ok_and(PresentationState::has_begun);
+        let has_begun = state.get().has_begun();
         let latest = has_begun && prompt != 0 && prompt == view.prompt && !view.text.is_empty();
         latest.then_some(((prompt, presentation), view.text.as_str()))
     }

@@ -3,8 +3,9 @@
 
 use super::*;
 use messages::{
-    Activity, ArmStatus, Ended, FixedText, Hearing, MotionInhibit, MicrophoneState, Outcome, PickPhase,
-    PolicyView, PresentationState, Presented, Receipt, ReceiptStatus,
+    Activity, ArmStatus, Ended, FixedText, Hearing, InteractionId, MicrophoneState, MotionInhibit,
+    Outcome, PickPhase, PolicyView, PresentationState, Presented, Receipt, ReceiptStatus,
+    UtteranceSeq,
 };
 use scene::{AttributeId, Question, Scene, ValueId};
 
@@ -29,13 +30,13 @@ fn policy_view(scene: &Scene) -> PolicyView {
         expected_questions: 0.5,
         planner: "lookahead".to_owned(),
         last: Some(Ended {
-            interaction: 6,
-            object: Some(1),
+            interaction: InteractionId(6),
+            object: Some(1.into()),
             name: Some("white2".to_owned()),
             outcome: Outcome::Delivered,
             questions: 2,
             seconds: 12.5,
-            utterances: (1, 2),
+            utterances: (UtteranceSeq(1), UtteranceSeq(2)),
         }),
         ..PolicyView::default()
     }
@@ -43,7 +44,7 @@ fn policy_view(scene: &Scene) -> PolicyView {
 
 fn asked() -> Latest {
     let scene = Scene::from_toml("bowls.toml", BOWLS).unwrap();
-    let state = PresentationState::Ended.code();
+    let state = PresentationState::Ended.into();
     let presented = Presented { prompt: 5, presentation: 1, state, ..Presented::default() };
     let activity = Some(Activity::default());
     Latest {
@@ -60,7 +61,7 @@ fn view_keeps_its_keys() {
     let scene = Scene::from_toml("bowls.toml", BOWLS).unwrap();
     let policy = policy_view(&scene);
     let hearing = Hearing {
-        microphone: MicrophoneState::Listening.code(),
+        microphone: MicrophoneState::Listening.into(),
         level_db: -31.4,
         note: FixedText::truncated("arecord"),
         ..Hearing::default()
@@ -68,8 +69,8 @@ fn view_keeps_its_keys() {
     let arm = ArmStatus {
         interaction: 7,
         object: 1,
-        phase: PickPhase::Moving.code(),
-        hindrance: MotionInhibit::None.code(),
+        phase: PickPhase::Moving.into(),
+        hindrance: MotionInhibit::None.into(),
         moving: 1,
         remaining_s: 3.26,
         ..ArmStatus::default()
@@ -100,7 +101,7 @@ fn latest_is_settled_once_the_view_holds_every_accepted_utterance() {
     assert!(!Latest { view: None, ..settled }.is_settled());
     for (status, settles) in [(ReceiptStatus::Refused, true), (ReceiptStatus::Accepted, false)] {
         let mut latest = asked();
-        latest.on_receipt(&Receipt { seq: 9, status: status.code(), ..Receipt::default() });
+        latest.on_receipt(&Receipt { seq: 9, status: status.into(), ..Receipt::default() });
         assert_eq!(latest.is_settled(), settles, "{status:?}");
     }
 }
@@ -109,7 +110,7 @@ fn latest_is_settled_once_the_view_holds_every_accepted_utterance() {
 fn latest_question_is_open_from_the_end_of_its_presentation() {
     let mut latest = asked();
     assert_eq!(latest.open_question(), Some((5, 1)));
-    latest.presented.state = PresentationState::Speaking.code();
+    latest.presented.state = PresentationState::Speaking.into();
     assert_eq!(latest.open_question(), None);
     assert_eq!(latest.presented_line(), Some(((5, 1), "Is it white?")));
     latest.presented.prompt = 4;

@@ -53,26 +53,26 @@ export function indexOf(object, scene) {
 }
 
 /**
- * What the dialogue says of each object.
+ * What the robot believes of each object and whether it asks about it.
  * @param {any} dialogue section `dialogue`
  * @param {any} scene section `scene`
  * @returns {{belief: number|null, best: boolean, asked: boolean}[]} in the scene's order
  */
 export function thoughtsOf(dialogue, scene) {
-  const belief = dialogue?.belief ?? [];
-  const most = Math.max(...belief, 0);
-  const even = belief.length ? 1.02 / belief.length : 1;
-  const about = dialogue?.question ? dialogue.question_about : null;
-  const asked = indexOf(about?.object, scene);
-  return (scene?.objects ?? []).map((object, n) => ({
-    belief: belief[n] ?? null,
-    // While all are equally likely, none is the likeliest.
-    best: belief[n] !== undefined && belief[n] === most && most > even,
-    asked: n === asked || isAsked(object, about),
+  const belief = dialogue?.belief ?? {};
+  const probabilities = Object.values(belief);
+  const most = Math.max(...probabilities, 0);
+  const even = probabilities.length ? 1.02 / probabilities.length : 1;
+  const question = dialogue?.question;
+  return (scene?.objects ?? []).map((object) => ({
+    belief: belief[object.name] ?? null,
+    // While all are equally likely, none is the most likely.
+    best: belief[object.name] === most && most > even,
+    asked: question?.object === object.name || isAsked(object, question),
   }));
 }
 
-function isAsked(object, about) {
-  if (!about?.attribute || about.value === undefined || about.value === null) return false;
-  return object.attributes?.[about.attribute] === about.value;
+function isAsked(object, question) {
+  if (question?.type !== "attr") return false;
+  return object.attributes?.[question.attribute] === question.value;
 }

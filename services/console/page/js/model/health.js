@@ -1,26 +1,54 @@
 // @ts-check
-const GOOD = ["ready", "running", "up"];
-const BAD = ["failed", "held", "dead", "down", "stopped"];
+/**
+ * A service in the section `group`.
+ * @typedef {object} Service
+ * @property {string} name
+ * @property {"up"|"down"} wanted
+ * @property {"down"|"starting"|"ready"|"stopping"|"backoff"|"held"} actual
+ * @property {string|null} [why] why it is not in the wanted state
+ * @property {string|null} [says] its own status
+ * @property {{text: string}|null} [last_exit]
+ * @property {number} restarts
+ */
 
 /**
- * Whether a service does what it should.
+ * The state of a service in one word: `service.WORD` of the strings.
+ * @param {Service} service
+ */
+export function stateOf({ wanted, actual }) {
+  return actual === "down" && wanted === "up" ? "waiting" : actual;
+}
+
+/**
+ * The reason for its state, its own status, and how its previous run ended.
+ * @param {Service} service
+ * @param {(key: string, args?: object) => string} t
+ */
+export function noteOf({ why, says, last_exit }, t) {
+  const exit = last_exit ? t("services.ended", { how: last_exit.text }) : null;
+  return [why, says, exit].filter(Boolean).join("; ");
+}
+
+/**
+ * Whether a state is a good one.
  * @param {string} state
  * @returns {"good"|"busy"|"bad"}
  */
 export function tone(state) {
-  if (GOOD.includes(state)) return "good";
-  return BAD.includes(state) ? "bad" : "busy";
+  if (state === "ready") return "good";
+  return state === "held" || state === "down" ? "bad" : "busy";
 }
 
 /**
- * How the group is doing, in a line: the gravest first.
- * @param {{name: string, state: string}[]|undefined} services
+ * How the group is doing, in one line: the gravest first.
+ * @param {Service[]|undefined} services
  * @returns {{tone: "good"|"busy"|"bad", key: string, args: Record<string, string|number>}}
  */
 export function health(services) {
   if (!services?.length) return { tone: "busy", key: "services.none", args: {} };
   for (const grave of /** @type {const} */ (["bad", "busy"])) {
-    const names = services.filter(({ state }) => tone(state) === grave).map(({ name }) => name);
+    const affected = services.filter((service) => tone(stateOf(service)) === grave);
+    const names = affected.map(({ name }) => name);
     if (names.length === 0) continue;
     const args = { names: names.join(", "), n: names.length };
     return { tone: grave, key: `health.${grave}`, args };

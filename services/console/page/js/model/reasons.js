@@ -1,74 +1,64 @@
 // @ts-check
 /**
- * An action of the robot, as the page shows it.
- * @typedef {{kind: "ask"|"pick"|"wait"|"absent"|"other", text: string}} Action
+ * An action of the robot in the scene's names, as the server sends it.
+ * @typedef {{type: "wait"|"not_here"|"say"} | {type: "pick"|"point", object: string}
+ *   | {type: "attr", attribute: string, value: string} | {type: "which", attribute: string}} Action
  */
 
 /**
- * Reads an action's text. Objects are called by their labels.
- * @param {string} text e.g. `ask: Is it white?`, `pick white2`, `wait`
- * @param {{objects: {name: string, label: string}[]}|undefined} scene
- * @returns {Action}
- */
-export function readAction(text, scene) {
-  const ask = /^ask:\s*(.+)$/s.exec(text);
-  if (ask) return { kind: "ask", text: ask[1] };
-  const pick = /^pick\s+(.+)$/s.exec(text);
-  if (pick) {
-    const object = scene?.objects.find((one) => one.name === pick[1]);
-    return { kind: "pick", text: object?.label ?? pick[1] };
-  }
-  if (text === "wait") return { kind: "wait", text: "" };
-  if (text.startsWith("conclude")) return { kind: "absent", text: "" };
-  return { kind: "other", text };
-}
-
-/**
- * What was decided, as an action.
- * @param {any} dialogue
+ * Words for an action: a key of the strings with its arguments, objects by their labels and values as
+ * they are spoken.
+ * @param {any} action
  * @param {any} scene
- * @param {string|null|undefined} aim name of the object that the arm is after
- * @returns {Action}
+ * @returns {{key: string, args: Record<string, string>}}
  */
-export function decidedAction(dialogue, scene, aim) {
-  const about = dialogue.question_about?.text || dialogue.text;
-  if (dialogue.decision === "ask") return { kind: "ask", text: about };
-  if (dialogue.decision === "pick") {
-    const name = aim ?? likeliest(dialogue.belief, scene);
-    return readAction(`pick ${name}`, scene);
+export function actionWords(action, scene) {
+  const key = `action.${action.type}`;
+  if (action.type === "pick" || action.type === "point") {
+    const object = scene?.objects.find(({ name }) => name === action.object);
+    return { key, args: { object: object?.label ?? action.object } };
   }
-  if (dialogue.decision === "wait") return { kind: "wait", text: "" };
-  return { kind: "other", text: dialogue.text };
+  if (action.type === "attr") return { key, args: { value: spokenValue(action, scene) } };
+  if (action.type === "which") return { key, args: { attribute: action.attribute } };
+  return { key, args: {} };
 }
 
-function likeliest(belief, scene) {
-  const best = belief.reduce((top, p, i) => (p > belief[top] ? i : top), 0);
-  return scene?.objects[best]?.name ?? "";
+function spokenValue({ attribute, value }, scene) {
+  const known = scene?.attributes.find(({ name }) => name === attribute);
+  return known?.values.find(({ name }) => name === value)?.spoken ?? value;
 }
 
 /**
- * Shortest bar, as a share of the longest: the worst action still shows as one.
+ * The decision in force as an action.
+ * @param {any} dialogue
+ * @param {string|null|undefined} aim name of the object that the arm fetches
+ * @returns {Action}
  */
+export function decidedAction(dialogue, aim) {
+  if (dialogue.decision === "ask" && dialogue.question) return dialogue.question;
+  if (dialogue.decision === "pick") {
+    return { type: "pick", object: aim ?? mostLikely(dialogue.belief) };
+  }
+  return { type: dialogue.decision === "wait" ? "wait" : "say" };
+}
+
+function mostLikely(belief) {
+  const [first = ["", 0], ...others] = Object.entries(belief ?? {});
+  return others.reduce((best, one) => (one[1] > best[1] ? one : best), first)[0];
+}
+
+/** Shortest bar, as a share of the longest: the worst action has a visible one. */
 const SHORTEST = 0.04;
 
 /**
  * The decision and the best others, best first, with the lengths of their bars.
  * @param {any} dialogue
- * @param {any} scene
  * @param {string|null} [aim]
  * @returns {{action: Action, value: number, length: number, chosen: boolean}[]}
  */
-export function ranked(dialogue, scene, aim) {
-  const chosen = {
-    action: decidedAction(dialogue, scene, aim),
-    value: dialogue.value,
-    chosen: true,
-  };
-  const others = (dialogue.alternatives ?? []).map(({ action, value }) => ({
-    action: readAction(action, scene),
-    value,
-    chosen: false,
-  }));
+export function ranked(dialogue, aim) {
+  const chosen = { action: decidedAction(dialogue, aim), value: dialogue.value, chosen: true };
+  const others = (dialogue.alternatives ?? []).map((other) => ({ ...other, chosen: false }));
   const all = [chosen, ...others].filter((one) => Number.isFinite(one.value));
   all.sort((a, b) => b.value - a.value || Number(b.chosen) - Number(a.chosen));
   const top = Math.max(...all.map((one) => one.value));
@@ -78,11 +68,11 @@ export function ranked(dialogue, scene, aim) {
   return all.map((one) => ({ ...one, length: length(one.value) }));
 }
 
-/** Bounds nearer than this are one figure to people. */
+/** Bounds closer than this are shown as one figure. */
 const NEAR = 0.05;
 
 /**
- * What the bounds prove, as a key of the strings with its figures.
+ * The statement that the bounds prove: a key of the strings with its figures.
  * @param {number} value
  * @param {[number, number]|null|undefined} bounds
  * @returns {{key: string, args: Record<string, number>}|null}
@@ -96,7 +86,7 @@ export function proof(value, bounds) {
 }
 
 /**
- * How many questions are still to come, as a key with its figure.
+ * The expected number of further questions: a key of the strings with its figure.
  * @param {number} expected
  * @returns {{key: string, args: Record<string, number>}}
  */
@@ -111,10 +101,10 @@ function round(value) {
 }
 
 /**
- * Answers that can be given with one press.
+ * Answers that can be given with one click.
  * @param {any} dialogue
  * @param {any} scene
- * @returns {{key: string|null, text: string}[]} `text` is what is said; `key` a string to show for it
+ * @returns {{key: string|null, text: string}[]} `text` is submitted; `key` is the string to show for it
  */
 export function answers(dialogue, scene) {
   const question = dialogue?.question;

@@ -56,7 +56,7 @@ export function mountCards(element, { store, t }) {
       order = [];
       sceneKey = scene.key;
     }
-    const belief = scene.objects.map((_, i) => dialogue?.belief?.[i] ?? 0);
+    const belief = scene.objects.map(({ name }) => dialogue?.belief?.[name] ?? 0);
     const now = { dialogue, arm: store.get("arm"), world: store.get("world") };
     const marked = marks(scene, now);
     order = rank(order, belief);

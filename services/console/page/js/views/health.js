@@ -28,13 +28,13 @@ export function mountHealth(element, context) {
   mountLatency(latency, context);
 
   const draw = eachFrame(() => {
-    const now = health(store.get("services"));
+    const now = health(store.get("group")?.services);
     setAttribute(summary, "data-state", now.tone);
     setText(words, t(now.key, now.args));
     const total = store.get("latency")?.p50?.total_ms;
     const known = typeof total === "number" && store.get("latency").count > 0;
     setText(answer, known ? t("health.answers", { time: duration(total, t) }) : "");
   });
-  store.subscribe(["services", "latency"], draw);
+  store.subscribe(["group", "latency"], draw);
   draw();
 }

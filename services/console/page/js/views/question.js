@@ -54,14 +54,14 @@ export function mountQuestion(element, context) {
     correct.hidden = !mine;
     notThat.disabled = startOver.disabled = !open;
     if (fresh && dialogue?.prompt !== prompt) awaitVoice(dialogue?.prompt ?? null);
-    const heard = store.get("speech")?.speaking?.prompt === dialogue?.prompt;
+    const heard = store.get("speaking")?.prompt === dialogue?.prompt;
     if (heard) reveal();
   });
 
   function awaitVoice(next) {
     prompt = next;
     clearTimeout(timer);
-    const speaking = store.get("speech")?.speaking;
+    const speaking = store.get("speaking");
     if (!next || !element.dataset.seen || speaking?.prompt === next) return reveal();
     words.classList.add("awaits");
     timer = setTimeout(reveal, VOICE_MS);
@@ -76,7 +76,7 @@ export function mountQuestion(element, context) {
     words.animate([from, { opacity: 1, transform: "none" }], { duration: 350, easing: "ease-out" });
   }
 
-  store.subscribe(["dialogue", "scene", "speech", "control", "welcome"], draw);
+  store.subscribe(["dialogue", "scene", "speaking", "control", "welcome"], draw);
   draw();
 }
 

@@ -1,7 +1,7 @@
 // @ts-check
 import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
-import { tone } from "../model/health.js";
+import { noteOf, stateOf, tone } from "../model/health.js";
 import { whoControls } from "../model/turn.js";
 import { attempt } from "./attempt.js";
 
@@ -32,20 +32,18 @@ export function mountServices(element, context) {
   };
   const update = (node, service) => {
     const [, , state, note, button] = node.children;
-    setAttribute(node, "data-state", tone(service.state));
-    setText(
-      state,
-      t.has(`service.${service.state}`) ? t(`service.${service.state}`) : service.state,
-    );
+    const now = stateOf(service);
+    setAttribute(node, "data-state", tone(now));
+    setText(state, t(`service.${now}`));
     const restarts = service.restarts > 0 ? t("services.restarts", { n: service.restarts }) : "";
-    setText(note, [service.note, restarts].filter(Boolean).join(" · "));
+    setText(note, [noteOf(service, t), restarts].filter(Boolean).join(" · "));
     button.disabled = whoControls(store.get("control"), store.get("welcome")) !== "mine";
   };
   const draw = eachFrame(() => {
-    const services = store.get("services") ?? [];
+    const services = store.get("group")?.services ?? [];
     empty.hidden = services.length > 0;
     keyed(list, services, (service) => service.name, make, update);
   });
-  store.subscribe(["services", "control", "welcome"], draw);
+  store.subscribe(["group", "control", "welcome"], draw);
   draw();
 }

@@ -1,13 +1,13 @@
 // @ts-check
 import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
-import { proof, ranked, toCome } from "../model/reasons.js";
+import { actionWords, proof, ranked, toCome } from "../model/reasons.js";
 
 const ONE_DIGIT = { maximumFractionDigits: 1, minimumFractionDigits: 1 };
 /** Most actions that are compared. */
 const ACTIONS_MAX = 4;
 
 /**
- * Why the robot does what it does: what else it could do, and what each is worth.
+ * The reasons of the decision: the best other actions and their values.
  * @param {HTMLElement} element
  * @param {{store: any, t: any}} context
  */
@@ -19,7 +19,10 @@ export function mountWhy(element, { store, t }) {
   element.append(title, sentence, list, proven);
 
   const figure = (value) => t.number(value, ONE_DIGIT).replace("-", "−");
-  const words = (action) => t(`action.${action.kind}`, { text: action.text });
+  const words = (action) => {
+    const { key, args } = actionWords(action, store.get("scene"));
+    return t(key, args);
+  };
   const make = () => {
     const bar = h("span", { class: "why-bar" }, h("i", {}));
     const name = h("span", { class: "why-name" });
@@ -48,8 +51,8 @@ export function mountWhy(element, { store, t }) {
     const { key, args } = toCome(dialogue.expected_questions);
     setText(sentence, t(key, args));
     const aim = store.get("arm")?.object;
-    const items = ranked(dialogue, store.get("scene"), aim).slice(0, ACTIONS_MAX);
-    keyed(list, items, (item) => `${item.action.kind} ${item.action.text}`, make, update);
+    const items = ranked(dialogue, aim).slice(0, ACTIONS_MAX);
+    keyed(list, items, (item) => JSON.stringify(item.action), make, update);
     const known = proof(dialogue.value, dialogue.bounds);
     const sure = known ? `${t(known.key, known.args)} ` : "";
     setText(proven, sure + t("why.points"));

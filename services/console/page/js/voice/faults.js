@@ -36,12 +36,12 @@ export function recognitionFault(code) {
  * Why talking cannot work, known before it is tried.
  * @param {object} known
  * @param {boolean} known.secure whether the page may have a microphone at all
- * @param {string|undefined} known.ear the recogniser's state, of section `speech`
+ * @param {string|undefined} known.state the recogniser's state, of section `hearing`
  * @param {boolean|undefined} known.recogniser whether the robot is set up with one
  * @returns {string|null} key of the words
  */
-export function standingFault({ secure, ear, recogniser }) {
+export function standingFault({ secure, recogniser, state }) {
   if (!secure) return "voice.fault.insecure";
-  if (recogniser === false || ear === "off") return "voice.fault.recogniser";
+  if (recogniser === false || state === "off") return "voice.fault.recogniser";
   return null;
 }

@@ -47,7 +47,7 @@ export function mountVoice(element, { link, store, t }) {
     show(view, { sign: sign(known), talk, playback, t });
   };
   draw = eachFrame(drawNow);
-  store.subscribe(["link", "turn", "speech", "welcome"], tell);
+  store.subscribe(["link", "turn", "hearing", "welcome"], tell);
   // A page that nobody sees hears nobody.
   addEventListener("pagehide", () => talk.close());
   // At once: no button is without its words for as long as a frame.

@@ -39,7 +39,7 @@ class Playback {
     this.#storage = storage;
     this.#tell = tell;
     this.#muted = storage?.getItem(MUTED) === "yes";
-    store.subscribe("speech", () => this.#look());
+    store.subscribe("speaking", () => this.#look());
     for (const event of ["pointerdown", "keydown"]) {
       document.addEventListener(event, () => this.unlock(), { capture: true });
     }
@@ -69,7 +69,7 @@ class Playback {
 
   /** The person speaks: the robot is silent here at once, and stays so for what it was saying. */
   hush() {
-    this.#hushed = keyOf(this.#store.get("speech")?.speaking);
+    this.#hushed = keyOf(this.#store.get("speaking"));
     this.#look();
   }
 
@@ -88,13 +88,13 @@ class Playback {
   }
 
   #wanted() {
-    const speaking = this.#store.get("speech")?.speaking;
+    const speaking = this.#store.get("speaking");
     const { key: playing } = this.#playing;
     return plan({ speaking, playing, hushed: this.#hushed, muted: this.#muted }).start;
   }
 
   #look() {
-    const speaking = this.#store.get("speech")?.speaking;
+    const speaking = this.#store.get("speaking");
     const { key: playing } = this.#playing;
     const lengthS = this.#playing.source?.buffer?.duration;
     const { stop, start } = plan({

@@ -97,8 +97,8 @@ export class Talk {
     if (this.#choices.engine === "browser") return null;
     const secure = Boolean(globalThis.navigator?.mediaDevices?.getUserMedia);
     const recogniser = this.#store.get("welcome")?.settings?.voice?.recogniser;
-    const ear = this.#store.get("speech")?.hearing?.ear;
-    return standingFault({ secure, ear, recogniser });
+    const state = this.#store.get("hearing")?.recogniser;
+    return standingFault({ secure, recogniser, state });
   }
 
   /** @param {"down"|"up"|"click"|"cancel"} event */

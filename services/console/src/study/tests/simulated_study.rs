@@ -7,8 +7,8 @@ use evaluation::user_study::{
 use messages::{Ended, Outcome, PolicyView};
 use scene::Scene;
 
-use crate::study::study_controller::{Command, StudyController, kept};
 use crate::study::robot_state::RobotState;
+use crate::study::study_controller::{Command, StudyController, kept};
 use crate::study::trial_monitor::{DialogueLine, RobotRequest};
 
 pub(super) const FAULT_MS: f64 = 10_000.0;
@@ -184,7 +184,11 @@ impl SimulatedStudy {
     pub(super) fn check(&self) {
         let recovered: Vec<Participant> =
             self.disk.iter().filter_map(|(_, entries)| Participant::fold(entries)).collect();
-        assert_eq!(recovered, self.controller.people(), "what is known is the fold of what is written");
+        assert_eq!(
+            recovered,
+            self.controller.people(),
+            "what is known is the fold of what is written"
+        );
         for person in self.controller.people() {
             let total = person.begun.plan.iter().filter(|step| !step.practice).count();
             assert!(person.counted().count() <= total);

@@ -1,9 +1,10 @@
 //! Moments of a dialogue, for tests.
 
-use messages::{Activity, Ended, Outcome, PolicyView, PresentationState, Presented};
+use messages::{
+    Activity, Ended, InteractionId, Outcome, PolicyView, PresentationState, Presented, UtteranceSeq,
+};
 use scene::Question;
 use service::view::Latest;
-
 
 /// Interaction 7 is open, the robot has asked `question` and said it to its end.
 pub(in crate::verbs) fn asked(question: Question) -> Latest {
@@ -16,7 +17,7 @@ pub(in crate::verbs) fn asked(question: Question) -> Latest {
         decision: "ask".into(),
         ..PolicyView::default()
     };
-    let state = PresentationState::Ended.code();
+    let state = PresentationState::Ended.into();
     let presented = Presented { prompt: 5, presentation: 1, state, ..Presented::default() };
     let activity = Some(Activity::default());
     Latest { view: Some(view), presented, activity, accepted: 3, ..Latest::default() }
@@ -25,13 +26,13 @@ pub(in crate::verbs) fn asked(question: Question) -> Latest {
 /// Interaction `id` has ended, none is open.
 pub(in crate::verbs) fn ended(id: u64) -> Latest {
     let last = Ended {
-        interaction: id,
-        object: Some(1),
+        interaction: InteractionId(id),
+        object: Some(1.into()),
         name: Some("clear".into()),
         outcome: Outcome::Delivered,
         questions: 2,
         seconds: 12.5,
-        utterances: (1, 3),
+        utterances: (UtteranceSeq(1), UtteranceSeq(3)),
     };
     let mut latest = asked(Question::None);
     let view = latest.view.take().map(|view| PolicyView {

@@ -1,12 +1,11 @@
 //! `watch` as lines of text.
 
-use messages::WireCode;
-use messages::{ArmStatus, MotionInhibit, PickOutcome, PickPhase, PolicyView};
+use messages::{ArmStatus, PickOutcome, PickPhase, PolicyView};
 use scene::Scene;
-use service::view::Speaker;
 use service::status::GroupState;
 use service::status::{Actual, Wanted};
 use service::status::{GroupStatus, ServiceStatus};
+use service::view::Speaker;
 
 use super::model::{WatchModel, object_name};
 use crate::output::{Ink, Style};
@@ -155,7 +154,9 @@ fn said(model: &WatchModel, style: Style, columns: usize) -> Vec<String> {
         let text = cut(text, columns.saturating_sub(8));
         match speaker {
             Speaker::Person => format!("   you  {text}"),
-            Speaker::Unmeant | Speaker::System => style.paint(Ink::Dim, format!("        {text}")).to_string(),
+            Speaker::Unmeant | Speaker::System => {
+                style.paint(Ink::Dim, format!("        {text}")).to_string()
+            }
             Speaker::Robot => format!(" {}  {text}", style.paint(Ink::Cyan, "robot")),
         }
     };
@@ -165,28 +166,27 @@ fn said(model: &WatchModel, style: Style, columns: usize) -> Vec<String> {
 fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
     let object = object_name(scene, arm.object).unwrap_or("?");
     let left = words::time(arm.remaining_s);
-    let does = match PickPhase::from_code(arm.phase) {
-        Ok(PickPhase::Idle) => "rests".to_owned(),
-        Ok(PickPhase::Accepted) => format!("sets out for {object}"),
-        Ok(PickPhase::Moving) => format!("moves to {object}, {left} to go"),
-        Ok(PickPhase::Closing) => format!("grasps {object}, {left} to go"),
-        Ok(PickPhase::Holding) => format!("brings {object}, {left} to go"),
-        Ok(PickPhase::Done) => match PickOutcome::from_code(arm.outcome) {
-            Ok(PickOutcome::Delivered) => format!("has delivered {object}"),
-            Ok(PickOutcome::Unreachable) => format!("cannot reach {object}"),
-            Ok(PickOutcome::Interrupted) => format!("was interrupted at {object}"),
-            Ok(PickOutcome::Cancelled) => format!("has left {object} where it was"),
-            Ok(PickOutcome::Missed) => format!("could not get hold of {object}"),
-            Ok(PickOutcome::Blocked) => format!("was kept from moving to {object}"),
-            _ => "is done".to_owned(),
+    let does = match arm.phase.get() {
+        PickPhase::Idle => "rests".to_owned(),
+        PickPhase::Accepted => format!("sets out for {object}"),
+        PickPhase::Moving => format!("moves to {object}, {left} to go"),
+        PickPhase::Closing => format!("grasps {object}, {left} to go"),
+        PickPhase::Holding => format!("brings {object}, {left} to go"),
+        PickPhase::Done => match arm.outcome.get() {
+            PickOutcome::Delivered => format!("has delivered {object}"),
+            PickOutcome::Unreachable => format!("cannot reach {object}"),
+            PickOutcome::Interrupted => format!("was interrupted at {object}"),
+            PickOutcome::Cancelled => format!("has left {object} where it was"),
+            PickOutcome::Missed => format!("could not get hold of {object}"),
+            PickOutcome::Blocked => format!("was kept from moving to {object}"),
+            PickOutcome::Pending => "is done".to_owned(),
         },
-        Err(_) => "does what this program does not know".to_owned(),
     };
     if arm.stopped != 0 {
         let stop = style.paint(Ink::Red, "STOPPED (whichone resume-motion)");
         return format!("arm {does} {stop}");
     }
-    if let Some(why) = MotionInhibit::from_code(arm.hindrance).ok().and_then(words::hindrance) {
+    if let Some(why) = words::hindrance(arm.hindrance.get()) {
         return format!("arm {does} {}", style.paint(Ink::Red, why));
     }
     let moves = if arm.moving != 0 { ", moving" } else { "" };

@@ -7,10 +7,10 @@ use scene::Scene;
 use service::Time;
 use service::clock;
 use service::group::GroupPaths;
+use service::status::GroupStatus;
 use service::view::{
     ArmView, DialogueView, HearingView, Latest, PromptId, SaidView, Speaker, View,
 };
-use service::status::GroupStatus;
 
 use crate::error::CliError;
 use crate::verbs::conversation::Conversation;
