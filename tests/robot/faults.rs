@@ -33,7 +33,7 @@ fn a_third_of_the_joint_states_may_get_lost() {
 }
 
 #[test]
-fn an_arm_that_cannot_follow_halts_and_asks_for_a_person() {
+fn blocked_arm_halts_and_waits_for_a_person() {
     let mut world = World::new(&[]);
     world.pick(1, 3);
     world.run_until("moving", |w| w.phase() == PickPhase::Moving);
@@ -51,7 +51,7 @@ fn an_arm_that_cannot_follow_halts_and_asks_for_a_person() {
 }
 
 #[test]
-fn a_goal_that_is_not_reached_in_time_ends_the_pick() {
+fn arm_ends_a_pick_whose_goal_is_not_reached_in_time() {
     let over = [("arm.baxter.path_tolerance_rad", "1.0"), ("arm.baxter.goal_time_s", "0.3")];
     let mut world = World::new(&over);
     world.pick(1, 3);
@@ -69,7 +69,7 @@ fn a_goal_that_is_not_reached_in_time_ends_the_pick() {
 }
 
 #[test]
-fn the_arm_is_killed_anywhere_and_goes_on_from_what_is_measured() {
+fn killed_arm_resumes_from_the_measured_posture() {
     for seed in 0..30 {
         let mut random = Rng::new(seed);
         let mut world = World::new(&[]);
@@ -108,7 +108,7 @@ fn the_robots_computer_dies_and_comes_back() {
 }
 
 #[test]
-fn a_robot_that_comes_late_is_waited_for() {
+fn arm_waits_for_a_robot_that_starts_late() {
     let mut world = World::new(&[("arm.simulated.enabled", "false")]);
     world.kill_robot();
     world.pick(1, 1);

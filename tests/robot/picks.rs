@@ -22,7 +22,7 @@ fn six_bowls_are_brought_one_after_another() {
 }
 
 #[test]
-fn every_scene_and_a_slow_and_noisy_robot_are_no_trouble() {
+fn arm_fetches_in_every_scene_with_a_slow_and_noisy_robot() {
     for scene in ["markers", "tools"] {
         let slow = ("arm.simulated.lag_s", "0.08");
         let mut world =
@@ -86,7 +86,7 @@ fn without_feed_forward_the_robot_lags_and_arrives_all_the_same() {
 }
 
 #[test]
-fn a_robot_that_is_allowed_too_little_speed_is_noticed() {
+fn arm_detects_a_speed_ratio_that_is_too_low() {
     let mut world = World::new(&[("arm.baxter.speed_ratio", "0.1")]);
     world.pick(1, 0);
     world.run_until("over", |w| w.phase() == PickPhase::Done);
@@ -95,7 +95,7 @@ fn a_robot_that_is_allowed_too_little_speed_is_noticed() {
 }
 
 #[test]
-fn one_missed_grasp_is_tried_again_and_two_are_told() {
+fn arm_retries_one_missed_grasp_and_reports_two() {
     for (misses, outcome) in [(1.0, PickOutcome::Delivered), (2.0, PickOutcome::Missed)] {
         let mut world = World::new(&[]);
         world.drill(DrillKind::Miss, misses);

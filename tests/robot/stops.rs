@@ -42,7 +42,7 @@ fn a_motion_stop_at_any_moment_halts_within_100_ms_of_joint_states() {
 }
 
 #[test]
-fn the_red_button_latches_and_after_resume_the_pick_goes_on() {
+fn emergency_stop_latches_and_the_pick_resumes_after_release() {
     let mut world = World::new(&[]);
     world.pick(1, 1);
     world.run_until("moving", |w| w.phase() == PickPhase::Moving);
@@ -76,7 +76,7 @@ fn assert_nothing_is_commanded_since(world: &World, since: Time) {
 }
 
 #[test]
-fn disabled_motors_and_faults_halt_and_the_pick_goes_on_once_they_are_back() {
+fn arm_halts_on_disabled_motors_and_faults_and_resumes_the_pick() {
     for (fault, cures) in [
         (DrillKind::Disable, vec![DrillKind::Enable]),
         (DrillKind::Fail, vec![DrillKind::Reset, DrillKind::Enable]),

@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pick_goes_forward_and_is_done_once() {
+    fn arm_advances_a_pick_and_completes_it_once() {
         use PickPhase::{Accepted, Closing, Done, Holding, Moving};
         let phases = [Accepted, Moving, Closing, Closing, Holding, Holding, Done, Done];
         let picks: Vec<Pick> = phases.map(|phase| pick(3, 1, phase)).to_vec();

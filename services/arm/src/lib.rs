@@ -159,7 +159,7 @@ impl Node for ArmNode {
 }
 
 impl ArmNode {
-    /// The arm in `state` with another driver than the configured one.
+    /// Returns the arm in `state` with another driver than the configured one.
     pub fn with_driver(config: Config, state: ArmState, driver: Box<dyn ArmDriver>) -> Self {
         let settled = recover::other_scene(&state, &config.scene);
         let scene_changed = settled.is_some();
@@ -183,7 +183,7 @@ impl ArmNode {
         }
     }
 
-    /// The state, for tests and simulation.
+    /// Returns the state, for tests and simulation.
     pub fn state(&self) -> &ArmState {
         &self.state
     }

@@ -185,7 +185,7 @@ impl Planner<'_> {
         self.robot.arm(limb).chain.forward(&self.measured.posture.joints[side(limb)]).translation
     }
 
-    /// A pause before an approach in which fingers that start now would not open in time.
+    /// Returns a pause before an approach in which fingers that start now would not open in time.
     fn open_first(&self, limb: Limb, approach_s: f64) -> Option<Step> {
         let short_s = self.opening_s(limb) + DESCENT_S - approach_s;
         let q = &self.measured.posture.joints[side(limb)];

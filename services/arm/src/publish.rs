@@ -88,11 +88,11 @@ impl Publisher {
         if self.world_sent.is_none_or(|sent| now >= sent + world_every) {
             self.send_world(facts, now, fx);
         }
-        self.tell(facts, now, fx);
+        self.publish_status(facts, now, fx);
     }
 
     /// Publishes the status when changed or due, and the world when the held object has changed.
-    pub(crate) fn tell(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
+    pub(crate) fn publish_status(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
         let status = self.status(facts);
         let changed = ArmStatus { remaining_s: self.status.remaining_s, ..status } != self.status;
         if changed && status.phase != self.status.phase {
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn a_beat_keeps_its_rate_and_does_not_catch_up() {
+    fn timer_keeps_its_rate_without_catching_up() {
         let mut beat = Every { period: Span(10), next: Time(0) };
         let due: Vec<u64> = (0..40).filter(|now| beat.is_due(Time(*now))).collect();
         assert_eq!(due, [0, 10, 20, 30]);

@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_grasped_is_fetched_and_something_grasped_is_delivered() {
+    fn recovery_fetches_before_a_grasp_and_delivers_after_it() {
         for phase in [PickPhase::Accepted, PickPhase::Moving] {
             for holding in [Some(false), Some(true), None] {
                 assert_eq!(next(phase, holding, false), Next::Fetch);
@@ -102,13 +102,13 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_known_is_left_to_a_person() {
+    fn recovery_leaves_an_unknown_grasp_to_a_person() {
         assert_eq!(next(PickPhase::Closing, None, false), Next::Interrupt);
         assert_eq!(next(PickPhase::Holding, Some(false), false), Next::Interrupt);
     }
 
     #[test]
-    fn at_the_hand_over_the_object_is_the_persons() {
+    fn recovery_releases_the_object_at_the_handover() {
         for holding in [Some(false), Some(true), None] {
             assert_eq!(next(PickPhase::Holding, holding, true), Next::Release);
         }

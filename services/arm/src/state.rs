@@ -94,7 +94,8 @@ pub struct Record {
 }
 
 impl ArmState {
-    /// The state before anything was ordered: both limbs at rest, fingers `open_width_m` apart.
+    /// Returns the state before anything was ordered: both limbs at rest, fingers `open_width_m`
+    /// apart.
     pub fn first(robot: &Robot, scene_key: u64, open_width_m: f64) -> Self {
         let joints = Limb::BOTH.map(|limb| robot.arm(limb).neutral);
         Self {

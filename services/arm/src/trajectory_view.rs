@@ -22,7 +22,7 @@ pub(crate) struct MotionView {
     /// Simulated seconds per second.
     time_scale: f64,
     /// Steps left when it was last published; `None` before the first time.
-    told: Option<usize>,
+    published: Option<usize>,
 }
 
 impl MotionView {
@@ -34,7 +34,7 @@ impl MotionView {
         };
         self.time_scale = config.arm.time_scale;
         self.duration_s = program.duration_s() / config.arm.time_scale;
-        self.told = None;
+        self.published = None;
         self.view = TrajectoryView {
             interaction: pick.map_or(0, |id| id.interaction.0),
             attempt: pick.map_or(0, |id| id.attempt),
@@ -49,7 +49,7 @@ impl MotionView {
     /// empty one when it ends, `None` while nothing has changed.
     pub(crate) fn update(&mut self, executor: &Executor, now: Time) -> Option<TrajectoryView> {
         let left = executor.steps_left();
-        if self.told.replace(left) == Some(left) {
+        if self.published.replace(left) == Some(left) {
             return None;
         }
         if left == 0 {

@@ -16,17 +16,17 @@ pub struct Assembly {
 }
 
 impl Assembly {
-    /// A robot that was just switched on, its motors `enabled` or not.
+    /// Returns a robot that was just switched on, its motors `enabled` or not.
     pub fn new(enabled: bool) -> Self {
         Self { enabled, stopped: false, error: false, pressed: false }
     }
 
-    /// Whether it takes commands.
+    /// Returns whether it takes commands.
     pub fn is_enabled(&self) -> bool {
         self.enabled
     }
 
-    /// What people do to it, and faults.
+    /// Injected faults and button presses.
     pub fn drill(&mut self, kind: DrillKind) {
         match kind {
             DrillKind::Enable if self.stopped || self.error => {
@@ -45,7 +45,7 @@ impl Assembly {
         }
     }
 
-    /// What it says of itself.
+    /// Returns its reported state.
     pub fn state(&self) -> AssemblyState {
         let button = match (self.stopped, self.pressed) {
             (_, true) => EstopButton::Pressed,

@@ -1,4 +1,4 @@
-//! Has something happen to a simulated robot that runs: for people and for tests.
+//! Fault injection into a running simulated robot, for people and tests.
 
 use messages::robot::{Drill, DrillKind};
 use messages::topics::robot;
@@ -9,11 +9,11 @@ use service::exit::{Exit, Failure};
 use service::group::{ENV_GROUP, GroupName, GroupPaths};
 use std::process::ExitCode;
 
-/// How long and how often a drill is sent; one that comes twice happens once.
+/// Duration and interval of sending a drill; a repeated one takes effect once.
 const SENT_FOR: Span = Span::from_ms(600);
 const SENT_EVERY: std::time::Duration = std::time::Duration::from_millis(50);
 
-/// The drill of that name.
+/// Returns the drill of that name.
 pub fn kind(word: &str) -> Option<DrillKind> {
     Some(match word {
         "enable" => DrillKind::Enable,
@@ -68,9 +68,15 @@ fn amount(kind: DrillKind, arguments: &[String]) -> Result<f64, Failure> {
     match arguments {
         [] if !needed => Ok(0.0),
         [text] if needed => number(text).ok_or_else(|| {
-            Failure::new(Exit::Usage, format!("{text} is no amount; give a number, e.g. 1.5"))
+            Failure::new(
+                Exit::Usage,
+                format!("invalid amount {text}; help: give a number, e.g. 1.5"),
+            )
         }),
-        _ if needed => Err(Failure::new(Exit::Usage, "give seconds or a number after it")),
-        _ => Err(Failure::new(Exit::Usage, "nothing follows this drill")),
+        _ if needed => Err(Failure::new(
+            Exit::Usage,
+            "expected a number after the drill; help: give seconds or a count",
+        )),
+        _ => Err(Failure::new(Exit::Usage, "unexpected argument: this drill takes none")),
     }
 }

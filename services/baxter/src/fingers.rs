@@ -24,7 +24,7 @@ pub struct Fingers {
     handled: (String, String, u32),
 }
 
-/// What the fingers have come to do.
+/// Event of the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// They begin to close: what is between them is to be found out.
@@ -36,7 +36,7 @@ pub enum Event {
 }
 
 impl Fingers {
-    /// Open fingers that nobody has calibrated.
+    /// Open fingers without calibration.
     pub fn new() -> Self {
         Self {
             width_m: STROKE_M,
@@ -48,11 +48,6 @@ impl Fingers {
             missed: false,
             handled: Default::default(),
         }
-    }
-
-    /// Whether they hold something.
-    pub fn is_gripping(&self) -> bool {
-        self.gripping
     }
 
     /// Takes a command. One that comes again, or that a gripper without calibration cannot obey,
@@ -92,7 +87,7 @@ impl Fingers {
         }
     }
 
-    /// What is between the fingers as they begin to close: an object's width, or nothing.
+    /// Width of the object between the fingers when they begin to close, if any.
     pub fn meet(&mut self, object_m: Option<f64>) {
         self.object_m = object_m;
     }
@@ -120,7 +115,7 @@ impl Fingers {
         self.gripping.then_some(Event::Holds)
     }
 
-    /// What the gripper says of itself.
+    /// Returns the gripper's reported state.
     pub fn state(&self, timestamp_ns: u64, enabled: bool) -> EndEffectorState {
         let is = |fact: bool| if fact { Tristate::True } else { Tristate::False }.code();
         let moving = !self.goals.is_empty();
@@ -191,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_met_is_gripped_and_let_go_again() {
+    fn fingers_grip_an_object_and_release_it() {
         let mut fingers = calibrated();
         assert_eq!(say(&mut fingers, Command::Grip, 3), Some(Event::Closes));
         fingers.meet(Some(0.01));

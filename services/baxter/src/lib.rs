@@ -1,8 +1,8 @@
-//! A simulated Baxter behind the robot's own topics, for those who have no other, and for tests of
-//! what happens when a real one fails.
+//! A simulated Baxter behind the robot's own topics, for use without the hardware, and for tests of
+//! failures of a real one.
 //!
 //! [`robot::Robot`] is the robot, pure and driven by time; [`BaxterNode`] makes a service of it. Its
-//! journal is no memory of the robot's computer but the world: joints, fingers and objects stay
+//! journal is not the robot's memory but the world: joints, fingers and objects stay
 //! where they are while the process is dead.
 
 pub mod assembly;
@@ -23,7 +23,7 @@ use robot::{Body, Robot};
 use scene::Scene;
 use service::{Effects, Event, Node, NodeError, Span, Time};
 
-/// What the robot is told.
+/// Inputs of the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum In {
     /// `joint_command`.
@@ -34,11 +34,11 @@ pub enum In {
     SpeedRatio(Limb, SpeedRatio),
     /// `end_effector/<limb>_gripper/command`.
     Gripper(Limb, Box<EndEffectorCommand>),
-    /// What people do to it, and faults.
+    /// Injected faults and button presses.
     Drill(Drill),
 }
 
-/// What the robot tells.
+/// Outputs of the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Out {
     /// `joint_states`.
@@ -53,24 +53,24 @@ pub enum Out {
     Properties(Limb, Box<EndEffectorProperties>),
 }
 
-/// What the robot is like.
+/// Configuration of the robot.
 #[derive(Clone, Debug)]
 pub struct Config {
     /// Its limbs.
     pub robot: manipulation::Robot,
-    /// How its joints follow, and how it measures them.
+    /// Dynamics and measurement noise of the joints.
     pub simulated: config::Simulated,
-    /// How far objects stand from their places across the fingers, metres, standard deviation.
+    /// Standard deviation of the objects' offsets across the fingers, metres.
     pub grasp_error_m: f64,
     /// Whether people put back what they were given once the robot rests.
     pub restock: bool,
-    /// What stands round it.
+    /// Scene around it.
     pub scene: Scene,
 }
 
-/// Time between two beats.
+/// Time between two cycles.
 const BEAT: Span = Span::from_ms(10);
-/// How often the joints are remembered while they move.
+/// Interval between journal records of moving joints.
 const REMEMBER_EVERY: Span = Span::from_ms(200);
 /// A joint that moved less than this has not moved, radians.
 const MOVED_RAD: f64 = 1e-3;
@@ -81,8 +81,8 @@ pub struct BaxterNode {
     robot: Robot,
     beat: u64,
     next: Time,
-    /// A beat was told, and what has changed is to be remembered before the next one.
-    told: bool,
+    /// A cycle was published; changes are journaled before the next one.
+    published: bool,
     remembered: (Body, Time),
 }
 
@@ -95,7 +95,7 @@ impl Node for BaxterNode {
     fn recover(config: Config, mut records: Vec<Body>) -> Result<Self, NodeError> {
         let robot = Robot::new(config, records.pop());
         let remembered = (robot.body(), Time(0));
-        Ok(Self { robot, beat: 0, next: Time(0), told: false, remembered })
+        Ok(Self { robot, beat: 0, next: Time(0), published: false, remembered })
     }
 
     fn on(&mut self, event: Event<In>, now: Time, fx: &mut Effects<Out, Body>) {
@@ -111,7 +111,7 @@ impl Node for BaxterNode {
     }
 
     fn deadline(&self) -> Option<Time> {
-        Some(if self.told { Time(0) } else { self.next })
+        Some(if self.published { Time(0) } else { self.next })
     }
 
     fn snapshot(&self) -> Option<Vec<Body>> {
@@ -120,19 +120,19 @@ impl Node for BaxterNode {
 }
 
 impl BaxterNode {
-    /// The robot, for tests.
+    /// Returns the robot, for tests.
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
     fn tick(&mut self, now: Time, fx: &mut Effects<Out, Body>) {
         self.robot.advance(now);
-        // The disk is waited for between two beats.
-        if std::mem::take(&mut self.told) && now < self.next {
+        // The disk is waited for between two cycles.
+        if std::mem::take(&mut self.published) && now < self.next {
             return self.remember(now, fx);
         }
-        self.told = true;
-        self.robot.reports(self.beat, now).into_iter().for_each(|told| fx.publish(told));
+        self.published = true;
+        self.robot.reports(self.beat, now).into_iter().for_each(|report| fx.publish(report));
         self.beat += 1;
         self.next = self.next + BEAT;
         if self.next <= now {
@@ -140,7 +140,7 @@ impl BaxterNode {
         }
     }
 
-    /// Remembers what has changed: the joints now and then, everything else at once.
+    /// Journals changes: the joints at intervals, everything else at once.
     fn remember(&mut self, now: Time, fx: &mut Effects<Out, Body>) {
         let body = self.robot.body();
         let (last, at) = &self.remembered;

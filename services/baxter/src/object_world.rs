@@ -6,13 +6,13 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use scene::Scene;
 use serde::{Deserialize, Serialize};
 
-/// How far the fingertips may be from where they should be along the fingers' width and length,
+/// Tolerance of the fingertips' position along the fingers' width and length,
 /// metres, and still be at the object.
 const BESIDE_M: [f64; 2] = [0.012, 0.02];
-/// What is let go of higher than this above where it stood is taken by a person, metres.
+/// An object released higher than this above its place is taken by a person, metres.
 const HANDED_OVER_M: f64 = 0.05;
 
-/// Where one object is.
+/// Location of one object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Whereabouts {
     /// It stands: centre in `base`, metres.
@@ -28,12 +28,12 @@ pub enum Whereabouts {
 pub struct ObjectWorld {
     /// As they stand at first; none for one that has no place.
     places: Vec<Option<ObjectPose>>,
-    /// Where they are.
+    /// Locations of the objects.
     pub now: Vec<Whereabouts>,
 }
 
 impl ObjectWorld {
-    /// The scene's objects in their places.
+    /// Returns the scene's objects in their places.
     pub fn new(scene: &Scene) -> Self {
         let pose = |p: &scene::Placement| ObjectPose {
             xyz_m: p.xyz,
@@ -50,8 +50,8 @@ impl ObjectWorld {
         Self { now: places.iter().map(stands).collect(), places }
     }
 
-    /// The object between fingers that are `opening_m` apart at `tip`, with its width: one that
-    /// stands `offset_m` beside its place across the fingers.
+    /// Returns the object between fingers that are `opening_m` apart at `tip`, with its width: one
+    /// that stands `offset_m` beside its place across the fingers.
     pub fn between(
         &self,
         tip: &Isometry3<f64>,
@@ -101,7 +101,7 @@ impl ObjectWorld {
         }
     }
 
-    /// The object that a limb holds.
+    /// Returns the object that a limb holds.
     pub fn held(&self, limb: Limb) -> Option<usize> {
         self.now.iter().position(|now| *now == Whereabouts::Held(number(limb)))
     }

@@ -1,4 +1,4 @@
-//! What the robot tells, as often and in such an order as the real one does.
+//! Publication of the robot's reports, at the rates and in the order of the real one.
 
 use crate::Out;
 use crate::object_world::to_array;
@@ -18,27 +18,27 @@ const VELOCITY_NOISE: f64 = 25.0;
 
 /// Everything that is due in beat number `beat`.
 pub(crate) fn all(robot: &mut Robot, beat: u64, now: Time) -> Vec<Out> {
-    let mut told = vec![Out::Assembly(robot.assembly.state())];
+    let mut reports = vec![Out::Assembly(robot.assembly.state())];
     let lost = robot.random.uniform() < robot.config.simulated.loss || now < robot.silent_until;
     let joints = joint_states(robot, now);
     if !lost {
-        told.extend(joints.into_iter().flatten().map(|state| Out::Joints(Box::new(state))));
+        reports.extend(joints.into_iter().flatten().map(|state| Out::Joints(Box::new(state))));
     }
     for limb in Limb::BOTH {
-        told.push(Out::Endpoint(limb, Box::new(endpoint(robot, limb, now))));
+        reports.push(Out::Endpoint(limb, Box::new(endpoint(robot, limb, now))));
         if beat.is_multiple_of(GRIPPER_BEATS) {
             let enabled = robot.assembly.is_enabled();
             let state = robot.fingers[side(limb)].state(now.ns(), enabled);
-            told.push(Out::Gripper(limb, Box::new(state)));
+            reports.push(Out::Gripper(limb, Box::new(state)));
         }
         if beat.is_multiple_of(PROPERTIES_BEATS) {
-            told.push(Out::Properties(limb, Box::new(properties(limb))));
+            reports.push(Out::Properties(limb, Box::new(properties(limb))));
         }
     }
-    told
+    reports
 }
 
-/// The 17 joints, and the joint of one finger of each gripper in a message of its own.
+/// Returns the 17 joints, and the joint of one finger of each gripper in a message of its own.
 fn joint_states(robot: &mut Robot, now: Time) -> Vec<Result<JointState, WireError>> {
     let noise_rad = robot.config.simulated.noise_rad;
     let mut measured: Vec<(String, Measurement)> = Vec::new();
@@ -96,7 +96,7 @@ fn properties(limb: Limb) -> EndEffectorProperties {
     }
 }
 
-/// A standard normal number.
+/// Returns a standard normal number.
 fn normal(random: &mut dialogue::Rng) -> f64 {
     gripper::placement_error_m(1.0, [random.uniform(), random.uniform()])
 }

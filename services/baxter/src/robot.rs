@@ -19,7 +19,7 @@ const DRILLS_MAX: usize = 32;
 /// Joint distance from the neutral posture within which people put back what they took, radians.
 const AT_REST_RAD: f64 = 0.05;
 
-/// Everything that outlives the robot's computer: where its parts are, and the objects.
+/// Durable state of the simulated world: joints, fingers and objects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Body {
     /// Key of the scene that the objects belong to.
@@ -30,9 +30,9 @@ pub struct Body {
     pub fingers: [Fingers; 2],
     /// Motors, faults and the red button.
     pub assembly: Assembly,
-    /// Where the objects are, in the scene's order.
+    /// Locations of the objects, in the scene's order.
     pub objects: Vec<Whereabouts>,
-    /// How often fingers have closed.
+    /// Number of closings of the fingers.
     pub closings: u64,
 }
 
@@ -56,7 +56,7 @@ pub struct Robot {
 }
 
 impl Robot {
-    /// A robot in the neutral posture, or as `body` says.
+    /// Returns a robot in the neutral posture, or as `body` says.
     pub fn new(config: Config, body: Option<Body>) -> Self {
         let scene_key = config.scene.key();
         let body = body.unwrap_or_else(|| Body {
@@ -90,7 +90,7 @@ impl Robot {
         }
     }
 
-    /// What outlives it.
+    /// Durable state.
     pub fn body(&self) -> Body {
         Body {
             scene_key: self.config.scene.key(),
@@ -102,7 +102,7 @@ impl Robot {
         }
     }
 
-    /// How often fingers have closed on an object that they then held.
+    /// Number of successful grasps.
     pub fn objects(&self) -> &ObjectWorld {
         &self.objects
     }
@@ -148,7 +148,7 @@ impl Robot {
         }
     }
 
-    /// What it tells in the beat number `beat`, a hundred of them a second.
+    /// Returns the reports of cycle number `beat`, at a hundred a second.
     pub fn reports(&mut self, beat: u64, now: Time) -> Vec<Out> {
         publish::all(self, beat, now)
     }
@@ -206,7 +206,7 @@ impl Robot {
         }
     }
 
-    /// How far beside its place the object stands at this closing.
+    /// Returns the offset of the object from its place at this closing, metres.
     fn placement_error_m(&self) -> f64 {
         let mut random = Rng::new(self.config.simulated.seed ^ (self.closings << 32));
         let uniform = [random.uniform(), random.uniform()];

@@ -5,14 +5,14 @@ use manipulation::{Joints, MotionLimits};
 /// Seconds without a command after which a limb holds the position that it has:
 /// `joint_command_timeout`.
 pub const COMMAND_TIMEOUT_S: f64 = 0.2;
-/// Share of its velocity that a limb may use until it is told another one.
+/// Initial share of its velocity that a limb may use.
 pub const SPEED_RATIO: f64 = 0.3;
 /// Greatest acceleration of a joint, rad/s²: what its motor can do, not what is asked of it.
 const ACCELERATION_RAD_S2: f64 = 40.0;
 /// Time step of the integration, seconds: the controller's own.
 const STEP_S: f64 = 1e-3;
 
-/// What a limb was last commanded.
+/// Latest command to a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
     /// Joint positions, radians.
@@ -26,9 +26,9 @@ pub enum Target {
 /// whose velocity is fed forward without delay.
 #[derive(Clone, Debug)]
 pub struct Servo {
-    /// Where the joints are, radians.
+    /// Joint positions, radians.
     pub q: Joints,
-    /// How fast they move, rad/s.
+    /// Joint velocities, rad/s.
     pub qd: Joints,
     limits: MotionLimits,
     lag_s: f64,
@@ -42,7 +42,7 @@ pub struct Servo {
 }
 
 impl Servo {
-    /// A limb that stands at `q`, keeps `limits`, and follows with time constant `lag_s`.
+    /// Returns a limb that stands at `q`, keeps `limits`, and follows with time constant `lag_s`.
     pub fn at(q: Joints, limits: &MotionLimits, lag_s: f64) -> Self {
         let still = [0.0; 7];
         Self {
@@ -76,7 +76,7 @@ impl Servo {
         }
     }
 
-    /// Stands still where it is, and forgets what it was told: brakes.
+    /// Brakes: stands still and drops its command.
     pub fn brake(&mut self) {
         (self.hold, self.qd, self.target) = (self.q, [0.0; 7], None);
         self.feed_forward = [0.0; 7];
@@ -134,7 +134,7 @@ mod tests {
     use super::*;
     use manipulation::{Limb, Robot};
 
-    /// A limb at rest, and where that is.
+    /// Returns a limb at rest, and where that is.
     fn resting(lag_s: f64) -> (Servo, Joints) {
         let arm = Robot::baxter().arm(Limb::Left);
         (Servo::at(arm.neutral, &arm.limits, lag_s), arm.neutral)
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn without_commands_it_holds_the_position_that_it_has() {
+    fn servo_holds_its_position_without_commands() {
         let (mut servo, mut goal) = resting(0.1);
         goal[3] += 1.0;
         servo.command(Target::Position(goal));

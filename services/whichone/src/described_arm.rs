@@ -24,7 +24,7 @@ pub struct DescribedArm {
 }
 
 impl DescribedArm {
-    /// An arm of the robot that a file describes, or of Baxter, which is built in.
+    /// Returns an arm of the robot that a file describes, or of Baxter, which is built in.
     ///
     /// # Errors
     /// The file cannot be read, everything that is wrong with it, or why it has no such arm.
@@ -47,10 +47,10 @@ impl DescribedArm {
         self.links.iter().map(move |&link| (self.robot.links()[link].name.as_str(), poses[link]))
     }
 
-    /// The chain from the robot's root to its last link.
+    /// Returns the chain from the robot's root to its last link.
     ///
     /// # Errors
-    /// Why it cannot be solved for a pose: some joint does not turn between limits.
+    /// The chain cannot be solved for a pose: some joint does not turn between limits.
     pub fn chain(&self) -> Result<Chain, CliError> {
         Chain::from_description(&self.robot, &self.tip)
             .map_err(|reason| CliError::new(Exit::Usage, reason.to_string()))
@@ -90,7 +90,7 @@ impl DescribedArm {
     }
 }
 
-/// The link and all that hangs off it, parents first.
+/// Returns the link and all that hangs off it, parents first.
 fn subtree(robot: &Robot, first: usize) -> Vec<usize> {
     let mut links = vec![first];
     for joint in robot.joints() {

@@ -85,7 +85,7 @@ fn every_policy_meets_every_kind_of_people() {
 /// The table of seconds is the measured costs, and measured costs are those of the configuration's
 /// own key.
 #[test]
-fn durations_are_told_and_can_be_the_costs() {
+fn study_prints_durations_that_can_be_the_costs() {
     let run = |more: &[&str]| -> Value {
         let words = ["--interactions", "40", "--mode", "present", "--users", "model", "--json"];
         let ended = study(&[&BOWLS[..], &words, more].concat());

@@ -11,3 +11,14 @@
 pub mod charts;
 pub mod simulation;
 pub mod user_study;
+
+/// Returns the items in order of appearance, each once.
+pub fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut list = Vec::new();
+    for item in items {
+        if !list.contains(&item) {
+            list.push(item);
+        }
+    }
+    list
+}

@@ -37,8 +37,8 @@ pub fn closed_on(object_m: f64) -> f64 {
     object_m.clamp(0.0, STROKE_M)
 }
 
-/// Whether fingers that were told to close and stopped at `width_m` have something between them.
-/// What is thinner than the dead zone cannot be told from nothing by width alone.
+/// Returns whether fingers that stopped closing at `width_m` have something between
+/// them. Width alone cannot distinguish an object thinner than the dead zone from none.
 pub fn holds(width_m: f64) -> bool {
     width_m > DEAD_ZONE * STROKE_M
 }

@@ -1,4 +1,4 @@
-//! What the tests draw from: random postures and the reference rows.
+//! Samples for tests: random postures and the reference rows.
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
@@ -32,7 +32,7 @@ impl Random {
         if self.unit() < 0.5 { Limb::Left } else { Limb::Right }
     }
 
-    /// A posture within the limits; now and then a joint is exactly at one.
+    /// Returns a posture within the limits; now and then a joint is exactly at one.
     pub(crate) fn posture(&mut self) -> Joints {
         full().position.0.map(|(lower, upper)| match self.unit() {
             x if x < 0.01 => lower,
@@ -42,7 +42,7 @@ impl Random {
     }
 }
 
-/// The robot of the tests.
+/// Returns the robot of the tests.
 pub(crate) fn robot() -> &'static Robot {
     Robot::baxter()
 }
@@ -52,17 +52,17 @@ pub(crate) fn arm(limb: Limb) -> &'static Arm {
     robot().arm(limb)
 }
 
-/// What its joints may do at most.
+/// Motion limits of its joints.
 pub(crate) fn full() -> MotionLimits {
     arm(Limb::Left).limits
 }
 
-/// The limb at rest.
+/// Returns the limb at rest.
 pub(crate) fn neutral() -> Joints {
     arm(Limb::Left).neutral
 }
 
-/// A posture by its name in the description.
+/// Returns a posture by its name in the description.
 pub(crate) fn named(limb: Limb, name: &str) -> Joints {
     let description = robot().description();
     let posture = description.posture(&format!("{limb}_arm"), name).expect("a described posture");
@@ -73,13 +73,13 @@ pub(crate) fn named(limb: Limb, name: &str) -> Joints {
     })
 }
 
-/// The limb with its tool frame at `tool_m` past the hand, metres.
+/// Returns the limb with its tool frame at `tool_m` past the hand, metres.
 pub(crate) fn with_tool(limb: Limb, tool_m: f64) -> Chain {
     let chain = &arm(limb).chain;
     chain.with_tool(&Translation3::new(0.0, 0.0, tool_m - tool::ELECTRIC_EXTENDED_M).into())
 }
 
-/// A file of the reference.
+/// Returns a file of the reference.
 pub(crate) fn fixture(name: &str) -> String {
     let path = format!("{}/../../tests/fixtures/baxter/{name}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
@@ -108,7 +108,7 @@ pub(crate) fn joints(numbers: &[f64]) -> Joints {
     numbers.try_into().expect("seven numbers")
 }
 
-/// The greatest difference of any number of two poses, quaternions compared as they are.
+/// Returns the greatest difference of any number of two poses, quaternions compared as they are.
 pub(crate) fn difference(a: &Isometry3<f64>, b: &Isometry3<f64>) -> f64 {
     let translation = (a.translation.vector - b.translation.vector).amax();
     translation.max((a.rotation.coords - b.rotation.coords).amax())

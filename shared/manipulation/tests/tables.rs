@@ -1,4 +1,4 @@
-//! Whole plans carried out and looked at by a checker that shares no code with the planner: every
+//! Whole plans carried out and checked by a checker that shares no code with the planner: every
 //! bowl at every place of its scene, and random tables.
 #![allow(clippy::unwrap_used, reason = "a test ends at what it does not expect")]
 
@@ -37,7 +37,7 @@ fn every_bowl_is_picked_and_handed_over_at_every_place() {
 
 /// `WHICHONE_TABLES=N` tries N tables instead of a few, `WHICHONE_SEED=S` others.
 #[test]
-fn whatever_is_planned_on_random_tables_touches_nothing() {
+fn plans_on_random_tables_touch_nothing() {
     let number = |key: &str| std::env::var(key).ok().and_then(|value| value.parse::<u64>().ok());
     let (count, seed) =
         (number("WHICHONE_TABLES").unwrap_or(4), number("WHICHONE_SEED").unwrap_or(1));

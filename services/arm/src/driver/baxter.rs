@@ -73,8 +73,8 @@ struct Set {
 }
 
 impl BaxterDriver {
-    /// A driver before the first report: until then, the posture is the one that the journal
-    /// remembers.
+    /// Returns a driver before the first report: until then, the posture is the one that the
+    /// journal remembers.
     pub fn new(config: &Config, state: &ArmState) -> Self {
         let settings = config.arm.baxter;
         let still = [[0.0; 7]; 2];
@@ -217,8 +217,8 @@ impl BaxterDriver {
         }
     }
 
-    fn tell_ratio(&mut self, now: Time, orders: &mut Vec<Order>) {
-        if self.ratio_sent.is_some_and(|told| now.since(told) < RATIO_EVERY) {
+    fn send_ratio(&mut self, now: Time, orders: &mut Vec<Order>) {
+        if self.ratio_sent.is_some_and(|sent| now.since(sent) < RATIO_EVERY) {
             return;
         }
         self.ratio_sent = Some(now);
@@ -281,7 +281,7 @@ impl ArmDriver for BaxterDriver {
         if !self.accepts_commands() {
             return orders;
         }
-        self.tell_ratio(now, &mut orders);
+        self.send_ratio(now, &mut orders);
         Limb::BOTH.into_iter().for_each(|limb| self.command_limb(limb, now, &mut orders));
         for limb in Limb::BOTH {
             let due = self.grippers[side(limb)].due(now);
@@ -345,14 +345,14 @@ impl ArmDriver for BaxterDriver {
     }
 }
 
-/// The joint at which two postures differ most, and by how much, radians.
+/// Returns the joint at which two postures differ most, and by how much, radians.
 fn furthest(a: &Joints, b: &Joints) -> (&'static str, f64) {
     let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
     let named = JOINTS.into_iter().zip(differences);
     named.max_by(|(_, x), (_, y)| x.total_cmp(y)).unwrap_or(("", 0.0))
 }
 
-/// The posture with joints on their limits that are measured a little beyond them.
+/// Returns the posture with joints on their limits that are measured a little beyond them.
 fn on_limits(q: &Joints, limits: &PositionLimits) -> Joints {
     let clamped = limits.clamp(q);
     std::array::from_fn(|j| {

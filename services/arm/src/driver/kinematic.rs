@@ -17,7 +17,7 @@ pub struct KinematicArm {
 }
 
 impl KinematicArm {
-    /// The arm as the journal left it.
+    /// Returns the arm as the journal left it.
     pub fn at(state: &ArmState) -> Self {
         let posture = state.posture;
         let mut grip = [None; 2];

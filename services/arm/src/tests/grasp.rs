@@ -15,7 +15,7 @@ fn inaccurate(attempts: u32) -> Config {
 }
 
 #[test]
-fn a_missed_grasp_is_tried_again_from_above() {
+fn arm_retries_a_missed_grasp_from_above() {
     let mut machine = Machine::new(config_at(10.0));
     machine.robot.miss(1);
     machine.act(pick(1, 3));
@@ -57,7 +57,7 @@ fn grasps_succeed_as_often_as_the_model_says_and_every_story_has_an_end() {
 }
 
 #[test]
-fn an_arm_that_is_killed_meets_the_object_where_it_was() {
+fn killed_arm_finds_the_object_in_the_same_place() {
     for interaction in 1..=12 {
         let mut outcomes = Vec::new();
         for kills in [false, true] {

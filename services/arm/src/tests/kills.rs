@@ -149,18 +149,18 @@ fn another_scene_ends_what_was_under_way() {
 }
 
 #[test]
-fn told_to_end_it_halts_and_remembers_where() {
+fn arm_halts_and_journals_its_posture_on_shutdown() {
     for phase in [PickPhase::Moving, PickPhase::Closing, PickPhase::Holding] {
         let mut machine = Machine::new(config());
         machine.act(pick(1, 0));
         machine.run_until("under way", |m| m.phase() == phase);
         machine.run(0.4);
-        let told = machine.now;
+        let asked = machine.now;
         machine.pass(vec![Event::Shutdown], None);
         while !machine.exited {
             machine.go(None);
         }
-        assert!(machine.now.since(told).s() < 0.15);
+        assert!(machine.now.since(asked).s() < 0.15);
         assert_eq!(machine.journal.last().unwrap().state.posture, machine.robot.posture());
         machine.restart_from_journal();
         machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);

@@ -30,7 +30,7 @@ use std::sync::OnceLock;
 
 const OBJECTS: u16 = 6;
 
-/// The shipped configuration with its six bowls, in real time.
+/// Returns the shipped configuration with its six bowls, in real time.
 fn config() -> Config {
     static SETTINGS: OnceLock<Config> = OnceLock::new();
     let load = || {
@@ -42,14 +42,14 @@ fn config() -> Config {
     SETTINGS.get_or_init(load).clone()
 }
 
-/// The same, `time_scale` times as fast.
+/// Returns the same, `time_scale` times as fast.
 fn config_at(time_scale: f64) -> Config {
     let mut config = config();
     config.arm.time_scale = time_scale;
     config
 }
 
-/// The policy's order of a pick.
+/// Returns the policy's order of a pick.
 fn pick(interaction: u64, object: u16) -> RobotAct {
     RobotAct {
         act: interaction * 10,
@@ -61,13 +61,13 @@ fn pick(interaction: u64, object: u16) -> RobotAct {
     }
 }
 
-/// The policy's withdrawal of that order.
+/// Returns the policy's withdrawal of that order.
 fn cancel(interaction: u64, object: u16) -> RobotAct {
     let act = interaction * 10 + 1;
     RobotAct { act, kind: ActKind::Cancel.code(), ..pick(interaction, object) }
 }
 
-/// The policy's question that points at an object.
+/// Returns the policy's question that points at an object.
 fn point(act: u64, object: u16) -> RobotAct {
     let question = Question::Point(ObjectId(object)).into();
     RobotAct { act, kind: ActKind::Ask.code(), question, ..RobotAct::default() }
@@ -104,7 +104,7 @@ struct Machine {
     joints: Vec<JointStates>,
     statuses: Vec<ArmStatus>,
     worlds: Vec<WorldView>,
-    courses: Vec<TrajectoryView>,
+    trajectories: Vec<TrajectoryView>,
 }
 
 impl Machine {
@@ -125,7 +125,7 @@ impl Machine {
             joints: Vec::new(),
             statuses: Vec::new(),
             worlds: Vec::new(),
-            courses: Vec::new(),
+            trajectories: Vec::new(),
         };
         machine.pass(vec![Event::Started], None);
         machine
@@ -171,7 +171,7 @@ impl Machine {
                 Out::Status(status) => self.statuses.push(status),
                 Out::Joints(joints) => self.joints.push(*joints),
                 Out::World(world) => self.worlds.push(*world),
-                Out::Trajectory(course) => self.courses.push(*course),
+                Out::Trajectory(view) => self.trajectories.push(*view),
                 Out::Robot(order) => panic!("a model is told nothing: {order:?}"),
             }
         }

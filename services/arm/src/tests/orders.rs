@@ -29,7 +29,7 @@ fn an_act_older_than_the_standing_one_is_ignored() {
 }
 
 #[test]
-fn given_up_before_it_closes_the_object_is_left_alone() {
+fn pick_cancelled_before_closing_leaves_the_object() {
     for after_s in [0.001, 0.5, 2.0] {
         let mut machine = Machine::new(config());
         machine.act(pick(1, 4));
@@ -44,7 +44,7 @@ fn given_up_before_it_closes_the_object_is_left_alone() {
 }
 
 #[test]
-fn given_up_too_late_it_is_delivered() {
+fn pick_cancelled_too_late_is_delivered() {
     for phase in [PickPhase::Closing, PickPhase::Holding] {
         let mut machine = Machine::new(config_at(5.0));
         machine.act(pick(1, 4));
@@ -56,7 +56,7 @@ fn given_up_too_late_it_is_delivered() {
 }
 
 #[test]
-fn given_up_before_it_was_known_it_never_begins() {
+fn pick_cancelled_before_its_order_never_starts() {
     let mut machine = Machine::new(config_at(20.0));
     machine.act(cancel(1, 4));
     machine.run(0.1);
@@ -69,7 +69,7 @@ fn given_up_before_it_was_known_it_never_begins() {
 }
 
 #[test]
-fn given_up_while_stopped_it_goes_home_only_after_the_release() {
+fn pick_cancelled_while_stopped_returns_after_the_release() {
     let mut machine = Machine::new(config_at(5.0));
     machine.act(pick(1, 0));
     machine.run(0.3);
@@ -84,7 +84,7 @@ fn given_up_while_stopped_it_goes_home_only_after_the_release() {
 }
 
 #[test]
-fn what_no_limb_reaches_is_said_and_nothing_moves() {
+fn arm_reports_an_unreachable_object_without_moving() {
     let mut config = config();
     let text = "name = \"far\"\nnoun = \"cup\"\n\
         [[attributes]]\nname = \"color\"\nvalues = [\"red\", \"blue\"]\n\
@@ -110,7 +110,7 @@ fn what_no_limb_reaches_is_said_and_nothing_moves() {
 }
 
 #[test]
-fn what_is_not_put_back_is_gone_also_after_a_restart() {
+fn taken_object_stays_gone_after_a_restart() {
     let mut config = config_at(20.0);
     config.arm.restock = false;
     let mut machine = Machine::new(config);
@@ -145,7 +145,7 @@ fn an_act_about_another_scene_waits_until_the_arm_knows_that_scene() {
 }
 
 #[test]
-fn an_act_that_makes_no_sense_changes_nothing() {
+fn arm_ignores_an_invalid_act() {
     let mut machine = Machine::new(config());
     let far = RobotAct { object: 70_000, act: 12, ..pick(1, 1) };
     machine.act(far);

@@ -84,7 +84,7 @@ fn another_question_and_another_pick_may_come_under_way() {
 }
 
 #[test]
-fn killed_while_it_points_it_points_again() {
+fn arm_killed_while_pointing_points_again() {
     let mut machine = Machine::new(config_at(10.0));
     machine.act(point(1, 5));
     machine.run(0.1);
@@ -103,7 +103,7 @@ fn killed_while_it_points_it_points_again() {
 }
 
 #[test]
-fn what_is_no_object_is_not_pointed_at() {
+fn arm_ignores_pointing_at_an_invalid_object() {
     let mut machine = Machine::new(config());
     machine.act(point(1, 99));
     machine.run(1.0);

@@ -4,7 +4,7 @@ use super::*;
 use crate::state::Cause;
 
 #[test]
-fn an_idle_arm_tells_its_joints_at_100_hz_and_writes_nothing() {
+fn idle_arm_publishes_joints_at_100_hz_and_journals_nothing() {
     let mut machine = Machine::new(config());
     machine.run(0.5);
     let (journal, joints) = (machine.journal.len(), machine.joints.len());
@@ -37,7 +37,7 @@ fn other_rates_are_kept_too() {
 }
 
 #[test]
-fn a_moving_arm_tells_the_world_at_10_hz_and_hints_at_5_hz() {
+fn moving_arm_publishes_the_world_at_10_hz_and_journals_at_5_hz() {
     let mut machine = Machine::new(config());
     machine.act(pick(1, 0));
     machine.run_until("moving", |m| m.phase() == PickPhase::Moving);
@@ -97,7 +97,7 @@ fn a_journal_can_be_cut_short_only_at_rest() {
 }
 
 #[test]
-fn a_journal_with_joints_out_of_their_limits_is_refused() {
+fn arm_rejects_a_journal_with_joints_outside_their_limits() {
     let mut machine = Machine::new(config_at(20.0));
     machine.act(pick(1, 5));
     machine.run(0.1);

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_stop_at_any_moment_halts_within_100_ms_and_the_pick_goes_on_after_it() {
+fn motion_stop_halts_within_100_ms_and_the_pick_resumes() {
     for (object, after_s) in
         [(0, 0.3), (1, 1.5), (2, 2.2), (3, 2.9), (4, 3.6), (5, 5.0), (0, 6.4), (2, 8.5)]
     {
@@ -71,7 +71,7 @@ fn a_stop_while_idle_is_latched_and_outlives_the_process() {
 }
 
 #[test]
-fn only_newer_orders_are_obeyed() {
+fn arm_applies_newer_motion_orders_only() {
     let mut machine = Machine::new(config());
     let given = |given_ns, order: MotionOrder| {
         In::Motion(MotionCommand { given_ns, order: order.code(), ..Default::default() })
@@ -103,7 +103,7 @@ fn a_stop_from_the_future_stops_and_can_be_released() {
 }
 
 #[test]
-fn orders_of_the_machines_last_life_outrank_nothing() {
+fn motion_orders_of_an_earlier_boot_have_no_precedence() {
     let mut machine = Machine::new(config());
     machine.motion(MotionOrder::Stop);
     machine.run(0.02);
@@ -116,7 +116,7 @@ fn orders_of_the_machines_last_life_outrank_nothing() {
 }
 
 #[test]
-fn a_suspended_process_goes_on_from_where_it_was() {
+fn arm_resumes_after_its_process_was_suspended() {
     let mut machine = Machine::new(config());
     machine.act(pick(1, 0));
     machine.run(1.0);

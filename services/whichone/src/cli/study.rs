@@ -14,7 +14,7 @@ use super::group::ConfigArgs;
 #[derive(Clone, Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub struct StudyArgs {
-    /// What to do in place of a study with simulated people.
+    /// Action other than a study with simulated users.
     #[command(subcommand)]
     pub verb: Option<StudyVerb>,
     /// The scene: a file, TOML or JSON, or the name of one of the configuration's. A preset brings
@@ -40,7 +40,7 @@ pub struct StudyArgs {
         default_value_ifs([("preset", "paper-present", "3"), ("preset", "paper-remote", "45")])
     )]
     pub interactions: NonZeroU64,
-    /// What all randomness comes from.
+    /// Seed of all randomness.
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
     /// Also talk in real time, under these rules of turn-taking, or all: naive, onset or mixture,
@@ -67,7 +67,7 @@ pub struct StudyArgs {
     /// Take as costs of the questions the seconds of the robot's own voice and arm.
     #[arg(long)]
     pub measured_costs: bool,
-    /// What is decided.
+    /// Decision problem.
     #[command(flatten)]
     pub problem: ProblemArgs,
 }
@@ -93,7 +93,7 @@ fn users() -> PossibleValuesParser {
     UserKind::ALL.map(|(name, _)| name).into()
 }
 
-/// What there is beside simulated people.
+/// Actions other than a simulated study.
 #[derive(Clone, Debug, Subcommand)]
 pub enum StudyVerb {
     /// Tell what a study with people has given.

@@ -30,7 +30,7 @@ use house::House;
 /// Conducts the study with simulated people that is asked for.
 ///
 /// # Errors
-/// What is asked for is wrong, or a file cannot be written.
+/// Invalid arguments, or a file cannot be written.
 pub(super) fn study(args: &StudyArgs, out: &mut Output<'_>) -> Outcome {
     let house = House::new(args)?;
     let rows = design::rows(args, house.planner())?;
@@ -56,7 +56,7 @@ pub(super) fn study(args: &StudyArgs, out: &mut Output<'_>) -> Outcome {
     Ok(Exit::Ok)
 }
 
-/// Counts every row, and tells how long that took.
+/// Simulates every row, and reports the time that took.
 fn conduct(args: &StudyArgs, house: &House, rows: &[Row]) -> Vec<Tally> {
     let began = Instant::now();
     let threads = args.threads.or(std::thread::available_parallelism().ok());

@@ -1,4 +1,4 @@
-//! What the columns of the data mean.
+//! Data dictionary: the meaning of every column.
 
 use config::study::{Item, Kind};
 
@@ -7,9 +7,9 @@ use config::study::{Item, Kind};
 pub struct Column {
     /// Its name.
     pub name: &'static str,
-    /// What its values are: `text`, `number`, `0/1` or `UTC`.
+    /// Type of its values: `text`, `number`, `0/1` or `UTC`.
     pub kind: &'static str,
-    /// What they mean.
+    /// Meaning.
     pub meaning: &'static str,
 }
 
@@ -74,7 +74,7 @@ pub const PARTICIPANTS: [Column; 12] = [
     column("software", "text", "version of the console"),
 ];
 
-/// The dictionary as CSV: file, column, kind, meaning.
+/// Returns the dictionary as CSV: file, column, kind, meaning.
 pub fn dictionary(items: &[Item]) -> String {
     let mut text = "file,column,kind,meaning\n".to_owned();
     let mut add = |file: &str, name: &str, kind: &str, meaning: &str| {

@@ -1,4 +1,4 @@
-//! What can happen to a participant: the lines of the journal.
+//! Events of a participant: the lines of the journal.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
@@ -16,14 +16,14 @@ pub const FILE_ENDING: &str = "jsonl";
 /// A line of a participant's journal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
-    /// When, milliseconds since 1970 by the computer's clock.
+    /// Time, milliseconds since 1970 by the computer's clock.
     pub at: u64,
-    /// What happened.
+    /// Event.
     #[serde(flatten)]
     pub event: Event,
 }
 
-/// What can happen. Times in `_ms` are milliseconds of the machine's monotonic clock: only their
+/// Events. Times in `_ms` are milliseconds of the machine's monotonic clock: only their
 /// differences mean something.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "event", rename_all = "snake_case")]
@@ -36,7 +36,7 @@ pub enum Event {
     Instructed,
     /// The next desired object was drawn.
     Drawn(Drawn),
-    /// The policy service was told to decide by that planner.
+    /// The policy service was switched to that planner.
     Switched {
         /// Its name.
         planner: String,
@@ -54,9 +54,9 @@ pub enum Event {
         seq: u64,
         /// By which way.
         source: Source,
-        /// When it began.
+        /// Onset.
         onset_ms: f64,
-        /// When it was accepted as a whole.
+        /// Acceptance of the whole.
         accepted_ms: f64,
         /// The words, where they are kept.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -66,7 +66,7 @@ pub enum Event {
     Asked {
         /// The question's number.
         prompt: u64,
-        /// How often it was asked before, and once.
+        /// Number of this presentation, from 1.
         presentation: u32,
         /// Its words, where they are kept.
         #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -86,20 +86,20 @@ pub enum Event {
         /// The object that was handed over or tried.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         object: Option<String>,
-        /// Questions asked, repetitions not counted, as the robot reckons.
+        /// Questions asked, repetitions not counted, by the robot's count.
         questions: u32,
-        /// Utterances, as the robot reckons.
+        /// Utterances, by the robot's count.
         utterances: u32,
-        /// From the first utterance's acceptance to the end, as the robot reckons, seconds; none
+        /// From the first utterance's acceptance to the end, by the robot's clock, seconds; none
         /// where the robot did not end it.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         seconds: Option<f64>,
-        /// When it was noticed.
+        /// Time of its detection.
         ended_ms: f64,
     },
     /// The interaction was spoilt by something technical; it does not count, and is repeated.
     Faulted {
-        /// What it was.
+        /// Cause.
         fault: Fault,
         /// In a sentence.
         why: String,
@@ -135,9 +135,9 @@ pub struct Begun {
     pub participant: String,
     /// The page that the participant uses; not exported.
     pub session: String,
-    /// What all randomness of this participant comes from.
+    /// Seed of all randomness of this participant.
     pub seed: u64,
-    /// What is to be done, in order.
+    /// Planned interactions, in order.
     pub plan: Vec<Step>,
     /// The protocol in force.
     pub protocol: Protocol,
@@ -154,7 +154,7 @@ pub struct Drawn {
     pub step: usize,
     /// The object's name.
     pub object: String,
-    /// How people call it.
+    /// Its name for people.
     pub label: String,
     /// The scene's name.
     pub scene: String,
@@ -174,7 +174,7 @@ pub enum Source {
     Voice,
 }
 
-/// What can spoil an interaction.
+/// Fault that spoils an interaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Fault {
@@ -184,7 +184,7 @@ pub enum Fault {
     Scene,
     /// The policy could not be switched, or decides by another planner.
     Planner,
-    /// The robot was started anew, or the console was away for so long that its end was missed.
+    /// The robot was restarted, or the console was away for so long that its end was missed.
     Missed,
     /// The experimenter said so.
     Experimenter,
@@ -194,14 +194,14 @@ pub enum Fault {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("line {line}: {what}; restore the file from a copy, or move it out of the folder")]
 pub struct FormatError {
-    /// Which line, from 1.
+    /// Line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// Reason.
     pub what: String,
 }
 
 impl Entry {
-    /// The line, with its end.
+    /// Returns the line, with its end.
     ///
     /// # Panics
     /// Never: an entry is an object with text keys and finite numbers.
@@ -214,7 +214,7 @@ impl Entry {
 /// acknowledged: it is left out.
 ///
 /// # Errors
-/// The first line that is no entry.
+/// The first invalid line.
 pub fn parse(text: &str) -> Result<Vec<Entry>, FormatError> {
     let whole = text.rfind('\n').map_or("", |end| &text[..end]);
     let lines = whole.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());

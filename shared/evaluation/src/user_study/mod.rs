@@ -1,20 +1,20 @@
-//! Studies with people: what was agreed, what happened, and what it adds up to.
+//! Studies with people: protocol, events and results.
 //!
 //! A participant's data is a journal: one JSON object a line, only ever appended to. Everything else
 //! is a fold of it ([`Participant`]), so that the page that conducts the study, the export and the
-//! report of the command line cannot disagree, and a program that is killed goes on where it was.
+//! report of the command line cannot disagree, and a killed program resumes.
 //!
-//! This crate is pure: no IO, no clock, no threads.
+//! This module is pure: no IO, no clock, no threads.
 //!
-//! | what | where |
+//! | contents | file |
 //! |---|---|
-//! | what a lab has decided: texts, design, questionnaire | `config::study` |
-//! | which policy when, and which object | `plan.rs` |
-//! | what can happen, as lines of a journal | `event.rs` |
+//! | protocol of the lab: texts, design, questionnaire | `config::study` |
+//! | order of policies and choice of objects | `plan.rs` |
+//! | events, as lines of a journal | `event.rs` |
 //! | a participant and one interaction, folded | `participant.rs`, `trial.rs` |
-//! | rows for statistics programs, and what their columns mean | `rows.rs`, `dictionary.rs` |
+//! | rows for statistics programs, and their data dictionary | `rows.rs`, `dictionary.rs` |
 //! | success, seconds and questions by policy, with intervals | `report.rs`, `paired.rs` |
-//! | the same as pictures | `pictures.rs` |
+//! | charts of the results | `pictures.rs` |
 
 mod dictionary;
 mod event;

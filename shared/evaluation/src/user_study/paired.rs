@@ -11,9 +11,9 @@ use crate::user_study::trial::{Trial, Verdict};
 /// mean with the other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Paired {
-    /// What is compared.
+    /// Policy.
     pub policy: String,
-    /// What it is compared with.
+    /// Policy that it is compared with.
     pub with: String,
     /// Share of successes.
     pub success: Mean,
@@ -69,7 +69,7 @@ fn compare(people: &[&Participant], policy: &str, with: &str) -> Paired {
     paired
 }
 
-/// Whether the participant's plan has the policy, and all of it is done.
+/// Returns whether the participant's plan has the policy, and all of it is done.
 fn has_all(person: &Participant, policy: &str) -> bool {
     let is = |name: &str, practice: bool| name == policy && !practice;
     let planned = person.begun.plan.iter().filter(|step| is(&step.policy, step.practice)).count();

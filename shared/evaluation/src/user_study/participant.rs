@@ -5,7 +5,7 @@ use serde_json::{Map, Value as Json};
 use crate::user_study::event::{Begun, Entry, Event, FormatError, parse};
 use crate::user_study::trial::{End, Trial};
 
-/// Where a participant is.
+/// Stage of a participant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
     /// Reads what there is to agree to.
@@ -44,13 +44,13 @@ impl Stage {
         }
     }
 
-    /// Whether nothing comes any more.
+    /// Returns whether nothing comes any more.
     pub fn is_final(self) -> bool {
         matches!(self, Self::Thanks | Self::Withdrawn | Self::Left)
     }
 }
 
-/// What a participant's data is worth.
+/// Status of a participant's data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Still taking part.
@@ -77,17 +77,17 @@ impl Status {
         }
     }
 
-    /// Whether the participant's interactions count.
+    /// Returns whether the participant's interactions count.
     pub fn counts(self) -> bool {
         !matches!(self, Self::Withdrawn | Self::Deleted)
     }
 }
 
-/// The participants of these journals, each with its file's name, in the order in which they came. A
-/// journal without a first line is of somebody who never began.
+/// Returns the participants of these journals, each with its file's name, in the order in which
+/// they came. A journal without a first line is skipped.
 ///
 /// # Errors
-/// The name of the file that is no journal, and why.
+/// The name of an invalid file, and the reason.
 pub fn people<N>(files: Vec<(N, String)>) -> Result<Vec<Participant>, (N, FormatError)> {
     let mut people = Vec::new();
     for (name, text) in files {
@@ -105,13 +105,13 @@ pub fn people<N>(files: Vec<(N, String)>) -> Result<Vec<Participant>, (N, Format
 pub struct Participant {
     /// The first line.
     pub begun: Begun,
-    /// When that was, milliseconds since 1970.
+    /// Its time, milliseconds since 1970.
     pub begun_at: u64,
     /// The latest line.
     pub latest_at: u64,
     /// The page that the participant uses.
     pub session: String,
-    /// Where the participant is.
+    /// Present stage.
     pub stage: Stage,
     /// Whether there was consent, where it is asked for.
     pub consented: bool,
@@ -181,12 +181,12 @@ impl Participant {
         }
     }
 
-    /// The participant's name in the data.
+    /// Returns the participant's name in the data.
     pub fn id(&self) -> &str {
         &self.begun.participant
     }
 
-    /// What the data is worth.
+    /// Returns the status of the data.
     pub fn status(&self) -> Status {
         match self.stage {
             _ if self.deleted => Status::Deleted,
@@ -197,13 +197,13 @@ impl Participant {
         }
     }
 
-    /// The interaction that is shown or runs, or that ended last.
+    /// Returns the interaction that is shown or runs, or that ended last.
     pub fn trial(&self) -> Option<&Trial> {
         self.trials.last()
     }
 
-    /// The place in the plan of what comes next: after a fault the same again. None where all is
-    /// done.
+    /// Returns the place in the plan of what comes next: after a fault the same again. None where
+    /// all is done.
     pub fn next_step(&self) -> Option<usize> {
         let next = match self.trials.last() {
             None => 0,
@@ -215,7 +215,7 @@ impl Participant {
         (next < self.begun.plan.len()).then_some(next)
     }
 
-    /// The interactions that count, in order.
+    /// Returns the interactions that count, in order.
     pub fn counted(&self) -> impl Iterator<Item = &Trial> {
         self.trials.iter().filter(|trial| trial.counts())
     }

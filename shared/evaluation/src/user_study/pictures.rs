@@ -86,7 +86,7 @@ fn shortened(text: &str) -> String {
     text.chars().take(LABEL_MAX - 1).collect::<String>().trim_end().to_owned() + "…"
 }
 
-/// A chart with the first row on top.
+/// Returns a chart with the first row on top.
 fn chart(title: &str, unit: &str, largest: f64, rows: Vec<Row>) -> Chart {
     let longest = rows.iter().map(|row| row.label.chars().count()).max().unwrap_or(0);
     let mut shapes = Vec::new();

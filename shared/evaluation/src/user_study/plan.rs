@@ -1,11 +1,11 @@
-//! Which policy when, and which object: all that is random in a study, from seeds that are kept.
+//! Random choices of a study, from recorded seeds: the order of policies, and the objects.
 
 use dialogue::Rng;
 use serde::{Deserialize, Serialize};
 
 use config::study::{Design, Objects, Order, Protocol};
 
-/// Letters and digits that nobody takes for one another.
+/// Letters and digits that cannot be confused.
 const LETTERS: &[u8] = b"ACDEFGHJKMNPQRTUVWXY34679";
 
 /// One interaction that a participant is to have.
@@ -17,7 +17,7 @@ pub struct Step {
     pub practice: bool,
 }
 
-/// What the study has so far.
+/// Counts of the study so far.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Participants that were begun, whatever became of them.
@@ -26,13 +26,13 @@ pub struct Counts {
     pub policies: Vec<(String, usize)>,
 }
 
-/// A name for a participant that tells nothing about the person: six letters or digits.
+/// Returns an anonymous name for a participant: six letters or digits.
 pub fn new_id(seed: u64) -> String {
     let mut rng = Rng::new(seed ^ 0x6964);
     (0..6).map(|_| char::from(LETTERS[rng.below(LETTERS.len())])).collect()
 }
 
-/// What a new participant is to do, in order.
+/// Returns the interactions of a new participant, in order.
 pub fn plan(protocol: &Protocol, counts: &Counts, seed: u64) -> Vec<Step> {
     let mut rng = Rng::new(seed ^ 0x706c_616e);
     let policies = match protocol.design {
@@ -47,7 +47,7 @@ pub fn plan(protocol: &Protocol, counts: &Counts, seed: u64) -> Vec<Step> {
     practice.chain(counted).collect()
 }
 
-/// The policy that the fewest have met, by lot among equals.
+/// Returns the policy that the fewest have met, by lot among equals.
 fn fewest(protocol: &Protocol, counts: &Counts, rng: &mut Rng) -> String {
     let count = |policy: &String| {
         counts.policies.iter().find(|(name, _)| name == policy).map_or(0, |(_, count)| *count)
@@ -75,8 +75,8 @@ fn shuffled(policies: &[String], rng: &mut Rng) -> Vec<String> {
     list
 }
 
-/// A row of Williams' square: each number is in each place alike, and after each other alike. Odd
-/// sizes need twice the rows, the second half mirrored.
+/// Returns a row of Williams' square: each number is in each place alike, and after each other
+/// alike. Odd sizes need twice the rows, the second half mirrored.
 fn square_row(size: usize, row: usize) -> Vec<usize> {
     let rows = if size % 2 == 1 && size > 1 { 2 * size } else { size };
     let row = row % rows;
@@ -88,11 +88,11 @@ fn square_row(size: usize, row: usize) -> Vec<usize> {
     numbers
 }
 
-/// The place of the object to be desired next. `own` and `all` say how often each was desired by
-/// the participant and in the study; `number` counts the participant's draws.
+/// Returns the place of the object to be desired next. `own` and `all` say how often each was
+/// desired by the participant and in the study; `number` counts the participant's draws.
 ///
 /// # Panics
-/// Where there is no object.
+/// `own` is empty.
 pub fn draw(objects: Objects, own: &[usize], all: &[usize], seed: u64, number: u32) -> usize {
     // Each draw has a generator of its own, so that it depends on nothing but what is kept.
     let mut rng = Rng::new(seed ^ 0x6472_6177 ^ (u64::from(number) << 40));

@@ -1,5 +1,6 @@
-//! What a study adds up to.
+//! Results of a study.
 
+use crate::distinct;
 use crate::simulation::{Interval, Mean, wilson};
 use serde_json::{Map, Value as Json, json};
 
@@ -33,9 +34,9 @@ pub struct Answers {
     pub item: Item,
     /// Mean of the numbers; empty for items that have none.
     pub mean: Mean,
-    /// How often each value or option was chosen, in order; empty for numbers and texts.
+    /// Count of each value or option, in order; empty for numbers and texts.
     pub counts: Vec<(String, u64)>,
-    /// How many have answered.
+    /// Number of answers.
     pub answered: u64,
 }
 
@@ -44,7 +45,7 @@ pub struct Answers {
 pub struct Report {
     /// The study's title.
     pub title: String,
-    /// How many participants are how far: name of the status, number.
+    /// Number of participants by name of their status.
     pub participants: Vec<(&'static str, u64)>,
     /// Interactions that were spoilt and repeated.
     pub faults: u64,
@@ -191,7 +192,8 @@ impl Report {
     }
 }
 
-/// A mean with its interval by Student's distribution; null where there are too few numbers.
+/// Returns a mean with its interval by Student's distribution; null where there are too few
+/// numbers.
 pub(crate) fn mean_json(mean: &Mean) -> Json {
     let interval = mean.student_interval();
     json!({
@@ -203,8 +205,8 @@ pub(crate) fn mean_json(mean: &Mean) -> Json {
     })
 }
 
-/// The results of these participants. What was withdrawn does not count; what somebody did who left
-/// does, and so does what those who are still here have done.
+/// Returns the results of these participants. Withdrawn data does not count; data of those
+/// who left or are still taking part does.
 pub fn report(people: &[Participant]) -> Report {
     let counting: Vec<&Participant> = people.iter().filter(|p| p.status().counts()).collect();
     let policies = policies(&counting);
@@ -229,24 +231,12 @@ pub fn report(people: &[Participant]) -> Report {
     }
 }
 
-/// The policies of all protocols, each once, in their order.
+/// Returns the policies of all protocols, each once, in their order.
 fn policies(people: &[&Participant]) -> Vec<String> {
-    let mut list: Vec<String> = Vec::new();
-    for policy in people.iter().flat_map(|person| &person.begun.protocol.policies) {
-        if !list.contains(policy) {
-            list.push(policy.clone());
-        }
-    }
-    list
+    distinct(people.iter().flat_map(|person| person.begun.protocol.policies.clone()))
 }
 
 fn scenes(people: &[&Participant]) -> Vec<(String, String)> {
-    let mut list: Vec<(String, String)> = Vec::new();
-    for trial in people.iter().flat_map(|person| person.counted()) {
-        let scene = (trial.drawn.scene.clone(), trial.drawn.scene_key.clone());
-        if !list.contains(&scene) {
-            list.push(scene);
-        }
-    }
-    list
+    let trials = people.iter().flat_map(|person| person.counted());
+    distinct(trials.map(|trial| (trial.drawn.scene.clone(), trial.drawn.scene_key.clone())))
 }

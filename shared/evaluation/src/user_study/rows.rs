@@ -2,6 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
+use crate::distinct;
 use crate::user_study::dictionary::{INTERACTIONS, PARTICIPANTS, dictionary};
 use crate::user_study::event::Source;
 use crate::user_study::participant::Participant;
@@ -16,11 +17,12 @@ pub struct Tables {
     pub interactions: String,
     /// A row per participant, with the questionnaire.
     pub participants: String,
-    /// What the columns mean.
+    /// Data dictionary.
     pub dictionary: String,
 }
 
-/// The tables of these participants, in their order. An empty cell is a value that there is not.
+/// Returns the tables of these participants, in their order. An empty cell is a value that there is
+/// not.
 pub fn tables(people: &[Participant]) -> Tables {
     let items = items(people);
     let mut interactions = line(INTERACTIONS.iter().map(|column| column.name.to_owned()));
@@ -39,8 +41,8 @@ pub fn tables(people: &[Participant]) -> Tables {
     Tables { interactions, participants, dictionary: dictionary(&items) }
 }
 
-/// The same as one JSON object, with the words said and asked where they were kept, and the protocol
-/// that each participant had.
+/// Returns the same as one JSON object, with the words said and asked where they were kept, and the
+/// protocol that each participant had.
 pub fn to_json(people: &[Participant]) -> Json {
     let people = people.iter().map(|person| {
         let names = PARTICIPANTS.iter().map(|column| column.name);
@@ -90,7 +92,7 @@ fn asked(trial: &Trial) -> Json {
     asked.collect()
 }
 
-/// The rows of a participant's interactions. Of deleted data there are none.
+/// Returns the rows of a participant's interactions. Of deleted data there are none.
 fn trials(person: &Participant) -> Vec<Vec<Json>> {
     let mut number = 0;
     let rows = person.trials.iter().enumerate().map(|(n, trial)| {
@@ -100,7 +102,7 @@ fn trials(person: &Participant) -> Vec<Vec<Json>> {
     rows.collect()
 }
 
-/// The values in the order of [`INTERACTIONS`].
+/// Returns the values in the order of [`INTERACTIONS`].
 fn row(person: &Participant, n: usize, number: Option<u32>, trial: &Trial) -> Vec<Json> {
     let counts = trial.counts() && person.status().counts();
     let (interaction, picked) = match &trial.end {
@@ -146,7 +148,7 @@ fn row(person: &Participant, n: usize, number: Option<u32>, trial: &Trial) -> Ve
     ]
 }
 
-/// The values in the order of [`PARTICIPANTS`].
+/// Returns the values in the order of [`PARTICIPANTS`].
 fn participant(person: &Participant) -> Vec<Json> {
     let asks = !person.begun.protocol.consent.is_empty();
     let right = person.counted().filter(|trial| trial.verdict() == Some(Verdict::Right)).count();
@@ -167,15 +169,9 @@ fn participant(person: &Participant) -> Vec<Json> {
     ]
 }
 
-/// The policies of the plan in their order, each once.
+/// Returns the policies of the plan in their order, each once.
 fn policies(person: &Participant) -> Vec<&str> {
-    let mut list: Vec<&str> = Vec::new();
-    for step in &person.begun.plan {
-        if !list.contains(&step.policy.as_str()) {
-            list.push(&step.policy);
-        }
-    }
-    list
+    distinct(person.begun.plan.iter().map(|step| step.policy.as_str()))
 }
 
 fn block(person: &Participant, trial: &Trial) -> Option<usize> {
@@ -202,7 +198,7 @@ fn cell_of(value: &Json) -> String {
     }
 }
 
-/// A text as a cell (RFC 4180).
+/// Returns a text as a cell (RFC 4180).
 pub(crate) fn cell(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

@@ -1,6 +1,6 @@
 //! Moments of the calendar.
 
-/// A moment, milliseconds since 1970, as ISO 8601 in UTC, e.g. `2026-03-01T09:30:00.250Z`.
+/// Returns a moment, milliseconds since 1970, as ISO 8601 in UTC, e.g. `2026-03-01T09:30:00.250Z`.
 pub fn utc(ms: u64) -> String {
     let (days, rest) = (ms / 86_400_000, ms % 86_400_000);
     let (year, month, day) = date(days);

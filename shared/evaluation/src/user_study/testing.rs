@@ -37,8 +37,9 @@ pub(crate) fn protocol() -> Protocol {
     }
 }
 
-/// The journal of a participant who has done everything, the first `right` interactions with success:
-/// interaction `n` took 10 + n seconds, 2 of them before the utterance was accepted, and one question.
+/// Returns the journal of a participant who has done everything, the first `right` interactions
+/// with success: interaction `n` took 10 + n seconds, 2 of them before the utterance was accepted,
+/// and one question.
 pub(crate) fn journal(id: &str, protocol: &Protocol, right: u32) -> Vec<Entry> {
     let seed = u64::from(id.as_bytes()[0]);
     let plan = plan(protocol, &Counts::default(), seed);
@@ -65,7 +66,7 @@ pub(crate) fn journal(id: &str, protocol: &Protocol, right: u32) -> Vec<Entry> {
     events.into_iter().enumerate().map(entry).collect()
 }
 
-/// The lines of interaction `n`.
+/// Returns the lines of interaction `n`.
 pub(crate) fn interaction(n: usize, verdict: Verdict) -> [Event; 6] {
     let began = 1e5 * (n + 1) as f64;
     let picked = if verdict == Verdict::Right { "white" } else { "clear" };

@@ -104,7 +104,7 @@ fn every_row_has_every_column_and_the_dictionary_knows_them() {
 }
 
 #[test]
-fn what_was_withdrawn_does_not_count_and_what_was_left_does() {
+fn withdrawn_data_does_not_count_and_data_of_those_who_left_does() {
     let with_last = |id: &str, event| {
         let mut entries = journal(id, &protocol(), 3);
         entries.truncate(entries.len() - 1);

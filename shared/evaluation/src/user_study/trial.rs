@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::user_study::event::{Drawn, Event, Fault, Source};
 use crate::user_study::plan::Step;
 
-/// How an interaction ended.
+/// Verdict on an interaction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -43,12 +43,12 @@ impl Verdict {
     }
 }
 
-/// How the conducting of an interaction ended.
+/// End of an interaction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum End {
     /// The interaction came to an end.
     Verdict {
-        /// Which.
+        /// Verdict.
         verdict: Verdict,
         /// The robot's number of it.
         interaction: u64,
@@ -56,9 +56,9 @@ pub enum End {
         object: Option<String>,
         /// Questions, repetitions not counted.
         questions: u32,
-        /// Utterances, as the robot reckons.
+        /// Utterances, by the robot's count.
         utterances: u32,
-        /// Seconds from the first acceptance to the end, as the robot reckons.
+        /// Seconds from the first acceptance to the end, by the robot's clock.
         seconds: Option<f64>,
         /// Monotonic milliseconds.
         ended_ms: f64,
@@ -87,7 +87,7 @@ pub struct Said {
 pub struct Question {
     /// Its number.
     pub prompt: u64,
-    /// How often it was asked.
+    /// Number of presentations.
     pub presentations: u32,
     /// Its words, where they are kept.
     pub words: Option<String>,
@@ -96,11 +96,11 @@ pub struct Question {
 /// One interaction.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trial {
-    /// What the plan says.
+    /// Step of the plan.
     pub step: Step,
     /// The desired object, and the scene.
     pub drawn: Drawn,
-    /// When it was drawn, started and over, milliseconds since 1970.
+    /// Time of the draw, milliseconds since 1970; the next two are those of start and end.
     pub drawn_at: u64,
     /// See [`Trial::drawn_at`].
     pub started_at: Option<u64>,
@@ -108,20 +108,20 @@ pub struct Trial {
     pub ended_at: Option<u64>,
     /// The robot's latest interaction before it.
     pub after: u64,
-    /// What was said.
+    /// Utterances.
     pub said: Vec<Said>,
-    /// What was asked.
+    /// Questions.
     pub asked: Vec<Question>,
-    /// When the robot decided which object to fetch, monotonic milliseconds.
+    /// Time of the robot's decision which object to fetch, monotonic milliseconds.
     pub decided_ms: Option<f64>,
     /// Its end.
     pub end: Option<End>,
-    /// How often page or console were gone meanwhile.
+    /// Interruptions of page or console.
     pub resumed: u32,
 }
 
 impl Trial {
-    /// What was drawn.
+    /// An interaction that was drawn.
     pub fn new(step: Step, drawn: Drawn, at: u64) -> Self {
         Self {
             step,
@@ -193,12 +193,12 @@ impl Trial {
         }
     }
 
-    /// Whether it counts: it came to an end, and is no practice.
+    /// Returns whether it counts: it has ended, and is not practice.
     pub fn counts(&self) -> bool {
         !self.step.practice && self.verdict().is_some()
     }
 
-    /// How it ended, where it did and nothing spoilt it.
+    /// Returns the verdict, if it ended without a fault.
     pub fn verdict(&self) -> Option<Verdict> {
         match &self.end {
             Some(End::Verdict { verdict, .. }) => Some(*verdict),
@@ -238,7 +238,7 @@ impl Trial {
         }
     }
 
-    /// What was said: as the robot reckons, or as the console has heard where that is more.
+    /// Returns the number of utterances: the robot's count, or the console's where that is larger.
     pub fn utterances(&self) -> u32 {
         let heard = u32::try_from(self.said.len()).unwrap_or(u32::MAX);
         match &self.end {
@@ -247,7 +247,7 @@ impl Trial {
         }
     }
 
-    /// How often a question was asked again.
+    /// Returns the number of repeated questions.
     pub fn repeats(&self) -> u32 {
         self.asked.iter().map(|question| question.presentations.saturating_sub(1)).sum()
     }

@@ -57,7 +57,7 @@ impl Block {
         gap
     }
 
-    /// The eight corners in `base`.
+    /// Returns the eight corners in `base`.
     pub(crate) fn corners(self) -> [Vector3<f64>; 8] {
         let axes = self.axes();
         std::array::from_fn(|k| {

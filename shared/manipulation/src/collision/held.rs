@@ -1,4 +1,4 @@
-//! What the gripper carries, as something that must not touch anything either.
+//! Collision shape of the held object.
 
 use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
@@ -13,22 +13,22 @@ use crate::robot::Arm;
 pub(crate) struct Held {
     half: Vector3<f64>,
     in_gripper: Isometry3<f64>,
-    /// Where it stood, metres.
+    /// Its place before the grasp, metres.
     stood: Vector3<f64>,
-    /// What stands around, each with how far it was from it there, metres: 0 from what it stands on.
+    /// Obstacles with their distances from that place, metres: 0 for its support.
     surroundings: Vec<(Obstacle, f64)>,
 }
 
-/// What it is called where it is in the way.
+/// Its name in errors.
 const NAME: &str = "held object";
 
 /// Distance that it keeps from the surroundings, metres.
 const APART_M: f64 = 0.003;
 
-/// What it stood nearer to than that it must not come this much nearer to as it is lifted, metres.
+/// Largest approach, while lifted, to an obstacle within the margin of its place, metres.
 const SLACK_M: f64 = 5e-4;
 
-/// It is still over its place while its centre is no further beside it than this, metres.
+/// Largest horizontal distance of its centre from its place that counts as over it, metres.
 const BESIDE_M: f64 = 0.005;
 
 /// The joint whose links may touch it: the wrist's, with the gripper.
@@ -48,20 +48,21 @@ impl Held {
         Self { half, in_gripper: *in_gripper, stood: stands.centre(), surroundings }
     }
 
-    /// The box with the gripper at `gripper`.
+    /// Returns the box with the gripper at `gripper`.
     pub(crate) fn block(&self, gripper: &Isometry3<f64>) -> Block {
         Block { pose: gripper * self.in_gripper, half: self.half }
     }
 
-    /// The gripper's rotation at which the box stands upright, turned as with the gripper at `pose`.
+    /// Returns the gripper's rotation at which the box stands upright, turned as with the gripper
+    /// at `pose`.
     pub(crate) fn upright(&self, pose: &Isometry3<f64>) -> UnitQuaternion<f64> {
         let along = pose.rotation * self.in_gripper.rotation * Vector3::x();
         let yaw = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), along.y.atan2(along.x));
         yaw * self.in_gripper.rotation.inverse()
     }
 
-    /// The first of the surroundings that the box comes too near to; `moved_m` is how far it moves
-    /// until it is looked at again.
+    /// Returns the first of the surroundings that the box comes too near to; `moved_m` is how far
+    /// it moves until the next check.
     pub(crate) fn near_surroundings(&self, block: &Block, moved_m: f64) -> Option<Gap> {
         let beside = (block.centre() - self.stood).xy().norm();
         let margin_m = APART_M + 0.5 * moved_m;
@@ -73,8 +74,8 @@ impl Held {
         })
     }
 
-    /// The first part of the robot that the box comes nearer to than `margin_m`: its body, the other
-    /// arm, and the links of the arm that holds it before the wrist.
+    /// Returns the first part of the robot that the box comes nearer to than `margin_m`: its body,
+    /// the other arm, and the links of the arm that holds it before the wrist.
     pub(crate) fn near_robot(
         &self,
         block: &Block,

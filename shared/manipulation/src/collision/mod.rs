@@ -1,4 +1,4 @@
-//! How far the arms are from themselves, each other, the body and the surroundings.
+//! Collision checking: distances of the arms from themselves, each other, the body and obstacles.
 
 use nalgebra::Vector3;
 
@@ -23,7 +23,7 @@ pub struct Gap {
     pub distance_m: f64,
     /// The link of the arm.
     pub link: &'static str,
-    /// What it is near to.
+    /// The nearest shape.
     pub other: &'static str,
 }
 
@@ -54,7 +54,7 @@ impl Ball {
         Self { centre: Vector3::from(cuboid.centre), radius }
     }
 
-    /// Whether the shapes in two balls may be nearer than `distance_m`.
+    /// Returns whether the shapes in two balls may be nearer than `distance_m`.
     #[inline]
     fn may_be_nearer(&self, other: &Self, distance_m: f64) -> bool {
         let reach = self.radius + other.radius + distance_m;
@@ -68,26 +68,26 @@ impl Gap {
         Self { distance_m, link: "", other: "" }
     }
 
-    /// Whether something was found.
+    /// Returns whether something was found.
     pub fn is_some(&self) -> bool {
         !self.link.is_empty()
     }
 
-    /// The smaller of two gaps.
+    /// Returns the smaller of two gaps.
     pub fn min(self, other: Self) -> Self {
         if other.distance_m < self.distance_m { other } else { self }
     }
 }
 
 impl<'a> ArmShape<'a> {
-    /// The arm at joint positions `q`.
+    /// Returns the arm at joint positions `q`.
     pub fn at(arm: &'a Arm, q: &Joints) -> Self {
         let capsules = arm.capsules(q);
         let balls = capsules.iter().map(Ball::round_capsule).collect();
         Self { arm, capsules, balls }
     }
 
-    /// The enclosing capsules, shoulder first.
+    /// Returns the enclosing capsules, shoulder first.
     pub fn capsules(&self) -> &[Capsule] {
         &self.capsules
     }
@@ -157,7 +157,7 @@ impl<'a> ArmShape<'a> {
         gap
     }
 
-    /// The capsules that joint `first` and those after it move, with their numbers.
+    /// Returns the capsules that joint `first` and those after it move, with their numbers.
     fn moved_by(&self, first: usize) -> impl Iterator<Item = (usize, &Capsule)> {
         let moved = move |i: &usize| self.arm.enclosures[*i].joint >= first;
         (0..self.capsules.len()).filter(moved).map(move |i| (i, &self.capsules[i]))
@@ -208,7 +208,7 @@ impl Clearance {
         }
     }
 
-    /// The smallest gap within the robot.
+    /// Returns the smallest gap within the robot.
     pub fn robot(&self) -> Gap {
         [self.left_body, self.right_body, self.left_self, self.right_self]
             .into_iter()

@@ -52,12 +52,12 @@ impl Capsule {
 }
 
 impl Cuboid {
-    /// A box along the axes of `base`.
+    /// Returns a box along the axes of `base`.
     pub const fn aligned(centre: [f64; 3], size: [f64; 3]) -> Self {
         Self { centre, size, yaw: 0.0 }
     }
 
-    /// A point of `base` in the box's own axes, from its centre.
+    /// Returns a point of `base` in the box's own axes, from its centre.
     #[inline]
     fn local(&self, p: &Vector3<f64>) -> Vector3<f64> {
         let p = p - Vector3::from(self.centre);
@@ -128,8 +128,8 @@ pub(crate) fn segment_to_box(a: &Vector3<f64>, b: &Vector3<f64>, half: &Vector3<
     if distance > 0.0 { distance } else { -depth_in_box(a, b, half) }
 }
 
-/// The shortest way out of a box for a segment that meets it: along a face's normal, or along a
-/// normal to both the segment and an edge.
+/// Returns the shortest way out of a box for a segment that meets it: along a face's normal, or
+/// along a normal to both the segment and an edge.
 fn depth_in_box(a: &Vector3<f64>, b: &Vector3<f64>, half: &Vector3<f64>) -> f64 {
     let (middle, reach) = ((a + b) * 0.5, (b - a) * 0.5);
     let mut depth = f64::INFINITY;

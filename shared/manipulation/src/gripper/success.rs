@@ -10,19 +10,19 @@
 use super::{DEAD_ZONE, STROKE_M};
 use std::f64::consts::{PI, SQRT_2};
 
-/// How far beside the middle of fingers `opening_m` apart an object of width `object_m` may stand,
+/// Returns the largest offset from the middle of fingers `opening_m` apart for an object of width `object_m`,
 /// metres; none for one that is too wide.
 pub fn tolerance_m(opening_m: f64, object_m: f64) -> Option<f64> {
     (object_m <= opening_m).then_some(0.5 * (opening_m - object_m))
 }
 
-/// Whether fingers that are `opening_m` apart take hold of an object that is `object_m` wide and
-/// stands `offset_m` beside their middle.
+/// Returns whether fingers that are `opening_m` apart take hold of an object that is `object_m`
+/// wide and stands `offset_m` beside their middle.
 pub fn catches(opening_m: f64, object_m: f64, offset_m: f64) -> bool {
     tolerance_m(opening_m, object_m).is_some_and(|tolerance_m| offset_m.abs() <= tolerance_m)
 }
 
-/// Whether the gripper's own sensors tell an object of this width from nothing.
+/// Returns whether the gripper's own sensors detect an object of this width.
 pub fn is_felt(object_m: f64) -> bool {
     object_m > DEAD_ZONE * STROKE_M
 }
@@ -38,15 +38,16 @@ pub fn success_probability(opening_m: f64, object_m: f64, error_m: f64) -> f64 {
     }
 }
 
-/// A placement error with standard deviation `error_m`, metres, from two numbers that are uniform
-/// in `[0, 1)` (Box and Muller 1958).
+/// Returns a placement error with standard deviation `error_m`, metres, from two numbers that are
+/// uniform in `[0, 1)` (Box and Muller 1958).
 pub fn placement_error_m(error_m: f64, uniform: [f64; 2]) -> f64 {
     let [u, v] = uniform;
     error_m * (-2.0 * (1.0 - u).ln()).sqrt() * (2.0 * PI * v).cos()
 }
 
-/// The error function, for arguments that are not negative: its Taylor series about zero (Abramowitz
-/// and Stegun 7.1.6, all terms positive), which is exact to 1e-15 below 6; above, it is 1.
+/// Returns the error function, for arguments that are not negative: its Taylor series about zero
+/// (Abramowitz and Stegun 7.1.6, all terms positive), which is exact to 1e-15 below 6; above, it is
+/// 1.
 fn erf(x: f64) -> f64 {
     if x >= 6.0 {
         return 1.0;

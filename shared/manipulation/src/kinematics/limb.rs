@@ -1,4 +1,4 @@
-//! Which arm, and how its joints are named and ordered.
+//! Limbs, and the names and order of their joints.
 
 use std::fmt;
 
@@ -33,12 +33,12 @@ impl Limb {
         }
     }
 
-    /// The limb of that name.
+    /// Returns the limb of that name.
     pub fn named(name: &str) -> Option<Self> {
         Self::BOTH.into_iter().find(|limb| limb.name() == name)
     }
 
-    /// The other arm.
+    /// Returns the other arm.
     pub fn other(self) -> Self {
         match self {
             Self::Left => Self::Right,
@@ -54,7 +54,7 @@ impl Limb {
         }
     }
 
-    /// The joint's full name, e.g. `left_s0`.
+    /// Returns the joint's full name, e.g. `left_s0`.
     ///
     /// # Panics
     /// If `i` is above 6.
@@ -62,12 +62,13 @@ impl Limb {
         format!("{self}_{}", JOINTS[i])
     }
 
-    /// The seven full joint names in the order of [`Joints`].
+    /// Returns the seven full joint names in the order of [`Joints`].
     pub fn joint_names(self) -> [String; 7] {
         JOINTS.map(|joint| format!("{self}_{joint}"))
     }
 
-    /// The posture reflected in the xz plane: what the other limb does when this one does `q`.
+    /// Returns the posture reflected in the xz plane: what the other limb does when this one does
+    /// `q`.
     pub fn mirror(q: &Joints) -> Joints {
         [-q[0], q[1], -q[2], q[3], -q[4], q[5], -q[6]]
     }

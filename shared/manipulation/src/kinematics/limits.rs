@@ -1,4 +1,4 @@
-//! What the joints may do: positions, velocities, accelerations and jerks.
+//! Limits of the joints: positions, velocities, accelerations and jerks.
 
 use crate::kinematics::limb::{JOINTS, Joints};
 
@@ -7,7 +7,7 @@ use crate::kinematics::limb::{JOINTS, Joints};
 pub struct PositionLimits(pub [(f64, f64); 7]);
 
 impl PositionLimits {
-    /// Whether every joint lies within its limits, to the last bit.
+    /// Returns whether every joint lies within its limits, to the last bit.
     pub fn within(&self, q: &Joints) -> bool {
         q.iter().zip(&self.0).all(|(q, &(lower, upper))| lower <= *q && *q <= upper)
     }
@@ -21,12 +21,12 @@ impl PositionLimits {
         })
     }
 
-    /// The middle of every joint's interval, radians.
+    /// Returns the middle of every joint's interval, radians.
     pub fn middle(&self) -> Joints {
         self.0.map(|(lower, upper)| 0.5 * (lower + upper))
     }
 
-    /// The posture at `share` (each 0 to 1) of every joint's interval, radians.
+    /// Returns the posture at `share` (each 0 to 1) of every joint's interval, radians.
     pub fn at(&self, share: &[f64; 7]) -> Joints {
         std::array::from_fn(|i| {
             let (lower, upper) = self.0[i];
@@ -49,14 +49,14 @@ impl PositionLimits {
             .map(|i| (JOINTS[i], q[i], self.0[i]))
     }
 
-    /// How far joint `i` at `q` is outside its limits, radians; 0 within.
+    /// Returns the excess of joint `i` at `q` over its limits, radians; 0 within.
     #[inline(always)]
     pub(crate) fn outside(&self, i: usize, q: f64) -> f64 {
         let (lower, upper) = self.0[i];
         (lower - q).max(q - upper).max(0.0)
     }
 
-    /// How far the worst joint is outside its limits, radians.
+    /// Returns the excess of the worst joint over its limits, radians.
     #[inline]
     pub(crate) fn violation(&self, q: &Joints) -> f64 {
         (0..7).fold(0.0, |worst, i| self.outside(i, q[i]).max(worst))
@@ -82,11 +82,11 @@ pub struct MotionLimits {
     pub stop: Joints,
 }
 
-/// How long a motion stop takes from a joint's greatest velocity, seconds.
+/// Duration of a motion stop from a joint's greatest velocity, seconds.
 pub const STOP_S: f64 = 0.1;
 
 impl MotionLimits {
-    /// The limits of joints with these bounds; the stop follows from the velocities.
+    /// Returns the limits of joints with these bounds; the stop follows from the velocities.
     pub fn new(
         position: PositionLimits,
         velocity: Joints,

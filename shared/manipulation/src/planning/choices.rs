@@ -1,4 +1,4 @@
-//! What can be tried to fetch an object, cheapest first: which limb, which grasp, which posture.
+//! Candidates for fetching an object, cheapest first: limb, grasp and posture.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -18,7 +18,7 @@ pub(crate) struct Choice<'a> {
     at: At,
 }
 
-/// Which of the options' postures.
+/// Number of an option and of one of its postures.
 #[derive(Clone, Copy)]
 struct At {
     option: usize,
@@ -40,7 +40,7 @@ pub(crate) struct Choices<'a> {
 
 /// A posture that waits for its turn.
 struct Waiting {
-    /// A bound until its surroundings were looked at.
+    /// A lower bound until its surroundings are checked.
     cost_s: f64,
     looked: bool,
     at: At,
@@ -75,8 +75,8 @@ impl<'a> Choices<'a> {
         Ok(choices)
     }
 
-    /// The cheapest choice that has not been tried. A grasp comes back with its next posture only
-    /// after [`Choices::failed`].
+    /// Returns the cheapest choice that has not been tried. A grasp comes back with its next
+    /// posture only after [`Choices::failed`].
     pub(crate) fn next(&mut self, furthest: &mut Furthest) -> Option<Choice<'a>> {
         while let Some(Waiting { cost_s, looked, at }) = self.queue.pop() {
             let Choosable { scene, grasp, postures } = &self.options[at.option];
@@ -120,7 +120,7 @@ impl<'a> Choice<'a> {
         }
     }
 
-    /// The scene once the object is held.
+    /// Returns the scene once the object is held.
     pub(crate) fn carrying(&self, object: &ObjectPose) -> PlanningScene<'a> {
         self.scene.carrying(object, &self.grasp.object_in_gripper(object))
     }

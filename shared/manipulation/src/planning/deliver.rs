@@ -51,7 +51,7 @@ pub fn plan_delivery(
     Ok(PickPlan { timeline, grasp: None, object_in_gripper: *object_in_gripper })
 }
 
-/// How much higher the gripper must go before it may leave the object's place; 0 elsewhere.
+/// Returns the rise left before the gripper may leave the object's place, metres; 0 elsewhere.
 pub(crate) fn still_to_lift_m(
     object: &ObjectPose,
     held: &Isometry3<f64>,
@@ -121,7 +121,7 @@ pub(crate) fn deliver(
     ])
 }
 
-/// The way to the neutral posture; straight up first if something is in the way.
+/// Returns the joint path to the neutral posture; straight up first if the direct one is blocked.
 fn home(
     scene: &PlanningScene<'_>,
     from: &Joints,

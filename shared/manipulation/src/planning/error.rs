@@ -1,4 +1,4 @@
-//! Why no plan was made.
+//! Errors of planning.
 
 use crate::collision::Gap;
 use crate::kinematics::chain::LineError;
@@ -6,7 +6,7 @@ use crate::kinematics::limb::Limb;
 use crate::planning::grasp::GraspError;
 use crate::trajectory::TrajectoryError;
 
-/// Why no plan was made: of all that was tried, the attempt that came furthest. Nothing moves.
+/// A failed plan: the error of the attempt that came furthest. Nothing moves.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PlanError {
     /// The object cannot be held.
@@ -18,21 +18,21 @@ pub enum PlanError {
     /// No posture within the limits takes the gripper there.
     #[error("{at} is out of the {limb} arm's reach by {:.0} mm", distance_m * 1e3)]
     Unreachable {
-        /// What was to be reached, e.g. `the place above the object`.
+        /// Goal of the motion, e.g. `the place above the object`.
         at: &'static str,
         /// The arm that came nearest.
         limb: Limb,
-        /// How far off its nearest posture leaves the gripper, metres.
+        /// Distance from the goal at the nearest posture, metres.
         distance_m: f64,
     },
     /// Reachable, but not in the straight line that is needed.
     #[error("the {limb} arm cannot go straight to {at}: {line}")]
     Line {
-        /// Where the line leads.
+        /// Goal of the line.
         at: &'static str,
         /// The arm.
         limb: Limb,
-        /// Where it broke off.
+        /// Point of failure.
         line: LineError,
     },
     /// The arm would touch something there.
@@ -41,21 +41,21 @@ pub enum PlanError {
         gap.link, gap.distance_m * 1e3, gap.other
     )]
     Blocked {
-        /// Where, e.g. `the grasp`.
+        /// Place, e.g. `the grasp`.
         at: &'static str,
         /// The arm.
         limb: Limb,
-        /// What would touch what; a negative distance is an overlap.
+        /// Colliding shapes; a negative distance is an overlap.
         gap: Gap,
     },
-    /// Both ends are clear, but no way between them was found.
+    /// Both ends are clear, but no path between them was found.
     #[error("no way for the {limb} arm to {at} was found that touches nothing{}", in_way(gap))]
     NoPath {
-        /// Where the way was to lead.
+        /// Goal of the path.
         at: &'static str,
         /// The arm.
         limb: Limb,
-        /// What is in the way of the straight one.
+        /// Obstacle on the straight path.
         gap: Option<Gap>,
     },
 }
@@ -86,7 +86,7 @@ impl Furthest {
         }
     }
 
-    /// The error to report.
+    /// Returns the error to report.
     ///
     /// # Panics
     /// If no error was added.

@@ -10,7 +10,7 @@ use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::kinematics::limb::{Joints, Limb};
 use crate::planning::grasp::Grasp;
 
-/// How the arm holds the object: postures above the grasp and on the straight way down to it.
+/// Postures above the grasp and on the straight line down to it.
 #[derive(Clone, Debug)]
 pub(crate) struct Hold {
     /// From above the grasp down to it.
@@ -36,7 +36,7 @@ const TURNS: usize = 180;
 const TURNS_TRIED: usize = 10;
 const TURNS_APART_RAD: f64 = 0.3;
 
-/// How far above the hand over an object is handed over, metres: no higher than needed.
+/// Heights above the handover position that are tried, metres, lowest first.
 const RAISED_M: [f64; 4] = [0.0, 0.04, 0.08, 0.12];
 
 pub(crate) const ABOVE: &str = "the place above the object";
@@ -66,20 +66,20 @@ impl Hold {
         }
     }
 
-    /// The posture above the grasp.
+    /// Returns the posture above the grasp.
     pub(crate) fn above(&self) -> &Joints {
         &self.descent[0]
     }
 
-    /// The posture at the grasp.
+    /// Returns the posture at the grasp.
     pub(crate) fn grasp(&self) -> &Joints {
         &self.descent[self.descent.len() - 1]
     }
 }
 
 impl PlanSettings {
-    /// Whether a gripper at `tip_m` (frame `base`) is where `limb` hands objects over: at the place, or
-    /// straight above it where a pick had to go higher; to within `within_m` metres.
+    /// Returns whether a gripper at `tip_m` (frame `base`) is where `limb` hands objects over: at
+    /// the place, or straight above it where a pick had to go higher; to within `within_m` metres.
     pub fn is_hand_over(&self, limb: Limb, tip_m: &Vector3<f64>, within_m: f64) -> bool {
         let place = Vector3::from(self.hand_over_m(limb));
         RAISED_M.iter().any(|up| (place + Vector3::z() * *up - tip_m).norm() < within_m)
@@ -156,7 +156,7 @@ impl Carry {
         Err(error.unwrap_or(PlanError::NoPath { at: HAND_OVER, limb, gap: None }))
     }
 
-    /// The posture at the hand over.
+    /// Returns the posture at the hand over.
     pub(crate) fn end(&self) -> &Joints {
         &self.waypoints[self.waypoints.len() - 1]
     }

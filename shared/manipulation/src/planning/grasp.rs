@@ -1,4 +1,4 @@
-//! Where an object stands and how the gripper can take hold of it from above.
+//! Poses of objects, and grasps from above.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -24,7 +24,7 @@ pub struct ObjectPose {
     pub grasp_width_m: f64,
 }
 
-/// One way to hold an object.
+/// A grasp of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grasp {
     /// Pose of `<limb>_gripper` in `base` as the fingers close: its z axis straight down, the
@@ -34,7 +34,7 @@ pub struct Grasp {
     pub width_m: f64,
 }
 
-/// Why an object offers no grasp.
+/// An object without a possible grasp.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum GraspError {
     /// The fingers do not open that wide.
@@ -50,14 +50,14 @@ pub enum GraspError {
     /// A number that no object has.
     #[error("{what} must be a finite number{}", if *positive { " above zero" } else { "" })]
     Malformed {
-        /// Which one.
+        /// Name.
         what: &'static str,
         /// Whether it must also be positive.
         positive: bool,
     },
 }
 
-/// How deep below an object's top the fingertips go, metres, where it is tall enough.
+/// Depth of the fingertips below the top of a tall enough object, metres.
 const DEPTH_M: f64 = 0.02;
 
 /// Fingertips stay this far above what the object stands on, metres.
@@ -70,7 +70,7 @@ const RIM_DIRECTIONS: usize = 12;
 const ROUND: f64 = 0.05;
 
 impl ObjectPose {
-    /// The object's own frame in `base`.
+    /// Returns the object's own frame in `base`.
     pub fn isometry(&self) -> Isometry3<f64> {
         Isometry3::from_parts(
             Translation3::from(Vector3::from(self.xyz_m)),
@@ -88,7 +88,7 @@ impl ObjectPose {
         self.xyz_m[2] - 0.5 * self.size_m[2]
     }
 
-    /// The upright box around it.
+    /// Returns the upright box around it.
     pub fn cuboid(&self) -> Cuboid {
         Cuboid { centre: self.xyz_m, size: self.size_m, yaw: self.yaw_rad }
     }
@@ -162,7 +162,8 @@ impl ObjectPose {
         (self.top_z_m() - DEPTH_M).max(lowest).max(self.bottom_z_m() + TIP_CLEAR_M)
     }
 
-    /// The gripper at a point with its fingers moving along `along`; either finger may lead.
+    /// Returns the gripper at a point with its fingers moving along `along`; either finger may
+    /// lead.
     fn both_ways(&self, x: f64, y: f64, z: f64, along: f64) -> [Grasp; 2] {
         [0.0, PI].map(|turned| Grasp {
             gripper: downward([x, y, z], along + turned),
@@ -172,18 +173,19 @@ impl ObjectPose {
 }
 
 impl Grasp {
-    /// The object's pose in the gripper's frame: what stays the same while it is held.
+    /// Returns the object's pose in the gripper's frame: what stays the same while it is held.
     pub fn object_in_gripper(&self, object: &ObjectPose) -> Isometry3<f64> {
         self.gripper.inverse() * object.isometry()
     }
 
-    /// The gripper `height_m` straight above the grasp.
+    /// Returns the gripper `height_m` straight above the grasp.
     pub fn raised(&self, height_m: f64) -> Isometry3<f64> {
         Translation3::new(0.0, 0.0, height_m) * self.gripper
     }
 }
 
-/// A gripper at `xyz` that points straight down, its y axis at `along` from the x axis of `base`.
+/// Returns a gripper at `xyz` that points straight down, its y axis at `along` from the x axis of
+/// `base`.
 pub(crate) fn downward(xyz: [f64; 3], along: f64) -> Isometry3<f64> {
     let (s, c) = along.sin_cos();
     let y = Vector3::new(c, s, 0.0);

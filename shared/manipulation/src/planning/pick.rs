@@ -38,29 +38,29 @@ pub enum PickPhase {
 pub struct PickPlan {
     /// The stages in time.
     pub timeline: Timeline<PickPhase>,
-    /// How the object is held; none for a plan that only returns.
+    /// Grasp of the object; `None` for a plan that only returns.
     pub grasp: Option<Grasp>,
     /// The object's pose in the gripper's frame from the end of `Close` to the start of `Release`.
     pub object_in_gripper: Isometry3<f64>,
 }
 
 impl PickPlan {
-    /// The limb that fetches.
+    /// Returns the limb that fetches.
     pub fn limb(&self) -> Limb {
         self.timeline.limb()
     }
 
-    /// How long the whole takes, seconds.
+    /// Returns the duration of the whole, seconds.
     pub fn duration_s(&self) -> f64 {
         self.timeline.duration_s()
     }
 
-    /// The state `t_s` seconds after the start.
+    /// Returns the state `t_s` seconds after the start.
     pub fn at(&self, t_s: f64) -> Moment<PickPhase> {
         self.timeline.at(t_s)
     }
 
-    /// Whether the object moves with the gripper in this phase.
+    /// Returns whether the object moves with the gripper in this phase.
     pub fn carries(phase: PickPhase) -> bool {
         matches!(phase, PickPhase::Lift | PickPhase::HandOver)
     }

@@ -1,4 +1,4 @@
-//! What a plan starts from: where both arms are, and what stands around.
+//! Planning scene: postures of both arms, obstacles and the held object.
 
 use nalgebra::{Isometry3, UnitQuaternion};
 
@@ -44,14 +44,14 @@ impl Arms {
     }
 }
 
-/// How the arm goes about its work. Lengths in metres, frame `base`.
+/// Settings of plans. Lengths in metres, frame `base`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanSettings {
     /// Share of the joints' greatest velocities and accelerations, above 0 to 1.
     pub speed_ratio: f64,
     /// Height above the grasp from which the gripper comes straight down, and to which it lifts.
     pub hover_m: f64,
-    /// Where the left gripper lets go of an object; the right one mirrors y. Where the object or the
+    /// Handover position of the left gripper; the right one mirrors y. Where the object or the
     /// hand would touch something there, it lets go up to 12 cm above.
     pub hand_over_xyz_m: [f64; 3],
     /// Height of the table's top. An object that stands lower (in a rack, in a drawer) lowers it.
@@ -60,7 +60,7 @@ pub struct PlanSettings {
     pub open_width_m: f64,
     /// Distance from the gripper to the centre of an object that it points at.
     pub standoff_m: f64,
-    /// How long the arm points, seconds.
+    /// Duration of pointing, seconds.
     pub point_s: f64,
     /// Distance that the arms keep from themselves, each other and the trunk. The capsules that it
     /// is measured between already enclose the arms.
@@ -83,7 +83,7 @@ impl Default for PlanSettings {
 }
 
 impl PlanSettings {
-    /// Where `limb` hands over.
+    /// Returns the handover position of `limb`.
     pub(crate) fn hand_over_m(&self, limb: Limb) -> [f64; 3] {
         let [x, y, z] = self.hand_over_xyz_m;
         [x, limb.side() * y, z]
@@ -96,15 +96,15 @@ pub(crate) struct PlanningScene<'a> {
     pub(crate) limb: Limb,
     pub(crate) arm: &'a Arm,
     pub(crate) chain: &'a Chain,
-    /// What its joints may do at the settings' speed.
+    /// Motion limits at the settings' speed.
     pub(crate) limits: MotionLimits,
-    /// Where the limb is now.
+    /// Present joint positions.
     pub(crate) q: Joints,
     pub(crate) settings: &'a PlanSettings,
     other_arm: &'a Arm,
     other: ArmShape<'a>,
     surroundings: Vec<Obstacle>,
-    /// Which of them is the board under the object that is to be fetched.
+    /// Number of the board under the object to fetch.
     board: Option<usize>,
     held: Option<Held>,
 }
@@ -144,7 +144,7 @@ impl<'a> PlanningScene<'a> {
         self
     }
 
-    /// The same with `object`, given as it stood, in the gripper at `in_gripper`.
+    /// Returns the same with `object`, given as it stood, in the gripper at `in_gripper`.
     pub(crate) fn carrying(&self, object: &ObjectPose, in_gripper: &Isometry3<f64>) -> Self {
         let mut around = self.surroundings.clone();
         // The hand keeps off a board that may be there; what it holds, off what surely is.
@@ -155,7 +155,7 @@ impl<'a> PlanningScene<'a> {
         Self { held: Some(Held::new(object, in_gripper, around)), ..self.clone() }
     }
 
-    /// Why there is no way to `at`: the arm is in something's way where it stands, or what is in
+    /// Returns the error for a missing path to `at`: a collision of the present posture, or what is in
     /// the way of the straight line to `to`.
     pub(crate) fn no_path(&self, at: &'static str, from: &Joints, to: &Joints) -> PlanError {
         let limb = self.limb;
@@ -165,7 +165,7 @@ impl<'a> PlanningScene<'a> {
         }
     }
 
-    /// What the arm at `q`, or what it holds, would come too near to.
+    /// Returns the obstacle that the arm at `q`, or what it holds, would come too near to.
     pub(crate) fn blocked(&self, q: &Joints) -> Option<Gap> {
         self.blocked_at(&self.look(q), 0.0)
     }
@@ -174,24 +174,25 @@ impl<'a> PlanningScene<'a> {
         self.blocked(q).is_none()
     }
 
-    /// The gripper's rotation at which what it holds stands upright, turned as it is at `pose`.
+    /// Returns the gripper's rotation at which what it holds stands upright, turned as it is at
+    /// `pose`.
     pub(crate) fn upright(&self, pose: &Isometry3<f64>) -> UnitQuaternion<f64> {
         self.held.as_ref().map_or(pose.rotation, |held| held.upright(pose))
     }
 
-    /// What the object held would come too near to, besides the robot, with the gripper at `pose`.
+    /// Returns the obstacle, other than the robot, too near to the held object with the gripper at `pose`.
     pub(crate) fn held_blocked(&self, pose: &Isometry3<f64>) -> Option<Gap> {
         let held = self.held.as_ref()?;
         held.near_surroundings(&held.block(pose), 0.0)
     }
 
-    /// The arm and what it holds at one posture.
+    /// Returns the arm and what it holds at one posture.
     fn look(&self, q: &Joints) -> Look<'a> {
         let block = self.held.as_ref().map(|held| held.block(&self.chain.forward(q)));
         Look { arm: ArmShape::at(self.arm, q), block }
     }
 
-    /// What comes too near where nothing is looked at again before it has moved by `moved_m`.
+    /// Returns the obstacle too near if the next check is only after a motion of `moved_m`.
     fn blocked_at(&self, Look { arm, block }: &Look<'_>, moved_m: f64) -> Option<Gap> {
         let near_m = 0.5 * moved_m;
         let margin_m = self.settings.margin_m.max(near_m);
@@ -212,7 +213,7 @@ impl<'a> PlanningScene<'a> {
             .or_else(held)
     }
 
-    /// How much nearer than [`ROOMY_M`] the arm at `q` is to anything, as a share of it; or what it
+    /// Returns how much nearer than [`ROOMY_M`] the arm at `q` is to anything, as a share of it; or what it
     /// would touch.
     pub(crate) fn crowding(&self, q: &Joints) -> Result<f64, Gap> {
         let look = self.look(q);
@@ -241,14 +242,14 @@ impl<'a> PlanningScene<'a> {
         lowest - self.settings.table_z_m
     }
 
-    /// The first of `waypoints` that would touch something.
+    /// Returns the first of `waypoints` that would touch something.
     pub(crate) fn blocked_along(&self, waypoints: &[Joints]) -> Option<Gap> {
         // Waypoints of a line are 5 mm apart; every second is enough, and the last.
         waypoints.iter().rev().step_by(2).find_map(|q| self.blocked(q))
     }
 
-    /// A way through joint space that touches nothing: the direct line, or over one of the arm's
-    /// via_postures; with `search` also whatever random trees find. One with room for a fast motion
+    /// Returns a collision-free joint path: the direct line, or over one of the arm's
+    /// via postures; with `search` also paths found by random trees. One with room for a fast motion
     /// before any other.
     pub(crate) fn way(&self, from: &Joints, to: &Joints, search: Search) -> Option<Vec<Joints>> {
         let roomy = |q: &Joints| {
@@ -267,9 +268,9 @@ impl<'a> PlanningScene<'a> {
         })
     }
 
-    /// The motion through `waypoints`, its whole length checked. Where a fast one with wide corners
-    /// would come too near to something, one with stops at its corners, and then a slow one, which
-    /// needs less room.
+    /// Returns the motion through `waypoints`, its whole length checked. Where a fast one with wide
+    /// corners would come too near to something, one with stops at its corners, and then a slow
+    /// one, which needs less room.
     pub(crate) fn motion(
         &self,
         at: &'static str,
@@ -292,8 +293,8 @@ impl<'a> PlanningScene<'a> {
         }))
     }
 
-    /// What comes too near during a motion. It is looked at [`CHECK_S`] apart; whatever moves
-    /// between two looks is never further from one of them than half of its way.
+    /// Returns the obstacle too near during a motion. It is checked at intervals of [`CHECK_S`]; what moves
+    /// between two checks is never further from one of them than half of its way.
     fn blocked_during(&self, motion: &Trajectory) -> Option<Gap> {
         let checks = (motion.duration_s() / CHECK_S).ceil() as usize;
         let at = |k: usize| self.look(&motion.sample(k as f64 * CHECK_S).0);
@@ -316,7 +317,7 @@ impl<'a> PlanningScene<'a> {
             .map(|j| {
                 let (v, a) = (limits.velocity[j], limits.acceleration[j]);
                 let way = (from[j] - to[j]).abs();
-                // A trapezoid of speed, or a triangle where there is no time to reach the limit.
+                // A trapezoidal velocity profile, or a triangular one if too short to reach the limit.
                 if way > v * v / a { way / v + v / a } else { 2.0 * (way / a).sqrt() }
             })
             .fold(0.0, f64::max)
@@ -330,7 +331,7 @@ struct Look<'a> {
 }
 
 impl Look<'_> {
-    /// The furthest that any point is from where it is in another look, metres.
+    /// Returns the furthest that any point is from where it is in another look, metres.
     fn moved_m(&self, other: &Self) -> f64 {
         let arm = self.arm.capsules().iter().zip(other.arm.capsules());
         let arm = arm.map(|(a, b)| (a.a - b.a).norm().max((a.b - b.b).norm()));
@@ -346,7 +347,7 @@ const ROOMY_M: f64 = 0.05;
 /// The joints whose links are the elbow: the upper arm's turn and the elbow's own.
 const ELBOW: std::ops::RangeInclusive<usize> = 2..=3;
 
-/// How a motion is tried: corners begin so far before and end so far after a waypoint, radians of
+/// Variants of a motion: distance of a corner's ends from its waypoint, radians of
 /// joint distance, at so large a share of the speed. Wide ones are passed without a stop; at sharp
 /// ones the arm all but stops.
 const MANNERS: [(f64, f64); 3] = [(0.15, 1.0), (0.005, 1.0), (0.005, 0.35)];
@@ -357,16 +358,16 @@ const ROUTE_M: f64 = 0.03;
 /// So near to its ends a way needs none: the largest joint's change, radians.
 const END_RAD: f64 = 0.25;
 
-/// How far the hand reaches round the gripper's axis, and some, metres.
+/// Radius of the hand around the gripper's axis, with some margin, metres.
 const HAND_M: f64 = 0.1;
 
 /// Time between two checks of a motion, seconds.
 const CHECK_S: f64 = 0.02;
 
-/// Whether a way may be searched for at length.
+/// Whether random trees may search for a path.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Search {
-    /// Direct lines and known via_postures only: microseconds to milliseconds.
+    /// Direct lines and via postures only: microseconds to milliseconds.
     No,
     /// Random trees as well: up to some tenths of a second.
     Yes,

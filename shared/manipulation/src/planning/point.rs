@@ -36,18 +36,18 @@ pub struct PointPlan {
 }
 
 impl PointPlan {
-    /// The limb that points.
+    /// Returns the limb that points.
     pub fn limb(&self) -> Limb {
         self.timeline.limb()
     }
 
-    /// How long the whole takes, seconds.
+    /// Returns the duration of the whole, seconds.
     pub fn duration_s(&self) -> f64 {
         self.timeline.duration_s()
     }
 }
 
-/// How steeply the gripper looks down at the object, radians from the horizontal, best first.
+/// Pitch of the gripper towards the object, radians from the horizontal, best first.
 const ELEVATIONS: [f64; 4] = [0.9, 0.6, 1.2, PI / 2.0];
 
 /// From which side, radians off the direction from the shoulder to the object.
@@ -62,7 +62,7 @@ const TRIES: usize = 24;
 /// Complete plans among which the shortest is taken.
 const COMPARED: usize = 5;
 
-/// How far below a target's centre whatever it stands on may be, metres.
+/// Largest depth of a target's support below its centre, metres.
 const LOWER_M: f64 = 0.05;
 
 const AIM: &str = "the place to point from";
@@ -173,7 +173,7 @@ fn looks(scene: &PlanningScene<'_>, target: &Vector3<f64>) -> Vec<(f64, Isometry
     looks
 }
 
-/// The gripper `standoff_m` before `target`, z along `axis`, turned about it by `roll`.
+/// Returns the gripper `standoff_m` before `target`, z along `axis`, turned about it by `roll`.
 fn looking(
     target: &Vector3<f64>,
     axis: &Vector3<f64>,

@@ -1,8 +1,8 @@
-//! Which of the postures that reach a pose is taken: seven joints leave a choice.
+//! Choice among the postures that reach a pose: seven joints leave a degree of freedom.
 //!
 //! The cost of a posture is in seconds: those that the arm takes to it, and what it is worth to stay
 //! away from joint limits, from everything that the arm could touch, and with the elbow high. Near
-//! its limits an arm has little room to go on from; a low elbow sweeps over the table.
+//! its limits an arm has little room to continue; a low elbow sweeps over the table.
 
 use nalgebra::Isometry3;
 
@@ -34,24 +34,24 @@ const POSTURES: usize = 12;
 const APART_RAD: f64 = 0.3;
 
 impl PlanningScene<'_> {
-    /// What `q` costs from `from`, seconds, but for what is around it.
+    /// Returns the cost of `q` from `from`, seconds, without its surroundings.
     pub(crate) fn cost_s(&self, from: &Joints, q: &Joints) -> f64 {
         let margin_rad = self.chain.limits().margin_rad(q);
         let confined = ((FREE_RAD - margin_rad) / FREE_RAD).clamp(0.0, 1.0);
         self.seconds_between(from, q) + LIMIT_S * confined + self.lowness_s(q)
     }
 
-    /// What is around `q` costs, seconds; or what it would touch.
+    /// Returns the cost of the surroundings of `q`, seconds, or the collision.
     pub(crate) fn crowding_s(&self, q: &Joints) -> Result<f64, Gap> {
         self.crowding(q).map(|share| CROWDED_S * share)
     }
 
-    /// What the elbow's height at `q` costs, seconds.
+    /// Returns the cost of the elbow's height at `q`, seconds.
     fn lowness_s(&self, q: &Joints) -> f64 {
         ELBOW_S * ((LOW_M - self.elbow_m(q)) / LOW_M).clamp(0.0, 1.0)
     }
 
-    /// What the lowest elbow of a whole plan costs, seconds.
+    /// Returns the cost of the lowest elbow of a whole plan, seconds.
     pub(crate) fn plan_lowness_s<P: Copy + PartialEq>(&self, timeline: &Timeline<P>) -> f64 {
         let looks = (timeline.duration_s() / LOOK_S).ceil() as usize;
         let cost_s = |k: usize| self.lowness_s(&timeline.at(k as f64 * LOOK_S).q);
@@ -89,5 +89,5 @@ impl PlanningScene<'_> {
     }
 }
 
-/// Time between two looks at the elbow along a plan, seconds.
+/// Time between two checks of the elbow along a plan, seconds.
 const LOOK_S: f64 = 0.1;

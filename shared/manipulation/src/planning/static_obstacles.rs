@@ -1,12 +1,13 @@
-//! What the arm works at: a table, boards of shelves, and the objects on them, as upright boxes.
+//! Static obstacles: a table, boards of shelves, and the objects on them, as upright boxes.
 
 use crate::collision::Cuboid;
 
 /// A box and what to call it.
 pub(crate) type Obstacle = (&'static str, Cuboid);
 
-/// The table: from in front of the trunk to beyond the arms' reach, solid below its top. Where the
-/// arm is to reach lower than that, into a rack or a drawer, there is an opening round the place.
+/// Returns the table: from in front of the trunk to beyond the arms' reach, solid below its top.
+/// Where the arm is to reach lower than that, into a rack or a drawer, there is an opening round
+/// the place.
 pub(crate) fn table(top_z_m: f64, place_m: [f64; 3], lowest_z_m: f64) -> Vec<Obstacle> {
     if lowest_z_m >= top_z_m {
         return vec![slab(TABLE_X_M, TABLE_Y_M, top_z_m)];
@@ -36,13 +37,13 @@ pub(crate) fn objects(others: &[Cuboid], table_z_m: f64) -> Vec<Obstacle> {
     obstacles
 }
 
-/// A solid between two bounds of x and of y, from its top half a metre down.
+/// Returns a solid between two bounds of x and of y, from its top half a metre down.
 fn slab((near, far): (f64, f64), (right, left): (f64, f64), top_z_m: f64) -> Obstacle {
     let centre = [0.5 * (near + far), 0.5 * (right + left), top_z_m - 0.25];
     ("table", Cuboid::aligned(centre, [(far - near).max(0.0), (left - right).max(0.0), 0.5]))
 }
 
-/// The board under an object, wider than the object by `margin_m` on every side.
+/// Returns the board under an object, wider than the object by `margin_m` on every side.
 pub(crate) fn board(object: &Cuboid, margin_m: f64) -> Obstacle {
     let [x, y, z] = object.centre;
     let [length, width, height] = object.size;
@@ -64,7 +65,7 @@ const OPENING_M: f64 = 0.2;
 /// Thickness of a board, metres.
 const THICKNESS_M: f64 = 0.02;
 
-/// How far the boards of other objects reach beyond them, metres: no more than is surely there.
+/// Extent of the boards beyond other objects, metres: no more than is certain.
 pub(crate) const NEIGHBOUR_M: f64 = 0.02;
 
 #[cfg(test)]
@@ -74,7 +75,7 @@ mod tests {
     use super::*;
     use crate::collision::Capsule;
 
-    /// Whether a point is inside any of the boxes.
+    /// Returns whether a point is inside any of the boxes.
     fn inside(obstacles: &[Obstacle], [x, y, z]: [f64; 3]) -> bool {
         let at = Vector3::new(x, y, z);
         let dot = Capsule { a: at, b: at, radius: 0.0 };

@@ -232,7 +232,7 @@ fn a_pick_may_start_anywhere() {
 }
 
 #[test]
-fn a_delivery_goes_on_from_the_grasp_and_from_the_way() {
+fn delivery_resumes_from_the_grasp_and_from_the_path() {
     let object = marker();
     let whole = plan_pick(robot(), &object, None, &robot().neutral(), &[], &SETTINGS).unwrap();
     let (closed, lifted) = whole.timeline.span_s(PickPhase::Lift).unwrap();
@@ -255,7 +255,7 @@ fn a_delivery_goes_on_from_the_grasp_and_from_the_way() {
 }
 
 #[test]
-fn what_is_held_is_delivered_from_every_moment_of_its_way() {
+fn held_object_is_delivered_from_every_moment_of_its_path() {
     let bowls = bowls();
     for (i, bowl) in bowls.iter().enumerate().skip(1).take(3) {
         let others = all_but(&bowls, i);
@@ -276,7 +276,7 @@ fn what_is_held_is_delivered_from_every_moment_of_its_way() {
 }
 
 #[test]
-fn the_arm_comes_home_from_every_moment_of_a_pick() {
+fn arm_returns_from_every_moment_of_a_pick() {
     let bowls = bowls();
     let others = all_but(&bowls, 1);
     let whole =
@@ -316,7 +316,7 @@ fn pointing_aims_the_gripper_at_the_object() {
 }
 
 #[test]
-fn a_scene_is_checked_object_by_object() {
+fn check_reachable_reports_each_object() {
     let mut objects = bowls();
     objects.push(ObjectPose { xyz_m: [1.6, 0.0, -0.13], ..objects[1] });
     objects.push(ObjectPose { grasp_width_m: 0.06, ..marker() });
@@ -330,7 +330,7 @@ fn a_scene_is_checked_object_by_object() {
 }
 
 #[test]
-fn refusals_say_why() {
+fn plan_errors_name_their_reason() {
     let far = ObjectPose { xyz_m: [1.7, 0.0, -0.13], ..bowls()[1] };
     let error = plan_pick(robot(), &far, None, &robot().neutral(), &[], &SETTINGS).unwrap_err();
     let PlanError::Unreachable { distance_m, .. } = error else { panic!("{error:?}") };
@@ -356,7 +356,7 @@ fn refusals_say_why() {
 }
 
 #[test]
-fn a_hand_over_out_of_reach_is_refused() {
+fn planner_rejects_a_handover_out_of_reach() {
     let settings = PlanSettings { hand_over_xyz_m: [1.5, 0.3, 0.2], ..SETTINGS };
     let error =
         plan_pick(robot(), &marker(), None, &robot().neutral(), &[], &settings).unwrap_err();

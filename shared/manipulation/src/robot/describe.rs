@@ -12,13 +12,13 @@ use crate::kinematics::chain::{Axis, Chain, ZeroPosture};
 use crate::kinematics::limb::{Joints, Limb};
 use crate::kinematics::limits::{MotionLimits, PositionLimits};
 
-/// Why a described robot cannot be moved by this crate: what is missing, and the cure.
+/// A described robot that this crate cannot move: what is missing, and help.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what}; {cure}")]
 pub struct Unsuitable {
-    /// What is missing.
+    /// Missing part.
     pub what: String,
-    /// What to do about it.
+    /// Remedy.
     pub cure: String,
 }
 
@@ -29,12 +29,13 @@ const ACCELERATION_RAD_S2: f64 = 2.0;
 const JERK_PER_S: f64 = 10.0;
 
 impl Robot {
-    /// The robot of a description whose links `left_gripper` and `right_gripper` each hang on seven
-    /// turning joints. Groups `left_arm` and `right_arm` have a posture `neutral`, in which the
-    /// limb rests; other postures of theirs are used as via_postures where the limb is clear there.
+    /// Returns the robot of a description whose links `left_gripper` and `right_gripper` each hang
+    /// on seven turning joints. Groups `left_arm` and `right_arm` have a posture `neutral`, in
+    /// which the limb rests; other postures of theirs are used as via_postures where the limb is
+    /// clear there.
     ///
     /// Joints without stated acceleration and jerk get 2 rad/s² and ten times that per second.
-    /// What a limb carries is enclosed in capsules; what carries no limb is its body, as it stands
+    /// Links of a limb are enclosed in capsules; the other links are the body, as it stands
     /// with every joint at zero.
     ///
     /// # Errors
@@ -47,11 +48,11 @@ impl Robot {
 }
 
 impl Chain {
-    /// The chain from the root to the link `tip` of any described robot; it must hang on seven
-    /// turning joints.
+    /// Returns the chain from the root to the link `tip` of any described robot; it must hang on
+    /// seven turning joints.
     ///
     /// # Errors
-    /// [`Unsuitable`] if there is no such link, or another number of joints.
+    /// [`Unsuitable`] if the link is missing, or for another number of joints.
     pub fn from_description(description: &Description, tip: &str) -> Result<Self, Unsuitable> {
         let joints = joints(description, tip)?;
         let posture = posture(description, &joints, tip);
@@ -81,7 +82,7 @@ fn parts(description: &Description, limb: Limb) -> Result<Parts, Unsuitable> {
     })
 }
 
-/// The seven joints that move `tip`, shoulder first.
+/// Returns the seven joints that move `tip`, shoulder first.
 fn joints<'a>(description: &'a Description, tip: &str) -> Result<[&'a Joint; 7], Unsuitable> {
     let chain = description.chain(tip).map_err(|error| Unsuitable {
         what: error.to_string(),
@@ -144,7 +145,7 @@ fn via_postures(description: &Description, limb: Limb, joints: &[&Joint; 7]) -> 
     of_limb.filter_map(|posture| named(description, limb, &posture.name, joints).ok()).collect()
 }
 
-/// Which of the limb's joints moves a link last.
+/// Returns the last of the limb's joints that moves a link.
 fn mover(description: &Description, joints: &[&Joint; 7], mut link: usize) -> Option<usize> {
     while let Some(joint) = description.carrier(link) {
         if let Some(place) = joints.iter().position(|own| own.child == joint.child) {
@@ -172,7 +173,7 @@ fn capsules(
     Ok(capsules)
 }
 
-/// What no limb moves.
+/// Shapes of the body.
 fn body(description: &Description) -> Result<Body, Unsuitable> {
     let limbs = [joints(description, "left_gripper")?, joints(description, "right_gripper")?];
     let poses = description.poses(|_| 0.0);
@@ -193,7 +194,7 @@ fn body(description: &Description) -> Result<Body, Unsuitable> {
     Ok(body)
 }
 
-/// The upright box round a box: the box itself if it stands upright.
+/// Returns the upright box round a box: the box itself if it stands upright.
 fn upright(pose: &Isometry3<f64>, size: &Vector3<f64>) -> Cuboid {
     let rotation = pose.rotation.to_rotation_matrix();
     let z = rotation.matrix().column(2);
@@ -206,7 +207,8 @@ fn upright(pose: &Isometry3<f64>, size: &Vector3<f64>) -> Cuboid {
     Cuboid::aligned(pose.translation.vector.into(), extent.into())
 }
 
-/// The capsule round a shape, in the root's frame at `link`'s pose. Round shapes keep their size.
+/// Returns the capsule round a shape, in the root's frame at `link`'s pose. Round shapes keep their
+/// size.
 fn enclosing(shaped: &Shaped, link: &Isometry3<f64>, name: &str) -> Result<Capsule, Unsuitable> {
     let pose = link * shaped.origin;
     let along = |axis: Vector3<f64>, length: f64, radius: f64| {
@@ -237,13 +239,13 @@ fn may_touch(description: &Description, limb: Limb) -> Vec<(String, String)> {
     description.may_touch().iter().map(|(a, b)| (name(*a), name(*b))).collect()
 }
 
-/// A link's name without its limb's.
+/// Returns a link's name without its limb's.
 fn short(limb: Limb, name: &str) -> &str {
     name.strip_prefix(limb.name()).and_then(|rest| rest.strip_prefix('_')).unwrap_or(name)
 }
 
-/// The name for as long as the program runs: a program knows few robots, and errors that name a
-/// link are copied about.
+/// Returns the name for as long as the program runs: a program knows few robots, and errors that
+/// name a link are copied about.
 fn kept(name: &str) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);

@@ -29,15 +29,15 @@ pub struct Robot {
 /// One limb: how it moves, and the room that it takes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm {
-    /// Which one.
+    /// Name.
     pub limb: Limb,
     /// Its joints' names in the description, shoulder first.
     pub joint_names: [String; 7],
     /// Its kinematics.
     pub chain: Chain,
-    /// What its joints may do at most.
+    /// Motion limits of its joints.
     pub limits: MotionLimits,
-    /// Where it rests.
+    /// Neutral posture.
     pub neutral: Joints,
     /// Postures over which it may find its way, radians: the one at rest, and others in which it is
     /// clear of itself and of the body.
@@ -46,7 +46,7 @@ pub struct Arm {
     pub(crate) enclosures: Vec<Enclosure>,
     /// Pairs of enclosures that must not touch.
     pub(crate) pairs: Vec<(usize, usize)>,
-    /// What the limb hangs on.
+    /// Mount of the limb.
     pub(crate) body: Arc<Body>,
 }
 
@@ -68,7 +68,7 @@ pub(crate) struct Body {
     pub(crate) capsules: Vec<(&'static str, Capsule)>,
 }
 
-/// What a limb is made from.
+/// Parts of a limb.
 struct Parts {
     posture: ZeroPosture,
     limits: MotionLimits,
@@ -82,7 +82,8 @@ struct Parts {
 }
 
 impl Robot {
-    /// The robot that whichone ships: Baxter with its electric grippers and extended fingers.
+    /// Returns the robot that whichone ships: Baxter with its electric grippers and extended
+    /// fingers.
     pub fn baxter() -> &'static Self {
         static BAXTER: LazyLock<Robot> = LazyLock::new(|| {
             Robot::from_description(Description::baxter()).expect("the tests build this very robot")
@@ -97,7 +98,7 @@ impl Robot {
         Self { description: Arc::new(description), limbs }
     }
 
-    /// Where every link is, and what it looks like.
+    /// Description with every link and its shape.
     pub fn description(&self) -> &Description {
         &self.description
     }
@@ -148,7 +149,7 @@ impl Arm {
         arm
     }
 
-    /// The enclosing capsules at `q`, in `base`.
+    /// Returns the enclosing capsules at `q`, in `base`.
     pub(crate) fn capsules(&self, q: &Joints) -> Vec<Capsule> {
         placed(&self.chain, &self.enclosures, q)
     }
@@ -163,12 +164,12 @@ fn placed(chain: &Chain, enclosures: &[Enclosure], q: &Joints) -> Vec<Capsule> {
     enclosures.iter().map(place).collect()
 }
 
-/// Postures at which capsules are looked at to tell which always overlap.
+/// Postures for finding the capsules that always overlap.
 const POSTURES: u32 = 60;
 
-/// The pairs of enclosures that must not touch: of links at least two joints apart, unless the
-/// description lets them, or they overlap wherever the arm is: enclosures are wider than what they
-/// enclose.
+/// Returns the pairs of enclosures that must not touch: of links at least two joints apart, unless
+/// the description lets them, or they overlap wherever the arm is: enclosures are wider than what
+/// they enclose.
 fn pairs(
     chain: &Chain,
     enclosures: &[Enclosure],

@@ -116,7 +116,7 @@ fn jacobians_of_other_robots_agree_with_finite_differences() {
 }
 
 #[test]
-fn what_a_description_lacks_is_said() {
+fn robot_names_what_a_description_lacks() {
     let iiwa = described(include_str!("../../../../tests/fixtures/robots/seven_joints.urdf"));
     let error = Robot::from_description(&iiwa).unwrap_err().to_string();
     assert!(error.contains("left_gripper") && error.contains("seven"), "{error}");

@@ -16,7 +16,7 @@ const NODES_MAX: usize = 3000;
 /// Random postures tried before giving up, when nearly every edge is blocked.
 const SAMPLES_MAX: usize = 3000;
 
-/// How far beside the straight line between two postures ways are looked for first, radians.
+/// Distance from the straight line between two postures that is searched first, radians.
 const BESIDE_RAD: f64 = 0.6;
 
 /// Attempts to cut corners off a way that was found by searching.
@@ -40,8 +40,8 @@ pub(crate) fn simple(
         .map(|via| vec![*from, *via, *to])
 }
 
-/// The same, found by growing random trees from both ends (RRT-Connect, Kuffner and LaValle 2000),
-/// then shortened. The random numbers are the same every time.
+/// Returns the same, found by growing random trees from both ends (RRT-Connect, Kuffner and LaValle
+/// 2000), then shortened. The random numbers are the same every time.
 pub(crate) fn searched(
     from: &Joints,
     to: &Joints,
@@ -51,7 +51,7 @@ pub(crate) fn searched(
     if clear(from) && clear(to) { Trees::new(*from, *to).run(limits, clear) } else { None }
 }
 
-/// The first thing that `blocked` finds along the straight line.
+/// Returns the first thing that `blocked` finds along the straight line.
 pub(crate) fn blocking<G>(
     from: &Joints,
     to: &Joints,
@@ -61,13 +61,13 @@ pub(crate) fn blocking<G>(
     (0..=steps).find_map(|k| blocked(&mix(from, to, k as f64 / steps as f64)))
 }
 
-/// Whether `clear` holds along the straight line, both ends included.
+/// Returns whether `clear` holds along the straight line, both ends included.
 fn line_clear(from: &Joints, to: &Joints, clear: &impl Fn(&Joints) -> bool) -> bool {
     let steps = (largest_change(from, to) / CHECK_RAD).ceil().max(1.0) as usize;
     (0..=steps).all(|k| clear(&mix(from, to, k as f64 / steps as f64)))
 }
 
-/// The largest change of any joint, radians.
+/// Returns the largest change of any joint, radians.
 pub(crate) fn largest_change(a: &Joints, b: &Joints) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
@@ -130,7 +130,7 @@ impl Trees {
         None
     }
 
-    /// The way through the newest node of both trees, from start to goal, shortened.
+    /// Returns the way through the newest node of both trees, from start to goal, shortened.
     fn joined(&mut self, clear: &impl Fn(&Joints) -> bool) -> Vec<Joints> {
         let mut way = to_root(&self.trees[0]);
         way.reverse();
@@ -192,7 +192,7 @@ impl Random {
         ((self.next() * n as f64) as usize).min(n.saturating_sub(1))
     }
 
-    /// A posture within [`BESIDE_RAD`] of the line between two, in every joint.
+    /// Returns a posture within [`BESIDE_RAD`] of the line between two, in every joint.
     fn beside(&mut self, a: &Joints, b: &Joints, limits: &PositionLimits) -> Joints {
         let share = self.next();
         let on_line = mix(a, b, share);
@@ -210,7 +210,7 @@ mod tests {
     use super::*;
     use crate::samples::full;
 
-    /// A wall across the first two joints with a gap at the far end of the second.
+    /// Returns a wall across the first two joints with a gap at the far end of the second.
     fn walled(q: &Joints) -> bool {
         !((q[0] - 0.3).abs() < 0.1 && q[1] > -1.5)
     }
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn a_station_beyond_the_wall_is_used() {
+    fn joint_path_uses_a_via_posture_beyond_the_wall() {
         let (useless, open) = ([0.0; 7], [0.3, -2.0, 0.0, 1.0, 0.0, 0.5, 0.0]);
         // The straight lines to the gap's middle still cut the wall's corner; the bend of a wider
         // gap does not.
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn no_way_is_found_where_there_is_none() {
+    fn joint_path_reports_a_missing_path() {
         assert_eq!(searched(&FROM, &TO, &full().position, &|q| (q[0] - 0.3).abs() > 0.1), None);
         assert_eq!(searched(&FROM, &TO, &full().position, &|q| *q != TO), None);
     }

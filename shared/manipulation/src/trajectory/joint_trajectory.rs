@@ -18,14 +18,14 @@ mod tests;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
     smoothed: Arc<SmoothedTrajectory>,
-    /// How the smoothed trajectory's time passes, where it is being stopped; otherwise as time does.
+    /// Time scaling of a trajectory that is being stopped.
     time_scaling: Option<Arc<TimeScaling>>,
     /// The part of the time that this trajectory covers, seconds.
     begin_s: f64,
     end_s: f64,
 }
 
-/// Why no trajectory was made.
+/// A trajectory that cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum TrajectoryError {
     /// A posture leaves a joint's limits.
@@ -36,7 +36,7 @@ pub enum TrajectoryError {
     OutsideLimits {
         /// The joint without its limb, e.g. `s0`.
         joint: &'static str,
-        /// Where it would be, radians.
+        /// Its position, radians.
         position_rad: f64,
         /// Its lower limit, radians.
         lower_rad: f64,
@@ -124,7 +124,8 @@ impl Trajectory {
         Self::of(SmoothedTrajectory::exact(Path::rounded(&[*q], 0.0), knots, limits))
     }
 
-    /// The motion stop: from `q` at velocity `qd` to rest on a straight line in joint space.
+    /// Returns the motion stop: from `q` at velocity `qd` to rest on a straight line in joint
+    /// space.
     ///
     /// Decelerates at [`MotionLimits::stop`], so within 0.1 s from any velocity that the limits
     /// allow. A joint too near to its limit for that brakes harder: the position limit is
@@ -149,8 +150,8 @@ impl Trajectory {
         Self::of(SmoothedTrajectory::exact(path, vec![start, end], limits))
     }
 
-    /// The motion stop that keeps to the curve: from this trajectory's state at `t_s` to rest as
-    /// soon as [`MotionLimits::stop`] allows. Where the motion was clear, so is the stop.
+    /// Returns the motion stop that keeps to the curve: from this trajectory's state at `t_s` to
+    /// rest as soon as [`MotionLimits::stop`] allows. Where the motion was clear, so is the stop.
     pub fn halted_at(&self, t_s: f64) -> Self {
         let at_s = self.time(t_s);
         if self.time_scaling.is_some() {
@@ -170,7 +171,7 @@ impl Trajectory {
         }
     }
 
-    /// How long it takes, seconds.
+    /// Returns its duration, seconds.
     pub fn duration_s(&self) -> f64 {
         self.end_s - self.begin_s
     }
@@ -197,7 +198,7 @@ impl Trajectory {
         State { q, qd, qdd }
     }
 
-    /// Where it begins.
+    /// Returns its first posture.
     pub fn start(&self) -> Joints {
         self.sample(0.0).0
     }
@@ -207,13 +208,13 @@ impl Trajectory {
         self.sample(self.duration_s()).0
     }
 
-    /// The two parts before and after `t_s`. The velocity at the cut is that of the whole.
+    /// Returns the two parts before and after `t_s`. The velocity at the cut is that of the whole.
     pub fn split(&self, t_s: f64) -> (Self, Self) {
         let cut = self.time(t_s);
         (Self { end_s: cut, ..self.clone() }, Self { begin_s: cut, ..self.clone() })
     }
 
-    /// When the motion passes nearest to `q`, to one grid interval, seconds from the start.
+    /// Returns the time at which the motion is nearest to `q`, to one grid interval, seconds from the start.
     pub fn time_nearest(&self, q: &Joints) -> f64 {
         let distance = |time: &f64| {
             let at = self.state(*time).q;
@@ -230,7 +231,8 @@ impl Trajectory {
         Self { smoothed: Arc::new(smoothed), time_scaling: None, begin_s: 0.0, end_s }
     }
 
-    /// The smoothed trajectory's or the time scaling's time at `t_s` from the start, within what is covered.
+    /// Returns the smoothed trajectory's or the time scaling's time at `t_s` from the start, within
+    /// what is covered.
     fn time(&self, t_s: f64) -> f64 {
         let t_s = if t_s.is_nan() { 0.0 } else { t_s };
         (self.begin_s + t_s).clamp(self.begin_s, self.end_s)

@@ -59,8 +59,8 @@ impl Path {
         Self { pieces: pieces.0, end }
     }
 
-    /// The natural cubic spline through the waypoints, knots evenly spaced on [0, 1]. It may leave
-    /// the waypoints' hull: check it against the limits.
+    /// Returns the natural cubic spline through the waypoints, knots evenly spaced on [0, 1]. It
+    /// may leave the waypoints' hull: check it against the limits.
     pub fn spline(waypoints: &[Joints]) -> Self {
         let mut pieces = Pieces::default();
         let end = waypoints.last().copied().unwrap_or([0.0; 7]);
@@ -82,7 +82,7 @@ impl Path {
         Self { pieces: pieces.0, end }
     }
 
-    /// The path that `pieces`, each beginning where the one before ends, make up to `end`.
+    /// Returns the path that `pieces`, each beginning where the one before ends, make up to `end`.
     ///
     /// # Panics
     /// Without a piece.
@@ -91,7 +91,7 @@ impl Path {
         Self { pieces, end }
     }
 
-    /// Whether it is one line, and longer than nothing.
+    /// Returns whether it is one line, and longer than nothing.
     pub(crate) fn is_straight(&self) -> bool {
         let [piece] = &self.pieces[..] else { return false };
         piece.length > 0.0 && piece.coefficients[2..].iter().flatten().all(|c| *c == 0.0)

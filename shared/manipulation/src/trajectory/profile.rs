@@ -18,7 +18,7 @@ use curve::Curve;
 mod curve;
 mod detour;
 
-/// Where a limb is, how fast it moves and how that changes.
+/// Position, velocity and acceleration of a limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// Positions, radians.

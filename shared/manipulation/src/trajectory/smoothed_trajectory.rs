@@ -38,15 +38,15 @@ const GAUSS: [(f64, f64); 4] = [
 /// Windows that are tried, as shares of the one that suits every path.
 const SHARES: [f64; 5] = [0.5, 0.625, 0.75, 0.875, 1.0];
 
-/// Share of a jerk limit that is used: between two knots the accelerations are not looked at.
+/// Used share of a jerk limit: accelerations between two knots are not checked.
 const JERK_USED: f64 = 0.998;
 
 /// The same when it is compared with: a little more, for rounding.
 const JERK_KEPT: f64 = JERK_USED + 1e-6;
 
 impl SmoothedTrajectory {
-    /// A path that `knots` time within the velocity and acceleration limits, averaged over the
-    /// shortest window that keeps the jerk limits as well.
+    /// Returns a path that `knots` time within the velocity and acceleration limits, averaged over
+    /// the shortest window that keeps the jerk limits as well.
     pub(crate) fn smoothed(path: Path, knots: Vec<Knot>, limits: &MotionLimits) -> Self {
         let mut smoothed = Self::exact(path, knots, limits);
         let longest = (0..7)
@@ -60,7 +60,7 @@ impl SmoothedTrajectory {
         smoothed
     }
 
-    /// A timed path as it is.
+    /// Returns a timed path as it is.
     pub(crate) fn exact(path: Path, knots: Vec<Knot>, limits: &MotionLimits) -> Self {
         let (start, end) = (path.position(0, 0.0), path.end());
         let mut smoothed =
@@ -91,7 +91,7 @@ impl SmoothedTrajectory {
         [self.limits.position.clamp(&q), qd, qdd]
     }
 
-    /// When each of the path's grid points is passed.
+    /// Returns the times at which the path's grid points are passed.
     pub(crate) fn times(&self) -> impl Iterator<Item = f64> {
         self.knots.iter().map(|knot| knot.time + 0.5 * self.window_s)
     }
@@ -119,7 +119,7 @@ impl SmoothedTrajectory {
         ]
     }
 
-    /// The path without averaging; before its start, at rest there.
+    /// Returns the path without averaging; before its start, at rest there.
     fn timed(&self, t_s: f64) -> [Joints; 3] {
         if t_s < 0.0 {
             return [self.start, [0.0; 7], [0.0; 7]];
@@ -131,7 +131,7 @@ impl SmoothedTrajectory {
         motion_at(&self.path, (knot.piece, s), speed, knot.acceleration)
     }
 
-    /// The last knot at or before `t_s`.
+    /// Returns the last knot at or before `t_s`.
     fn knot_at(&self, t_s: f64) -> usize {
         self.knots.partition_point(|knot| knot.time <= t_s).saturating_sub(1)
     }
@@ -170,10 +170,10 @@ impl SmoothedTrajectory {
         }
     }
 
-    /// Whether averaging over `window_s` keeps the jerk limits: whether no joint's acceleration
-    /// changes by more than jerk times window within a window. Accelerations jump at knots and
-    /// hardly change between them, so both sides of every knot are compared with what is a window
-    /// earlier and later.
+    /// Returns whether averaging over `window_s` keeps the jerk limits: whether no joint's
+    /// acceleration changes by more than jerk times window within a window. Accelerations jump at
+    /// knots and hardly change between them, so both sides of every knot are compared with what is
+    /// a window earlier and later.
     fn jerk_kept(&self, window_s: f64) -> bool {
         let keeps = |a: &Joints, b: &Joints| {
             (0..7).all(|j| (a[j] - b[j]).abs() <= JERK_KEPT * self.limits.jerk[j] * window_s)

@@ -17,7 +17,7 @@ struct Tick {
     slowing: f64,
 }
 
-/// How a smoothed trajectory's time passes while it is being stopped.
+/// Time scaling of a smoothed trajectory that is being stopped.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct TimeScaling {
     ticks: Vec<Tick>,
@@ -68,7 +68,7 @@ impl TimeScaling {
         Some(Self::even(at_s, even_s))
     }
 
-    /// The same rate of slowing all the way.
+    /// Returns the same rate of slowing all the way.
     fn even(at_s: f64, seconds: f64) -> Self {
         let start = Tick { time: 0.0, at: at_s, rate: 1.0, slowing: -1.0 / seconds };
         let end = Tick { time: seconds, at: at_s + 0.5 * seconds, rate: 0.0, slowing: 0.0 };
@@ -102,7 +102,8 @@ fn even_stop_s(smoothed: &SmoothedTrajectory, at_s: f64) -> f64 {
     (0..7).map(|j| qd[j].abs() / stop_of(smoothed, j)).fold(0.0, f64::max)
 }
 
-/// A joint's stop deceleration; never so little that its planned acceleration uses most of it up.
+/// Returns a joint's stop deceleration; never so little that its planned acceleration uses most of
+/// it up.
 fn stop_of(smoothed: &SmoothedTrajectory, j: usize) -> f64 {
     smoothed.limits().stop[j].max(2.0 * smoothed.limits().acceleration[j])
 }

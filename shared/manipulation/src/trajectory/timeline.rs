@@ -11,7 +11,7 @@ pub struct Stage<P> {
     pub phase: P,
     /// The arm's motion; standing still where only the gripper moves.
     pub motion: Trajectory,
-    /// Width between the fingers as the stage begins and as they are told to go to, metres.
+    /// Width between the fingers at the start of the stage, and their goal, metres.
     pub width_m: (f64, f64),
 }
 
@@ -43,22 +43,22 @@ impl<P: Copy + PartialEq> Timeline<P> {
         Self { limb, stages }
     }
 
-    /// The limb that moves.
+    /// Returns the limb that moves.
     pub fn limb(&self) -> Limb {
         self.limb
     }
 
-    /// The stages in order.
+    /// Returns the stages in order.
     pub fn stages(&self) -> &[Stage<P>] {
         &self.stages
     }
 
-    /// How long the plan takes, seconds.
+    /// Returns the duration of the plan, seconds.
     pub fn duration_s(&self) -> f64 {
         self.stages.iter().map(|stage| stage.motion.duration_s()).sum()
     }
 
-    /// When the first stage of `phase` begins and ends, seconds from the start of the plan.
+    /// Returns the start and end of the first stage of `phase`, seconds from the start of the plan.
     pub fn span_s(&self, phase: P) -> Option<(f64, f64)> {
         let index = self.stages.iter().position(|stage| stage.phase == phase)?;
         // From plus zero: the sum of no numbers is minus zero.
@@ -67,21 +67,21 @@ impl<P: Copy + PartialEq> Timeline<P> {
         Some((begin, begin + self.stages[index].motion.duration_s()))
     }
 
-    /// The state `t_s` seconds after the start; before it and after the end, those of the start
-    /// and the end.
+    /// Returns the state `t_s` seconds after the start; before it and after the end, those of the
+    /// start and the end.
     pub fn at(&self, t_s: f64) -> Moment<P> {
         let (stage, t_s) = self.stage_at(t_s);
         let (q, qd) = stage.motion.sample(t_s);
         Moment { phase: stage.phase, q, qd, width_m: stage.width_at(t_s) }
     }
 
-    /// The motion stop from the state at `t_s`, along the planned path.
+    /// Returns the motion stop from the state at `t_s`, along the planned path.
     pub fn halted_at(&self, t_s: f64) -> Trajectory {
         let (stage, t_s) = self.stage_at(t_s);
         stage.motion.halted_at(t_s)
     }
 
-    /// The stage at `t_s` and the seconds since it began.
+    /// Returns the stage at `t_s` and the seconds since it began.
     fn stage_at(&self, t_s: f64) -> (&Stage<P>, f64) {
         let mut left = if t_s.is_nan() { 0.0 } else { t_s.max(0.0) };
         let (last, others) = self.stages.split_last().expect("a plan has at least one stage");

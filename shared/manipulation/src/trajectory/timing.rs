@@ -102,7 +102,7 @@ impl Interval {
         upper.slope * x + upper.half
     }
 
-    /// The rows that give the lower and the upper bound at `x`.
+    /// Returns the rows that give the lower and the upper bound at `x`.
     fn tightest(&self, x: f64) -> (Row, Row) {
         let mut lower = FREE;
         let mut upper = FREE;
@@ -117,7 +117,8 @@ impl Interval {
         (lower, upper)
     }
 
-    /// The greatest squared speed, at most `most`, from which one interval leads to at most `next`.
+    /// Returns the greatest squared speed, at most `most`, from which one interval leads to at most
+    /// `next`.
     ///
     /// The room between the bounds on `u` is concave in `x` and not negative at 0, so Newton's
     /// method from the right comes down to its root in finitely many steps.
@@ -144,7 +145,8 @@ impl Interval {
 /// A row that binds nothing.
 const FREE: Row = Row { slope: 0.0, half: 1e12 };
 
-/// The greatest squared speed at every grid point from which the end can be reached at rest.
+/// Returns the greatest squared speed at every grid point from which the end can be reached at
+/// rest.
 fn backward(intervals: &[Interval]) -> Vec<f64> {
     let n = intervals.len();
     let mut reachable = vec![0.0; n + 1];

@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 use super::fixture;
 use super::solid::Solid;
 
-/// Times a second at which shapes are looked at.
+/// Rate at which shapes are checked, hertz.
 const RATE_HZ: f64 = 100.0;
 
 /// Overlaps that count as rounding, metres.
@@ -19,7 +19,7 @@ const TOLERANCE_M: f64 = 1e-4;
 /// The same between an object and what it stood on while it is lifted off, metres.
 const LIFT_TOLERANCE_M: f64 = 1e-3;
 
-/// The checker's own table: as the planner is told, solid below its top.
+/// The checker's own table: as for the planner, solid below its top.
 const TABLE_SIZE_M: [f64; 3] = [1.1, 2.4, 0.5];
 const TABLE_MIDDLE_M: [f64; 2] = [0.95, 0.0];
 
@@ -31,7 +31,7 @@ struct Part {
     wrist: bool,
 }
 
-/// What two solids did that they must not.
+/// A collision found by the checker.
 #[derive(Debug)]
 pub(crate) struct Violation {
     pub(crate) t_s: f64,
@@ -181,7 +181,7 @@ impl<'a> Checker<'a> {
             .find_map(|(part, pose)| touching(&part.solid, pose, standing, &place, TOLERANCE_M))
     }
 
-    /// Where the links of one arm's capsules are, and its gripper.
+    /// Returns the poses of one arm's capsule links and of its gripper.
     fn poses(&self, limb: Limb, q: &Joints) -> (Vec<Isometry3<f64>>, Isometry3<f64>) {
         let description = self.robot.description();
         let names = &self.robot.arm(limb).joint_names;
@@ -192,7 +192,7 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// The first limit that a plan breaks, looked at a thousand times a second.
+/// Returns the first limit that a plan breaks, checked a thousand times a second.
 pub(crate) fn broken_limit(plan: &PickPlan, limits: &MotionLimits) -> Option<Violation> {
     let mut begin_s = 0.0;
     let mut before: Option<(Joints, Joints)> = None;
@@ -295,7 +295,7 @@ fn body(facts: &toml::Table) -> Vec<(Solid, Isometry3<f64>)> {
     body
 }
 
-/// The number of an arm's capsule in the reference, e.g. 13 of `left_hand#13`.
+/// Returns the number of an arm's capsule in the reference, e.g. 13 of `left_hand#13`.
 fn number(name: &str, limb: &str) -> Option<usize> {
     let (link, number) = name.split_once('#')?;
     link.starts_with(limb).then(|| number.parse().ok()).flatten()

@@ -1,4 +1,4 @@
-//! What the tests of whole plans, and the example that prints their figures, have in common.
+//! Common parts of the tests of whole plans.
 #![allow(dead_code, reason = "each user needs a part of it")]
 #![allow(clippy::unwrap_used, reason = "a broken fixture ends the test")]
 
@@ -7,7 +7,7 @@ pub(crate) mod scenes;
 pub(crate) mod solid;
 pub(crate) mod tables;
 
-/// A file of the reference.
+/// Returns a file of the reference.
 pub(crate) fn fixture(name: &str) -> String {
     let path = format!("{}/../../tests/fixtures/baxter/{name}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))

@@ -8,15 +8,15 @@ pub(crate) fn read(scene: &str) -> Vec<(String, ObjectPose)> {
     table(scene)["objects"].as_array().unwrap().iter().map(object).collect()
 }
 
-/// The value of an attribute of each of a scene's objects.
+/// Returns the value of an attribute of each of a scene's objects.
 pub(crate) fn attribute(scene: &str, key: &str) -> Vec<String> {
     let table = table(scene);
     let objects = table["objects"].as_array().unwrap();
     objects.iter().map(|o| o["attributes"][key].as_str().unwrap().to_owned()).collect()
 }
 
-/// The scene with object `i` where object `k` stood, and the other way round; what they stand on
-/// keeps its height.
+/// Returns the scene with object `i` where object `k` stood, and the other way round; what they
+/// stand on keeps its height.
 pub(crate) fn swapped(objects: &[ObjectPose], i: usize, k: usize) -> Vec<ObjectPose> {
     let mut swapped = objects.to_vec();
     for (to, from) in [(i, k), (k, i)] {

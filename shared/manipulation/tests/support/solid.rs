@@ -6,7 +6,7 @@ use nalgebra::{Isometry3, Point3, Vector3};
 /// Distance between neighbouring points of a surface, metres.
 const SPACING_M: f64 = 0.02;
 
-/// What lies inside a solid, in its own frame.
+/// Interior of a solid, in its own frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Inside {
     /// Within `radius` of the segment.
@@ -81,12 +81,12 @@ impl Solid {
         Self { name: name.to_owned(), inside, points, centre: Point3::origin(), reach }
     }
 
-    /// The same without points of its own: for what is large and has no edges in reach.
+    /// Returns the same without points of its own: for what is large and has no edges in reach.
     pub(crate) fn without_points(self) -> Self {
         Self { points: Vec::new(), ..self }
     }
 
-    /// How deep a point of its own frame lies inside, metres; not positive outside.
+    /// Returns the depth of a point of its own frame, metres; not positive outside.
     fn depth(&self, p: &Point3<f64>) -> f64 {
         match self.inside {
             Inside::Round { a, b, radius } => {
@@ -116,7 +116,7 @@ impl Solid {
         self.deepest(other, &seen).max(other.deepest(self, &seen.inverse()))
     }
 
-    /// The deepest of this solid's points in `other`, which sees this one at `seen`.
+    /// Returns the deepest of this solid's points in `other`, which sees this one at `seen`.
     fn deepest(&self, other: &Self, seen: &Isometry3<f64>) -> f64 {
         // As far outside as this one's ball is wide, and nothing of it is inside.
         if other.depth(&(seen * self.centre)) < -self.reach {

@@ -57,7 +57,7 @@ fn random_object(random: &mut Random) -> ObjectPose {
 
 pub(crate) const TABLE_Z_M: f64 = -0.155;
 
-/// The settings of the configuration that ships.
+/// Returns the settings of the configuration that ships.
 pub(crate) fn settings() -> PlanSettings {
     PlanSettings { speed_ratio: 0.6, table_z_m: TABLE_Z_M, ..PlanSettings::default() }
 }
@@ -67,7 +67,7 @@ pub(crate) fn all_but(objects: &[ObjectPose], i: usize) -> Vec<Cuboid> {
     others.map(|(_, object)| object.cuboid()).collect()
 }
 
-/// What came of many tables.
+/// Results on many tables.
 #[derive(Debug, Default)]
 pub(crate) struct Tally {
     pub(crate) tables: usize,
@@ -139,7 +139,7 @@ pub(crate) fn try_table(robot: &Robot, checker: &Checker<'_>, seed: u64) -> Tall
     tally
 }
 
-/// What kind of refusal it was.
+/// Kind of refusal.
 fn refused(robot: &Robot, object: &ObjectPose, others: &[Cuboid], tally: &mut Tally) {
     let neutral = robot.neutral();
     let possible = |others: &[Cuboid], settings: &PlanSettings| {
@@ -156,7 +156,7 @@ fn refused(robot: &Robot, object: &ObjectPose, others: &[Cuboid], tally: &mut Ta
     }
 }
 
-/// The settings with other heights above the grasp and other places of handing over.
+/// Returns the settings with other heights above the grasp and other places of handing over.
 fn variants() -> Vec<PlanSettings> {
     let mut variants = vec![settings()];
     for hover_m in [0.05, 0.10, 0.20] {

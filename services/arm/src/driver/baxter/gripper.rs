@@ -27,7 +27,7 @@ pub(super) struct Gripper {
     state: Option<(EndEffectorState, Time)>,
     properties: Option<EndEffectorProperties>,
     /// Latest command, and the time when it was first sent.
-    told: Option<(Command, EndEffectorCommand, Time)>,
+    command: Option<(Command, EndEffectorCommand, Time)>,
     /// Time of its confirmation.
     handled: Option<Time>,
     sent: Option<Time>,
@@ -52,7 +52,7 @@ pub(super) enum Condition {
 impl Gripper {
     pub(super) fn on_state(&mut self, state: &EndEffectorState, now: Time) {
         self.state = Some((*state, now));
-        let confirmed = self.told.is_some_and(|(_, message, _)| state.has_handled(&message));
+        let confirmed = self.command.is_some_and(|(_, message, _)| state.has_handled(&message));
         if confirmed && self.handled.is_none() {
             self.handled = Some(now);
         }
@@ -95,7 +95,7 @@ impl Gripper {
             // A gripper without a sense of its own: closed fingers that stand apart have something
             // between them.
             Tristate::Unknown if !is(state.moving) => {
-                let closes = self.told.is_some_and(|(command, ..)| closes(command));
+                let closes = self.command.is_some_and(|(command, ..)| closes(command));
                 (closes && self.handled.is_some()).then_some(apart)
             }
             Tristate::Unknown => None,
@@ -108,7 +108,7 @@ impl Gripper {
 
     /// Returns whether the fingers have completed their command.
     pub(super) fn has_settled(&self, now: Time) -> bool {
-        let Some((command, ..)) = self.told else { return !self.is_moving() };
+        let Some((command, ..)) = self.command else { return !self.is_moving() };
         let (Some((state, _)), Some(handled)) = (self.state, self.handled) else { return false };
         let position = f64::from(state.position);
         let done = match command {
@@ -125,30 +125,30 @@ impl Gripper {
         let controls_grip = self.properties.is_some_and(|p| p.controls_grip != 0);
         let controls_position = self.properties.is_none_or(|p| p.controls_position != 0);
         match fingers {
-            Fingers::Stay if self.is_moving() => self.tell(Command::Stop, now),
+            Fingers::Stay if self.is_moving() => self.send(Command::Stop, now),
             Fingers::Stay => {}
             Fingers::Open(width_m) if controls_position => {
-                self.tell(Command::Go(gripper::percent(width_m)), now);
+                self.send(Command::Go(gripper::percent(width_m)), now);
             }
-            Fingers::Open(_) => self.tell(Command::Release, now),
-            Fingers::Grip(_) if controls_grip => self.tell(Command::Grip, now),
-            Fingers::Grip(_) => self.tell(Command::Go(0.0), now),
+            Fingers::Open(_) => self.send(Command::Release, now),
+            Fingers::Grip(_) if controls_grip => self.send(Command::Grip, now),
+            Fingers::Grip(_) => self.send(Command::Go(0.0), now),
         }
     }
 
     /// Starts calibration, again after a timeout.
     pub(super) fn calibrate(&mut self, now: Time) {
-        let told = self.told.filter(|(command, ..)| *command == Command::Calibrate);
-        if told.is_some_and(|(.., since)| now.since(since) > CALIBRATION_MAX) {
+        let sent = self.command.filter(|(command, ..)| *command == Command::Calibrate);
+        if sent.is_some_and(|(.., since)| now.since(since) > CALIBRATION_MAX) {
             tracing::warn!("gripper calibration timed out; retrying");
-            self.told = None;
+            self.command = None;
         }
-        self.tell(Command::Calibrate, now);
+        self.send(Command::Calibrate, now);
     }
 
     /// Returns the command to send now.
     pub(super) fn due(&mut self, now: Time) -> Option<EndEffectorCommand> {
-        let (_, mut message, _) = self.told.filter(|_| self.handled.is_none())?;
+        let (_, mut message, _) = self.command.filter(|_| self.handled.is_none())?;
         if self.sent.is_some_and(|sent| now.since(sent) < RESEND_EVERY) {
             return None;
         }
@@ -159,11 +159,11 @@ impl Gripper {
 
     /// Forgets the latest command, so that the next one is sent.
     pub(super) fn forget(&mut self) {
-        (self.told, self.handled, self.sent) = (None, None, None);
+        (self.command, self.handled, self.sent) = (None, None, None);
     }
 
-    fn tell(&mut self, command: Command, now: Time) {
-        if self.told.is_some_and(|(before, ..)| before == command) {
+    fn send(&mut self, command: Command, now: Time) {
+        if self.command.is_some_and(|(before, ..)| before == command) {
             return;
         }
         // A number that a process before this one cannot have used.
@@ -171,7 +171,7 @@ impl Gripper {
         self.sequence = if self.sequence == 0 { clock.max(1) } else { self.sequence + 1 };
         let id = self.state.map_or(0, |(state, _)| state.id);
         let message = EndEffectorCommand::new(id, command, SENDER, self.sequence);
-        (self.told, self.handled, self.sent) = (Some((command, message, now)), None, None);
+        (self.command, self.handled, self.sent) = (Some((command, message, now)), None, None);
     }
 }
 

@@ -44,7 +44,7 @@ impl Bench {
         Self { config, driver, now, joints, assembly, grippers: [ready_gripper(now); 2] }
     }
 
-    /// The robot's joints, last joint first, with the head's among them.
+    /// Returns the robot's joints, last joint first, with the head's among them.
     fn joint_state(&self) -> JointState {
         let mut joints = vec![("head_pan", [0.3; 3])];
         for limb in Limb::BOTH {
@@ -133,7 +133,7 @@ fn a_standing_limb_is_held_and_one_that_is_taken_elsewhere_stays_there() {
 }
 
 #[test]
-fn whatever_keeps_the_robot_from_moving_keeps_it_from_being_told() {
+fn baxter_driver_sends_no_commands_while_inhibited() {
     let off = AssemblyState { enabled: 0, ..AssemblyState::default() };
     for (assembly, inhibit) in [
         (off, MotionInhibit::Disabled),
@@ -170,7 +170,7 @@ fn silence_is_noticed_after_its_time_and_stamps_of_another_clock_do_not_hide_it(
 }
 
 #[test]
-fn a_joint_state_that_makes_no_sense_is_no_joint_state() {
+fn baxter_driver_ignores_an_invalid_joint_state() {
     let mut bench = Bench::new();
     bench.pass(None);
     bench.joints[0][0] = f64::NAN;
@@ -190,7 +190,7 @@ fn joints_a_hair_beyond_their_limits_stand_on_them() {
 }
 
 #[test]
-fn a_joint_off_its_path_is_a_fault_and_a_standing_one_is_none() {
+fn baxter_driver_reports_a_joint_off_its_path() {
     let mut bench = Bench::new();
     bench.pass(None);
     bench.pass(Some(bench.moving(0.1, Fingers::Stay)));
@@ -216,7 +216,7 @@ fn velocities_and_accelerations_are_fed_forward_while_a_limb_moves() {
 }
 
 #[test]
-fn a_goal_is_reached_within_tolerance_and_at_rest_or_too_late() {
+fn baxter_driver_reports_a_goal_reached_or_late() {
     let mut bench = Bench::new();
     bench.pass(None);
     let near = bench.moving(0.008, Fingers::Stay);
@@ -227,7 +227,7 @@ fn a_goal_is_reached_within_tolerance_and_at_rest_or_too_late() {
 }
 
 #[test]
-fn a_gripper_is_told_until_it_says_that_it_has_heard() {
+fn gripper_command_is_resent_until_confirmed() {
     let mut bench = Bench::new();
     bench.pass(None);
     let close = bench.moving(0.0, Fingers::Grip(Grip { object_m: 0.004, offset_m: 0.0 }));
@@ -254,7 +254,7 @@ fn a_gripper_is_told_until_it_says_that_it_has_heard() {
 }
 
 #[test]
-fn a_grasp_is_judged_by_feeling_and_by_position() {
+fn gripper_judges_a_grasp_by_sensor_and_position() {
     let [no, yes, unknown] =
         [Tristate::False, Tristate::True, Tristate::Unknown].map(Tristate::code);
     for (gripping, missed, position, holding) in [

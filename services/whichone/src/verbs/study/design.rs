@@ -1,4 +1,4 @@
-//! What is compared: a row per policy and kind of people, and per rules of turn-taking.
+//! Design of a study: a row per policy and kind of people, and per rules of turn-taking.
 
 use dialogue::registry;
 use evaluation::simulation::UserKind;
@@ -27,9 +27,9 @@ pub(super) enum People {
     RealTime {
         /// The rules of turn-taking.
         rules: Rules,
-        /// What the person is called.
+        /// Name of the simulated user.
         name: &'static str,
-        /// How the person answers.
+        /// Answers of the simulated user.
         kind: TimedKind,
     },
 }
@@ -43,7 +43,7 @@ impl People {
         }
     }
 
-    /// The name of the rules; empty for a dialogue in turns.
+    /// Returns the name of the rules; empty for a dialogue in turns.
     pub(super) fn rules(&self) -> String {
         match self {
             Self::InTurns(_) => String::new(),
@@ -51,7 +51,7 @@ impl People {
         }
     }
 
-    /// Whether they talk in real time.
+    /// Returns whether they talk in real time.
     pub(super) fn in_real_time(&self) -> bool {
         matches!(self, Self::RealTime { .. })
     }
@@ -61,8 +61,8 @@ impl People {
 const TIMED: [(&str, TimedKind); 2] =
     [("usual", TimedKind::USUAL), ("truthful", TimedKind::TRUTHFUL)];
 
-/// The rows that are asked for. In real time the policy is `planner` where it is among those asked
-/// for, else the first of them.
+/// Returns the rows that are asked for. In real time the policy is `planner` where it is among
+/// those asked for, else the first of them.
 ///
 /// # Errors
 /// Rules that are none.
@@ -87,7 +87,7 @@ pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, CliError
     Ok(rows)
 }
 
-/// The names in their order, each once, with `all` written out.
+/// Returns the names in their order, each once, with `all` written out.
 fn listed(names: &[String], all: &[&str]) -> Vec<String> {
     let mut list: Vec<String> = Vec::new();
     for name in names {
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn a_preset_says_what_the_command_line_does_not() {
+    fn preset_fills_in_missing_arguments() {
         let words = ["whichone", "study", "--preset", "paper-remote", "--users", "human"];
         let crate::cli::Verb::Study(args) = crate::cli::Cli::try_parse_from(words).unwrap().verb
         else {

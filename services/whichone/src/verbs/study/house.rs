@@ -1,4 +1,4 @@
-//! Where the study takes place: the scene, the problem, and how long everything takes.
+//! Setup of a study: the scene, the problem, and the durations.
 
 use std::path::Path;
 
@@ -58,7 +58,7 @@ impl House {
         Ok(house)
     }
 
-    /// The room that interactions take place in.
+    /// Returns the room that interactions take place in.
     pub(super) fn room(&self) -> Room<'_> {
         Room {
             scene: &self.problem.scene,
@@ -72,22 +72,22 @@ impl House {
         }
     }
 
-    /// The name of the planner that is configured.
+    /// Returns the name of the planner that is configured.
     pub(super) fn planner(&self) -> &str {
         self.problem.planner()
     }
 
-    /// The arm's motions, where objects have places.
+    /// Returns the arm's motions, where objects have places.
     pub(super) fn motions(&self) -> Option<&Motions> {
         self.motions.as_ref()
     }
 
-    /// Whether picks take the arm's time.
+    /// Returns whether picks take the arm's time.
     pub(super) fn moves(&self) -> bool {
         self.motions.is_some()
     }
 
-    /// How long this robot takes for each question and pick.
+    /// Durations of this robot's questions and picks.
     pub(super) fn durations(&self) -> Durations {
         measure(&self.problem.scene, &self.voice, &self.pace, self.motions.as_ref())
     }
@@ -98,7 +98,7 @@ impl House {
     }
 }
 
-/// The problem of a preset, where nothing else is said.
+/// Returns the problem of a preset, where nothing else is said.
 fn preset(args: &StudyArgs) -> ProblemArgs {
     let mut problem = args.problem.clone();
     match args.preset {
@@ -109,7 +109,7 @@ fn preset(args: &StudyArgs) -> ProblemArgs {
     problem
 }
 
-/// The arm's motions in a scene with places.
+/// Returns the arm's motions in a scene with places.
 fn motions(problem: &Problem) -> Result<Option<Motions>, CliError> {
     let scene = &problem.scene;
     if scene.objects().iter().any(|object| object.placement.is_none()) {

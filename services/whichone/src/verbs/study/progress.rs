@@ -3,7 +3,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
-/// How far a long run is.
+/// Progress of a long run.
 pub(super) struct Progress {
     whole: usize,
     done: usize,
@@ -48,7 +48,7 @@ impl Drop for Progress {
 }
 
 fn draw(text: &str) {
-    // Where standard error is closed nobody wants to know.
+    // A closed standard error is not an error here.
     let _ = write!(io::stderr(), "\r\x1b[K{text}").and_then(|()| io::stderr().flush());
 }
 
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_bar_fills_and_tells_what_is_left() {
+    fn progress_bar_shows_the_time_left() {
         let half = bar(5, 10, Duration::from_secs(30));
         assert_eq!(half.matches('█').count(), WIDTH / 2);
         assert_eq!(half.matches('·').count(), WIDTH / 2);

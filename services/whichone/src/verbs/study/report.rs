@@ -8,7 +8,7 @@ use super::house::House;
 use super::seconds;
 use crate::cli::StudyArgs;
 
-/// The whole study.
+/// Returns the whole study.
 pub(super) fn to_json(args: &StudyArgs, house: &House, results: &[(&Row, Tally)]) -> Json {
     let room = house.room();
     let row = |(row, tally): &(&Row, Tally)| {
@@ -32,7 +32,7 @@ pub(super) fn to_json(args: &StudyArgs, house: &House, results: &[(&Row, Tally)]
     })
 }
 
-/// A line per row below the columns' names.
+/// Returns a line per row below the columns' names.
 pub(super) fn to_csv(results: &[(&Row, Tally)]) -> String {
     let mut text = String::new();
     for (n, (row, tally)) in results.iter().enumerate() {
@@ -47,7 +47,7 @@ pub(super) fn to_csv(results: &[(&Row, Tally)]) -> String {
     text
 }
 
-/// A row's name and value for every column.
+/// Returns a row's name and value for every column.
 fn columns(row: &Row, tally: &Tally) -> Vec<(&'static str, Json)> {
     let success = tally.success_interval();
     let mut columns = vec![

@@ -1,4 +1,4 @@
-//! How long the robot takes for each question and pick, for people and as data.
+//! Durations of the robot's questions and picks, as text and as data.
 
 use dialogue::Action;
 use scene::{ObjectId, Question};
@@ -47,7 +47,7 @@ pub(super) fn lines(house: &House) -> Vec<String> {
     lines
 }
 
-/// The same with names: where the arm's motions are not known, its seconds are null.
+/// Returns the same with names: where the arm's motions are not known, its seconds are null.
 pub(super) fn to_json(house: &House) -> Json {
     let durations = house.durations();
     let room = house.room();
@@ -76,7 +76,7 @@ pub(super) fn to_json(house: &House) -> Json {
     })
 }
 
-/// The questions in words alone.
+/// Returns the questions in words alone.
 fn spoken(house: &House) -> impl Iterator<Item = Question> {
     let problem = house.room().problem;
     let questions = problem.actions.questions(problem.model).into_iter();

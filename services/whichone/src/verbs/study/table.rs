@@ -6,7 +6,7 @@ use super::design::Row;
 use super::house::House;
 use crate::output::table;
 
-/// The lines of the tables: dialogues in turns, then those in real time.
+/// Returns the lines of the tables: dialogues in turns, then those in real time.
 pub(super) fn lines(house: &House, results: &[(&Row, Tally)]) -> Vec<String> {
     let (real_time, in_turns): (Vec<_>, Vec<_>) =
         results.iter().partition(|(row, _)| row.people.in_real_time());

@@ -12,7 +12,7 @@ fn random_block(random: &mut Random) -> Block {
     Block { pose: Isometry3::from_parts(place, turn), half }
 }
 
-/// The least distance of points on a grid through a block from `outside`.
+/// Returns the least distance of points on a grid through a block from `outside`.
 fn sampled(block: &Block, outside: impl Fn(&Vector3<f64>) -> f64) -> f64 {
     let axes = block.axes();
     let mut least = f64::INFINITY;

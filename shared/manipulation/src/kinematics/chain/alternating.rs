@@ -12,7 +12,7 @@ use super::zero::ZeroPosture;
 use crate::kinematics::chain::trig::sin_cos;
 use crate::kinematics::limb::Joints;
 
-/// How far from right angles, and from meeting, axes may be, radians and metres. Descriptions
+/// Tolerance of right angles and of meeting axes, radians and metres. Descriptions
 /// round π/2 to twelve digits.
 const EXACT: f64 = 1e-9;
 
@@ -41,7 +41,7 @@ pub(crate) struct Alternating {
 }
 
 impl Alternating {
-    /// The dimensions of a limb, if it is of this family.
+    /// Returns the dimensions of a limb, if it is of this family.
     pub(crate) fn of(posture: &ZeroPosture) -> Option<Self> {
         let axes = &posture.axes;
         let along = |i: usize| axes[i].direction;
@@ -79,7 +79,7 @@ impl Alternating {
         })
     }
 
-    /// The frames at `q`, in `base`.
+    /// Returns the frames at `q`, in `base`.
     #[inline(always)]
     pub(crate) fn frames(&self, q: &Joints) -> [Frame; 7] {
         let angles: Joints = std::array::from_fn(|i| q[i] + self.zero[i]);
@@ -94,7 +94,7 @@ impl Alternating {
         [first, s1, e0, e1, w0, w1, w2]
     }
 
-    /// The tool on the last frame.
+    /// Returns the tool on the last frame.
     #[inline(always)]
     pub(crate) fn tool_on(&self, last: &Frame) -> Frame {
         if self.plain_tool {
@@ -111,7 +111,7 @@ impl Alternating {
     }
 }
 
-/// The turn of every frame against the one before, radians.
+/// Returns the turn of every frame against the one before, radians.
 fn zeros(frames: &[Frame; 7]) -> Joints {
     std::array::from_fn(|i| {
         if i == 0 {

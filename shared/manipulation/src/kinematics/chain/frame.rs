@@ -16,7 +16,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame as an isometry; the quaternion has w ≥ 0.
+    /// Returns the frame as an isometry; the quaternion has w ≥ 0.
     pub fn isometry(&self) -> Isometry3<f64> {
         let matrix = Matrix3::from_columns(&[self.x, self.y, self.z]);
         let rotation =
@@ -24,25 +24,25 @@ impl Frame {
         Isometry3::from_parts(Translation3::from(self.origin), positive(rotation))
     }
 
-    /// The point at `p` of this frame, in the frame's parent, metres.
+    /// Returns the point at `p` of this frame, in the frame's parent, metres.
     #[inline(always)]
     pub fn point(&self, p: &Vector3<f64>) -> Vector3<f64> {
         self.origin + self.direction(p)
     }
 
-    /// The direction `d` of this frame, in the frame's parent.
+    /// Returns the direction `d` of this frame, in the frame's parent.
     #[inline(always)]
     pub(crate) fn direction(&self, d: &Vector3<f64>) -> Vector3<f64> {
         self.x * d.x + self.y * d.y + self.z * d.z
     }
 
-    /// A direction of the parent, in this frame's axes.
+    /// Returns a direction of the parent, in this frame's axes.
     #[inline(always)]
     pub(crate) fn seen(&self, d: &Vector3<f64>) -> Vector3<f64> {
         Vector3::new(self.x.dot(d), self.y.dot(d), self.z.dot(d))
     }
 
-    /// A frame of this one, in this one's parent.
+    /// Returns a frame of this one, in this one's parent.
     #[inline(always)]
     pub(crate) fn compose(&self, inner: &Self) -> Self {
         Self {
@@ -53,7 +53,7 @@ impl Frame {
         }
     }
 
-    /// A frame of the parent, in this one.
+    /// Returns a frame of the parent, in this one.
     pub(crate) fn relative(&self, other: &Self) -> Self {
         Self {
             x: self.seen(&other.x),
@@ -90,7 +90,7 @@ impl From<&Isometry3<f64>> for Frame {
     }
 }
 
-/// The same rotation with a quaternion of w ≥ 0.
+/// Returns the same rotation with a quaternion of w ≥ 0.
 pub(crate) fn positive(rotation: UnitQuaternion<f64>) -> UnitQuaternion<f64> {
     if rotation.w < 0.0 { UnitQuaternion::new_unchecked(-rotation.into_inner()) } else { rotation }
 }

@@ -30,12 +30,12 @@ impl General {
         Self { steps, tool: frames[6].relative(&Frame::from(&posture.tool)) }
     }
 
-    /// A point of the first axis, in `base`, metres.
+    /// Returns a point of the first axis, in `base`, metres.
     pub(crate) fn shoulder(&self) -> Vector3<f64> {
         self.steps[0].origin
     }
 
-    /// The frames at `q`, in `base`.
+    /// Returns the frames at `q`, in `base`.
     pub(crate) fn frames(&self, q: &Joints) -> [Frame; 7] {
         let turns = sin_cos(q);
         let mut last = self.steps[0].turned_z(turns[0]);
@@ -47,7 +47,7 @@ impl General {
         frames
     }
 
-    /// The tool on the last frame.
+    /// Returns the tool on the last frame.
     pub(crate) fn tool_on(&self, last: &Frame) -> Frame {
         last.compose(&self.tool)
     }

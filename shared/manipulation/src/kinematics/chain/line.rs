@@ -15,7 +15,7 @@ const STEP_RAD: f64 = 0.02;
 /// flip through a singularity, not a motion along the line.
 const JUMP_RAD: f64 = 0.15;
 
-/// Where a straight line could not be followed.
+/// A straight line that cannot be followed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("the straight line ends {:.0} % of the way: {}", fraction * 100.0, if *jumps {
     "the arm would have to flip"
@@ -63,7 +63,7 @@ impl Chain {
     }
 }
 
-/// The pose at a share of the way, positions and rotations each at constant rate.
+/// Returns the pose at a share of the way, positions and rotations each at constant rate.
 fn between(from: &Isometry3<f64>, to: &Isometry3<f64>, share: f64) -> Isometry3<f64> {
     let rotation = from.rotation.try_slerp(&to.rotation, share, 1e-9).unwrap_or(if share < 1.0 {
         from.rotation

@@ -33,7 +33,7 @@ pub struct Chain {
     limits: PositionLimits,
 }
 
-/// What kind of limb it is.
+/// Geometry of the limb.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[expect(clippy::large_enum_variant, reason = "both are large, and there are two limbs")]
 pub(crate) enum Geometry {
@@ -44,7 +44,7 @@ pub(crate) enum Geometry {
 }
 
 impl Chain {
-    /// The chain of a limb with these axes, tool and position limits.
+    /// Returns the chain of a limb with these axes, tool and position limits.
     pub fn new(posture: &ZeroPosture, limits: PositionLimits) -> Self {
         let geometry = match Alternating::of(posture) {
             Some(alternating) => Geometry::Alternating(alternating),
@@ -53,7 +53,7 @@ impl Chain {
         Self { geometry, limits }
     }
 
-    /// The same limb with its tool frame moved by `tool`, a pose in the present tool frame.
+    /// Returns the same limb with its tool frame moved by `tool`, a pose in the present tool frame.
     pub fn with_tool(&self, tool: &Isometry3<f64>) -> Self {
         let tool = self.forward(&[0.0; 7]) * tool;
         let axes = match &self.geometry {
@@ -76,13 +76,13 @@ impl Chain {
         &self.limits
     }
 
-    /// Whether the limb is of Baxter's family, for which inverse kinematics are in closed form;
-    /// those of others are found by iteration, some ten times slower.
+    /// Returns whether the limb is of Baxter's family, for which inverse kinematics are in closed
+    /// form; those of others are found by iteration, some ten times slower.
     pub fn is_closed_form(&self) -> bool {
         matches!(self.geometry, Geometry::Alternating(_))
     }
 
-    /// The foot of the first axis beside the shoulder, in `base`, metres.
+    /// Returns the foot of the first axis beside the shoulder, in `base`, metres.
     pub(crate) fn shoulder(&self) -> Vector3<f64> {
         match &self.geometry {
             Geometry::Alternating(chain) => chain.mount.origin,
@@ -94,9 +94,9 @@ impl Chain {
         &self.geometry
     }
 
-    /// A frame for each joint `s0..w2` that moves with it, in `base`. Where it sits and how it is
-    /// turned on its link is the chain's own choice: put what is to move with a link into its frame
-    /// at zero ([`Frame::point`]), and it will be right everywhere.
+    /// Returns a frame for each joint `s0..w2` that moves with it, in `base`. Where it sits and how
+    /// it is turned on its link is the chain's own choice: put what is to move with a link into its
+    /// frame at zero ([`Frame::point`]), and it will be right everywhere.
     #[inline(always)]
     pub fn frames(&self, q: &Joints) -> [Frame; 7] {
         match &self.geometry {
@@ -105,7 +105,7 @@ impl Chain {
         }
     }
 
-    /// The tool frame in `base`, as axes and origin.
+    /// Returns the tool frame in `base`, as axes and origin.
     #[inline]
     pub fn tool_frame(&self, q: &Joints) -> Frame {
         match &self.geometry {

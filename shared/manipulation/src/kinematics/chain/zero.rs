@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Vector3};
 
-/// Where the seven joint axes and the tool are while every joint is at zero, in `base`. Any limb
+/// The seven joint axes and the tool at zero joint positions, in `base`. Any limb
 /// of seven turning joints is described by this, whatever frames its description gives its links
 /// (the product of exponentials, Brockett 1984).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,12 +23,12 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// The point of the axis that is nearest to `p`.
+    /// Returns the point of the axis that is nearest to `p`.
     pub(crate) fn foot(&self, p: &Vector3<f64>) -> Vector3<f64> {
         self.point + self.direction * self.direction.dot(&(p - self.point))
     }
 
-    /// The point where two axes at right angles meet, if they do so to within `within_m`.
+    /// Returns the point where two axes at right angles meet, if they do so to within `within_m`.
     pub(crate) fn meets(&self, other: &Self, within_m: f64) -> Option<Vector3<f64>> {
         // At right angles the other's foot on this one is found along this direction alone.
         let here = self.foot(&other.point);

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-/// The most that a square may lack for its root to be still looked at.
+/// Most that a square may lack for its root to be still considered.
 const LACK_MAX: f64 = 0.3;
 
 /// The elbow's sine and cosine, and what the square of its root lacks.
@@ -23,7 +23,7 @@ pub(crate) struct ArmAngles {
 }
 
 impl ArmAngles {
-    /// A direction in the turned shoulder's axes, seen from the frame before w0.
+    /// Returns a direction in the turned shoulder's axes, seen from the frame before w0.
     #[inline(always)]
     pub(crate) fn unturned(&self, p: &Vector3<f64>) -> Vector3<f64> {
         let (s, c) = self.a;
@@ -35,8 +35,8 @@ impl ArmAngles {
     }
 }
 
-/// The square root of a number in units of the arm, and how much the number lacks where it has
-/// none; nothing far below 0.
+/// Returns the square root of a number in units of the arm, and how much the number lacks where it
+/// has none; nothing far below 0.
 ///
 /// A root that is nearly there is kept so that a feasible s0 between two samples can be found from
 /// them: near the stretched arm it is a narrow range.

@@ -17,7 +17,7 @@ const LOOKS: usize = 16;
 /// The most that the violation falls per radian of s0: what [`super::slice::WIDE_RAD`] rests on.
 pub(crate) const STEEPEST: f64 = 17.0;
 
-/// Local minima looked at between their neighbours. In two million random postures the tenth was
+/// Local minima refined between their neighbours. In two million random postures the tenth was
 /// never the one.
 const MINIMA: usize = 16;
 
@@ -31,17 +31,17 @@ const STRAIGHT_RAD: f64 = 0.1;
 /// Refinement steps for a hopeful posture.
 const STEPS_HOPEFUL: usize = 40;
 
-/// Refinement steps towards the nearest posture when there is no hope of an exact one.
+/// Refinement steps towards the nearest posture when no exact one exists.
 const STEPS_NEAREST: usize = 16;
 
-/// What came of a closer look that found no solution.
+/// Result of a closer search without a solution.
 pub(crate) struct Missed {
     pub(crate) nearest: Refined,
     /// Positions of s0 where the wrist of a posture that nearly fits is all but straight, radians.
     pub(crate) straight: Vec<f64>,
 }
 
-/// What the sweep saw of postures that are not solutions.
+/// Postures of the sweep that are not solutions.
 pub(crate) struct Nearly {
     /// Width of a cell, radians.
     cell_rad: f64,
@@ -94,8 +94,8 @@ impl Nearly {
         Err(Missed { nearest: best, straight })
     }
 
-    /// A solution where two joints' violations cross between neighbouring samples, or beside a fold
-    /// at which a branch ends between them.
+    /// Returns a solution where two joints' violations cross between neighbouring samples, or
+    /// beside a fold at which a branch ends between them.
     fn hidden(&self, aim: &Aim<'_>) -> Option<IkSolution> {
         let beside = |a: &Seen, b: &&Seen| b.branch == a.branch && b.cell.abs_diff(a.cell) == 1;
         (0..self.seen.len()).find_map(|i| {
@@ -151,7 +151,7 @@ impl Nearly {
     }
 }
 
-/// A roughly settled posture as an answer, if it is one.
+/// Returns a roughly settled posture as an answer, if it is one.
 fn settled(aim: &Aim<'_>, branch: Branch, found: &Posture) -> Option<IkSolution> {
     if found.violation > 0.0 {
         return None;
@@ -159,8 +159,8 @@ fn settled(aim: &Aim<'_>, branch: Branch, found: &Posture) -> Option<IkSolution>
     exact(aim, &Slice::new(aim, found.q[0]).posture(branch).unwrap_or(*found))
 }
 
-/// The nearest posture in a few steps: from the best one known, or from the middle of the limits
-/// where the target lies beyond the arm's reach.
+/// Returns the nearest posture in a few steps: from the best one known, or from the middle of the
+/// limits where the target lies beyond the arm's reach.
 fn nearest(aim: &Aim<'_>, best: Option<&Posture>) -> Refined {
     refine(
         &aim.goal,
@@ -169,7 +169,8 @@ fn nearest(aim: &Aim<'_>, best: Option<&Posture>) -> Refined {
     )
 }
 
-/// The least violation of a branch within one cell of s0 either side, or the first solution there.
+/// Returns the least violation of a branch within one cell of s0 either side, or the first solution
+/// there.
 fn least_violation(aim: &Aim<'_>, cell_rad: f64, branch: Branch, from: Posture) -> Posture {
     let (lower, upper) = aim.limits(0);
     let mut best = from;

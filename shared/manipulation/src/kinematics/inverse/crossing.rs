@@ -14,8 +14,8 @@ use crate::kinematics::limits::PositionLimits;
 /// Closed forms spent on a crossing; they narrow s0 to 4e-4 rad.
 const LOOKS: usize = 7;
 
-/// A posture of `branch` between `left` and `right` that fits, if the joint that is furthest
-/// outside its limits is not the same at both.
+/// Returns a posture of `branch` between `left` and `right` that fits, if the joint that is
+/// furthest outside its limits is not the same at both.
 pub(crate) fn between(
     aim: &Aim<'_>,
     branch: Branch,
@@ -42,7 +42,8 @@ pub(crate) fn between(
     None
 }
 
-/// The joint that is furthest outside its limits or nearest to one, and whether at the upper.
+/// Returns the joint that is furthest outside its limits or nearest to one, and whether at the
+/// upper.
 fn furthest(limits: &PositionLimits, q: &Joints) -> (usize, bool) {
     let mut furthest = (0, false);
     let mut most = f64::NEG_INFINITY;

@@ -16,8 +16,8 @@ const HALVINGS: usize = 6;
 /// Samples between the fold and the next sample of the sweep.
 const SAMPLES: usize = 10;
 
-/// A posture of `branch` that fits, between `within`, which has the branch, and the fold at which it
-/// ends before `end` (s0, radians), if it does.
+/// Returns a posture of `branch` that fits, between `within`, which has the branch, and the fold at
+/// which it ends before `end` (s0, radians), if it does.
 pub(crate) fn beside(aim: &Aim<'_>, branch: Branch, within: &Posture, end: f64) -> Option<Posture> {
     let at = |s0: f64| Slice::roughly(aim, s0).posture(branch);
     let is_beyond = |posture: &Option<Posture>| posture.is_none_or(|posture| posture.lack > 0.0);

@@ -31,7 +31,7 @@ impl<'a> Goal<'a> {
         Self { chain, tool: Frame::from(target) }
     }
 
-    /// Whether every number of the target is finite.
+    /// Returns whether every number of the target is finite.
     pub(crate) fn is_finite(&self) -> bool {
         [self.tool.x, self.tool.y, self.tool.z, self.tool.origin]
             .iter()
@@ -66,7 +66,7 @@ impl<'a> Aim<'a> {
     }
 }
 
-/// The rotation vector (axis times angle, in `base`) that takes frame `from` to frame `to`.
+/// Returns the rotation vector (axis times angle, in `base`) that takes frame `from` to frame `to`.
 #[inline]
 pub(crate) fn turn_between(from: &Frame, to: &Frame) -> Vector3<f64> {
     let sine = (from.x.cross(&to.x) + from.y.cross(&to.y) + from.z.cross(&to.z)) * 0.5;

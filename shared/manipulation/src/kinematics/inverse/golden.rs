@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn a_search_without_hope_ends() {
+    fn joint_path_search_ends_without_a_path() {
         let mut looks = 0;
         narrow((0.0, 1.0), 30, 1.0, |x| {
             looks += 1;

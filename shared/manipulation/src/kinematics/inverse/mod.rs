@@ -1,7 +1,7 @@
 //! Inverse kinematics: a semi-analytic sweep over s0, then refinement within the limits. Limbs that
 //! are not of Baxter's family are refined from many postures instead.
 //!
-//! What is returned has been put through the forward kinematics and the limits: an answer is
+//! Every result has passed forward kinematics and the limits: an answer is
 //! within [`TOLERANCE_M`] and [`TOLERANCE_RAD`] of the target and inside every joint limit to the
 //! last bit, or it is an [`Unreachable`].
 
@@ -87,8 +87,8 @@ impl Chain {
         }
     }
 
-    /// The posture that reaches `target` at the least Euclidean joint distance from `seed`: every
-    /// branch at samples of s0, the best of them followed along s0.
+    /// Returns the posture that reaches `target` at the least Euclidean joint distance from `seed`:
+    /// every branch at samples of s0, the best of them followed along s0.
     ///
     /// # Errors
     /// [`Unreachable`] with the nearest pose's posture.
@@ -104,8 +104,9 @@ impl Chain {
         }
     }
 
-    /// The posture that reaches `target` with the shortest steps from `q`: the same branch, as long
-    /// as the target is near. For following a motion; [`Chain::inverse`] is for finding one.
+    /// Returns the posture that reaches `target` with the shortest steps from `q`: the same branch,
+    /// as long as the target is near. For following a motion; [`Chain::inverse`] is for finding
+    /// one.
     ///
     /// # Errors
     /// [`Unreachable`] if the steps end at the limits or at a singularity short of the target.
@@ -131,7 +132,7 @@ impl Chain {
 const TRACK_STEPS: usize = 20;
 
 impl IkSolution {
-    /// The answer if `refined` is one.
+    /// Returns the answer if `refined` is one.
     fn accept(goal: &Goal<'_>, refined: &Refined) -> Option<Self> {
         let exact = refined.position_error_m <= TOLERANCE_M
             && refined.rotation_error_rad <= TOLERANCE_RAD

@@ -43,7 +43,7 @@ pub(crate) fn nearest(aim: &Aim<'_>, seed: &Joints) -> Result<IkSolution, Unreac
     }
 }
 
-/// The answer moved along its own curve to the point nearest to the seed.
+/// Returns the answer moved along its own curve to the point nearest to the seed.
 fn drifted(aim: &Aim<'_>, answer: IkSolution, seed: &Joints) -> IkSolution {
     let from = Refined::at(&aim.goal, answer.q);
     IkSolution::accept(&aim.goal, &drift(&aim.goal, from, seed, DRIFTS)).unwrap_or(answer)
@@ -80,7 +80,7 @@ fn samples_from(aim: &Aim<'_>, seed: &Joints) -> Vec<Near> {
     found
 }
 
-/// The nearest samples, without those that lie beside a nearer one on the same curve.
+/// Returns the nearest samples, without those that lie beside a nearer one on the same curve.
 fn first_of_each_curve(sorted: &[Near]) -> impl Iterator<Item = Near> {
     let mut chosen: Vec<Near> = Vec::with_capacity(FOLLOWED);
     for near in sorted {
@@ -95,11 +95,11 @@ fn first_of_each_curve(sorted: &[Near]) -> impl Iterator<Item = Near> {
     chosen.into_iter()
 }
 
-/// The nearest point of the sample's curve, between its neighbours.
+/// Returns the nearest point of the sample's curve, between its neighbours.
 fn follow(aim: &Aim<'_>, seed: &Joints, from: &Near) -> Near {
     let (lower, upper) = aim.limits(0);
     let s0 = from.posture.q[0];
-    // The sample was only roughly settled: its distance does not count until it is looked at again.
+    // The sample was only roughly settled: its distance counts only once refined.
     let mut best = Near { distance: f64::INFINITY, ..*from };
     let mut look = |at: f64| match Slice::new(aim, at).posture(from.branch) {
         Some(posture) if posture.violation == 0.0 => {

@@ -20,7 +20,7 @@ impl Branch {
         })
     }
 
-    /// A number below 8.
+    /// Returns a number below 8.
     pub(crate) fn index(self) -> usize {
         usize::from(self.elbow_up)
             | usize::from(self.roll_up) << 1
@@ -32,17 +32,17 @@ impl Branch {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Posture {
     pub(crate) q: Joints,
-    /// How far from a solution: radians that the worst joint lies outside its limits, plus what
+    /// Distance from a solution: excess of the worst joint over its limits, radians, plus what
     /// the squares of the elbow's and the roll's root lack. 0 only where every joint is within its
     /// limits and both roots exist.
     pub(crate) violation: f64,
-    /// What the squares of the roots lack alone.
+    /// Deficit of the squares under the roots alone.
     pub(crate) lack: f64,
     pub(crate) settled: bool,
 }
 
 impl Posture {
-    /// Whether the closed form claims that this reaches the goal.
+    /// Returns whether the closed form claims that this reaches the goal.
     #[inline(always)]
     pub(crate) fn is_solution(&self) -> bool {
         self.settled && self.violation == 0.0

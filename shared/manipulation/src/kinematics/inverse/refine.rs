@@ -106,7 +106,7 @@ fn error_twist(from: &Frame, to: &Frame) -> Vector6<f64> {
     Vector6::new(p.x, p.y, p.z, r.x, r.y, r.z)
 }
 
-/// The damped step over the joints that may move; none where the normal equations cannot be
+/// Returns the damped step over the joints that may move; none where the normal equations cannot be
 /// solved.
 fn free_step(
     limits: &PositionLimits,

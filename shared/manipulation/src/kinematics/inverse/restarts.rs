@@ -20,7 +20,7 @@ const DRIFTS: usize = 20;
 /// Solutions nearer to each other than this are one, radians.
 const SAME_RAD: f64 = 0.05;
 
-/// The first solution found, or the posture that came nearest.
+/// Returns the first solution found, or the posture that came nearest.
 pub(crate) fn first(goal: &Goal<'_>) -> Result<IkSolution, Refined> {
     let middle = goal.chain.limits().middle();
     let mut nearest = Refined::at(goal, middle);
@@ -39,7 +39,7 @@ pub(crate) fn first(goal: &Goal<'_>) -> Result<IkSolution, Refined> {
     Err(nearest)
 }
 
-/// The solution nearest to `seed` among those found from it and from many other postures.
+/// Returns the solution nearest to `seed` among those found from it and from many other postures.
 pub(crate) fn nearest(goal: &Goal<'_>, seed: &Joints) -> Result<IkSolution, Unreachable> {
     if !goal.is_finite() || seed.iter().any(|q| !q.is_finite()) {
         return first(goal).map_err(Unreachable::from);
@@ -72,8 +72,8 @@ pub(crate) fn all(goal: &Goal<'_>) -> Vec<Joints> {
     found
 }
 
-/// The middle of the limits, then postures that fill them evenly: Roberts's additive sequence in
-/// seven dimensions, the same every time.
+/// Returns the middle of the limits, then postures that fill them evenly: Roberts's additive
+/// sequence in seven dimensions, the same every time.
 fn starts<'a>(goal: &'a Goal<'_>) -> impl Iterator<Item = Joints> + 'a {
     (0..).map(|k| {
         let share = STRIDES.map(|stride| (0.5 + stride * f64::from(k)).fract());

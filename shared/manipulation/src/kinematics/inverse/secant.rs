@@ -12,7 +12,7 @@ impl Secant {
     /// The greatest turn of the offset in one round, radians.
     const TURN_MAX: f64 = 0.7;
 
-    /// A better offset than `offset`, which leads to `next`.
+    /// Returns a better offset than `offset`, which leads to `next`.
     pub(crate) fn improve(&mut self, offset: (f64, f64), next: (f64, f64)) -> (f64, f64) {
         let (x, y) = offset;
         let ahead = (x * next.1 - y * next.0).atan2(x * next.0 + y * next.1);

@@ -19,7 +19,7 @@ use super::secant::Secant;
 use crate::kinematics::chain::Alternating;
 use crate::kinematics::limits::PositionLimits;
 
-/// How far outside its limits a joint may be before a branch is dropped while looking for
+/// Excess over a joint's limits at which a branch is dropped while looking for
 /// solutions, radians: above what the rounds after the first still change.
 pub(crate) const NARROW_RAD: f64 = 0.1;
 
@@ -49,11 +49,11 @@ pub(crate) struct Slice<'a> {
     arm: &'a Alternating,
     limits: &'a PositionLimits,
     s0: f64,
-    /// When a wrist offset has settled, metres.
+    /// Change at which a wrist offset has settled, metres.
     settled_m: f64,
     /// Shoulder point to wrist point.
     v: Vector3<f64>,
-    /// What |W − S| leaves for the elbow: `A cos e1 + B sin e1 = K`.
+    /// Equation of the elbow, from |W − S|: `A cos e1 + B sin e1 = K`.
     k: f64,
     /// The target's z axis, and its x axis.
     z: Vector3<f64>,
@@ -79,12 +79,12 @@ impl<'a> Slice<'a> {
         }
     }
 
-    /// The same slice for comparing postures; they miss the goal by up to 1e-6 m.
+    /// Returns the same slice for comparing postures; they miss the goal by up to 1e-6 m.
     pub(crate) fn roughly(aim: &'a Aim<'a>, s0: f64) -> Self {
         Self { settled_m: ROUGHLY_M, ..Self::new(aim, s0) }
     }
 
-    /// The same slice for telling how nearly postures fit, to a hundredth of a radian.
+    /// Returns the same slice for measuring how nearly postures fit, to a hundredth of a radian.
     pub(crate) fn glimpse(aim: &'a Aim<'a>, s0: f64) -> Self {
         Self { settled_m: GLIMPSE_M, ..Self::new(aim, s0) }
     }
@@ -125,14 +125,16 @@ impl<'a> Slice<'a> {
         false
     }
 
-    /// The posture of one branch, however far outside the limits; none where a root is missing.
+    /// Returns the posture of one branch, however far outside the limits; none where a root is
+    /// missing.
     pub(crate) fn posture(&self, branch: Branch) -> Option<Posture> {
         let e1 = self.elbow((0.0, 0.0), branch.elbow_up)?;
         let arm = self.shoulder((0.0, 0.0), e1, branch.roll_up)?;
         self.settle(branch, self.forearm(&arm, branch.wrist_up), WIDE_RAD)
     }
 
-    /// The same with the wrist's fixed point sought from `w0`: a nearly straight wrist has several.
+    /// Returns the same with the wrist's fixed point sought from `w0`: a nearly straight wrist has
+    /// several.
     pub(crate) fn posture_from(&self, branch: Branch, w0: f64) -> Option<Posture> {
         let (s, c) = (w0 + self.arm.zero[4]).sin_cos();
         self.settle(branch, (c, s), WIDE_RAD)
@@ -215,14 +217,14 @@ impl<'a> Slice<'a> {
         (n.x * scale, n.y * scale)
     }
 
-    /// How far outside its limits joint `i` is whose angle has this sine and cosine, radians.
+    /// Returns the excess over its limits of joint `i` whose angle has this sine and cosine, radians.
     #[inline(always)]
     fn outside(&self, i: usize, turn: (f64, f64)) -> f64 {
         self.limits.outside(i, self.position(i, turn))
     }
 
-    /// The position of joint `i` whose angle has this sine and cosine, radians: of those a whole
-    /// turn apart the one nearest to the middle of its limits.
+    /// Returns the position of joint `i` whose angle has this sine and cosine, radians: of those a
+    /// whole turn apart the one nearest to the middle of its limits.
     #[inline(always)]
     fn position(&self, i: usize, (s, c): (f64, f64)) -> f64 {
         let (lower, upper) = self.limits.0[i];

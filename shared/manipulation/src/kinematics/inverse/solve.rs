@@ -20,7 +20,7 @@ const FINE: usize = 120;
 /// Baxter.
 pub(crate) const SAMPLE_RAD: f64 = 0.0875;
 
-/// How far the second sweep looks either side of where the first came nearest, radians of s0.
+/// Range of the second sweep around the nearest samples of the first, radians of s0.
 const WINDOW_RAD: f64 = 0.15;
 
 /// Places about which it looks.
@@ -43,7 +43,7 @@ const APART_RAD: f64 = 0.02;
 /// Refinement steps for a posture whose joints fit but whose wrist has not settled.
 const POLISH: usize = 4;
 
-/// The first posture that reaches the goal, or the nearest that was found.
+/// Returns the first posture that reaches the goal, or the nearest that was found.
 pub(crate) fn first(aim: &Aim<'_>) -> Result<IkSolution, Refined> {
     if !aim.goal.is_finite() {
         return Err(Refined::at(&aim.goal, aim.goal.chain.limits().middle()));
@@ -58,7 +58,7 @@ pub(crate) fn first(aim: &Aim<'_>) -> Result<IkSolution, Refined> {
     })
 }
 
-/// A solution at one of the sweep's samples of s0.
+/// Returns a solution at one of the sweep's samples of s0.
 fn sweep(aim: &Aim<'_>) -> Option<IkSolution> {
     let cells = cells(aim);
     let mut answer = None;
@@ -74,7 +74,7 @@ fn sweep(aim: &Aim<'_>) -> Option<IkSolution> {
     answer
 }
 
-/// A solution between two samples of s0, found from what nearly fits at them.
+/// Returns a solution between two samples of s0, found from what nearly fits at them.
 fn between(aim: &Aim<'_>) -> Result<IkSolution, Missed> {
     let cells = cells(aim);
     let mut nearly = Nearly::new(aim, cells);
@@ -122,7 +122,7 @@ fn patiently(aim: &Aim<'_>, nearest: Refined, places: &[f64]) -> Result<IkSoluti
     Err(nearest)
 }
 
-/// The first and those of the others that lie apart from each other, at most [`WINDOWS`].
+/// Returns the first and those of the others that lie apart from each other, at most [`WINDOWS`].
 fn apart(first: f64, others: &[f64]) -> Vec<f64> {
     let mut places = vec![first];
     for other in others {
@@ -151,7 +151,7 @@ pub(crate) fn all(aim: &Aim<'_>) -> Vec<Joints> {
     found
 }
 
-/// The posture as an answer, if forward kinematics agrees that it is one.
+/// Returns the posture as an answer, if forward kinematics agrees that it is one.
 pub(crate) fn exact(aim: &Aim<'_>, posture: &Posture) -> Option<IkSolution> {
     if posture.violation > 0.0 {
         return None;
@@ -171,7 +171,7 @@ pub(crate) fn samples(aim: &Aim<'_>) -> impl Iterator<Item = f64> {
     (0..=count as usize).map(move |k| s0_at(aim, k as f64 / count))
 }
 
-/// How many intervals the sweep has: a power of two.
+/// Intervals of the sweep: a power of two.
 fn cells(aim: &Aim<'_>) -> u32 {
     let (lower, upper) = aim.limits(0);
     (((upper - lower) / CELL_RAD).ceil().clamp(2.0, 1024.0) as u32).next_power_of_two()

@@ -269,7 +269,7 @@ fn answers_do_not_depend_on_what_was_asked_before() {
 }
 
 #[test]
-fn what_is_out_of_reach_is_refused_with_the_nearest_posture() {
+fn inverse_kinematics_reports_the_nearest_posture_out_of_reach() {
     let chain = &arm(Limb::Left).chain;
     // 2 m along +x of the shoulder: the best that the arm can do is to stretch towards it.
     let shoulder = chain.shoulder();
@@ -287,7 +287,7 @@ fn what_is_out_of_reach_is_refused_with_the_nearest_posture() {
 }
 
 #[test]
-fn what_is_not_a_pose_is_refused() {
+fn inverse_kinematics_rejects_an_invalid_pose() {
     for x in [f64::NAN, f64::INFINITY, 1e200] {
         let target = Isometry3::translation(x, 0.0, 0.0);
         let missed = arm(Limb::Left).chain.inverse(&target, None).unwrap_err();

@@ -82,7 +82,7 @@ fn a_long_box_is_held_at_the_middles_of_its_sides() {
 }
 
 #[test]
-fn what_cannot_be_held_is_refused() {
+fn grasp_rejects_what_cannot_be_held() {
     let wide = ObjectPose { grasp_width_m: 0.05, ..BOWL };
     let error = wide.grasps().unwrap_err();
     assert_eq!(error, GraspError::TooWide { width_m: 0.05 });

@@ -2,12 +2,12 @@ use super::*;
 use crate::kinematics::limits::PositionLimits;
 use crate::samples::{Random, fixture, full, named, neutral, numbers, table};
 
-/// The same without a bound on jerk.
+/// Returns the same without a bound on jerk.
 fn jerky() -> MotionLimits {
     MotionLimits { jerk: [f64::INFINITY; 7], ..full() }
 }
 
-/// What a motion stop may do; between two of its steps it is not looked at.
+/// Bounds of a motion stop, which is not checked between two of its steps.
 fn stopping() -> MotionLimits {
     MotionLimits { acceleration: full().stop.map(|a| a * (1.0 + 1e-5)), ..jerky() }
 }
@@ -156,7 +156,7 @@ fn moves_between_states_take_as_long_as_the_reference() {
     assert!(refused <= 1, "{refused} of 98 refused");
 }
 
-/// Whether joint `j` passes its position limit even if it brakes as hard as it may.
+/// Returns whether joint `j` passes its position limit even if it brakes as hard as it may.
 fn cannot_stop(from: &State, j: usize) -> bool {
     let side = from.qd[j].signum();
     let (mut q, mut qd, mut qdd) = (side * from.q[j], side * from.qd[j], side * from.qdd[j]);

@@ -18,7 +18,7 @@ pub(super) struct Curve {
     pub(super) duration_s: f64,
 }
 
-/// How far outside its limits a joint is taken to be by rounding, radians.
+/// Excess over a joint's limits that counts as rounding, radians.
 const ROUNDING_RAD: f64 = 1e-9;
 
 impl Curve {
@@ -61,7 +61,7 @@ impl Curve {
         self
     }
 
-    /// The same backwards.
+    /// Returns the same backwards.
     pub(super) fn reversed(&self) -> Self {
         let reversed = |(segment, seconds): (&Segment, f64)| {
             let [c0, c1, c2, c3] = segment.later(seconds);
@@ -78,19 +78,19 @@ impl Curve {
         self.cubic(self.duration_s, self.duration_s)[0]
     }
 
-    /// When its stretches begin, seconds.
+    /// Start times of its sections, seconds.
     pub(super) fn times(&self) -> impl Iterator<Item = f64> {
         self.segments.iter().map(|segment| segment.time)
     }
 
-    /// The cubic that holds at `within_s`, by the time since `start_s`.
+    /// Returns the cubic that holds at `within_s`, by the time since `start_s`.
     pub(super) fn cubic(&self, within_s: f64, start_s: f64) -> [f64; 4] {
         let after = self.segments.partition_point(|segment| segment.time <= within_s);
         let segment = &self.segments[after.saturating_sub(1)];
         segment.later(start_s - segment.time)
     }
 
-    /// Whether it never leaves `lower..=upper`.
+    /// Returns whether it never leaves `lower..=upper`.
     pub(super) fn stays_within(&self, (lower, upper): (f64, f64)) -> bool {
         let within = |q: f64| (lower - ROUNDING_RAD..=upper + ROUNDING_RAD).contains(&q);
         self.stretches().all(|(segment, seconds)| {
@@ -99,7 +99,7 @@ impl Curve {
         })
     }
 
-    /// The stretches, each with how long it lasts, seconds.
+    /// Returns the stretches, each with how long it lasts, seconds.
     fn stretches(&self) -> impl Iterator<Item = (&Segment, f64)> {
         let ends = self.times().skip(1).chain([self.duration_s]);
         let lasting = self.segments.iter().zip(ends).map(|(s, end)| (s, end - s.time));
@@ -108,7 +108,7 @@ impl Curve {
 }
 
 impl Segment {
-    /// The same cubic from `dt` later on.
+    /// Returns the same cubic from `dt` later on.
     fn later(&self, dt: f64) -> [f64; 4] {
         let [c0, c1, c2, c3] = self.coefficients;
         [
@@ -119,7 +119,7 @@ impl Segment {
         ]
     }
 
-    /// When the velocity is zero, seconds after the start; not a number where it never is.
+    /// Returns the time of zero velocity, seconds after the start; not a number if there is none.
     fn turns(&self) -> [f64; 2] {
         let [_, c1, c2, c3] = self.coefficients;
         if c3 == 0.0 {

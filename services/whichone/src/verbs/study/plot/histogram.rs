@@ -1,9 +1,10 @@
 //! Questions per interaction: a small histogram for each policy and kind of people.
 
 use evaluation::charts::{Axis, Chart, Panel, Shape};
+use evaluation::distinct;
 use evaluation::simulation::{HISTOGRAM, Tally};
 
-use super::{Row, distinct, position};
+use super::{Row, position};
 
 /// Half the share of its place that a bar fills.
 const HALF_BAR: f64 = 0.4;

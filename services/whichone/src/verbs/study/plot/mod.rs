@@ -39,17 +39,6 @@ pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, CliErr
     Ok(pictures)
 }
 
-/// Returns the names in order of appearance, each once.
-fn distinct(names: impl Iterator<Item = String>) -> Vec<String> {
-    let mut list: Vec<String> = Vec::new();
-    for name in names {
-        if !list.contains(&name) {
-            list.push(name);
-        }
-    }
-    list
-}
-
 /// Returns the position of a name in a list that holds it.
 fn position(list: &[String], name: &str) -> usize {
     list.iter().position(|own| own == name).unwrap_or(0)

@@ -1,9 +1,10 @@
 //! Success against seconds, with the intervals of both; a panel for each kind of people.
 
 use evaluation::charts::{Axis, Chart, Panel, Shape};
+use evaluation::distinct;
 use evaluation::simulation::{Interval, Mean, Tally};
 
-use super::{Row, distinct, position};
+use super::{Row, position};
 
 /// Explanation below the chart.
 const NOTE: &str = "Lines: 95 % intervals. Success lies by the logarithm of the failures.";
