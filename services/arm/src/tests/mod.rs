@@ -172,7 +172,7 @@ impl Machine {
                 Out::Joints(joints) => self.joints.push(*joints),
                 Out::World(world) => self.worlds.push(*world),
                 Out::Trajectory(view) => self.trajectories.push(*view),
-                Out::Robot(order) => panic!("a model is told nothing: {order:?}"),
+                Out::Robot(order) => panic!("a model gets no orders: {order:?}"),
             }
         }
     }

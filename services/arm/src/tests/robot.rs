@@ -1,4 +1,4 @@
-//! A robot that outlives the process that moves it, and notices whatever it must not be told.
+//! A robot that outlives the process that moves it, and detects forbidden commands.
 
 use crate::Config;
 use crate::driver::{ArmDriver, Command, Fingers, KinematicArm, Measured};
@@ -28,7 +28,7 @@ struct Body {
     feels: bool,
     /// How often the fingers will find nothing to close on.
     misses: u32,
-    /// Whether the fingers were told to close.
+    /// Whether the fingers were commanded to close.
     closing: bool,
     grasps: u32,
     wrongs: Vec<String>,

@@ -155,7 +155,7 @@ fn people_who_met_two_policies_are_compared_with_themselves() {
     for person in &mut unfinished {
         person.trials.pop();
     }
-    assert!(report(&unfinished).paired.is_empty(), "nobody has done all of both");
+    assert!(report(&unfinished).paired.is_empty(), "no participant has completed both");
 }
 
 #[test]

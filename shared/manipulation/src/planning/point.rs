@@ -153,7 +153,7 @@ fn point_from(
     Ok(PointPlan { timeline: Timeline::new(limb, stages), gripper })
 }
 
-/// Poses of the gripper that look at `target`, each with how little it is preferred.
+/// Poses of the gripper that point at `target`, each with its penalty.
 fn looks(scene: &PlanningScene<'_>, target: &Vector3<f64>) -> Vec<(f64, Isometry3<f64>)> {
     let shoulder = scene.chain.shoulder();
     let towards = (target.y - shoulder.y).atan2(target.x - shoulder.x);

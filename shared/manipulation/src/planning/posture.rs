@@ -28,7 +28,7 @@ const ELBOW_S: f64 = 6.0;
 /// Height above the table from which an elbow is not low, metres.
 pub(crate) const LOW_M: f64 = 0.1;
 
-/// Postures of one pose that are looked at, and how far apart they are at least, radians: neighbours
+/// Number of postures considered for one pose, and their least distance, radians: neighbours
 /// fare alike.
 const POSTURES: usize = 12;
 const APART_RAD: f64 = 0.3;

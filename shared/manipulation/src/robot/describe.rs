@@ -14,12 +14,12 @@ use crate::kinematics::limits::{MotionLimits, PositionLimits};
 
 /// A described robot that this crate cannot move: what is missing, and help.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what}; {cure}")]
+#[error("{what}; help: {help}")]
 pub struct Unsuitable {
     /// Missing part.
     pub what: String,
     /// Remedy.
-    pub cure: String,
+    pub help: String,
 }
 
 /// Acceleration of joints for which the description states none, rad/s²: MoveIt's for Baxter.
@@ -86,7 +86,7 @@ fn parts(description: &Description, limb: Limb) -> Result<Parts, Unsuitable> {
 fn joints<'a>(description: &'a Description, tip: &str) -> Result<[&'a Joint; 7], Unsuitable> {
     let chain = description.chain(tip).map_err(|error| Unsuitable {
         what: error.to_string(),
-        cure: "name the link at the end of a limb of seven turning joints".to_owned(),
+        help: "name the link at the end of a limb of seven turning joints".to_owned(),
     })?;
     let joints: Vec<&Joint> = chain.movable().collect();
     let turning = joints.iter().all(|joint| joint.kind == JointKind::Revolute);
@@ -95,7 +95,7 @@ fn joints<'a>(description: &'a Description, tip: &str) -> Result<[&'a Joint; 7],
         what: format!(
             "link {tip:?} hangs on {count} moving joints that are not seven revolute ones"
         ),
-        cure: "limbs of seven revolute joints with limits are supported".to_owned(),
+        help: "limbs of seven revolute joints with limits are supported".to_owned(),
     })
 }
 
@@ -127,15 +127,15 @@ fn named(
 ) -> Result<Joints, Unsuitable> {
     let group = group(limb);
     let posture = description.posture(&group, name).ok_or_else(|| Unsuitable {
-        what: format!("there is no posture {name:?} of group {group:?}"),
-        cure: format!("add <group_state name={name:?} group={group:?}> to the SRDF"),
+        what: format!("no posture {name:?} in group {group:?}"),
+        help: format!("add <group_state name={name:?} group={group:?}> to the SRDF"),
     })?;
     let q = joints.map(|joint| posture.position(joint.child - 1).unwrap_or(0.0));
     match PositionLimits(joints.map(limits_of)).first_violation(&q) {
         None => Ok(q),
         Some((joint, at, (lower, upper))) => Err(Unsuitable {
             what: format!("posture {name:?} of {group:?} has {joint} at {at} rad"),
-            cure: format!("keep it between {lower} and {upper}"),
+            help: format!("keep it between {lower} and {upper}"),
         }),
     }
 }
@@ -229,7 +229,7 @@ fn enclosing(shaped: &Shaped, link: &Isometry3<f64>, name: &str) -> Result<Capsu
         }
         Shape::Mesh { file } => Err(Unsuitable {
             what: format!("link {name:?} has a mesh ({file}) for its collision shape"),
-            cure: "enclose it in capsules, cylinders, boxes or spheres instead".to_owned(),
+            help: "enclose it in capsules, cylinders, boxes or spheres instead".to_owned(),
         }),
     }
 }

@@ -130,7 +130,7 @@ fn calculated<const N: usize>(input: &InputParameter<N>) -> Result<Profiles<N>, 
     }
 }
 
-/// Seconds that are no stretch of their own.
+/// Shortest section, seconds.
 const INSTANT_S: f64 = 1e-12;
 
 /// Joins the joints' profiles: a new piece wherever any of them changes its jerk.

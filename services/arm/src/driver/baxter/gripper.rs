@@ -1,4 +1,4 @@
-//! One gripper of a Baxter: what it was told, whether it has understood, and what it feels.
+//! One gripper of a Baxter: its command, the confirmation, and its sensors.
 
 use super::super::Fingers;
 use manipulation::gripper;
@@ -10,7 +10,7 @@ use service::{Span, Time};
 
 /// How often a command is sent again that the gripper has not confirmed.
 const RESEND_EVERY: Span = Span::from_ms(250);
-/// How long a calibration may take before it is asked for anew.
+/// Timeout of a calibration, after which it is requested again.
 const CALIBRATION_MAX: Span = Span::from_ms(10_000);
 /// Age beyond which a gripper's state says nothing.
 const STALE: Span = Span::from_ms(1_000);

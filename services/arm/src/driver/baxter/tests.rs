@@ -24,7 +24,7 @@ fn ready_gripper(now: Time) -> EndEffectorState {
     EndEffectorState { timestamp_ns: now.ns(), enabled, calibrated, ready, ..Default::default() }
 }
 
-/// A driver, and a robot that says what it is told to say.
+/// A driver with a scripted robot.
 struct Bench {
     config: Config,
     driver: BaxterDriver,

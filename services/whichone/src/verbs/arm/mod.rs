@@ -38,8 +38,8 @@ pub(super) fn arm(args: &ArmVerbArgs, out: &mut Output<'_>) -> Outcome {
 fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
     let ending = args.out.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if !["png", "svg"].contains(&ending) {
-        let cure = "end its name with .png or .svg";
-        let what = format!("{}: not a picture format; help: {cure}", args.out.display());
+        let help = "end its name with .png or .svg";
+        let what = format!("{}: not a picture format; help: {help}", args.out.display());
         return Err(CliError::new(Exit::Usage, what));
     }
     let settings = paths::settings(&args.config)?;
@@ -83,12 +83,12 @@ fn planned<'a>(
     let names = || scene.objects().iter().map(|object| object.name.as_str()).collect::<Vec<_>>();
     let object = object.map_or(Some(0), |name| scene.objects().iter().position(|o| o.name == name));
     let object = object.ok_or_else(|| {
-        refuse(format!("there is no such object (--object is one of {})", names().join(", ")))
+        refuse(format!("unknown object; help: --object is one of {}", names().join(", ")))
     })?;
     let placed = scene.objects().iter().map(|object| {
         let at = object.placement.ok_or_else(|| {
-            let cure = "add `xyz`, `size` and `grasp_width`";
-            refuse(format!("object `{}` has no place ({cure})", object.name))
+            let help = "add `xyz`, `size` and `grasp_width`";
+            refuse(format!("object `{}` has no place; help: {help}", object.name))
         })?;
         Ok(ObjectPose {
             xyz_m: at.xyz,
@@ -104,8 +104,8 @@ fn planned<'a>(
     let plan = plan_pick(robot, &places[object], limb, &rest, &others, settings);
     let plan = plan.map_err(|error| {
         let name = &scene.objects()[object].name;
-        let cure = "move it, or let the other limb fetch it: --limb auto";
-        refuse(format!("object `{name}` cannot be fetched: {error} ({cure})"))
+        let help = "move it, or let the other limb fetch it: --limb auto";
+        refuse(format!("object `{name}` cannot be fetched: {error}; help: {help}"))
     })?;
     Ok(Pick { scene, robot, settings, places, object, plan })
 }

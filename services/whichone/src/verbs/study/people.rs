@@ -49,8 +49,8 @@ fn read(folder: &Path) -> Result<Vec<Participant>, CliError> {
     })?;
     if people.is_empty() {
         let what = format!("{} holds no data of a study", folder.display());
-        let cure = "name the folder, or conduct one: set study.enabled, and open /study";
-        return Err(CliError::new(Exit::NotReached, format!("{what}; {cure}")));
+        let help = "name the folder, or conduct one: set study.enabled, and open /study";
+        return Err(CliError::new(Exit::NotReached, format!("{what}; help: {help}")));
     }
     Ok(people)
 }

@@ -1,4 +1,4 @@
-//! The closer look at a target that no sample of the sweep hit: between two samples of s0, then by
+//! Closer search for a target that no sample of the sweep hit: between two samples of s0, then by
 //! refinement.
 
 use super::IkSolution;
