@@ -57,5 +57,5 @@ fn robot(files: &RobotFiles) -> Result<Robot, Diagnostics> {
     }
     let description = robot_model::Robot::read(&files.urdf, files.srdf.as_ref())?;
     Robot::from_description(&description)
-        .map_err(|error| Diagnostic::new(&*files.urdf.label, "", error.what, error.cure).into())
+        .map_err(|error| Diagnostic::new(&*files.urdf.label, "", error.what, error.help).into())
 }
