@@ -26,7 +26,7 @@ pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBu
         if Instant::now() >= until {
             let what = format!("group {}: services without a supervisor still run", paths.name());
             let cure = "wait, or start the group and stop it again";
-            return Err(CliError::new(Exit::NotReached, format!("{what}; help: {help}")));
+            return Err(CliError::new(Exit::NotReached, format!("{what}; {cure}")));
         }
         thread::sleep(LOOK_EVERY);
     }

@@ -91,7 +91,7 @@ fn files(paths: &GroupPaths, service: Option<&str>) -> Result<Vec<LogFile>, CliE
                 true => "start the group first: whichone up".to_owned(),
                 false => format!("there are {}", names.join(", ")),
             };
-            Err(CliError::new(Exit::Usage, format!("{what}; help: {help}")))
+            Err(CliError::new(Exit::Usage, format!("{what}; {cure}")))
         }
     }
 }

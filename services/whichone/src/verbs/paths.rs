@@ -59,7 +59,7 @@ pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, CliError> {
         .ok_or_else(|| {
             let what = format!("no configuration: there is no ./config with {MARK}");
             let cure = "name its folder with --config DIR or WHICHONE_CONFIG";
-            CliError::new(Exit::Config, format!("{what}; help: {help}"))
+            CliError::new(Exit::Config, format!("{what}; {cure}"))
         })
 }
 
