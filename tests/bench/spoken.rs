@@ -5,6 +5,7 @@ use crate::report::{Report, Table, print};
 use speech::devices::voice::{
     Player, Synthesiser, Voice, VoiceEvent, VoiceMode, VoiceOptions, VoiceOutput,
 };
+use speech::{PlaybackEvent, PlaybackState};
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
@@ -125,12 +126,16 @@ fn voice(report: &mut Report) {
     let broken: Vec<f64> = (0..BREAKS as u64)
         .map(|id| {
             voice.speak(id, "bench", "Is it in the dishwasher?").expect("a voice");
-            assert_eq!(events.recv(), Ok(VoiceEvent::Started { id }));
+            assert_eq!(events.recv(), Ok(playback(id, PlaybackState::Started)));
             let began = Instant::now();
             voice.interrupt();
-            assert_eq!(events.recv(), Ok(VoiceEvent::Interrupted { id }));
+            assert_eq!(events.recv(), Ok(playback(id, PlaybackState::Interrupted)));
             began.elapsed().as_secs_f64() * 1e3
         })
         .collect();
     report.add("hush to the player's end", "ms", &broken, "bar: 50 ms");
+}
+
+fn playback(playback: u64, state: PlaybackState) -> VoiceEvent {
+    VoiceEvent::Playback(PlaybackEvent { playback, state })
 }

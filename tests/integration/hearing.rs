@@ -164,33 +164,6 @@ fn a_stream_of_sound_is_heard_from_standard_input_and_at_the_pace_of_a_recording
 }
 
 #[test]
-#[ignore = "needs espeak-ng and pocketsphinx"]
-fn files_in_a_watched_folder_are_heard_and_put_away() {
-    let folder = tempfile::tempdir().unwrap();
-    let watched = folder.path().join("said");
-    let setting = format!("speech.watch_dir={}", watched.display());
-    let group = Group::up(&[&setting]);
-    wait_for("the folder", 20.0, || watched.join("heard").is_dir().then_some(()));
-    let request = spoken("get me the small white bowl", folder.path());
-    std::fs::rename(request, watched.join("request.wav")).unwrap();
-    std::fs::write(folder.path().join("noise"), "this is not a WAV file").unwrap();
-    std::fs::rename(folder.path().join("noise"), watched.join("noise.wav")).unwrap();
-    let told = |path: &str| {
-        let path = watched.join(path);
-        wait_for(&path.display().to_string(), 30.0, || {
-            path.with_extension("wav").exists().then_some(())
-        });
-        serde_json::from_str::<Value>(&std::fs::read_to_string(path).unwrap()).unwrap()
-    };
-    let heard = told("heard/request.json");
-    assert_eq!(heard["segments"][0]["utterance"], 1, "{heard}");
-    assert!(heard["segments"][0]["note"].as_str().unwrap().contains("small white bowl"), "{heard}");
-    let refused = told("refused/noise.json");
-    assert_eq!(refused["segments"][0]["status"], "refused", "{refused}");
-    group.down();
-}
-
-#[test]
 fn what_a_browser_has_recognised_comes_with_its_times_and_alternatives() {
     let group = Group::up(&[]);
     let words = [

@@ -105,7 +105,7 @@ fn talk_that_is_not_for_the_robot_begins_nothing() {
 fn what_cannot_be_an_utterance_is_refused_with_its_reason() {
     let group = Group::up(&[]);
     let long = "bowl ".repeat(20_000);
-    for (text, reason) in [("   ", "nothing was said"), (long.as_str(), "bytes")] {
+    for (text, reason) in [("   ", "empty utterance"), (long.as_str(), "bytes")] {
         let ended = group.call(&["say", text]);
         assert_ne!(ended.code, Some(0));
         assert!(format!("{ended:?}").contains(reason), "{ended:?}");

@@ -11,7 +11,7 @@ use messages::{ActKind, Outcome, PolicyView};
 use policy::PolicyNode;
 use scene::{Question, Scene};
 use service::{Event, Node, Span, Time};
-use speech::{SpeechNode, Spoken, VoiceEvent};
+use speech::{PlaybackEvent, PlaybackState, SpeechNode};
 use whichone_tests::{Host, configured};
 
 /// How long the voice takes for a line.
@@ -175,8 +175,8 @@ impl World {
             && ends <= self.now
         {
             self.voice = None;
-            let ended = VoiceEvent { line, what: Spoken::Ended };
-            self.inboxes.speech.push(speech::In::Voice(ended));
+            let ended = PlaybackEvent { playback: line, state: PlaybackState::Ended };
+            self.inboxes.speech.push(speech::In::Playback(ended));
         }
     }
 
@@ -238,14 +238,17 @@ impl World {
                 speech::Out::Motion(command) => self.inboxes.arm.push(arm::In::Motion(command)),
                 speech::Out::Speak(line) => {
                     self.tell(format_args!("robot: {}", line.text));
-                    self.voice = Some((line.number, self.now + LINE));
-                    let started = VoiceEvent { line: line.number, what: Spoken::Started };
-                    self.inboxes.speech.push(speech::In::Voice(started));
+                    self.voice = Some((line.playback, self.now + LINE));
+                    let started =
+                        PlaybackEvent { playback: line.playback, state: PlaybackState::Started };
+                    self.inboxes.speech.push(speech::In::Playback(started));
                 }
-                speech::Out::Hush => self.voice = None,
+                speech::Out::StopSpeaking => self.voice = None,
                 speech::Out::Hearing(_) => {}
-                speech::Out::Partial(_) | speech::Out::Overhear(..) | speech::Out::Expect(..) => {}
-                speech::Out::Recognise(..) | speech::Out::Talk(..) => {
+                speech::Out::Partial(_)
+                | speech::Out::InterimSamples(..)
+                | speech::Out::DecodeEarly(..) => {}
+                speech::Out::Recognise(..) | speech::Out::OpenMicrophone(..) => {
                     unreachable!("the person types")
                 }
             }

@@ -1,4 +1,4 @@
-//! Examination of recogniser, voice and microphone for `whichone doctor`.
+//! Checks of recogniser, voice and microphone for `whichone doctor`.
 
 use std::env;
 use std::path::PathBuf;
@@ -11,15 +11,15 @@ use service::inspection::Finding;
 
 use crate::devices::microphone::{Microphone, MicrophoneEvent, MicrophoneOptions, MicrophoneState};
 use crate::devices::recogniser::{PocketSphinx, PocketSphinxOptions, WhisperOptions};
-use crate::devices::stream::OwnVoice;
+use crate::devices::stream::PlaybackMask;
 use crate::devices::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
 
-/// Examines all devices as the service opens them.
+/// Checks all devices as the service opens them.
 pub(crate) fn examine(settings: &Settings) -> Vec<Finding> {
     vec![recogniser(settings), voice(settings), microphone(settings)]
 }
 
-/// A folder for what the devices write, gone with this.
+/// A temporary folder for the devices. Dropping it removes the folder.
 struct Work(PathBuf);
 
 impl Work {
@@ -30,12 +30,12 @@ impl Work {
 
 impl Drop for Work {
     fn drop(&mut self) {
-        // It may not have been made at all.
+        // It may not have been created at all.
         let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 
-/// Opens the recogniser as the speech service does.
+/// Opens the recogniser as the service does.
 fn recogniser(settings: &Settings) -> Finding {
     const WHAT: &str = "recogniser";
     if settings.speech.recogniser == Recogniser::None {
@@ -44,11 +44,9 @@ fn recogniser(settings: &Settings) -> Finding {
     if settings.speech.recogniser == Recogniser::Whisper {
         let options =
             WhisperOptions::new(settings.speech.whisper_model.clone().unwrap_or_default());
-        return match options.open(&settings.scene) {
+        return match options.open() {
             Ok(_) => Finding::good(WHAT, format!("whisper.cpp with {}", options.model.display())),
-            Err(error) => {
-                Finding::poor(WHAT, format!("{error}; without it only typed words are heard"))
-            }
+            Err(error) => Finding::poor(WHAT, format!("{error}; without it only typed text works")),
         };
     }
     let work = Work::new("recogniser");
@@ -61,40 +59,38 @@ fn recogniser(settings: &Settings) -> Finding {
         }
         Ok(recogniser) => {
             let words = recogniser.unpronounceable().join(", ");
-            Finding::poor(WHAT, format!("these words of the scene cannot be heard: {words}"))
+            Finding::poor(WHAT, format!("words of the scene that cannot be recognised: {words}"))
         }
-        Err(error) => {
-            Finding::poor(WHAT, format!("{error}; without it only typed words are heard"))
-        }
+        Err(error) => Finding::poor(WHAT, format!("{error}; without it only typed text works")),
     }
 }
 
-/// Tries the voice as the speech service does.
+/// Starts the voice as the service does.
 fn voice(settings: &Settings) -> Finding {
     const WHAT: &str = "voice";
     let work = Work::new("voice");
     if settings.speech.voice == Voice::Print {
         return Finding::good(WHAT, "switched off (speech.voice)");
     }
-    // Nothing is said, so nothing is to be kept.
-    let options = VoiceOptions { kept: None, ..VoiceOptions::of(&settings.speech, &work.0) };
-    let speaks = options.program.name();
+    // No prompt is spoken, so no audio is cached.
+    let options = VoiceOptions { audio_dir: None, ..VoiceOptions::of(&settings.speech, &work.0) };
+    let program = options.program.name();
     let (_voice, events) = voice::Voice::start(options);
     match events.recv() {
         Ok(VoiceEvent::Output(VoiceOutput::Aloud(player))) => {
-            Finding::good(WHAT, format!("{speaks} through {}", player.program))
+            Finding::good(WHAT, format!("{program} through {}", player.program))
         }
         Ok(VoiceEvent::Output(VoiceOutput::Text { reason })) => {
-            Finding::poor(WHAT, format!("{reason}; questions are shown and not heard"))
+            Finding::poor(WHAT, format!("{reason}; questions are shown as text"))
         }
-        _ => Finding::poor(WHAT, "it broke down; questions are shown and not heard"),
+        _ => Finding::poor(WHAT, "it crashed; questions are shown as text"),
     }
 }
 
-/// How long a microphone may take to give sound.
-const MICROPHONE_PATIENCE: Duration = Duration::from_secs(3);
+/// Time limit for the first samples of a microphone.
+const MICROPHONE_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Records for a moment as the speech service does.
+/// Records for a moment as the service does.
 fn microphone(settings: &Settings) -> Finding {
     const WHAT: &str = "microphone";
     if settings.speech.microphone.mode == MicrophoneMode::Off {
@@ -104,16 +100,16 @@ fn microphone(settings: &Settings) -> Finding {
     let programs = options.programs.len();
     let (send, events) = mpsc::channel();
     let sink = move |event| {
-        // Nobody listens once it is known how the microphone is.
+        // Without a receiver the result is known already.
         let _ = send.send(event);
         Ok(())
     };
-    let own_voice = Arc::new(OwnVoice::new(Span::from_ms(0)));
-    let _microphone = Microphone::start(options, own_voice, Box::new(sink));
-    let (until, mut failed) = (Instant::now() + MICROPHONE_PATIENCE, Vec::new());
+    let mask = Arc::new(PlaybackMask::new(Span::from_ms(0)));
+    let _microphone = Microphone::start(options, mask, Box::new(sink));
+    let (until, mut failed) = (Instant::now() + MICROPHONE_TIMEOUT, Vec::new());
     while failed.len() < programs {
-        let patience = until.saturating_duration_since(Instant::now());
-        match events.recv_timeout(patience) {
+        let timeout = until.saturating_duration_since(Instant::now());
+        match events.recv_timeout(timeout) {
             Ok(MicrophoneEvent::Status(status)) => match status.state {
                 MicrophoneState::Listening => {
                     return Finding::good(WHAT, format!("{} records", status.note));
@@ -121,9 +117,9 @@ fn microphone(settings: &Settings) -> Finding {
                 MicrophoneState::Broken => failed.push(status.note),
                 _ => {}
             },
-            Ok(MicrophoneEvent::Live(_)) => {}
+            Ok(MicrophoneEvent::Stream(_)) => {}
             Err(_) => {
-                failed.push("the program gives no sound".to_owned());
+                failed.push("the program delivers no audio".to_owned());
                 break;
             }
         }
@@ -131,6 +127,6 @@ fn microphone(settings: &Settings) -> Finding {
     let why = failed.join("; ");
     Finding::poor(
         WHAT,
-        format!("{why}; connect one, or name a program in speech.microphone.command"),
+        format!("{why}; help: connect one, or set a program in speech.microphone.command"),
     )
 }

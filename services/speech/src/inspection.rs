@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use dialogue::Presentation;
 use service::exit::Failure;
 use service::inspection::{Part, at, count};
 
@@ -16,15 +17,16 @@ pub(crate) fn line(record: &Record) -> String {
             let pointed = pointed.unwrap_or_default();
             format!("{}  utterance {}: {words}{pointed}", at(accepted.accepted), accepted.seq)
         }
-        Record::Presented(said) => {
-            let (times, prompt) = (said.presentation, said.prompt);
-            let how = if said.whole { "said to its end" } else { "broken off" };
-            format!("{}  prompt {prompt} {how}, presentation {times}", at(said.ended))
+        Record::Presented(presentation) => {
+            let Presentation { prompt, number, complete, began, ended, .. } = *presentation;
+            let how = if complete { "spoken to its end" } else { "interrupted" };
+            let time = at(ended.unwrap_or(began));
+            format!("{time}  prompt {prompt} {how}, presentation {number}")
         }
     }
 }
 
-/// Utterances numbered without a gap, none accepted twice.
+/// Verifies that utterances are numbered without a gap and accepted once.
 pub(crate) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
     let mut last = None;
     let mut keys = HashSet::new();
@@ -51,7 +53,7 @@ pub(crate) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
     Ok(vec![format!("{accepted} accepted once and without a gap")])
 }
 
-/// Whether the record belongs to the summary at the beginning of a journal that was rotated.
+/// Returns whether the record belongs to the snapshot at the beginning of a rotated journal.
 fn seq_in_snapshot(part: &Part<Record>, seq: u64) -> bool {
     part.first_seq() > 1 && {
         let before = part.numbered().take_while(|(n, _)| *n <= seq);

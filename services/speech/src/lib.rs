@@ -1,181 +1,56 @@
-//! Speech: hears people, numbers what they say, and says what the robot has to say.
+//! Speech: recognises what users say, numbers their utterances, and speaks the robot's prompts.
 //!
 //! [`SpeechNode`] is the reducer. An utterance is accepted once its record is durable; from then on
-//! it is sent, in order, until the policy's mark says that it is applied. A prompt counts as heard
-//! only once it was said to its end.
+//! it is sent, in order, until the policy's mark confirms that it is applied. A prompt counts as heard
+//! only once it was spoken to its end.
 
 pub mod devices;
 mod doctor;
-mod ears;
+pub mod hypothesis;
 mod inspection;
-mod listening;
-pub mod live;
-mod mouth;
+mod io;
+mod pending_sounds;
+mod prompt_player;
 pub mod record;
-mod said;
 pub mod shell;
-mod transcript;
+pub mod stream_events;
+mod utterance_content;
+mod utterance_intake;
 
 #[cfg(test)]
 mod tests;
 
-use devices::microphone::MicrophoneStatus;
-use devices::stream::Cut;
-use ears::Ears;
-use live::Live;
-use messages::{
-    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MotionCommand, Partial,
-    Presented, PromptId, Receipt, RobotAct, Utterance,
-};
-use mouth::Mouth;
+use prompt_player::PromptPlayer;
 use record::Record;
 use service::{Effects, Event, Node, NodeError, Span, Time};
+use stream_events::StreamEvent;
+use utterance_intake::UtteranceIntake;
 
-pub use record::Hypothesis;
+pub use hypothesis::Hypothesis;
+pub use io::{
+    In, Out, PlaybackEvent, PlaybackRequest, PlaybackState, Recognised, RecognisedSegment,
+    RecognitionInput,
+};
 
-/// How often what is not yet superseded is sent again.
+/// How often everything not yet superseded is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);
-
-/// What arrives.
-#[derive(Clone, Debug)]
-pub enum In {
-    /// From a client.
-    Injection(Injection),
-    /// From the policy: how far the belief has come.
-    Mark(AppliedMark),
-    /// From the policy: what to say.
-    Act(Box<RobotAct>),
-    /// From the arm: what it points at.
-    Arm(ArmStatus),
-    /// From a microphone or a client's stream.
-    Live(Live),
-    /// From the microphone: how it is.
-    Microphone(MicrophoneStatus),
-    /// From the recogniser.
-    Recognised(Recognised),
-    /// From the recogniser: what is being said.
-    SoFar {
-        /// The sound's number.
-        sound: u64,
-        /// The words so far.
-        text: String,
-    },
-    /// From the recogniser: whether it works.
-    Ear(EarState),
-    /// From the voice.
-    Voice(VoiceEvent),
-}
-
-/// What is published or asked of the devices.
-#[derive(Clone, Debug)]
-pub enum Out {
-    /// To grounding.
-    Utterance(Box<Utterance>),
-    /// To clients.
-    Receipt(Box<Receipt>),
-    /// To the policy.
-    Presented(Presented),
-    /// To the policy.
-    Activity(Activity),
-    /// To the arm: somebody said stop.
-    Motion(MotionCommand),
-    /// To clients: how well the robot hears.
-    Hearing(Hearing),
-    /// To clients: what is being said.
-    Partial(Box<Partial>),
-    /// To the recogniser: the next samples of what is being said.
-    Overhear(u64, Vec<i16>),
-    /// To the recogniser: perhaps this is all that will be said.
-    Expect(u64, Cut),
-    /// To the recogniser: what is said in this? The number comes back with the answer.
-    Recognise(u64, ToRecognise),
-    /// To the microphone: listen for one utterance, for so long at most. The number comes back with
-    /// it.
-    Talk(u64, Span),
-    /// To the voice: say this, breaking off what is being said.
-    Speak(Line),
-    /// To the voice: be silent.
-    Hush,
-}
-
-/// What the recogniser is to listen to.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum ToRecognise {
-    /// A WAV file, absolute path.
-    File(String),
-    /// One utterance of a live source.
-    Speech(Cut),
-}
-
-/// What the voice is to say.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Line {
-    /// Comes back with the voice's events.
-    pub number: u64,
-    /// The prompt that it says.
-    pub prompt: PromptId,
-    /// Which presentation of the prompt.
-    pub presentation: u32,
-    /// The words.
-    pub text: String,
-}
-
-/// How the voice has come along with a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct VoiceEvent {
-    /// The line's number.
-    pub line: u64,
-    /// What happened.
-    pub what: Spoken,
-}
-
-/// What happened to a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Spoken {
-    /// Its sound began.
-    Started,
-    /// Its sound ended as it should.
-    Ended,
-    /// It was broken off.
-    Interrupted,
-}
-
-/// What the recogniser found in a sound.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Recognised {
-    /// The sound's number.
-    pub sound: u64,
-    /// The utterances in it, or why it could not be listened to.
-    pub segments: Result<Vec<Segment>, String>,
-}
-
-/// One utterance in a sound.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Segment {
-    /// When it begins and ends, seconds from the start of the sound.
-    pub span_s: (f64, f64),
-    /// How far it stands above the noise around it, decibels, 0 to 60.
-    pub snr_db: f32,
-    /// What was heard, or what was heard but is not for the robot.
-    pub heard: Result<Vec<Hypothesis>, String>,
-}
 
 type Fx = Effects<Out, Record>;
 
 /// Speech as a reducer.
 pub struct SpeechNode {
-    ears: Ears,
-    mouth: Mouth,
+    intake: UtteranceIntake,
+    player: PromptPlayer,
     next_send: Time,
 }
 
-/// How it hears.
+/// Settings of the reducer.
 pub struct Config {
     /// Finds the stop word.
     pub reader: language::Reader,
     /// Longest utterance, bytes.
     pub utterance_bytes_max: usize,
-    /// Whether pointing gestures are taken.
+    /// Whether pointing gestures are accepted.
     pub gestures: bool,
 }
 
@@ -186,84 +61,84 @@ impl Node for SpeechNode {
     type Record = Record;
 
     fn recover(config: Config, records: Vec<Record>) -> Result<Self, NodeError> {
-        let mut ears = Ears::new(config);
-        let mut mouth = Mouth::default();
+        let mut intake = UtteranceIntake::new(config);
+        let mut player = PromptPlayer::default();
         for record in records {
             match record {
-                Record::Accepted(accepted) => ears.remember(accepted),
-                Record::Presented(said) => mouth.remember(said),
+                Record::Accepted(accepted) => intake.restore(accepted),
+                Record::Presented(presentation) => player.restore(presentation),
             }
         }
-        Ok(Self { ears, mouth, next_send: Time(0) })
+        Ok(Self { intake, player, next_send: Time(0) })
     }
 
     fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
         match event {
             Event::Started => self.send(now, fx),
-            Event::Message(message) => self.take(message, now, fx),
+            Event::Message(message) => self.handle(message, now, fx),
             Event::Tick => {
                 if now >= self.next_send {
                     self.send(now, fx);
                 }
             }
             Event::Shutdown => {
-                fx.publish(Out::Hush);
+                fx.publish(Out::StopSpeaking);
                 return fx.exit();
             }
         }
-        self.mouth.go_on(self.ears.somebody_speaks(now), now, fx);
+        self.player.play_next(self.intake.is_busy(now), now, fx);
     }
 
     fn deadline(&self) -> Option<Time> {
-        Some(self.mouth.deadline().map_or(self.next_send, |at| at.min(self.next_send)))
+        Some(self.player.deadline().map_or(self.next_send, |at| at.min(self.next_send)))
     }
 
     fn pending_since(&self) -> Option<Time> {
-        self.ears.pending_since()
+        self.intake.pending_since()
     }
 
     fn snapshot(&self) -> Option<Vec<Record>> {
-        let accepted = self.ears.snapshot()?.into_iter().map(Record::Accepted);
-        Some(accepted.chain(self.mouth.snapshot().map(Record::Presented)).collect())
+        let accepted = self.intake.snapshot()?.into_iter().map(Record::Accepted);
+        Some(accepted.chain(self.player.snapshot().map(Record::Presented)).collect())
     }
 }
 
 impl SpeechNode {
-    fn take(&mut self, message: In, now: Time, fx: &mut Fx) {
+    fn handle(&mut self, message: In, now: Time, fx: &mut Fx) {
         match message {
             In::Injection(injection) => {
-                // Who talks by key, types or points does not wait for the robot to end.
-                if self.ears.hear(injection, &self.mouth, now, fx) {
-                    self.mouth.interrupted(now, fx);
+                // A user who presses talk, types or points interrupts the robot.
+                if self.intake.inject(injection, &self.player, now, fx) {
+                    self.player.interrupt(now, fx);
                 }
             }
             In::Recognised(recognised) => {
-                self.ears.recognised(recognised, &self.mouth, now, fx);
+                self.intake.recognised(recognised, &self.player, now, fx);
                 self.send(now, fx);
             }
-            In::Live(live) => {
-                if matches!(&live, Live::Began(began) if began.interrupts) {
-                    self.mouth.interrupted(now, fx);
+            In::Stream(event) => {
+                if matches!(&event, StreamEvent::Began(began) if began.interrupts) {
+                    self.player.interrupt(now, fx);
                 }
-                self.ears.live(live, now, fx);
+                self.intake.stream_event(event, now, fx);
             }
-            In::SoFar { sound, text } => self.ears.so_far(sound, &text, fx),
-            In::Microphone(status) => self.ears.set_microphone(&status, fx),
-            In::Ear(state) => self.ears.set_state(state, fx),
+            In::InterimResult { sound, text } => self.intake.interim_result(sound, &text, fx),
+            In::Microphone(status) => self.intake.set_microphone(&status, fx),
+            In::RecogniserState(state) => self.intake.set_recogniser(state, fx),
             In::Mark(mark) => {
-                if self.ears.acknowledge(mark) {
+                if self.intake.acknowledge(mark) {
                     self.send(now, fx);
                 }
             }
-            In::Act(act) => self.mouth.act(&act, now, fx),
-            In::Arm(status) => self.mouth.aimed(&status),
-            In::Voice(event) => self.mouth.spoken(event, now, fx),
+            In::Act(act) => self.player.on_act(&act, now, fx),
+            In::Arm(status) => self.player.on_arm_status(&status),
+            In::Playback(event) => self.player.on_playback(event, now, fx),
         }
     }
 
     fn send(&mut self, now: Time, fx: &mut Fx) {
-        self.ears.send(fx);
-        self.mouth.send(fx);
+        self.intake.send(fx);
+        self.player.send(fx);
         self.next_send = now + RESEND_EVERY;
     }
 }

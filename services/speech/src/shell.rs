@@ -1,13 +1,10 @@
 //! The speech service's topics and devices.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::devices::client_streams::ClientStreams;
-use crate::devices::stream::OwnVoice;
-use crate::devices::watched_folder::WatchedFolder;
-use crate::live::Live;
 use crate::record::Record;
+use crate::stream_events::StreamEvent;
 use crate::{Config, In, Out, Recognised, SpeechNode, doctor, inspection};
 use config::Settings;
 use crossbeam_channel::Receiver;
@@ -24,12 +21,12 @@ use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 use service::worker_channel::DeviceSender;
 
-mod ear;
 mod microphone;
+mod recogniser;
 mod voice;
 
-use ear::EarDevice;
 use microphone::MicrophoneDevice;
+use recogniser::RecogniserDevice;
 use voice::VoiceDevice;
 
 /// Speech as a program.
@@ -38,14 +35,15 @@ pub struct SpeechProgram;
 
 impl Program for SpeechProgram {
     const SERVICE: Service = Service::Speech;
-    const RECORD: Option<&'static str> = Some("speech/4");
-    const ABOUT: &'static str = "hears what people say or type, and says the robot's questions";
+    const RECORD: Option<&'static str> = Some("speech/5");
+    const ABOUT: &'static str =
+        "recognises what users say or type, and speaks the robot's questions";
     type Node = SpeechNode;
     type Shell = SpeechShell;
 
     fn config(_: &Environment, settings: &Settings) -> Result<Config, Failure> {
-        // The stop word is found by the careful reading whatever the dialogue is read by: it is a
-        // matter of safety and not of the model.
+        // The stop word is a matter of safety: it is found by the careful reading, whichever reading
+        // the dialogue uses.
         let reader = TextReader::new(&settings.scene, Language::Careful);
         Ok(Config {
             reader,
@@ -81,20 +79,19 @@ pub struct SpeechShell {
     motion: Writer<MotionCommand>,
     hearing: Writer<Hearing>,
     partials: Writer<Partial>,
-    ear: EarDevice,
+    recogniser: RecogniserDevice,
     microphone: MicrophoneDevice,
     streams: ClientStreams,
-    watched: Option<WatchedFolder>,
     voice: VoiceDevice,
     inbox: DeviceSender<In>,
-    /// Answers of the devices for which there was no room in the inbox.
-    answers: Vec<In>,
+    /// Replies on behalf of the devices that did not fit into the inbox.
+    replies: Vec<In>,
 }
 
 impl SpeechShell {
-    /// Answers in a device's place, without waiting: the main loop must not wait for itself.
-    fn answer(&mut self, message: In) {
-        self.answers.extend(self.inbox.offer(message).err());
+    /// Replies on behalf of a device, without waiting: the main loop must not wait for itself.
+    fn reply(&mut self, message: In) {
+        self.replies.extend(self.inbox.offer(message).err());
     }
 }
 
@@ -104,8 +101,7 @@ impl Shell<SpeechNode> for SpeechShell {
         let work = context.environment.paths.run();
         let (settings, inbox) = (context.settings, &context.devices);
         let echo = Span::from_s(settings.speech.microphone.echo_pause.as_secs_f64());
-        let own_voice = Arc::new(OwnVoice::new(echo));
-        let watched = settings.speech.watch_dir.clone().map(|folder| watch(folder, inbox));
+        let playback_mask = Arc::new(PlaybackMask::new(echo));
         Ok(Self {
             injections: bus.encoded_reader(&topics::INJECTION)?,
             audio: bus.reader(&topics::AUDIO)?,
@@ -119,18 +115,17 @@ impl Shell<SpeechNode> for SpeechShell {
             motion: bus.writer(&topics::MOTION)?,
             hearing: bus.writer(&topics::HEARING)?,
             partials: bus.writer(&topics::PARTIAL)?,
-            ear: EarDevice::start(settings, &work, inbox),
-            microphone: MicrophoneDevice::start(settings, &own_voice, inbox),
-            streams: microphone::streams(settings, &own_voice, inbox),
-            watched,
-            voice: VoiceDevice::start(settings, &work, own_voice, inbox),
+            recogniser: RecogniserDevice::start(settings, &work, inbox),
+            microphone: MicrophoneDevice::start(settings, &playback_mask, inbox),
+            streams: microphone::streams(settings, &playback_mask, inbox),
+            voice: VoiceDevice::start(settings, &work, playback_mask, inbox),
             inbox: inbox.clone(),
-            answers: Vec::new(),
+            replies: Vec::new(),
         })
     }
 
     fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
-        self.answers.drain(..).for_each(&mut *take);
+        self.replies.drain(..).for_each(&mut *take);
         self.acts.drain(|message| take(In::Act(Box::new(*message))))?;
         self.marks.drain(|message| take(In::Mark(*message)))?;
         self.arm.drain(|message| take(In::Arm(*message)))?;
@@ -143,58 +138,34 @@ impl Shell<SpeechNode> for SpeechShell {
 
     fn publish(&mut self, output: Out) -> Result<(), PortError> {
         match output {
-            Out::Utterance(message) => self.utterances.send(&message),
-            Out::Receipt(message) => {
-                self.watched.iter().for_each(|watched| watched.told(&message));
-                self.receipts.send(&message)
-            }
-            Out::Presented(message) => self.presented.send(&message),
-            Out::Activity(message) => self.activity.send(&message),
-            Out::Motion(message) => self.motion.send(&message),
-            Out::Hearing(message) => self.hearing.send(&message),
-            Out::Partial(message) => self.partials.send(&message),
-            Out::Overhear(sound, samples) => {
-                self.ear.overhear(sound, samples);
-                Ok(())
-            }
-            Out::Expect(sound, cut) => {
-                self.ear.expect(sound, cut);
-                Ok(())
-            }
-            Out::Recognise(sound, what) => {
-                if let Err(reason) = self.ear.recognise(sound, what) {
-                    tracing::warn!(reason, "a sound was not listened to");
-                    self.answer(In::Recognised(Recognised { sound, segments: Err(reason) }));
+            Out::Utterance(message) => return self.utterances.send(&message),
+            Out::Receipt(message) => return self.receipts.send(&message),
+            Out::Presented(message) => return self.presented.send(&message),
+            Out::Activity(message) => return self.activity.send(&message),
+            Out::Motion(message) => return self.motion.send(&message),
+            Out::Hearing(message) => return self.hearing.send(&message),
+            Out::Partial(message) => return self.partials.send(&message),
+            Out::InterimSamples(sound, samples) => self.recogniser.interim_samples(sound, samples),
+            Out::DecodeEarly(sound, segment) => self.recogniser.decode_early(sound, segment),
+            Out::Recognise(sound, input) => {
+                if let Err(reason) = self.recogniser.submit(sound, input) {
+                    tracing::warn!(reason, "audio not recognised");
+                    self.reply(In::Recognised(Recognised { sound, segments: Err(reason) }));
                 }
-                Ok(())
             }
-            Out::Talk(sound, longest) => {
+            Out::OpenMicrophone(sound, longest) => {
                 if let Err(reason) = self.microphone.talk(sound, longest) {
-                    self.answer(In::Live(Live::Silent { sound, reason }));
+                    self.reply(In::Stream(StreamEvent::Silent { sound, reason }));
                 }
-                Ok(())
             }
-            Out::Speak(line) => {
-                self.voice.speak(&line);
-                Ok(())
-            }
-            Out::Hush => {
-                self.voice.hush();
-                Ok(())
-            }
+            Out::Speak(request) => self.voice.speak(&request),
+            Out::StopSpeaking => self.voice.stop(),
         }
+        Ok(())
     }
 }
 
-/// A folder is a client within the service.
-fn watch(folder: PathBuf, inbox: &DeviceSender<In>) -> WatchedFolder {
-    let inbox = inbox.clone();
-    // One for which there is no room is given again.
-    let give = move |injection| drop(inbox.offer(In::Injection(injection)));
-    WatchedFolder::start(folder, Box::new(give))
-}
-
-/// Hands a device's events to the main loop until either ends.
+/// Forwards a device's events to the main loop until either ends.
 fn forward<T: Send + 'static>(
     name: &str,
     events: Receiver<T>,
@@ -202,6 +173,6 @@ fn forward<T: Send + 'static>(
 ) {
     let work = move || while events.recv().is_ok_and(&hand_over) {};
     if let Err(error) = std::thread::Builder::new().name(name.to_owned()).spawn(work) {
-        tracing::error!(%error, name, "no thread for a device");
+        tracing::error!(%error, name, "the thread of a device cannot be started");
     }
 }

@@ -42,8 +42,6 @@ pub struct Speech {
     pub utterance_bytes_max: usize,
     /// Longest recording that is recognised.
     pub recording_max: Duration,
-    /// Folder whose WAV files are heard as they appear, if any.
-    pub watch_dir: Option<PathBuf>,
     /// The microphone of the robot's computer.
     pub microphone: Microphone,
 }
@@ -140,7 +138,6 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
         spoken_max: f.seconds("spoken_s_max", 2.0..=60.0),
         utterance_bytes_max: f.whole("utterance_bytes_max", 16..=UTTERANCE_BYTES_MAX) as usize,
         recording_max: f.seconds("recording_s_max", 1.0..=600.0),
-        watch_dir: f.absolute("watch_dir"),
         microphone: f.table("microphone", microphone),
     }
 }

@@ -2,10 +2,11 @@
 
 use super::corpus::Clip;
 use crate::arm::thread_s;
+use ::speech::Hypothesis;
 use ::speech::devices::recogniser::{
-    Gate, Hypothesis, Outcome, PocketSphinx, PocketSphinxOptions, Recogniser, RecogniserUnavailable,
+    Gate, PocketSphinx, PocketSphinxOptions, Recogniser, RecogniserUnavailable,
 };
-use ::speech::devices::vad::{SegmentEvent, Segmenter, SegmenterOptions};
+use ::speech::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
 use scene::Scene;
 use std::ops::Range;
 use std::path::Path;
@@ -45,8 +46,8 @@ impl Listener {
         let mut events = segmenter.push(&clip.samples);
         events.extend(segmenter.finish());
         let ends = events.into_iter().filter_map(|event| match event {
-            SegmentEvent::End { range, speech } => Some((range, speech)),
-            SegmentEvent::Onset { .. } | SegmentEvent::Pause { .. } => None,
+            VadEvent::End { range, speech } => Some((range, speech)),
+            VadEvent::Onset { .. } | VadEvent::Pause { .. } => None,
         });
         ends.map(|(range, speech)| self.decode(&clip.samples, range, speech)).collect()
     }
@@ -56,7 +57,7 @@ impl Listener {
         let decoded_at = range.end;
         let voice = speech.start - range.start..speech.end - range.start;
         let hypotheses = self.recogniser.recognise(&samples[range], voice).unwrap_or_default();
-        let accepted = matches!(self.gate.judge(hypotheses.clone()), Outcome::Accepted(_));
+        let accepted = self.gate.judge(hypotheses.clone()).is_ok();
         let took_s = (started.elapsed().as_secs_f64(), thread_s() - cpu_s);
         Heard { speech, decoded_at, hypotheses, accepted, took_s }
     }

@@ -1,7 +1,7 @@
 //! What was meant and what was understood, compared.
 
 use super::corpus::Sentence;
-use ::speech::devices::recogniser::Hypothesis;
+use ::speech::Hypothesis;
 use dialogue::{Belief, Model};
 use language::Reader;
 use scene::{Intent, Reading, Response, WordId};
@@ -68,7 +68,7 @@ pub(super) fn weightiest(
     let mut order = Vec::new();
     for hypothesis in hypotheses {
         let meant = meaning(reader, sentence, &hypothesis.text);
-        *sums.entry(meant.clone()).or_default() += f64::from(hypothesis.confidence);
+        *sums.entry(meant.clone()).or_default() += hypothesis.weight;
         order.push(meant);
     }
     let total: f64 = sums.values().sum();

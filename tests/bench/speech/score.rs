@@ -3,9 +3,9 @@
 use super::corpus::{Clip, Sentence};
 use super::listener::Heard;
 use super::meaning::{Meaning, edits, likeliest, meaning, said_too, weightiest};
+use ::speech::Hypothesis;
 use ::speech::devices::audio::seconds;
 use ::speech::devices::language_model::words;
-use ::speech::devices::recogniser::Hypothesis;
 use dialogue::{Model, Params};
 use language::{Language, Reader};
 use scene::{Scene, WordId};
@@ -82,7 +82,7 @@ impl Judge {
         let said = self.scene_words(sentence, &sentence.text);
         let objects = |heard: &[(f64, &str)]| likeliest(&self.model, reader, sentence, heard);
         let evidence: Vec<(f64, &str)> =
-            passed.iter().map(|h| (f64::from(h.confidence), h.text.as_str())).collect();
+            passed.iter().map(|h| (h.weight, h.text.as_str())).collect();
         let timing = Timing::of(clip, heard, pause_s);
         Score {
             for_the_robot: sentence.for_the_robot,
@@ -113,11 +113,11 @@ impl Judge {
 }
 
 fn sure(best: &Hypothesis, said: &str) -> Vec<(f32, bool)> {
-    let heard: Vec<&str> = best.words.iter().map(|(word, _)| word.as_str()).collect();
+    let heard: Vec<&str> = best.text.split_whitespace().collect();
     let said = words(said);
     let said: Vec<&str> = said.iter().map(String::as_str).collect();
     let right = said_too(&heard, &said);
-    best.words.iter().zip(right).map(|((_, sure), right)| (*sure, right)).collect()
+    best.word_confidence.iter().copied().zip(right).collect()
 }
 
 fn spotted(
@@ -142,12 +142,12 @@ fn together<'h>(heard: impl Iterator<Item = &'h Heard>) -> Vec<Hypothesis> {
         {
             all.push(Hypothesis {
                 text: format!("{} {}", first.text, second.text),
-                confidence: first.confidence * second.confidence,
-                words: [first.words.clone(), second.words.clone()].concat(),
+                weight: first.weight * second.weight,
+                word_confidence: [&first.word_confidence[..], &second.word_confidence].concat(),
             });
         }
     }
-    all.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
+    all.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     all
 }
 

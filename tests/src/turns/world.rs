@@ -16,9 +16,12 @@ use policy::state::Cause;
 use preflight::log_normal;
 use scene::{ObjectId, Question};
 use service::{Event, Node, Span, Time};
-use speech::devices::stream::Cut;
-use speech::live::{Began, LIVE_FROM, Live};
-use speech::{Hypothesis, Line, Recognised, Segment, SpeechNode, Spoken, ToRecognise, VoiceEvent};
+use speech::devices::stream::SpeechSegment;
+use speech::stream_events::{Began, LIVE_FROM, StreamEvent};
+use speech::{
+    Hypothesis, PlaybackEvent, PlaybackRequest, PlaybackState, Recognised, RecognisedSegment,
+    RecognitionInput, SpeechNode,
+};
 
 use super::person::{Channel, Heard, Person, Timing, Utterance};
 use crate::{Host, configured};
@@ -170,27 +173,27 @@ impl<'a> World<'a> {
     fn voice_goes_on(&mut self) {
         let now = self.now;
         if let Some(saying) = self.saying.take_if(|saying| saying.ends <= now) {
-            self.voice(saying.line, Spoken::Ended);
+            self.voice(saying.line, PlaybackState::Ended);
         }
     }
 
-    fn voice(&mut self, line: u64, what: Spoken) {
-        self.to_speech.push(speech::In::Voice(VoiceEvent { line, what }));
+    fn voice(&mut self, playback: u64, state: PlaybackState) {
+        self.to_speech.push(speech::In::Playback(PlaybackEvent { playback, state }));
     }
 
     fn fall_silent(&mut self) {
         if let Some(saying) = self.saying.take() {
             self.tell("robot: …");
-            self.voice(saying.line, Spoken::Interrupted);
+            self.voice(saying.line, PlaybackState::Interrupted);
         }
     }
 
-    fn speak(&mut self, line: &Line) {
+    fn speak(&mut self, line: &PlaybackRequest) {
         self.fall_silent();
         let length = Span::from_s(log_normal(&mut self.rng, LINE_S.0, LINE_S.1));
         self.tell(format_args!("robot: {}", line.text));
-        self.saying = Some(Saying { line: line.number, ends: self.now + length });
-        self.voice(line.number, Spoken::Started);
+        self.saying = Some(Saying { line: line.playback, ends: self.now + length });
+        self.voice(line.playback, PlaybackState::Started);
     }
 
     fn person_goes_on(&mut self) {
@@ -204,17 +207,18 @@ impl<'a> World<'a> {
             if !began && self.now >= utterance.onset + DETECTION {
                 self.said[n].1 = true;
                 if live {
-                    self.to_speech
-                        .push(speech::In::Live(Live::Began(began_to_speak(n, &utterance))));
+                    self.to_speech.push(speech::In::Stream(StreamEvent::Began(began_to_speak(
+                        n, &utterance,
+                    ))));
                 }
             }
             if !ended && self.now >= utterance.end {
                 self.said[n].2 = true;
                 if live {
                     let (onset, end) = (utterance.onset, utterance.end);
-                    let cut = Cut { onset, end, samples: Vec::new(), speech: 0..0 };
+                    let segment = SpeechSegment { onset, end, samples: Vec::new(), speech: 0..0 };
                     let sound = LIVE_FROM + n as u64;
-                    self.to_speech.push(speech::In::Live(Live::Ended { sound, cut }));
+                    self.to_speech.push(speech::In::Stream(StreamEvent::Ended { sound, segment }));
                 } else {
                     // The client has it recognised and sends what comes out.
                     let at = self.now + self.recogniser_s();
@@ -251,8 +255,8 @@ impl<'a> World<'a> {
             }
             let said = &self.said[utterance].0;
             let span_s = (0.0, said.end.since(said.onset).s());
-            let heard = Ok(vec![Hypothesis::certain(said.text.clone())]);
-            let segments = Ok(vec![Segment { span_s, snr_db: 40.0, heard }]);
+            let hypotheses = Ok(vec![Hypothesis::certain(said.text.clone())]);
+            let segments = Ok(vec![RecognisedSegment { span_s, snr_db: 40.0, hypotheses }]);
             self.to_speech.push(speech::In::Recognised(Recognised { sound, segments }));
         }
     }
@@ -270,9 +274,12 @@ impl<'a> World<'a> {
                     self.to_policy.push(policy::In::Activity(activity));
                 }
                 speech::Out::Speak(line) => self.speak(&line),
-                speech::Out::Hush => self.fall_silent(),
+                speech::Out::StopSpeaking => self.fall_silent(),
                 speech::Out::Recognise(sound, what) => {
-                    debug_assert!(matches!(what, ToRecognise::Speech(_)), "nobody gives files");
+                    debug_assert!(
+                        matches!(what, RecognitionInput::Speech(_)),
+                        "nobody gives files"
+                    );
                     let utterance = (sound - LIVE_FROM) as usize;
                     let at = self.now + self.recogniser_s();
                     self.working.push(Working { at, sound, utterance });
@@ -280,9 +287,9 @@ impl<'a> World<'a> {
                 speech::Out::Motion(_)
                 | speech::Out::Hearing(_)
                 | speech::Out::Partial(_)
-                | speech::Out::Overhear(..)
-                | speech::Out::Expect(..) => {}
-                speech::Out::Talk(..) => unreachable!("nobody asks for the microphone"),
+                | speech::Out::InterimSamples(..)
+                | speech::Out::DecodeEarly(..) => {}
+                speech::Out::OpenMicrophone(..) => unreachable!("nobody asks for the microphone"),
             }
         }
     }

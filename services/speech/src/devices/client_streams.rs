@@ -1,8 +1,8 @@
-//! Sound that clients stream, cut into utterances on a thread of its own.
+//! Clients' audio streams, segmented into utterances on a thread of its own.
 //!
-//! Invariant: as for the microphone, every [`Live::Began`] is followed by one [`Live::Ended`]; every
-//! stream is followed by one [`Live::Over`], also that of a client that has died. The number of
-//! streams and what waits are bounded; what is lost is counted and becomes silence.
+//! Invariant: every [`StreamEvent::Began`] is followed by one [`StreamEvent::Ended`]; every stream is
+//! followed by one [`StreamEvent::Closed`], even if its client dies. The number of streams and the
+//! queue are bounded; losses are counted and replaced by silence.
 
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -13,27 +13,27 @@ use messages::{AudioChunk, RequestKey, Source};
 use service::clock;
 use service::{Span, Time};
 
-use crate::devices::microphone::{MicrophoneEvent, Outgoing, Sink};
-use crate::devices::stream::{Duplex, Listener, OwnVoice, StreamEvent, shifted};
+use crate::devices::microphone::{EventQueue, MicrophoneEvent, Sink};
+use crate::devices::stream::{Duplex, MaskedStream, PlaybackMask, SegmentEvent, shifted};
 use crate::devices::vad::SegmenterOptions;
-use crate::live::{Began, Live, next_sound};
+use crate::stream_events::{Began, StreamEvent, next_sound};
 
-/// Streams at a time; more are over before they begin.
+/// Simultaneous streams; further ones are closed before they begin.
 pub const STREAMS_MAX: usize = 8;
 /// Chunks that may wait for the thread: more than three seconds of one stream.
 const CHUNKS_MAX: usize = 64;
-/// Longest loss that becomes silence in the middle of an utterance, samples: half a second.
+/// Longest gap that is filled with silence within an utterance, samples: half a second.
 const GAP_MAX: u64 = 8_000;
-/// How often quiet streams are looked at.
-const LOOK: Duration = Duration::from_millis(250);
-/// A stream that says nothing for this long has paused: an utterance in it ends.
+/// Polling interval for paused streams.
+const POLL_EVERY: Duration = Duration::from_millis(250);
+/// A stream without chunks for this long has paused: its utterance ends.
 const PAUSE: Duration = Duration::from_secs(1);
-/// A stream that says nothing for this long is over: its client has died.
-const PATIENCE: Duration = Duration::from_secs(10);
-/// Sound older than this cannot be meant: the client's clock is another one.
+/// A stream without chunks for this long is closed: its client has died.
+const TIMEOUT: Duration = Duration::from_secs(10);
+/// Oldest plausible recording time; an older one is due to another clock.
 const OLDEST: Span = Span::from_ms(30_000);
 
-/// The thread that listens to clients' streams. Dropping it ends the thread.
+/// The thread that segments clients' streams. Dropping it ends the thread.
 pub struct ClientStreams {
     chunks: Option<Sender<Box<AudioChunk>>>,
     thread: Option<JoinHandle<()>>,
@@ -41,17 +41,17 @@ pub struct ClientStreams {
 
 impl ClientStreams {
     /// Starts the thread.
-    pub fn start(segmenter: SegmenterOptions, own_voice: Arc<OwnVoice>, sink: Sink) -> Self {
-        let (chunks, taken) = bounded(CHUNKS_MAX);
-        let outgoing = Outgoing::new(sink);
-        let streams = Streams { segmenter, own_voice, outgoing, open: Vec::new() };
-        Self { chunks: Some(chunks), thread: Some(std::thread::spawn(move || streams.run(&taken))) }
+    pub fn start(segmenter: SegmenterOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
+        let (chunks, received) = bounded(CHUNKS_MAX);
+        let streams = Streams { segmenter, mask, queue: EventQueue::new(sink), open: Vec::new() };
+        let thread = std::thread::spawn(move || streams.run(&received));
+        Self { chunks: Some(chunks), thread: Some(thread) }
     }
 
-    /// Listens to a chunk. One for which there is no room is lost, as on its way.
+    /// Queues a chunk. Without room it is lost, as in transit.
     pub fn take(&self, chunk: &AudioChunk) {
         if let Some(chunks) = &self.chunks {
-            // The gap is noticed and counted with the next chunk.
+            // The next chunk reveals the gap.
             let _ = chunks.try_send(Box::new(*chunk));
         }
     }
@@ -61,7 +61,7 @@ impl Drop for ClientStreams {
     fn drop(&mut self) {
         self.chunks = None;
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has told so already.
+            // A panic of the thread has been logged.
             let _ = thread.join();
         }
     }
@@ -70,35 +70,35 @@ impl Drop for ClientStreams {
 /// The thread's side.
 struct Streams {
     segmenter: SegmenterOptions,
-    own_voice: Arc<OwnVoice>,
-    outgoing: Outgoing,
-    open: Vec<Open>,
+    mask: Arc<PlaybackMask>,
+    queue: EventQueue,
+    open: Vec<OpenStream>,
 }
 
-/// A stream that is going on.
-struct Open {
+/// A stream in progress.
+struct OpenStream {
     key: RequestKey,
-    listener: Listener,
-    /// Number of the sample that comes next.
+    stream: MaskedStream,
+    /// Number of the next sample.
     next: u64,
     lost: u64,
     utterances: u32,
-    /// The utterance that is going on.
+    /// The utterance in progress.
     sound: Option<u64>,
     is_held: bool,
-    heard_last: Instant,
+    last_chunk: Instant,
 }
 
 impl Streams {
     fn run(mut self, chunks: &Receiver<Box<AudioChunk>>) {
         loop {
-            match chunks.recv_timeout(LOOK) {
+            match chunks.recv_timeout(POLL_EVERY) {
                 Ok(chunk) => self.take(&chunk, clock::now()),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
-            self.look_after_the_quiet();
-            self.outgoing.flush();
+            self.check_timeouts();
+            self.queue.flush();
         }
     }
 
@@ -108,137 +108,134 @@ impl Streams {
         let ends = chunk.is(AudioChunk::END);
         let at = match known {
             Some(at) => at,
-            None if ends => return self.over(key, 0, 0),
+            None if ends => return self.close(key, 0, 0),
             None if self.open.len() >= STREAMS_MAX => {
-                tracing::warn!("{STREAMS_MAX} clients stream already; another one is not heard");
-                return self.over(key, 0, chunk.count.into());
+                tracing::warn!("stream rejected: {STREAMS_MAX} clients are streaming already");
+                return self.close(key, 0, chunk.count.into());
             }
             None => {
-                self.begin(key, chunk);
+                self.open.push(self.begin(key, chunk));
                 self.open.len() - 1
             }
         };
-        let open = &mut self.open[at];
-        for live in open.take(chunk, now) {
-            self.outgoing.send(MicrophoneEvent::Live(live));
-        }
+        let events = self.open[at].take(chunk, now);
+        self.send(events);
         if ends {
             self.end(at);
         }
     }
 
-    /// A stream that is heard for the first time: perhaps its beginning was heard by the service
-    /// before its restart.
-    fn begin(&mut self, key: RequestKey, chunk: &AudioChunk) {
-        self.open.push(Open {
+    /// Returns a new stream, whose beginning the service may have processed before a restart.
+    fn begin(&self, key: RequestKey, chunk: &AudioChunk) -> OpenStream {
+        OpenStream {
             key,
-            listener: Listener::new(self.segmenter.clone(), Arc::clone(&self.own_voice)),
+            stream: MaskedStream::new(self.segmenter.clone(), Arc::clone(&self.mask)),
             next: chunk.first_sample,
             lost: 0,
             utterances: 0,
             sound: None,
             is_held: false,
-            heard_last: Instant::now(),
-        });
+            last_chunk: Instant::now(),
+        }
     }
 
     fn end(&mut self, at: usize) {
         let mut open = self.open.swap_remove(at);
-        for live in open.break_off() {
-            self.outgoing.send(MicrophoneEvent::Live(live));
-        }
-        self.over(open.key, open.utterances, open.lost);
+        let events = open.end_utterance();
+        self.send(events);
+        self.close(open.key, open.utterances, open.lost);
     }
 
-    fn over(&mut self, stream: RequestKey, utterances: u32, lost: u64) {
+    fn close(&mut self, stream: RequestKey, utterances: u32, lost: u64) {
         if lost > 0 {
-            tracing::warn!(lost, "samples of a client's stream were lost on their way");
+            tracing::warn!(lost, "samples of a client's stream were lost in transit");
         }
-        self.outgoing.send(MicrophoneEvent::Live(Live::Over { stream, utterances, lost }));
+        self.send(vec![StreamEvent::Closed { stream, utterances, lost }]);
     }
 
-    fn look_after_the_quiet(&mut self) {
+    fn send(&mut self, events: Vec<StreamEvent>) {
+        events.into_iter().for_each(|event| self.queue.send(MicrophoneEvent::Stream(event)));
+    }
+
+    fn check_timeouts(&mut self) {
         for at in (0..self.open.len()).rev() {
-            let open = &mut self.open[at];
-            let quiet = open.heard_last.elapsed();
-            if quiet >= PATIENCE {
+            let quiet = self.open[at].last_chunk.elapsed();
+            if quiet >= TIMEOUT {
                 self.end(at);
             } else if quiet >= PAUSE {
-                for live in open.break_off() {
-                    self.outgoing.send(MicrophoneEvent::Live(live));
-                }
+                let events = self.open[at].end_utterance();
+                self.send(events);
             }
         }
     }
 }
 
-impl Open {
-    fn take(&mut self, chunk: &AudioChunk, now: Time) -> Vec<Live> {
-        self.heard_last = Instant::now();
-        let sound = chunk.sound();
+impl OpenStream {
+    fn take(&mut self, chunk: &AudioChunk, now: Time) -> Vec<StreamEvent> {
+        self.last_chunk = Instant::now();
         if chunk.first_sample < self.next {
             return Vec::new();
         }
-        let mut told = Vec::new();
-        let length = sound.len() as i64;
-        let latest = shifted(now, -length);
-        let taken = Time(chunk.taken_ns);
-        let is_of_our_clock = taken <= latest && taken + OLDEST > now;
-        let at = if is_of_our_clock { taken } else { latest };
+        let samples = chunk.sound();
+        let mut events = Vec::new();
+        let latest = shifted(now, -(samples.len() as i64));
+        let recorded = Time(chunk.taken_ns);
+        let is_plausible = recorded <= latest && recorded + OLDEST > now;
+        let at = if is_plausible { recorded } else { latest };
         let held = chunk.is(AudioChunk::HELD);
         let released = std::mem::replace(&mut self.is_held, held) && !held;
         let gap = chunk.first_sample - self.next;
         self.lost = self.lost.saturating_add(gap);
         if gap > GAP_MAX || released {
-            told.extend(self.break_off());
+            events.extend(self.end_utterance());
         }
         let duplex =
             if held || chunk.is(AudioChunk::ECHO_FREE) { Duplex::Full } else { Duplex::Half };
         if (1..=GAP_MAX).contains(&gap) && !released {
             let silence = vec![0; gap as usize];
-            told.extend(self.hear(shifted(at, -(gap as i64)), &silence, self.next, duplex));
+            events.extend(self.push(shifted(at, -(gap as i64)), &silence, self.next, duplex));
         }
-        told.extend(self.hear(at, sound, chunk.first_sample, duplex));
-        self.next = chunk.first_sample.saturating_add(sound.len() as u64);
-        told
+        events.extend(self.push(at, samples, chunk.first_sample, duplex));
+        self.next = chunk.first_sample.saturating_add(samples.len() as u64);
+        events
     }
 
-    /// Listens to samples, the first of which is number `first` of the stream.
-    fn hear(&mut self, at: Time, samples: &[i16], first: u64, duplex: Duplex) -> Vec<Live> {
-        let events = self.listener.hear(at, samples, duplex);
-        let told = events.into_iter().filter_map(|event| match event {
-            StreamEvent::Began(onset) => {
-                let before = (onset.since(Time(0)).s() - at.since(Time(0)).s()) * 10.0;
-                let tenth = (first as f64 / 1_600.0 + before).max(0.0) as u32;
-                Some(self.began(onset, tenth, duplex))
-            }
-            StreamEvent::SoFar(samples) => self.sound.map(|sound| Live::SoFar { sound, samples }),
-            StreamEvent::Paused(cut) => self.sound.map(|sound| Live::Paused { sound, cut }),
-            StreamEvent::Ended(cut) => self.sound.take().map(|sound| Live::Ended { sound, cut }),
-        });
-        told.collect()
-    }
-
-    fn began(&mut self, at: Time, tenth: u32, duplex: Duplex) -> Live {
-        let sound = next_sound();
-        self.sound = Some(sound);
-        self.utterances += 1;
-        Live::Began(Began {
-            sound,
-            at,
-            stream: self.key,
-            segment: Some(tenth),
-            source: Source::Microphone,
-            interrupts: duplex == Duplex::Full,
+    /// Processes samples, the first of which is number `first` of the stream.
+    fn push(&mut self, at: Time, samples: &[i16], first: u64, duplex: Duplex) -> Vec<StreamEvent> {
+        let events = self.stream.push(at, samples, duplex);
+        self.numbered(events, |onset| {
+            let before = (onset.since(Time(0)).s() - at.since(Time(0)).s()) * 10.0;
+            ((first as f64 / 1_600.0 + before).max(0.0) as u32, duplex)
         })
     }
 
-    fn break_off(&mut self) -> Vec<Live> {
-        let ended = self.listener.finish().into_iter().filter_map(|event| match event {
-            StreamEvent::Ended(cut) => self.sound.take().map(|sound| Live::Ended { sound, cut }),
-            _ => None,
-        });
-        ended.collect()
+    fn end_utterance(&mut self) -> Vec<StreamEvent> {
+        let events = self.stream.finish();
+        self.numbered(events, |_| (0, Duplex::Half))
+    }
+
+    /// Numbers the events; `segment` returns number and duplex mode of an utterance by its onset.
+    fn numbered(
+        &mut self,
+        events: Vec<SegmentEvent>,
+        segment: impl Fn(Time) -> (u32, Duplex),
+    ) -> Vec<StreamEvent> {
+        let (stream, utterances) = (self.key, &mut self.utterances);
+        let mut began = |at| {
+            *utterances += 1;
+            let (segment, duplex) = segment(at);
+            Began {
+                sound: next_sound(),
+                at,
+                stream,
+                segment: Some(segment),
+                source: Source::Microphone,
+                interrupts: duplex == Duplex::Full,
+            }
+        };
+        let sound = &mut self.sound;
+        let numbered = events.into_iter();
+        numbered.filter_map(|event| StreamEvent::number(event, sound, &mut began)).collect()
     }
 }
 

@@ -1,14 +1,13 @@
-//! What the service hears and speaks with: the recogniser, the detector of speech, WAV files, and
-//! the voice.
+//! The devices of the service: recogniser, voice detector, microphone, WAV files and voice.
 //!
-//! Invariant: nothing here decides anything about the dialogue, and nothing here can hold the
-//! service up: [`Ear`](ear::Ear) and [`Voice`](voice::Voice) work on threads of their own, behind
-//! bounded queues. Where a library or program is missing, the error names the package.
+//! Invariant: no device decides anything about the dialogue, and none can block the service:
+//! [`AsrWorker`](asr_worker::AsrWorker) and [`Voice`](voice::Voice) work on threads of their own,
+//! behind bounded queues. An error about a missing library or program names its package.
 
+pub mod asr_worker;
 pub mod audio;
-pub(crate) mod child;
+pub(crate) mod child_process;
 pub mod client_streams;
-pub mod ear;
 pub mod language_model;
 pub mod microphone;
 pub mod pronunciation;
@@ -19,4 +18,3 @@ pub mod stream;
 pub(crate) mod testing;
 pub mod vad;
 pub mod voice;
-pub mod watched_folder;

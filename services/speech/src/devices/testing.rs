@@ -1,27 +1,39 @@
-//! What several tests need: the bowls and a synthetic voice.
+//! Shared test data: scenes and a synthetic voice.
 
 use std::f64::consts::{PI, TAU};
+use std::path::Path;
 
 use scene::Scene;
 
 use crate::devices::audio::RATE_HZ;
 
-/// The six bowls.
+/// Returns the six bowls.
 pub(crate) fn bowls() -> Scene {
-    let file = "config/scenes/bowls.toml";
     let text = include_str!("../../../../config/scenes/bowls.toml");
-    Scene::from_toml(file, text).expect("the bowls are a valid scene")
+    Scene::from_toml("bowls.toml", text).expect("a valid scene")
 }
 
-/// The ten tools.
+/// Returns the ten tools.
 pub(crate) fn tools() -> Scene {
-    let file = "config/scenes/tools.toml";
     let text = include_str!("../../../../config/scenes/tools.toml");
-    Scene::from_toml(file, text).expect("the tools are a valid scene")
+    Scene::from_toml("tools.toml", text).expect("a valid scene")
 }
 
-/// A buzz whose pitch falls, through formants that glide from vowel to vowel, four syllables a
-/// second: what a detector takes for a voice.
+/// Writes samples as a WAV file of the service's own format.
+pub(crate) fn write_wav(path: &Path, samples: &[i16]) {
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: RATE_HZ,
+        bits_per_sample: 16,
+        sample_format: hound::SampleFormat::Int,
+    };
+    let mut wav = hound::WavWriter::create(path, spec).unwrap();
+    samples.iter().for_each(|&sample| wav.write_sample(sample).unwrap());
+    wav.finalize().unwrap();
+}
+
+/// Returns a buzz with falling pitch and formants that glide from vowel to vowel, four syllables per
+/// second, which a detector classifies as voice.
 pub(crate) fn voice(seconds: f64) -> Vec<i16> {
     const VOWELS: [[f64; 3]; 4] = [
         [730.0, 1_090.0, 2_440.0],

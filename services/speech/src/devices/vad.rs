@@ -1,7 +1,7 @@
-//! Where in a stream of sound somebody speaks.
+//! Voice activity detection: segments of speech in a stream.
 //!
-//! Invariant: segments do not overlap and come in order; every frame of speech that opened a
-//! segment lies in exactly one. The state advances by samples alone, never by a clock.
+//! Invariant: segments are ordered and do not overlap; every frame of speech that opened a segment lies
+//! in exactly one. The state advances by samples alone, never by a clock.
 
 use std::ops::Range;
 
@@ -12,23 +12,23 @@ use crate::devices::audio::RATE_HZ;
 /// Samples per decision of the detector: 16 ms.
 const FRAME: usize = 256;
 
-/// What makes a segment.
+/// Settings of segmentation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SegmenterOptions {
-    /// Score above which a frame is speech, 0 to 1. 0.5 finds onsets within 44 ms (median) and
-    /// takes no noise for speech at 25 dB; higher values lose the ends of words.
+    /// Score above which a frame is speech, 0 to 1. 0.5 finds onsets within 44 ms (median) and yields
+    /// no false alarms at 25 dB; higher values lose the ends of words.
     pub threshold: f32,
-    /// Frames of speech in a row that open a segment; fewer let clicks in.
+    /// Consecutive frames of speech that open a segment; fewer admit clicks.
     pub opening_frames: usize,
-    /// Pause that closes a segment, seconds. People pause longer than synthesis: 0.3 to 1.0.
+    /// Pause that closes a segment, seconds; for human speech 0.3 to 1.0.
     pub closing_pause_s: f64,
-    /// Sound before the onset that belongs to the segment, seconds: soft first consonants lie
-    /// before the detector's onset.
+    /// Audio before the onset that belongs to the segment, seconds: soft first consonants precede the
+    /// detected onset.
     pub pre_roll_s: f64,
-    /// Sound behind the speech that belongs to the segment, seconds. What the pause holds beyond it is
-    /// not decoded, so that decoding can begin before the pause is over.
+    /// Audio after the speech that belongs to the segment, seconds. The rest of the pause is not
+    /// decoded, so that decoding can begin before the pause ends.
     pub post_roll_s: f64,
-    /// Longest speech in a segment, seconds; what follows becomes the next segment.
+    /// Longest speech in a segment, seconds; the rest becomes the next segment.
     pub longest_s: f64,
 }
 
@@ -45,49 +45,49 @@ impl Default for SegmenterOptions {
     }
 }
 
-/// What the segmenter found.
+/// An event of the segmenter.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SegmentEvent {
-    /// Somebody began to speak.
+pub enum VadEvent {
+    /// Speech began.
     Onset {
         /// First sample of the speech, counted from the stream's start.
         at_sample: usize,
     },
-    /// Nobody has spoken for as long as the segment reaches behind the speech. If nobody goes on,
-    /// its end will tell the same range and speech.
+    /// A pause as long as the post-roll. Unless speech continues, the end carries the same range and
+    /// speech.
     Pause {
         /// The samples to decode.
         range: Range<usize>,
         /// The speech itself.
         speech: Range<usize>,
     },
-    /// The speech is over.
+    /// Speech ended.
     End {
-        /// The samples to decode: the speech with the sound before and behind it.
+        /// The samples to decode: the speech with pre-roll and post-roll.
         range: Range<usize>,
         /// The speech itself.
         speech: Range<usize>,
     },
 }
 
-/// Finds segments of speech in a stream at [`RATE_HZ`], given in pieces of any length.
+/// Finds segments of speech in a stream at [`RATE_HZ`], given in blocks of any length.
 pub struct Segmenter {
     options: SegmenterOptions,
     detector: Box<Detector>,
-    /// Samples of a frame that is not full yet.
+    /// Samples of an incomplete frame.
     rest: Vec<i16>,
     track: Track,
 }
 
 impl Segmenter {
-    /// A segmenter at the start of a stream.
+    /// Returns a segmenter at the start of a stream.
     pub fn new(options: SegmenterOptions) -> Self {
         let detector = Box::new(Detector::default());
         Self { options, detector, rest: Vec::with_capacity(FRAME), track: Track::default() }
     }
 
-    /// Takes the next samples and tells what they decided.
-    pub fn push(&mut self, samples: &[i16]) -> Vec<SegmentEvent> {
+    /// Processes the next samples.
+    pub fn push(&mut self, samples: &[i16]) -> Vec<VadEvent> {
         let mut events = Vec::new();
         self.rest.extend_from_slice(samples);
         let rest = std::mem::take(&mut self.rest);
@@ -100,16 +100,16 @@ impl Segmenter {
         events
     }
 
-    /// Ends the stream: a segment that is still open ends with it, and the segmenter is as new.
-    pub fn finish(&mut self) -> Vec<SegmentEvent> {
+    /// Ends the stream and an open segment with it, and resets the segmenter.
+    pub fn finish(&mut self) -> Vec<VadEvent> {
         let mut events = Vec::new();
         let track = std::mem::take(&mut self.track);
         if let Some(open) = track.open {
             let end = track.at + self.rest.len();
-            // Speech that goes on in the last frame may go on in the samples behind it.
+            // Speech in the last frame may continue in the incomplete one.
             let speech_end = if open.speech_end == track.at { end } else { open.speech_end };
             let (range, speech) = open.cut(speech_end, end, &self.options);
-            events.push(SegmentEvent::End { range, speech });
+            events.push(VadEvent::End { range, speech });
         }
         self.rest.clear();
         self.detector.reset();
@@ -117,14 +117,14 @@ impl Segmenter {
     }
 }
 
-/// The decisions, apart from the detector.
+/// The decisions without the detector.
 #[derive(Debug, Default)]
 struct Track {
-    /// Samples seen.
+    /// Samples processed.
     at: usize,
-    /// Frames of speech in a row while no segment is open.
+    /// Consecutive frames of speech while no segment is open.
     streak: usize,
-    /// Where the last segment ended; the next begins no earlier.
+    /// End of the last segment; the next one begins no earlier.
     free_from: usize,
     open: Option<Open>,
 }
@@ -140,7 +140,7 @@ struct Open {
 }
 
 impl Open {
-    /// What to decode at sample `at`, and the speech in it.
+    /// Returns the range to decode at sample `at`, and the speech in it.
     fn cut(
         &self,
         speech_end: usize,
@@ -152,7 +152,7 @@ impl Open {
 }
 
 impl Track {
-    fn frame(&mut self, speech: bool, options: &SegmenterOptions, events: &mut Vec<SegmentEvent>) {
+    fn frame(&mut self, speech: bool, options: &SegmenterOptions, events: &mut Vec<VadEvent>) {
         self.at += FRAME;
         self.streak = if speech { self.streak + 1 } else { 0 };
         match &mut self.open {
@@ -160,7 +160,7 @@ impl Track {
                 let onset = self.at - self.streak * FRAME;
                 let start = onset.saturating_sub(samples(options.pre_roll_s)).max(self.free_from);
                 self.open = Some(Open { start, onset, speech_end: self.at });
-                events.push(SegmentEvent::Onset { at_sample: onset });
+                events.push(VadEvent::Onset { at_sample: onset });
             }
             None => {}
             Some(open) => {
@@ -174,9 +174,9 @@ impl Track {
                     self.free_from = range.end;
                     self.streak = 0;
                     self.open = None;
-                    events.push(SegmentEvent::End { range, speech });
+                    events.push(VadEvent::End { range, speech });
                 } else if self.at - open.speech_end == post_roll(options) {
-                    events.push(SegmentEvent::Pause { range, speech });
+                    events.push(VadEvent::Pause { range, speech });
                 }
             }
         }
@@ -187,7 +187,7 @@ fn samples(seconds: f64) -> usize {
     (seconds * f64::from(RATE_HZ)) as usize
 }
 
-/// How far a segment reaches behind its speech: whole frames, one at least.
+/// Returns the length of a segment after its speech: whole frames, at least one.
 fn post_roll(options: &SegmenterOptions) -> usize {
     samples(options.post_roll_s).div_ceil(FRAME).max(1) * FRAME
 }
@@ -195,10 +195,11 @@ fn post_roll(options: &SegmenterOptions) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::devices::random::{Rng, signed};
     use crate::devices::testing::voice;
 
-    /// Runs the decisions over frames written as `#` (speech) and `.` (none).
-    fn track(frames: &str, options: &SegmenterOptions) -> Vec<SegmentEvent> {
+    /// Processes frames written as `#` (speech) and `.` (none).
+    fn track(frames: &str, options: &SegmenterOptions) -> Vec<VadEvent> {
         let (mut track, mut events) = (Track::default(), Vec::new());
         for frame in frames.chars() {
             track.frame(frame == '#', options, &mut events);
@@ -206,7 +207,8 @@ mod tests {
         events
     }
 
-    /// Three frames open, two frames close, one frame of pre-roll, eight frames at most.
+    /// Returns settings by which three frames open and two close, with one frame of pre-roll and eight frames
+    /// at most.
     fn short() -> SegmenterOptions {
         let frame_s = FRAME as f64 / f64::from(RATE_HZ);
         SegmenterOptions {
@@ -218,37 +220,28 @@ mod tests {
         }
     }
 
-    fn onset(frame: usize) -> SegmentEvent {
-        SegmentEvent::Onset { at_sample: frame * FRAME }
+    fn onset(frame: usize) -> VadEvent {
+        VadEvent::Onset { at_sample: frame * FRAME }
     }
 
-    fn end(range: Range<usize>, speech: Range<usize>) -> SegmentEvent {
+    fn end(range: Range<usize>, speech: Range<usize>) -> VadEvent {
         let samples = |r: Range<usize>| r.start * FRAME..r.end * FRAME;
-        SegmentEvent::End { range: samples(range), speech: samples(speech) }
+        VadEvent::End { range: samples(range), speech: samples(speech) }
     }
 
-    #[test]
-    fn three_frames_open_and_a_pause_closes() {
-        let events = track("..####.#..", &short());
-        assert_eq!(events, [onset(2), end(1..10, 2..8)]);
-    }
-
-    #[test]
-    fn a_pause_is_told_with_what_its_end_will_tell_unless_somebody_goes_on() {
-        let frame_s = FRAME as f64 / f64::from(RATE_HZ);
-        let closing_pause_s = 4.0 * frame_s;
-        let options = SegmenterOptions {
-            closing_pause_s,
-            post_roll_s: 2.0 * frame_s,
-            longest_s: 1.0,
-            ..short()
-        };
-        let events = track(".####.##..#....###....", &options);
-        let pause = |range, speech| match end(range, speech) {
-            SegmentEvent::End { range, speech } => SegmentEvent::Pause { range, speech },
+    fn pause(range: Range<usize>, speech: Range<usize>) -> VadEvent {
+        match end(range, speech) {
+            VadEvent::End { range, speech } => VadEvent::Pause { range, speech },
             event => event,
-        };
-        let expected = [
+        }
+    }
+
+    #[test]
+    fn vad_segments_follow_the_frames() {
+        let frame_s = FRAME as f64 / f64::from(RATE_HZ);
+        let pausing =
+            SegmenterOptions { closing_pause_s: 4.0 * frame_s, longest_s: 1.0, ..short() };
+        let long_pauses = vec![
             onset(1),
             pause(0..10, 1..8),
             pause(0..13, 1..11),
@@ -257,31 +250,32 @@ mod tests {
             pause(14..20, 15..18),
             end(14..20, 15..18),
         ];
-        assert_eq!(events, expected);
+        for (what, frames, options, expected) in [
+            ("a pause closes", "..####.#..", short(), vec![onset(2), end(1..10, 2..8)]),
+            ("a pause precedes its end", ".####.##..#....###....", pausing, long_pauses),
+            ("clicks", ".##.#.##..", short(), vec![]),
+            (
+                "pre-roll does not overlap",
+                "###..###..",
+                short(),
+                vec![onset(0), end(0..5, 0..3), onset(5), end(5..10, 5..8)],
+            ),
+            (
+                "endless speech is split",
+                "############..",
+                short(),
+                vec![onset(0), end(0..8, 0..8), onset(8), end(8..14, 8..12)],
+            ),
+        ] {
+            assert_eq!(track(frames, &options), expected, "{what}");
+        }
     }
 
-    #[test]
-    fn clicks_open_nothing() {
-        assert_eq!(track(".##.#.##..", &short()), []);
-    }
-
-    #[test]
-    fn the_pre_roll_does_not_reach_into_the_segment_before() {
-        let events = track("###..###..", &short());
-        assert_eq!(events, [onset(0), end(0..5, 0..3), onset(5), end(5..10, 5..8)]);
-    }
-
-    #[test]
-    fn endless_speech_is_cut() {
-        let events = track("############..", &short());
-        assert_eq!(events, [onset(0), end(0..8, 0..8), onset(8), end(8..14, 8..12)]);
-    }
-
-    fn speech(events: &[SegmentEvent]) -> Vec<Range<usize>> {
+    fn speech(events: &[VadEvent]) -> Vec<Range<usize>> {
         (events.iter())
             .filter_map(|e| match e {
-                SegmentEvent::End { speech, .. } => Some(speech.clone()),
-                SegmentEvent::Onset { .. } | SegmentEvent::Pause { .. } => None,
+                VadEvent::End { speech, .. } => Some(speech.clone()),
+                VadEvent::Onset { .. } | VadEvent::Pause { .. } => None,
             })
             .collect()
     }
@@ -295,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn a_voice_is_found_where_it_is_even_if_the_stream_ends_with_it() {
+    fn vad_finds_voice_that_lasts_until_the_end_of_the_stream() {
         let mut segmenter = Segmenter::new(SegmenterOptions::default());
         let mut events = segmenter.push(&stream());
         events.extend(segmenter.finish());
@@ -312,42 +306,27 @@ mod tests {
     }
 
     #[test]
-    fn pieces_of_any_length_decide_alike() {
+    fn vad_is_independent_of_block_lengths_and_reusable() {
         let stream = stream();
         let mut whole = Segmenter::new(SegmenterOptions::default());
         let mut expected = whole.push(&stream);
         expected.extend(whole.finish());
+        let mut segmenter = Segmenter::new(SegmenterOptions::default());
         for len in [1, 100, 256, 999] {
-            let mut segmenter = Segmenter::new(SegmenterOptions::default());
             let mut events: Vec<_> = stream.chunks(len).flat_map(|c| segmenter.push(c)).collect();
             events.extend(segmenter.finish());
-            assert_eq!(events, expected, "pieces of {len}");
+            assert_eq!(events, expected, "blocks of {len}");
         }
     }
 
     #[test]
-    fn silence_and_noise_are_no_speech() {
+    fn vad_ignores_silence_and_noise() {
         let mut segmenter = Segmenter::new(SegmenterOptions::default());
         assert_eq!(segmenter.push(&vec![0; samples(2.0)]), []);
-        let mut state = 1_u32;
-        let noise: Vec<i16> = (0..samples(3.0))
-            .map(|_| {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                (state >> 24) as i16 - 128
-            })
-            .collect();
+        let mut rng = Rng::new(1);
+        let noise: Vec<i16> =
+            (0..samples(3.0)).map(|_| (signed(&mut rng) * 128.0) as i16).collect();
         assert_eq!(segmenter.push(&noise), []);
         assert_eq!(segmenter.finish(), []);
-    }
-
-    #[test]
-    fn a_finished_segmenter_is_as_new() {
-        let mut segmenter = Segmenter::new(SegmenterOptions::default());
-        let run = |segmenter: &mut Segmenter| {
-            let mut events = segmenter.push(&stream());
-            events.extend(segmenter.finish());
-            events
-        };
-        assert_eq!(run(&mut segmenter), run(&mut segmenter));
     }
 }

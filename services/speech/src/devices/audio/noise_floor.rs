@@ -1,23 +1,22 @@
-//! Sound that is too clean for the recogniser.
+//! Noise added to audio that is too clean for the recogniser.
 
 use std::borrow::Cow;
 
 use super::RATE_HZ;
-use crate::devices::random::SplitMix;
+use crate::devices::random::{Rng, signed};
 
-/// How far the noise lies below the speech at least, decibels. The acoustic model has learnt from
-/// microphones in rooms: of requests spoken by espeak-ng in digital silence it understands 63 %,
-/// with noise at 28 dB 95 %.
+/// Highest signal-to-noise ratio, decibels. The acoustic model was trained on microphones in rooms:
+/// it understands 63 % of requests spoken by espeak-ng in digital silence, 95 % with noise at 28 dB.
 const FLOOR_DB: f32 = 28.0;
-/// Stretches whose power is compared: 20 ms.
-const STRETCH: usize = RATE_HZ as usize / 50;
-/// What lies this far below the loudest stretch is a pause and not speech, as a ratio of powers.
+/// Samples of a block whose power is compared: 20 ms.
+const BLOCK: usize = RATE_HZ as usize / 50;
+/// Power relative to the loudest block below which a block is a pause.
 const PAUSE: f32 = 0.01;
 
-/// The samples with as much pink noise as they lack of [`FLOOR_DB`]; a recording from a room is
-/// returned as it is. Equal samples get equal noise.
+/// Returns the samples with pink noise that limits the signal-to-noise ratio to [`FLOOR_DB`]; a
+/// recording from a room is returned unchanged. Equal samples get equal noise.
 pub fn with_noise_floor(samples: &[i16]) -> Cow<'_, [i16]> {
-    let mut powers: Vec<f32> = samples.chunks(STRETCH).map(power).collect();
+    let mut powers: Vec<f32> = samples.chunks(BLOCK).map(power).collect();
     powers.sort_by(f32::total_cmp);
     let Some(&loudest) = powers.last() else { return Cow::Borrowed(samples) };
     let speech: Vec<f32> = powers.iter().copied().filter(|p| *p > loudest * PAUSE).collect();
@@ -29,7 +28,7 @@ pub fn with_noise_floor(samples: &[i16]) -> Cow<'_, [i16]> {
     }
     let noise = pink(samples.len());
     let gain = (lack / (noise.iter().map(|n| n * n).sum::<f32>() / noise.len() as f32)).sqrt();
-    // The cast saturates: what exceeds full scale is clipped.
+    // The cast saturates: values beyond full scale are clipped.
     let with_noise = |(&s, n): (&i16, &f32)| (f32::from(s) + gain * n).round() as i16;
     Cow::Owned(samples.iter().zip(&noise).map(with_noise).collect())
 }
@@ -38,13 +37,14 @@ fn power(samples: &[i16]) -> f32 {
     samples.iter().map(|&s| f32::from(s) * f32::from(s)).sum::<f32>() / samples.len() as f32
 }
 
-/// Noise whose power falls by 3 dB an octave: white noise through Kellet's three one-pole filters.
+/// Returns noise whose power falls by 3 dB per octave: white noise through Kellet's three one-pole
+/// filters.
 fn pink(len: usize) -> Vec<f32> {
-    let mut random = SplitMix::new(0x0A15E);
+    let mut rng = Rng::new(0x0A15E);
     let (mut low, mut middle, mut high) = (0.0, 0.0, 0.0);
     (0..len)
         .map(|_| {
-            let white = random.signed();
+            let white = signed(&mut rng);
             low = 0.997_65 * low + 0.099_046 * white;
             middle = 0.963 * middle + 0.296_516_4 * white;
             high = 0.57 * high + 1.052_691_3 * white;
@@ -64,7 +64,7 @@ mod tests {
     }
 
     #[test]
-    fn clean_speech_gets_noise_below_it() {
+    fn noise_floor_adds_noise_below_clean_speech() {
         let speech = voice(1.0);
         let clean = in_silence(&speech);
         let heard = with_noise_floor(&clean);
@@ -74,15 +74,15 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_from_a_room_stays_as_it_is() {
-        let mut random = SplitMix::new(3);
+    fn noise_floor_leaves_a_noisy_recording_unchanged() {
+        let mut rng = Rng::new(3);
         let mut noisy = in_silence(&voice(1.0));
-        noisy.iter_mut().for_each(|s| *s = s.saturating_add((random.signed() * 600.0) as i16));
+        noisy.iter_mut().for_each(|s| *s = s.saturating_add((signed(&mut rng) * 600.0) as i16));
         assert!(matches!(with_noise_floor(&noisy), Cow::Borrowed(same) if same == noisy));
     }
 
     #[test]
-    fn silence_and_nothing_stay_as_they_are() {
+    fn noise_floor_leaves_silence_unchanged() {
         assert!(with_noise_floor(&[]).is_empty());
         assert!(with_noise_floor(&[0; 1_000]).iter().all(|s| *s == 0));
     }

@@ -1,4 +1,4 @@
-//! WAV files, of any usual make, as samples at the service's rate.
+//! WAV files of any usual format, read as samples at the service's rate.
 
 use std::fs::File;
 use std::io::{self, Cursor, Read as _};
@@ -8,10 +8,10 @@ use hound::{SampleFormat, WavReader};
 
 use super::{RATE_HZ, resample};
 
-/// Why a WAV file cannot be listened to.
+/// Error of reading a WAV file.
 #[derive(Debug, thiserror::Error)]
 pub enum WavError {
-    /// The file is not there or may not be read.
+    /// Missing, or not readable.
     #[error("{} cannot be read: {source}", path.display())]
     Unreadable {
         /// The file.
@@ -19,46 +19,46 @@ pub enum WavError {
         /// The system's reason.
         source: io::Error,
     },
-    /// A folder, a device or a pipe: reading it could wait for ever.
+    /// A folder, a device or a pipe: reading it could block forever.
     #[error("{} is not a regular file", path.display())]
     NotAFile {
         /// The path.
         path: PathBuf,
     },
-    /// Not in the WAV format, or damaged.
+    /// Not a WAV file, or damaged.
     #[error("{} is not a valid WAV file: {reason}", path.display())]
     NotWav {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// Reason.
         reason: String,
     },
-    /// A WAV file of a make that is not read.
-    #[error("{}: {what}; convert it to 16 kHz, 16 bit, mono PCM", path.display())]
+    /// An unsupported encoding.
+    #[error("{}: {what}; help: convert it to 16 kHz, 16 bit, mono PCM", path.display())]
     Unsupported {
         /// The file.
         path: PathBuf,
-        /// What is not supported.
+        /// Unsupported property.
         what: String,
     },
-    /// It ends before the length that it announces.
-    #[error("{} is cut off: it announces {announced_s:.1} s but holds {found_s:.1} s", path.display())]
-    CutOff {
+    /// Shorter than its header says.
+    #[error("{} is truncated: expected {announced_s:.1} s, found {found_s:.1} s", path.display())]
+    Truncated {
         /// The file.
         path: PathBuf,
-        /// Seconds by its header.
+        /// Seconds according to its header.
         announced_s: f64,
-        /// Seconds that are there.
+        /// Seconds in the file.
         found_s: f64,
     },
-    /// It holds no sample.
-    #[error("{} holds no sound", path.display())]
+    /// Without samples.
+    #[error("{} contains no audio", path.display())]
     Empty {
         /// The file.
         path: PathBuf,
     },
-    /// Longer than may be listened to at once.
-    #[error("{} lasts longer than {longest_s} s", path.display())]
+    /// Longer than allowed.
+    #[error("{} is longer than {longest_s} s", path.display())]
     TooLong {
         /// The file.
         path: PathBuf,
@@ -67,9 +67,9 @@ pub enum WavError {
     },
 }
 
-/// What no recording within the limits exceeds: 64 MiB are 43 s of 192 kHz stereo float.
+/// Largest file: 64 MiB are 43 s of 192 kHz stereo float.
 const BYTES_MAX: u64 = 64 << 20;
-/// Below it the consonants are gone.
+/// Lowest rate: below it consonants are lost.
 const RATE_MIN_HZ: u32 = 8_000;
 const RATE_MAX_HZ: u32 = 192_000;
 
@@ -77,17 +77,17 @@ const RATE_MAX_HZ: u32 = 192_000;
 /// integers or 32 bit floats, 8 to 192 kHz, any number of channels (their mean is taken).
 ///
 /// # Errors
-/// If the file is missing, not WAV, cut off, empty, too long, or of an unusual make.
+/// If the file is missing, not WAV, truncated, empty, too long, or of an unsupported encoding.
 pub fn read_wav(path: &Path, longest_s: f64) -> Result<Vec<i16>, WavError> {
     let mut bytes = read(path, longest_s)?;
-    mend_streamed_length(&mut bytes);
+    repair_streamed_length(&mut bytes);
     let not_wav = |error: hound::Error| match error {
         hound::Error::Unsupported => WavError::Unsupported {
             path: path.to_owned(),
-            what: "its encoding is not plain PCM or float".to_owned(),
+            what: "expected PCM or float samples".to_owned(),
         },
         hound::Error::IoError(_) => {
-            WavError::NotWav { path: path.to_owned(), reason: "its header is cut off".to_owned() }
+            WavError::NotWav { path: path.to_owned(), reason: "its header is truncated".to_owned() }
         }
         error => WavError::NotWav { path: path.to_owned(), reason: error.to_string() },
     };
@@ -98,7 +98,7 @@ pub fn read_wav(path: &Path, longest_s: f64) -> Result<Vec<i16>, WavError> {
     }
     let unsupported = |what| Err(WavError::Unsupported { path: path.to_owned(), what });
     if !(RATE_MIN_HZ..=RATE_MAX_HZ).contains(&spec.sample_rate) {
-        return unsupported(format!("its rate is {} Hz", spec.sample_rate));
+        return unsupported(format!("expected 8 to 192 kHz, found {} Hz", spec.sample_rate));
     }
     let rate = f64::from(spec.sample_rate);
     if f64::from(frames) / rate > longest_s {
@@ -115,13 +115,16 @@ pub fn read_wav(path: &Path, longest_s: f64) -> Result<Vec<i16>, WavError> {
     if samples.len() < wanted {
         let in_s = |n: usize| n as f64 / f64::from(spec.channels) / rate;
         let (announced_s, found_s) = (in_s(wanted), in_s(samples.len()));
-        return Err(WavError::CutOff { path: path.to_owned(), announced_s, found_s });
+        return Err(WavError::Truncated { path: path.to_owned(), announced_s, found_s });
     }
     if samples.iter().any(|s| !s.is_finite()) {
-        return unsupported("it holds samples that are not numbers".to_owned());
+        return unsupported("it contains samples that are not numbers".to_owned());
     }
     let mono = mix_down(&samples, usize::from(spec.channels));
-    Ok(quantise(&resample(&mono, spec.sample_rate, RATE_HZ)))
+    match resample(&mono, spec.sample_rate, RATE_HZ) {
+        Ok(samples) => Ok(quantise(&samples)),
+        Err(reason) => unsupported(reason),
+    }
 }
 
 fn read(path: &Path, longest_s: f64) -> Result<Vec<u8>, WavError> {
@@ -138,9 +141,8 @@ fn read(path: &Path, longest_s: f64) -> Result<Vec<u8>, WavError> {
     Ok(bytes)
 }
 
-/// Programs that write to a pipe do not know the length beforehand and announce the largest there
-/// is, or nearly. Such a length is replaced by what follows.
-fn mend_streamed_length(bytes: &mut [u8]) {
+/// Replaces the placeholder length that programs write into a pipe by the actual one.
+fn repair_streamed_length(bytes: &mut [u8]) {
     const STREAMED_MIN: u32 = 0x7FFF_0000;
     let le = |bytes: &[u8], at: usize| -> Option<u32> {
         Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?))
@@ -160,7 +162,7 @@ fn mend_streamed_length(bytes: &mut [u8]) {
             }
             return;
         }
-        // Chunks begin at even places.
+        // Chunks begin at even offsets.
         at += 8 + len as usize + (len & 1) as usize;
     }
 }
@@ -173,7 +175,7 @@ fn mix_down(samples: &[f32], channels: usize) -> Vec<f32> {
 }
 
 fn quantise(samples: &[f32]) -> Vec<i16> {
-    // The cast saturates: what exceeds full scale is clipped.
+    // The cast saturates: values beyond full scale are clipped.
     samples.iter().map(|s| (s * 32_768.0).round() as i16).collect()
 }
 

@@ -6,26 +6,26 @@ use crate::devices::testing::voice;
 
 struct Client {
     streams: ClientStreams,
-    told: Receiver<MicrophoneEvent>,
+    events: Receiver<MicrophoneEvent>,
     number: u64,
     first_sample: u64,
     flags: u8,
-    /// When the stream began; it is sent faster than it was spoken.
+    /// When the stream began; it is sent faster than real time.
     began: Time,
 }
 
 impl Client {
     fn new() -> Self {
-        let (send, told) = unbounded();
+        let (send, events) = unbounded();
         let sink = move |event| {
             let _ = send.send(event);
             Ok(())
         };
-        let own_voice = Arc::new(OwnVoice::new(Span::from_ms(300)));
+        let mask = Arc::new(PlaybackMask::new(Span::from_ms(300)));
         let options = SegmenterOptions::default();
-        let streams = ClientStreams::start(options, own_voice, Box::new(sink));
+        let streams = ClientStreams::start(options, mask, Box::new(sink));
         let began = clock::now() - Span::from_s(20.0);
-        Self { streams, told, number: 0, first_sample: 0, flags: 0, began }
+        Self { streams, events, number: 0, first_sample: 0, flags: 0, began }
     }
 
     fn chunk(&mut self, samples: &[i16], flags: u8) -> AudioChunk {
@@ -45,7 +45,7 @@ impl Client {
         chunk
     }
 
-    /// Sends samples except for the chunks that `lost` names by their number here.
+    /// Sends samples except for the chunks with the numbers in `lost`.
     fn send(&mut self, samples: &[i16], lost: &[usize]) {
         for (n, samples) in samples.chunks(CHUNK_SAMPLES_MAX).enumerate() {
             let chunk = self.chunk(samples, 0);
@@ -67,88 +67,94 @@ impl Client {
         self.streams.take(&chunk);
     }
 
-    /// What comes next, hints left out.
-    fn live(&self) -> Live {
+    /// Returns the next event that is not optional.
+    fn event(&self) -> StreamEvent {
         loop {
-            match self.told.recv_timeout(Duration::from_secs(20)).unwrap() {
-                MicrophoneEvent::Live(live) if live.is_hint() => {}
-                MicrophoneEvent::Live(live) => return live,
+            match self.events.recv_timeout(Duration::from_secs(20)).unwrap() {
+                MicrophoneEvent::Stream(event) if event.is_optional() => {}
+                MicrophoneEvent::Stream(event) => return event,
                 MicrophoneEvent::Status(status) => panic!("{status:?}"),
             }
         }
     }
 }
 
-/// Half a second of quiet, a second of voice, and quiet enough to end it.
+/// Returns half a second of quiet, a second of voice, and enough quiet to end it.
 fn request() -> Vec<i16> {
     [vec![0; 8_000], voice(1.0), vec![0; 12_800]].concat()
 }
 
 #[test]
-fn a_stream_tells_its_utterances_and_its_end() {
+fn client_stream_reports_utterances_and_its_end() {
     let mut client = Client::new();
     client.send(&request(), &[]);
     client.send(&request(), &[]);
     client.end();
     let mut tenths = Vec::new();
     for _ in 0..2 {
-        let Live::Began(began) = client.live() else { panic!() };
-        let Live::Ended { sound, cut } = client.live() else { panic!() };
+        let StreamEvent::Began(began) = client.event() else { panic!() };
+        let StreamEvent::Ended { sound, segment } = client.event() else { panic!() };
         assert_eq!((sound, began.interrupts), (began.sound, false));
-        assert!((0.7..1.3).contains(&cut.end.since(cut.onset).s()), "{cut:?}");
+        assert!((0.7..1.3).contains(&segment.end.since(segment.onset).s()), "{segment:?}");
         tenths.push(began.segment.unwrap());
     }
     assert!(tenths[0].abs_diff(5) <= 2 && tenths[1].abs_diff(28) <= 2, "{tenths:?}");
-    let over = Live::Over { stream: RequestKey([9; 16]), utterances: 2, lost: 0 };
-    assert_eq!(client.live(), over);
+    let closed = StreamEvent::Closed { stream: RequestKey([9; 16]), utterances: 2, lost: 0 };
+    assert_eq!(client.event(), closed);
     client.end();
-    assert!(matches!(client.live(), Live::Over { utterances: 0, .. }), "an end that is repeated");
+    assert!(matches!(client.event(), StreamEvent::Closed { utterances: 0, .. }), "a repeated end");
 }
 
 #[test]
-fn short_losses_become_silence_and_long_ones_end_the_utterance() {
+fn client_stream_fills_short_gaps_and_ends_the_utterance_at_long_ones() {
     let mut client = Client::new();
     // One chunk in the middle of the voice: 0.1 s.
     client.send(&request(), &[10]);
-    let (Live::Began(first), Live::Ended { cut, .. }) = (client.live(), client.live()) else {
+    let (StreamEvent::Began(first), StreamEvent::Ended { segment, .. }) =
+        (client.event(), client.event())
+    else {
         panic!()
     };
-    assert!((0.7..1.3).contains(&cut.end.since(first.at).s()));
-    assert!(cut.samples[cut.speech.clone()].windows(1_600).any(|w| w.iter().all(|s| *s == 0)));
+    assert!((0.7..1.3).contains(&segment.end.since(first.at).s()));
+    assert!(
+        segment.samples[segment.speech.clone()].windows(1_600).any(|w| w.iter().all(|s| *s == 0))
+    );
     // Seven chunks: more than half a second, from the middle of the voice on.
     client.send(&request(), &[10, 11, 12, 13, 14, 15, 16]);
     client.end();
-    let (Live::Began(_), Live::Ended { cut, .. }) = (client.live(), client.live()) else {
+    let (StreamEvent::Began(_), StreamEvent::Ended { segment, .. }) =
+        (client.event(), client.event())
+    else {
         panic!()
     };
-    assert!(cut.end.since(cut.onset).s() < 0.7);
-    let Live::Over { lost, utterances, .. } = client.live() else { panic!() };
+    assert!(segment.end.since(segment.onset).s() < 0.7);
+    let StreamEvent::Closed { lost, utterances, .. } = client.event() else { panic!() };
     assert_eq!((lost, utterances), (8 * 1_600, 2));
 }
 
 #[test]
-fn who_holds_a_key_may_interrupt_and_ends_by_releasing_it() {
+fn client_stream_push_to_talk_interrupts_and_ends_on_release() {
     let mut client = Client::new();
     client.flags = AudioChunk::HELD;
     client.send(&request()[..20_000], &[]);
-    let Live::Began(began) = client.live() else { panic!() };
+    let StreamEvent::Began(began) = client.event() else { panic!() };
     assert!(began.interrupts);
     client.flags = 0;
     client.send(&[0; 1_600], &[]);
-    assert!(matches!(client.live(), Live::Ended { sound, .. } if sound == began.sound));
+    assert!(matches!(client.event(), StreamEvent::Ended { sound, .. } if sound == began.sound));
 }
 
 #[test]
-fn a_client_that_dies_ends_its_utterance() {
+fn client_stream_ends_when_the_client_dies() {
     let mut client = Client::new();
     client.send(&request()[..20_000], &[]);
-    let Live::Began(began) = client.live() else { panic!() };
-    assert!(matches!(client.live(), Live::Ended { sound, .. } if sound == began.sound));
-    assert!(matches!(client.live(), Live::Over { utterances: 1, .. }));
+    let StreamEvent::Began(began) = client.event() else { panic!() };
+    assert!(matches!(client.event(), StreamEvent::Ended { sound, .. } if sound == began.sound));
+    assert!(matches!(client.event(), StreamEvent::Closed { utterances: 1, .. }));
 }
 
 #[test]
-fn another_clock_and_wrong_counts_do_no_harm() {
+fn client_stream_tolerates_another_clock_and_invalid_counts() {
     let mut client = Client::new();
     for taken_ns in [0, u64::MAX / 4, 1] {
         let mut chunk = client.chunk(&[0; 1_600], 0);
@@ -156,6 +162,6 @@ fn another_clock_and_wrong_counts_do_no_harm() {
         client.streams.take(&chunk);
     }
     client.send(&request(), &[]);
-    let Live::Began(began) = client.live() else { panic!() };
+    let StreamEvent::Began(began) = client.event() else { panic!() };
     assert!(began.at <= clock::now() && began.at + Span::from_s(30.0) > clock::now());
 }

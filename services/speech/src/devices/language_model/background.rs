@@ -1,7 +1,7 @@
-//! Words that people say to each other, not to the robot.
+//! Common English words of talk that is not meant for the robot.
 
-/// Common English words. They stand in the language model so that speech about other things is
-/// heard as other things; without them every sentence would come out as words of the scene.
+/// Returns common English words. They are in the language model so that talk about other things is
+/// recognised as such; without them every sentence would be recognised as words of the scene.
 pub fn common_words() -> impl Iterator<Item = &'static str> {
     COMMON_WORDS.split_whitespace()
 }
@@ -39,7 +39,7 @@ mod tests {
     use super::common_words;
 
     #[test]
-    fn no_word_stands_twice() {
+    fn common_words_are_unique() {
         let mut words: Vec<&str> = common_words().collect();
         assert!(words.len() > 190);
         let len = words.len();

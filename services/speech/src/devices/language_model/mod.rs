@@ -1,7 +1,7 @@
-//! What people say about a scene, as a trigram language model for the recogniser.
+//! Trigram language model of what people say about a scene.
 //!
-//! Invariant: the same scene yields the same model, byte for byte; nothing here reads a clock, a
-//! file or the machine's randomness.
+//! Invariant: the same scene yields the same model, byte for byte, without clock, files or system
+//! randomness.
 
 mod background;
 mod sentences;
@@ -12,8 +12,8 @@ pub use background::common_words;
 pub use sentences::scene_sentences;
 pub use trigram::{Trigram, Weights};
 
-/// The words of a text as the language model writes them: lower case, letters, digits, inner
-/// hyphens and apostrophes.
+/// Returns the words of a text in the form of the language model: lower case letters and digits with
+/// inner hyphens and apostrophes.
 pub fn words(text: &str) -> Vec<String> {
     text.split_whitespace()
         .map(|raw| {
@@ -34,7 +34,7 @@ mod tests {
     use super::words;
 
     #[test]
-    fn words_keep_inner_hyphens_and_apostrophes() {
+    fn language_model_words_keep_inner_hyphens_and_apostrophes() {
         assert_eq!(
             words("  It\u{2019}s the See-Through ONE, 'please'! -- "),
             ["it's", "the", "see-through", "one", "please"]

@@ -2,35 +2,47 @@
 
 use scene::{Attribute, Scene, Value};
 
-use super::templates::{COVER, PREPOSITIONS, SHAPES};
+use super::templates::{COVERAGE, PREPOSITIONS, shapes};
 use super::words;
-use crate::devices::random::SplitMix;
+use crate::devices::random::{Rng, below};
 
-/// Sentences that are drawn; those that cover every word come on top. More bring no more: the
-/// model's counts are stable to a few percent.
+/// Sentences that are drawn besides those that cover every word. More do not help: the model's counts
+/// are stable to a few percent.
 const DRAWN: usize = 4000;
 
-/// Sentences about the scene, each a line of words as [`words`] writes them. Equal scenes yield
-/// equal sentences, in the same order.
+/// Returns sentences about the scene, each a line of words as [`words`] writes them. Equal scenes
+/// yield equal sentences in equal order.
 pub fn scene_sentences(scene: &Scene) -> Vec<String> {
-    let mut speaker = Speaker::new(scene);
-    let weights: u32 = SHAPES.iter().map(|(weight, shapes)| weight * shapes.len() as u32).sum();
+    let mut generator = Generator::new(scene);
+    let shapes = shapes();
+    let weights: u32 = shapes.iter().map(|(weight, shapes)| weight * shapes.len() as u32).sum();
     let mut sentences = Vec::with_capacity(DRAWN);
     for _ in 0..DRAWN {
-        let shape = speaker.shape(weights);
-        sentences.push(speaker.fill(shape));
+        let at = below(&mut generator.rng, weights as usize) as u32;
+        sentences.push(generator.fill(shape_at(&shapes, at)));
     }
-    for form in speaker.forms() {
-        for shape in COVER {
-            let shape = shape.replace("{value}", &form);
-            sentences.push(speaker.fill(&shape));
+    for form in generator.forms() {
+        for shape in COVERAGE {
+            sentences.push(generator.fill(&shape.replace("{value}", &form)));
         }
     }
     sentences.retain(|sentence| !sentence.is_empty());
     sentences
 }
 
-/// The part that an attribute's values play in a sentence.
+/// Returns the shape at a position of the cumulated weights.
+fn shape_at(shapes: &[(u32, Vec<&'static str>)], mut at: u32) -> &'static str {
+    for (weight, shapes) in shapes {
+        let here = weight * shapes.len() as u32;
+        if at < here {
+            return shapes[(at / weight) as usize];
+        }
+        at -= here;
+    }
+    ""
+}
+
+/// Part of speech of an attribute's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     /// Before the noun: "the white bowl".
@@ -42,7 +54,7 @@ enum Part {
 }
 
 impl Part {
-    /// Read off how questions name the values: "in the cabinet", "a marker", "white".
+    /// Derives it from the spoken values: "in the cabinet", "a marker", "white".
     fn of(attribute: &Attribute) -> Self {
         let begins = |with: &[&str]| {
             (attribute.values.iter())
@@ -58,32 +70,39 @@ impl Part {
     }
 }
 
-/// Draws what to say.
-struct Speaker<'a> {
+/// Draws sentences.
+struct Generator<'a> {
     scene: &'a Scene,
     parts: Vec<Part>,
-    random: SplitMix,
+    rng: Rng,
 }
 
-impl<'a> Speaker<'a> {
+impl<'a> Generator<'a> {
     fn new(scene: &'a Scene) -> Self {
         let parts = scene.attributes().iter().map(Part::of).collect();
-        Self { scene, parts, random: SplitMix::new(0x5EED) }
+        Self { scene, parts, rng: Rng::new(0x5EED) }
     }
 
-    fn shape(&mut self, weights: u32) -> &'static str {
-        let mut at = self.random.below(weights as usize) as u32;
-        for (weight, shapes) in SHAPES {
-            let here = weight * shapes.len() as u32;
-            if at < here {
-                return shapes[(at / weight) as usize];
-            }
-            at -= here;
+    fn below(&mut self, n: usize) -> usize {
+        below(&mut self.rng, n)
+    }
+
+    fn chance(&mut self, percent: usize) -> bool {
+        self.below(100) < percent
+    }
+
+    fn pick<'t, T>(&mut self, from: &'t [T]) -> Option<&'t T> {
+        from.get(self.below(from.len()))
+    }
+
+    /// Shuffles after Fisher and Yates.
+    fn shuffle<T>(&mut self, items: &mut [T]) {
+        for last in (1..items.len()).rev() {
+            items.swap(last, self.below(last + 1));
         }
-        ""
     }
 
-    /// Every word or phrase for a value of the scene.
+    /// Returns every word or phrase for a value of the scene.
     fn forms(&self) -> Vec<String> {
         let values = self.scene.attributes().iter().flat_map(|a| &a.values);
         values
@@ -93,7 +112,7 @@ impl<'a> Speaker<'a> {
             .collect()
     }
 
-    /// The shape with its slots filled; a slot that the scene cannot fill empties the sentence.
+    /// Fills the slots of a shape; a slot that the scene cannot fill empties the sentence.
     fn fill(&mut self, shape: &str) -> String {
         let mut said = String::new();
         for piece in shape.split_inclusive('}') {
@@ -122,15 +141,15 @@ impl<'a> Speaker<'a> {
         }
     }
 
-    /// "the small white bowl in the cabinet": mostly values of one object, at times a mixture,
-    /// because people err and scenes change.
+    /// Returns a phrase like "the small white bowl in the cabinet": mostly values of one object,
+    /// sometimes a mixture, because people make mistakes and scenes change.
     fn noun_phrase(&mut self) -> String {
-        let object = self.random.below(self.scene.objects().len());
+        let object = self.below(self.scene.objects().len());
         let mut adjectives = Vec::new();
         let (mut head, mut place) = (None, None);
         for k in 0..self.parts.len() {
             let part = self.parts[k];
-            let said = self.random.chance(if part == Part::Noun { 90 } else { 35 });
+            let said = self.chance(if part == Part::Noun { 90 } else { 35 });
             let Some(value) = self.value_of(object, k).filter(|_| said) else { continue };
             match part {
                 Part::Adjective => adjectives.push(self.form(value)),
@@ -138,42 +157,44 @@ impl<'a> Speaker<'a> {
                 Part::Place => place = Some(self.place_phrase(value)),
             }
         }
-        self.random.shuffle(&mut adjectives);
+        self.shuffle(&mut adjectives);
         let head = head.unwrap_or_else(|| self.head());
-        let article = self.random.pick(&["the", "the", "the", "the", "the", "the", "a", "that"]);
+        let article = self.pick(&["the", "the", "the", "the", "the", "the", "a", "that"]);
         let article = article.copied().unwrap_or("the");
         format!("{article} {} {head} {}", adjectives.join(" "), place.unwrap_or_default())
     }
 
-    /// "the white one": one or two values before the noun, or a place after it.
+    /// Returns a phrase like "the white one": one or two values before the noun, or a place after it.
     fn short_phrase(&mut self) -> String {
         let Some((k, value)) = self.any_value() else { return format!("the {}", self.head()) };
         let form = self.form(value);
-        match self.parts[k] {
-            Part::Place if self.random.chance(50) => {
+        let part = self.parts[k];
+        match part {
+            Part::Place if self.chance(50) => {
                 format!("the one {}", self.place_phrase(value))
             }
             Part::Place => format!("the one from the {form}"),
             Part::Noun => format!("the {form}"),
             Part::Adjective => {
                 let second = self.any_value().filter(|(k, _)| self.parts[*k] == Part::Adjective);
-                let second = second.filter(|_| self.random.chance(30)).map(|(_, v)| self.form(v));
-                let head = if self.random.chance(75) { "one".to_owned() } else { self.head() };
+                let second = second.filter(|_| self.chance(30)).map(|(_, v)| self.form(v));
+                let head = if self.chance(75) { "one".to_owned() } else { self.head() };
                 format!("the {form} {} {head}", second.unwrap_or_default())
             }
         }
     }
 
-    /// What follows "it is": "white", "made of metal", "in the cabinet", "a marker".
+    /// Returns a complement of "it is": "white", "made of metal", "in the cabinet", "a marker".
     fn predicate(&mut self) -> Option<String> {
         let (k, value) = self.any_value()?;
-        let form = if self.random.chance(40) { value.spoken.clone() } else { self.form(value) };
-        Some(match self.parts[k] {
+        let form = if self.chance(40) { value.spoken.clone() } else { self.form(value) };
+        let part = self.parts[k];
+        Some(match part {
             Part::Place => self.place_phrase(value),
             Part::Noun if form == value.spoken => form,
             Part::Noun => format!("a {form}"),
-            Part::Adjective if self.random.chance(50) => form,
-            // As the robot asks: "Is it made of metal?"
+            Part::Adjective if self.chance(50) => form,
+            // From the wording of a question: "Is it made of metal?"
             Part::Adjective => {
                 let wordings = &self.scene.attributes()[k].ask_yes_no;
                 let asked = wordings.iter().find_map(|asked| asked.strip_prefix("Is it "));
@@ -186,16 +207,16 @@ impl<'a> Speaker<'a> {
     fn place(&mut self) -> Option<String> {
         let places: Vec<usize> =
             (0..self.parts.len()).filter(|&k| self.parts[k] == Part::Place).collect();
-        let k = *self.random.pick(&places)?;
-        let value = self.random.pick(&self.scene.attributes()[k].values)?;
+        let k = *self.pick(&places)?;
+        let value = self.pick(&self.scene.attributes()[k].values)?;
         Some(self.place_phrase(value))
     }
 
-    /// "in the dishwasher" as the scene says it, "in the dish washer", "from the dishwasher".
+    /// Returns a phrase like "in the dishwasher" (from the scene) or "from the dishwasher".
     fn place_phrase(&mut self, value: &Value) -> String {
         let form = self.form(value);
         let own = value.spoken.replace(&value.name, &form);
-        match self.random.below(10) {
+        match self.below(10) {
             0..5 => own,
             5..8 => format!("from the {form}"),
             8 => format!("in the {form}"),
@@ -203,32 +224,32 @@ impl<'a> Speaker<'a> {
         }
     }
 
-    /// The value of an object, or now and then any value of the attribute.
+    /// Returns the value of an object, occasionally any value of the attribute.
     fn value_of(&mut self, object: usize, k: usize) -> Option<&'a Value> {
         let values = &self.scene.attributes()[k].values;
-        if self.random.chance(20) {
-            return self.random.pick(values);
+        if self.chance(20) {
+            return self.pick(values);
         }
         self.scene.objects()[object].values[k].map(|v| &values[v.index()])
     }
 
-    /// Any value of any attribute.
+    /// Returns any value of any attribute.
     fn any_value(&mut self) -> Option<(usize, &'a Value)> {
-        let k = self.random.below(self.parts.len());
+        let k = self.below(self.parts.len());
         let attribute = self.scene.attributes().get(k)?;
-        Some((k, self.random.pick(&attribute.values)?))
+        Some((k, self.pick(&attribute.values)?))
     }
 
-    /// The value's name, or as often any of its synonyms.
+    /// Returns the value's name or one of its synonyms.
     fn form(&mut self, value: &Value) -> String {
-        if self.random.chance(60) {
+        if self.chance(60) {
             return value.name.clone();
         }
-        self.random.pick(&value.synonyms).unwrap_or(&value.name).clone()
+        self.pick(&value.synonyms).unwrap_or(&value.name).clone()
     }
 
     fn head(&mut self) -> String {
-        if self.random.chance(70) { self.scene.noun().to_owned() } else { "one".to_owned() }
+        if self.chance(70) { self.scene.noun().to_owned() } else { "one".to_owned() }
     }
 }
 
@@ -240,7 +261,7 @@ mod tests {
     use crate::devices::testing::{bowls, tools};
 
     #[test]
-    fn every_word_for_every_value_is_said() {
+    fn sentences_contain_every_word_of_every_value() {
         for scene in [bowls(), tools()] {
             let sentences = scene_sentences(&scene);
             let said: BTreeSet<&str> = sentences.iter().flat_map(|s| s.split(' ')).collect();
@@ -257,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn sentences_are_clean_words_and_always_the_same() {
+    fn sentences_are_clean_words_and_deterministic() {
         let sentences = scene_sentences(&tools());
         assert!(sentences.len() > DRAWN);
         for sentence in &sentences {
@@ -268,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn parts_of_speech_are_read_off_the_questions() {
+    fn parts_of_speech_follow_from_the_spoken_values() {
         let parts = |scene: &Scene| scene.attributes().iter().map(Part::of).collect::<Vec<_>>();
         use Part::{Adjective, Noun, Place};
         assert_eq!(parts(&bowls()), [Adjective, Adjective, Adjective, Adjective, Place]);

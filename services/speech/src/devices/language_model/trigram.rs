@@ -1,4 +1,4 @@
-//! An interpolated Witten-Bell trigram with a floor under its escapes, written as ARPA text.
+//! Interpolated Witten-Bell trigram with a lower bound on its escapes, written as ARPA text.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -6,11 +6,11 @@ use std::fmt::Write as _;
 const START: &str = "<s>";
 const END: &str = "</s>";
 
-/// How much of the model is kept for speech that the sentences do not foresee.
+/// Probability reserved for speech that is not in the sentences.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
-    /// Smallest probability, after any history, of leaving the histories that were seen. 0 is
-    /// plain Witten-Bell.
+    /// Lower bound on the probability of an unseen continuation after any history. 0 is plain
+    /// Witten-Bell.
     pub escape_min: f64,
     /// Share of the background words in the distribution without history.
     pub background: f64,
@@ -24,7 +24,7 @@ impl Default for Weights {
 
 /// A trigram model `p(w | u v)` over the words of its sentences and the background words.
 ///
-/// For a history `h` that was followed `c(h)` times, by `T(h)` different words:
+/// For a history `h` with `c(h)` continuations by `T(h)` different words:
 /// `p(w|h) = (1 - e) c(hw)/c(h) + e p(w|h')`, where `h'` lacks the oldest word and the escape is
 /// `e = max(T(h) / (c(h) + T(h)), escape_min)` (Witten and Bell 1991, method C, with a floor). It
 /// sums to one over all words and the sentence's end after every history, and an ARPA file holds
@@ -37,7 +37,7 @@ pub struct Trigram {
     trigrams: BTreeMap<(u32, u32), History>,
 }
 
-/// What followed a history.
+/// Continuations of a history.
 #[derive(Clone, Debug, Default)]
 struct History {
     count: f64,
@@ -56,7 +56,7 @@ impl History {
         self.escape = (kinds / (self.count + kinds)).max(escape_min);
     }
 
-    /// The interpolation with `shorter`, the probability after the shorter history.
+    /// Returns the interpolation with `shorter`, the probability after the shorter history.
     fn probability(&self, word: u32, shorter: f64) -> f64 {
         let seen = self.next.get(&word).map_or(0.0, |n| n / self.count);
         (1.0 - self.escape) * seen + self.escape * shorter
@@ -64,8 +64,8 @@ impl History {
 }
 
 impl Trigram {
-    /// Estimates the model from sentences (words separated by blanks) and `background` words. A
-    /// word that is both has both shares; an empty background has none.
+    /// Estimates the model from sentences (words separated by blanks) and `background` words. A word
+    /// in both has both shares; an empty background has none.
     pub fn train<'b, S: AsRef<str>>(
         sentences: &[S],
         background: impl IntoIterator<Item = &'b str>,
@@ -74,8 +74,8 @@ impl Trigram {
         let background: BTreeSet<&str> = background.into_iter().collect();
         let mut words: BTreeSet<&str> = background.clone();
         words.extend(sentences.iter().flat_map(|s| s.as_ref().split_whitespace()));
-        // The end comes first and the start last, so that what can be predicted has the lower
-        // numbers without a gap.
+        // The end comes first and the start last, so that the predictable words are numbered without
+        // a gap.
         let marked = std::iter::once(END).chain(words).chain(std::iter::once(START));
         let words: Vec<String> = marked.map(str::to_owned).collect();
         let index: BTreeMap<&str, u32> =
@@ -104,12 +104,12 @@ impl Trigram {
         Self { words, unigrams, bigrams, trigrams }
     }
 
-    /// The words that the model knows, without the marks of a sentence's start and end.
+    /// Returns the vocabulary without the markers of start and end.
     pub fn vocabulary(&self) -> impl Iterator<Item = &str> {
         self.words[1..self.words.len() - 1].iter().map(String::as_str)
     }
 
-    /// The model as ARPA text.
+    /// Returns the model as ARPA text.
     pub fn to_arpa(&self) -> String {
         let mut text = String::new();
         // Writing to a string cannot fail.
@@ -123,7 +123,7 @@ impl Trigram {
         writeln!(out, "\\data\\\nngram 1={}", self.words.len())?;
         writeln!(out, "ngram 2={pairs}\nngram 3={triples}\n\n\\1-grams:")?;
         for (word, i) in self.words.iter().zip(0u32..) {
-            // The start of a sentence is never predicted; by custom its weight is 10^-99.
+            // The start of a sentence is never predicted; by convention its weight is 10^-99.
             let p = self.unigrams.get(i as usize).map_or(-99.0, |p| p.log10());
             writeln!(out, "{p:.5} {word}{}", backoff(self.bigrams.get(&i)))?;
         }
@@ -160,8 +160,8 @@ impl Trigram {
     }
 }
 
-/// The distribution without history, over all words but the sentence's start: Witten-Bell against
-/// the even one, mixed with the even one over the background words.
+/// Returns the distribution without history over all words but the start: Witten-Bell with a uniform
+/// distribution, mixed with the uniform one over the background words.
 fn unigrams(once: &History, len: usize, background: &[u32], share: f64) -> Vec<f64> {
     let share = if background.is_empty() { 0.0 } else { share };
     let mut p: Vec<f64> =
@@ -172,7 +172,7 @@ fn unigrams(once: &History, len: usize, background: &[u32], share: f64) -> Vec<f
     p
 }
 
-/// The column of an ARPA line that tells the weight of what the history has not seen.
+/// Returns the back-off column of an ARPA line.
 fn backoff(history: Option<&History>) -> String {
     history.map(|h| format!(" {:.5}", h.escape.log10())).unwrap_or_default()
 }
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn every_history_sums_to_one() {
+    fn trigram_probabilities_sum_to_one_after_every_history() {
         let model = model();
         let words = 0..model.unigrams.len() as u32;
         let close = |sum: f64| assert!((sum - 1.0).abs() < 1e-12, "{sum}");
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_seen_word_is_likelier_than_an_unseen_one_and_nothing_is_impossible() {
+    fn trigram_prefers_seen_words_and_excludes_none() {
         let model = model();
         let index = |word: &str| model.words.iter().position(|w| w == word).unwrap() as u32;
         let (the, white) = (index("the"), index("white"));
@@ -212,11 +212,12 @@ mod tests {
         }
     }
 
-    /// Reads the ARPA text back by its own rules and compares with the estimate.
+    /// Evaluates the ARPA text by the rules of the format.
     #[test]
-    fn the_arpa_text_says_what_the_model_says() {
+    fn trigram_arpa_text_is_equivalent_and_deterministic() {
         let model = model();
         let text = model.to_arpa();
+        assert_eq!(super::tests::model().to_arpa(), text);
         let mut grams: BTreeMap<Vec<&str>, (f64, f64)> = BTreeMap::new();
         for line in text.lines().filter(|l| !l.starts_with('\\') && !l.starts_with("ngram")) {
             let mut fields = line.split(' ');
@@ -246,13 +247,8 @@ mod tests {
         for (u, v, w) in
             (0..n).flat_map(|u| (0..n).flat_map(move |v| (0..n).map(move |w| (u, v, w))))
         {
-            let told = read(&[model.word(u), model.word(v), model.word(w)]);
-            assert!((told - model.after_two(u, v, w).log10()).abs() < 1e-4);
+            let read = read(&[model.word(u), model.word(v), model.word(w)]);
+            assert!((read - model.after_two(u, v, w).log10()).abs() < 1e-4);
         }
-    }
-
-    #[test]
-    fn the_same_sentences_make_the_same_text() {
-        assert_eq!(model().to_arpa(), model().to_arpa());
     }
 }

@@ -1,13 +1,13 @@
-//! How loud a sound is.
+//! Sound level.
 
 use crate::devices::audio::RATE_HZ;
 
-/// The quietest that is told, decibels below full scale.
+/// Lowest level, decibels below full scale.
 pub(super) const QUIETEST_DB: f32 = -100.0;
-/// Samples over which loudness is told: a fifth of a second.
+/// Samples per measurement: a fifth of a second.
 const WINDOW: usize = RATE_HZ as usize / 5;
 
-/// Loudness over the last fifth of a second.
+/// Level over the last fifth of a second.
 #[derive(Debug)]
 pub(super) struct Level {
     squares: f64,
@@ -22,8 +22,8 @@ impl Default for Level {
 }
 
 impl Level {
-    /// Takes the next samples. Returns whether there is a new value.
-    pub(super) fn take(&mut self, samples: &[i16]) -> bool {
+    /// Processes the next samples. Returns whether there is a new value.
+    pub(super) fn push(&mut self, samples: &[i16]) -> bool {
         self.squares += samples.iter().map(|&s| f64::from(s) * f64::from(s)).sum::<f64>();
         self.samples += samples.len();
         if self.samples < WINDOW {
@@ -36,7 +36,7 @@ impl Level {
         true
     }
 
-    /// Root of the mean square, decibels below full scale.
+    /// Returns the root mean square, decibels below full scale.
     pub(super) fn db(&self) -> f32 {
         self.db
     }
@@ -47,11 +47,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn loudness_is_told_in_decibels_below_full_scale() {
+    fn level_is_in_decibels_below_full_scale() {
         let mut level = Level::default();
-        assert!(!level.take(&[i16::MAX; 1_000]) && level.db() == QUIETEST_DB);
-        assert!(level.take(&[i16::MAX; 2_200]) && level.db().abs() < 1e-3);
-        assert!(level.take(&[328; 3_200]) && (level.db() + 40.0).abs() < 0.1, "{}", level.db());
-        assert!(level.take(&[0; 3_200]) && level.db() == QUIETEST_DB);
+        assert!(!level.push(&[i16::MAX; 1_000]) && level.db() == QUIETEST_DB);
+        assert!(level.push(&[i16::MAX; 2_200]) && level.db().abs() < 1e-3);
+        assert!(level.push(&[328; 3_200]) && (level.db() + 40.0).abs() < 0.1, "{}", level.db());
+        assert!(level.push(&[0; 3_200]) && level.db() == QUIETEST_DB);
     }
 }

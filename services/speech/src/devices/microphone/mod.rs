@@ -1,13 +1,14 @@
-//! The microphone of the robot's computer: a program that records, on a thread of its own.
+//! The microphone of the robot's computer: a recording program, on a thread of its own.
 //!
-//! Invariant: the thread never waits for anybody. Every [`Live::Began`] is followed by one
-//! [`Live::Ended`], also where the program dies in the middle of a word; every request to talk is
-//! answered by that or by one [`Live::Silent`]. What nobody takes in time is dropped and counted.
+//! Invariant: the thread never blocks on its receiver. Every [`StreamEvent::Began`] is followed by one
+//! [`StreamEvent::Ended`], even if the program dies in the middle of a word; every request to talk is
+//! answered by that or by one [`StreamEvent::Silent`]. What the receiver does not take in time is
+//! dropped and counted.
 
+mod event_queue;
 mod level;
-mod outgoing;
-mod program;
-mod thread;
+mod recorder;
+mod worker;
 
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -15,35 +16,34 @@ use std::time::Duration;
 
 use crossbeam_channel::{Sender, TrySendError, bounded};
 
-use crate::devices::stream::OwnVoice;
+use crate::devices::stream::PlaybackMask;
 use crate::devices::vad::SegmenterOptions;
-use crate::live::Live;
+use crate::stream_events::StreamEvent;
+pub(crate) use event_queue::EventQueue;
+pub use event_queue::Sink;
 pub use messages::MicrophoneState;
-pub(crate) use outgoing::Outgoing;
-pub use outgoing::Sink;
-pub use program::usual;
+pub use recorder::default_programs;
 
-/// What the microphone is made of.
+/// Settings of the microphone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MicrophoneOptions {
-    /// Programs to record with, the preferred one first; each with its arguments.
+    /// Recording programs with their arguments, the preferred one first.
     pub programs: Vec<Vec<String>>,
-    /// Whether it listens all the time; else only while it is asked to.
+    /// Whether it is always open; otherwise only on request.
     pub hands_free: bool,
-    /// Whether it does not hear the robot's own voice (a headset, cancelled echo), so that people
-    /// may interrupt.
+    /// Whether it does not record the robot's own voice (headset, echo cancellation), so that users may
+    /// interrupt.
     pub barge_in: bool,
-    /// How speech is cut out of the sound.
+    /// Segmentation of the audio.
     pub segmenter: SegmenterOptions,
-    /// A source without sound for this long is taken to have paused: what comes next is new.
+    /// A source without samples for this long has paused: further samples start a new stream.
     pub pause: Duration,
-    /// How long to wait after a program has died before another is tried: the shortest and the
-    /// longest, doubled in between.
+    /// Shortest and longest delay before a program is restarted; doubled in between.
     pub retry: (Duration, Duration),
 }
 
 impl MicrophoneOptions {
-    /// What the settings ask for.
+    /// Returns the options of the configuration.
     pub fn of(speech: &config::Speech) -> Self {
         let microphone = &speech.microphone;
         let defaults = Self::hands_free();
@@ -60,10 +60,10 @@ impl MicrophoneOptions {
         }
     }
 
-    /// A microphone that listens all the time through the first program that works.
+    /// Returns options for a microphone that is always open, with the first program that works.
     pub fn hands_free() -> Self {
         Self {
-            programs: usual(),
+            programs: default_programs(),
             hands_free: true,
             barge_in: false,
             segmenter: SegmenterOptions::default(),
@@ -73,58 +73,58 @@ impl MicrophoneOptions {
     }
 }
 
-/// What the microphone did.
+/// An event of the microphone.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MicrophoneEvent {
-    /// Somebody was heard.
-    Live(Live),
-    /// How it is, whenever that changes and five times a second while it listens.
+    /// An event of its stream.
+    Stream(StreamEvent),
+    /// Its status, on every change and five times a second while it listens.
     Status(MicrophoneStatus),
 }
 
-/// How the microphone is.
+/// Status of the microphone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MicrophoneStatus {
-    /// What it does.
+    /// Its state.
     pub state: MicrophoneState,
-    /// How loud it is, decibels below full scale (0 is the loudest there is), over the last fifth
-    /// of a second; -100 for digital silence and where nothing is known.
+    /// Level over the last fifth of a second, decibels below full scale; -100 for digital silence and
+    /// where it is unknown.
     pub level_db: f32,
-    /// Programs that died and were started anew.
+    /// Restarts of recording programs.
     pub restarts: u32,
-    /// Utterances that were lost because nobody took them in time.
+    /// Utterances dropped because the service was too busy.
     pub dropped: u32,
-    /// The program, or why there is none.
+    /// The program, or the reason why it does not run.
     pub note: String,
 }
 
 impl MicrophoneStatus {
-    /// A microphone that is not open.
+    /// Returns the status of a closed microphone.
     pub fn closed() -> Self {
         let (state, level_db) = (MicrophoneState::Closed, level::QUIETEST_DB);
         Self { state, level_db, restarts: 0, dropped: 0, note: String::new() }
     }
 }
 
-/// Why a microphone is not opened.
+/// Error of opening the microphone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TalkError {
-    /// Somebody talks already.
-    #[error("somebody is talking through this microphone already")]
+    /// In use.
+    #[error("the microphone is in use already")]
     Busy,
-    /// The thread has broken down.
-    #[error("the microphone has broken down")]
+    /// The thread has panicked.
+    #[error("the microphone thread has crashed")]
     Gone,
 }
 
-/// A request to listen for one utterance.
+/// A request to record one utterance.
 #[derive(Clone, Copy, Debug)]
 struct Talk {
     sound: u64,
     longest: Duration,
 }
 
-/// The microphone's thread. Dropping it ends the thread and the program that records.
+/// The microphone's thread. Dropping it ends the thread and the recording program.
 pub struct Microphone {
     requests: Option<Sender<Talk>>,
     thread: Option<JoinHandle<()>>,
@@ -132,17 +132,17 @@ pub struct Microphone {
 
 impl Microphone {
     /// Starts the thread.
-    pub fn start(options: MicrophoneOptions, own_voice: Arc<OwnVoice>, sink: Sink) -> Self {
-        let (requests, asked) = bounded(1);
-        let work = move || thread::Worker::new(options, own_voice, sink).run(&asked);
+    pub fn start(options: MicrophoneOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
+        let (requests, requested) = bounded(1);
+        let work = move || worker::Worker::new(options, mask, sink).run(&requested);
         Self { requests: Some(requests), thread: Some(std::thread::spawn(work)) }
     }
 
-    /// Listens for one utterance, which becomes `sound`, from now on for `longest` at most. The
-    /// robot's own voice is no hindrance: whoever asks to talk makes it fall silent.
+    /// Records one utterance with the number `sound`, from now on for `longest` at most. The robot's own
+    /// voice is not masked: the request interrupts it.
     ///
     /// # Errors
-    /// If another request is being served, or the thread is gone.
+    /// If another request is in progress, or the thread is gone.
     pub fn talk(&self, sound: u64, longest: Duration) -> Result<(), TalkError> {
         let requests = self.requests.as_ref().ok_or(TalkError::Gone)?;
         requests.try_send(Talk { sound, longest }).map_err(|error| match error {
@@ -156,7 +156,7 @@ impl Drop for Microphone {
     fn drop(&mut self) {
         self.requests = None;
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has told so already.
+            // A panic of the thread has been logged.
             let _ = thread.join();
         }
     }

@@ -6,30 +6,36 @@ use service::clock;
 use service::{Span, Time};
 
 use super::*;
-use crate::devices::stream::Cut;
+use crate::devices::stream::SpeechSegment;
 use crate::devices::testing::voice;
-use crate::live::Began;
+use crate::stream_events::Began;
 
 const PATIENCE: Duration = Duration::from_secs(20);
 
-struct Heard {
+struct Listening {
     microphone: Microphone,
     events: Receiver<MicrophoneEvent>,
-    own_voice: Arc<OwnVoice>,
+    mask: Arc<PlaybackMask>,
 }
 
-fn listen(options: MicrophoneOptions) -> Heard {
+fn listen(options: MicrophoneOptions) -> Listening {
+    listen_behind(options, |_| {})
+}
+
+/// Starts the microphone after a change of the mask.
+fn listen_behind(options: MicrophoneOptions, prepare: impl Fn(&PlaybackMask)) -> Listening {
     let (send, events) = unbounded();
     let sink = move |event| {
         let _ = send.send(event);
         Ok(())
     };
-    let own_voice = Arc::new(OwnVoice::new(Span::from_ms(300)));
-    let microphone = Microphone::start(options, Arc::clone(&own_voice), Box::new(sink));
-    Heard { microphone, events, own_voice }
+    let mask = Arc::new(PlaybackMask::new(Span::from_ms(300)));
+    prepare(&mask);
+    let microphone = Microphone::start(options, Arc::clone(&mask), Box::new(sink));
+    Listening { microphone, events, mask }
 }
 
-/// Options with these shell scripts as programs, and short pauses.
+/// Returns options with these shell scripts as programs, and short delays.
 fn options(scripts: &[String]) -> MicrophoneOptions {
     let shell = |script: &String| vec!["sh".to_owned(), "-c".to_owned(), script.clone()];
     MicrophoneOptions {
@@ -40,17 +46,17 @@ fn options(scripts: &[String]) -> MicrophoneOptions {
     }
 }
 
-/// A file of raw sound: half a second of quiet, a voice, and the quiet behind it.
-fn raw(folder: &Path, quiet_behind_s: f64) -> String {
+/// Writes a file of raw audio: half a second of quiet, a voice, and the quiet after it.
+fn raw(folder: &Path, quiet_after_s: f64) -> String {
     let quiet = |s: f64| vec![0_i16; (s * 16_000.0) as usize];
-    let sound = [quiet(0.5), voice(0.8), quiet(quiet_behind_s)].concat();
-    let path = folder.join(format!("{quiet_behind_s}.raw"));
-    let bytes: Vec<u8> = sound.iter().flat_map(|sample| sample.to_le_bytes()).collect();
+    let samples = [quiet(0.5), voice(0.8), quiet(quiet_after_s)].concat();
+    let path = folder.join(format!("{quiet_after_s}.raw"));
+    let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
     std::fs::write(&path, bytes).unwrap();
     path.display().to_string()
 }
 
-impl Heard {
+impl Listening {
     fn next<T>(&self, what: &str, mut wanted: impl FnMut(MicrophoneEvent) -> Option<T>) -> T {
         let start = Instant::now();
         while start.elapsed() < PATIENCE {
@@ -62,17 +68,17 @@ impl Heard {
         panic!("{what}: not within {PATIENCE:?}")
     }
 
-    fn live(&self) -> Live {
+    fn event(&self) -> StreamEvent {
         self.next("an utterance", |event| match event {
-            MicrophoneEvent::Live(live) if !live.is_hint() => Some(live),
-            MicrophoneEvent::Live(_) | MicrophoneEvent::Status(_) => None,
+            MicrophoneEvent::Stream(event) if !event.is_optional() => Some(event),
+            MicrophoneEvent::Stream(_) | MicrophoneEvent::Status(_) => None,
         })
     }
 
-    fn utterance(&self) -> (Began, Cut) {
-        let Live::Began(began) = self.live() else { panic!("a beginning first") };
-        match self.live() {
-            Live::Ended { sound, cut } if sound == began.sound => (began, cut),
+    fn utterance(&self) -> (Began, SpeechSegment) {
+        let StreamEvent::Began(began) = self.event() else { panic!("expected a beginning") };
+        match self.event() {
+            StreamEvent::Ended { sound, segment } if sound == began.sound => (began, segment),
             other => panic!("{other:?}"),
         }
     }
@@ -86,24 +92,24 @@ impl Heard {
 }
 
 #[test]
-fn a_person_is_heard_with_times_on_the_clock_of_all() {
+fn microphone_reports_utterances_with_times_and_level() {
     let folder = tempfile::tempdir().unwrap();
     let before = clock::now();
     let heard = listen(options(&[format!("cat {}; exec sleep 30", raw(folder.path(), 1.0))]));
-    let (began, cut) = heard.utterance();
-    assert!(!began.interrupts && began.at == cut.onset);
-    let length = cut.end.since(cut.onset).s();
+    let (began, segment) = heard.utterance();
+    assert!(!began.interrupts && began.at == segment.onset);
+    let length = segment.end.since(segment.onset).s();
     assert!((0.6..1.1).contains(&length), "{length} s");
-    assert!(began.at > before - Span::from_s(3.0) && cut.end < clock::now());
+    assert!(began.at > before - Span::from_s(3.0) && segment.end < clock::now());
     let status = heard.status(|status| status.state == MicrophoneState::Listening);
     assert_eq!(status.note, "sh");
     assert!(status.level_db > -60.0, "{status:?}");
 }
 
 #[test]
-fn a_source_that_pauses_or_dies_ends_the_utterance_and_is_started_again() {
+fn microphone_ends_the_utterance_when_the_source_pauses_or_dies() {
     let folder = tempfile::tempdir().unwrap();
-    // No quiet behind the voice: first the source is silent, then it is gone.
+    // No quiet after the voice: first the source pauses, then it exits.
     let file = raw(folder.path(), 0.0);
     let heard = listen(options(&[format!("cat {file}; sleep 0.4; cat {file}")]));
     let (first, _) = heard.utterance();
@@ -116,7 +122,7 @@ fn a_source_that_pauses_or_dies_ends_the_utterance_and_is_started_again() {
 }
 
 #[test]
-fn the_first_program_that_works_is_used_and_none_is_told() {
+fn microphone_uses_the_first_program_that_works() {
     let folder = tempfile::tempdir().unwrap();
     let works = format!("cat {}; exec sleep 30", raw(folder.path(), 1.0));
     let heard = listen(options(&["echo no card >&2; exit 1".to_owned(), works]));
@@ -130,7 +136,7 @@ fn the_first_program_that_works_is_used_and_none_is_told() {
 }
 
 #[test]
-fn the_robots_own_voice_is_not_heard() {
+fn microphone_mutes_the_robots_own_voice() {
     let folder = tempfile::tempdir().unwrap();
     let go = folder.path().join("go");
     let file = raw(folder.path(), 1.0);
@@ -138,61 +144,52 @@ fn the_robots_own_voice_is_not_heard() {
         "cat {file}; while [ ! -e {} ]; do sleep 0.02; done; cat {file}; exec sleep 30",
         go.display()
     );
-    let ready = options(&[script]);
-    let (send, events) = unbounded();
-    let own_voice = Arc::new(OwnVoice::new(Span::from_ms(300)));
-    own_voice.begins(Time(0));
-    let sink = Box::new(move |event| {
-        let _ = send.send(event);
-        Ok(())
-    });
-    let microphone = Microphone::start(ready, Arc::clone(&own_voice), sink);
-    let heard = Heard { microphone, events, own_voice };
+    let heard = listen_behind(options(&[script]), |mask| mask.begins(Time(0)));
     heard.next("the first sound", |event| match event {
         MicrophoneEvent::Status(status) => (status.state == MicrophoneState::Muted).then_some(()),
-        MicrophoneEvent::Live(live) => panic!("the robot heard itself: {live:?}"),
+        MicrophoneEvent::Stream(event) => panic!("the robot heard itself: {event:?}"),
     });
-    heard.own_voice.ends(Time(1));
+    heard.mask.ends(Time(1));
     std::fs::write(go, "").unwrap();
     let (began, _) = heard.utterance();
     assert!(!began.interrupts);
 }
 
 #[test]
-fn a_request_to_talk_opens_the_microphone_for_one_utterance() {
+fn microphone_opens_for_one_utterance_on_request() {
     let folder = tempfile::tempdir().unwrap();
     let script = format!("cat {}; exec sleep 30", raw(folder.path(), 1.0));
     let heard = listen(MicrophoneOptions { hands_free: false, ..options(&[script]) });
     heard.status(|status| status.state == MicrophoneState::Closed);
-    heard.own_voice.begins(Time(0));
+    heard.mask.begins(Time(0));
     for sound in [7, 8] {
         heard.microphone.talk(sound, PATIENCE).unwrap();
         let (began, _) = heard.utterance();
         assert_eq!(began.sound, sound);
-        assert!(began.interrupts, "whoever talks makes the robot fall silent");
+        assert!(began.interrupts, "push-to-talk interrupts the robot");
         heard.status(|status| status.state == MicrophoneState::Closed);
     }
 }
 
 #[test]
-fn a_request_to_talk_is_answered_although_nobody_speaks_or_nothing_records() {
+fn microphone_answers_a_request_without_speech_or_program() {
     let silent = MicrophoneOptions {
         hands_free: false,
         ..options(&["cat /dev/zero | head -c 64000; exec sleep 30".to_owned()])
     };
     let heard = listen(silent);
     heard.microphone.talk(7, Duration::from_millis(300)).unwrap();
-    match heard.live() {
-        Live::Silent { sound: 7, reason } => {
-            assert!(reason.contains("nobody was heard"), "{reason}")
+    match heard.event() {
+        StreamEvent::Silent { sound: 7, reason } => {
+            assert!(reason.contains("no speech heard"), "{reason}")
         }
         other => panic!("{other:?}"),
     }
     let broken = MicrophoneOptions { hands_free: false, ..options(&["exit 1".to_owned()]) };
     let heard = listen(broken);
     heard.microphone.talk(7, PATIENCE).unwrap();
-    match heard.live() {
-        Live::Silent { sound: 7, reason } => {
+    match heard.event() {
+        StreamEvent::Silent { sound: 7, reason } => {
             assert!(reason.contains("microphone") && reason.contains("speech.toml"), "{reason}");
         }
         other => panic!("{other:?}"),

@@ -1,8 +1,7 @@
-//! A pronouncing dictionary cut to the words of a language model.
+//! A pronouncing dictionary with the words of a language model.
 //!
-//! Invariant: every word that was asked for is either in the dictionary or among the missing; none
-//! is dropped in silence. (The decoder drops words without a pronunciation from a language model,
-//! and takes seconds to load the whole dictionary.)
+//! Invariant: every requested word is either in the dictionary or among the missing ones. (The decoder
+//! silently drops words without a pronunciation, and takes seconds to load the whole dictionary.)
 
 mod phones;
 mod variants;
@@ -12,11 +11,11 @@ use std::fmt::Write as _;
 use std::process::Command;
 use std::time::Duration;
 
-use crate::devices::child;
+use crate::devices::child_process;
 
-/// Where the phones of words that the dictionary lacks come from.
-pub trait Spelling {
-    /// The phones of a word, separated by blanks; `None` if it cannot be told.
+/// A source of pronunciations for words that are not in the dictionary.
+pub trait LetterToSound {
+    /// Returns the phones of a word, separated by blanks, if they are known.
     fn phones_of(&self, word: &str) -> Option<String>;
 }
 
@@ -28,14 +27,14 @@ pub struct Pronunciations {
 }
 
 impl Pronunciations {
-    /// Finds the words in `dictionary` (a text in the format of the CMU dictionary: a line for
-    /// each pronunciation, further ones of a word marked `word(2)`). What it lacks is put together
-    /// from the parts of a hyphenated word ("see-through") or of a compound ("worktop"), else
-    /// asked of `spelling`. To these come the ways of saying them that rules of English tell.
+    /// Looks the words up in `dictionary` (in the format of the CMU dictionary: one line per
+    /// pronunciation, further ones of a word marked `word(2)`). Missing words are composed of the parts
+    /// of a hyphenated word ("see-through") or of a compound ("worktop"), otherwise looked up in
+    /// `letter_to_sound`. Regular variants of English are added.
     pub fn collect<'w>(
         words: impl IntoIterator<Item = &'w str>,
         dictionary: &str,
-        spelling: &dyn Spelling,
+        letter_to_sound: &dyn LetterToSound,
     ) -> Self {
         let words: BTreeSet<&str> = words.into_iter().collect();
         let mut entries = look_up(dictionary, &words.iter().copied().collect());
@@ -43,9 +42,9 @@ impl Pronunciations {
         let known = look_up(dictionary, &lacking.iter().flat_map(|word| parts(word)).collect());
         let mut missing = Vec::new();
         for word in lacking {
-            let phones = hyphenated(word, &known, spelling)
+            let phones = hyphenated(word, &known, letter_to_sound)
                 .or_else(|| compound(word, &known))
-                .or_else(|| spelling.phones_of(word));
+                .or_else(|| letter_to_sound.phones_of(word));
             match phones {
                 Some(phones) => {
                     entries.insert(word.to_owned(), vec![phones]);
@@ -65,17 +64,17 @@ impl Pronunciations {
         Self { entries, missing }
     }
 
-    /// Words without a pronunciation: they cannot be recognised.
+    /// Returns the words without a pronunciation, which cannot be recognised.
     pub fn missing(&self) -> &[String] {
         &self.missing
     }
 
-    /// The pronunciations of a word.
+    /// Returns the pronunciations of a word.
     pub fn of(&self, word: &str) -> &[String] {
         self.entries.get(word).map_or(&[], Vec::as_slice)
     }
 
-    /// The dictionary in the CMU format.
+    /// Returns the dictionary in the CMU format.
     pub fn to_text(&self) -> String {
         let mut text = String::new();
         for (word, pronunciations) in &self.entries {
@@ -91,7 +90,7 @@ impl Pronunciations {
     }
 }
 
-/// The pronunciations of the wanted words that the dictionary has.
+/// Returns the pronunciations of the wanted words in the dictionary.
 fn look_up(dictionary: &str, wanted: &HashSet<&str>) -> BTreeMap<String, Vec<String>> {
     let mut known: BTreeMap<String, Vec<String>> = BTreeMap::new();
     if wanted.is_empty() {
@@ -107,17 +106,18 @@ fn look_up(dictionary: &str, wanted: &HashSet<&str>) -> BTreeMap<String, Vec<Str
     known
 }
 
-/// The shortest part of a compound that is looked for: two letters make too many accidents.
+/// Shortest part of a compound: two letters match too often by accident.
 const PART_MIN: usize = 3;
 
-/// Every word that could help to pronounce `word`: what stands between hyphens, and both halves of
-/// every cut of it.
+/// Returns every word that could help to pronounce `word`: its parts between hyphens, and both halves
+/// of every split.
 fn parts(word: &str) -> Vec<&str> {
-    word.split('-').chain(cuts(word).flat_map(|(head, tail)| [head, tail])).collect()
+    word.split('-').chain(splits(word).flat_map(|(head, tail)| [head, tail])).collect()
 }
 
-/// The cuts of a word into two, the most even ones first, the longer head before the longer tail.
-fn cuts(word: &str) -> impl Iterator<Item = (&str, &str)> {
+/// Returns the splits of a word into two, the most even ones first, the longer head before the longer
+/// tail.
+fn splits(word: &str) -> impl Iterator<Item = (&str, &str)> {
     let mut at: Vec<usize> = (word.char_indices().map(|(i, _)| i))
         .filter(|&i| i >= PART_MIN && word.len() - i >= PART_MIN)
         .collect();
@@ -128,19 +128,19 @@ fn cuts(word: &str) -> impl Iterator<Item = (&str, &str)> {
 fn hyphenated(
     word: &str,
     known: &BTreeMap<String, Vec<String>>,
-    spelling: &dyn Spelling,
+    letter_to_sound: &dyn LetterToSound,
 ) -> Option<String> {
     if !word.contains('-') {
         return None;
     }
     let phones: Option<Vec<String>> = (word.split('-').filter(|part| !part.is_empty()))
-        .map(|part| first(part, known).or_else(|| spelling.phones_of(part)))
+        .map(|part| first(part, known).or_else(|| letter_to_sound.phones_of(part)))
         .collect();
     phones.map(|phones| phones.join(" "))
 }
 
 fn compound(word: &str, known: &BTreeMap<String, Vec<String>>) -> Option<String> {
-    cuts(word)
+    splits(word)
         .find_map(|(head, tail)| Some(format!("{} {}", first(head, known)?, first(tail, known)?)))
 }
 
@@ -148,28 +148,19 @@ fn first(word: &str, known: &BTreeMap<String, Vec<String>>) -> Option<String> {
     known.get(word).and_then(|all| all.first()).cloned()
 }
 
-/// No source of further pronunciations.
-pub struct NoSpelling;
+/// The pronunciations of espeak-ng.
+pub struct EspeakLetterToSound;
 
-impl Spelling for NoSpelling {
-    fn phones_of(&self, _word: &str) -> Option<String> {
-        None
-    }
-}
-
-/// Asks espeak-ng how it would read the word aloud.
-pub struct EspeakSpelling;
-
-impl EspeakSpelling {
-    /// espeak-ng answers in some 5 ms.
+impl EspeakLetterToSound {
+    /// espeak-ng takes about 5 ms.
     const DEADLINE: Duration = Duration::from_secs(2);
 }
 
-impl Spelling for EspeakSpelling {
+impl LetterToSound for EspeakLetterToSound {
     fn phones_of(&self, word: &str) -> Option<String> {
         let mut command = Command::new("espeak-ng");
         command.args(["-q", "-x", "--sep= ", "-v", "en-us", "--", word]);
-        let said = child::output(command, Self::DEADLINE).ok()?;
+        let said = child_process::output(command, Self::DEADLINE).ok()?;
         phones::phones(&String::from_utf8_lossy(&said))
     }
 }
@@ -192,7 +183,7 @@ ktop K T AA P
 
     struct Letters;
 
-    impl Spelling for Letters {
+    impl LetterToSound for Letters {
         fn phones_of(&self, word: &str) -> Option<String> {
             (word == "hex").then(|| "HH EH K S".to_owned())
         }
@@ -203,32 +194,28 @@ ktop K T AA P
     }
 
     #[test]
-    fn words_keep_all_their_pronunciations() {
+    fn pronunciations_include_all_of_the_dictionary() {
         let found = collect(&["get", "'bout"]);
         assert_eq!(found.of("get"), ["G EH T", "G IH T"]);
         assert_eq!(found.to_text(), "'bout B AW T\nget G EH T\nget(2) G IH T\n");
     }
 
     #[test]
-    fn hyphens_and_compounds_are_put_together() {
+    fn pronunciations_of_hyphenated_words_and_compounds_are_composed() {
         let found = collect(&["see-through", "worktop", "hex-top"]);
         assert_eq!(found.of("see-through"), ["S IY TH R UW"]);
-        // The even cut wins: "work" + "top", not "wor" + "ktop".
+        // The even split wins: "work" + "top", not "wor" + "ktop".
         assert_eq!(found.of("worktop"), ["W ER K T AA P", "W AH K T AA P"]);
         assert_eq!(found.of("hex-top"), ["HH EH K S T AA P"]);
         assert!(found.missing().is_empty());
     }
 
     #[test]
-    fn what_nothing_can_pronounce_is_missing() {
+    fn pronunciations_list_missing_words() {
         let found = collect(&["zzgrx", "hex", "qq-get"]);
         assert_eq!(found.missing(), ["qq-get", "zzgrx"]);
+        assert_eq!(collect(&["größenwahn"]).missing(), ["größenwahn"], "split at characters");
         assert_eq!(found.of("zzgrx"), [""; 0]);
         assert_eq!(found.of("hex"), ["HH EH K S"]);
-    }
-
-    #[test]
-    fn words_beyond_ascii_are_cut_at_letters() {
-        assert_eq!(collect(&["größenwahn"]).missing(), ["größenwahn"]);
     }
 }

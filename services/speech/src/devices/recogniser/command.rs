@@ -1,9 +1,9 @@
-//! A recogniser that is a program of its own, kept running: samples to its standard input, one line
-//! of JSON back for each utterance. The protocol stands in `docs/speech.md`.
+//! A recogniser that is a separate program, kept running: samples to its standard input, one line of
+//! JSON back for each utterance. `docs/speech.md` describes the protocol.
 //!
-//! Invariant: no utterance is waited for longer than the deadline, no answer is taken for that of
-//! another utterance, and what the program writes is bounded. A program that dies or is late is
-//! ended and started anew.
+//! Invariant: an utterance waits at most for the deadline, an answer is never attributed to another
+//! utterance, and the program's output is bounded. A program that exits or is late is killed and
+//! restarted.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::ops::Range;
@@ -14,24 +14,25 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use serde::Deserialize;
 
-use super::{Hypothesis, RecogniseError, Recogniser, RecogniserUnavailable};
+use super::{RecogniseError, Recogniser, RecogniserUnavailable};
 use crate::devices::audio::RATE_HZ;
 use crate::devices::language_model;
+use crate::hypothesis::Hypothesis;
 
-/// Which program, and how long it may take.
+/// Program and limits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandOptions {
     /// The program and its arguments.
     pub command: Vec<String>,
-    /// From the last sample to the answer at most; the first answer may take as long again, since
-    /// the program loads its model meanwhile.
+    /// Time limit from the last sample to the answer; doubled for the first answer, because the
+    /// program loads its model meanwhile.
     pub deadline: Duration,
-    /// Hypotheses that are taken of an answer.
+    /// Hypotheses used per answer.
     pub n_best_max: usize,
 }
 
 impl CommandOptions {
-    /// The program with the usual limits.
+    /// Returns options for the program with the default limits.
     pub fn new(command: Vec<String>) -> Self {
         Self { command, deadline: Duration::from_secs(10), n_best_max: 5 }
     }
@@ -50,7 +51,7 @@ impl Command {
     /// Starts the program.
     ///
     /// # Errors
-    /// If no program is named, or the system does not start it.
+    /// If no program is named, or it cannot be started.
     pub fn open(options: CommandOptions) -> Result<Self, RecogniserUnavailable> {
         let program = Program::start(&options.command)
             .map_err(|reason| RecogniserUnavailable::Command { reason })?;
@@ -60,14 +61,13 @@ impl Command {
     fn ask(&mut self, pcm: &[i16]) -> Result<Answer, String> {
         let (program, deadline) = match &mut self.program {
             Some(program) => (program, self.options.deadline),
-            // A program that was started for this utterance loads its model first.
+            // A program that is started for this utterance loads its model first.
             none => {
                 (none.insert(Program::start(&self.options.command)?), 2 * self.options.deadline)
             }
         };
         let line = program.ask(pcm, deadline)?;
-        serde_json::from_str(&line)
-            .map_err(|error| format!("its answer is not understood: {error}"))
+        serde_json::from_str(&line).map_err(|error| format!("invalid answer: {error}"))
     }
 }
 
@@ -78,53 +78,54 @@ impl Recogniser for Command {
         _: Range<usize>,
     ) -> Result<Vec<Hypothesis>, RecogniseError> {
         let answer = self.ask(pcm).map_err(|reason| {
-            // Whatever it still says belongs to this utterance; the next one gets a new program.
+            // Further output belongs to this utterance; the next one gets a new program.
             self.program = None;
             let name = self.options.command.first().cloned().unwrap_or_default();
-            RecogniseError::Told { reason: format!("{name}: {reason}") }
+            RecogniseError::Backend { reason: format!("{name}: {reason}") }
         })?;
         match answer.error {
-            Some(reason) => Err(RecogniseError::Told { reason }),
+            Some(reason) => Err(RecogniseError::Backend { reason }),
             None => Ok(hypotheses(answer.hypotheses, self.options.n_best_max)),
         }
     }
 }
 
-/// A line of the program's.
+/// A line of the program's output.
 #[derive(Debug, Deserialize)]
 struct Answer {
     #[serde(default)]
-    hypotheses: Vec<Told>,
+    hypotheses: Vec<AnswerHypothesis>,
     error: Option<String>,
 }
 
 #[derive(Debug, Deserialize)]
-struct Told {
+struct AnswerHypothesis {
     text: String,
     /// Relative to the others'.
-    weight: Option<f32>,
+    weight: Option<f64>,
     /// Of each word of the text, 0 to 1.
     #[serde(default)]
     confidence: Vec<f32>,
 }
 
-/// The answer as hypotheses, heaviest first, with weights that sum to one. A word of which nothing
-/// is said is as sure as its hypothesis.
-fn hypotheses(told: Vec<Told>, at_most: usize) -> Vec<Hypothesis> {
-    let weight = |told: &Told| told.weight.filter(|w| w.is_finite()).unwrap_or(1.0).max(0.0);
-    let total: f32 = told.iter().map(weight).sum::<f32>().max(f32::MIN_POSITIVE);
-    let one = |told: Told| {
-        let share = weight(&told) / total;
-        let words = language_model::words(&told.text);
-        let aligned = told.confidence.len() == words.len();
-        let sure = |n: usize| if aligned { told.confidence[n].clamp(0.0, 1.0) } else { share };
-        let words: Vec<_> = words.into_iter().enumerate().map(|(n, w)| (w, sure(n))).collect();
-        let text = words.iter().map(|(word, _)| word.as_str()).collect::<Vec<_>>().join(" ");
-        Hypothesis { text, confidence: share, words }
+/// Returns the answer as hypotheses, heaviest first, with weights that sum to one. Without word
+/// confidences the weight of the hypothesis is used.
+fn hypotheses(answers: Vec<AnswerHypothesis>, at_most: usize) -> Vec<Hypothesis> {
+    let weight =
+        |answer: &AnswerHypothesis| answer.weight.filter(|w| w.is_finite()).unwrap_or(1.0).max(0.0);
+    let total: f64 = answers.iter().map(weight).sum::<f64>().max(f64::MIN_POSITIVE);
+    let hypothesis = |answer: AnswerHypothesis| {
+        let share = weight(&answer) / total;
+        let words = language_model::words(&answer.text);
+        let given = answer.confidence.len() == words.len();
+        let confidence =
+            |n: usize| if given { answer.confidence[n].clamp(0.0, 1.0) } else { share as f32 };
+        let words = words.into_iter().enumerate().map(|(n, word)| (word, confidence(n)));
+        Hypothesis::of_words(words, share)
     };
-    let mut found: Vec<Hypothesis> = told.into_iter().map(one).collect();
+    let mut found: Vec<Hypothesis> = answers.into_iter().map(hypothesis).collect();
     found.retain(|hypothesis| !hypothesis.text.is_empty());
-    found.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
+    found.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     found.truncate(at_most);
     found
 }
@@ -139,13 +140,13 @@ struct Program {
 impl Program {
     fn start(command: &[String]) -> Result<Self, String> {
         let [name, arguments @ ..] = command else {
-            return Err("no program is named (speech.recogniser_command)".to_owned());
+            return Err("no program is configured (speech.recogniser_command)".to_owned());
         };
         let mut process = Process::new(name);
         process.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped());
-        let mut child = process.spawn().map_err(|e| format!("{name} does not start: {e}"))?;
-        // Both ends have a thread of their own, so that a program that neither reads nor writes
-        // holds up nothing. They end with the pipes.
+        let mut child = process.spawn().map_err(|e| format!("{name} cannot be started: {e}"))?;
+        // Each end has a thread of its own, so that a program that neither reads nor writes blocks
+        // nothing. The threads end with the pipes.
         let (samples, to_write) = bounded::<Vec<u8>>(1);
         let (read, lines) = bounded(1);
         let (stdin, stdout) = (child.stdin.take(), child.stdout.take());
@@ -175,28 +176,28 @@ impl Program {
         if let Ok(line) = self.lines.try_recv() {
             let line = line.unwrap_or_default();
             return Err(match line.is_empty() {
-                true => "it has ended".to_owned(),
-                false => format!("it spoke without being asked: {}", line.trim()),
+                true => "it exited".to_owned(),
+                false => format!("unexpected output: {}", line.trim()),
             });
         }
         let mut bytes = format!("{{\"rate\":{RATE_HZ},\"samples\":{}}}\n", pcm.len()).into_bytes();
         bytes.extend(pcm.iter().flat_map(|sample| sample.to_le_bytes()));
-        self.samples.send_deadline(bytes, due).map_err(|_| "it has ended".to_owned())?;
+        self.samples.send_deadline(bytes, due).map_err(|_| "it exited".to_owned())?;
         match self.lines.recv_deadline(due) {
             Ok(Ok(line)) if line.ends_with('\n') => Ok(line),
             Ok(Ok(line)) if line.len() as u64 >= LINE_MAX => {
-                Err(format!("its answer is longer than {LINE_MAX} bytes"))
+                Err(format!("expected an answer of at most {LINE_MAX} bytes"))
             }
             Ok(Ok(_)) | Err(RecvTimeoutError::Disconnected) => {
-                Err("it has ended without an answer".to_owned())
+                Err("it exited without an answer".to_owned())
             }
-            Ok(Err(error)) => Err(format!("its answer cannot be read: {error}")),
+            Ok(Err(error)) => Err(format!("the answer cannot be read: {error}")),
             Err(RecvTimeoutError::Timeout) => Err(format!("no answer within {deadline:?}")),
         }
     }
 }
 
-/// A line with its end, or without where the program ended or the line is too long.
+/// Reads a line; without its end where the program exited or the line is too long.
 fn next_line(from: &mut impl BufRead) -> std::io::Result<String> {
     let mut line = String::new();
     from.take(LINE_MAX).read_line(&mut line)?;
@@ -205,7 +206,7 @@ fn next_line(from: &mut impl BufRead) -> std::io::Result<String> {
 
 impl Drop for Program {
     fn drop(&mut self) {
-        // Both fail only if it has ended already.
+        // Both fail only if it exited already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -215,7 +216,7 @@ impl Drop for Program {
 mod tests {
     use super::*;
 
-    /// A shell that reads each utterance whole, then does as told; `$samples` is its length.
+    /// Starts a shell that reads each utterance whole, then runs `answer`; `$samples` is its length.
     fn shell(answer: &str) -> Command {
         let script = format!(
             "while read -r head; do samples=${{head##*:}}; samples=${{samples%\\}}}}; \
@@ -223,83 +224,72 @@ mod tests {
         );
         let command = ["bash", "-c", &script].map(str::to_owned).into();
         // A limit for the tests that wait for it; the others need far less.
-        Command::open(CommandOptions {
-            deadline: Duration::from_secs(20),
-            ..CommandOptions::new(command)
-        })
-        .unwrap()
+        let deadline = Duration::from_secs(20);
+        Command::open(CommandOptions { deadline, ..CommandOptions::new(command) }).unwrap()
     }
 
-    fn hear(command: &mut Command, samples: usize) -> Result<Vec<Hypothesis>, RecogniseError> {
+    fn recognise(command: &mut Command, samples: usize) -> Result<Vec<Hypothesis>, RecogniseError> {
         command.recognise(&vec![1; samples], 0..samples)
     }
 
-    fn reason(heard: Result<Vec<Hypothesis>, RecogniseError>) -> String {
-        heard.unwrap_err().to_string()
-    }
-
     #[test]
-    fn each_utterance_gets_its_answer_from_one_program() {
-        let mut ear = shell(
+    fn command_recogniser_answers_each_utterance_with_one_program() {
+        let mut program = shell(
             r#"n=$((n + 1)); echo "{\"hypotheses\": [{\"text\": \"no\", \"weight\": 1}, {\"text\": \"Yes, number $n of $samples\", \"weight\": 3}]}""#,
         );
         for (n, samples) in [(1, 100), (2, 40_000), (3, 0)] {
-            let heard = hear(&mut ear, samples).unwrap();
-            assert_eq!(heard[0].text, format!("yes number {n} of {samples}"));
-            assert_eq!((heard[0].confidence, heard[1].confidence), (0.75, 0.25));
-            assert_eq!(heard[1].words, [("no".to_owned(), 0.25)]);
+            let found = recognise(&mut program, samples).unwrap();
+            assert_eq!(found[0].text, format!("yes number {n} of {samples}"));
+            assert_eq!((found[0].weight, found[1].weight), (0.75, 0.25));
+            assert_eq!(
+                (found[1].text.as_str(), &found[1].word_confidence[..]),
+                ("no", &[0.25][..])
+            );
         }
     }
 
     #[test]
-    fn words_keep_their_confidence_where_it_fits() {
-        let told = |confidence: &[f32]| Told {
-            text: "The WHITE one".to_owned(),
-            weight: None,
-            confidence: confidence.to_vec(),
-        };
-        let sure =
-            |told| hypotheses(vec![told], 5)[0].words.iter().map(|w| w.1).collect::<Vec<_>>();
-        assert_eq!(sure(told(&[0.5, 2.0, 0.9])), [0.5, 1.0, 0.9]);
-        assert_eq!(sure(told(&[0.5])), [1.0, 1.0, 1.0]);
-        assert_eq!(hypotheses(vec![Told { text: " ".into(), ..told(&[]) }], 5), []);
+    fn command_recogniser_uses_word_confidences_that_fit() {
+        for (text, confidence, expected) in [
+            ("The WHITE one", &[0.5, 2.0, 0.9][..], Some(&[0.5, 1.0, 0.9][..])),
+            ("The WHITE one", &[0.5], Some(&[1.0, 1.0, 1.0])),
+            (" ", &[], None),
+        ] {
+            let (text, confidence) = (text.to_owned(), confidence.to_vec());
+            let found = hypotheses(vec![AnswerHypothesis { text, weight: None, confidence }], 5);
+            assert_eq!(found.first().map(|h| &h.word_confidence[..]), expected);
+        }
     }
 
     #[test]
-    fn a_program_that_dies_is_started_anew() {
-        let mut ear = shell("[ $samples = 1 ] && exit 3; echo '{\"hypotheses\": []}'");
-        assert_eq!(hear(&mut ear, 2), Ok(Vec::new()));
-        assert!(reason(hear(&mut ear, 1)).contains("ended without an answer"));
-        assert_eq!(hear(&mut ear, 2), Ok(Vec::new()));
+    fn command_recogniser_restarts_a_program_that_exits() {
+        let mut program = shell("[ $samples = 1 ] && exit 3; echo '{\"hypotheses\": []}'");
+        assert_eq!(recognise(&mut program, 2), Ok(Vec::new()));
+        let error = recognise(&mut program, 1).unwrap_err().to_string();
+        assert!(error.contains("exited without an answer"), "{error}");
+        assert_eq!(recognise(&mut program, 2), Ok(Vec::new()));
     }
 
     #[test]
-    fn what_it_complains_about_and_nonsense_are_told() {
-        let mut ear = shell("echo '{\"error\": \"no model\"}'");
-        assert!(reason(hear(&mut ear, 1)).contains("no model"));
-        let mut ear = shell("echo hello");
-        assert!(reason(hear(&mut ear, 1)).contains("bash: its answer is not understood"));
-        let mut ear = shell("head -c 100000 /dev/zero | tr '\\0' x; echo");
-        assert!(reason(hear(&mut ear, 1)).contains("longer than 65536 bytes"));
-    }
-
-    #[test]
-    fn an_answer_that_comes_too_late_is_not_waited_for() {
-        let mut ear = shell("read -r -t 600 never; echo '{\"hypotheses\": []}'");
-        ear.options.deadline = Duration::from_millis(50);
-        assert!(reason(hear(&mut ear, 1)).contains("no answer within 50ms"));
-    }
-
-    #[test]
-    fn a_program_that_is_not_there_is_named() {
-        for (command, told) in [
+    fn command_recogniser_reports_errors_invalid_and_late_answers() {
+        for (answer, expected) in [
+            ("echo '{\"error\": \"no model\"}'", "no model"),
+            ("echo hello", "bash: invalid answer"),
+            ("head -c 100000 /dev/zero | tr '\\0' x; echo", "at most 65536 bytes"),
+        ] {
+            let error = recognise(&mut shell(answer), 1).unwrap_err().to_string();
+            assert!(error.contains(expected), "{error}");
+        }
+        let mut late = shell("read -r -t 600 never; echo '{\"hypotheses\": []}'");
+        late.options.deadline = Duration::from_millis(50);
+        let error = recognise(&mut late, 1).unwrap_err().to_string();
+        assert!(error.contains("no answer within 50ms"), "{error}");
+        for (command, expected) in [
             (vec!["no-such-program".to_owned()], "no-such-program"),
             (vec![], "recogniser_command"),
         ] {
-            let Err(error) = Command::open(CommandOptions::new(command)) else {
-                panic!("it started")
-            };
-            assert!(error.to_string().contains(told), "{error}");
+            let error = Command::open(CommandOptions::new(command)).err().unwrap().to_string();
+            assert!(error.contains(expected), "{error}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The C interface of pocketsphinx 5prealpha, found at run time.
+//! The C interface of pocketsphinx 5prealpha, loaded at run time.
 //!
 //! Invariant: every pointer of the library stays inside this file, and every `unsafe` block says
 //! why it holds. The declarations follow `pocketsphinx.h`, `cmd_ln.h`, `err.h` and `logmath.h` of
@@ -23,7 +23,7 @@ type NBest = *mut c_void;
 type Segment = *mut c_void;
 type LogMath = *mut c_void;
 
-/// The functions of the shared object that are used, and the object that keeps them mapped.
+/// The functions used, and the shared object that keeps them mapped.
 pub(super) struct Library {
     cmd_ln_init: unsafe extern "C" fn(Config, *const c_void, i32, ...) -> Config,
     cmd_ln_free_r: unsafe extern "C" fn(Config) -> c_int,
@@ -50,8 +50,8 @@ pub(super) struct Library {
 }
 
 impl Library {
-    /// Opens the shared object `file` (a path, or a name for the loader's search) and finds the
-    /// functions; libsphinxbase comes along as its dependency.
+    /// Opens the shared object `file` (a path, or a name for the loader) and resolves the functions;
+    /// libsphinxbase is loaded as its dependency.
     pub(super) fn open(file: &Path) -> Result<Self, libloading::Error> {
         // SAFETY: opening runs the initialisers of pocketsphinx, sphinxbase and their BLAS, which
         // are plain C without demands on the caller.
@@ -89,36 +89,36 @@ impl Library {
     }
 }
 
-/// Files that a decoder is made of; no path may hold a NUL byte.
+/// Files of a decoder; no path may contain a NUL byte.
 pub(super) struct DecoderFiles<'a> {
     pub(super) acoustic_model: &'a Path,
     pub(super) dictionary: &'a Path,
     pub(super) language_model: &'a Path,
-    /// Where the library's own messages of the opening go.
+    /// File for the library's messages while opening.
     pub(super) log: &'a Path,
-    /// How often the sound is gone through.
+    /// Decoding passes.
     pub(super) passes: Passes,
 }
 
-/// How often a decoder goes through the sound of an utterance.
+/// Passes of a decoder over an utterance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Passes {
-    /// Three times, each with what the one before has found.
+    /// Three passes, each with the result of the previous one.
     All,
-    /// Once, while it comes in.
+    /// One pass, while the audio arrives.
     First,
 }
 
-/// A hypothesis of the library's: its text and its logarithm (natural, not normalised).
+/// A hypothesis of the library: text and natural logarithm of its score, not normalised.
 pub(super) struct Scored {
     pub(super) text: String,
     pub(super) ln_score: f64,
 }
 
-/// What the library made of one utterance.
+/// The library's result for one utterance.
 #[derive(Default)]
 pub(super) struct Decoded {
-    /// The best path's words, fillers and pronunciation marks included.
+    /// Words of the best path, including fillers and pronunciation markers.
     pub(super) best: Vec<String>,
     /// Best first; a text may appear more than once (other times or pronunciations).
     pub(super) n_best: Vec<Scored>,
@@ -135,7 +135,7 @@ pub(super) struct Decoder {
 unsafe impl Send for Decoder {}
 
 impl Decoder {
-    /// Opens a decoder. `None`: the library refused; its reasons stand in `files.log`.
+    /// Opens a decoder. `None`: the library failed; `files.log` holds its reasons.
     pub(super) fn open(library: Library, files: &DecoderFiles<'_>) -> Option<Self> {
         let path = |p: &Path| CString::new(p.as_os_str().as_encoded_bytes()).ok();
         let (hmm, dict) = (path(files.acoustic_model)?, path(files.dictionary)?);
@@ -173,8 +173,8 @@ impl Decoder {
         NonNull::new(decoder).map(|decoder| Self { decoder, library })
     }
 
-    /// Decodes one whole utterance of 16 kHz mono samples, with at most `n_best_max` hypotheses
-    /// of the lattice. `None`: the library reported a failure.
+    /// Decodes one whole utterance of 16 kHz mono samples, with at most `n_best_max` hypotheses of the
+    /// lattice. `None`: the library failed.
     pub(super) fn decode(&mut self, pcm: &[i16], n_best_max: usize) -> Option<Decoded> {
         let _log = MESSAGE_LOG.read().unwrap_or_else(PoisonError::into_inner);
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
@@ -201,8 +201,8 @@ impl Decoder {
         Some(Decoded { best: self.best(), n_best: self.n_best(n_best_max) })
     }
 
-    /// Begins an utterance whose sound comes in pieces; one that is going on is given up. `None`: the
-    /// library reported a failure.
+    /// Begins an utterance that arrives in blocks; one in progress is abandoned. `None`: the library
+    /// failed.
     pub(super) fn begin(&mut self) -> Option<()> {
         let _log = MESSAGE_LOG.read().unwrap_or_else(PoisonError::into_inner);
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
@@ -215,9 +215,9 @@ impl Decoder {
         (!failed).then_some(())
     }
 
-    /// Takes the next piece of an utterance that was begun. Returns the words of the best path so
-    /// far, fillers left out; `None`: the library reported a failure.
-    pub(super) fn hear(&mut self, pcm: &[i16]) -> Option<String> {
+    /// Decodes the next block of an utterance. Returns the words of the best path so far without
+    /// fillers; `None`: the library failed.
+    pub(super) fn decode_next(&mut self, pcm: &[i16]) -> Option<String> {
         let _log = MESSAGE_LOG.read().unwrap_or_else(PoisonError::into_inner);
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         let mut score = 0;
@@ -233,7 +233,7 @@ impl Decoder {
         }
     }
 
-    /// The words of the best path.
+    /// Returns the words of the best path.
     fn best(&mut self) -> Vec<String> {
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         let mut words = Vec::new();
@@ -250,7 +250,7 @@ impl Decoder {
         words
     }
 
-    /// The best paths through the lattice of words, as texts without fillers.
+    /// Returns the best paths through the word lattice, as texts without fillers.
     fn n_best(&mut self, at_most: usize) -> Vec<Scored> {
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         let mut found = Vec::new();
@@ -287,11 +287,11 @@ impl Drop for Decoder {
     }
 }
 
-/// Path scores are kept divided by 2^10 so that they fit into 32 bits (`SENSCR_SHIFT`).
+/// The library divides path scores by 2^10 so that they fit into 32 bits (`SENSCR_SHIFT`).
 const SCORE_UNIT: f64 = 1024.0;
 
 /// # Safety
-/// `text` is a NUL-terminated string that nothing changes during the call.
+/// `text` is a NUL-terminated string that does not change during the call.
 unsafe fn text_of(text: *const c_char) -> String {
     // SAFETY: as the caller promises.
     unsafe { CStr::from_ptr(text) }.to_string_lossy().into_owned()

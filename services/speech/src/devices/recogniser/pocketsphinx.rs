@@ -1,4 +1,4 @@
-//! The offline recogniser: Debian's pocketsphinx with a language model made for the scene.
+//! The offline recogniser: Debian's pocketsphinx with a language model of the scene.
 
 use std::fs;
 use std::ops::Range;
@@ -6,32 +6,33 @@ use std::path::{Path, PathBuf};
 
 use scene::Scene;
 
-use super::agreement::hypotheses;
 use super::ffi::{Decoded, Decoder, DecoderFiles, Library, Passes};
 use super::scene_files::SceneFiles;
+use super::word_confidence::hypotheses;
 use super::{
-    Hypothesis, Preview, PreviewOpener, RecogniseError, Recogniser, RecogniserUnavailable,
+    InterimDecoder, InterimDecoderOpener, RecogniseError, Recogniser, RecogniserUnavailable,
 };
 use crate::devices::audio::{denoised, with_noise_floor};
 use crate::devices::language_model::Weights;
+use crate::hypothesis::Hypothesis;
 
-/// Where the recogniser's parts are, and what of it can be set.
+/// Files and settings of the recogniser.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PocketSphinxOptions {
-    /// The shared object: a path, or a name that the loader finds.
+    /// The shared object: a path, or a name for the loader.
     pub library: PathBuf,
     /// The folder with `en-us` (the acoustic model) and `cmudict-en-us.dict`.
     pub model: PathBuf,
-    /// A folder of this service's own for the scene's dictionary and language model.
+    /// Private folder for the scene's dictionary and language model.
     pub work: PathBuf,
-    /// Balance of the language model.
+    /// Weights of the language model.
     pub weights: Weights,
-    /// Hypotheses returned at most.
+    /// Largest number of hypotheses.
     pub n_best_max: usize,
 }
 
 impl PocketSphinxOptions {
-    /// What Debian's packages install, with work files in `work`.
+    /// Returns the files of Debian's packages, with work files in `work`.
     pub fn debian(work: impl Into<PathBuf>) -> Self {
         Self {
             library: "libpocketsphinx.so.3".into(),
@@ -51,7 +52,7 @@ pub struct PocketSphinx {
     files: Files,
 }
 
-/// What decoders are opened with.
+/// Files of a decoder.
 #[derive(Clone)]
 struct Files {
     library: PathBuf,
@@ -69,11 +70,11 @@ impl Files {
         })
     }
 
-    /// Where the library's messages go.
+    /// Returns the file for the library's messages.
     fn log(&self, passes: Passes) -> PathBuf {
         self.work.join(match passes {
             Passes::All => "pocketsphinx.log",
-            Passes::First => "preview.log",
+            Passes::First => "interim.log",
         })
     }
 
@@ -90,21 +91,21 @@ impl Files {
             passes,
         };
         Decoder::open(library, &files)
-            .ok_or_else(|| RecogniserUnavailable::Refused { reason: complaints(&log) })
+            .ok_or_else(|| RecogniserUnavailable::Refused { reason: last_errors(&log) })
     }
 }
 
 impl PocketSphinx {
-    /// Builds the scene's language model and dictionary and opens a decoder with them. Takes some
-    /// 0.1 s.
+    /// Opens a decoder with the scene's language model and dictionary, which it makes first where
+    /// necessary. Takes about 0.1 s.
     ///
     /// # Errors
-    /// If the library, the model or the folder for work files is not there.
+    /// If the library, the model or the folder for work files is missing.
     pub fn open(
         scene: &Scene,
         options: &PocketSphinxOptions,
     ) -> Result<Self, RecogniserUnavailable> {
-        // The library comes first: where it is missing, its package brings the rest.
+        // The library is checked first: its package depends on the rest.
         let files = Files {
             library: options.library.clone(),
             acoustic_model: options.model.join("en-us"),
@@ -113,32 +114,32 @@ impl PocketSphinx {
             work: options.work.clone(),
         };
         files.library()?;
-        // The library may end the process over a missing file, so each is looked for first.
+        // The library may end the process over a missing file, so each one is checked first.
         for file in ["mdef", "means", "variances", "transition_matrices", "sendump", "feat.params"]
         {
             readable(&files.acoustic_model.join(file))?;
         }
         let pronouncing = options.model.join("cmudict-en-us.dict");
         let scene = SceneFiles::get(scene, options.weights, &pronouncing, &options.work)?;
-        if let Some(reason) = last_words(&files.log(Passes::All)) {
-            scene.forget();
+        if let Some(reason) = last_fatal_error(&files.log(Passes::All)) {
+            scene.invalidate();
             return Err(RecogniserUnavailable::Refused { reason });
         }
         let SceneFiles { dictionary, language_model, .. } = &scene;
         let (dictionary, language_model) = (dictionary.clone(), language_model.clone());
         let files = Files { dictionary, language_model, ..files };
-        let decoder = files.open(Passes::All).inspect_err(|_| scene.forget())?;
+        let decoder = files.open(Passes::All).inspect_err(|_| scene.invalidate())?;
         let unpronounceable = scene.unpronounceable;
         Ok(Self { decoder, n_best_max: options.n_best_max, unpronounceable, files })
     }
 
-    /// Words of the scene that cannot be recognised because nothing tells how they sound.
+    /// Returns the words of the scene that cannot be recognised because their pronunciation is unknown.
     pub fn unpronounceable(&self) -> &[String] {
         &self.unpronounceable
     }
 }
 
-/// Paths through the lattice that are looked at: the same words come back with other times.
+/// Paths through the lattice that are examined: the same words recur with other times.
 const PATHS_MAX: usize = 100;
 
 impl Recogniser for PocketSphinx {
@@ -150,57 +151,58 @@ impl Recogniser for PocketSphinx {
         let clear = denoised(pcm, &speech);
         let pcm = with_noise_floor(&clear);
         let decoded = self.decoder.decode(&pcm, PATHS_MAX).ok_or(RecogniseError::Failed)?;
-        Ok(heard(&decoded, self.n_best_max))
+        Ok(weighed(&decoded, self.n_best_max))
     }
 
     fn is_quick(&self) -> bool {
         true
     }
 
-    fn preview(&self) -> Option<PreviewOpener> {
+    fn interim_decoder(&self) -> Option<InterimDecoderOpener> {
         let files = self.files.clone();
         Some(Box::new(move || match files.open(Passes::First) {
-            Ok(decoder) => Some(Box::new(Rough { decoder, heard: Vec::new() }) as Box<dyn Preview>),
+            Ok(decoder) => {
+                Some(Box::new(FirstPass { decoder, samples: Vec::new() }) as Box<dyn InterimDecoder>)
+            }
             Err(error) => {
-                tracing::warn!(%error, "no transcript while somebody speaks");
+                tracing::warn!(%error, "no interim results");
                 None
             }
         }))
     }
 }
 
-/// A decoder that goes through the sound once while it comes in: less sure than one that has heard
-/// the whole.
-struct Rough {
+/// A decoder with a single pass while the audio arrives: less accurate than one of whole utterances.
+struct FirstPass {
     decoder: Decoder,
-    heard: Vec<i16>,
+    samples: Vec<i16>,
 }
 
-impl Preview for Rough {
+impl InterimDecoder for FirstPass {
     fn begin(&mut self) -> Result<(), RecogniseError> {
-        self.heard.clear();
+        self.samples.clear();
         self.decoder.begin().ok_or(RecogniseError::Failed)
     }
 
-    fn hear(&mut self, pcm: &[i16]) -> Result<String, RecogniseError> {
-        let known = self.heard.len();
-        self.heard.extend_from_slice(pcm);
-        // How much noise it lacks can be told better the more was heard.
-        let new = &with_noise_floor(&self.heard)[known..];
-        let text = self.decoder.hear(new).ok_or(RecogniseError::Failed)?;
+    fn decode(&mut self, pcm: &[i16]) -> Result<String, RecogniseError> {
+        let known = self.samples.len();
+        self.samples.extend_from_slice(pcm);
+        // The estimate of the missing noise improves with the length.
+        let new = &with_noise_floor(&self.samples)[known..];
+        let text = self.decoder.decode_next(new).ok_or(RecogniseError::Failed)?;
         Ok(plain(&text))
     }
 }
 
-/// What a path's score is divided by before it becomes a weight: path scores are far too sure of
-/// themselves because frames are not independent. It is the library's own (its option `-ascale`),
-/// and with it the words' probabilities are about as often right as they say.
+/// Divisor of a path's score before it becomes a weight: path scores are overconfident because frames
+/// are not independent. It is the library's own (its option `-ascale`), and with it the words'
+/// confidences are calibrated.
 const SCORE_SCALE: f64 = 20.0;
 
-fn heard(decoded: &Decoded, at_most: usize) -> Vec<Hypothesis> {
+fn weighed(decoded: &Decoded, at_most: usize) -> Vec<Hypothesis> {
     let mut paths: Vec<(String, f64)> =
         decoded.n_best.iter().map(|path| (plain(&path.text), path.ln_score)).collect();
-    // The best path may lie outside the paths that were looked at; it is the best all the same.
+    // The best path may lie outside the paths that were examined; it is the best all the same.
     let best = plain(&decoded.best.join(" "));
     if paths.iter().all(|(text, _)| *text != best) {
         let top = paths.iter().map(|(_, score)| *score).reduce(f64::max).unwrap_or(0.0);
@@ -209,12 +211,12 @@ fn heard(decoded: &Decoded, at_most: usize) -> Vec<Hypothesis> {
     hypotheses(&paths, SCORE_SCALE, at_most)
 }
 
-/// The words without marks and fillers.
+/// Returns the words without markers and fillers.
 fn plain(text: &str) -> String {
     text.split(' ').filter_map(spelling).collect::<Vec<_>>().join(" ")
 }
 
-/// The word without its pronunciation mark; `None` for silence, noise and the sentence's ends.
+/// Returns the word without its pronunciation marker; `None` for silence, noise and sentence markers.
 fn spelling(word: &str) -> Option<String> {
     if word.starts_with(['<', '[', '+']) {
         return None;
@@ -230,8 +232,8 @@ fn readable(path: &Path) -> Result<(), RecogniserUnavailable> {
     }
 }
 
-/// The errors in the library's log, the last three.
-fn complaints(log: &Path) -> String {
+/// Returns the last three errors in the library's log.
+fn last_errors(log: &Path) -> String {
     let text = fs::read_to_string(log).unwrap_or_default();
     let errors: Vec<&str> = text.lines().filter(|line| line.starts_with("ERROR")).collect();
     match errors.len() {
@@ -240,16 +242,16 @@ fn complaints(log: &Path) -> String {
     }
 }
 
-/// Why the library ended the process when it was opened last, if it did, which it does over some
-/// damaged files. The log is removed, so that the start after this one tries again.
-fn last_words(log: &Path) -> Option<String> {
+/// Returns why the library ended the process when it was opened last, if it did, which it does over
+/// some damaged files. Removes the log, so that the start after this one tries again.
+fn last_fatal_error(log: &Path) -> Option<String> {
     let text = fs::read_to_string(log).ok()?;
     let words = text.lines().rfind(|line| line.starts_with("FATAL"))?;
     fs::remove_file(log).ok()?;
     Some(words.to_owned())
 }
 
-/// The error with what it stems from: the loader's own message comes last.
+/// Returns the error with its source, the loader's own message.
 fn reason(error: &dyn std::error::Error) -> String {
     let source = error.source().map(|source| format!(": {source}")).unwrap_or_default();
     format!("{error}{source}")

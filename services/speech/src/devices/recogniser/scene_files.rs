@@ -1,6 +1,6 @@
-//! The files that the recogniser knows a scene by, made once and kept.
+//! The recogniser's files of a scene, made once and cached.
 //!
-//! Invariant: a file is used only if it is byte for byte what was made from the same scene, weights,
+//! Invariant: a file is used only if it is byte for byte the one made from the same scene, weights,
 //! pronouncing dictionary and program.
 
 use std::fs;
@@ -11,19 +11,19 @@ use scene::{Fnv1a, Scene};
 
 use super::RecogniserUnavailable;
 use crate::devices::language_model::{Trigram, Weights, common_words, scene_sentences};
-use crate::devices::pronunciation::{EspeakSpelling, Pronunciations};
+use crate::devices::pronunciation::{EspeakLetterToSound, Pronunciations};
 
-/// A scene's files.
+/// Files of a scene.
 pub(super) struct SceneFiles {
     pub(super) dictionary: PathBuf,
     pub(super) language_model: PathBuf,
-    /// Words of the scene that cannot be recognised because nothing tells how they sound.
+    /// Words of the scene that cannot be recognised because their pronunciation is unknown.
     pub(super) unpronounceable: Vec<String>,
     mark: PathBuf,
 }
 
 impl SceneFiles {
-    /// Those that lie in `work` where they are still right, else new ones.
+    /// Returns the files in `work` where they are still valid, otherwise makes them.
     pub(super) fn get(
         scene: &Scene,
         weights: Weights,
@@ -43,13 +43,13 @@ impl SceneFiles {
         Ok(files)
     }
 
-    /// Has them made anew the next time.
-    pub(super) fn forget(&self) {
-        // Where it cannot be removed, it cannot be written anew either, which is told then.
+    /// Invalidates the files, so that they are made again the next time.
+    pub(super) fn invalidate(&self) {
+        // Where it cannot be removed, it cannot be rewritten either, which is reported then.
         let _ = fs::remove_file(&self.mark);
     }
 
-    /// Whether the files are those of this origin, and as they were written.
+    /// Returns whether the files are of this origin and unchanged.
     fn are_of(&self, origin: u64) -> bool {
         let text = |file| fs::read_to_string(file).unwrap_or_default();
         let contents = contents(&text(&self.dictionary), &text(&self.language_model));
@@ -68,7 +68,7 @@ impl SceneFiles {
             RecogniserUnavailable::Model { path: pronouncing.to_owned(), source }
         })?;
         let model = Trigram::train(&scene_sentences(scene), common_words(), weights);
-        let spoken = Pronunciations::collect(model.vocabulary(), &dictionary, &EspeakSpelling);
+        let spoken = Pronunciations::collect(model.vocabulary(), &dictionary, &EspeakLetterToSound);
         let (dictionary, model) = (spoken.to_text(), model.to_arpa());
         self.unpronounceable = spoken.missing().to_vec();
         write(work, &self.dictionary, &dictionary)?;
@@ -76,22 +76,22 @@ impl SceneFiles {
         if spoken.missing().is_empty() {
             write(work, &self.mark, &mark(origin, contents(&dictionary, &model)))?;
         }
-        // Else they are made again the next time: by then there may be a program that knows the words.
+        // Otherwise they are made again the next time: espeak-ng may be installed by then.
         Ok(())
     }
 }
 
-/// Everything that the files depend on.
+/// Returns a hash of everything that the files depend on.
 fn origin(scene: &Scene, weights: Weights, pronouncing: &Path) -> u64 {
     let program = std::env::current_exe().unwrap_or_default();
     let scene = (scene.name(), scene.noun(), scene.objects(), scene.attributes(), scene.words());
     let mut hash = Fnv1a::new();
-    hash.text(&format!("{scene:?} {weights:?} {} {}", stand(pronouncing), stand(&program)));
+    hash.text(&format!("{scene:?} {weights:?} {} {}", version(pronouncing), version(&program)));
     hash.value()
 }
 
-/// Length and time of a file; empty where it cannot be told.
-fn stand(file: &Path) -> String {
+/// Returns length and modification time of a file; empty where they are unknown.
+fn version(file: &Path) -> String {
     let Ok(metadata) = fs::metadata(file) else { return String::new() };
     let changed = metadata.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
     format!("{} {:?}", metadata.len(), changed)
@@ -123,7 +123,8 @@ mod tests {
     }
 
     #[test]
-    fn they_are_made_once_and_again_when_anything_has_changed() {
+    #[ignore = "needs espeak-ng and pocketsphinx"]
+    fn scene_files_are_made_once_and_again_after_any_change() {
         let work = tempfile::tempdir().unwrap();
         let pronouncing = work.path().join("words.dict");
         fs::copy("/usr/share/pocketsphinx/model/en-us/cmudict-en-us.dict", &pronouncing).unwrap();
@@ -143,7 +144,7 @@ mod tests {
         let tools = get(&tools(), Weights::default());
         assert_ne!(fs::read_to_string(&tools.language_model).unwrap(), bowls_model);
         let made = changed(&tools);
-        tools.forget();
+        tools.invalidate();
         assert_ne!(changed(&get(&self::tools(), Weights::default())), made);
     }
 }

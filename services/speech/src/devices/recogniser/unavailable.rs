@@ -1,25 +1,25 @@
-//! Why speech cannot be recognised, in words for the operator.
+//! Reasons why speech cannot be recognised, for the operator.
 
 use std::io;
 use std::path::PathBuf;
 
-/// Why there is no recogniser.
+/// Error of opening a recogniser.
 #[derive(Debug, thiserror::Error)]
 pub enum RecogniserUnavailable {
-    /// The shared object is missing or is another one.
-    #[error("{} cannot be used: {reason} (install the package libpocketsphinx3)", file.display())]
+    /// The shared object is missing or incompatible.
+    #[error("{} cannot be loaded: {reason}; help: install the package libpocketsphinx3", file.display())]
     Library {
-        /// The file that was looked for.
+        /// The file.
         file: PathBuf,
-        /// The loader's reason.
+        /// Reason given by the loader.
         reason: String,
     },
     /// A file of the model is missing.
-    #[error("{} cannot be read: {source} (install the package pocketsphinx-en-us)", path.display())]
+    #[error("{} cannot be read: {source}; help: install the package pocketsphinx-en-us", path.display())]
     Model {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// Reason.
         source: io::Error,
     },
     /// The scene's dictionary or language model could not be written.
@@ -27,33 +27,33 @@ pub enum RecogniserUnavailable {
     Work {
         /// The file or folder.
         path: PathBuf,
-        /// Why not.
+        /// Reason.
         source: io::Error,
     },
-    /// The library would not open a decoder.
-    #[error("pocketsphinx refused its model: {reason}")]
+    /// The library rejected its model.
+    #[error("pocketsphinx rejected its model: {reason}")]
     Refused {
-        /// The last errors that it reported.
+        /// The last errors that it logged.
         reason: String,
     },
-    /// The program of the operator's did not start.
-    #[error("{reason} (set speech.recogniser_command to a program and its arguments)")]
+    /// The operator's program cannot be started.
+    #[error("{reason}; help: set speech.recogniser_command to a program and its arguments")]
     Command {
-        /// Why not.
+        /// Reason.
         reason: String,
     },
-    /// whisper.cpp is asked for and not part of this build.
+    /// whisper.cpp is not part of this build.
     #[error(
-        "speech.toml: recogniser: `whisper` is not part of this build \
-         (build with `--features speech/whisper`, or WHICHONE_FEATURES=speech/whisper scripts/run; or use `command`)"
+        "speech.toml: recogniser: `whisper` is not part of this build; \
+         help: build with `--features speech/whisper` (WHICHONE_FEATURES=speech/whisper scripts/run), or set `command`"
     )]
     WhisperNotBuilt,
-    /// The model file is missing, damaged or of another kind.
-    #[error("{} cannot be used: {reason} (set speech.whisper_model to a model of whisper.cpp, ggml-….bin)", path.display())]
+    /// The model file is missing or invalid.
+    #[error("{} cannot be loaded: {reason}; help: set speech.whisper_model to a model of whisper.cpp, ggml-….bin", path.display())]
     WhisperModel {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// Reason.
         reason: String,
     },
 }

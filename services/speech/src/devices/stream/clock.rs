@@ -1,4 +1,4 @@
-//! When each sample of a live stream was taken.
+//! Recording times of the samples of a live stream.
 
 use std::collections::VecDeque;
 
@@ -6,45 +6,45 @@ use service::Time;
 
 /// Nanoseconds of one sample at [`RATE_HZ`](crate::devices::audio::RATE_HZ), exactly.
 const SAMPLE_NS: i64 = 62_500;
-/// Reads are compared in stretches of this length.
-const STRETCH_NS: i64 = 250_000_000;
-/// Stretches that are remembered: two seconds.
-const STRETCHES: usize = 8;
+/// Length of an interval over which reads are compared.
+const INTERVAL_NS: i64 = 250_000_000;
+/// Intervals that are remembered: two seconds.
+const INTERVALS: usize = 8;
 
-/// Tells the time of the samples of one stream from when they were read.
+/// Estimates the recording times of a stream's samples from the times of the reads.
 ///
-/// A read tells when the stream began at the latest: its own time less all samples up to it. What
-/// was read with the least delay is right, so the earliest beginning of the last two seconds
-/// counts. That follows a sound card whose clock drifts (at 300 parts in a million the error is
-/// 0.6 ms) and one that lost samples, and a read that came late does not show.
+/// Each read bounds the beginning of the stream from above: its time minus all samples up to it. The
+/// least delayed read is the most accurate, so the earliest beginning within the last two seconds is
+/// used. This follows a sound card whose clock drifts (at 300 parts per million the error is 0.6 ms) or
+/// that lost samples, and late reads have no effect.
 #[derive(Debug, Default)]
 pub struct SampleClock {
     /// Samples read.
     taken: i64,
-    /// The earliest beginning that a read of the stretch told, with the stretch's number.
-    stretches: VecDeque<(i64, i64)>,
+    /// Number and earliest beginning of each interval.
+    intervals: VecDeque<(i64, i64)>,
 }
 
 impl SampleClock {
-    /// `count` samples were read at `now`: when was the first of them taken?
+    /// Returns the recording time of the first of `count` samples that were read at `now`.
     pub fn read(&mut self, count: usize, now: Time) -> Time {
         let (now, before) = (now.ns() as i64, self.taken);
         self.taken += count as i64;
         let began = now - self.taken * SAMPLE_NS;
-        let stretch = now / STRETCH_NS;
-        match self.stretches.back_mut() {
-            Some((last, earliest)) if *last == stretch => *earliest = began.min(*earliest),
-            _ => self.stretches.push_back((stretch, began)),
+        let interval = now / INTERVAL_NS;
+        match self.intervals.back_mut() {
+            Some((last, earliest)) if *last == interval => *earliest = began.min(*earliest),
+            _ => self.intervals.push_back((interval, began)),
         }
-        while self.stretches.front().is_some_and(|(s, _)| stretch - s >= STRETCHES as i64) {
-            self.stretches.pop_front();
+        while self.intervals.front().is_some_and(|(s, _)| interval - s >= INTERVALS as i64) {
+            self.intervals.pop_front();
         }
-        let earliest = self.stretches.iter().map(|(_, began)| *began).min().unwrap_or(began);
+        let earliest = self.intervals.iter().map(|(_, began)| *began).min().unwrap_or(began);
         Time((earliest + before * SAMPLE_NS).max(0) as u64)
     }
 }
 
-/// The time `samples` after `time`, or before it.
+/// Returns the time `samples` after `time`, or before it.
 pub(crate) fn shifted(time: Time, samples: i64) -> Time {
     Time((time.ns() as i64 + samples * SAMPLE_NS).max(0) as u64)
 }
@@ -55,7 +55,7 @@ mod tests {
 
     const S: u64 = 1_000_000_000;
 
-    /// Reads 20 ms each for `seconds`, `late` ns behind by number; the error of the last, ns.
+    /// Returns the error of the last of many reads of 20 ms, ns; `late` is the delay of each, ns.
     fn error(seconds: usize, sample_ns: u64, late: impl Fn(usize) -> u64) -> i64 {
         let mut clock = SampleClock::default();
         let mut error = 0;
@@ -68,30 +68,21 @@ mod tests {
     }
 
     #[test]
-    fn the_least_delayed_read_of_the_last_two_seconds_counts() {
-        assert_eq!(error(10, 62_500, |_| 0), 0);
+    fn sample_clock_follows_jitter_drift_and_lost_samples() {
         let jitter = |n: usize| (n as u64 * 7 % 40) * 1_000_000;
-        assert!(error(10, 62_500, jitter) < 1_000_000, "{}", error(10, 62_500, jitter));
-    }
-
-    #[test]
-    fn a_sound_card_that_is_slow_or_fast_is_followed() {
-        for sample_ns in [62_481, 62_519] {
-            let error = error(600, sample_ns, |_| 0);
-            assert!(error.abs() < 1_000_000, "{error} ns after ten minutes");
+        // Half a second is missing from the tenth second on.
+        let lost = |n: usize| if n < 500 { 0 } else { S / 2 };
+        assert_eq!(error(10, 62_500, |_| 0), 0);
+        assert_eq!(error(15, 62_500, lost), (S / 2) as i64);
+        for error in
+            [error(10, 62_500, jitter), error(600, 62_481, |_| 0), error(600, 62_519, |_| 0)]
+        {
+            assert!(error.abs() < 1_000_000, "{error} ns");
         }
     }
 
     #[test]
-    fn lost_samples_are_made_up_for() {
-        // Half a second is missing from the tenth second on.
-        let lost = |n: usize| if n < 500 { 0 } else { S / 2 };
-        let error = error(15, 62_500, lost) - (S / 2) as i64;
-        assert_eq!(error, 0);
-    }
-
-    #[test]
-    fn what_is_read_at_once_was_said_before() {
+    fn sample_clock_dates_buffered_samples_back() {
         let mut clock = SampleClock::default();
         assert_eq!(clock.read(48_000, Time(10 * S)), Time(7 * S));
         assert_eq!(shifted(Time(7 * S), 48_000), Time(10 * S));

@@ -1,70 +1,64 @@
-//! A microphone that does not listen while the robot itself speaks.
+//! Half-duplex listening: nothing is heard while the robot itself speaks.
 
 use std::sync::Arc;
 
 use service::Time;
 
-use super::{OwnVoice, Stream, StreamEvent, shifted};
+use super::{PlaybackMask, SegmentEvent, Stream, shifted};
 use crate::devices::vad::SegmenterOptions;
 
-/// Stretches of which it is decided whether they are heard: 16 ms.
-const STRETCH: usize = 256;
+/// Samples per decision: 16 ms.
+const BLOCK: usize = 256;
 
-/// Whether a stream may hold the robot's own voice.
+/// Whether a stream may contain the robot's own voice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Duplex {
-    /// It may: nothing is listened to while the robot speaks.
+    /// It may: the stream is muted while the robot speaks.
     Half,
-    /// It does not (a headset, cancelled echo, a key that is held while the person speaks): the
-    /// person may interrupt the robot.
+    /// It does not (headset, echo cancellation, push-to-talk): the user may interrupt the robot.
     Full,
 }
 
-/// A [`Stream`] with the robot's own voice left out.
-pub struct Listener {
+/// A [`Stream`] without the robot's own voice.
+pub struct MaskedStream {
     stream: Stream,
-    own_voice: Arc<OwnVoice>,
+    mask: Arc<PlaybackMask>,
     is_muted: bool,
 }
 
-impl Listener {
-    /// A stream that has not begun.
-    pub fn new(options: SegmenterOptions, own_voice: Arc<OwnVoice>) -> Self {
-        Self { stream: Stream::new(options), own_voice, is_muted: false }
+impl MaskedStream {
+    /// Returns a stream that has not begun.
+    pub fn new(options: SegmenterOptions, mask: Arc<PlaybackMask>) -> Self {
+        Self { stream: Stream::new(options), mask, is_muted: false }
     }
 
-    /// Takes the next samples, the first of which was taken at `at`. An utterance that is going on
-    /// when the robot begins to speak ends there.
-    pub fn hear(&mut self, at: Time, samples: &[i16], duplex: Duplex) -> Vec<StreamEvent> {
+    /// Processes the next samples, the first of which was recorded at `at`. An utterance in progress ends
+    /// when the robot begins to speak.
+    pub fn push(&mut self, at: Time, samples: &[i16], duplex: Duplex) -> Vec<SegmentEvent> {
         let mut events = Vec::new();
-        for (n, stretch) in samples.chunks(STRETCH).enumerate() {
-            let at = shifted(at, (n * STRETCH) as i64);
-            let mute = duplex == Duplex::Half && self.own_voice.sounds_at(at);
+        for (n, block) in samples.chunks(BLOCK).enumerate() {
+            let at = shifted(at, (n * BLOCK) as i64);
+            let mute = duplex == Duplex::Half && self.mask.covers(at);
             if mute && !self.is_muted {
                 events.extend(self.stream.finish());
             }
             self.is_muted = mute;
             if !mute {
-                events.extend(self.stream.push(at, stretch));
+                events.extend(self.stream.push(at, block));
             }
         }
         events
     }
 
-    /// The stream ends or is broken; see [`Stream::finish`].
-    pub fn finish(&mut self) -> Vec<StreamEvent> {
+    /// Ends the stream; see [`Stream::finish`].
+    pub fn finish(&mut self) -> Vec<SegmentEvent> {
         self.is_muted = false;
         self.stream.finish()
     }
 
-    /// Whether the latest samples were left out.
+    /// Returns whether the latest samples were dropped.
     pub fn is_muted(&self) -> bool {
         self.is_muted
-    }
-
-    /// Whether somebody is speaking.
-    pub fn is_open(&self) -> bool {
-        self.stream.is_open()
     }
 }
 
@@ -78,21 +72,20 @@ mod tests {
         Time(1_000_000_000) + Span::from_s(seconds)
     }
 
-    /// What is heard of a voice that goes on for four seconds, of which the robot's own sounds from
-    /// 1 s to 2 s.
-    fn heard(duplex: Duplex) -> Vec<(f64, f64)> {
-        let own_voice = Arc::new(OwnVoice::new(Span::from_ms(300)));
-        own_voice.begins(s(1.0));
-        own_voice.ends(s(2.0));
-        let mut listener = Listener::new(SegmenterOptions::default(), own_voice);
+    /// Returns the utterances found in four seconds of voice while the robot speaks from 1 s to 2 s.
+    fn spans(duplex: Duplex) -> Vec<(f64, f64)> {
+        let mask = Arc::new(PlaybackMask::new(Span::from_ms(300)));
+        mask.begins(s(1.0));
+        mask.ends(s(2.0));
+        let mut stream = MaskedStream::new(SegmenterOptions::default(), mask);
         let mut events = Vec::new();
         for (n, samples) in voice(4.0).chunks(1_600).enumerate() {
-            events.extend(listener.hear(s(n as f64 / 10.0), samples, duplex));
+            events.extend(stream.push(s(n as f64 / 10.0), samples, duplex));
         }
-        events.extend(listener.finish());
+        events.extend(stream.finish());
         let spans = events.iter().filter_map(|event| match event {
-            StreamEvent::Ended(cut) => {
-                Some((cut.onset.since(s(0.0)).s(), cut.end.since(s(0.0)).s()))
+            SegmentEvent::Ended(segment) => {
+                Some((segment.onset.since(s(0.0)).s(), segment.end.since(s(0.0)).s()))
             }
             _ => None,
         });
@@ -100,17 +93,13 @@ mod tests {
     }
 
     #[test]
-    fn the_robots_own_voice_is_left_out() {
-        let spans = heard(Duplex::Half);
-        let [(began, ended), (again, end)] = spans.as_slice() else { panic!("{spans:?}") };
-        assert!(*began < 0.3 && (0.9..1.02).contains(ended), "{spans:?}");
-        assert!((2.29..2.7).contains(again) && *end > 3.8, "{spans:?}");
-    }
-
-    #[test]
-    fn a_headset_hears_the_person_all_the_time() {
-        let spans = heard(Duplex::Full);
-        let [(began, ended)] = spans.as_slice() else { panic!("{spans:?}") };
-        assert!(*began < 0.3 && *ended > 3.8, "{spans:?}");
+    fn half_duplex_omits_the_robots_own_voice_and_full_duplex_does_not() {
+        let half = spans(Duplex::Half);
+        let [(began, ended), (again, end)] = half[..] else { panic!("{half:?}") };
+        assert!(began < 0.3 && (0.9..1.02).contains(&ended), "{half:?}");
+        assert!((2.29..2.7).contains(&again) && end > 3.8, "{half:?}");
+        let full = spans(Duplex::Full);
+        let [(began, ended)] = full[..] else { panic!("{full:?}") };
+        assert!(began < 0.3 && ended > 3.8, "{full:?}");
     }
 }

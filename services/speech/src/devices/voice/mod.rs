@@ -1,19 +1,17 @@
-//! The robot's voice: sentences made sound by a program and played by another, one after the
-//! other, each of which can be cut short.
+//! The robot's voice: prompts are synthesised by one program and played by another, one after the
+//! other; each can be interrupted.
 //!
-//! Invariant: every sentence that is taken yields `Started` and then exactly one of `Ended`,
-//! `Interrupted` and `Failed` (which may also come alone), in the order of the sentences, within a
-//! deadline that depends on its length only.
+//! Invariant: every accepted prompt yields `Started` and then exactly one of `Ended`, `Interrupted` and
+//! `Failed` (which may also come alone), in order, within a deadline that depends on its length only.
 //!
-//! `Started` comes when the player has begun and the sound was made before: making it is no speech.
-//! `Ended` comes when the player has ended, and not before the sound's own length has passed since
-//! `Started`: some players return early, and a null one at once. The sound's length goes from its
-//! first to its last audible sample (`trim.rs`).
+//! `Started` comes when the player has begun; the audio was synthesised before. `Ended` comes when the
+//! player has exited, and not before the duration of the audio has passed since `Started`: some players
+//! return early, and a null device at once. The duration covers the audible part (`trim.rs`).
 
-mod kept;
 mod options;
 mod player;
 mod program;
+mod prompt_audio_cache;
 mod synthesis;
 mod trim;
 
@@ -22,135 +20,115 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, Sender, TrySendError, bounded, unbounded};
+use crossbeam_channel::{Receiver, SendError, Sender, TrySendError, bounded, unbounded};
 
-use crate::devices::child::End;
-pub use kept::KEPT_MAX;
-use kept::Kept;
+use crate::devices::child_process::End;
+use crate::{PlaybackEvent, PlaybackState};
 pub use options::{VoiceMode, VoiceOptions};
 pub use player::Player;
 pub use program::Program;
+pub use prompt_audio_cache::CACHED_MAX;
+use prompt_audio_cache::PromptAudioCache;
 use synthesis::Sound;
 pub use synthesis::{SynthesisError, Synthesiser};
 
-/// What became of the wish to speak aloud.
+/// Output of the voice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VoiceOutput {
-    /// Sentences are played by this program, or by none for as long as they would take.
+    /// Prompts are played by this program, or by none for as long as they would take.
     Aloud(Player),
-    /// Sentences are text alone, for this reason.
+    /// Prompts are shown as text only.
     Text {
-        /// Why, in words for the operator.
+        /// Reason, for the operator.
         reason: String,
     },
 }
 
-/// What the voice did.
+/// An event of the voice.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum VoiceEvent {
-    /// First of all: whether sentences are heard.
+    /// Its output; the first event.
     Output(VoiceOutput),
-    /// The sentence begins.
-    Started {
-        /// The sentence.
-        id: u64,
-    },
-    /// It has been heard to its end.
-    Ended {
-        /// The sentence.
-        id: u64,
-    },
-    /// It was cut short, or called off before it began.
-    Interrupted {
-        /// The sentence.
-        id: u64,
-    },
-    /// It could not be spoken.
-    Failed {
-        /// The sentence.
-        id: u64,
-        /// Why, in words for the operator.
-        error: String,
-    },
+    /// Progress of a playback.
+    Playback(PlaybackEvent),
 }
 
-/// Why a sentence is not taken.
+/// Error of queueing a prompt.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SpeakError {
-    /// More sentences wait than anybody would listen to.
-    #[error("{SENTENCES_MAX} sentences wait to be spoken already")]
+    /// The queue is full.
+    #[error("{WAITING_MAX} prompts are waiting already")]
     Busy,
-    /// The voice's thread has broken down.
-    #[error("the voice has broken down")]
+    /// The thread has panicked.
+    #[error("the voice thread has crashed")]
     Gone,
 }
 
-/// Sentences that may wait.
-pub const SENTENCES_MAX: usize = 8;
+/// Prompts that may wait.
+pub const WAITING_MAX: usize = 8;
 
-/// The voice, on a thread of its own. Dropping it cuts the current sentence short.
+/// The voice, on a thread of its own. Dropping it interrupts the current prompt.
 pub struct Voice {
-    sentences: Option<Sender<Sentence>>,
-    /// Sentences of an earlier turn than this are called off.
-    turn: Arc<AtomicU64>,
+    prompts: Option<Sender<Prompt>>,
+    /// Prompts of an earlier generation are cancelled.
+    generation: Arc<AtomicU64>,
     thread: Option<JoinHandle<()>>,
 }
 
-struct Sentence {
-    id: u64,
-    turn: u64,
-    /// Its name among the kept ones.
+struct Prompt {
+    playback: u64,
+    generation: u64,
+    /// Its name in the cache.
     name: String,
     text: String,
 }
 
 impl Voice {
-    /// Starts the thread; which output it has found is its first event.
+    /// Starts the thread.
     pub fn start(options: VoiceOptions) -> (Self, Receiver<VoiceEvent>) {
-        let (sentences, taken) = bounded(SENTENCES_MAX);
+        let (prompts, received) = bounded(WAITING_MAX);
         let (events, happened) = unbounded();
-        let turn = Arc::new(AtomicU64::new(0));
-        let speaker_turn = Arc::clone(&turn);
+        let generation = Arc::new(AtomicU64::new(0));
+        let current = Arc::clone(&generation);
         let thread = thread::spawn(move || {
             let mut synthesiser = Synthesiser::new(&options);
             let output = choose(&options, &mut synthesiser);
-            let (mode, kept) = (options.mode, options.kept.as_deref().and_then(keeper));
-            // Without a listener for its events the voice has no more to do.
+            let (mode, cache) = (options.mode, options.audio_dir.as_deref().and_then(cache));
+            // Without a receiver of its events the voice has no more to do.
             if events.send(VoiceEvent::Output(output.clone())).is_ok() {
-                let turn = speaker_turn;
-                Speaker { mode, output, synthesiser, kept, events, turn }.run(&taken);
+                let generation = current;
+                Speaker { mode, output, synthesiser, cache, events, generation }.run(&received);
             }
         });
-        (Self { sentences: Some(sentences), turn, thread: Some(thread) }, happened)
+        (Self { prompts: Some(prompts), generation, thread: Some(thread) }, happened)
     }
 
-    /// Speaks a sentence after those that wait. `id` names it in the events, `name` among the kept
-    /// files.
+    /// Queues a prompt. `playback` identifies it in the events, `name` in the cache.
     ///
     /// # Errors
-    /// If [`SENTENCES_MAX`] sentences wait already, or the thread is gone.
-    pub fn speak(&self, id: u64, name: &str, text: &str) -> Result<(), SpeakError> {
-        let turn = self.turn.load(Ordering::SeqCst);
-        let sentence = Sentence { id, turn, name: name.to_owned(), text: text.to_owned() };
-        let sentences = self.sentences.as_ref().ok_or(SpeakError::Gone)?;
-        sentences.try_send(sentence).map_err(|error| match error {
+    /// If [`WAITING_MAX`] prompts wait already, or the thread is gone.
+    pub fn speak(&self, playback: u64, name: &str, text: &str) -> Result<(), SpeakError> {
+        let generation = self.generation.load(Ordering::SeqCst);
+        let (name, text) = (name.to_owned(), text.to_owned());
+        let prompts = self.prompts.as_ref().ok_or(SpeakError::Gone)?;
+        prompts.try_send(Prompt { playback, generation, name, text }).map_err(|error| match error {
             TrySendError::Full(_) => SpeakError::Busy,
             TrySendError::Disconnected(_) => SpeakError::Gone,
         })
     }
 
-    /// Cuts the current sentence short and calls off those that wait.
+    /// Interrupts the current prompt and cancels those that wait.
     pub fn interrupt(&self) {
-        self.turn.fetch_add(1, Ordering::SeqCst);
+        self.generation.fetch_add(1, Ordering::SeqCst);
     }
 }
 
 impl Drop for Voice {
     fn drop(&mut self) {
         self.interrupt();
-        self.sentences = None;
+        self.prompts = None;
         if let Some(thread) = self.thread.take() {
-            // A thread that panicked has told so already.
+            // A panic of the thread has been logged.
             let _ = thread.join();
         }
     }
@@ -158,7 +136,7 @@ impl Drop for Voice {
 
 fn choose(options: &VoiceOptions, synthesiser: &mut Synthesiser) -> VoiceOutput {
     if options.mode == VoiceMode::Print {
-        return VoiceOutput::Text { reason: "the configuration asks for text".to_owned() };
+        return VoiceOutput::Text { reason: "speech.voice is \"print\"".to_owned() };
     }
     let player = match synthesiser.try_out().and_then(|()| synthesiser.silence()) {
         Ok(file) => Player::find(&options.players, &file),
@@ -170,11 +148,11 @@ fn choose(options: &VoiceOptions, synthesiser: &mut Synthesiser) -> VoiceOutput 
     }
 }
 
-fn keeper(folder: &std::path::Path) -> Option<Kept> {
-    match Kept::open(folder) {
-        Ok(kept) => Some(kept),
+fn cache(folder: &std::path::Path) -> Option<PromptAudioCache> {
+    match PromptAudioCache::open(folder) {
+        Ok(cache) => Some(cache),
         Err(error) => {
-            tracing::warn!(%error, folder = %folder.display(), "the robot's sentences are not kept");
+            tracing::warn!(%error, folder = %folder.display(), "prompt audio is not cached");
             None
         }
     }
@@ -185,34 +163,33 @@ struct Speaker {
     mode: VoiceMode,
     output: VoiceOutput,
     synthesiser: Synthesiser,
-    kept: Option<Kept>,
+    cache: Option<PromptAudioCache>,
     events: Sender<VoiceEvent>,
-    turn: Arc<AtomicU64>,
+    generation: Arc<AtomicU64>,
 }
 
-/// Beyond the sound's own length: opening the device and playing out its buffer.
+/// Time beyond the duration of the audio: opening the device and draining its buffer.
 const PLAY_SLACK: Duration = Duration::from_secs(5);
-/// How often it is looked whether to stop.
-const LOOK: Duration = Duration::from_millis(5);
+/// Polling interval of cancellation.
+const POLL_EVERY: Duration = Duration::from_millis(5);
 
 impl Speaker {
-    fn run(mut self, sentences: &Receiver<Sentence>) {
-        for sentence in sentences {
-            let id = sentence.id;
-            let end = match self.present(&sentence) {
-                Ok(End::Done) => VoiceEvent::Ended { id },
-                Ok(End::CalledOff) => VoiceEvent::Interrupted { id },
-                Err(error) => VoiceEvent::Failed { id, error },
+    fn run(mut self, prompts: &Receiver<Prompt>) {
+        for prompt in prompts {
+            let state = match self.present(&prompt) {
+                Ok(End::Done) => PlaybackState::Ended,
+                Ok(End::Cancelled) => PlaybackState::Interrupted,
+                Err(error) => PlaybackState::Failed(error),
             };
-            if self.events.send(end).is_err() {
+            if self.send(&prompt, state).is_err() {
                 return;
             }
         }
     }
 
-    fn present(&mut self, sentence: &Sentence) -> Result<End, String> {
-        if self.is_called_off(sentence) {
-            return Ok(End::CalledOff);
+    fn present(&mut self, prompt: &Prompt) -> Result<End, String> {
+        if self.is_cancelled(prompt) {
+            return Ok(End::Cancelled);
         }
         let player = match &self.output {
             VoiceOutput::Aloud(player) => player.clone(),
@@ -220,68 +197,72 @@ impl Speaker {
                 return Err(reason.clone());
             }
             VoiceOutput::Text { .. } => {
-                self.begin(sentence);
+                self.begin(prompt);
                 return Ok(End::Done);
             }
         };
-        let turn = Arc::clone(&self.turn);
-        let is_called_off = || sentence.turn < turn.load(Ordering::SeqCst);
-        match self.synthesiser.speak(&sentence.text, is_called_off) {
+        let current = Arc::clone(&self.generation);
+        let is_cancelled = || prompt.generation < current.load(Ordering::SeqCst);
+        match self.synthesiser.speak(&prompt.text, is_cancelled) {
             Ok(Some(sound)) => {
-                self.keep(sentence, &sound);
-                self.play(sentence, &sound, &player)
+                self.store(prompt, &sound);
+                self.play(prompt, &sound, &player)
             }
             Ok(None) => {
-                self.begin(sentence);
+                self.begin(prompt);
                 Ok(End::Done)
             }
-            Err(SynthesisError::CalledOff) => Ok(End::CalledOff),
+            Err(SynthesisError::Cancelled) => Ok(End::Cancelled),
             Err(error) => Err(error.to_string()),
         }
     }
 
-    fn begin(&self, sentence: &Sentence) {
-        // A listener that is gone is noticed at the sentence's end.
-        let _ = self.events.send(VoiceEvent::Started { id: sentence.id });
+    fn send(&self, prompt: &Prompt, state: PlaybackState) -> Result<(), SendError<VoiceEvent>> {
+        self.events.send(VoiceEvent::Playback(PlaybackEvent { playback: prompt.playback, state }))
     }
 
-    fn keep(&mut self, sentence: &Sentence, sound: &Sound) {
-        let Some(kept) = &mut self.kept else { return };
-        if let Err(error) = kept.keep(&sentence.name, &sound.file) {
-            tracing::warn!(%error, "a sentence is not kept");
+    fn begin(&self, prompt: &Prompt) {
+        // A missing receiver is noticed at the end of the prompt.
+        let _ = self.send(prompt, PlaybackState::Started);
+    }
+
+    fn store(&mut self, prompt: &Prompt, sound: &Sound) {
+        let Some(cache) = &mut self.cache else { return };
+        if let Err(error) = cache.store(&prompt.name, &sound.file) {
+            tracing::warn!(%error, "prompt audio not cached");
         }
     }
 
-    /// Plays a sound, for its own length at least.
-    fn play(&self, sentence: &Sentence, sound: &Sound, player: &Player) -> Result<End, String> {
+    /// Plays audio, for its own duration at least.
+    fn play(&self, prompt: &Prompt, sound: &Sound, player: &Player) -> Result<End, String> {
         let length = Duration::from_secs_f64(sound.seconds);
         let mut playing = match player.is_none() {
             true => None,
             false => Some(player.play(&sound.file).map_err(|e| e.to_string())?),
         };
         let began = Instant::now();
-        self.begin(sentence);
+        self.begin(prompt);
         if let Some(playing) = &mut playing {
             let pause = |time| {
                 thread::sleep(time);
-                self.is_called_off(sentence)
+                self.is_cancelled(prompt)
             };
             let end = playing.wait(length + PLAY_SLACK, pause).map_err(|e| e.to_string())?;
-            if end == End::CalledOff {
+            if end == End::Cancelled {
                 return Ok(end);
             }
         }
         while let Some(left) = length.checked_sub(began.elapsed()) {
-            if self.is_called_off(sentence) {
-                return Ok(End::CalledOff);
+            if self.is_cancelled(prompt) {
+                return Ok(End::Cancelled);
             }
-            thread::sleep(left.min(LOOK));
+            thread::sleep(left.min(POLL_EVERY));
         }
         Ok(End::Done)
     }
 
-    fn is_called_off(&self, sentence: &Sentence) -> bool {
-        sentence.turn < self.turn.load(Ordering::SeqCst)
+    fn is_cancelled(&self, prompt: &Prompt) -> bool {
+        prompt.generation < self.generation.load(Ordering::SeqCst)
     }
 }
 

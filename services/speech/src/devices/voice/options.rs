@@ -1,55 +1,55 @@
-//! How the voice sounds and what it needs.
+//! Settings of the voice.
 
 use std::path::{Path, PathBuf};
 
 use super::{Player, Program};
 
-/// How sentences are presented.
+/// Presentation of prompts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VoiceMode {
-    /// Aloud where the program that speaks and a player that works are there, else as text alone.
+    /// Aloud where synthesis and a player work, otherwise as text.
     #[default]
     Auto,
-    /// Aloud; where that is impossible every sentence fails.
+    /// Aloud; where that is impossible every prompt fails.
     Aloud,
-    /// As text alone: a sentence ends as soon as it starts.
+    /// As text: a prompt ends as soon as it starts.
     Print,
 }
 
-/// How the voice sounds and what it needs.
+/// Settings of the voice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VoiceOptions {
-    /// How sentences are presented.
+    /// Presentation of prompts.
     pub mode: VoiceMode,
-    /// The program that makes the sound.
+    /// The synthesis program.
     pub program: Program,
-    /// That program's own name for a voice, e.g. `en-us`.
+    /// The program's name of a voice, e.g. `en-us`.
     pub voice: String,
-    /// Speed, words a minute.
+    /// Pace, words per minute.
     pub words_per_minute: u16,
-    /// Players to try, the preferred one first.
+    /// Players, the preferred one first.
     pub players: Vec<Player>,
-    /// A folder of this service's own for the sound of sentences.
+    /// Private folder for synthesised audio.
     pub work: PathBuf,
-    /// Where the sound of the latest [`super::KEPT_MAX`] sentences is kept for others, if anywhere.
-    pub kept: Option<PathBuf>,
+    /// Folder for the audio of the latest [`super::CACHED_MAX`] prompts, if any.
+    pub audio_dir: Option<PathBuf>,
 }
 
 impl VoiceOptions {
-    /// An American voice at a calm pace, aloud where possible.
+    /// Returns an American voice at a calm pace, aloud where possible.
     pub fn new(work: impl Into<PathBuf>) -> Self {
         Self {
             mode: VoiceMode::Auto,
             program: Program::EspeakNg("espeak-ng".into()),
             voice: "en-us".to_owned(),
             words_per_minute: 150,
-            players: Player::usual(),
+            players: Player::default_players(),
             work: work.into(),
-            kept: None,
+            audio_dir: None,
         }
     }
 
-    /// The voice of the settings.
+    /// Returns the options of the configuration.
     pub fn of(speech: &config::Speech, work: &Path) -> Self {
         let defaults = Self::new(work);
         let players = match speech.player.as_deref() {
@@ -76,7 +76,7 @@ impl VoiceOptions {
             words_per_minute: u16::try_from(speech.voice_words_per_minute).unwrap_or(u16::MAX),
             players,
             work: defaults.work,
-            kept: speech.voice_dir.clone(),
+            audio_dir: speech.voice_dir.clone(),
         }
     }
 }

@@ -1,13 +1,13 @@
-//! Programs that play a WAV file on the sound card.
+//! Programs that play a WAV file.
 
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use crate::devices::child::{self, ChildError, Running};
+use crate::devices::child_process::{self, ChildProcess, ProcessError};
 
-/// A program that plays the WAV file named by its last argument, and ends when it has been heard.
-/// One of the name `none` plays nothing: sentences take as long as they would, unheard.
+/// A program that plays the WAV file named by its last argument, and exits at its end. The name `none`
+/// plays nothing: prompts take as long as they would, without sound.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Player {
     /// The program.
@@ -16,13 +16,13 @@ pub struct Player {
     pub arguments: Vec<String>,
 }
 
-/// A player that needs longer for a moment of silence hangs on a device.
-const TRIAL: Duration = Duration::from_secs(3);
+/// Time limit for playing a moment of silence; a slower player hangs on a device.
+const TRIAL_TIMEOUT: Duration = Duration::from_secs(3);
 
 impl Player {
-    /// The players of ALSA (package alsa-utils), PipeWire (pipewire-bin) and PulseAudio
+    /// Returns the players of ALSA (package alsa-utils), PipeWire (pipewire-bin) and PulseAudio
     /// (pulseaudio-utils).
-    pub fn usual() -> Vec<Self> {
+    pub fn default_players() -> Vec<Self> {
         let player = |program: &str, arguments: &[&str]| Self {
             program: program.to_owned(),
             arguments: arguments.iter().map(|&a| a.to_owned()).collect(),
@@ -30,35 +30,35 @@ impl Player {
         vec![player("aplay", &["-q"]), player("pw-play", &[]), player("paplay", &[])]
     }
 
-    /// Whether it plays nothing.
+    /// Returns whether it plays nothing.
     pub fn is_none(&self) -> bool {
         self.program == "none"
     }
 
-    /// The first of `players` that really plays `silence`, a short WAV file: that a program is
-    /// installed or a card is listed does not yet mean that it may be used.
+    /// Returns the first of `players` that plays `silence`, a short WAV file: an installed program or a
+    /// listed card may still be unusable.
     ///
     /// # Errors
-    /// If none does; the text says why for each.
+    /// If none does; with the reason for each.
     pub(super) fn find(players: &[Self], silence: &Path) -> Result<Self, String> {
         let mut reasons = Vec::new();
         for player in players {
             if player.is_none() {
                 return Ok(player.clone());
             }
-            match child::run(player.command(silence), TRIAL) {
+            match child_process::run(player.command(silence), TRIAL_TIMEOUT) {
                 Ok(()) => return Ok(player.clone()),
                 Err(error) => reasons.push(error.to_string()),
             }
         }
-        Err(format!("no player has a sound card: {}", reasons.join("; ")))
+        Err(format!("no working sound card: {}", reasons.join("; ")))
     }
 
-    /// Starts to play a file.
-    pub(super) fn play(&self, file: &Path) -> Result<Running, ChildError> {
+    /// Starts playing a file.
+    pub(super) fn play(&self, file: &Path) -> Result<ChildProcess, ProcessError> {
         let mut command = self.command(file);
         command.stdout(Stdio::null());
-        Running::start(command)
+        ChildProcess::start(command)
     }
 
     fn command(&self, file: &Path) -> Command {

@@ -1,27 +1,26 @@
-//! Programs that make sound of text. They stay programs: espeak-ng's licence (GPL-3) would become
-//! that of anything that links it.
+//! Speech synthesis programs. They are not linked because of espeak-ng's licence (GPL-3).
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::devices::child::ChildError;
+use crate::devices::child_process::ProcessError;
 
-/// A program that writes a text as a WAV file.
+/// A program that synthesises a text into a WAV file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Program {
     /// espeak-ng, at this path.
     EspeakNg(PathBuf),
     /// flite, at this path.
     Flite(PathBuf),
-    /// Any other: its words, in which `{text}` and `{wav}` stand for the text and the file.
+    /// Another one: its words, with the placeholders `{text}` and `{wav}`.
     Command(Vec<String>),
 }
 
-/// Words a minute at which flite's voices speak by themselves.
+/// Default pace of flite's voices, words per minute.
 const FLITE_WPM: f64 = 165.0;
 
 impl Program {
-    /// Its name, for the operator.
+    /// Returns its name.
     pub fn name(&self) -> String {
         match self {
             Self::EspeakNg(path) | Self::Flite(path) => path.display().to_string(),
@@ -29,19 +28,24 @@ impl Program {
         }
     }
 
-    /// What is to be done where it is missing.
-    pub(super) fn hint(&self, error: &ChildError) -> &'static str {
+    /// Returns help for a missing program.
+    pub(super) fn hint(&self, error: &ProcessError) -> &'static str {
         match (self, error) {
-            (Self::EspeakNg(_), ChildError::NotInstalled { .. }) => {
-                " (install the package espeak-ng)"
+            (Self::EspeakNg(_), ProcessError::NotInstalled { .. }) => {
+                "; help: install the package espeak-ng"
             }
-            (Self::Flite(_), ChildError::NotInstalled { .. }) => " (install the package flite)",
-            (Self::Command(_), ChildError::NotInstalled { .. }) => " (see speech.voice_command)",
+            (Self::Flite(_), ProcessError::NotInstalled { .. }) => {
+                "; help: install the package flite"
+            }
+            (Self::Command(_), ProcessError::NotInstalled { .. }) => {
+                "; help: see speech.voice_command"
+            }
             _ => "",
         }
     }
 
-    /// Writes `text` to the file `wav` at this pace, words a minute. No shell reads the text.
+    /// Returns the command that synthesises `text` into the file `wav`; `pace` in words per minute. No
+    /// shell interprets the text.
     pub(super) fn speak(&self, text: &str, voice: &str, pace: u16, wav: &Path) -> Command {
         match self {
             Self::EspeakNg(path) => {
@@ -60,7 +64,7 @@ impl Program {
             }
             Self::Command(words) => {
                 let file = wav.to_string_lossy();
-                // Word by word and the file first: a text that holds `{wav}` stays a text.
+                // Word by word and the file first: a text may contain `{wav}`.
                 let word = |word: &String| word.replace("{wav}", &file).replace("{text}", text);
                 let (program, arguments) =
                     words.split_first().map_or(("", words.as_slice()), |w| (w.0.as_str(), w.1));
@@ -83,17 +87,12 @@ mod tests {
     }
 
     #[test]
-    fn a_template_is_filled_in() {
+    fn voice_command_is_filled_in_and_flite_follows_the_pace() {
         let template = ["say", "--to={wav}", "-t", "{text}"].map(str::to_owned);
         let program = Program::Command(template.to_vec());
         assert_eq!(words(&program, "a {wav} $(b)"), ["say", "--to=/w/a.wav", "-t", "a {wav} $(b)"]);
-        assert_eq!(program.name(), "say");
-    }
-
-    #[test]
-    fn flite_speaks_at_the_pace() {
-        let said = words(&Program::Flite("flite".into()), "hello");
-        assert!(said.contains(&"duration_stretch=0.500".to_owned()), "{said:?}");
-        assert_eq!(said.last().unwrap(), "hello");
+        let flite = words(&Program::Flite("flite".into()), "hello");
+        assert!(flite.contains(&"duration_stretch=0.500".to_owned()), "{flite:?}");
+        assert_eq!(flite.last().unwrap(), "hello");
     }
 }

@@ -1,5 +1,5 @@
-//! Cutting the silence off both ends of a sentence: synthesisers put up to a third of a second
-//! behind it, in which people answer already.
+//! Trimming of silence: synthesisers append up to a third of a second, during which users already
+//! answer.
 
 use std::path::Path;
 
@@ -9,13 +9,12 @@ use super::SynthesisError;
 use super::synthesis::SOUND_MAX_S;
 use crate::devices::audio::{WavError, read_wav, seconds};
 
-/// Share of the loudest sample below which a sample is silence.
+/// Level of silence relative to the loudest sample.
 const QUIET: f64 = 0.01;
-/// What stays before the first sound and behind the last, seconds.
+/// Silence that remains at both ends, seconds.
 const MARGIN_S: f64 = 0.02;
 
-/// Cuts the silence off the file's ends, where it is of the usual make, and returns how long its
-/// sound takes, seconds.
+/// Trims the silence from both ends of a file of the usual format. Returns the duration, seconds.
 pub(super) fn trim(file: &Path) -> Result<f64, SynthesisError> {
     let whole = || Ok(seconds(read_wav(file, SOUND_MAX_S)?.len()));
     let Ok(mut reader) = WavReader::open(file) else { return whole() };
@@ -41,7 +40,7 @@ pub(super) fn trim(file: &Path) -> Result<f64, SynthesisError> {
     Ok(cut.len() as f64 / rate)
 }
 
-/// Where something is to be heard, with so many samples around it.
+/// Returns the audible range with a margin, samples.
 fn audible(samples: &[i16], margin: usize) -> std::ops::Range<usize> {
     let peak = samples.iter().map(|s| s.unsigned_abs()).max().unwrap_or(0);
     let loud = |s: &i16| f64::from(s.unsigned_abs()) > QUIET * f64::from(peak);
@@ -52,7 +51,7 @@ fn audible(samples: &[i16], margin: usize) -> std::ops::Range<usize> {
     first.saturating_sub(margin)..(last + 1 + margin).min(samples.len())
 }
 
-/// A WAV file that could not be written.
+/// Returns the error of writing a WAV file.
 pub(super) fn unwritten(file: &Path, error: hound::Error) -> SynthesisError {
     let path = file.to_owned();
     match error {
@@ -66,18 +65,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn silence_is_cut_off_and_what_is_between_is_kept() {
+    fn trim_keeps_the_audible_range() {
         let mut samples = vec![1; 500];
         samples.extend([1000, -900, 0, 0, 0, 800]);
         samples.extend([0; 700]);
         assert_eq!(audible(&samples, 10), 490..516);
         assert_eq!(audible(&samples, 10_000), 0..samples.len());
-        assert_eq!(audible(&[0; 50], 10), 0..50, "silence alone stays");
+        assert_eq!(audible(&[0; 50], 10), 0..50, "silence alone remains");
         assert_eq!(audible(&[], 10), 0..0);
     }
 
     #[test]
-    fn the_file_becomes_as_long_as_its_sound() {
+    fn trim_shortens_the_file_to_its_audible_range() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.wav");
         let spec = hound::WavSpec {
@@ -92,15 +91,9 @@ mod tests {
         wav.finalize().unwrap();
         let seconds = trim(&file).unwrap();
         assert!((seconds - (0.8 + 2.0 * MARGIN_S)).abs() < 1e-3, "{seconds}");
+        std::fs::write(folder.path().join("b.wav"), b"nothing").unwrap();
+        assert!(trim(&folder.path().join("b.wav")).is_err());
         let found = WavReader::open(&file).unwrap().duration();
         assert_eq!((f64::from(found) / 22_050.0 * 1e6).round(), (seconds * 1e6).round());
-    }
-
-    #[test]
-    fn what_is_no_sound_is_an_error() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("a.wav");
-        std::fs::write(&file, b"nothing").unwrap();
-        assert!(trim(&file).is_err());
     }
 }

@@ -1,24 +1,24 @@
-//! A folder with the sound of the latest sentences, for whoever wants to hear them elsewhere.
+//! A folder with the audio of the latest prompts, for playback elsewhere.
 
 use std::collections::VecDeque;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Sentences that are kept; a dialogue of the usual length has a tenth of it.
-pub const KEPT_MAX: usize = 64;
-/// How the names of kept files begin.
+/// Cached prompts; a typical dialogue has a tenth of it.
+pub const CACHED_MAX: usize = 64;
+/// Prefix of the cached files.
 const PREFIX: &str = "line-";
 
-/// The folder. What an earlier run left in it counts, and goes first.
+/// The folder. Files of an earlier run count, and are removed first.
 #[derive(Debug)]
-pub(super) struct Kept {
+pub(super) struct PromptAudioCache {
     folder: PathBuf,
     files: VecDeque<PathBuf>,
 }
 
-impl Kept {
-    /// Takes the folder into use; it is made where it is not there.
+impl PromptAudioCache {
+    /// Opens the folder, which is created where necessary.
     pub(super) fn open(folder: &Path) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
         let mut found = Vec::new();
@@ -35,17 +35,17 @@ impl Kept {
         })
     }
 
-    /// Keeps the sound of a sentence as `line-NAME.wav`, which is there whole or not at all.
-    pub(super) fn keep(&mut self, name: &str, sound: &Path) -> io::Result<()> {
+    /// Stores the audio of a prompt as `line-NAME.wav`, atomically.
+    pub(super) fn store(&mut self, name: &str, sound: &Path) -> io::Result<()> {
         let part = self.folder.join(format!("{PREFIX}{name}.part"));
         let file = self.folder.join(format!("{PREFIX}{name}.wav"));
         fs::copy(sound, &part)?;
         fs::rename(&part, &file)?;
         self.files.retain(|known| *known != file);
         self.files.push_back(file);
-        while self.files.len() > KEPT_MAX {
+        while self.files.len() > CACHED_MAX {
             if let Some(oldest) = self.files.pop_front() {
-                // Somebody may have taken it away already.
+                // It may have been removed already.
                 let _ = fs::remove_file(oldest);
             }
         }
@@ -66,27 +66,23 @@ mod tests {
     }
 
     #[test]
-    fn the_latest_are_kept_over_restarts_and_other_files_left_alone() {
+    fn prompt_audio_cache_keeps_the_latest_over_restarts() {
         let folder = tempfile::tempdir().unwrap();
         let sound = folder.path().join("sound");
         fs::write(&sound, b"RIFF").unwrap();
         let to = folder.path().join("kept");
-        let mut kept = Kept::open(&to).unwrap();
+        let mut cache = PromptAudioCache::open(&to).unwrap();
         fs::write(to.join("mine.wav"), b"").unwrap();
-        (0..KEPT_MAX).for_each(|n| kept.keep(&format!("{n:03}"), &sound).unwrap());
-        kept.keep("000", &sound).unwrap();
-        assert_eq!(names(&to).len(), KEPT_MAX + 1, "the same name is the same file");
-        let mut kept = Kept::open(&to).unwrap();
-        kept.keep("100", &sound).unwrap();
-        kept.keep("101", &sound).unwrap();
+        (0..CACHED_MAX).for_each(|n| cache.store(&format!("{n:03}"), &sound).unwrap());
+        cache.store("000", &sound).unwrap();
+        assert_eq!(names(&to).len(), CACHED_MAX + 1, "an equal name replaces the file");
+        let mut cache = PromptAudioCache::open(&to).unwrap();
+        cache.store("100", &sound).unwrap();
+        cache.store("101", &sound).unwrap();
         let left = names(&to);
-        assert_eq!(left.len(), KEPT_MAX + 1);
+        assert_eq!(left.len(), CACHED_MAX + 1);
+        assert!(PromptAudioCache::open(Path::new("/dev/null/cache")).is_err());
         let last = ["line-100.wav", "line-101.wav", "mine.wav"];
         assert!(last.iter().all(|name| left.iter().any(|l| l == name)), "{left:?}");
-    }
-
-    #[test]
-    fn a_folder_that_cannot_be_made_is_an_error() {
-        assert!(Kept::open(Path::new("/dev/null/kept")).is_err());
     }
 }

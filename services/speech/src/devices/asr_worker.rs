@@ -1,0 +1,193 @@
+//! Speech recognition on a thread of its own: from audio to segments of speech with hypotheses.
+//!
+//! Invariant: every accepted input yields exactly one result, in order. The thread accepts input at
+//! once; the recogniser follows when it has loaded. Interim results and early decoding delay no
+//! result.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+
+use crossbeam_channel::{Receiver, Sender, TrySendError, bounded, unbounded};
+use scene::Scene;
+
+use crate::devices::recogniser::{Backend, Gate, PocketSphinxOptions, Recogniser};
+use crate::devices::stream::SpeechSegment;
+use crate::devices::vad::SegmenterOptions;
+use crate::{Recognised, RecognitionInput};
+use worker::{EarlyResults, Worker};
+
+mod interim;
+mod worker;
+
+/// Settings of speech recognition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AsrOptions {
+    /// The recogniser.
+    pub recogniser: Backend,
+    /// Segmentation of recordings.
+    pub segmenter: SegmenterOptions,
+    /// Threshold of the [`Gate`], 0 to 1.
+    pub gate_threshold: f32,
+    /// Longest recording, seconds.
+    pub longest_s: f64,
+}
+
+impl AsrOptions {
+    /// Returns the measured defaults, with work files in `work`.
+    pub fn new(work: impl Into<PathBuf>) -> Self {
+        Self {
+            recogniser: Backend::PocketSphinx(PocketSphinxOptions::debian(work)),
+            segmenter: SegmenterOptions::default(),
+            gate_threshold: Gate::THRESHOLD,
+            longest_s: 60.0,
+        }
+    }
+}
+
+/// State of the recogniser.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum AsrState {
+    /// Loading; input waits for it.
+    Loading,
+    /// Ready.
+    Ready {
+        /// Words of the scene that cannot be recognised because their pronunciation is unknown.
+        unpronounceable: Vec<String>,
+    },
+    /// Unavailable; every input fails with this reason.
+    Off {
+        /// Reason, for the operator.
+        reason: String,
+    },
+}
+
+/// Events of the worker.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AsrEvent {
+    /// A change of state; [`AsrState::Loading`] first.
+    State(AsrState),
+    /// Words of an utterance in progress. One may follow the result.
+    InterimResult {
+        /// The utterance.
+        sound: u64,
+        /// The words so far.
+        text: String,
+    },
+    /// The result of an input.
+    Recognised(Recognised),
+}
+
+/// Error of submitting input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SubmitError {
+    /// The queue is full.
+    #[error("{WAITING_MAX} recordings or utterances are waiting for recognition already")]
+    Busy,
+    /// The worker's thread has panicked.
+    #[error("speech recognition has crashed")]
+    Gone,
+}
+
+/// Inputs that may wait.
+pub const WAITING_MAX: usize = 8;
+/// Possible ends of utterances that may wait for early decoding.
+const HINTS_MAX: usize = 4;
+
+/// The worker's thread. Dropping it ends the thread after the segment that is being decoded.
+pub struct AsrWorker {
+    inputs: Option<Sender<(u64, RecognitionInput)>>,
+    hints: Option<Sender<(u64, SpeechSegment)>>,
+    blocks: Option<Sender<(u64, Vec<i16>)>>,
+    closed: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl AsrWorker {
+    /// Starts the thread, which opens the recogniser for the scene.
+    pub fn start(scene: &Scene, options: AsrOptions) -> (Self, Receiver<AsrEvent>) {
+        let gate = Gate::new(scene, options.gate_threshold);
+        let (scene, recogniser) = (scene.clone(), options.recogniser);
+        let open = move || recogniser.open(&scene).map_err(|error| error.to_string());
+        Self::with(open, gate, options.segmenter, options.longest_s)
+    }
+
+    fn with(
+        open: impl FnOnce() -> Opened + Send + 'static,
+        gate: Gate,
+        segmenter: SegmenterOptions,
+        longest_s: f64,
+    ) -> (Self, Receiver<AsrEvent>) {
+        let (inputs, waiting) = bounded(WAITING_MAX);
+        let (hints, hinted) = bounded(HINTS_MAX);
+        let (blocks, spoken) = bounded(interim::BLOCKS_MAX);
+        let (events, happened) = unbounded();
+        let closed = Arc::new(AtomicBool::new(false));
+        let worker_closed = Arc::clone(&closed);
+        let thread = thread::spawn(move || {
+            // Without a receiver of its events the worker has no more to do.
+            let _ = events.send(AsrEvent::State(AsrState::Loading));
+            let (recogniser, state) = match open() {
+                Ok((recogniser, unpronounceable)) => {
+                    (Ok(recogniser), AsrState::Ready { unpronounceable })
+                }
+                Err(reason) => (Err(reason.clone()), AsrState::Off { reason }),
+            };
+            let _ = events.send(AsrEvent::State(state));
+            let opener = recogniser.as_ref().ok().and_then(|it| it.interim_decoder());
+            let results = events.clone();
+            let interim =
+                opener.map(|open| thread::spawn(move || interim::run(open, &spoken, &results)));
+            let (closed, early) = (worker_closed, EarlyResults::default());
+            let worker = Worker { recogniser, gate, segmenter, longest_s, closed, early };
+            worker.run(&waiting, &hinted, &events);
+            // A panic of the thread has been logged.
+            let _ = interim.map(JoinHandle::join);
+        });
+        let (inputs, hints, blocks) = (Some(inputs), Some(hints), Some(blocks));
+        (Self { inputs, hints, blocks, closed, thread: Some(thread) }, happened)
+    }
+
+    /// Offers a possible end of utterance `sound`. A quick recogniser decodes it while it is idle, and
+    /// [`Self::submit`] of the same samples then needs no decoding.
+    pub fn decode_early(&self, sound: u64, segment: SpeechSegment) {
+        // Without room it is decoded when the end is certain.
+        let _ = self.hints.as_ref().map(|hints| hints.try_send((sound, segment)));
+    }
+
+    /// Offers the next samples of utterance `sound` for interim results.
+    pub fn interim_samples(&self, sound: u64, samples: Vec<i16>) {
+        // Without room they are missing from the interim results, not from the result.
+        let _ = self.blocks.as_ref().map(|blocks| blocks.try_send((sound, samples)));
+    }
+
+    /// Queues input. `sound` identifies it in the events.
+    ///
+    /// # Errors
+    /// If [`WAITING_MAX`] inputs wait already, or the thread is gone.
+    pub fn submit(&self, sound: u64, input: RecognitionInput) -> Result<(), SubmitError> {
+        let inputs = self.inputs.as_ref().ok_or(SubmitError::Gone)?;
+        inputs.try_send((sound, input)).map_err(|error| match error {
+            TrySendError::Full(_) => SubmitError::Busy,
+            TrySendError::Disconnected(_) => SubmitError::Gone,
+        })
+    }
+}
+
+impl Drop for AsrWorker {
+    fn drop(&mut self) {
+        self.closed.store(true, Ordering::SeqCst);
+        (self.inputs, self.hints, self.blocks) = (None, None, None);
+        if let Some(thread) = self.thread.take() {
+            // A panic of the thread has been logged.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// A recogniser and the words that it cannot recognise, or why it is unavailable.
+type Opened = Result<(Box<dyn Recogniser>, Vec<String>), String>;
+
+#[cfg(test)]
+mod tests;

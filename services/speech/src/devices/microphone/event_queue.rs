@@ -1,0 +1,120 @@
+//! A queue of events for a receiver that may be busy.
+
+use std::collections::VecDeque;
+
+use super::MicrophoneEvent;
+use crate::stream_events::StreamEvent;
+
+/// Accepts an event, or returns it where there is no room.
+pub type Sink = Box<dyn Fn(MicrophoneEvent) -> Result<(), MicrophoneEvent> + Send>;
+
+/// Events that may wait; beyond it new utterances are dropped as a whole.
+const WAITING_MAX: usize = 16;
+
+/// Events that wait for the sink.
+pub(crate) struct EventQueue {
+    sink: Sink,
+    waiting: VecDeque<MicrophoneEvent>,
+    /// An utterance whose beginning was dropped; its end is dropped as well.
+    skipped: Option<u64>,
+    dropped: u32,
+}
+
+impl EventQueue {
+    pub(crate) fn new(sink: Sink) -> Self {
+        Self { sink, waiting: VecDeque::new(), skipped: None, dropped: 0 }
+    }
+
+    /// Returns the number of dropped utterances.
+    pub(crate) fn dropped(&self) -> u32 {
+        self.dropped
+    }
+
+    /// Sends an event as soon as there is room.
+    pub(crate) fn send(&mut self, event: MicrophoneEvent) {
+        self.flush();
+        let full = self.waiting.len() >= WAITING_MAX;
+        match &event {
+            // The next one is more recent.
+            MicrophoneEvent::Status(_) if !self.waiting.is_empty() => return,
+            // Useful only while it is recent.
+            MicrophoneEvent::Stream(event) if event.is_optional() && !self.waiting.is_empty() => {
+                return;
+            }
+            MicrophoneEvent::Stream(StreamEvent::Began(began)) if full => {
+                self.skipped = Some(began.sound);
+                self.dropped += 1;
+                let dropped = self.dropped;
+                tracing::warn!(dropped, "service overloaded: utterance dropped");
+                return;
+            }
+            MicrophoneEvent::Stream(StreamEvent::Ended { sound, .. })
+                if self.skipped == Some(*sound) =>
+            {
+                self.skipped = None;
+                return;
+            }
+            _ => self.waiting.push_back(event),
+        }
+        self.flush();
+    }
+
+    /// Sends waiting events as far as there is room.
+    pub(crate) fn flush(&mut self) {
+        while let Some(event) = self.waiting.pop_front() {
+            if let Err(event) = (self.sink)(event) {
+                self.waiting.push_front(event);
+                return;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::stream::SpeechSegment;
+    use crate::stream_events::Began;
+    use crossbeam_channel::{TrySendError, bounded};
+    use messages::{RequestKey, Source};
+    use service::Time;
+
+    fn began(sound: u64) -> MicrophoneEvent {
+        MicrophoneEvent::Stream(StreamEvent::Began(Began {
+            sound,
+            at: Time(sound),
+            stream: RequestKey([0; 16]),
+            segment: None,
+            source: Source::Microphone,
+            interrupts: false,
+        }))
+    }
+
+    fn ended(sound: u64) -> MicrophoneEvent {
+        let segment =
+            SpeechSegment { onset: Time(0), end: Time(0), samples: Vec::new(), speech: 0..0 };
+        MicrophoneEvent::Stream(StreamEvent::Ended { sound, segment })
+    }
+
+    #[test]
+    fn event_queue_drops_whole_utterances_when_full() {
+        let (sender, receiver) = bounded(2);
+        let sink = move |event| match sender.try_send(event) {
+            Err(TrySendError::Full(event)) => Err(event),
+            _ => Ok(()),
+        };
+        let mut queue = EventQueue::new(Box::new(sink));
+        for sound in 0..12 {
+            queue.send(began(sound));
+            queue.send(ended(sound));
+        }
+        assert_eq!(queue.dropped(), 3, "two were accepted, sixteen wait");
+        let mut events = Vec::new();
+        while let Ok(event) = receiver.try_recv() {
+            events.push(event);
+            queue.flush();
+        }
+        let expected: Vec<_> = (0..9).flat_map(|sound| [began(sound), ended(sound)]).collect();
+        assert_eq!(events, expected);
+    }
+}

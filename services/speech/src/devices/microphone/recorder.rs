@@ -1,0 +1,202 @@
+//! Recording programs.
+
+use std::io::{self, BufRead, BufReader, ErrorKind, Read as _};
+use std::process::{Child, ChildStdout, Command, Stdio};
+use std::thread;
+use std::time::Duration;
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+/// Lines of standard error that are logged; more only repeat themselves.
+const LINES_MAX: usize = 20;
+/// Longest line that is logged, bytes.
+const LINE_BYTES: usize = 300;
+/// Bytes per read: the capacity of a pipe.
+const READ_BYTES: usize = 1 << 16;
+/// Delay after a full read: the program is faster than any microphone.
+const THROTTLE: Duration = Duration::from_millis(20);
+/// Polling of the exit of a program that has closed its output.
+const EXIT_POLL: Duration = Duration::from_millis(5);
+const EXIT_POLLS: usize = 40;
+
+/// Returns the command lines that write one channel of signed 16-bit samples, little-endian, at 16 kHz
+/// to their standard output: of ALSA (package alsa-utils), PipeWire (pipewire-bin) and PulseAudio
+/// (pulseaudio-utils).
+pub fn default_programs() -> Vec<Vec<String>> {
+    let command = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect();
+    vec![
+        command(&["arecord", "-q", "-t", "raw", "-f", "S16_LE", "-r", "16000", "-c", "1", "-"]),
+        command(&["pw-record", "--raw", "--format=s16", "--rate=16000", "--channels=1", "-"]),
+        command(&["parecord", "--raw", "--format=s16le", "--rate=16000", "--channels=1"]),
+    ]
+}
+
+/// A running program. Dropping it kills and reaps it.
+pub(super) struct Recorder {
+    name: String,
+    child: Child,
+    stdout: ChildStdout,
+    /// First byte of an incomplete sample.
+    odd: Option<u8>,
+}
+
+/// Result of a read.
+pub(super) enum Read {
+    /// Samples.
+    Samples(Vec<i16>),
+    /// Nothing before the timeout.
+    Nothing,
+    /// End of the program, with the reason.
+    Ended(String),
+}
+
+impl Recorder {
+    /// Starts a program.
+    pub(super) fn start(words: &[String]) -> Result<Self, String> {
+        let [name, arguments @ ..] = words else {
+            return Err("no program is configured".to_owned());
+        };
+        let mut command = Command::new(name);
+        command.args(arguments);
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().map_err(|error| match error.kind() {
+            ErrorKind::NotFound => format!("the program {name} is not installed"),
+            _ => format!("{name} cannot be started: {error}"),
+        })?;
+        let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+        if let Some(stderr) = stderr {
+            let name = name.clone();
+            thread::spawn(move || log(&name, stderr));
+        }
+        let Some(stdout) = stdout else { return Err(format!("{name} has no output")) };
+        Ok(Self { name: name.clone(), child, stdout, odd: None })
+    }
+
+    /// Returns the name of the program.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Waits for samples until the timeout.
+    pub(super) fn read(&mut self, timeout: Duration) -> Read {
+        let mut polled = [PollFd::new(&self.stdout, PollFlags::IN)];
+        let timeout = Timespec::try_from(timeout).unwrap_or_default();
+        match poll(&mut polled, Some(&timeout)) {
+            Ok(0) | Err(rustix::io::Errno::INTR) => return Read::Nothing,
+            Ok(_) => {}
+            Err(error) => return Read::Ended(format!("{}: {error}", self.name)),
+        }
+        let mut bytes = vec![0; READ_BYTES];
+        match self.stdout.read(&mut bytes) {
+            Ok(0) => Read::Ended(self.end()),
+            Ok(count) => {
+                if count == READ_BYTES {
+                    thread::sleep(THROTTLE);
+                }
+                Read::Samples(self.samples(&bytes[..count]))
+            }
+            Err(error) if error.kind() == ErrorKind::Interrupted => Read::Nothing,
+            Err(error) => Read::Ended(format!("{}: {error}", self.name)),
+        }
+    }
+
+    fn samples(&mut self, bytes: &[u8]) -> Vec<i16> {
+        let mut bytes = self.odd.take().into_iter().chain(bytes.iter().copied());
+        let mut samples = Vec::new();
+        while let Some(low) = bytes.next() {
+            match bytes.next() {
+                Some(high) => samples.push(i16::from_le_bytes([low, high])),
+                None => self.odd = Some(low),
+            }
+        }
+        samples
+    }
+
+    fn end(&mut self) -> String {
+        // It has closed its output: it exits now, or is of no further use.
+        for _ in 0..EXIT_POLLS {
+            match self.child.try_wait() {
+                Ok(None) => thread::sleep(EXIT_POLL),
+                Ok(Some(_)) | Err(_) => break,
+            }
+        }
+        let _ = self.child.kill();
+        match self.child.wait() {
+            Ok(status) if status.success() => format!("{} exited", self.name),
+            Ok(status) => format!("{} failed ({status})", self.name),
+            Err(error) => format!("{}: {error}", self.name),
+        }
+    }
+}
+
+impl Drop for Recorder {
+    fn drop(&mut self) {
+        // Both fail only if it has exited already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Logs a program's standard error.
+fn log(name: &str, stderr: impl io::Read) {
+    let mut reader = BufReader::new(stderr);
+    for _ in 0..LINES_MAX {
+        let mut line = Vec::new();
+        match (&mut reader).take(LINE_BYTES as u64).read_until(b'\n', &mut line) {
+            Ok(0) | Err(_) => return,
+            Ok(_) => {}
+        }
+        let text = String::from_utf8_lossy(&line);
+        if !text.trim().is_empty() {
+            tracing::warn!(program = name, stderr = text.trim(), "recording program");
+        }
+    }
+    // A full pipe would block the program.
+    let _ = io::copy(&mut reader, &mut io::sink());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shell(script: &str) -> Recorder {
+        let words = ["sh", "-c", script].map(str::to_owned);
+        Recorder::start(&words).unwrap()
+    }
+
+    fn read_all(recording: &mut Recorder) -> (Vec<i16>, String) {
+        let mut all = Vec::new();
+        loop {
+            match recording.read(Duration::from_secs(10)) {
+                Read::Samples(samples) => all.extend(samples),
+                Read::Nothing => panic!("no samples within ten seconds"),
+                Read::Ended(why) => return (all, why),
+            }
+        }
+    }
+
+    #[test]
+    fn recorder_reads_whole_samples_and_reports_the_end() {
+        for (script, samples, reason) in [
+            (
+                "printf '\\001'; sleep 0.05; printf '\\002\\377\\377\\005'",
+                &[0x0201, -1][..],
+                "sh exited",
+            ),
+            ("exit 3", &[], "sh failed (exit status: 3)"),
+        ] {
+            assert_eq!(read_all(&mut shell(script)), (samples.to_vec(), reason.to_owned()));
+        }
+        let unknown = Recorder::start(&["no-such-recorder".to_owned()]).err();
+        assert_eq!(unknown.as_deref(), Some("the program no-such-recorder is not installed"));
+        let mut silent = shell("exec sleep 30");
+        assert!(matches!(silent.read(Duration::from_millis(5)), Read::Nothing));
+    }
+
+    #[test]
+    fn recorder_is_not_blocked_by_standard_error() {
+        let lines = "i=0; while [ $i -lt 3000 ]; do echo message number $i, one more than before >&2; \
+                     i=$((i+1)); done; printf '\\001\\000'";
+        assert_eq!(read_all(&mut shell(lines)).0, [1]);
+    }
+}

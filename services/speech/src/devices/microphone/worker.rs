@@ -1,0 +1,269 @@
+//! The microphone's thread: runs the recording program, restarts it, and segments its audio.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, RecvTimeoutError, TryRecvError};
+use messages::{MicrophoneState, Source};
+use service::client::random_key;
+use service::clock;
+
+use super::event_queue::{EventQueue, Sink};
+use super::level::{Level, QUIETEST_DB};
+use super::recorder::{Read, Recorder};
+use super::{MicrophoneEvent, MicrophoneOptions, MicrophoneStatus, Talk, TalkError};
+use crate::devices::stream::{Duplex, MaskedStream, PlaybackMask, SampleClock, SegmentEvent};
+use crate::stream_events::{Began, StreamEvent, next_sound};
+
+/// Timeout of one read.
+const READ_TIMEOUT: Duration = Duration::from_millis(50);
+const HELP: &str = "help: run `whichone doctor`; set the program in speech.toml, table [microphone], \
+    key command; or install alsa-utils";
+/// A program that has delivered samples for this long works: its end does not count as a failure.
+const WORKING: Duration = Duration::from_secs(1);
+
+pub(super) struct Worker {
+    options: MicrophoneOptions,
+    queue: EventQueue,
+    stream: MaskedStream,
+    clock: SampleClock,
+    recorder: Option<Recorder>,
+    /// Since when samples arrive without a pause.
+    running_since: Option<Instant>,
+    last_read: Instant,
+    /// Index of the current program, and consecutive failures.
+    program: usize,
+    failures: u32,
+    retry_at: Instant,
+    level: Level,
+    status: MicrophoneStatus,
+    request: Option<Request>,
+    /// The utterance in progress.
+    open: Option<u64>,
+}
+
+/// A request in progress.
+struct Request {
+    sound: u64,
+    until: Instant,
+    /// Whether any samples arrived for it.
+    has_samples: bool,
+}
+
+impl Worker {
+    pub(super) fn new(options: MicrophoneOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
+        let now = Instant::now();
+        Self {
+            stream: MaskedStream::new(options.segmenter.clone(), mask),
+            queue: EventQueue::new(sink),
+            clock: SampleClock::default(),
+            recorder: None,
+            running_since: None,
+            last_read: now,
+            program: 0,
+            failures: 0,
+            retry_at: now,
+            level: Level::default(),
+            status: MicrophoneStatus::closed(),
+            request: None,
+            open: None,
+            options,
+        }
+    }
+
+    /// Runs until the [`Microphone`](super::Microphone) is dropped.
+    pub(super) fn run(mut self, requests: &Receiver<Talk>) {
+        self.publish_status();
+        loop {
+            if self.options.hands_free || self.request.is_some() {
+                match requests.try_recv() {
+                    Ok(talk) => self.begin(talk),
+                    Err(TryRecvError::Empty) => {}
+                    Err(TryRecvError::Disconnected) => return,
+                }
+                self.record(requests);
+                self.check_timeout();
+            } else {
+                self.close();
+                match requests.recv_timeout(Duration::from_secs(1)) {
+                    Ok(talk) => self.begin(talk),
+                    Err(RecvTimeoutError::Timeout) => {}
+                    Err(RecvTimeoutError::Disconnected) => return,
+                }
+            }
+            self.queue.flush();
+        }
+    }
+
+    fn begin(&mut self, talk: Talk) {
+        if self.request.is_some() {
+            let reason = TalkError::Busy.to_string();
+            return self.send(StreamEvent::Silent { sound: talk.sound, reason });
+        }
+        // Speech in progress does not belong to the request.
+        self.end_stream();
+        let until = Instant::now() + talk.longest;
+        self.request = Some(Request { sound: talk.sound, until, has_samples: false });
+        (self.failures, self.retry_at) = (0, Instant::now());
+    }
+
+    /// Reads once from the program, which is started where necessary.
+    fn record(&mut self, requests: &Receiver<Talk>) {
+        if self.recorder.is_none() {
+            if Instant::now() < self.retry_at {
+                // A request ends the wait.
+                let wait = (self.retry_at - Instant::now()).min(READ_TIMEOUT);
+                if let Ok(talk) = requests.recv_timeout(wait) {
+                    self.begin(talk);
+                }
+                return;
+            }
+            self.open();
+        }
+        let Some(recorder) = &mut self.recorder else { return };
+        match recorder.read(READ_TIMEOUT) {
+            Read::Samples(samples) => self.process(&samples),
+            Read::Nothing if self.last_read.elapsed() >= self.options.pause => self.end_stream(),
+            Read::Nothing => {}
+            Read::Ended(reason) => self.failed(reason),
+        }
+    }
+
+    fn open(&mut self) {
+        let words = self.options.programs.get(self.program).map_or(&[][..], Vec::as_slice);
+        match Recorder::start(words) {
+            Ok(recorder) => {
+                self.status.note = recorder.name().to_owned();
+                self.status.state = MicrophoneState::Opening;
+                self.recorder = Some(recorder);
+                self.last_read = Instant::now();
+            }
+            Err(reason) => self.failed(reason),
+        }
+    }
+
+    fn process(&mut self, samples: &[i16]) {
+        let now = Instant::now();
+        self.last_read = now;
+        if self.running_since.is_none() {
+            self.running_since = Some(now);
+            tracing::info!(program = self.status.note, "microphone listening");
+        }
+        let at = self.clock.read(samples.len(), clock::now());
+        if let Some(request) = &mut self.request {
+            request.has_samples = true;
+        }
+        let is_full = self.request.is_some() || self.options.barge_in;
+        let duplex = if is_full { Duplex::Full } else { Duplex::Half };
+        for event in self.stream.push(at, samples, duplex) {
+            self.on_segment_event(event);
+        }
+        let muted = self.stream.is_muted();
+        let state = if muted { MicrophoneState::Muted } else { MicrophoneState::Listening };
+        let changed = std::mem::replace(&mut self.status.state, state) != state;
+        let measured = self.level.push(samples);
+        self.status.level_db = self.level.db();
+        if changed || measured {
+            self.publish_status();
+        }
+    }
+
+    fn on_segment_event(&mut self, event: SegmentEvent) {
+        let requested = self.request.as_ref().map(|request| request.sound);
+        let interrupts = self.options.barge_in || requested.is_some();
+        let event = StreamEvent::number(event, &mut self.open, |at| Began {
+            sound: requested.unwrap_or_else(next_sound),
+            at,
+            stream: random_key(),
+            segment: None,
+            source: Source::Microphone,
+            interrupts,
+        });
+        if let Some(StreamEvent::Ended { sound, .. }) = &event {
+            self.request.take_if(|request| request.sound == *sound);
+        }
+        if let Some(event) = event {
+            self.send(event);
+        }
+    }
+
+    /// Ends a request whose time is up.
+    fn check_timeout(&mut self) {
+        let now = Instant::now();
+        let Some(request) = self.request.take_if(|request| now >= request.until) else { return };
+        if self.open == Some(request.sound) {
+            return self.end_stream();
+        }
+        let note = &self.status.note;
+        let reason = match request.has_samples {
+            true => format!("no speech heard (microphone: {note})"),
+            false => format!("no audio from the microphone ({note}); {HELP}"),
+        };
+        self.send(StreamEvent::Silent { sound: request.sound, reason });
+    }
+
+    /// Handles the end of the program, or a failed start.
+    fn failed(&mut self, reason: String) {
+        let worked = self.running_since.is_some_and(|since| since.elapsed() >= WORKING);
+        self.close();
+        self.status.restarts += 1;
+        if worked {
+            self.failures = 0;
+        } else {
+            self.program = (self.program + 1) % self.options.programs.len().max(1);
+            self.failures += 1;
+        }
+        let delay = self.retry_delay();
+        tracing::warn!(reason, retry_in = ?delay, "microphone failed");
+        self.status.state = MicrophoneState::Broken;
+        self.status.note = reason;
+        self.retry_at = Instant::now() + delay;
+        self.publish_status();
+        if self.failures as usize >= self.options.programs.len()
+            && let Some(request) = self.request.take()
+        {
+            let reason = format!("the microphone does not work ({}); {HELP}", self.status.note);
+            self.send(StreamEvent::Silent { sound: request.sound, reason });
+        }
+    }
+
+    /// Returns the delay before the next attempt. Each program is tried once before the first delay.
+    fn retry_delay(&self) -> Duration {
+        let programs = self.options.programs.len().max(1) as u32;
+        if (1..programs).contains(&self.failures) {
+            return Duration::ZERO;
+        }
+        let rounds = self.failures.saturating_sub(programs) / programs;
+        let (shortest, longest) = self.options.retry;
+        shortest.saturating_mul(1 << rounds.min(16)).min(longest)
+    }
+
+    /// Ends the stream and an utterance in progress; further samples start a new stream.
+    fn end_stream(&mut self) {
+        for event in self.stream.finish() {
+            self.on_segment_event(event);
+        }
+        self.clock = SampleClock::default();
+        self.running_since = None;
+    }
+
+    /// Ends the program.
+    fn close(&mut self) {
+        self.end_stream();
+        self.level = Level::default();
+        self.status.level_db = QUIETEST_DB;
+        if self.recorder.take().is_some() {
+            self.status.state = MicrophoneState::Closed;
+            self.publish_status();
+        }
+    }
+
+    fn publish_status(&mut self) {
+        self.status.dropped = self.queue.dropped();
+        self.queue.send(MicrophoneEvent::Status(self.status.clone()));
+    }
+
+    fn send(&mut self, event: StreamEvent) {
+        self.queue.send(MicrophoneEvent::Stream(event));
+    }
+}

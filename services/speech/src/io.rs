@@ -1,0 +1,137 @@
+//! Inputs and outputs of the reducer.
+
+use messages::{
+    Activity, AppliedMark, ArmStatus, EarState, Hearing, Injection, MotionCommand, Partial,
+    Presented, PromptId, Receipt, RobotAct, Utterance,
+};
+use service::Span;
+
+use crate::devices::microphone::MicrophoneStatus;
+use crate::devices::stream::SpeechSegment;
+use crate::hypothesis::Hypothesis;
+use crate::stream_events::StreamEvent;
+
+/// Events delivered to the reducer.
+#[derive(Clone, Debug)]
+pub enum In {
+    /// An utterance or a request from a client.
+    Injection(Injection),
+    /// Progress of the belief, from the policy.
+    Mark(AppliedMark),
+    /// A prompt to speak, from the policy.
+    Act(Box<RobotAct>),
+    /// Status of the arm, which may aim at an object.
+    Arm(ArmStatus),
+    /// An event of a microphone or of a client's stream.
+    Stream(StreamEvent),
+    /// Status of the microphone.
+    Microphone(MicrophoneStatus),
+    /// A result of the recogniser.
+    Recognised(Recognised),
+    /// An interim result of the recogniser.
+    InterimResult {
+        /// Number of the sound.
+        sound: u64,
+        /// The words so far.
+        text: String,
+    },
+    /// State of the recogniser.
+    RecogniserState(EarState),
+    /// Progress of the voice.
+    Playback(PlaybackEvent),
+}
+
+/// Messages published and requests to the devices.
+#[derive(Clone, Debug)]
+pub enum Out {
+    /// To grounding.
+    Utterance(Box<Utterance>),
+    /// To clients.
+    Receipt(Box<Receipt>),
+    /// To the policy.
+    Presented(Presented),
+    /// To the policy.
+    Activity(Activity),
+    /// To the arm: the user said stop.
+    Motion(MotionCommand),
+    /// To clients: quality of hearing.
+    Hearing(Hearing),
+    /// To clients: interim result.
+    Partial(Box<Partial>),
+    /// To the recogniser: the next samples of a sound in progress.
+    InterimSamples(u64, Vec<i16>),
+    /// To the recogniser: a possible end of a sound.
+    DecodeEarly(u64, SpeechSegment),
+    /// To the recogniser: input to recognise; the result carries the number.
+    Recognise(u64, RecognitionInput),
+    /// To the microphone: record one utterance of this length at most; its events carry the number.
+    OpenMicrophone(u64, Span),
+    /// To the voice: speak this prompt and interrupt the current one.
+    Speak(PlaybackRequest),
+    /// To the voice: stop.
+    StopSpeaking,
+}
+
+/// Input of the recogniser.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RecognitionInput {
+    /// A WAV file, absolute path.
+    File(String),
+    /// One utterance of a live source.
+    Speech(SpeechSegment),
+}
+
+/// A prompt for the voice.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlaybackRequest {
+    /// Identifies the playback in the voice's events.
+    pub playback: u64,
+    /// The prompt.
+    pub prompt: PromptId,
+    /// Which presentation of the prompt.
+    pub presentation: u32,
+    /// The words.
+    pub text: String,
+}
+
+/// Progress of a playback.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlaybackEvent {
+    /// Number of the playback.
+    pub playback: u64,
+    /// Its new state.
+    pub state: PlaybackState,
+}
+
+/// State of a playback.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum PlaybackState {
+    /// Its sound began.
+    Started,
+    /// Its sound was played to the end.
+    Ended,
+    /// It was interrupted, or cancelled before it began.
+    Interrupted,
+    /// It could not be spoken, for this reason.
+    Failed(String),
+}
+
+/// Result of the recogniser.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recognised {
+    /// Number of the sound.
+    pub sound: u64,
+    /// The utterances in it, none where it holds no speech; or the reason of a failure.
+    pub segments: Result<Vec<RecognisedSegment>, String>,
+}
+
+/// One utterance in a sound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecognisedSegment {
+    /// Beginning and end, seconds from the start of the sound.
+    pub span_s: (f64, f64),
+    /// Signal-to-noise ratio, decibels, 0 to 60. Recognition is good from 20 on and poor below 15.
+    pub snr_db: f32,
+    /// The hypotheses, best first; or the text of speech that is not meant for the robot.
+    pub hypotheses: Result<Vec<Hypothesis>, String>,
+}

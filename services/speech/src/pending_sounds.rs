@@ -1,0 +1,84 @@
+//! Sounds in progress or awaiting recognition.
+
+use std::collections::BTreeMap;
+
+use crate::stream_events::Began;
+use messages::{RequestKey, Source};
+use service::Time;
+
+/// A sound that may become an utterance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PendingSound {
+    /// The request or stream that it belongs to.
+    pub(crate) key: RequestKey,
+    /// Number and total of its segment; none for a recording, which may contain several. The total of a
+    /// stream is unknown: 0.
+    pub(crate) segment: Option<(u32, u32)>,
+    /// Its source.
+    pub(crate) source: Source,
+    /// When it began.
+    pub(crate) onset: Time,
+    /// When a live one ended; none while it lasts.
+    pub(crate) end: Option<Time>,
+}
+
+/// Every sound that has begun and has no result yet.
+#[derive(Debug, Default)]
+pub(crate) struct PendingSounds {
+    sounds: BTreeMap<u64, PendingSound>,
+    last: u64,
+}
+
+impl PendingSounds {
+    /// Returns whether a sound of this request is pending.
+    pub(crate) fn contains(&self, key: RequestKey) -> bool {
+        self.sounds.values().any(|sound| sound.key == key)
+    }
+
+    /// Adds a sound requested by a client. Returns its number.
+    pub(crate) fn add(&mut self, key: RequestKey, source: Source, onset: Time) -> u64 {
+        self.last += 1;
+        let segment = (source == Source::Microphone).then_some((0, 1));
+        self.sounds.insert(self.last, PendingSound { key, segment, source, onset, end: None });
+        self.last
+    }
+
+    /// Adds a live sound, which may belong to a client's request.
+    pub(crate) fn began(&mut self, began: &Began, now: Time) {
+        let requested = self.sounds.get(&began.sound).map(|sound| sound.key);
+        let sound = PendingSound {
+            key: requested.unwrap_or(began.stream),
+            segment: Some(began.segment.map_or((0, 1), |segment| (segment, 0))),
+            source: began.source,
+            onset: began.at.min(now),
+            end: None,
+        };
+        self.sounds.insert(began.sound, sound);
+    }
+
+    /// Records the end of a live sound. Returns whether the sound is known.
+    pub(crate) fn ended(&mut self, sound: u64, (onset, end): (Time, Time)) -> bool {
+        let found = self.sounds.get_mut(&sound);
+        found.map(|sound| (sound.onset, sound.end) = (onset, Some(end))).is_some()
+    }
+
+    /// Returns a sound that is in progress.
+    pub(crate) fn in_progress(&self, sound: u64) -> Option<&PendingSound> {
+        self.sounds.get(&sound).filter(|sound| sound.end.is_none())
+    }
+
+    /// Removes a sound that has its result.
+    pub(crate) fn remove(&mut self, sound: u64) -> Option<PendingSound> {
+        self.sounds.remove(&sound)
+    }
+
+    /// Returns when the first of them began.
+    pub(crate) fn since(&self) -> Option<Time> {
+        self.sounds.values().map(|sound| sound.onset).min()
+    }
+
+    /// Returns their number.
+    pub(crate) fn len(&self) -> usize {
+        self.sounds.len()
+    }
+}

@@ -1,0 +1,245 @@
+//! Speaking: each prompt is spoken once per presentation, delayed while a user speaks, interrupted on
+//! barge-in, and counts as heard only when it was spoken to its end.
+
+use crate::record::Record;
+use crate::{Fx, Out, PlaybackEvent, PlaybackRequest, PlaybackState};
+use dialogue::Presentation;
+use messages::{
+    ASKED_MAX, ActId, ActKind, ArmStatus, PresentationState, Presented, PromptId, RobotAct,
+};
+use scene::Question;
+use service::{Span, Time};
+use std::collections::VecDeque;
+
+/// Presentations of questions that are remembered.
+const PRESENTATIONS_MAX: usize = 16;
+/// Longest time that a pointing question waits for the arm.
+const AIM_TIMEOUT: Span = Span::from_ms(6_000);
+
+/// The speaking half of the reducer.
+#[derive(Default)]
+pub(crate) struct PromptPlayer {
+    /// Presentations of questions, complete or not, oldest first.
+    presentations: VecDeque<Presentation>,
+    /// The latest complete presentation, question or not.
+    last: Option<Presentation>,
+    /// The latest interrupted presentation, until another one sounds.
+    interrupted: Option<Presentation>,
+    playing: Option<Playing>,
+    waiting: Option<Waiting>,
+    /// Number of the last playback.
+    last_playback: u64,
+}
+
+/// A prompt with its text.
+struct Prompt {
+    /// The presentation; its times count from the first sound on.
+    presentation: Presentation,
+    text: String,
+}
+
+/// The prompt that is being spoken.
+struct Playing {
+    playback: u64,
+    presentation: Presentation,
+    has_begun: bool,
+}
+
+/// A prompt that waits to be spoken.
+struct Waiting {
+    act: ActId,
+    prompt: Prompt,
+    /// Until when a pointing question waits for the arm.
+    aim_until: Option<Time>,
+}
+
+impl PromptPlayer {
+    /// Restores a presentation from the journal.
+    pub(crate) fn restore(&mut self, presentation: Presentation) {
+        if presentation.complete {
+            self.last = Some(presentation);
+        }
+        if presentation.question != Question::None {
+            if self.presentations.len() >= PRESENTATIONS_MAX {
+                self.presentations.pop_front();
+            }
+            self.presentations.push_back(presentation);
+        }
+    }
+
+    /// Returns the questions that a user may have heard at least in part, newest first.
+    pub(crate) fn asked(&self) -> Vec<Presentation> {
+        let playing = self.playing.as_ref().and_then(Playing::begun);
+        let playing = playing.filter(|playing| playing.question != Question::None);
+        let earlier = self.presentations.iter().rev().copied();
+        playing.into_iter().chain(earlier).take(ASKED_MAX).collect()
+    }
+
+    /// Handles the policy's current decision, which is resent periodically.
+    pub(crate) fn on_act(&mut self, act: &RobotAct, now: Time, fx: &mut Fx) {
+        let (Ok(kind), Ok(question), Ok(text)) =
+            (act.kind(), Question::try_from(act.question), act.text.as_str())
+        else {
+            tracing::warn!(act = act.act, "invalid act rejected");
+            return;
+        };
+        if kind == ActKind::Wait || text.is_empty() {
+            self.waiting = None;
+            return self.interrupt(now, fx);
+        }
+        let (prompt, number) = (PromptId(act.prompt), act.presentation);
+        if self.is_known(prompt, number) {
+            return;
+        }
+        let is_answerable = matches!(kind, ActKind::Ask | ActKind::Pick);
+        let question = if is_answerable { question } else { Question::None };
+        let scene = act.scene_key;
+        let presentation =
+            Presentation { prompt, number, question, scene, ..Presentation::default() };
+        let points = kind == ActKind::Ask && matches!(question, Question::Point(_));
+        let aim_until = points.then(|| now + AIM_TIMEOUT);
+        let prompt = Prompt { presentation, text: text.to_owned() };
+        self.waiting = Some(Waiting { act: ActId(act.act), prompt, aim_until });
+    }
+
+    /// Returns whether the presentation was spoken, is being spoken, or waits.
+    fn is_known(&self, prompt: PromptId, number: u32) -> bool {
+        let is = |other: &Presentation| (other.prompt, other.number) == (prompt, number);
+        self.last.is_some_and(|last| (last.prompt, last.number) >= (prompt, number))
+            || self.playing.as_ref().is_some_and(|playing| is(&playing.presentation))
+            || self.waiting.as_ref().is_some_and(|waiting| is(&waiting.prompt.presentation))
+    }
+
+    /// Releases a pointing question once the arm aims at its object.
+    pub(crate) fn on_arm_status(&mut self, status: &ArmStatus) {
+        if let Some(waiting) = &mut self.waiting
+            && status.aimed_at() == Some(waiting.act)
+        {
+            waiting.aim_until = None;
+        }
+    }
+
+    /// Speaks the waiting prompt, unless the intake is busy or the prompt still waits for the arm.
+    pub(crate) fn play_next(&mut self, is_busy: bool, now: Time, fx: &mut Fx) {
+        let aiming = |waiting: &Waiting| waiting.aim_until.is_some_and(|until| now < until);
+        if is_busy || self.waiting.as_ref().is_none_or(aiming) {
+            return;
+        }
+        if let Some(waiting) = self.waiting.take() {
+            self.play(waiting.prompt, now, fx);
+        }
+    }
+
+    /// Interrupts the current prompt. It is repeated if the policy still wants it after the user's
+    /// utterance.
+    pub(crate) fn interrupt(&mut self, now: Time, fx: &mut Fx) {
+        if self.playing.is_some() {
+            self.break_off(now, fx);
+            fx.publish(Out::StopSpeaking);
+            self.send(fx);
+        }
+    }
+
+    pub(crate) fn deadline(&self) -> Option<Time> {
+        self.waiting.as_ref().and_then(|waiting| waiting.aim_until)
+    }
+
+    fn play(&mut self, Prompt { presentation, text }: Prompt, now: Time, fx: &mut Fx) {
+        self.break_off(now, fx);
+        self.last_playback += 1;
+        let playback = self.last_playback;
+        let Presentation { prompt, number, .. } = presentation;
+        let request = PlaybackRequest { playback, prompt, presentation: number, text };
+        fx.publish(Out::Speak(request));
+        self.playing = Some(Playing { playback, presentation, has_begun: false });
+    }
+
+    /// Ends the current presentation early; it may be answered all the same.
+    fn break_off(&mut self, now: Time, fx: &mut Fx) {
+        let begun = self.playing.take().and_then(|playing| playing.begun());
+        let Some(mut presentation) = begun else { return };
+        // A question that ended as it began was not heard.
+        presentation.ended = (now > presentation.began).then_some(now);
+        self.interrupted = Some(presentation);
+        if presentation.question != Question::None {
+            self.append(presentation, fx);
+        }
+    }
+
+    fn append(&mut self, presentation: Presentation, fx: &mut Fx) {
+        fx.append(Record::Presented(presentation));
+        self.restore(presentation);
+    }
+
+    /// Handles the progress of a playback; events of superseded playbacks are ignored.
+    pub(crate) fn on_playback(&mut self, event: PlaybackEvent, now: Time, fx: &mut Fx) {
+        let is_current = |playing: &&mut Playing| playing.playback == event.playback;
+        let Some(playing) = self.playing.as_mut().filter(is_current) else { return };
+        match event.state {
+            PlaybackState::Started => {
+                playing.begin(now);
+                self.interrupted = None;
+            }
+            PlaybackState::Interrupted => self.break_off(now, fx),
+            PlaybackState::Ended => self.end(now, fx),
+            PlaybackState::Failed(reason) => {
+                // The consoles show the text all the same, so the question counts as asked.
+                tracing::warn!(reason, "prompt shown as text only");
+                self.end(now, fx);
+            }
+        }
+        self.send(fx);
+    }
+
+    fn end(&mut self, now: Time, fx: &mut Fx) {
+        let Some(mut playing) = self.playing.take() else { return };
+        self.interrupted = None;
+        if !playing.has_begun {
+            playing.begin(now);
+        }
+        let ended = Some(now);
+        self.append(Presentation { ended, complete: true, ..playing.presentation }, fx);
+    }
+
+    /// Publishes the current or latest presentation.
+    pub(crate) fn send(&self, fx: &mut Fx) {
+        let playing = self.playing.as_ref().and_then(Playing::begun);
+        let presented = match (playing, self.interrupted, self.last) {
+            (Some(playing), ..) => presented(&playing, PresentationState::Speaking),
+            (_, Some(interrupted), _) => presented(&interrupted, PresentationState::Interrupted),
+            (_, _, Some(last)) => presented(&last, PresentationState::Ended),
+            (None, None, None) => Presented::default(),
+        };
+        fx.publish(Out::Presented(presented));
+    }
+
+    /// Returns the presentations that a new journal must begin with.
+    pub(crate) fn snapshot(&self) -> impl Iterator<Item = Presentation> + '_ {
+        let questions = self.presentations.iter().copied();
+        questions.chain(self.last.filter(|last| !self.presentations.contains(last)))
+    }
+}
+
+impl Playing {
+    fn begin(&mut self, now: Time) {
+        (self.presentation.began, self.has_begun) = (now, true);
+    }
+
+    /// Returns the presentation once its sound has begun.
+    fn begun(&self) -> Option<Presentation> {
+        self.has_begun.then_some(self.presentation)
+    }
+}
+
+/// Returns the presentation as published to the policy and the console.
+fn presented(presentation: &Presentation, state: PresentationState) -> Presented {
+    let ended = presentation.ended.unwrap_or(presentation.began);
+    Presented {
+        prompt: presentation.prompt.0,
+        presentation: presentation.number,
+        started_ns: presentation.began.ns(),
+        ended_ns: if state == PresentationState::Speaking { 0 } else { ended.ns() },
+        state: state.code(),
+        ..Presented::default()
+    }
+}

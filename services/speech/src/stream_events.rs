@@ -1,0 +1,106 @@
+//! Events of live audio sources.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use messages::{RequestKey, Source};
+use service::Time;
+
+use crate::devices::stream::{SegmentEvent, SpeechSegment};
+
+/// An event of a live source. Every utterance that began ends exactly once.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StreamEvent {
+    /// An utterance began.
+    Began(Began),
+    /// The samples since the previous such event. Optional.
+    Samples {
+        /// The utterance.
+        sound: u64,
+        /// One channel at 16 kHz.
+        samples: Vec<i16>,
+    },
+    /// The speaker paused: unless speech continues, the end carries the same segment. Optional.
+    Paused {
+        /// The utterance.
+        sound: u64,
+        /// The utterance so far.
+        segment: SpeechSegment,
+    },
+    /// The utterance ended.
+    Ended {
+        /// The utterance.
+        sound: u64,
+        /// Its samples.
+        segment: SpeechSegment,
+    },
+    /// The microphone was opened without speech, or could not be opened.
+    Silent {
+        /// The sound that was requested.
+        sound: u64,
+        /// Reason, for users.
+        reason: String,
+    },
+    /// A client's stream ended.
+    Closed {
+        /// The stream.
+        stream: RequestKey,
+        /// Number of its utterances.
+        utterances: u32,
+        /// Samples lost in transit.
+        lost: u64,
+    },
+}
+
+impl StreamEvent {
+    /// Numbers the events of a stream. `open` is the utterance in progress; `began` returns the beginning
+    /// of a new one. Events outside an utterance are dropped.
+    pub(crate) fn number(
+        event: SegmentEvent,
+        open: &mut Option<u64>,
+        began: impl FnOnce(Time) -> Began,
+    ) -> Option<Self> {
+        Some(match event {
+            SegmentEvent::Began(at) => {
+                let began = began(at);
+                *open = Some(began.sound);
+                Self::Began(began)
+            }
+            SegmentEvent::Samples(samples) => Self::Samples { sound: (*open)?, samples },
+            SegmentEvent::Paused(segment) => Self::Paused { sound: (*open)?, segment },
+            SegmentEvent::Ended(segment) => Self::Ended { sound: open.take()?, segment },
+        })
+    }
+
+    /// Returns whether the event is optional.
+    pub fn is_optional(&self) -> bool {
+        matches!(self, Self::Samples { .. } | Self::Paused { .. })
+    }
+}
+
+/// The beginning of an utterance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Began {
+    /// Number of the sound: that of the request which opened the microphone, otherwise a new one
+    /// ([`next_sound`]).
+    pub sound: u64,
+    /// When the speech began.
+    pub at: Time,
+    /// The stream that contains it.
+    pub stream: RequestKey,
+    /// Number of the utterance within a client's stream: the tenth of a second in which it began. None
+    /// for a microphone's.
+    pub segment: Option<u32>,
+    /// Its source.
+    pub source: Source,
+    /// Whether it interrupts the robot.
+    pub interrupts: bool,
+}
+
+/// First number of the sounds that live sources number; the reducer uses the numbers below.
+pub const LIVE_FROM: u64 = 1 << 32;
+
+/// Returns a number that no other live sound of this process has.
+pub fn next_sound() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(LIVE_FROM);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}

@@ -1,0 +1,87 @@
+//! Accepted utterances until the policy has applied them.
+
+use std::collections::VecDeque;
+
+use messages::outbox::Outbox;
+use messages::{AppliedMark, RequestKey, UtteranceSeq, topics};
+use service::Time;
+
+use super::push_bounded;
+use crate::record::Accepted;
+
+/// Utterances that may wait to be applied; beyond it users are asked to wait.
+const WAITING_MAX: usize = 256;
+
+/// Accepted utterances.
+pub(super) struct AcceptedUtterances {
+    outbox: Outbox<Accepted>,
+    /// The latest ones, applied or not.
+    recent: VecDeque<Accepted>,
+    /// Whether the policy's mark is known. Before that a number could be assigned twice.
+    is_marked: bool,
+}
+
+impl AcceptedUtterances {
+    pub(super) fn new() -> Self {
+        let outbox = Outbox::new(UtteranceSeq(0), topics::WINDOW, WAITING_MAX);
+        Self { outbox, recent: VecDeque::new(), is_marked: false }
+    }
+
+    pub(super) fn add(&mut self, accepted: Accepted) {
+        push_bounded(&mut self.recent, accepted.clone());
+        if accepted.seq > self.outbox.last() {
+            self.outbox.push(accepted.seq, accepted);
+        }
+    }
+
+    /// Returns a recent utterance by its request and segment.
+    pub(super) fn find(&self, key: RequestKey, segment: u32) -> Option<&Accepted> {
+        self.recent.iter().find(|accepted| accepted.key == key && accepted.segment.0 == segment)
+    }
+
+    /// Returns the next number, or why there is none.
+    pub(super) fn next(&self) -> Result<UtteranceSeq, String> {
+        if !self.is_marked {
+            return Err("the robot is not ready yet; help: repeat it".to_owned());
+        }
+        self.outbox.next().map_err(|full| full.to_string())
+    }
+
+    /// Handles the policy's mark. Returns whether it is new.
+    pub(super) fn acknowledge(&mut self, mark: AppliedMark) -> bool {
+        let (before, was_marked) = (self.outbox.len(), self.is_marked);
+        self.outbox.acknowledge(UtteranceSeq(mark.seq));
+        self.is_marked = true;
+        self.outbox.len() != before || !was_marked
+    }
+
+    pub(super) fn is_marked(&self) -> bool {
+        self.is_marked
+    }
+
+    /// Returns the utterances to send; none before the mark is known, when all of them may be applied.
+    pub(super) fn to_send(&self) -> impl Iterator<Item = &Accepted> {
+        let window = self.outbox.window().map(|(_, accepted)| accepted);
+        window.filter(|_| self.is_marked)
+    }
+
+    /// Returns when the utterance at the head of the queue was accepted.
+    pub(super) fn pending_since(&self) -> Option<Time> {
+        self.outbox.window().next().map(|(_, accepted)| accepted.accepted)
+    }
+
+    /// Returns when the oldest utterance that is not applied was accepted.
+    pub(super) fn oldest(&self) -> Option<Time> {
+        self.outbox.window().map(|(_, accepted)| accepted.accepted).min()
+    }
+
+    /// Returns the number of utterances that are not applied.
+    pub(super) fn len(&self) -> usize {
+        self.outbox.len()
+    }
+
+    /// Returns the latest utterances, unless some are not applied yet.
+    pub(super) fn snapshot(&self) -> Option<Vec<Accepted>> {
+        self.outbox.is_empty().then(|| self.recent.iter().cloned().collect())
+    }
+}

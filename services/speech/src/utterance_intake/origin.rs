@@ -1,0 +1,48 @@
+//! Origin of an utterance: its request, segment, source and time.
+
+use crate::RecognisedSegment;
+use crate::pending_sounds::PendingSound;
+use messages::{RequestKey, Source};
+use service::{Span, Time};
+
+/// Origin of an utterance.
+#[derive(Clone, Copy)]
+pub(super) struct Origin {
+    pub(super) key: RequestKey,
+    /// Number and total of the segment.
+    pub(super) segment: (u32, u32),
+    pub(super) source: Source,
+    /// Beginning and end of the speech, 0 without speech.
+    pub(super) span: (Time, Time),
+    /// Signal-to-noise ratio, decibels; 0 for text.
+    pub(super) snr_db: f32,
+}
+
+impl Origin {
+    /// Returns the origin of text, or of another request without segments.
+    pub(super) fn whole(key: RequestKey, span: (Time, Time)) -> Self {
+        Self { key, segment: (0, 1), source: Source::Text, span, snr_db: 0.0 }
+    }
+
+    /// Returns the origin for the end of a client's stream.
+    pub(super) fn closed(key: RequestKey, utterances: u32) -> Self {
+        let (segment, source) = ((u32::MAX, utterances), Source::Microphone);
+        Self { segment, source, ..Self::whole(key, (Time(0), Time(0))) }
+    }
+
+    /// Returns the origin of segment `number` of `count` in a sound; a live sound is a segment itself.
+    pub(super) fn of(sound: &PendingSound, number: u32, count: u32) -> Self {
+        let segment = sound.segment.unwrap_or((number, count));
+        let span = (sound.onset, sound.end.unwrap_or(Time(0)));
+        Self { key: sound.key, segment, source: sound.source, span, snr_db: 0.0 }
+    }
+
+    /// Adds what the recogniser measured. The times of a live sound are known; those of a recording
+    /// count from its beginning.
+    pub(super) fn measured(self, segment: &RecognisedSegment, now: Time) -> Self {
+        let at = |s: f64| (self.span.0 + Span::from_s(s)).min(now);
+        let recorded = (at(segment.span_s.0), at(segment.span_s.1));
+        let span = if self.span.1 == Time(0) { recorded } else { self.span };
+        Self { span, snr_db: segment.snr_db, ..self }
+    }
+}
