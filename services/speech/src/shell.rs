@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::devices::client_streams::ClientStreams;
+use crate::devices::stream::PlaybackMask;
 use crate::record::Record;
 use crate::stream_events::StreamEvent;
 use crate::{Config, In, Out, Recognised, SpeechNode, doctor, inspection};
