@@ -102,6 +102,8 @@ fn turns(f: &mut Fields<'_>) -> TurnTaking {
                 ("naive", Attribution::Naive),
             ],
         ),
+        defers: true,
+        repeats_same: true,
         spoken: reaction(f, "reaction_median_s", "reaction_log_sd"),
         typed: reaction(f, "typing_median_s", "typing_log_sd"),
     }

@@ -4,8 +4,8 @@
 //! alone, so that a replay believes and decides the same, bit for bit on the same build.
 
 mod action;
-mod addressed;
 mod answer;
+mod answer_attribution;
 mod belief;
 mod confusion;
 mod costs;
@@ -15,6 +15,7 @@ pub mod gesture;
 pub mod ids;
 mod interaction;
 mod interpretation;
+pub mod manager;
 mod mix;
 mod model;
 mod observation;
@@ -27,6 +28,7 @@ mod posterior;
 mod presentation;
 mod prior;
 pub mod registry;
+pub mod rendering;
 mod rng;
 pub mod time;
 mod turn_taking;
@@ -37,8 +39,9 @@ pub mod user_model;
 mod testing;
 
 pub use action::{Action, Actions, Decision, Mode};
-pub use addressed::{Addressed, Asked, Attribution, QUESTION_S};
+
 pub use answer::Answer;
+pub use answer_attribution::{Attributed, Attribution, QuestionShare};
 pub use belief::{Belief, BeliefError};
 pub use confusion::{Confusion, NotAConfusion};
 pub use costs::Costs;

@@ -80,7 +80,7 @@ pub trait Planner {
     }
 
     /// Whether it makes use of what is believed about the person.
-    fn minds_the_person(&self) -> bool {
+    fn uses_user_model(&self) -> bool {
         false
     }
 

@@ -2,12 +2,13 @@
 //! person who answers as well.
 
 use scene::{Question, Reading};
+use serde::{Deserialize, Serialize};
 
 use crate::user_model::{Joint, Person};
 use crate::{Belief, BeliefError, Decision, DecisionProblem, Model, Planner, Step};
 
 /// A belief over the hypotheses, perhaps together with the person's error rate.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Posterior {
     /// People answer as the model's parameters say.
     Object(Belief),
@@ -30,6 +31,14 @@ impl Posterior {
         match self {
             Self::Object(belief) => belief.clone(),
             Self::ObjectAndPerson(joint) => joint.belief(),
+        }
+    }
+
+    /// Returns the user model, where there is one.
+    pub fn person(&self) -> Option<&Person> {
+        match self {
+            Self::Object(_) => None,
+            Self::ObjectAndPerson(joint) => Some(joint.person()),
         }
     }
 

@@ -15,6 +15,11 @@ pub struct TurnTaking {
     pub questions_max: u32,
     /// How an utterance is attributed to a question.
     pub attribution: Attribution,
+    /// Whether decisions and repetitions are deferred while the user is speaking or an utterance is
+    /// still being processed.
+    pub defers: bool,
+    /// Whether a question that got no answer is repeated; else another one is asked instead.
+    pub repeats_same: bool,
     /// Reaction time of spoken answers, before anything is known of the user.
     pub spoken: Reaction,
     /// Reaction time of typed answers.

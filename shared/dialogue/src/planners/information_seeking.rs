@@ -54,7 +54,7 @@ impl Planner for InformationSeeking {
         Decision { action, value, alternatives, expected_questions, bounds: None }
     }
 
-    fn minds_the_person(&self) -> bool {
+    fn uses_user_model(&self) -> bool {
         true
     }
 }

@@ -67,7 +67,7 @@ impl<'a> Memo<'a> {
     pub fn beginning(&self, problem: &DecisionProblem<'_>) -> Posterior {
         let person = || Person::new(problem.model.params());
         let prior = Belief::uniform(problem.model.hypotheses());
-        Posterior::new(prior, self.planner.minds_the_person().then(person))
+        Posterior::new(prior, self.planner.uses_user_model().then(person))
     }
 
     /// What the policy does about `posterior`; `step` counts its decisions in the interaction from

@@ -55,7 +55,7 @@ fn the_model_s_people_average_out_to_the_evaluation() {
     for room in &rooms {
         for name in registry::names() {
             let mut planner = registry::planner(name).unwrap();
-            if planner.minds_the_person() {
+            if planner.uses_user_model() {
                 continue;
             }
             let mut memo = Memo::new(registry::planner(name).unwrap());

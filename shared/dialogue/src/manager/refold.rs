@@ -1,15 +1,14 @@
-//! Re-folds a journal: every state must follow from the one before it and its cause, bit for bit.
+//! Check of a journal: every state must follow from the previous one and its cause, bit for bit.
 
-use crate::mind::Mind;
-use crate::state::{Cause, Record, State};
+use super::{Cause, Manager, Record, State};
 
-/// A record whose state does not follow.
+/// A record whose state does not follow from the previous one.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("record {index}: the state does not follow from the one before it ({part} differs)")]
 pub struct Mismatch {
-    /// Its place, from 0.
+    /// Its index, from 0.
     pub index: usize,
-    /// What differs first.
+    /// The part that differs.
     pub part: &'static str,
 }
 
@@ -17,31 +16,30 @@ pub struct Mismatch {
 ///
 /// # Errors
 /// The first record that does not follow.
-pub fn refold(mind: &mut Mind, records: &[Record]) -> Result<(), Mismatch> {
-    let mut state = mind.first();
+pub fn refold(manager: &mut Manager, records: &[Record]) -> Result<(), Mismatch> {
+    let mut state = manager.first();
     for (index, record) in records.iter().enumerate() {
         if record.cause == Cause::Snapshot {
             state = record.state.clone();
             continue;
         }
-        let folded = mind.step(&state, &record.cause, record.at);
-        if let Some(part) = difference(&folded, &record.state) {
+        manager.step(&mut state, &record.cause, record.at);
+        if let Some(part) = difference(&mut state, &record.state) {
             return Err(Mismatch { index, part });
         }
-        state = record.state.clone();
     }
     Ok(())
 }
 
-/// Checks the latest records in a row that were decided under the settings with that key, which are
-/// to be those of `mind`; how many they are. The record before them is taken as it is, and the change
-/// to these settings is checked like every other step: it rests on that record and on what holds
-/// since.
+/// Checks the latest consecutive records that were decided under the settings with that key, which
+/// must be those of `manager`, and returns their number. The record before them is taken as it is, and
+/// the change to these settings is checked like every other step: it rests on that record and on the
+/// settings since.
 ///
 /// # Errors
 /// As [`refold`], with the place in `records`.
 pub fn refold_since(
-    mind: &mut Mind,
+    manager: &mut Manager,
     records: &[Record],
     settings_key: u64,
 ) -> Result<usize, Mismatch> {
@@ -52,18 +50,18 @@ pub fn refold_since(
     if let (Some(first), true) = (own.first_mut(), from > 0) {
         first.cause = Cause::Snapshot;
     }
-    refold(mind, &own).map_err(|m| Mismatch { index: start + m.index, ..m })?;
+    refold(manager, &own).map_err(|m| Mismatch { index: start + m.index, ..m })?;
     Ok(records.len() - from)
 }
 
-/// What differs, comparing numbers by their bits.
-fn difference(folded: &State, recorded: &State) -> Option<&'static str> {
-    let bits = |state: &State| -> Vec<u64> {
-        let belief = state.open.iter().flat_map(|open| open.belief.iter());
-        belief.map(|weight| weight.to_bits()).collect()
+/// Returns what differs, comparing numbers by their bits.
+fn difference(folded: &mut State, recorded: &State) -> Option<&'static str> {
+    let bits = |state: &State| -> Option<Vec<u64>> {
+        let belief = state.open.as_ref()?.belief();
+        Some(belief.log_weights().iter().map(|weight| weight.to_bits()).collect())
     };
     // Whether other settings hold is for the caller to judge: most of them change no state.
-    let folded = &State { settings_key: recorded.settings_key, ..folded.clone() };
+    folded.settings_key = recorded.settings_key;
     if bits(folded) != bits(recorded) {
         Some("belief")
     } else if folded.act != recorded.act {

@@ -1,18 +1,19 @@
-//! Which question an answer is meant for, judged by when it began.
+//! Attribution of an utterance to the question that it answers, by its onset.
 //!
-//! An answer begins some time after the end of the question that it answers. How long people take
-//! is well described by a log-normal distribution. The question that is addressed is then one more
-//! thing that the robot does not know, and the belief sums over it:
-//! `P(o | D) = Σ_j w_j P(o | D, Q_j)` ([`Belief::update_mixture`](crate::Belief::update_mixture)).
+//! An answer begins some time after the end of the question that it answers; that time is well
+//! described by a log-normal distribution. The question answered is one more thing that the robot does
+//! not know, and the belief sums over it: `P(o | D) = Σ_j w_j P(o | D, Q_j)`
+//! ([`Belief::update_mixture`](crate::Belief::update_mixture)).
 //!
-//! The weights are rates of competing events: at the moment when somebody begins to speak, each
-//! question that waits for its answer draws one at its hazard, `p f(t) / (1 − p F(t))` with the
-//! reaction time's density `f` and distribution `F` and the share `p` of questions that are answered
-//! at all. A density alone would give up a slow answer to the only question there is. A question
-//! that was answered draws second thoughts only, and one that is still being said hardly anything
-//! before its last words.
+//! The weights are rates of competing events: when the user begins to speak, each question that waits
+//! for its answer draws one at its hazard, `p f(t) / (1 − p F(t))` with the reaction time's density
+//! `f` and distribution `F` and the share `p` of questions that are answered at all. A density alone
+//! would give up a slow answer to the only question there is. A question that was answered draws
+//! second thoughts only, and one that is still being said hardly anything before its last words.
 
-use scene::Question;
+use serde::{Deserialize, Serialize};
+
+use crate::ids::{PromptId, UtteranceSeq};
 
 /// How an utterance is attributed to a question.
 #[derive(
@@ -30,27 +31,42 @@ pub enum Attribution {
     Naive,
 }
 
-/// A question as it was put to the person, once. Times are seconds on any one clock.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Asked {
-    /// What was asked.
-    pub question: Question,
-    /// When the robot began to say it.
-    pub began_s: f64,
-    /// When it had been said, or was broken off, or is expected to have been said.
-    pub ended_s: f64,
-    /// Whether it was said to its end.
-    pub whole: bool,
-    /// When the answer to it had ended, if it was answered.
-    pub answered_s: Option<f64>,
+/// The questions that an utterance was attributed to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Attributed {
+    /// The utterance; 0 before the first.
+    pub utterance: UtteranceSeq,
+    /// Probability that it answers each presentation of a question, where that is above 0.
+    pub questions: Vec<QuestionShare>,
+    /// Probability that it answers no question.
+    pub none: f64,
 }
 
-impl Asked {
-    /// A question that was said to its end and has no answer yet.
-    pub fn whole(question: Question, began_s: f64, ended_s: f64) -> Self {
-        Self { question, began_s, ended_s, whole: true, answered_s: None }
-    }
+/// Share of one presentation of a question in an utterance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct QuestionShare {
+    /// The prompt.
+    pub prompt: PromptId,
+    /// Which presentation of it.
+    pub presentation: u32,
+    /// Probability that the utterance answers it.
+    pub share: f64,
+}
 
+/// A presentation of a question that may be answered. Times are seconds on any one clock.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Candidate {
+    /// When the robot began to say it.
+    pub(crate) began_s: f64,
+    /// When it had been said, was interrupted, or is expected to have been said.
+    pub(crate) ended_s: f64,
+    /// Whether it was said to its end.
+    pub(crate) complete: bool,
+    /// When the answer to it had ended, if it was answered.
+    pub(crate) answered_s: Option<f64>,
+}
+
+impl Candidate {
     /// Answers to it that begin at `onset_s`, per second.
     fn rate(&self, onset_s: f64, rate: impl Fn(f64) -> f64) -> f64 {
         let since = |then: f64| onset_s - then;
@@ -58,7 +74,7 @@ impl Asked {
             0.0
         } else if let Some(answered_s) = self.answered_s {
             AGAIN * (-since(answered_s).max(0.0) / AGAIN_S).exp()
-        } else if self.whole && onset_s >= self.ended_s {
+        } else if self.complete && onset_s >= self.ended_s {
             rate(since(self.ended_s))
         } else {
             let after = since(self.ended_s).max(0.0);
@@ -70,51 +86,51 @@ impl Asked {
     /// a usual question's time.
     fn share_said(&self, at_s: f64) -> f64 {
         let said_s = self.ended_s - self.began_s;
-        let length_s = if self.whole { said_s } else { said_s.max(QUESTION_S) };
+        let length_s = if self.complete { said_s } else { said_s.max(QUESTION_S) };
         (at_s.min(self.ended_s) - self.began_s) / length_s
     }
 }
 
-/// How an utterance is divided among the questions that it may answer.
+/// Division of an utterance among the candidates.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Addressed {
-    /// Probability per question, in the order they were given in.
-    pub questions: Vec<f64>,
+pub(crate) struct Shares {
+    /// Probability per candidate, in order.
+    pub(crate) questions: Vec<f64>,
     /// Probability that it answers none of them.
-    pub none: f64,
+    pub(crate) none: f64,
 }
 
-/// Utterances that answer no question, per second: a yes or no that is said to somebody else in the
-/// room, once in half an hour.
+/// Utterances that answer no question, per second: a yes or no to another person in the room, once in
+/// half an hour.
 const NONE: f64 = 0.0005;
 /// Answers just before a question's last word, per second; people know by then what is asked. What
 /// is asked stands at the end of the sentence, so the rate grows with the fourth power of the share
 /// that was said.
 const EARLY: f64 = 0.1;
 /// A question's usual length, seconds.
-pub const QUESTION_S: f64 = 1.5;
-/// Seconds in which somebody who broke a question off still answers it.
+pub(crate) const QUESTION_S: f64 = 1.5;
+/// Seconds in which a user who interrupted a question still answers it.
 const BROKEN_OFF_S: f64 = 1.0;
 /// Second thoughts right after an answer, per second ("yes. No, wait."), and the seconds in which
 /// they become fewer.
 const AGAIN: f64 = 0.1;
 const AGAIN_S: f64 = 2.0;
 
-impl Addressed {
-    /// Divides an utterance that was spoken from `onset_s` on. `rate` is how many answers to a
+impl Shares {
+    /// Returns the shares of an utterance spoken from `onset_s` on. `rate` is how many answers to a
     /// question begin per second, so many seconds after its end, while it is unanswered
     /// ([`Reaction::rate`](crate::user_model::Reaction::rate)).
-    pub fn of(asked: &[Asked], onset_s: f64, rate: impl Fn(f64) -> f64) -> Self {
+    pub(crate) fn spoken(asked: &[Candidate], onset_s: f64, rate: impl Fn(f64) -> f64) -> Self {
         let weights = asked.iter().map(|asked| asked.rate(onset_s, &rate)).collect();
         Self::of_weights(weights, NONE)
     }
 
-    /// Divides an utterance that was typed at `at_s`. Typed words are meant for the robot and answer
+    /// Returns the shares of an utterance typed at `at_s`. Typed words are meant for the robot and answer
     /// what is on the screen, where a question stands as soon as it is asked: one without an answer
     /// if there is any, else the latest.
-    pub fn typed(asked: &[Asked], at_s: f64, rate: impl Fn(f64) -> f64) -> Self {
-        let open = |asked: &Asked| asked.answered_s.is_none() && asked.began_s <= at_s;
-        let weight = |asked: &Asked| if open(asked) { rate(at_s - asked.began_s) } else { 0.0 };
+    pub(crate) fn typed(asked: &[Candidate], at_s: f64, rate: impl Fn(f64) -> f64) -> Self {
+        let open = |asked: &Candidate| asked.answered_s.is_none() && asked.began_s <= at_s;
+        let weight = |asked: &Candidate| if open(asked) { rate(at_s - asked.began_s) } else { 0.0 };
         let weights: Vec<f64> = asked.iter().map(weight).collect();
         if weights.iter().sum::<f64>() > 0.0 {
             return Self::of_weights(weights, 0.0);
@@ -126,17 +142,17 @@ impl Addressed {
         Self::only(newest, asked.len())
     }
 
-    /// Gives an utterance to the latest question that had been said when it began.
-    pub fn latest_said(asked: &[Asked], onset_s: f64) -> Self {
-        let said = |at: &usize| asked[*at].whole && asked[*at].ended_s <= onset_s;
+    /// Attributes an utterance to the latest question that had been said when it began.
+    pub(crate) fn latest_said(asked: &[Candidate], onset_s: f64) -> Self {
+        let said = |at: &usize| asked[*at].complete && asked[*at].ended_s <= onset_s;
         let newest = (0..asked.len())
             .filter(said)
             .max_by(|a, b| asked[*a].ended_s.total_cmp(&asked[*b].ended_s));
         Self::only(newest, asked.len())
     }
 
-    /// Gives an utterance to one question, or to none.
-    pub fn only(question: Option<usize>, of: usize) -> Self {
+    /// Attributes an utterance to one candidate, or to none.
+    pub(crate) fn only(question: Option<usize>, of: usize) -> Self {
         let weight = |at| if question == Some(at) { 1.0 } else { 0.0 };
         let none = if question.is_some_and(|at| at < of) { 0.0 } else { 1.0 };
         Self { questions: (0..of).map(weight).collect(), none }
@@ -154,18 +170,17 @@ mod tests {
     use super::*;
     use crate::Rng;
     use crate::user_model::Reaction;
-    use scene::ObjectId;
 
-    fn asked(n: u16, began_s: f64, ended_s: f64) -> Asked {
-        Asked::whole(Question::Point(ObjectId(n)), began_s, ended_s)
+    fn asked(began_s: f64, ended_s: f64) -> Candidate {
+        Candidate { began_s, ended_s, complete: true, answered_s: None }
     }
 
     fn rate(seconds: f64) -> f64 {
         Reaction::default().rate(seconds, 0.95)
     }
 
-    fn addressed(asked: &[Asked], onset_s: f64) -> Addressed {
-        Addressed::of(asked, onset_s, rate)
+    fn addressed(asked: &[Candidate], onset_s: f64) -> Shares {
+        Shares::spoken(asked, onset_s, rate)
     }
 
     #[test]
@@ -173,19 +188,19 @@ mod tests {
         let mut rng = Rng::new(3);
         for _ in 0..2_000 {
             let mut now = 0.0;
-            let mut some: Vec<Asked> = Vec::new();
-            for n in 0..rng.below(5) {
+            let mut some: Vec<Candidate> = Vec::new();
+            for _ in 0..rng.below(5) {
                 let began = now + 3.0 * rng.uniform();
                 now = began + 2.5 * rng.uniform();
-                let whole = rng.below(3) > 0;
+                let complete = rng.below(3) > 0;
                 let answered_s = (rng.below(3) == 0).then_some(now + rng.uniform());
-                some.push(Asked { whole, answered_s, ..asked(n as u16, began, now) });
+                some.push(Candidate { complete, answered_s, ..asked(began, now) });
             }
             let onset = 1.5 * now * rng.uniform();
             for shares in [
                 addressed(&some, onset),
-                Addressed::typed(&some, onset, rate),
-                Addressed::latest_said(&some, onset),
+                Shares::typed(&some, onset, rate),
+                Shares::latest_said(&some, onset),
             ] {
                 let sum = shares.questions.iter().sum::<f64>() + shares.none;
                 assert!((sum - 1.0).abs() < 1e-12, "{some:?} at {onset}: {shares:?}");
@@ -198,8 +213,8 @@ mod tests {
 
     #[test]
     fn a_prompt_answer_is_meant_for_the_question_before_it() {
-        let first = Asked { answered_s: Some(3.2), ..asked(0, 0.0, 2.0) };
-        let Addressed { questions, none } = addressed(&[first, asked(1, 8.0, 10.0)], 10.9);
+        let first = Candidate { answered_s: Some(3.2), ..asked(0.0, 2.0) };
+        let Shares { questions, none } = addressed(&[first, asked(8.0, 10.0)], 10.9);
         assert!(questions[1] > 0.99 && none < 0.01, "{questions:?} {none}");
     }
 
@@ -207,8 +222,8 @@ mod tests {
     /// counts, and not that it was its end.
     #[test]
     fn who_breaks_off_a_question_at_its_first_words_does_not_answer_it() {
-        let first = Asked { answered_s: Some(3.2), ..asked(0, 0.0, 2.0) };
-        let broken_off = |ended_s| Asked { whole: false, ..asked(1, 4.0, ended_s) };
+        let first = Candidate { answered_s: Some(3.2), ..asked(0.0, 2.0) };
+        let broken_off = |ended_s| Candidate { complete: false, ..asked(4.0, ended_s) };
         let early = addressed(&[first, broken_off(4.6)], 4.5);
         assert!(early.questions[0] > 0.9, "{early:?}");
         let late = addressed(&[first, broken_off(5.5)], 5.4);
@@ -218,61 +233,61 @@ mod tests {
     /// The answer comes just as the next question begins: nobody can have heard that one.
     #[test]
     fn an_answer_into_a_new_question_is_meant_for_the_old_one() {
-        let two = [asked(0, 0.0, 2.0), asked(1, 2.8, 4.6)];
+        let two = [asked(0.0, 2.0), asked(2.8, 4.6)];
         assert!(addressed(&two, 3.2).questions[0] > 0.98, "{:?}", addressed(&two, 3.2));
     }
 
     #[test]
     fn a_slow_answer_to_the_only_question_is_still_its_answer() {
-        assert!(addressed(&[asked(0, 0.0, 2.0)], 9.0).questions[0] > 0.8);
+        assert!(addressed(&[asked(0.0, 2.0)], 9.0).questions[0] > 0.8);
     }
 
     /// "Yes. … Yes!" while the next question begins.
     #[test]
     fn a_doubled_answer_is_not_an_answer_to_the_question_that_begins() {
-        let first = Asked { answered_s: Some(3.5), ..asked(0, 0.0, 2.0) };
-        let doubled = addressed(&[first, asked(1, 3.6, 5.4)], 4.2);
+        let first = Candidate { answered_s: Some(3.5), ..asked(0.0, 2.0) };
+        let doubled = addressed(&[first, asked(3.6, 5.4)], 4.2);
         assert!(doubled.questions[0] > 0.95, "{doubled:?}");
-        let answer = addressed(&[first, asked(1, 3.6, 5.4)], 6.0);
+        let answer = addressed(&[first, asked(3.6, 5.4)], 6.0);
         assert!(answer.questions[1] > 0.95, "{answer:?}");
     }
 
     #[test]
     fn what_no_question_fits_answers_none() {
-        assert_eq!(addressed(&[], 3.0), Addressed { questions: vec![], none: 1.0 });
-        let later = addressed(&[asked(0, 5.0, 6.0)], 3.0);
+        assert_eq!(addressed(&[], 3.0), Shares { questions: vec![], none: 1.0 });
+        let later = addressed(&[asked(5.0, 6.0)], 3.0);
         assert_eq!((later.questions[0], later.none), (0.0, 1.0));
-        let long_after = addressed(&[asked(0, 0.0, 1.0)], 600.0);
+        let long_after = addressed(&[asked(0.0, 1.0)], 600.0);
         assert!(long_after.none > 0.9, "{long_after:?}");
     }
 
     #[test]
     fn a_question_that_was_broken_off_is_answered_by_who_broke_it_off() {
-        let broken = Asked { whole: false, ..asked(1, 3.0, 4.0) };
+        let broken = Candidate { complete: false, ..asked(3.0, 4.0) };
         let barge_in = addressed(&[broken], 3.95);
         assert!(barge_in.questions[0] > 0.9, "{barge_in:?}");
-        let next = addressed(&[broken, asked(2, 6.0, 8.0)], 8.8);
+        let next = addressed(&[broken, asked(6.0, 8.0)], 8.8);
         assert!(next.questions[1] > 0.99, "{next:?}");
     }
 
     #[test]
     fn typed_words_answer_what_waits_for_an_answer() {
-        let answered = Asked { answered_s: Some(1.0), ..asked(0, 0.0, 0.5) };
+        let answered = Candidate { answered_s: Some(1.0), ..asked(0.0, 0.5) };
         // A program answers within a millisecond.
-        let quick = Addressed::typed(&[answered, asked(1, 1.0, 1.0)], 1.001, rate);
-        assert_eq!(quick, Addressed::only(Some(1), 2));
-        let again = Addressed::typed(&[answered], 30.0, rate);
-        assert_eq!(again, Addressed::only(Some(0), 1));
-        let leisure = Addressed::typed(&[asked(0, 0.0, 1.0)], 500.0, rate);
-        assert_eq!(leisure, Addressed::only(Some(0), 1));
-        assert_eq!(Addressed::typed(&[], 1.0, rate).none, 1.0);
+        let quick = Shares::typed(&[answered, asked(1.0, 1.0)], 1.001, rate);
+        assert_eq!(quick, Shares::only(Some(1), 2));
+        let again = Shares::typed(&[answered], 30.0, rate);
+        assert_eq!(again, Shares::only(Some(0), 1));
+        let leisure = Shares::typed(&[asked(0.0, 1.0)], 500.0, rate);
+        assert_eq!(leisure, Shares::only(Some(0), 1));
+        assert_eq!(Shares::typed(&[], 1.0, rate).none, 1.0);
     }
 
     #[test]
     fn the_simpler_rules_choose_one_question() {
-        let two = [asked(0, 0.0, 2.0), asked(1, 2.8, 4.6)];
-        assert_eq!(Addressed::latest_said(&two, 3.0), Addressed::only(Some(0), 2));
-        assert_eq!(Addressed::latest_said(&two, 5.0), Addressed::only(Some(1), 2));
-        assert_eq!(Addressed::latest_said(&two, 1.0), Addressed::only(None, 2));
+        let two = [asked(0.0, 2.0), asked(2.8, 4.6)];
+        assert_eq!(Shares::latest_said(&two, 3.0), Shares::only(Some(0), 2));
+        assert_eq!(Shares::latest_said(&two, 5.0), Shares::only(Some(1), 2));
+        assert_eq!(Shares::latest_said(&two, 1.0), Shares::only(None, 2));
     }
 }

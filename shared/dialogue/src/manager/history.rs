@@ -1,19 +1,19 @@
-//! How often objects were asked for, and the prior that follows from it.
+//! Deliveries by object, and the prior that follows from them.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Names that are counted. Beyond it the rarest gives way.
+/// Most names that are counted. Beyond it the rarest is dropped.
 pub const NAMES_MAX: usize = 512;
 
-/// How often each object was delivered, by its name: it outlives restarts and changes of the scene.
+/// Deliveries of each object by its name, across restarts and changes of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct History {
     delivered: BTreeMap<String, u64>,
 }
 
 impl History {
-    /// The object was handed over once more.
+    /// Counts a delivery.
     pub fn count(&mut self, name: &str) {
         if !self.delivered.contains_key(name) && self.delivered.len() >= NAMES_MAX {
             // Of several the last by name, so that a replay drops the same.
@@ -25,12 +25,12 @@ impl History {
         *self.delivered.entry(name.to_owned()).or_default() += 1;
     }
 
-    /// How often the object was handed over.
+    /// Returns the deliveries of an object.
     pub fn of(&self, name: &str) -> u64 {
         self.delivered.get(name).copied().unwrap_or(0)
     }
 
-    /// The posterior mean of a Dirichlet distribution with weight `smoothing` for each object:
+    /// Returns the posterior mean of a Dirichlet distribution with weight `smoothing` for each object:
     /// `(n_i + s) / Σ_j (n_j + s)`, in the order of the names.
     pub fn prior<'a>(&self, names: impl Iterator<Item = &'a str>, smoothing: f64) -> Vec<f64> {
         let weights: Vec<f64> = names.map(|name| self.of(name) as f64 + smoothing).collect();
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_asked_for_often_is_likelier() {
+    fn history_makes_frequent_objects_more_probable() {
         let mut history = History::default();
         let names = || ["cup", "bowl", "jug"].into_iter();
         assert_eq!(history.prior(names(), 1.0), [1.0 / 3.0; 3]);
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rarest_name_gives_way() {
+    fn history_drops_the_rarest_name() {
         let mut history = History::default();
         for n in 0..NAMES_MAX {
             history.count(&format!("often{n:04}"));

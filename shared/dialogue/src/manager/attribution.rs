@@ -1,0 +1,197 @@
+//! The questions that an utterance answers.
+
+use scene::{Intent, Question, Reading};
+
+use super::Manager;
+use super::state::{State, Utterance};
+use crate::answer_attribution::{Attributed, Candidate, QUESTION_S, QuestionShare, Shares};
+use crate::ids::PromptId;
+use crate::time::{Span, Time};
+use crate::user_model::Reaction;
+use crate::{ActKind, Attribution, Interpretation, NamedQuestion, NamedReading, Presentation};
+
+/// Weights below this say nothing.
+const NEGLIGIBLE: f64 = 1e-9;
+/// Share from which it is plain which question is answered.
+const PLAIN: f64 = 0.8;
+
+/// Content of an utterance in the open interaction.
+pub(super) struct Heard<'a> {
+    /// Its interpretations with their weights and the question that each answers, likeliest first.
+    pub(super) interpretations: Vec<(f64, Question, Reading)>,
+    /// A word that the scene does not have; may be empty.
+    pub(super) unknown: &'a str,
+    /// The point that the user points at, metres, frame `base`.
+    pub(super) gesture: Option<[f64; 3]>,
+}
+
+/// Returns the share of the question that an interpretation answers: `shares` has one for each
+/// presentation, and last the one of none.
+pub(super) fn share_of(interpretation: &Interpretation, shares: &[f64]) -> f64 {
+    shares[interpretation.answers.unwrap_or(shares.len() - 1)]
+}
+
+impl Manager {
+    /// Divides an utterance among its presentations: a share for each, and last one for none. Those
+    /// of other interactions get no share. The result is also noted in the state, to be published.
+    pub(super) fn attribute(&self, state: &mut State, utterance: &Utterance) -> Vec<f64> {
+        let put = |put| candidate(state, put);
+        let known: Vec<Option<Candidate>> = utterance.presentations.iter().map(put).collect();
+        let candidates: Vec<Candidate> = known.iter().flatten().copied().collect();
+        let Shares { questions, none } = self.shares(state, utterance, &candidates);
+        let mut among = questions.into_iter();
+        let share = |known: Option<Candidate>| known.and_then(|_| among.next()).unwrap_or(0.0);
+        let mut shares: Vec<f64> = known.into_iter().map(share).collect();
+        let noted = &mut state.attributed;
+        (noted.utterance, noted.none) = (utterance.seq, none);
+        noted.questions.clear();
+        let all = utterance.presentations.iter().zip(&shares).filter(|(_, share)| **share > 0.0);
+        noted.questions.extend(all.map(|(put, share)| QuestionShare {
+            prompt: put.prompt,
+            presentation: put.number,
+            share: *share,
+        }));
+        shares.push(none);
+        shares
+    }
+
+    fn shares(&self, state: &State, utterance: &Utterance, candidates: &[Candidate]) -> Shares {
+        let onset_s = seconds(utterance.onset);
+        match self.turns.attribution {
+            Attribution::Naive => {
+                let stands = matches!(state.act.kind, ActKind::Ask | ActKind::Pick);
+                Shares::only(stands.then_some(0), candidates.len())
+            }
+            Attribution::Onset => Shares::latest_said(candidates, onset_s),
+            Attribution::Mixture => {
+                let answered = self.model.params().p_l;
+                let reaction = self.reaction(state, utterance.typed);
+                let rate = |seconds: f64| reaction.rate(seconds, answered);
+                let divide = if utterance.typed { Shares::typed } else { Shares::spoken };
+                divide(candidates, onset_s, rate)
+            }
+        }
+    }
+
+    /// Returns how soon this user answers.
+    fn reaction(&self, state: &State, typed: bool) -> Reaction {
+        let (known, configured) = if typed {
+            (state.timing.typed, self.turns.typed)
+        } else {
+            (state.timing.spoken, self.turns.spoken)
+        };
+        known.unwrap_or(configured)
+    }
+
+    /// Returns the content of an utterance: each interpretation weighted by its question's share,
+    /// equal ones together.
+    pub(super) fn interpret<'a>(
+        &self,
+        state: &State,
+        utterance: &'a Utterance,
+        shares: &[f64],
+    ) -> Heard<'a> {
+        let mut all: Vec<(f64, Question, Reading)> = Vec::new();
+        for interpretation in &utterance.interpretations {
+            let weight = share_of(interpretation, shares) * interpretation.weight;
+            if weight < NEGLIGIBLE {
+                continue;
+            }
+            // An answer to another interaction's question says nothing about this one's object.
+            let put = interpretation.answers.map(|at| utterance.presentations[at].prompt);
+            let question = put.and_then(|put| question(state, put)).unwrap_or_default();
+            let reading = content(&interpretation.reading);
+            match all.iter_mut().find(|(_, q, r)| *q == question && *r == *reading) {
+                Some((sum, ..)) => *sum += weight,
+                None => all.push((weight, question, reading.into_owned())),
+            }
+        }
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Heard { interpretations: all, unknown: &utterance.unknown, gesture: utterance.gesture }
+    }
+
+    /// Returns an interpretation by names.
+    pub(super) fn named(
+        &self,
+        weight: f64,
+        question: Question,
+        reading: &Reading,
+    ) -> (f64, NamedQuestion, NamedReading) {
+        let scene = &self.scene;
+        (weight, NamedQuestion::new(scene, question), NamedReading::new(scene, reading))
+    }
+
+    /// Notes that a question was answered, and how soon, if it is plain which one. A question counts
+    /// as answered once, however much is said after it.
+    pub(super) fn note_answer(&self, state: &mut State, utterance: &Utterance, shares: &[f64]) {
+        let questions = &shares[..shares.len() - 1];
+        let best = (0..questions.len()).max_by(|a, b| questions[*a].total_cmp(&questions[*b]));
+        let Some(at) = best.filter(|at| questions[*at] >= PLAIN) else { return };
+        let says_something = |it: &Interpretation| {
+            it.answers == Some(at) && *content(&it.reading) != Reading::default()
+        };
+        if !utterance.interpretations.iter().any(says_something) {
+            return;
+        }
+        let put = utterance.presentations[at];
+        let open = state.open.as_mut();
+        let Some(prompt) = open.and_then(|open| open.prompt_mut(put.prompt)) else { return };
+        if prompt.answered.replace(utterance.end).is_none() {
+            let from = if utterance.typed { Some(put.began) } else { put.ended };
+            let after = from.map(|from| utterance.onset.since(from)).filter(|span| *span > Span(0));
+            self.see_answer(state, true);
+            self.see_reaction(state, utterance.typed, after.map(Span::s));
+        }
+    }
+
+    fn see_reaction(&self, state: &mut State, typed: bool, seconds: Option<f64>) {
+        let mut reaction = self.reaction(state, typed);
+        seconds.into_iter().for_each(|seconds| reaction.see(seconds));
+        let known = if typed { &mut state.timing.typed } else { &mut state.timing.spoken };
+        *known = Some(reaction);
+    }
+}
+
+/// Returns the content of a reading about the object: none where it is about something else.
+fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
+    use std::borrow::Cow;
+    match reading.intent {
+        Intent::Inform => Cow::Borrowed(reading),
+        _ => Cow::Owned(Reading::default()),
+    }
+}
+
+/// Returns a presentation as a candidate for an answer; none for another interaction's.
+fn candidate(state: &State, put: &Presentation) -> Option<Candidate> {
+    question(state, put.prompt)?;
+    let prompt = state.open.as_ref().and_then(|open| open.prompt(put.prompt));
+    Some(Candidate {
+        began_s: seconds(put.began),
+        ended_s: put.ended.map_or(seconds(put.began) + QUESTION_S, seconds),
+        complete: put.complete,
+        answered_s: prompt.and_then(|prompt| prompt.answered).map(seconds),
+    })
+}
+
+/// Returns the question of a prompt of the open interaction. That an object is being fetched can be
+/// denied, like "this one?".
+fn question(state: &State, prompt: PromptId) -> Option<Question> {
+    let open = state.open.as_ref()?;
+    if let (ActKind::Pick, Some((_, object))) = (state.act.kind, state.act.pick)
+        && state.act.prompt == prompt
+    {
+        return Some(Question::Point(object));
+    }
+    open.prompt(prompt).map(|prompt| prompt.question)
+}
+
+fn seconds(time: Time) -> f64 {
+    time.since(Time(0)).s()
+}
+
+impl Attributed {
+    /// Returns the share of a prompt, all its presentations together.
+    pub fn share(&self, prompt: PromptId) -> f64 {
+        self.questions.iter().filter(|it| it.prompt == prompt).map(|it| it.share).sum()
+    }
+}

@@ -1,0 +1,83 @@
+//! Beliefs of an interaction: prior, updates, and the user model where the planner uses it.
+
+use scene::{Question, Reading};
+
+use super::Manager;
+use super::state::{Interaction, State};
+use crate::user_model::Person;
+use crate::{Belief, Posterior, PriorObjects};
+
+impl Manager {
+    /// Returns the belief of an interaction in which nothing was said.
+    pub fn prior(&self, state: &State) -> Belief {
+        let objects = self.scene.objects();
+        let mut weights = match self.prior.objects {
+            PriorObjects::Uniform if self.model.absent().is_none() => {
+                return Belief::uniform(objects.len());
+            }
+            PriorObjects::Uniform => vec![1.0 / objects.len() as f64; objects.len()],
+            PriorObjects::History => {
+                let names = objects.iter().map(|object| object.name.as_str());
+                state.history.prior(names, self.prior.smoothing)
+            }
+        };
+        if self.model.absent().is_some() {
+            weights.iter_mut().for_each(|p| *p *= 1.0 - self.prior.absent);
+            weights.push(self.prior.absent);
+        }
+        Belief::from_probabilities(&weights).expect("settings are checked: each weight is positive")
+    }
+
+    /// Returns the user as known before the open interaction, apart from the share of questions
+    /// answered: that says nothing about the object, so it counts at once.
+    fn person(&self, state: &State) -> Option<Person> {
+        let known = || state.person.clone().unwrap_or_else(|| Person::new(self.model.params()));
+        self.planner.uses_user_model().then(known)
+    }
+
+    /// Returns the expected `p_l` and `ε` of the user, where they are learned.
+    pub fn user_params(&self, state: &State) -> Option<(f64, f64)> {
+        let open = state.open.as_ref().and_then(|open| open.posterior.person().cloned());
+        let params = open.or_else(|| self.person(state))?.params(self.model.params());
+        Some((params.p_l, params.epsilon))
+    }
+
+    /// Returns the posterior before anything is said.
+    pub(super) fn beginning(&self, state: &State) -> Posterior {
+        Posterior::new(self.prior(state), self.person(state))
+    }
+
+    /// Updates a posterior by Bayes' rule with one utterance.
+    pub(super) fn update(
+        &self,
+        posterior: &mut Posterior,
+        interpretations: &[(f64, Question, Reading)],
+        gesture: Option<[f64; 3]>,
+    ) {
+        posterior.update_mixture(&self.model, interpretations);
+        if let (Some(pointing), Some(at)) = (&self.pointing, gesture)
+            && let Some(log) = pointing.log_likelihood(at, self.model.hypotheses())
+        {
+            posterior.weigh(&log);
+        }
+    }
+
+    /// Returns the posterior after all evidence of the interaction, in the present scene.
+    pub(super) fn fold(&self, state: &State, open: &Interaction) -> Posterior {
+        let mut posterior = self.beginning(state);
+        for evidence in &open.evidence {
+            self.update(&mut posterior, &evidence.in_scene(&self.scene), evidence.gesture);
+        }
+        posterior
+    }
+
+    /// Records that a question was answered, or was not although there was time.
+    pub(super) fn see_answer(&self, state: &mut State, answered: bool) {
+        let Some(mut person) = self.person(state) else { return };
+        if let Some(open) = &mut state.open {
+            open.posterior.see_answer(answered);
+        }
+        person.see_answer(answered);
+        state.person = Some(person);
+    }
+}

@@ -1,0 +1,69 @@
+//! Corrections: utterances while the arm fetches. They count like every other, and where they speak
+//! against the object, the pick is called off and the interaction continues.
+
+use scene::{ObjectId, Question, Reading, Response, WordId};
+
+use super::Manager;
+use super::acts::call_off;
+use super::attribution::Heard;
+use super::line::Content;
+use super::state::{Basis, State};
+use crate::ActKind;
+use crate::time::Time;
+
+/// Probability below which the object being fetched is fetched no further.
+const LIKELY: f64 = 0.5;
+
+impl Manager {
+    /// Processes an utterance while the arm fetches.
+    pub(super) fn reconsider(&self, state: &mut State, heard: Heard, at: Time) {
+        let Some(open) = &mut state.open else { return };
+        let Some((_, object)) = open.pick else { return };
+        let denial = self.denial(object, &heard.interpretations);
+        let is_denied = denial.is_some();
+        self.take_in(open, heard);
+        if let Some(interpretations) = denial {
+            self.take_in(open, Heard { interpretations, unknown: "", gesture: None });
+        }
+        let is_unlikely = open.belief().probability(object) < LIKELY;
+        if state.act.kind == ActKind::Pick && (is_denied || is_unlikely) {
+            open.corrected = true;
+            call_off(state, Content::Correcting, at);
+        }
+    }
+
+    /// Returns the denial of `object` alone, where it is likely that there is one. It counts in
+    /// addition to the utterance that it came with: nobody stops the robot on its way to the right
+    /// object by a slip of the tongue, as may happen with the answer to a question.
+    fn denial(
+        &self,
+        object: ObjectId,
+        interpretations: &[(f64, Question, Reading)],
+    ) -> Option<Vec<(f64, Question, Reading)>> {
+        let that = Question::Point(object);
+        let denies = |question: Question, reading: &Reading| {
+            (question == that && reading.response == Response::No)
+                || reading.excluded.iter().any(|group| self.describes(group, object))
+        };
+        let weights = interpretations.iter().map(|(weight, q, r)| (*weight, denies(*q, r)));
+        let all: f64 = weights.clone().map(|(weight, _)| weight).sum();
+        let no: f64 = weights.filter(|(_, denies)| *denies).map(|(weight, _)| weight).sum();
+        let alone = Reading { response: Response::No, ..Reading::default() };
+        let denial = vec![(no, that, alone), (all - no, Question::None, Reading::default())];
+        (2.0 * no > all).then_some(denial)
+    }
+
+    /// Returns whether every one of the words is true of the object.
+    fn describes(&self, words: &[WordId], object: ObjectId) -> bool {
+        !words.is_empty() && words.iter().all(|word| self.model.has_word(object, *word))
+    }
+
+    /// Decides again once the arm has left the object that was not wanted.
+    pub(super) fn choose_another(&mut self, state: &mut State, at: Time) {
+        let Some(open) = &mut state.open else { return };
+        (open.pick, open.corrected) = (None, false);
+        open.picked.clear();
+        let utterance = open.utterances.1;
+        self.decide(state, Basis { utterance, ..Basis::default() }, at);
+    }
+}

@@ -1,0 +1,64 @@
+//! Evidence of an interaction by names instead of numbers: it outlives a change of the scene, under
+//! which every object, attribute, value and word may get another number.
+
+use scene::{Question, Reading, Response, Scene};
+use serde::{Deserialize, Serialize};
+
+use super::state::Interaction;
+use crate::{NamedQuestion, NamedReading};
+
+/// Names that the evidence of one interaction may hold, all utterances together. Beyond it the
+/// oldest utterance is dropped: the belief keeps its content, but a change of the scene scores the
+/// objects without it. A typical dialogue needs a tenth of it.
+pub const NAMES_MAX: usize = 1024;
+/// Cost of an utterance besides its names.
+const ENTRY: usize = 4;
+
+/// Content of one utterance about the wanted object.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// Its interpretations with the question that each answers and its weight, the likeliest first.
+    pub interpretations: Vec<(f64, NamedQuestion, NamedReading)>,
+    /// A word that the scene did not have; may be empty. Another scene may have it.
+    pub unknown: String,
+    /// The point that the user points at, metres, frame `base`.
+    pub gesture: Option<[f64; 3]>,
+}
+
+impl Evidence {
+    /// Returns the interpretations in a scene.
+    pub fn in_scene(&self, scene: &Scene) -> Vec<(f64, Question, Reading)> {
+        let of = |(weight, question, reading): &(f64, NamedQuestion, NamedReading)| {
+            (*weight, question.question(scene), reading.reading(scene))
+        };
+        let mut all: Vec<(f64, Question, Reading)> = self.interpretations.iter().map(of).collect();
+        // The unknown word belongs to the best reading. Whether it was negated is not known, so it
+        // counts only where nothing was.
+        if let (Some((_, _, best)), Some(word)) = (all.first_mut(), scene.word_named(&self.unknown))
+            && best.response != Response::No
+            && best.excluded.is_empty()
+        {
+            best.base.push(word);
+        }
+        all
+    }
+
+    fn names(&self) -> usize {
+        let of = |(_, question, reading): &(f64, NamedQuestion, NamedReading)| {
+            question.names() + reading.names()
+        };
+        ENTRY + self.interpretations.iter().map(of).sum::<usize>()
+    }
+}
+
+impl Interaction {
+    /// Adds the content of an utterance; beyond [`NAMES_MAX`] the oldest is dropped.
+    pub fn remember(&mut self, evidence: Evidence) {
+        self.evidence.push(evidence);
+        let mut names: usize = self.evidence.iter().map(Evidence::names).sum();
+        while names > NAMES_MAX {
+            names -= self.evidence.remove(0).names();
+            self.forgotten += 1;
+        }
+    }
+}

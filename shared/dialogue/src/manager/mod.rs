@@ -1,0 +1,339 @@
+//! The dialogue manager: the transition of the dialogue's state. It is pure, deterministic, and the
+//! same in the policy service, in the check of its journal, in studies and in simulations.
+//!
+//! | file | contents |
+//! |---|---|
+//! | `state.rs`, `line.rs` | state, causes of its changes, acts and lines |
+//! | `intents.rs` | dispatch of an utterance by the user's intent |
+//! | `attribution.rs` | the questions that an utterance answers |
+//! | `inform.rs`, `correct.rs` | content of an utterance: while deciding, and while the arm fetches |
+//! | `beliefs.rs`, `pointing.rs` | prior, updates, the user model, gestures |
+//! | `acts.rs` | decisions as standing acts |
+//! | `floor.rs` | deferred decisions and response windows |
+//! | `reconfigure.rs`, `evidence.rs` | an interaction under another scene or other settings |
+//! | `refold.rs` | check of a journal |
+
+mod acts;
+mod attribution;
+mod beliefs;
+mod correct;
+mod evidence;
+mod floor;
+mod history;
+mod inform;
+mod intents;
+mod line;
+mod pointing;
+mod reconfigure;
+mod refold;
+mod state;
+
+pub use evidence::Evidence;
+pub use floor::Floor;
+pub use history::History;
+pub use line::{Content, Line, Preface, Remark};
+pub use refold::{Mismatch, refold, refold_since};
+pub use state::{
+    Act, Basis, Cause, Deferred, Interaction, KnownObject, Prompt, Record, State, Timing, Utterance,
+};
+
+use acts::{order_again, repeat, say, set, set_reasons};
+use pointing::Pointing;
+use scene::{ObjectId, Scene};
+
+use crate::gesture::Gestures;
+use crate::ids::PickId;
+use crate::time::Time;
+use crate::{
+    ActKind, Action, Actions, Costs, Decision, DecisionProblem, Durations, Ended, Model, Outcome,
+    PickOutcome, Planner, PolicyTable, Prior, Step, TurnTaking, rendering,
+};
+
+/// Alternatives that an act lists.
+const ALTERNATIVES_MAX: usize = 5;
+
+/// Everything that the manager decides by, besides its planner.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setup {
+    /// The scene.
+    pub scene: Scene,
+    /// Observation model of the scene.
+    pub model: Model,
+    /// Costs of the actions.
+    pub costs: Costs,
+    /// Measured durations of the actions, if any.
+    pub durations: Option<Durations>,
+    /// Actions that the robot may take.
+    pub actions: Actions,
+    /// Prior of a new interaction.
+    pub prior: Prior,
+    /// Model of pointing gestures and the user's place (metres, frame `base`); none where gestures
+    /// do not count.
+    pub gestures: Option<(Gestures, [f64; 3])>,
+    /// Settings of turn-taking.
+    pub turns: TurnTaking,
+}
+
+/// The dialogue manager of one scene and one decision problem.
+pub struct Manager {
+    scene: Scene,
+    model: Model,
+    costs: Costs,
+    durations: Option<Durations>,
+    actions: Actions,
+    prior: Prior,
+    pointing: Option<Pointing>,
+    turns: TurnTaking,
+    planner: Box<dyn Planner + Send>,
+    /// Descriptions of the objects, as far as they were needed.
+    descriptions: Vec<Option<String>>,
+    recall: bool,
+    key: u64,
+}
+
+impl Manager {
+    /// Returns the manager of a setup; `key` identifies setup and planner.
+    pub fn new(setup: Setup, planner: Box<dyn Planner + Send>, key: u64) -> Self {
+        let Setup { scene, model, costs, durations, actions, prior, gestures, turns } = setup;
+        let model = if prior.absent > 0.0 { model.with_absent() } else { model };
+        let pointing = gestures.map(|(model, user_m)| Pointing::new(model, user_m, &scene));
+        let descriptions = vec![None; scene.objects().len()];
+        Self {
+            scene,
+            model,
+            costs,
+            durations,
+            actions,
+            prior,
+            pointing,
+            turns,
+            planner,
+            descriptions,
+            recall: true,
+            key,
+        }
+    }
+
+    /// Keeps no evidence by name in the state: for simulations, whose scene never changes. It
+    /// decides the same; a state made so cannot be reconfigured.
+    #[must_use]
+    pub fn without_recall(self) -> Self {
+        Self { recall: false, ..self }
+    }
+
+    /// Returns the scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Returns the observation model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Returns the planner's name.
+    pub fn planner(&self) -> &'static str {
+        self.planner.name()
+    }
+
+    /// Returns the settings of turn-taking.
+    pub fn turns(&self) -> &TurnTaking {
+        &self.turns
+    }
+
+    /// Returns the identity of setup and planner.
+    pub fn key(&self) -> u64 {
+        self.key
+    }
+
+    /// Returns the state before anything was said.
+    pub fn first(&self) -> State {
+        let (scene_key, settings_key) = (self.scene.key(), self.key);
+        State { scene_key, settings_key, ..State::default() }
+    }
+
+    /// Advances `state` by `cause`, at time `at`.
+    pub fn step(&mut self, state: &mut State, cause: &Cause, at: Time) {
+        match cause {
+            Cause::Snapshot => {}
+            Cause::Utterance(utterance) => self.hear(state, utterance, at),
+            Cause::Silence => self.silence(state, at),
+            Cause::Quiet => self.decide_deferred(state, at),
+            Cause::PickEnded { pick, outcome } => self.end_pick(state, *pick, *outcome, at),
+            Cause::Reconfigured => self.reconfigure(state, at),
+        }
+    }
+
+    /// Returns the state that follows from `state` by `cause`, at time `at`.
+    pub fn next(&mut self, state: &State, cause: &Cause, at: Time) -> State {
+        let mut next = state.clone();
+        self.step(&mut next, cause, at);
+        next
+    }
+
+    /// Returns the decision problem that the planner is asked about.
+    pub fn problem(&self) -> DecisionProblem<'_> {
+        let Self { model, costs, durations, actions, .. } = self;
+        let durations = durations.as_ref();
+        DecisionProblem { model, costs: *costs, actions: *actions, durations }
+    }
+
+    /// Lets the planner precompute decisions from the prior of a first interaction, and returns them
+    /// if it is a planner that keeps any.
+    pub fn precompute(&mut self) -> Option<&PolicyTable> {
+        self.planner.table()?;
+        let prior = self.prior(&State::default());
+        let Self { model, costs, durations, actions, planner, .. } = self;
+        let durations = durations.as_ref();
+        let problem = DecisionProblem { model, costs: *costs, actions: *actions, durations };
+        planner.prepare(&problem, &prior);
+        planner.table().filter(|table| !table.is_empty())
+    }
+
+    /// Gives the planner decisions precomputed earlier; returns whether they are of its problem.
+    pub fn adopt(&mut self, table: PolicyTable) -> bool {
+        let fits = self.planner.table().is_some() && table.fits(&self.problem());
+        if fits {
+            self.planner.adopt(table);
+        }
+        fits
+    }
+
+    /// Returns the decisions that the planner keeps.
+    pub fn table(&self) -> Option<&PolicyTable> {
+        self.planner.table()
+    }
+
+    /// Decides on the present belief.
+    fn decide(&mut self, state: &mut State, basis: Basis, at: Time) {
+        let Some(decision) = self.plan(state) else { return };
+        let action = decision.action;
+        self.carry_out(state, action, decision, basis, at);
+    }
+
+    /// Decides on the present belief, and prefers any other question to the standing one.
+    fn decide_otherwise(&mut self, state: &mut State, basis: Basis, at: Time) {
+        let Some(decision) = self.plan(state) else { return };
+        let standing = Action::Ask(state.act.question);
+        let others = decision.alternatives.iter().map(|(action, _)| *action);
+        let mut questions = others.filter(|action| matches!(action, Action::Ask(_)));
+        let action = match decision.action {
+            action if action == standing => questions.next().unwrap_or(action),
+            action => action,
+        };
+        self.carry_out(state, action, decision, basis, at);
+    }
+
+    /// Asks the planner.
+    fn plan(&mut self, state: &mut State) -> Option<Decision> {
+        let open = state.open.as_mut()?;
+        let step = Step { interaction: open.id.0, step: open.step };
+        open.step += 1;
+        let Self { model, costs, durations, actions, planner, .. } = self;
+        let durations = durations.as_ref();
+        let problem = DecisionProblem { model, costs: *costs, actions: *actions, durations };
+        Some(open.posterior.decide(&mut **planner, &problem, step))
+    }
+
+    fn carry_out(
+        &mut self,
+        state: &mut State,
+        action: Action,
+        decision: Decision,
+        basis: Basis,
+        at: Time,
+    ) {
+        let Some(open) = &state.open else { return };
+        let exhausted = open.presentations >= self.turns.questions_max;
+        let action = match action {
+            Action::Ask(_) if exhausted => Action::Pick(open.belief().most_likely()),
+            action => action,
+        };
+        let Decision { value, mut alternatives, expected_questions, bounds, .. } = decision;
+        alternatives.truncate(ALTERNATIVES_MAX);
+        let utterance = basis.utterance;
+        let reasons = Act {
+            utterance,
+            decided: at,
+            value,
+            alternatives,
+            expected_questions,
+            bounds,
+            ..Act::default()
+        };
+        match action {
+            Action::Wait => set(state, reasons),
+            Action::Ask(question) => self.ask(state, question, basis, reasons),
+            Action::Pick(object) if self.model.absent() == Some(object) => {
+                self.close(state, Outcome::NotHere, at, Content::NotHere);
+                set_reasons(state, reasons);
+            }
+            Action::Pick(object) => self.pick(state, object, reasons),
+        }
+    }
+
+    /// Repeats the question after a silent response window, or abandons the interaction.
+    fn silence(&mut self, state: &mut State, at: Time) {
+        if state.open.is_none() {
+            return;
+        }
+        self.see_answer(state, false);
+        let Some(open) = &mut state.open else { return };
+        open.silences += 1;
+        let out_of_questions = open.presentations >= self.turns.questions_max;
+        if open.silences > self.turns.repeats_max || out_of_questions {
+            self.close(state, Outcome::Abandoned, at, Content::Abandoned);
+        } else if self.turns.repeats_same {
+            repeat(state, at);
+        } else {
+            let (heard, utterance) = (state.act.prompt, state.applied);
+            self.decide_otherwise(state, Basis { heard, utterance, ..Basis::default() }, at);
+        }
+    }
+
+    fn end_pick(&mut self, state: &mut State, pick: PickId, outcome: PickOutcome, at: Time) {
+        let ordered = state.open.as_ref().and_then(|open| open.pick);
+        let Some((_, object)) = ordered.filter(|(id, _)| *id == pick) else { return };
+        let Some(ends_as) = Outcome::of_pick(outcome) else { return };
+        if outcome == PickOutcome::Cancelled {
+            // The order still stands: the arm gave it up before a grasp, because it was restarted
+            // with another scene.
+            if state.act.kind == ActKind::Pick {
+                return order_again(state, at);
+            }
+            if state.open.as_ref().is_some_and(|open| open.corrected) {
+                return self.choose_another(state, at);
+            }
+        }
+        if let (PickOutcome::Delivered, Some(open)) = (outcome, &state.open) {
+            state.history.count(&open.picked);
+        }
+        let content = Content::PickEnded(self.description(object), outcome);
+        self.close(state, ends_as, at, content);
+    }
+
+    /// Ends the interaction and says so.
+    fn close(&self, state: &mut State, outcome: Outcome, at: Time, content: Content) {
+        let Some(open) = state.open.take() else { return };
+        let questions = open.questions();
+        if let Some(person) = open.posterior.person() {
+            state.person = Some(person.clone());
+        }
+        state.ended = Some(Ended {
+            interaction: open.id,
+            object: open.pick.map(|(_, object)| object),
+            name: open.pick.map(|_| open.picked),
+            outcome,
+            questions,
+            seconds: at.since(open.opened).s(),
+            utterances: open.utterances,
+        });
+        say(state, content, at);
+    }
+
+    /// Returns the description of an object, unique in the scene.
+    fn description(&mut self, object: ObjectId) -> String {
+        let known = &mut self.descriptions[object.index()];
+        known.get_or_insert_with(|| rendering::object(&self.scene, object)).clone()
+    }
+}

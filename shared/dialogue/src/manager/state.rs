@@ -1,0 +1,274 @@
+//! State of the dialogue: everything that must outlive a restart. It is small, so each journal record
+//! holds it whole, and recovery reads one record.
+
+use scene::{ObjectId, Question};
+use serde::{Deserialize, Serialize};
+
+use super::evidence::Evidence;
+use super::history::History;
+use super::line::{Line, Preface};
+use crate::answer_attribution::Attributed;
+use crate::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
+use crate::time::Time;
+use crate::user_model::{Person, Reaction};
+use crate::{
+    ActKind, Action, Belief, Ended, Interpretation, NamedQuestion, PickOutcome, Posterior,
+    Presentation,
+};
+
+/// The dialogue's state.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Key of the scene that the belief is about.
+    pub scene_key: u64,
+    /// Key of the settings, scene included, under which the state was decided.
+    pub settings_key: u64,
+    /// Latest utterance that the state includes.
+    pub applied: UtteranceSeq,
+    /// Last interaction number assigned.
+    pub last_interaction: InteractionId,
+    /// Last prompt number assigned.
+    pub last_prompt: PromptId,
+    /// The open interaction.
+    pub open: Option<Interaction>,
+    /// The standing decision.
+    pub act: Act,
+    /// The questions that the latest utterance was attributed to.
+    pub attributed: Attributed,
+    /// The latest interaction that ended.
+    pub ended: Option<Ended>,
+    /// Deliveries by object.
+    pub history: History,
+    /// The user as learned in earlier interactions, where the planner uses it.
+    pub person: Option<Person>,
+    /// The user's reaction times as observed so far.
+    pub timing: Timing,
+}
+
+/// Reaction times of the user. None until an answer was observed: the configured one holds then.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Timing {
+    /// From the end of a spoken question to the first sound of the answer.
+    pub spoken: Option<Reaction>,
+    /// From a question's appearance to the answer typed.
+    pub typed: Option<Reaction>,
+}
+
+/// One interaction in progress.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Interaction {
+    /// Its number.
+    pub id: InteractionId,
+    /// When its first utterance was accepted.
+    pub opened: Time,
+    /// Posterior over the wanted object, and over the user where the planner uses it.
+    pub posterior: Posterior,
+    /// Content of the utterances, to be scored again under another scene.
+    pub evidence: Vec<Evidence>,
+    /// Utterances dropped from `evidence` for lack of room.
+    pub forgotten: u32,
+    /// The scene's objects when it was last read; empty where they are too many.
+    pub objects: Vec<KnownObject>,
+    /// Every question asked, so that an answer can be scored against the one it was meant for.
+    pub prompts: Vec<Prompt>,
+    /// Presentations of questions so far.
+    pub presentations: u32,
+    /// Decisions so far; seeds a planner's random numbers.
+    pub step: u32,
+    /// Consecutive response windows that passed in silence.
+    pub silences: u32,
+    /// First and last utterance.
+    pub utterances: (UtteranceSeq, UtteranceSeq),
+    /// A decision deferred until the user has finished speaking.
+    pub deferred: Option<Deferred>,
+    /// The ordered pick.
+    pub pick: Option<(PickId, ObjectId)>,
+    /// Name of its object.
+    pub picked: String,
+    /// Picks ordered so far.
+    pub picks: u32,
+    /// Whether the ordered pick is called off for another object: the interaction continues once
+    /// the arm has let go of it.
+    pub corrected: bool,
+}
+
+impl Interaction {
+    /// An interaction in which nothing was said yet.
+    pub fn new(id: InteractionId, opened: Time, posterior: Posterior, first: UtteranceSeq) -> Self {
+        Self {
+            id,
+            opened,
+            posterior,
+            evidence: Vec::new(),
+            forgotten: 0,
+            objects: Vec::new(),
+            prompts: Vec::new(),
+            presentations: 0,
+            step: 0,
+            silences: 0,
+            utterances: (first, first),
+            deferred: None,
+            pick: None,
+            picked: String::new(),
+            picks: 0,
+            corrected: false,
+        }
+    }
+
+    /// Returns the belief over the wanted object.
+    pub fn belief(&self) -> Belief {
+        self.posterior.belief()
+    }
+
+    /// Returns the number of questions asked, each counted once however often it was repeated.
+    pub fn questions(&self) -> u32 {
+        self.prompts.len() as u32
+    }
+
+    pub(super) fn prompt(&self, id: PromptId) -> Option<&Prompt> {
+        self.prompts.iter().find(|prompt| prompt.id == id)
+    }
+
+    pub(super) fn prompt_mut(&mut self, id: PromptId) -> Option<&mut Prompt> {
+        self.prompts.iter_mut().find(|prompt| prompt.id == id)
+    }
+}
+
+/// What a decision rests on.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Basis {
+    /// The last question that the user had heard completely.
+    pub heard: PromptId,
+    /// A remark to be said before the next question.
+    pub preface: Preface,
+    /// The latest utterance.
+    pub utterance: UtteranceSeq,
+}
+
+/// A deferred decision: the user was still speaking when the belief was updated.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Deferred {
+    /// What it rests on.
+    pub basis: Basis,
+    /// Since when it waits.
+    pub since: Time,
+}
+
+/// An object of the scene, by name.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KnownObject {
+    /// Its name.
+    pub name: String,
+    /// Its description, unique in the scene, e.g. `small white bowl in the dishwasher`.
+    pub description: String,
+}
+
+/// A question that was asked.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Prompt {
+    /// Its number.
+    pub id: PromptId,
+    /// The question, numbered as in the present scene; none if that scene lacks its subject.
+    pub question: Question,
+    /// The question by names.
+    pub named: NamedQuestion,
+    /// When the answer to its latest presentation had ended.
+    pub answered: Option<Time>,
+}
+
+/// A decision with its reasons.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Act {
+    /// Its number.
+    pub id: ActId,
+    /// Its kind.
+    pub kind: ActKind,
+    /// The line that goes with it, if any.
+    pub prompt: PromptId,
+    /// Which presentation of the prompt.
+    pub presentation: u32,
+    /// The question asked.
+    pub question: Question,
+    /// The pick ordered.
+    pub pick: Option<(PickId, ObjectId)>,
+    /// The robot's words.
+    pub line: Line,
+    /// The utterance that led to it.
+    pub utterance: UtteranceSeq,
+    /// When it was decided.
+    pub decided: Time,
+    /// Expected discounted return.
+    pub value: f64,
+    /// The best other actions with their values, best first.
+    pub alternatives: Vec<(Action, f64)>,
+    /// Expected number of questions still to ask.
+    pub expected_questions: f64,
+    /// Certified lower and upper bound on the value of the best policy, where the planner has them.
+    pub bounds: Option<(f64, f64)>,
+}
+
+/// Cause of a change of the state.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Cause {
+    /// The journal starts here; the state is taken as it is.
+    Snapshot,
+    /// An utterance.
+    Utterance(Utterance),
+    /// The response window passed in silence.
+    Silence,
+    /// The user has finished speaking: a deferred decision can be made.
+    Quiet,
+    /// The arm has ended the pick.
+    PickEnded {
+        /// The pick.
+        pick: PickId,
+        /// Its outcome.
+        outcome: PickOutcome,
+    },
+    /// The service was started with other settings, perhaps with another scene.
+    Reconfigured,
+}
+
+/// An utterance of the user with its interpretations.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Utterance {
+    /// Its number.
+    pub seq: UtteranceSeq,
+    /// The latest presentations whose sound had begun when it was accepted, newest first.
+    pub presentations: Vec<Presentation>,
+    /// Whether it was typed, or given whole in another way; else it was spoken live.
+    pub typed: bool,
+    /// When the user began to speak, or typed.
+    pub onset: Time,
+    /// When the user had finished.
+    pub end: Time,
+    /// When it was accepted.
+    pub accepted: Time,
+    /// Interpretations as an answer to each of the presentations, and to none.
+    pub interpretations: Vec<Interpretation>,
+    /// A word that the scene does not have; may be empty.
+    pub unknown: String,
+    /// The point that the user points at, metres, frame `base`.
+    pub gesture: Option<[f64; 3]>,
+    /// Whether the user is still speaking, or more speech is being recognised.
+    pub more: bool,
+}
+
+impl Utterance {
+    /// Returns the last question that the user had heard completely before beginning to speak.
+    pub fn heard(&self) -> PromptId {
+        let heard = |put: &&Presentation| put.complete && put.ended <= Some(self.onset);
+        self.presentations.iter().find(heard).map_or(PromptId(0), |put| put.prompt)
+    }
+}
+
+/// A journal record: the cause of a change, its time, and the state after it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// The cause.
+    pub cause: Cause,
+    /// The time; the transition depends on no other clock.
+    pub at: Time,
+    /// The state after it.
+    pub state: State,
+}

@@ -1,0 +1,110 @@
+//! English of the robot's lines and actions. Nothing else in the dialogue produces text.
+
+use scene::{ObjectId, Question, Scene};
+
+use crate::manager::{Act, Content, Preface, Remark};
+use crate::{Action, PickOutcome};
+
+/// Returns the text of an act's line; empty where nothing is said.
+pub fn text(scene: &Scene, act: &Act) -> String {
+    let content = match &act.line.content {
+        Content::Silence => return String::new(),
+        Content::Question { variant, presentation } => {
+            if act.question == Question::None || !scene.contains(act.question) {
+                return String::new();
+            }
+            scene.phrase_variant(act.question, *variant, *presentation)
+        }
+        Content::Fetching(object) => format!("I will get the {object}."),
+        Content::PickEnded(object, outcome) => pick_ended(object, *outcome),
+        Content::Remark(it) => remark(scene, *it),
+        Content::Correcting | Content::Cancelled => "All right.".to_owned(),
+        Content::CallingOff => "I will leave it, unless I already hold it.".to_owned(),
+        Content::Abandoned => "I will wait until you ask me again.".to_owned(),
+        Content::NotHere => {
+            format!("What you want does not seem to be here. {}", inventory(scene))
+        }
+        Content::SceneReplaced => "The scene has changed; please ask me again.".to_owned(),
+    };
+    format!("{}{content}", preface(scene, &act.line.preface))
+}
+
+/// Returns the text of an action, for operators.
+pub fn action(scene: &Scene, action: Action) -> String {
+    match action {
+        Action::Wait => "wait".to_owned(),
+        Action::Ask(question) if scene.contains(question) => {
+            format!("ask: {}", scene.phrase(question))
+        }
+        Action::Ask(_) => "ask".to_owned(),
+        Action::Pick(object) => match scene.objects().get(object.index()) {
+            Some(object) => format!("pick {}", object.name),
+            None => "conclude that it is not here".to_owned(),
+        },
+    }
+}
+
+/// Returns the description by which the robot refers to an object.
+pub fn object(scene: &Scene, object: ObjectId) -> String {
+    scene.describe(object)
+}
+
+fn preface(scene: &Scene, preface: &Preface) -> String {
+    match preface {
+        Preface::None => String::new(),
+        Preface::UnknownWord(word) => format!("I do not know \"{word}\" here. "),
+        Preface::StartingOver => "From the beginning. ".to_owned(),
+        Preface::ObjectsChanged { gone, new } => {
+            let noun = scene.noun();
+            format!("{}{}", changed(noun, gone, "gone"), changed(noun, new, "new"))
+        }
+        Preface::SceneChanged => format!("The {}s here have changed. ", scene.noun()),
+        Preface::Remark(it) => format!("{} ", remark(scene, *it)),
+    }
+}
+
+/// Longest description that is said before a question, bytes: it must leave room for the question.
+const DESCRIPTION_MAX: usize = 60;
+
+fn changed(noun: &str, objects: &[String], how: &str) -> String {
+    match objects {
+        [] => String::new(),
+        [one] if one.len() <= DESCRIPTION_MAX => format!("The {one} is {how}. "),
+        [_] => format!("One {noun} is {how}. "),
+        more => format!("{} {noun}s are {how}. ", more.len()),
+    }
+}
+
+fn remark(scene: &Scene, remark: Remark) -> String {
+    match remark {
+        Remark::Stopped => "I have stopped. Release the motion stop to go on.".to_owned(),
+        Remark::Inventory => inventory(scene),
+    }
+}
+
+fn pick_ended(it: &str, outcome: PickOutcome) -> String {
+    match outcome {
+        PickOutcome::Delivered => format!("Here is the {it}."),
+        PickOutcome::Unreachable => format!("I cannot reach the {it}."),
+        PickOutcome::Interrupted => {
+            format!("I was interrupted while grasping the {it}. Please look before you ask again.")
+        }
+        PickOutcome::Missed => {
+            format!("I could not get hold of the {it}. It may have moved a little.")
+        }
+        PickOutcome::Blocked => {
+            "My arm did not move as it should. Please look before you ask again.".to_owned()
+        }
+        PickOutcome::Cancelled => "I have left it where it was.".to_owned(),
+        PickOutcome::Pending => String::new(),
+    }
+}
+
+fn inventory(scene: &Scene) -> String {
+    let values = scene.attributes().iter().filter(|k| k.values.len() > 1).map(|k| {
+        let names: Vec<&str> = k.values.iter().map(|v| v.name.as_str()).collect();
+        format!("{} {}", k.name, names.join(" or "))
+    });
+    let values: Vec<String> = values.collect();
+    format!("I see {} {}s: {}.", scene.objects().len(), scene.noun(), values.join(", "))
+}
