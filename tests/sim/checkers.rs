@@ -1,8 +1,9 @@
 //! What must hold after any dialogue, read from the journals as an outsider would.
 
 use crate::world::World;
+use config::Settings;
+use dialogue::manager::{Cause, refold, refold_since};
 use messages::{Outcome, PickOutcome, PickPhase};
-use policy::state::Cause;
 use speech::record::Record as Spoken;
 
 type Verdict = Result<(), String>;
@@ -76,17 +77,17 @@ fn nothing_premature(world: &World) -> Verdict {
 /// The belief and every decision follow from the journal, bit for bit (I8), those before a change
 /// of the scene under the former settings and the change itself under the new ones.
 fn belief_refolds(world: &World) -> Verdict {
-    let mind = |settings| policy::shell::mind(settings).map_err(|e| e.to_string());
+    let manager = |settings: &Settings| settings.manager().map_err(|e| e.to_string());
     let records = world.policy.journal();
     let mut former = 0;
     if let Some((settings, count)) = &world.before {
-        let folded = policy::journal_check::refold(&mut mind(settings)?, &records[..*count]);
+        let folded = refold(&mut manager(settings)?, &records[..*count]);
         folded.map_err(|e| format!("before the change: {e}"))?;
         former = *count;
     }
     let settings_key = records.last().map_or(0, |record| record.state.settings_key);
-    let mut now = mind(&world.settings)?;
-    let own = policy::journal_check::refold_since(&mut now, records, settings_key);
+    let mut now = manager(&world.settings)?;
+    let own = refold_since(&mut now, records, settings_key);
     let own = own.map_err(|e| e.to_string())?;
     ensure(own + former == records.len(), || format!("{own} and {former} of {}", records.len()))
 }

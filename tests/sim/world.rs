@@ -121,7 +121,7 @@ impl World {
     /// All services are started anew with the other scene, each after a while of its own: what one
     /// of them sends may reach another that still knows the former.
     fn change_the_scene(&mut self) {
-        let is_time = self.view.decision == "ask" && self.policy.is_up();
+        let is_time = self.view.decision == messages::ActKind::Ask && self.policy.is_up();
         let Some(to) = self.change.take_if(|_| is_time) else { return };
         self.tell("the scene changes");
         self.speech.replace(configured::<speech::shell::SpeechProgram>(&to));

@@ -33,7 +33,7 @@ impl Program for ArmProgram {
         Ok(Config { arm: settings.arm.clone(), setup, scene: settings.scene.clone() })
     }
 
-    fn describe(record: &Record) -> String {
+    fn describe(_: Option<&Settings>, record: &Record) -> String {
         inspection::line(record)
     }
 

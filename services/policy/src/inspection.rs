@@ -3,19 +3,18 @@
 use std::collections::BTreeMap;
 
 use config::Settings;
-use dialogue::Belief;
-use messages::{ActKind, PickOutcome};
-use service::exit::Failure;
+use dialogue::manager::{Act, Cause, Manager, Record, refold_since};
+use dialogue::{ActKind, Action, PickOutcome, rendering};
+use scene::Scene;
+use service::exit::{Exit, Failure};
 use service::inspection::{Part, at, count};
 
-use crate::journal_check::refold_since;
-use crate::mind::Mind;
-use crate::shell::mind_of_key;
-use crate::state::{Act, Cause, Record};
 
-/// Renders a record as one line.
-pub(crate) fn line(record: &Record) -> String {
+/// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
+pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     let Record { cause, state, .. } = record;
+    // Numbers of another scene have no words here.
+    let scene = scene.filter(|scene| scene.key() == state.scene_key);
     let why = match cause {
         Cause::Snapshot => "begun anew".to_owned(),
         Cause::Utterance(heard) => format!("utterance {}", heard.seq),
@@ -28,27 +27,33 @@ pub(crate) fn line(record: &Record) -> String {
     };
     let does = match state.act.kind {
         ActKind::Wait => "wait".to_owned(),
-        kind => format!("{kind:?}: {}", state.act.text),
+        kind => {
+            let text = scene.map(|scene| rendering::text(scene, &state.act));
+            format!("{kind:?}: {}", text.unwrap_or_default())
+        }
     };
     let where_ = state.open.as_ref().map(|open| {
-        let belief = Belief::from_log(open.belief.clone());
-        let best = belief.map_or(f64::NAN, |belief| belief.probability(belief.most_likely()));
+        let belief = open.belief();
+        let best = belief.probability(belief.most_likely());
         format!("interaction {}, best {:.1} %", open.id, best * 100.0)
     });
     let where_ = where_.as_deref().unwrap_or("at rest");
-    format!("{}  {why:<16}  {does}  ({where_}{})", at(record.at), reasons(&state.act))
+    format!("{}  {why:<16}  {does}  ({where_}{})", at(record.at), reasons(scene, &state.act))
 }
 
 /// Why the robot decided so: the value with its bounds, the questions to come, and what else it
 /// weighed. A mere remark has no reasons.
-fn reasons(act: &Act) -> String {
+fn reasons(scene: Option<&Scene>, act: &Act) -> String {
     if act.value == 0.0 && act.alternatives.is_empty() {
         return String::new();
     }
     let bounds = act.bounds.map(|(low, high)| format!(", best {low:.2} to {high:.2}"));
     let value = format!("value {:.2}{}", act.value, bounds.unwrap_or_default());
-    let others: Vec<String> =
-        act.alternatives.iter().map(|(action, value)| format!("{action} {value:.2}")).collect();
+    let other = |(action, value): &(Action, f64)| {
+        let action = scene.map_or(format!("{action:?}"), |scene| rendering::action(scene, *action));
+        format!("{action} {value:.2}")
+    };
+    let others: Vec<String> = act.alternatives.iter().map(other).collect();
     let before = if others.is_empty() { "" } else { ", before " };
     let questions = act.expected_questions;
     format!("; {value}, {questions:.1} questions to come{before}{}", others.join(", "))
@@ -60,7 +65,8 @@ pub(crate) fn verify(settings: &Settings, parts: &[Part<Record>]) -> Result<Vec<
     let newest = parts.last().and_then(|part| part.records().last());
     // The given settings are taken to be those at the journal's end.
     let settings_key = newest.map_or(0, |record| record.state.settings_key);
-    let mut mind = mind_of_key(settings, settings_key)?;
+    let manager = settings.manager_of_key(settings_key);
+    let mut manager = manager.map_err(|e| Failure::new(Exit::Config, e.to_string()))?;
     let mut delivered: BTreeMap<u64, u32> = BTreeMap::new();
     let mut applied = None;
     for part in parts {
@@ -70,7 +76,7 @@ pub(crate) fn verify(settings: &Settings, parts: &[Part<Record>]) -> Result<Vec<
     }
     let total: usize = parts.iter().map(|part| part.records().len()).sum();
     let refolded: usize =
-        parts.iter().map(|part| fold(&mut mind, part, settings_key)).sum::<Result<_, _>>()?;
+        parts.iter().map(|part| fold(&mut manager, part, settings_key)).sum::<Result<_, _>>()?;
     let mut facts = vec![
         format!("{} applied once and in order", count(applied.unwrap_or(0), "utterance")),
         format!("delivered in {}, at most once each", count(delivered.len() as u64, "interaction")),
@@ -107,9 +113,6 @@ fn step(
         _ => {}
     }
     *applied = Some(now);
-    if let Some(open) = &record.state.open {
-        Belief::from_log(open.belief.clone()).map_err(|error| error.to_string())?;
-    }
     if let Cause::PickEnded { pick, outcome: PickOutcome::Delivered } = record.cause {
         let count = delivered.entry(pick.interaction.0).or_default();
         *count += 1;
@@ -121,8 +124,12 @@ fn step(
 }
 
 /// Refolds the records that were decided under the settings with that key; how many those are.
-fn fold(mind: &mut Mind, part: &Part<Record>, settings_key: u64) -> Result<usize, Failure> {
-    refold_since(mind, part.records(), settings_key).map_err(|mismatch| {
+fn fold(
+    manager: &mut Manager,
+    part: &Part<Record>,
+    settings_key: u64,
+) -> Result<usize, Failure> {
+    refold_since(manager, part.records(), settings_key).map_err(|mismatch| {
         let seq = part.first_seq() + mismatch.index as u64;
         let what = format!("the state does not follow from the one before it: {}", mismatch.part);
         part.broken(seq, format!("{what} differs (with these settings)"))
@@ -131,13 +138,13 @@ fn fold(mind: &mut Mind, part: &Part<Record>, settings_key: u64) -> Result<usize
 
 #[cfg(test)]
 mod tests {
-    use crate::state::{Heard, State};
+    use dialogue::manager::{State, Utterance};
     use messages::{InteractionId, PickId, UtteranceSeq};
 
     use super::*;
 
     fn heard(seq: u64) -> Record {
-        let heard = Heard { seq: UtteranceSeq(seq), ..Heard::default() };
+        let heard = Utterance { seq: UtteranceSeq(seq), ..Utterance::default() };
         let state = State { applied: UtteranceSeq(seq), ..State::default() };
         Record { cause: Cause::Utterance(heard), at: service::Time(0), state }
     }
@@ -175,13 +182,5 @@ mod tests {
         assert_eq!(check(&[heard(1), delivered(1, 1), delivered(1, 2)]), Ok(()));
         let told = check(&[heard(1), delivered(1, 1), delivered(1, 1)]).unwrap_err();
         assert_eq!(told, "interaction 1 delivered 2 times");
-    }
-
-    #[test]
-    fn a_belief_that_is_none_is_found() {
-        let mut record = heard(1);
-        record.state.open =
-            Some(crate::state::Interaction { belief: vec![0.0, f64::NAN], ..Default::default() });
-        assert!(check(&[record]).unwrap_err().contains("not a probability"));
     }
 }

@@ -1,29 +1,28 @@
-//! The planner's decisions, kept on disk between runs.
+//! Cache of the planner's decisions on disk, between runs.
 //!
-//! They are a cache and nothing more: a file that is missing, torn or of another problem is worked
-//! out again, and what is decided is the same with and without it.
+//! Decisions are the same with and without it: a file that is missing, torn or of another problem is
+//! computed again.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use dialogue::PolicyTable;
+use dialogue::manager::Manager;
 
-use crate::mind::Mind;
-
-/// Has the planner work ahead from a dialogue's usual beginning, or takes what an earlier run
-/// worked out for the same scene and settings. Keeps the result in `folder`.
-pub(crate) fn work_ahead(mind: &mut Mind, folder: &Path) {
-    let path = file(folder, mind.problem().key());
+/// Lets the planner precompute its decisions from a dialogue's usual beginning, or adopts those that an
+/// earlier run left in `folder` for the same scene and settings.
+pub(crate) fn precompute(manager: &mut Manager, folder: &Path) {
+    let path = file(folder, manager.problem().key());
     if let Some(table) = read(&path)
-        && mind.adopt(table)
+        && manager.adopt(table)
     {
         return;
     }
-    if let Some(table) = mind.prepare()
+    if let Some(table) = manager.precompute()
         && let Err(error) = write(&path, table)
     {
-        tracing::warn!(path = %path.display(), %error, "the policy is not kept on disk");
+        tracing::warn!(path = %path.display(), %error, "cannot cache the policy on disk");
     }
 }
 
@@ -38,8 +37,7 @@ fn read(path: &Path) -> Option<PolicyTable> {
     postcard::from_bytes(body).ok()
 }
 
-/// Writes beside and renames, so that nobody ever reads half a file. A group has one scene at a
-/// time, so the tables of others are removed.
+/// Replaces the file atomically. A group has one scene at a time, so the tables of others are removed.
 fn write(path: &Path, table: &PolicyTable) -> io::Result<()> {
     let mut bytes = postcard::to_stdvec(table).map_err(io::Error::other)?;
     bytes.extend(crc32c::crc32c(&bytes).to_le_bytes());
@@ -57,32 +55,32 @@ fn write(path: &Path, table: &PolicyTable) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tests::mind_of;
+    use crate::tests::manager_of;
 
     #[test]
-    fn what_is_kept_is_taken_and_nonsense_is_worked_out_again() {
+    fn policy_cache_adopts_its_file_and_replaces_a_damaged_one() {
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().join("policies");
-        let mut first = mind_of("optimal");
-        work_ahead(&mut first, &folder);
+        let mut first = manager_of("optimal");
+        precompute(&mut first, &folder);
         let path = file(&folder, first.problem().key());
         let kept = read(&path).unwrap();
         assert!(kept.len() > 5);
-        let mut second = mind_of("optimal");
-        work_ahead(&mut second, &folder);
+        let mut second = manager_of("optimal");
+        precompute(&mut second, &folder);
         assert_eq!(second.table(), Some(&kept));
         let mut bytes = fs::read(&path).unwrap();
         bytes[20] ^= 1;
         fs::write(&path, bytes).unwrap();
         assert_eq!(read(&path), None);
-        work_ahead(&mut second, &folder);
+        precompute(&mut second, &folder);
         assert_eq!(read(&path), Some(kept));
     }
 
     #[test]
-    fn planners_without_a_table_leave_no_file() {
+    fn policy_cache_writes_no_file_for_planners_without_a_table() {
         let folder = tempfile::tempdir().unwrap();
-        work_ahead(&mut mind_of("lookahead"), folder.path());
+        precompute(&mut manager_of("lookahead"), folder.path());
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 }

@@ -1,14 +1,11 @@
 //! The policy's topics and configuration.
 
-use crate::mind::{Assumptions, Mind};
-use crate::state::Record;
-use crate::{In, Out, PolicyNode, inspection, kept};
-use config::{Section, Settings};
-use dialogue::Confusion;
+use crate::{In, Out, PolicyNode, inspection, policy_cache};
+use config::{ManagerError, Settings};
+use dialogue::manager::{Manager, Record};
 use messages::{
     Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, Service, topics,
 };
-use scene::{Fnv1a, Scene};
 use service::bus::{EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::inspection::Part;
@@ -22,23 +19,30 @@ pub struct PolicyProgram;
 
 impl Program for PolicyProgram {
     const SERVICE: Service = Service::Policy;
-    const RECORD: Option<&'static str> = Some("policy/4");
-    const ABOUT: &'static str = "keeps the belief over the objects and decides what to ask or do \
+    const RECORD: Option<&'static str> = Some("policy/5");
+    const ABOUT: &'static str = "maintains the belief over the objects and decides what to ask or do \
                                  [--planner NAME]";
     type Node = PolicyNode;
     type Shell = PolicyShell;
 
-    fn config(environment: &Environment, settings: &Settings) -> Result<Mind, Failure> {
-        let mut mind = match planner(&environment.arguments)? {
-            Some(planner) => mind_with(settings, planner)?,
-            None => mind(settings)?,
+    fn config(environment: &Environment, settings: &Settings) -> Result<Manager, Failure> {
+        let manager = match planner(&environment.arguments)? {
+            Some(planner) => settings.manager_with(planner),
+            None => settings.manager(),
         };
-        kept::work_ahead(&mut mind, &environment.paths.policies());
-        Ok(mind)
+        let mut manager = manager.map_err(|error| {
+            let exit = match error {
+                ManagerError::Planner(_) => Exit::Config,
+                ManagerError::Confusion(_) => Exit::Invariant,
+            };
+            Failure::new(exit, error.to_string())
+        })?;
+        policy_cache::precompute(&mut manager, &environment.paths.policies());
+        Ok(manager)
     }
 
-    fn describe(record: &Record) -> String {
-        inspection::line(record)
+    fn describe(settings: Option<&Settings>, record: &Record) -> String {
+        inspection::line(settings.map(|settings| &settings.scene), record)
     }
 
     fn verify(settings: Settings, parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
@@ -46,7 +50,7 @@ impl Program for PolicyProgram {
     }
 }
 
-/// The planner that the arguments name, if they do.
+/// Returns the planner that the arguments name, if any.
 fn planner(arguments: &[String]) -> Result<Option<&str>, Failure> {
     match arguments {
         [] => Ok(None),
@@ -55,70 +59,10 @@ fn planner(arguments: &[String]) -> Result<Option<&str>, Failure> {
             Err(error) => Err(Failure::new(Exit::Usage, format!("--planner: {error}"))),
         },
         other => {
-            let what = format!("{other:?}: only --planner NAME is known");
+            let what = format!("invalid arguments {other:?}: expected --planner NAME");
             Err(Failure::new(Exit::Usage, what))
         }
     }
-}
-
-/// The mind that the settings describe.
-///
-/// # Errors
-/// A planner that does not exist.
-pub fn mind(settings: &Settings) -> Result<Mind, Failure> {
-    mind_with(settings, &settings.dialogue.planner)
-}
-
-/// The mind that made the decisions under the key of `settings_key`: that of the settings, or the
-/// same with another planner, which may have been swapped in. That of the settings where the key is
-/// of neither.
-///
-/// # Errors
-/// A planner that does not exist.
-pub fn mind_of_key(settings: &Settings, settings_key: u64) -> Result<Mind, Failure> {
-    let mut known = dialogue::registry::names().into_iter();
-    let planner = known.find(|planner| key(settings, planner) == settings_key);
-    mind_with(settings, planner.unwrap_or(&settings.dialogue.planner))
-}
-
-/// The mind that the settings describe, with that planner in place of theirs.
-fn mind_with(settings: &Settings, planner: &str) -> Result<Mind, Failure> {
-    let dialogue = &settings.dialogue;
-    let key = key(settings, planner);
-    let planner = dialogue::registry::planner(planner)
-        .map_err(|e| Failure::new(Exit::Config, format!("dialogue.planner: {e}")))?;
-    let gesture = dialogue.gesture;
-    let assumptions = Assumptions {
-        params: dialogue.params,
-        confusion: confusion(&settings.scene)?,
-        costs: dialogue.costs,
-        durations: settings.durations.clone(),
-        actions: dialogue.actions,
-        prior: dialogue.prior,
-        gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
-    };
-    let (scene, turns) = (settings.scene.clone(), dialogue.turns);
-    Ok(Mind::new(scene, assumptions, planner, turns, key))
-}
-
-/// Which of the scene's words are misheard for one another.
-fn confusion(scene: &Scene) -> Result<Confusion, Failure> {
-    Confusion::from_rows(language::confusion(scene))
-        .map_err(|e| Failure::new(Exit::Invariant, format!("words by sound: {e}")))
-}
-
-/// Identity of all that the mind decides by: the settings, with that planner.
-pub(crate) fn key(settings: &Settings, planner: &str) -> u64 {
-    let mut hash = Fnv1a::new();
-    if planner != settings.dialogue.planner {
-        hash.text(planner);
-    }
-    hash.text(&settings.section_text(Section::Dialogue));
-    hash.text(&settings.scene_file().text);
-    if settings.durations.is_some() {
-        hash.text(&settings.durations_text());
-    }
-    hash.value()
 }
 
 /// The policy's topics.
@@ -167,16 +111,16 @@ impl Shell<PolicyNode> for PolicyShell {
 mod tests {
     use super::*;
 
-    fn words(words: &[&str]) -> Vec<String> {
+    fn arguments(words: &[&str]) -> Vec<String> {
         words.iter().map(|word| (*word).to_owned()).collect()
     }
 
     #[test]
-    fn the_planner_may_be_named_on_the_command_line() {
+    fn policy_arguments_name_the_planner() {
         assert_eq!(planner(&[]).unwrap(), None);
-        assert_eq!(planner(&words(&["--planner", "entropy"])).unwrap(), Some("entropy"));
+        assert_eq!(planner(&arguments(&["--planner", "entropy"])).unwrap(), Some("entropy"));
         for wrong in [&["--planner"][..], &["--planner", "greedy"], &["--language", "paper"]] {
-            let failure = planner(&words(wrong)).unwrap_err();
+            let failure = planner(&arguments(wrong)).unwrap_err();
             assert_eq!(failure.exit, Exit::Usage, "{wrong:?}");
             assert!(failure.to_string().contains("planner"), "{failure}");
         }

@@ -1,23 +1,24 @@
 //! The policy's rules, on the shipped six bowls.
 
-mod anew;
 mod correct;
 mod person;
 mod pointing;
 mod prior;
+mod reconfigure;
 mod seconds;
 mod turns;
 
-use crate::mind::{Mind, questions};
-use crate::shell;
-use crate::state::{Asking, Cause, Heard, Record, State};
-use crate::{In, Out, PolicyNode, journal_check};
+use crate::{In, Out, PolicyNode};
 use config::Settings;
-use dialogue::{Answer, Model, Rng};
+use dialogue::manager::{
+    Cause, Interaction, Manager, Record, State, Utterance, refold, refold_since,
+};
+use dialogue::{ActKind, Interpretation, Outcome, PickOutcome, PickPhase, Presentation, rendering};
+use dialogue::{Answer, Belief, Model, Posterior, Rng};
 use messages::WireCode;
 use messages::{
-    ActKind, ArmStatus, AskedQuestion, FixedText, Interpretation, Observation, Outcome,
-    PickOutcome, PickPhase, PresentationState, Presented, PromptId, UtteranceSeq, WireReading,
+    ArmStatus, AskedQuestion, FixedText, Observation, PresentationState, Presented, PromptId,
+    UtteranceSeq, WireReading,
 };
 use scene::{Intent, ObjectId, Question, Reading, Response};
 use service::{Effects, Event, Node, Span, Time};
@@ -36,15 +37,15 @@ fn settings_with(over: &[(&str, &str)]) -> Settings {
     preflight::load(config, None, &over).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn mind() -> Mind {
-    shell::mind(&settings()).unwrap()
+fn manager() -> Manager {
+    settings().manager().unwrap()
 }
 
 /// The shipped configuration with another planner.
-pub(crate) fn mind_of(planner: &str) -> Mind {
+pub(crate) fn manager_of(planner: &str) -> Manager {
     let mut settings = settings();
     settings.dialogue.planner = planner.to_owned();
-    shell::mind(&settings).unwrap()
+    settings.manager().unwrap()
 }
 
 /// An utterance typed after that prompt had been said, if any had.
@@ -52,16 +53,32 @@ fn heard(seq: u64, prompt: PromptId, reading: Reading) -> Cause {
     Cause::Utterance(typed(seq, prompt, reading))
 }
 
-fn typed(seq: u64, prompt: PromptId, reading: Reading) -> Heard {
+fn typed(seq: u64, prompt: PromptId, reading: Reading) -> Utterance {
     let accepted = at(seq);
     let began = Time(accepted.ns() - 500_000_000);
-    let asking = Asking { prompt, began, ended: Some(began), whole: true };
+    let asking = Presentation {
+        prompt,
+        number: 1,
+        began,
+        ended: Some(began),
+        complete: true,
+        ..Presentation::default()
+    };
     let asked = if prompt == PromptId(0) { Vec::new() } else { vec![asking] };
     let as_answer_to =
         |question| Interpretation { weight: 1.0, answers: question, reading: reading.clone() };
     let meant = (0..asked.len()).map(Some).chain([None]).map(as_answer_to).collect();
     let (seq, onset, end) = (UtteranceSeq(seq), accepted, accepted);
-    Heard { seq, asked, typed: true, onset, end, accepted, meant, ..Heard::default() }
+    Utterance {
+        seq,
+        presentations: asked,
+        typed: true,
+        onset,
+        end,
+        accepted,
+        interpretations: meant,
+        ..Utterance::default()
+    }
 }
 
 fn answer(response: Response) -> Reading {
@@ -73,10 +90,15 @@ fn at(seconds: u64) -> Time {
 }
 
 /// A dialogue after the first request, with a question standing.
-fn asked(mind: &mut Mind) -> State {
-    let state = mind.step(&mind.first(), &heard(1, PromptId(0), Reading::default()), at(1));
+fn asked(manager: &mut Manager) -> State {
+    let state = manager.next(&manager.first(), &heard(1, PromptId(0), Reading::default()), at(1));
     assert_eq!(state.act.kind, ActKind::Ask);
     state
+}
+
+/// The English of the standing line.
+fn text(state: &State) -> String {
+    rendering::text(&settings().scene, &state.act)
 }
 
 fn belief(state: &State) -> Vec<f64> {
@@ -85,12 +107,12 @@ fn belief(state: &State) -> Vec<f64> {
 
 #[test]
 fn a_late_answer_is_scored_against_the_question_that_was_heard() {
-    let mut mind = mind();
-    let first = asked(&mut mind);
-    let second = mind.step(&first, &heard(2, first.act.prompt, answer(Response::Yes)), at(2));
+    let mut manager = manager();
+    let first = asked(&mut manager);
+    let second = manager.next(&first, &heard(2, first.act.prompt, answer(Response::Yes)), at(2));
     assert_ne!(second.act.question, first.act.question, "another question stands now");
     // Said before the second question was heard: it can only be meant for the first.
-    let late = mind.step(&second, &heard(3, first.act.prompt, answer(Response::Yes)), at(3));
+    let late = manager.next(&second, &heard(3, first.act.prompt, answer(Response::Yes)), at(3));
     let Question::Attribute(k, v) = first.act.question else { panic!("{:?}", first.act) };
     let scene = settings().scene;
     let mass = |state: &State| -> f64 {
@@ -103,41 +125,42 @@ fn a_late_answer_is_scored_against_the_question_that_was_heard() {
 
 #[test]
 fn an_answer_to_nothing_begins_nothing() {
-    let mut mind = mind();
-    let state = mind.step(&mind.first(), &heard(1, PromptId(5), answer(Response::Yes)), at(1));
+    let mut manager = manager();
+    let state =
+        manager.next(&manager.first(), &heard(1, PromptId(5), answer(Response::Yes)), at(1));
     assert_eq!((state.open, state.applied), (None, UtteranceSeq(1)));
 }
 
 #[test]
 fn an_answer_to_another_interaction_s_question_changes_no_belief() {
-    let mut mind = mind();
-    let state = asked(&mut mind);
+    let mut manager = manager();
+    let state = asked(&mut manager);
     let stale = PromptId(state.act.prompt.0 + 70);
-    let after = mind.step(&state, &heard(2, stale, answer(Response::No)), at(2));
+    let after = manager.next(&state, &heard(2, stale, answer(Response::No)), at(2));
     assert_eq!(belief(&state), belief(&after));
 }
 
 #[test]
 fn silence_repeats_the_same_question_and_then_ends_the_interaction() {
-    let mut mind = mind();
-    let mut state = asked(&mut mind);
+    let mut manager = manager();
+    let mut state = asked(&mut manager);
     let first = state.act.clone();
-    for n in 1..=mind.turns().repeats_max {
-        state = mind.step(&state, &Cause::Silence, at(10 * u64::from(n)));
+    for n in 1..=manager.turns().repeats_max {
+        state = manager.next(&state, &Cause::Silence, at(10 * u64::from(n)));
         assert_eq!((state.act.prompt, state.act.presentation), (first.prompt, 1 + n));
-        assert_eq!(state.open.as_ref().map(questions), Some(1));
+        assert_eq!(state.open.as_ref().map(Interaction::questions), Some(1));
     }
-    state = mind.step(&state, &Cause::Silence, at(100));
+    state = manager.next(&state, &Cause::Silence, at(100));
     assert_eq!(state.ended.map(|ended| ended.outcome), Some(Outcome::Abandoned));
 }
 
 #[test]
 fn starting_over_forgets_what_was_said() {
-    let mut mind = mind();
-    let state = asked(&mut mind);
-    let told = mind.step(&state, &heard(2, state.act.prompt, answer(Response::Yes)), at(2));
+    let mut manager = manager();
+    let state = asked(&mut manager);
+    let told = manager.next(&state, &heard(2, state.act.prompt, answer(Response::Yes)), at(2));
     let over = Reading { intent: Intent::StartOver, ..Reading::default() };
-    let over = mind.step(&told, &heard(3, told.act.prompt, over), at(3));
+    let over = manager.next(&told, &heard(3, told.act.prompt, over), at(3));
     assert_eq!(belief(&over), belief(&state));
 }
 
@@ -168,7 +191,7 @@ fn tell(node: &mut PolicyNode, message: In, now: Time) -> (Vec<Record>, Vec<Out>
 
 #[test]
 fn each_utterance_is_applied_once_and_in_order() {
-    let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
     let request = |seq| observation(seq, 0, &Reading::default());
     assert!(tell(&mut node, request(2), at(1)).0.is_empty(), "the first is missing");
     assert!(node.pending_since().is_some(), "the operator sees that something waits");
@@ -180,7 +203,7 @@ fn each_utterance_is_applied_once_and_in_order() {
 
 #[test]
 fn an_observation_that_makes_no_sense_is_refused_and_comes_again() {
-    let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
     let In::Observation(good) = observation(1, 0, &Reading::default()) else { unreachable!() };
     let mut other_scene = good.clone();
     other_scene.scene_key ^= 1;
@@ -195,7 +218,7 @@ fn an_observation_that_makes_no_sense_is_refused_and_comes_again() {
 
 #[test]
 fn silence_counts_from_the_end_of_the_spoken_question() {
-    let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
     tell(&mut node, observation(1, 0, &Reading::default()), at(1));
     let act = node.state().act.clone();
     let silent = |node: &mut PolicyNode, now| {
@@ -212,7 +235,7 @@ fn silence_counts_from_the_end_of_the_spoken_question() {
         ..Presented::default()
     };
     tell(&mut node, In::Presented(said), at(1000));
-    let window = Span::from_s(mind().turns().response_window_s);
+    let window = Span::from_s(manager().turns().response_window_s);
     assert!(!silent(&mut node, at(1000) + window - Span::from_ms(1)));
     assert!(silent(&mut node, at(1000) + window));
 }
@@ -223,9 +246,9 @@ fn silence_counts_from_the_end_of_the_spoken_question() {
 fn journals_fold_again_bit_for_bit() {
     for seed in 0..40 {
         let records = random_dialogue(seed);
-        journal_check::refold(&mut mind(), &records).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        refold(&mut manager(), &records).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
         for cut in 0..records.len() {
-            let node = PolicyNode::recover(mind(), records[..=cut].to_vec()).unwrap();
+            let node = PolicyNode::recover(manager(), records[..=cut].to_vec()).unwrap();
             assert_eq!(node.state(), &records[cut].state, "seed {seed}, record {cut}");
         }
     }
@@ -235,19 +258,26 @@ fn journals_fold_again_bit_for_bit() {
 fn a_journal_that_was_tampered_with_is_told() {
     let mut records = random_dialogue(3);
     let open = records.iter_mut().find_map(|r| r.state.open.as_mut()).expect("a dialogue");
-    open.belief[0] += 1e-15;
-    assert!(journal_check::refold(&mut mind(), &records).is_err());
+    shift(open, 1e-15);
+    assert!(refold(&mut manager(), &records).is_err());
+}
+
+/// Shifts the first weight of an interaction's belief.
+fn shift(open: &mut Interaction, by: f64) {
+    let mut log = open.belief().log_weights().to_vec();
+    log[0] += by;
+    open.posterior = Posterior::Object(Belief::from_log(log).unwrap());
 }
 
 fn random_dialogue(seed: u64) -> Vec<Record> {
-    let (mut rng, mut mind) = (Rng::new(seed), mind());
+    let (mut rng, mut manager) = (Rng::new(seed), manager());
     let settings = settings();
     let model = Model::new(&settings.scene, settings.dialogue.params);
     let wanted = ObjectId::from(rng.below(6));
-    let (mut state, mut records, mut seq) = (mind.first(), Vec::new(), 0);
+    let (mut state, mut records, mut seq) = (manager.first(), Vec::new(), 0);
     for turn in 1..25 {
         let cause = random_cause(&mut rng, &model, &state, wanted, &mut seq);
-        state = mind.step(&state, &cause, at(turn));
+        state = manager.next(&state, &cause, at(turn));
         records.push(Record { cause, at: at(turn), state: state.clone() });
     }
     records
@@ -289,17 +319,17 @@ fn random_cause(
 #[test]
 fn decisions_of_a_planner_swapped_in_fold_again_with_it() {
     let settings = settings();
-    let swapped_in = |key| shell::mind_of_key(&settings, key).unwrap().planner();
-    assert_eq!(swapped_in(mind().key()), "lookahead");
+    let swapped_in = |key| settings.manager_of_key(key).unwrap().planner();
+    assert_eq!(swapped_in(manager().key()), "lookahead");
     assert_eq!(swapped_in(1), "lookahead", "a key of other settings");
-    let key = shell::key(&settings, "always-ask");
-    assert_ne!(key, mind().key());
+    let key = settings.manager_key("always-ask");
+    assert_ne!(key, manager().key());
     assert_eq!(swapped_in(key), "always-ask");
 }
 
 #[test]
 fn only_the_ordered_pick_s_end_ends_the_interaction() {
-    let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
     let sure = settings().scene;
     let words = ["small", "white", "plastic", "dishwasher", "dishwasher", "dishwasher"];
     let base = words.iter().filter_map(|word| sure.word_named(word)).collect();

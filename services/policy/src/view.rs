@@ -1,12 +1,13 @@
-//! The state as others see it.
+//! The state as other services see it.
 
-use crate::mind::{Mind, questions};
-use crate::state::{Act, Interaction, State};
-use messages::{ActKind, FixedText, PolicyView, RobotAct, UtteranceSeq, WireCode};
-use scene::Question;
+use dialogue::ids::UtteranceSeq;
+use dialogue::manager::{Act, Interaction, Manager, State};
+use dialogue::{ActKind, rendering};
+use messages::{FixedText, PolicyView, RobotAct, WireCode};
+use scene::{Question, Scene};
 
-/// The standing decision on the wire.
-pub(crate) fn act(state: &State) -> RobotAct {
+/// Returns the standing decision as it is published.
+pub(crate) fn act(scene: &Scene, state: &State) -> RobotAct {
     let act = &state.act;
     let interaction = act.pick.map_or(state.last_interaction, |(pick, _)| pick.interaction);
     RobotAct {
@@ -16,63 +17,54 @@ pub(crate) fn act(state: &State) -> RobotAct {
         prompt: act.prompt.0,
         presentation: act.presentation,
         kind: act.kind.code(),
-        question: asks(act).into(),
+        question: answerable(act).into(),
         object: act.pick.map_or(0, |(_, object)| object.0.into()),
         attempt: act.pick.map_or(0, |(pick, _)| pick.attempt),
         decided_ns: act.decided.ns(),
         utterance: act.utterance.0,
-        text: FixedText::truncated(&act.text),
+        text: FixedText::truncated(&rendering::text(scene, act)),
         ..RobotAct::default()
     }
 }
 
-/// What the act's words can be answered as: "I will get the white bowl" is denied like "this one?".
-fn asks(act: &Act) -> Question {
+/// Returns the question as which the act's line can be answered: "I will get the white bowl" can be
+/// denied like "this one?".
+fn answerable(act: &Act) -> Question {
     match (act.kind, act.pick) {
         (ActKind::Pick, Some((_, object))) => Question::Point(object),
         _ => act.question,
     }
 }
 
-/// What clients are told.
-pub(crate) fn view(mind: &Mind, state: &State, refused: u64) -> PolicyView {
+/// Returns the view that clients get.
+pub(crate) fn view(manager: &Manager, state: &State, rejected: u64) -> PolicyView {
     let open = state.open.as_ref();
-    let belief = open.map_or_else(|| mind.prior(state), Interaction::belief);
+    let belief = open.map_or_else(|| manager.prior(state), Interaction::belief);
     let mut belief = belief.probabilities();
-    let objects = mind.scene().objects().len();
+    let objects = manager.scene().objects().len();
     let absent = belief.split_off(objects.min(belief.len())).into_iter().next().unwrap_or(0.0);
-    let numbers = |(first, last): (UtteranceSeq, UtteranceSeq)| (first.0, last.0);
-    let latest = |ended: &messages::Ended| numbers(ended.utterances);
-    let utterances = |open: &Interaction| numbers(open.utterances);
+    let ended = state.ended.as_ref().map(|ended| ended.utterances);
+    let utterances = open.map(|open| open.utterances).or(ended);
     PolicyView {
         scene_key: state.scene_key,
         applied: state.applied.0,
         interaction: open.map_or(0, |open| open.id.0),
         belief,
         absent,
-        person: mind.expects(state),
+        person: manager.user_params(state),
         question: state.act.question,
         prompt: state.act.prompt.0,
-        text: state.act.text.clone(),
-        decision: kind_name(state.act.kind).to_owned(),
+        text: rendering::text(manager.scene(), &state.act),
+        decision: state.act.kind,
         value: state.act.value,
         alternatives: state.act.alternatives.clone(),
         expected_questions: state.act.expected_questions,
         bounds: state.act.bounds,
-        questions: open.map_or(0, questions),
-        utterances: open.map(utterances).or(state.ended.as_ref().map(latest)).unwrap_or_default(),
+        attributed: state.attributed.clone(),
+        questions: open.map_or(0, Interaction::questions),
+        utterances: utterances.map(|(UtteranceSeq(a), UtteranceSeq(b))| (a, b)).unwrap_or_default(),
         last: state.ended.clone(),
-        refused,
-        planner: mind.planner().to_owned(),
-    }
-}
-
-fn kind_name(kind: ActKind) -> &'static str {
-    match kind {
-        ActKind::Wait => "wait",
-        ActKind::Ask => "ask",
-        ActKind::Say => "say",
-        ActKind::Pick => "pick",
-        ActKind::Cancel => "cancel",
+        refused: rejected,
+        planner: manager.planner().to_owned(),
     }
 }

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use config::Settings;
+use dialogue::manager::{Cause, Record, State, Utterance};
+use dialogue::{Belief, Posterior, Presentation};
 use journal::{Header, Journal};
 use messages::{Interpretation, PromptId, UtteranceSeq};
-use policy::mind::Mind;
-use policy::state::{Asking, Cause, Heard, Record, State};
 use scene::{Reading, Response};
 use service::Time;
 
@@ -51,29 +51,37 @@ impl Lab {
 /// A request and an answer, as the policy records them.
 fn dialogue() -> Vec<Record> {
     let settings = shipped();
-    let mut mind: Mind = policy::shell::mind(&settings).expect("its planner");
+    let mut manager = settings.manager().expect("its planner");
     let white = settings.scene.word_named("white").expect("a word of the bowls");
     let request = Reading { base: vec![white], ..Reading::default() };
     let answer = Reading { response: Response::Yes, ..Reading::default() };
-    let mut state: State = mind.first();
+    let mut state: State = manager.first();
     let mut records = Vec::new();
     for (seq, reading) in [request, answer].into_iter().enumerate() {
         let seq = seq as u64 + 1;
         let at = Time(seq * 1_000_000_000);
         let began = Time(at.ns() - 500_000_000);
-        let asking = Asking { prompt: PromptId(seq - 1), began, ended: Some(began), whole: true };
-        let heard = Heard {
+        let prompt = PromptId(seq - 1);
+        let presentation = Presentation {
+            prompt,
+            number: 1,
+            began,
+            ended: Some(began),
+            complete: true,
+            ..Presentation::default()
+        };
+        let heard = Utterance {
             seq: UtteranceSeq(seq),
-            asked: vec![asking],
+            presentations: vec![presentation],
             typed: true,
             onset: at,
             end: at,
             accepted: at,
-            meant: vec![Interpretation { weight: 1.0, answers: Some(0), reading }],
-            ..Heard::default()
+            interpretations: vec![Interpretation { weight: 1.0, answers: Some(0), reading }],
+            ..Utterance::default()
         };
         let cause = Cause::Utterance(heard);
-        state = mind.step(&state, &cause, at);
+        manager.step(&mut state, &cause, at);
         records.push(Record { cause, at, state: state.clone() });
     }
     records
@@ -92,7 +100,9 @@ fn an_intact_journal_is_listed_and_verified() {
 fn verification_finds_a_belief_that_differs_in_one_bit() {
     let mut records = dialogue();
     let open = records[1].state.open.as_mut().expect("an open interaction");
-    open.belief[0] = f64::from_bits(open.belief[0].to_bits() + 1);
+    let mut belief = open.belief().log_weights().to_vec();
+    belief[0] = f64::from_bits(belief[0].to_bits() + 1);
+    open.posterior = Posterior::Object(Belief::from_log(belief).expect("a belief"));
     let lab = Lab::with(&records);
     lab.check(&["--verify"], 70, "record 2: the state does not follow");
     lab.check(&["--verify", "--json"], 70, "\"ok\":false");

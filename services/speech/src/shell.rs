@@ -53,7 +53,7 @@ impl Program for SpeechProgram {
         })
     }
 
-    fn describe(record: &Record) -> String {
+    fn describe(_: Option<&Settings>, record: &Record) -> String {
         inspection::line(record)
     }
 

@@ -2,13 +2,13 @@
 
 use crate::RequestKey;
 use crate::schema::payloads;
-use dialogue::{Ended, Outcome};
+use dialogue::{ActKind, Action, Attributed, Ended, Outcome};
 use scene::Question;
 use serde::{Deserialize, Serialize};
 
 payloads! {
     Injection [Sound]
-    PolicyView [Question, Outcome]
+    PolicyView [Question, ActKind, Action, Outcome]
     WorldView []
     TrajectoryView [MotionPhase]
 }
@@ -77,16 +77,18 @@ pub struct PolicyView {
     pub prompt: u64,
     /// What the robot last said or asked.
     pub text: String,
-    /// What the standing decision is, e.g. `ask`, `wait`, `pick`.
-    pub decision: String,
+    /// Kind of the standing decision.
+    pub decision: ActKind,
     /// Expected discounted return of the decision.
     pub value: f64,
-    /// The best other actions with their values, as text.
-    pub alternatives: Vec<(String, f64)>,
+    /// The best other actions with their values, best first.
+    pub alternatives: Vec<(Action, f64)>,
     /// Expected number of questions still to ask.
     pub expected_questions: f64,
     /// Certified lower and upper bound on what the best policy is worth, where the planner has them.
     pub bounds: Option<(f64, f64)>,
+    /// The questions that the latest utterance was attributed to.
+    pub attributed: Attributed,
     /// Questions asked in the open interaction.
     pub questions: u32,
     /// First and last utterance of the latest interaction.

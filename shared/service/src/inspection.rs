@@ -184,10 +184,11 @@ fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fail
         record: &'a R,
     }
     let part = Part::<Record<P>>::read(&request.file)?;
+    let settings = request.settings().ok();
     for (seq, record) in part.numbered() {
         match request.json {
             true => json_line(out, &Numbered { seq, record })?,
-            false => line(out, format_args!("{seq:>6}  {}", P::describe(record)))?,
+            false => line(out, format_args!("{seq:>6}  {}", P::describe(settings.as_ref(), record)))?,
         }
     }
     out.flush().map_err(unprinted)?;

@@ -52,8 +52,9 @@ pub trait Program: Sized {
         settings: &Settings,
     ) -> Result<<Self::Node as Node>::Config, Failure>;
 
-    /// Renders a journal record as one line for `whichone journal`.
-    fn describe(_record: &Record<Self>) -> String {
+    /// Renders a journal record as one line for `whichone journal`, with the settings in force if
+    /// they are known.
+    fn describe(_settings: Option<&Settings>, _record: &Record<Self>) -> String {
         String::new()
     }
 

@@ -5,6 +5,7 @@ use dialogue::NamedQuestion;
 use std::collections::{BTreeMap, HashSet};
 
 use config::Settings;
+use dialogue::manager::{Cause, Interaction, Record};
 use dialogue::{Model, Rng};
 use grounding::GroundingNode;
 use messages::{
@@ -12,7 +13,6 @@ use messages::{
     UtteranceSeq,
 };
 use policy::PolicyNode;
-use policy::state::Cause;
 use preflight::log_normal;
 use scene::{ObjectId, Question};
 use service::{Event, Node, Span, Time};
@@ -344,7 +344,7 @@ impl<'a> World<'a> {
     /// How each answer was credited, from the policy's journal.
     fn credits(&self) -> Vec<Credit> {
         let scene = &self.settings.scene;
-        let credit = |record: &policy::state::Record| {
+        let credit = |record: &Record| {
             let Cause::Utterance(heard) = &record.cause else { return None };
             let (said, ..) = self.said.get(*self.numbers.get(&heard.seq.0)?)?;
             let evidence = record.state.open.as_ref()?.evidence.last()?;
@@ -353,7 +353,12 @@ impl<'a> World<'a> {
                 return None;
             }
             let weight = |is: &dyn Fn(&NamedQuestion) -> bool| -> f64 {
-                evidence.meant.iter().filter(|(_, asked, _)| is(asked)).map(|(w, ..)| w).sum()
+                evidence
+                    .interpretations
+                    .iter()
+                    .filter(|(_, asked, _)| is(asked))
+                    .map(|(w, ..)| w)
+                    .sum()
             };
             let all = weight(&|_| true);
             let right = weight(&|asked| *asked == truth) / all;
@@ -369,7 +374,7 @@ impl<'a> World<'a> {
         Ended {
             wanted: self.person.wanted,
             picked: self.picked,
-            questions: open.map_or(0, policy::mind::questions),
+            questions: open.map_or(0, Interaction::questions),
             seconds: self.now.ns() as f64 / 1e9,
             credits: self.credits(),
             story: self.story,

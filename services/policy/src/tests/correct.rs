@@ -1,8 +1,7 @@
 //! What is said while the arm fetches.
 
-use super::{answer, at, belief, heard, mind, settings, typed};
-use crate::mind::Mind;
-use crate::state::{Cause, State};
+use super::{answer, at, belief, heard, manager, settings, typed};
+use dialogue::manager::{Cause, Manager, State};
 use messages::{ActKind, Outcome, PickId, PickOutcome, PromptId};
 use scene::{Intent, ObjectId, Reading, Response};
 
@@ -13,9 +12,9 @@ fn words(words: &[&str]) -> Reading {
 }
 
 /// A state in which an object is fetched, and which.
-fn fetching(mind: &mut Mind) -> (State, PickId, ObjectId) {
+fn fetching(manager: &mut Manager) -> (State, PickId, ObjectId) {
     let request = words(&["small", "white", "plastic", "dishwasher", "dishwasher", "dishwasher"]);
-    let state = mind.step(&mind.first(), &heard(1, PromptId(0), request), at(1));
+    let state = manager.next(&manager.first(), &heard(1, PromptId(0), request), at(1));
     let (pick, object) = state.act.pick.expect("sure enough to pick");
     (state, pick, object)
 }
@@ -26,11 +25,11 @@ fn left(pick: PickId) -> Cause {
 
 #[test]
 fn a_denial_calls_the_pick_off_and_what_was_said_before_still_counts() {
-    let mut mind = mind();
-    let (state, pick, object) = fetching(&mut mind);
-    let denied = mind.step(&state, &heard(2, state.act.prompt, answer(Response::No)), at(2));
+    let mut manager = manager();
+    let (state, pick, object) = fetching(&mut manager);
+    let denied = manager.next(&state, &heard(2, state.act.prompt, answer(Response::No)), at(2));
     assert_eq!((denied.act.kind, denied.act.pick), (ActKind::Cancel, Some((pick, object))));
-    let after = mind.step(&denied, &left(pick), at(3));
+    let after = manager.next(&denied, &left(pick), at(3));
     let open = after.open.as_ref().expect("the interaction goes on");
     assert_eq!((open.id, open.evidence.len()), (pick.interaction, 3));
     let before = belief(&state)[object.index()];
@@ -48,41 +47,41 @@ fn a_denial_calls_the_pick_off_and_what_was_said_before_still_counts() {
 
 #[test]
 fn the_next_pick_has_a_key_of_its_own() {
-    let mut mind = mind();
-    let (state, pick, object) = fetching(&mut mind);
+    let mut manager = manager();
+    let (state, pick, object) = fetching(&mut manager);
     let wanted = Reading { response: Response::No, ..words(&["clear", "clear", "big", "clear"]) };
-    let denied = mind.step(&state, &heard(2, state.act.prompt, wanted), at(2));
-    let mut after = mind.step(&denied, &left(pick), at(3));
+    let denied = manager.next(&state, &heard(2, state.act.prompt, wanted), at(2));
+    let mut after = manager.next(&denied, &left(pick), at(3));
     if after.act.kind == ActKind::Ask {
         let more = words(&["clear", "clear", "counter", "big"]);
-        after = mind.step(&after, &heard(3, PromptId(0), more), at(4));
+        after = manager.next(&after, &heard(3, PromptId(0), more), at(4));
     }
     let (next, other) = after.act.pick.expect("sure again");
     assert_eq!((next.interaction, next.attempt), (pick.interaction, 2));
     assert_ne!(other, object);
     let delivered = Cause::PickEnded { pick: next, outcome: PickOutcome::Delivered };
-    let ended = mind.step(&after, &delivered, at(5)).ended.expect("it has ended");
+    let ended = manager.next(&after, &delivered, at(5)).ended.expect("it has ended");
     assert_eq!((ended.object, ended.outcome), (Some(other), Outcome::Delivered));
 }
 
 #[test]
 fn an_object_ruled_out_in_words_is_denied_too() {
-    let mut mind = mind();
-    let (state, ..) = fetching(&mut mind);
+    let mut manager = manager();
+    let (state, ..) = fetching(&mut manager);
     let group = words(&["small", "white"]).base;
     let not_this = Reading { excluded: vec![group], ..Reading::default() };
-    let denied = mind.step(&state, &heard(2, PromptId(0), not_this), at(2));
+    let denied = manager.next(&state, &heard(2, PromptId(0), not_this), at(2));
     assert_eq!(denied.act.kind, ActKind::Cancel);
     let group = words(&["clear"]).base;
     let not_another = Reading { excluded: vec![group], ..Reading::default() };
-    let goes_on = mind.step(&state, &heard(2, PromptId(0), not_another), at(2));
+    let goes_on = manager.next(&state, &heard(2, PromptId(0), not_another), at(2));
     assert_eq!(goes_on.act, state.act);
 }
 
 #[test]
 fn what_fits_and_what_is_about_something_else_leaves_the_arm_alone() {
-    let mut mind = mind();
-    let (state, ..) = fetching(&mut mind);
+    let mut manager = manager();
+    let (state, ..) = fetching(&mut manager);
     // A "no" to nothing that the robot has said is not about what it fetches.
     let readings = [
         answer(Response::Yes),
@@ -91,7 +90,7 @@ fn what_fits_and_what_is_about_something_else_leaves_the_arm_alone() {
         Reading { intent: Intent::None, ..Reading::default() },
     ];
     for reading in readings {
-        let after = mind.step(&state, &heard(2, PromptId(0), reading), at(2));
+        let after = manager.next(&state, &heard(2, PromptId(0), reading), at(2));
         assert_eq!(after.act, state.act);
         assert!(belief(&after).iter().zip(belief(&state)).all(|(a, b)| (a - b).abs() < 0.05));
     }
@@ -99,45 +98,46 @@ fn what_fits_and_what_is_about_something_else_leaves_the_arm_alone() {
 
 #[test]
 fn words_that_make_it_unlikely_call_it_off_without_a_no() {
-    let mut mind = mind();
-    let (state, ..) = fetching(&mut mind);
+    let mut manager = manager();
+    let (state, ..) = fetching(&mut manager);
     let other =
         words(&["clear", "clear", "clear", "counter", "counter", "counter", "big", "clear"]);
-    let after = mind.step(&state, &heard(2, PromptId(0), other), at(2));
+    let after = manager.next(&state, &heard(2, PromptId(0), other), at(2));
     assert_eq!(after.act.kind, ActKind::Cancel);
 }
 
 /// Its answer comes while the robot has hardly begun to say what it fetches.
 #[test]
 fn a_late_no_to_the_question_before_denies_nothing() {
-    let mut mind = mind();
-    let (state, ..) = fetching(&mut mind);
+    let mut manager = manager();
+    let (state, ..) = fetching(&mut manager);
     let mut late = typed(2, state.act.prompt, answer(Response::No));
-    (late.typed, late.asked[0].ended, late.asked[0].whole) = (false, None, false);
-    late.onset = late.asked[0].began;
-    let after = mind.step(&state, &Cause::Utterance(late), at(2));
+    (late.typed, late.presentations[0].ended, late.presentations[0].complete) =
+        (false, None, false);
+    late.onset = late.presentations[0].began;
+    let after = manager.next(&state, &Cause::Utterance(late), at(2));
     assert_eq!(after.act, state.act);
 }
 
 #[test]
 fn what_the_arm_holds_already_is_handed_over() {
-    let mut mind = mind();
-    let (state, pick, object) = fetching(&mut mind);
-    let denied = mind.step(&state, &heard(2, state.act.prompt, answer(Response::No)), at(2));
+    let mut manager = manager();
+    let (state, pick, object) = fetching(&mut manager);
+    let denied = manager.next(&state, &heard(2, state.act.prompt, answer(Response::No)), at(2));
     let delivered = Cause::PickEnded { pick, outcome: PickOutcome::Delivered };
-    let ended = mind.step(&denied, &delivered, at(3)).ended.expect("it has ended");
+    let ended = manager.next(&denied, &delivered, at(3)).ended.expect("it has ended");
     assert_eq!((ended.object, ended.outcome), (Some(object), Outcome::Delivered));
 }
 
 #[test]
 fn who_wants_nothing_any_more_after_a_denial_gets_nothing() {
-    let mut mind = mind();
-    let (state, pick, _) = fetching(&mut mind);
-    let denied = mind.step(&state, &heard(2, state.act.prompt, answer(Response::No)), at(2));
+    let mut manager = manager();
+    let (state, pick, _) = fetching(&mut manager);
+    let denied = manager.next(&state, &heard(2, state.act.prompt, answer(Response::No)), at(2));
     let never_mind = Reading { intent: Intent::Cancel, ..Reading::default() };
-    let withdrawn = mind.step(&denied, &heard(3, PromptId(0), never_mind), at(3));
+    let withdrawn = manager.next(&denied, &heard(3, PromptId(0), never_mind), at(3));
     assert_eq!(withdrawn.act, denied.act);
-    let ended = mind.step(&withdrawn, &left(pick), at(4));
+    let ended = manager.next(&withdrawn, &left(pick), at(4));
     assert!(ended.open.is_none());
     assert_eq!(ended.ended.map(|ended| ended.outcome), Some(Outcome::Cancelled));
 }

@@ -3,8 +3,8 @@
 use super::*;
 use scene::WordId;
 
-fn pointing_mind() -> Mind {
-    shell::mind(&settings_with(&[("dialogue.gesture.enabled", "true")])).unwrap()
+fn pointing_manager() -> Manager {
+    settings_with(&[("dialogue.gesture.enabled", "true")]).manager().unwrap()
 }
 
 fn place(bowl: &str) -> [f64; 3] {
@@ -14,7 +14,7 @@ fn place(bowl: &str) -> [f64; 3] {
 
 /// An utterance with a gesture towards a bowl.
 fn shown(seq: u64, prompt: PromptId, reading: Reading, bowl: &str) -> Cause {
-    Cause::Utterance(Heard { gesture: Some(place(bowl)), ..typed(seq, prompt, reading) })
+    Cause::Utterance(Utterance { gesture: Some(place(bowl)), ..typed(seq, prompt, reading) })
 }
 
 fn word(name: &str) -> WordId {
@@ -23,10 +23,10 @@ fn word(name: &str) -> WordId {
 
 #[test]
 fn a_gesture_alone_opens_an_interaction_and_favours_what_it_points_at() {
-    let mut mind = pointing_mind();
+    let mut manager = pointing_manager();
     for (i, bowl) in settings().scene.objects().iter().enumerate() {
         let cause = shown(1, PromptId(0), Reading::default(), &bowl.name);
-        let state = mind.step(&mind.first(), &cause, at(1));
+        let state = manager.next(&manager.first(), &cause, at(1));
         let belief = belief(&state);
         let best = belief.iter().copied().fold(0.0, f64::max);
         assert!(belief[i] == best && best > 1.0 / 6.0, "{}: {belief:?}", bowl.name);
@@ -35,62 +35,62 @@ fn a_gesture_alone_opens_an_interaction_and_favours_what_it_points_at() {
 
 #[test]
 fn a_gesture_is_no_answer_but_an_answer_with_it_counts() {
-    let mut mind = pointing_mind();
-    let state = asked(&mut mind);
+    let mut manager = pointing_manager();
+    let state = asked(&mut manager);
     let prompt = state.act.prompt;
-    let shown_only = mind.step(&state, &shown(2, prompt, Reading::default(), "clear"), at(2));
+    let shown_only = manager.next(&state, &shown(2, prompt, Reading::default(), "clear"), at(2));
     // The same evidence without any question standing: nothing was taken from the question.
     let cause = shown(1, PromptId(0), Reading::default(), "clear");
-    assert_eq!(belief(&shown_only), belief(&mind.step(&mind.first(), &cause, at(1))));
-    let answered = mind.step(&state, &shown(2, prompt, answer(Response::Yes), "clear"), at(2));
+    assert_eq!(belief(&shown_only), belief(&manager.next(&manager.first(), &cause, at(1))));
+    let answered = manager.next(&state, &shown(2, prompt, answer(Response::Yes), "clear"), at(2));
     assert_ne!(belief(&answered), belief(&shown_only));
 }
 
 #[test]
 fn words_that_name_nothing_do_not_hide_the_hand() {
-    let mut mind = pointing_mind();
+    let mut manager = pointing_manager();
     let deictic = Reading { intent: Intent::None, ..Reading::default() };
     let cause = shown(1, PromptId(0), deictic, "white3");
-    assert!(mind.step(&mind.first(), &cause, at(1)).open.is_some());
+    assert!(manager.next(&manager.first(), &cause, at(1)).open.is_some());
     let refused = Reading { intent: Intent::Cancel, ..Reading::default() };
     let cause = shown(1, PromptId(0), refused, "white3");
-    assert!(mind.step(&mind.first(), &cause, at(1)).open.is_none());
+    assert!(manager.next(&manager.first(), &cause, at(1)).open.is_none());
 }
 
 /// A wrong gesture is made up for by words about the object.
 #[test]
 fn a_far_off_gesture_is_outvoted() {
-    let mut mind = pointing_mind();
+    let mut manager = pointing_manager();
     let cause = shown(1, PromptId(0), Reading::default(), "white");
-    let state = mind.step(&mind.first(), &cause, at(1));
+    let state = manager.next(&manager.first(), &cause, at(1));
     let base = ["metallic", "big", "counter"].map(word).to_vec();
     let cause = heard(2, PromptId(0), Reading { base, ..Reading::default() });
-    let state = mind.step(&state, &cause, at(2));
+    let state = manager.next(&state, &cause, at(2));
     let metal2 = settings().scene.object_named("metal2").unwrap();
     assert_eq!(state.open.unwrap().belief().most_likely(), metal2);
 }
 
 #[test]
 fn where_gestures_do_not_count_they_change_nothing_and_words_with_them_do() {
-    let mut mind = mind();
+    let mut manager = manager();
     let alone = shown(1, PromptId(0), Reading::default(), "clear");
-    let state = mind.step(&mind.first(), &alone, at(1));
+    let state = manager.next(&manager.first(), &alone, at(1));
     assert_eq!((&state.open, state.applied), (&None, UtteranceSeq(1)));
     let said = Reading { base: vec![word("white")], ..Reading::default() };
-    let with = mind.step(&state, &shown(2, PromptId(0), said.clone(), "clear"), at(2));
-    let without = mind.step(&state, &heard(2, PromptId(0), said), at(2));
+    let with = manager.next(&state, &shown(2, PromptId(0), said.clone(), "clear"), at(2));
+    let without = manager.next(&state, &heard(2, PromptId(0), said), at(2));
     assert_eq!(belief(&with), belief(&without));
 }
 
 #[test]
 fn journals_with_gestures_fold_again_bit_for_bit() {
-    let mut mind = pointing_mind();
-    let (mut state, mut records) = (mind.first(), Vec::new());
+    let mut manager = pointing_manager();
+    let (mut state, mut records) = (manager.first(), Vec::new());
     for (n, bowl) in ["clear", "metal", "clear", "white2"].into_iter().enumerate() {
         let cause = shown(n as u64 + 1, state.act.prompt, answer(Response::No), bowl);
-        state = mind.step(&state, &cause, at(n as u64));
+        state = manager.next(&state, &cause, at(n as u64));
         records.push(Record { cause, at: at(n as u64), state: state.clone() });
     }
-    journal_check::refold(&mut pointing_mind(), &records).unwrap();
-    assert!(journal_check::refold(&mut super::mind(), &records).is_err());
+    refold(&mut pointing_manager(), &records).unwrap();
+    assert!(refold(&mut super::manager(), &records).is_err());
 }

@@ -3,8 +3,8 @@
 use super::*;
 use messages::Activity;
 
-fn mind_with(attribution: &str) -> Mind {
-    shell::mind(&settings_with(&[("dialogue.turns.attribution", attribution)])).unwrap()
+fn manager_with(attribution: &str) -> Manager {
+    settings_with(&[("dialogue.turns.attribution", attribution)]).manager().unwrap()
 }
 
 /// Seconds as a time.
@@ -12,36 +12,42 @@ fn s(seconds: f64) -> Time {
     Time(0) + Span::from_s(seconds)
 }
 
-fn said(prompt: PromptId, began_s: f64, ended_s: f64) -> Asking {
-    Asking { prompt, began: s(began_s), ended: Some(s(ended_s)), whole: true }
+fn said(prompt: PromptId, began_s: f64, ended_s: f64) -> Presentation {
+    Presentation {
+        prompt,
+        began: s(began_s),
+        ended: Some(s(ended_s)),
+        complete: true,
+        ..Presentation::default()
+    }
 }
 
 /// An answer that was spoken from `onset_s` on, and may be meant for any of the questions asked
 /// (newest first).
-fn spoken(seq: u64, asked: &[Asking], onset_s: f64, response: Response) -> Heard {
+fn spoken(seq: u64, asked: &[Presentation], onset_s: f64, response: Response) -> Utterance {
     let as_answer_to = |question| {
         let reading = answer(response);
         Interpretation { weight: 1.0, answers: question, reading }
     };
     let meant = (0..asked.len()).map(Some).chain([None]).map(as_answer_to).collect();
-    Heard {
+    Utterance {
         seq: UtteranceSeq(seq),
-        asked: asked.to_vec(),
+        presentations: asked.to_vec(),
         onset: s(onset_s),
         end: s(onset_s + 0.5),
         accepted: s(onset_s + 1.0),
-        meant,
-        ..Heard::default()
+        interpretations: meant,
+        ..Utterance::default()
     }
 }
 
 /// Two questions of one interaction: the first from 1 to 3 s and answered at 4 s, the second from
 /// 5 to 7 s.
-fn two_questions(mind: &mut Mind) -> (State, [Asking; 2]) {
-    let first = asked(mind);
+fn two_questions(manager: &mut Manager) -> (State, [Presentation; 2]) {
+    let first = asked(manager);
     let one = said(first.act.prompt, 1.0, 3.0);
     let heard = spoken(2, &[one], 4.0, Response::No);
-    let second = mind.step(&first, &Cause::Utterance(heard), at(5));
+    let second = manager.next(&first, &Cause::Utterance(heard), at(5));
     assert_eq!(second.act.kind, ActKind::Ask);
     assert_ne!(second.act.prompt, first.act.prompt);
     let two = said(second.act.prompt, 5.0, 7.0);
@@ -52,7 +58,7 @@ fn two_questions(mind: &mut Mind) -> (State, [Asking; 2]) {
 fn mass(state: &State, prompt: PromptId) -> f64 {
     let scene = settings().scene;
     let open = state.open.as_ref().unwrap();
-    let asked = &open.prompts.iter().find(|known| known.id == prompt).unwrap().asked;
+    let asked = &open.prompts.iter().find(|known| known.id == prompt).unwrap().named;
     let Question::Attribute(k, v) = asked.question(&scene) else { panic!("{asked:?}") };
     let has = |i: &usize| scene.has(ObjectId::from(*i), k, v);
     belief(state).iter().enumerate().filter(|(i, _)| has(i)).map(|(_, p)| p).sum()
@@ -60,10 +66,10 @@ fn mass(state: &State, prompt: PromptId) -> f64 {
 
 #[test]
 fn a_prompt_answer_counts_for_the_question_before_it() {
-    let mut mind = mind_with("mixture");
-    let (state, asked) = two_questions(&mut mind);
+    let mut manager = manager_with("mixture");
+    let (state, asked) = two_questions(&mut manager);
     let heard = spoken(3, &asked, 7.9, Response::Yes);
-    let after = mind.step(&state, &Cause::Utterance(heard), at(9));
+    let after = manager.next(&state, &Cause::Utterance(heard), at(9));
     assert!(mass(&after, asked[0].prompt) > 0.97, "{}", mass(&after, asked[0].prompt));
 }
 
@@ -71,11 +77,11 @@ fn a_prompt_answer_counts_for_the_question_before_it() {
 #[test]
 fn a_doubled_answer_does_not_answer_the_question_that_begins() {
     let doubled = |attribution: &str| {
-        let mut mind = mind_with(attribution);
-        let (state, asked) = two_questions(&mut mind);
-        let begun = [Asking { ended: None, whole: false, ..asked[0] }, asked[1]];
+        let mut manager = manager_with(attribution);
+        let (state, asked) = two_questions(&mut manager);
+        let begun = [Presentation { ended: None, complete: false, ..asked[0] }, asked[1]];
         let heard = spoken(3, &begun, 5.4, Response::No);
-        let after = mind.step(&state, &Cause::Utterance(heard), at(6));
+        let after = manager.next(&state, &Cause::Utterance(heard), at(6));
         (mass(&state, asked[0].prompt), mass(&after, asked[0].prompt))
     };
     let (before, after) = doubled("mixture");
@@ -86,12 +92,12 @@ fn a_doubled_answer_does_not_answer_the_question_that_begins() {
 
 #[test]
 fn words_count_whatever_they_answer() {
-    let mut mind = mind_with("mixture");
-    let (state, asked) = two_questions(&mut mind);
+    let mut manager = manager_with("mixture");
+    let (state, asked) = two_questions(&mut manager);
     let clear = settings().scene.word_named("clear").unwrap();
     let mut heard = spoken(3, &asked, 5.5, Response::None);
-    heard.meant.iter_mut().for_each(|meant| meant.reading.base = vec![clear]);
-    let after = mind.step(&state, &Cause::Utterance(heard), at(7));
+    heard.interpretations.iter_mut().for_each(|meant| meant.reading.base = vec![clear]);
+    let after = manager.next(&state, &Cause::Utterance(heard), at(7));
     let scene = settings().scene;
     let clear = scene.object_named("clear").unwrap();
     assert!(belief(&after)[clear.index()] > 2.0 * belief(&state)[clear.index()]);
@@ -99,24 +105,24 @@ fn words_count_whatever_they_answer() {
 
 #[test]
 fn what_is_said_in_doubt_says_less() {
-    let mut mind = mind_with("mixture");
-    let (state, asked) = two_questions(&mut mind);
-    let told = |doubt: f64, mind: &mut Mind| {
+    let mut manager = manager_with("mixture");
+    let (state, asked) = two_questions(&mut manager);
+    let told = |doubt: f64, manager: &mut Manager| {
         let mut heard = spoken(3, &asked, 7.9, Response::Yes);
-        heard.meant.iter_mut().for_each(|meant| meant.reading.doubt.response = doubt);
-        mass(&mind.step(&state, &Cause::Utterance(heard), at(9)), asked[0].prompt)
+        heard.interpretations.iter_mut().for_each(|meant| meant.reading.doubt.response = doubt);
+        mass(&manager.next(&state, &Cause::Utterance(heard), at(9)), asked[0].prompt)
     };
-    let (sure, hedged) = (told(0.0, &mut mind), told(0.4, &mut mind));
+    let (sure, hedged) = (told(0.0, &mut manager), told(0.4, &mut manager));
     assert!(mass(&state, asked[0].prompt) < hedged && hedged < sure, "{hedged} {sure}");
 }
 
 #[test]
 fn how_soon_the_person_answers_is_learned_in_any_planner() {
-    let mut mind = mind_with("mixture");
-    let (state, asked) = two_questions(&mut mind);
+    let mut manager = manager_with("mixture");
+    let (state, asked) = two_questions(&mut manager);
     assert_eq!(state.timing.spoken.map(|reaction| reaction.seen()), Some(1));
     let heard = spoken(3, &asked, 9.5, Response::Yes);
-    let after = mind.step(&state, &Cause::Utterance(heard), at(11));
+    let after = manager.next(&state, &Cause::Utterance(heard), at(11));
     let median_s = |state: &State| state.timing.spoken.unwrap().median_s();
     assert!(median_s(&after) > median_s(&state), "2.5 s is slow");
     assert_eq!(after.timing.typed, None);
@@ -124,28 +130,28 @@ fn how_soon_the_person_answers_is_learned_in_any_planner() {
 
 #[test]
 fn while_the_person_speaks_on_nothing_is_decided() {
-    let mut mind = mind();
-    let request = Heard { more: true, ..typed(1, PromptId(0), Reading::default()) };
-    let held = mind.step(&mind.first(), &Cause::Utterance(request), at(1));
-    assert_eq!(held.act, mind.first().act, "no question yet");
+    let mut manager = manager();
+    let request = Utterance { more: true, ..typed(1, PromptId(0), Reading::default()) };
+    let held = manager.next(&manager.first(), &Cause::Utterance(request), at(1));
+    assert_eq!(held.act, manager.first().act, "no question yet");
     let clear = settings().scene.word_named("clear").unwrap();
     let more = Reading { base: vec![clear], ..Reading::default() };
-    let more = Heard { more: true, ..typed(2, PromptId(0), more) };
-    let held = mind.step(&held, &Cause::Utterance(more), at(2));
-    assert_eq!(held.act, mind.first().act);
-    let decided = mind.step(&held, &Cause::Quiet, at(3));
+    let more = Utterance { more: true, ..typed(2, PromptId(0), more) };
+    let held = manager.next(&held, &Cause::Utterance(more), at(2));
+    assert_eq!(held.act, manager.first().act);
+    let decided = manager.next(&held, &Cause::Quiet, at(3));
     assert_ne!(decided.act, held.act);
     assert_eq!(decided.act.utterance, UtteranceSeq(2));
-    assert_eq!(decided.open.as_ref().unwrap().held, None);
-    let both = mind.step(&mind.first(), &heard(1, PromptId(0), Reading::default()), at(1));
+    assert_eq!(decided.open.as_ref().unwrap().deferred, None);
+    let both = manager.next(&manager.first(), &heard(1, PromptId(0), Reading::default()), at(1));
     let clear = Reading { base: vec![clear], ..Reading::default() };
-    let both = mind.step(&both, &heard(2, PromptId(0), clear), at(2));
+    let both = manager.next(&both, &heard(2, PromptId(0), clear), at(2));
     assert_eq!(belief(&decided), belief(&both), "the belief took in both");
 }
 
 #[test]
 fn what_was_held_is_decided_when_the_person_has_ended() {
-    let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
     let speaks = Activity { onset_ns: at(1).ns(), pending: 1, ..Activity::default() };
     tell(&mut node, In::Activity(speaks), at(1));
     tell(&mut node, observation(1, 0, &Reading::default()), at(2));
@@ -157,7 +163,7 @@ fn what_was_held_is_decided_when_the_person_has_ended() {
 
 #[test]
 fn a_sound_that_never_ends_holds_nothing_back_for_ever() {
-    let mut node = PolicyNode::recover(mind(), Vec::new()).unwrap();
+    let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
     let speaks = Activity { onset_ns: at(1).ns(), pending: 1, ..Activity::default() };
     tell(&mut node, In::Activity(speaks), at(1));
     tell(&mut node, observation(1, 0, &Reading::default()), at(2));

@@ -18,14 +18,15 @@ pub(super) fn journal(paths: &GroupPaths, args: &JournalArgs, out: &mut Output<'
     }
     let mut command = service_program::command(&args.service, "journal");
     command.arg(&file).args(out.is_json().then_some("--json"));
-    let settings = args
-        .verify
-        .then(|| locations::settings_in_force(paths, &args.config))
-        .transpose()?
-        .map(|settings| service_program::Settings::write(&settings))
-        .transpose()?;
+    // A listing does without settings, with fewer words.
+    let settings = match locations::settings_in_force(paths, &args.config) {
+        Err(error) if args.verify => return Err(error),
+        settings => settings.ok(),
+    };
+    let settings = settings.map(|it| service_program::Settings::write(&it)).transpose()?;
+    command.args(args.verify.then_some("--verify"));
     if let Some(settings) = &settings {
-        command.args(["--verify", "--settings"]).arg(settings.folder());
+        command.arg("--settings").arg(settings.folder());
     }
     let status = command.status().map_err(|error| service_program::failed(&command, &error))?;
     Ok(Exit::of_process(status.code()))

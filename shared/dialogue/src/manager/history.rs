@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Most names that are counted. Beyond it the rarest is dropped.
-pub const NAMES_MAX: usize = 512;
+pub(super) const NAMES_MAX: usize = 512;
 
 /// Deliveries of each object by its name, across restarts and changes of the scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -28,7 +28,7 @@ mod reconfigure;
 mod refold;
 mod state;
 
-pub use evidence::Evidence;
+pub use evidence::{Evidence, NAMES_MAX};
 pub use floor::Floor;
 pub use history::History;
 pub use line::{Content, Line, Preface, Remark};

@@ -36,10 +36,10 @@ fn the_dialogue_is_told_with_its_reasons() {
     let view = PolicyView {
         interaction: 4,
         belief: vec![0.5, 0.5],
-        decision: "ask".into(),
+        decision: messages::ActKind::Ask,
         value: 41.26,
         bounds: Some((41.2, 41.3)),
-        alternatives: vec![("pick o0".into(), -25.0)],
+        alternatives: vec![(::dialogue::Action::Pick(::scene::ObjectId(0)), -25.0)],
         questions: 1,
         expected_questions: 0.4,
         ..PolicyView::default()

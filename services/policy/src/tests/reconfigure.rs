@@ -1,7 +1,7 @@
 //! Objects that appear and disappear under a dialogue.
 
 use super::*;
-use crate::evidence::NAMES_MAX;
+use dialogue::manager::NAMES_MAX;
 use messages::PickId;
 
 /// The shipped bowls without those in `gone`, and with these TOML lines behind them.
@@ -33,8 +33,8 @@ size = [0.12, 0.12, 0.05]
 grasp_width = 0.006
 "#;
 
-fn mind_of(settings: &Settings) -> Mind {
-    shell::mind(settings).unwrap()
+fn manager_of(settings: &Settings) -> Manager {
+    settings.manager().unwrap()
 }
 
 fn word(name: &str) -> scene::WordId {
@@ -42,10 +42,10 @@ fn word(name: &str) -> scene::WordId {
 }
 
 /// After "the white one", with a question standing.
-fn white_asked(mind: &mut Mind) -> State {
+fn white_asked(manager: &mut Manager) -> State {
     let base = vec![word("white")];
-    let state = mind.step(
-        &mind.first(),
+    let state = manager.next(
+        &manager.first(),
         &heard(1, PromptId(0), Reading { base, ..Reading::default() }),
         at(1),
     );
@@ -65,9 +65,9 @@ fn probability(settings: &Settings, state: &State, name: &str) -> f64 {
 
 #[test]
 fn a_bowl_that_is_gone_drops_out_and_a_new_one_counts_with_what_was_said() {
-    let state = white_asked(&mut mind());
+    let state = white_asked(&mut manager());
     let changed = bowls(&["metal2"], SEVENTH);
-    let after = mind_of(&changed).step(&state, &Cause::Reconfigured, at(2));
+    let after = manager_of(&changed).next(&state, &Cause::Reconfigured, at(2));
     assert_eq!(after.scene_key, changed.scene.key());
     assert_eq!(after.open.as_ref().unwrap().id, state.open.as_ref().unwrap().id, "it goes on");
     assert_eq!(belief(&after).len(), 6);
@@ -78,7 +78,7 @@ fn a_bowl_that_is_gone_drops_out_and_a_new_one_counts_with_what_was_said() {
     assert!(after.act.prompt > state.act.prompt, "asked anew");
     let said = "The big metallic bowl is gone. ";
     let new = "The small white bowl in the cabinet is new. ";
-    assert!(after.act.text.starts_with(&format!("{said}{new}")), "{}", after.act.text);
+    assert!(text(&after).starts_with(&format!("{said}{new}")), "{}", text(&after));
 }
 
 /// What is scored again under the same scene is the very belief that there was.
@@ -90,10 +90,10 @@ fn the_same_scene_gives_the_same_belief_bit_for_bit() {
             if state.open.is_none() {
                 continue;
             }
-            let again = mind().step(&state, &Cause::Reconfigured, at(50));
+            let again = manager().next(&state, &Cause::Reconfigured, at(50));
             let bits = |state: &State| -> Vec<u64> {
-                let belief = &state.open.as_ref().unwrap().belief;
-                belief.iter().map(|w| w.to_bits()).collect()
+                let belief = state.open.as_ref().unwrap().belief();
+                belief.log_weights().iter().map(|w| w.to_bits()).collect()
             };
             assert_eq!(bits(&again), bits(&state), "seed {seed}");
             assert_eq!(again.act.prompt, state.act.prompt, "seed {seed}: it is not asked anew");
@@ -103,14 +103,14 @@ fn the_same_scene_gives_the_same_belief_bit_for_bit() {
 
 #[test]
 fn an_answer_to_a_question_from_before_still_counts() {
-    let state = white_asked(&mut mind());
+    let state = white_asked(&mut manager());
     let question = state.act.prompt;
     let changed = bowls(&["white"], "");
-    let mut mind = mind_of(&changed);
-    let after = mind.step(&state, &Cause::Reconfigured, at(2));
-    let asked = &after.open.as_ref().unwrap().prompts[0].asked;
+    let mut manager = manager_of(&changed);
+    let after = manager.next(&state, &Cause::Reconfigured, at(2));
+    let asked = &after.open.as_ref().unwrap().prompts[0].named;
     let asked = asked.question(&changed.scene);
-    let late = mind.step(&after, &heard(2, question, answer(Response::Yes)), at(3));
+    let late = manager.next(&after, &heard(2, question, answer(Response::Yes)), at(3));
     let mut expected = after.open.as_ref().unwrap().belief();
     let model = Model::new(&changed.scene, changed.dialogue.params);
     expected.update(&model, asked, &answer(Response::Yes));
@@ -123,80 +123,80 @@ fn a_change_of_the_scene_folds_again_bit_for_bit_from_the_record_before() {
     records.truncate(6);
     let before = records.last().unwrap().state.clone();
     let changed = bowls(&["metal"], SEVENTH);
-    let mut mind = mind_of(&changed);
+    let mut manager = manager_of(&changed);
     let mut state = before;
     for (n, cause) in [Cause::Reconfigured, Cause::Silence].into_iter().enumerate() {
         let when = at(100 + n as u64);
-        state = mind.step(&state, &cause, when);
+        state = manager.next(&state, &cause, when);
         records.push(Record { cause, at: when, state: state.clone() });
     }
-    let key = mind.key();
-    assert_eq!(journal_check::refold_since(&mut mind_of(&changed), &records, key), Ok(2));
+    let key = manager.key();
+    assert_eq!(refold_since(&mut manager_of(&changed), &records, key), Ok(2));
     // Settings that decide nothing about these records may differ.
     let slower = bowls_with(&["metal"], SEVENTH, &[("dialogue.turns.response_window_s", "99")]);
-    let mut slower = mind_of(&slower);
+    let mut slower = manager_of(&slower);
     assert_ne!(slower.key(), key);
-    assert_eq!(journal_check::refold_since(&mut slower, &records, key), Ok(2));
+    assert_eq!(refold_since(&mut slower, &records, key), Ok(2));
     let open = records[6].state.open.as_mut().expect("an open interaction");
-    open.belief[0] += 1e-12;
-    let told = journal_check::refold_since(&mut mind_of(&changed), &records, key).unwrap_err();
+    shift(open, 1e-12);
+    let told = refold_since(&mut manager_of(&changed), &records, key).unwrap_err();
     assert_eq!((told.index, told.part), (6, "belief"));
 }
 
 #[test]
 fn a_pick_whose_object_is_gone_ends_the_interaction_and_another_goes_on() {
-    let mut mind = mind();
+    let mut manager = manager();
     let sure = heard(1, PromptId(0), all_about_metal2());
-    let state = mind.step(&mind.first(), &sure, at(1));
+    let state = manager.next(&manager.first(), &sure, at(1));
     let (pick, _) = state.act.pick.expect("sure enough");
-    let gone = mind_of(&bowls(&["metal2"], "")).step(&state, &Cause::Reconfigured, at(2));
+    let gone = manager_of(&bowls(&["metal2"], "")).next(&state, &Cause::Reconfigured, at(2));
     assert_eq!(gone.ended.map(|ended| ended.outcome), Some(Outcome::SceneChanged));
 
     let changed = bowls(&["white"], "");
-    let mut mind = mind_of(&changed);
-    let moved = mind.step(&state, &Cause::Reconfigured, at(2));
+    let mut manager = manager_of(&changed);
+    let moved = manager.next(&state, &Cause::Reconfigured, at(2));
     let metal2 = changed.scene.object_named("metal2").unwrap();
     assert_eq!(moved.act.pick, Some((pick, metal2)), "the same order with the new number");
     // The arm was restarted too, and has left what it had not yet grasped.
     let left = Cause::PickEnded { pick, outcome: PickOutcome::Cancelled };
-    let again = mind.step(&moved, &left, at(3));
+    let again = manager.next(&moved, &left, at(3));
     let second = PickId { attempt: pick.attempt + 1, ..pick };
     assert_eq!(again.act.pick, Some((second, metal2)));
     assert!(again.act.id > moved.act.id);
     let done = Cause::PickEnded { pick: second, outcome: PickOutcome::Delivered };
-    let done = mind.step(&again, &done, at(4));
+    let done = manager.next(&again, &done, at(4));
     assert_eq!(done.ended.and_then(|ended| ended.name).as_deref(), Some("metal2"));
     assert_eq!(done.history.of("metal2"), 1);
 }
 
 #[test]
 fn a_pick_that_the_person_gave_up_is_not_ordered_again() {
-    let mut mind = mind();
+    let mut manager = manager();
     let sure = heard(1, PromptId(0), all_about_metal2());
-    let state = mind.step(&mind.first(), &sure, at(1));
+    let state = manager.next(&manager.first(), &sure, at(1));
     let (pick, _) = state.act.pick.expect("sure enough");
     let cancel = Reading { intent: Intent::Cancel, ..Reading::default() };
-    let state = mind.step(&state, &heard(2, PromptId(0), cancel), at(2));
+    let state = manager.next(&state, &heard(2, PromptId(0), cancel), at(2));
     let left = Cause::PickEnded { pick, outcome: PickOutcome::Cancelled };
-    let state = mind.step(&state, &left, at(3));
+    let state = manager.next(&state, &left, at(3));
     assert_eq!(state.ended.map(|ended| ended.outcome), Some(Outcome::Cancelled));
 }
 
 #[test]
 fn where_nothing_is_left_the_interaction_ends() {
-    let state = white_asked(&mut mind());
+    let state = white_asked(&mut manager());
     let markers = settings_with(&[("group.scene", "markers")]);
-    let after = mind_of(&markers).step(&state, &Cause::Reconfigured, at(2));
+    let after = manager_of(&markers).next(&state, &Cause::Reconfigured, at(2));
     assert_eq!(after.ended.map(|ended| ended.outcome), Some(Outcome::SceneChanged));
     assert_eq!(after.scene_key, markers.scene.key());
 }
 
 #[test]
 fn a_word_that_nothing_had_counts_for_what_has_it_now() {
-    let mut mind = mind();
+    let mut manager = manager();
     let told = typed(1, PromptId(0), Reading::default());
-    let cause = Cause::Utterance(Heard { unknown: "copper".to_owned(), ..told });
-    let state = mind.step(&mind.first(), &cause, at(1));
+    let cause = Cause::Utterance(Utterance { unknown: "copper".to_owned(), ..told });
+    let state = manager.next(&manager.first(), &cause, at(1));
     let copper =
         SEVENTH.replace("white4", "copper1").replace("color = \"white\"", "color = \"copper\"");
     let folder = tempfile::tempdir().unwrap();
@@ -206,7 +206,7 @@ fn a_word_that_nothing_had_counts_for_what_has_it_now() {
     let path = folder.path().join("copper.toml");
     std::fs::write(&path, text).unwrap();
     let changed = settings_with(&[("group.scene", path.to_str().unwrap())]);
-    let after = mind_of(&changed).step(&state, &Cause::Reconfigured, at(2));
+    let after = manager_of(&changed).next(&state, &Cause::Reconfigured, at(2));
     let p = |name| probability(&changed, &after, name);
     assert!(p("copper1") > 2.0 * p("white"), "{:?}", belief(&after));
 }
@@ -215,27 +215,27 @@ fn a_word_that_nothing_had_counts_for_what_has_it_now() {
 /// scene finds that the beginning is forgotten.
 #[test]
 fn what_is_remembered_is_bounded() {
-    let mut mind =
-        shell::mind(&settings_with(&[("dialogue.turns.questions_max", "1000")])).unwrap();
-    let mut state = asked(&mut mind);
+    let mut manager = settings_with(&[("dialogue.turns.questions_max", "1000")]).manager().unwrap();
+    let mut state = asked(&mut manager);
     for n in 2..600 {
         let base = vec![word("white"), word("metallic")];
         let prompt = state.act.prompt;
-        state = mind.step(&state, &heard(n, prompt, Reading { base, ..Reading::default() }), at(n));
+        state =
+            manager.next(&state, &heard(n, prompt, Reading { base, ..Reading::default() }), at(n));
     }
     let open = state.open.as_ref().expect("nothing was decided by this");
     assert!(open.forgotten > 0 && open.evidence.len() <= NAMES_MAX / 4, "{}", open.evidence.len());
-    let again = mind.step(&state, &Cause::Reconfigured, at(1000));
+    let again = manager.next(&state, &Cause::Reconfigured, at(1000));
     assert_eq!(again.open.unwrap().forgotten, open.forgotten);
 }
 
 #[test]
 fn settings_that_change_at_rest_are_recorded_and_change_nothing_else() {
-    let mut mind = mind();
-    let before = mind.first();
+    let mut manager = manager();
+    let before = manager.first();
     let other = settings_with(&[("dialogue.epsilon", "0.02")]);
     let mut node = PolicyNode::recover(
-        mind_of(&other),
+        manager_of(&other),
         vec![Record { cause: Cause::Snapshot, at: at(1), state: before.clone() }],
     )
     .unwrap();
@@ -246,5 +246,5 @@ fn settings_that_change_at_rest_are_recorded_and_change_nothing_else() {
     assert_eq!(records[0].cause, Cause::Reconfigured);
     let after = &records[0].state;
     let same = State { settings_key: before.settings_key, ..after.clone() };
-    assert_eq!(same, mind.step(&before, &Cause::Snapshot, at(2)));
+    assert_eq!(same, manager.next(&before, &Cause::Snapshot, at(2)));
 }

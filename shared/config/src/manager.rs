@@ -1,0 +1,84 @@
+//! The dialogue manager that the settings describe.
+
+use dialogue::manager::{Manager, Setup};
+use dialogue::registry::{self, UnknownPlanner};
+use dialogue::{Confusion, Model, NotAConfusion};
+use scene::Fnv1a;
+
+use crate::{Section, Settings};
+
+/// Error of building a dialogue manager from settings.
+#[derive(Debug, thiserror::Error)]
+pub enum ManagerError {
+    /// The planner does not exist.
+    #[error("dialogue.planner: {0}")]
+    Planner(#[from] UnknownPlanner),
+    /// The language's table of similar words is inconsistent.
+    #[error("words by sound: {0}")]
+    Confusion(#[from] NotAConfusion),
+}
+
+impl Settings {
+    /// Returns the dialogue manager of these settings.
+    ///
+    /// # Errors
+    /// An unknown planner.
+    pub fn manager(&self) -> Result<Manager, ManagerError> {
+        self.manager_with(&self.dialogue.planner)
+    }
+
+    /// Returns the dialogue manager of these settings, with another planner.
+    ///
+    /// # Errors
+    /// An unknown planner.
+    pub fn manager_with(&self, planner: &str) -> Result<Manager, ManagerError> {
+        let made = registry::planner(planner)?;
+        Ok(Manager::new(self.manager_setup()?, made, self.manager_key(planner)))
+    }
+
+    /// Returns the manager that decided under the key `settings_key`: that of these settings, or the
+    /// same with another planner, which may have been swapped in. That of these settings where the
+    /// key belongs to neither.
+    ///
+    /// # Errors
+    /// An unknown planner.
+    pub fn manager_of_key(&self, settings_key: u64) -> Result<Manager, ManagerError> {
+        let mut known = registry::names().into_iter();
+        let planner = known.find(|planner| self.manager_key(planner) == settings_key);
+        self.manager_with(planner.unwrap_or(&self.dialogue.planner))
+    }
+
+    /// Returns everything that the manager decides by, besides its planner.
+    ///
+    /// # Errors
+    /// An inconsistent table of similar words.
+    pub fn manager_setup(&self) -> Result<Setup, NotAConfusion> {
+        let dialogue = &self.dialogue;
+        let confusion = Confusion::from_rows(language::confusion(&self.scene))?;
+        let gesture = dialogue.gesture;
+        Ok(Setup {
+            scene: self.scene.clone(),
+            model: Model::new(&self.scene, dialogue.params).with_confusion(confusion),
+            costs: dialogue.costs,
+            durations: self.durations.clone(),
+            actions: dialogue.actions,
+            prior: dialogue.prior,
+            gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
+            turns: dialogue.turns,
+        })
+    }
+
+    /// Returns the identity of everything that the manager decides by, with that planner.
+    pub fn manager_key(&self, planner: &str) -> u64 {
+        let mut hash = Fnv1a::new();
+        if planner != self.dialogue.planner {
+            hash.text(planner);
+        }
+        hash.text(&self.section_text(Section::Dialogue));
+        hash.text(&self.scene_file().text);
+        if self.durations.is_some() {
+            hash.text(&self.durations_text());
+        }
+        hash.value()
+    }
+}
