@@ -9,7 +9,6 @@ use scene::Scene;
 use service::exit::{Exit, Failure};
 use service::inspection::{Part, at, count};
 
-
 /// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
 pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     let Record { cause, state, .. } = record;
@@ -124,11 +123,7 @@ fn step(
 }
 
 /// Refolds the records that were decided under the settings with that key; how many those are.
-fn fold(
-    manager: &mut Manager,
-    part: &Part<Record>,
-    settings_key: u64,
-) -> Result<usize, Failure> {
+fn fold(manager: &mut Manager, part: &Part<Record>, settings_key: u64) -> Result<usize, Failure> {
     refold_since(manager, part.records(), settings_key).map_err(|mismatch| {
         let seq = part.first_seq() + mismatch.index as u64;
         let what = format!("the state does not follow from the one before it: {}", mismatch.part);

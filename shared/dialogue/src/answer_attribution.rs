@@ -55,15 +55,15 @@ pub struct QuestionShare {
 
 /// A presentation of a question that may be answered. Times are seconds on any one clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Candidate {
+pub struct Candidate {
     /// When the robot began to say it.
-    pub(crate) began_s: f64,
+    pub began_s: f64,
     /// When it had been said, was interrupted, or is expected to have been said.
-    pub(crate) ended_s: f64,
+    pub ended_s: f64,
     /// Whether it was said to its end.
-    pub(crate) complete: bool,
+    pub complete: bool,
     /// When the answer to it had ended, if it was answered.
-    pub(crate) answered_s: Option<f64>,
+    pub answered_s: Option<f64>,
 }
 
 impl Candidate {
@@ -93,11 +93,11 @@ impl Candidate {
 
 /// Division of an utterance among the candidates.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Shares {
+pub struct Shares {
     /// Probability per candidate, in order.
-    pub(crate) questions: Vec<f64>,
+    pub questions: Vec<f64>,
     /// Probability that it answers none of them.
-    pub(crate) none: f64,
+    pub none: f64,
 }
 
 /// Utterances that answer no question, per second: a yes or no to another person in the room, once in
@@ -120,7 +120,7 @@ impl Shares {
     /// Returns the shares of an utterance spoken from `onset_s` on. `rate` is how many answers to a
     /// question begin per second, so many seconds after its end, while it is unanswered
     /// ([`Reaction::rate`](crate::user_model::Reaction::rate)).
-    pub(crate) fn spoken(asked: &[Candidate], onset_s: f64, rate: impl Fn(f64) -> f64) -> Self {
+    pub fn spoken(asked: &[Candidate], onset_s: f64, rate: impl Fn(f64) -> f64) -> Self {
         let weights = asked.iter().map(|asked| asked.rate(onset_s, &rate)).collect();
         Self::of_weights(weights, NONE)
     }
@@ -128,7 +128,7 @@ impl Shares {
     /// Returns the shares of an utterance typed at `at_s`. Typed words are meant for the robot and answer
     /// what is on the screen, where a question stands as soon as it is asked: one without an answer
     /// if there is any, else the latest.
-    pub(crate) fn typed(asked: &[Candidate], at_s: f64, rate: impl Fn(f64) -> f64) -> Self {
+    pub fn typed(asked: &[Candidate], at_s: f64, rate: impl Fn(f64) -> f64) -> Self {
         let open = |asked: &Candidate| asked.answered_s.is_none() && asked.began_s <= at_s;
         let weight = |asked: &Candidate| if open(asked) { rate(at_s - asked.began_s) } else { 0.0 };
         let weights: Vec<f64> = asked.iter().map(weight).collect();
@@ -143,7 +143,7 @@ impl Shares {
     }
 
     /// Attributes an utterance to the latest question that had been said when it began.
-    pub(crate) fn latest_said(asked: &[Candidate], onset_s: f64) -> Self {
+    pub fn latest_said(asked: &[Candidate], onset_s: f64) -> Self {
         let said = |at: &usize| asked[*at].complete && asked[*at].ended_s <= onset_s;
         let newest = (0..asked.len())
             .filter(said)
@@ -152,7 +152,7 @@ impl Shares {
     }
 
     /// Attributes an utterance to one candidate, or to none.
-    pub(crate) fn only(question: Option<usize>, of: usize) -> Self {
+    pub fn only(question: Option<usize>, of: usize) -> Self {
         let weight = |at| if question == Some(at) { 1.0 } else { 0.0 };
         let none = if question.is_some_and(|at| at < of) { 0.0 } else { 1.0 };
         Self { questions: (0..of).map(weight).collect(), none }

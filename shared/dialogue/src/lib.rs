@@ -41,7 +41,7 @@ mod testing;
 pub use action::{Action, Actions, Decision, Mode};
 
 pub use answer::Answer;
-pub use answer_attribution::{Attributed, Attribution, QuestionShare};
+pub use answer_attribution::{Attributed, Attribution, Candidate, QuestionShare, Shares};
 pub use belief::{Belief, BeliefError};
 pub use confusion::{Confusion, NotAConfusion};
 pub use costs::Costs;

@@ -188,7 +188,9 @@ fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fail
     for (seq, record) in part.numbered() {
         match request.json {
             true => json_line(out, &Numbered { seq, record })?,
-            false => line(out, format_args!("{seq:>6}  {}", P::describe(settings.as_ref(), record)))?,
+            false => {
+                line(out, format_args!("{seq:>6}  {}", P::describe(settings.as_ref(), record)))?
+            }
         }
     }
     out.flush().map_err(unprinted)?;

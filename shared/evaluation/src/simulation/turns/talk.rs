@@ -1,7 +1,7 @@
 //! The robot's side of a dialogue in real time.
 
 use dialogue::user_model::Reaction;
-use dialogue::{Action, Addressed, Asked, Attribution, Posterior, Rng};
+use dialogue::{Action, Attribution, Candidate, Posterior, Rng, Shares};
 use scene::Question;
 
 use super::rules::Rules;
@@ -66,7 +66,7 @@ struct Talk<'a> {
     user: TimedUser,
     now_s: f64,
     posterior: Posterior,
-    asked: Vec<Asked>,
+    asked: Vec<(Question, Candidate)>,
     step: u32,
     heard: u32,
     misplaced: u32,
@@ -102,7 +102,7 @@ impl Talk<'_> {
     fn decide(&mut self, memo: &mut Memo<'_>, answered: bool) -> Action {
         let choice = memo.choose(&self.room.problem, &self.posterior, self.step);
         self.step += 1;
-        let last = self.asked.last().map(|asked| asked.question);
+        let last = self.asked.last().map(|asked| asked.0);
         match choice.action {
             Action::Ask(_) if self.asked.len() >= self.room.patience.questions_max as usize => {
                 Action::Pick(self.posterior.belief().most_likely())
@@ -121,7 +121,10 @@ impl Talk<'_> {
         self.discount *= costs.discount;
         let began_s = self.now_s;
         self.now_s += log_normal(self.user.user().rng(), QUESTION_S.0, QUESTION_S.1);
-        self.asked.push(Asked::whole(question, began_s, self.now_s));
+        self.asked.push((
+            question,
+            Candidate { began_s, ended_s: self.now_s, complete: true, answered_s: None },
+        ));
         let asked = (self.asked.len() as u64 - 1, question);
         self.user.question_ended(self.room.domain(), asked, self.now_s);
     }
@@ -163,7 +166,7 @@ impl Talk<'_> {
         let model = self.room.problem.model;
         let addressed = self.addressed(utterance);
         let reading = answer.reading(model);
-        let questions = self.asked.iter().map(|asked| asked.question);
+        let questions = self.asked.iter().map(|asked| asked.0);
         let mut heard: Vec<_> =
             questions.zip(&addressed.questions).map(|(q, w)| (*w, q, reading.clone())).collect();
         heard.push((addressed.none, Question::None, reading));
@@ -172,23 +175,24 @@ impl Talk<'_> {
         self.heard += 1;
         let meant = utterance.question;
         let taken = likeliest.and_then(|at| self.asked.get_mut(at));
-        self.misplaced += u32::from(taken.as_ref().is_none_or(|asked| asked.question != meant));
+        self.misplaced += u32::from(taken.as_ref().is_none_or(|asked| asked.0 != meant));
         if let Some(asked) = taken {
-            asked.answered_s = Some(utterance.end_s);
+            asked.1.answered_s = Some(utterance.end_s);
         }
         true
     }
 
-    fn addressed(&self, utterance: &TimedUtterance) -> Addressed {
-        let asked = &self.asked;
+    fn addressed(&self, utterance: &TimedUtterance) -> Shares {
+        let asked: Vec<Candidate> = self.asked.iter().map(|asked| asked.1).collect();
+        let asked = &asked;
         match self.rules.attribution {
-            Attribution::Naive => Addressed::only(asked.len().checked_sub(1), asked.len()),
-            Attribution::Onset => Addressed::latest_said(asked, utterance.onset_s),
+            Attribution::Naive => Shares::only(asked.len().checked_sub(1), asked.len()),
+            Attribution::Onset => Shares::latest_said(asked, utterance.onset_s),
             Attribution::Mixture => {
                 // With push-to-talk people wait for the click before they speak.
                 let delay_s = self.user.timing().click_s;
                 let rate = |seconds: f64| self.reaction.rate(seconds - delay_s, self.answers);
-                Addressed::of(asked, utterance.onset_s, rate)
+                Shares::spoken(asked, utterance.onset_s, rate)
             }
         }
     }
