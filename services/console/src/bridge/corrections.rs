@@ -3,6 +3,7 @@
 //! Pure. Both become words that a user could say too, so that they are in the transcript and in the
 //! journal, and do nothing that a dialogue could not.
 
+use messages::ActKind;
 use messages::{ArmStatus, PickPhase, PolicyView};
 use scene::{ObjectId, Question, Scene};
 use service::view::Latest;
@@ -21,16 +22,18 @@ const START_OVER: &str = "start over";
 /// The robot asks and fetches nothing.
 pub(super) fn not_that(scene: &Scene, latest: &Latest) -> Result<String, String> {
     let view = open(latest).ok_or(NOTHING)?;
-    match (view.decision.as_str(), view.question) {
-        ("pick", _) => {
+    match (view.decision, view.question) {
+        (ActKind::Pick, _) => {
             let object = ObjectId::from(fetched(view, latest.arm.as_ref()));
             let is_known = view.scene_key == scene.key() && object.index() < scene.objects().len();
             is_known
                 .then(|| format!("no, not the {}", scene.describe(object)))
                 .ok_or(NOTHING.into())
         }
-        ("ask", Question::Attribute(..) | Question::Point(_)) => Ok(NO.to_owned()),
-        ("ask", _) => Err("this is not a yes/no question; help: say which one it is".to_owned()),
+        (ActKind::Ask, Question::Attribute(..) | Question::Point(_)) => Ok(NO.to_owned()),
+        (ActKind::Ask, _) => {
+            Err("this is not a yes/no question; help: say which one it is".to_owned())
+        }
         _ => Err(NOTHING.to_owned()),
     }
 }
@@ -58,7 +61,7 @@ const NOTHING: &str = "the robot neither asks about an object nor fetches one";
 /// No request is open.
 pub(super) fn start_over(latest: &Latest) -> Result<&'static str, String> {
     let view = open(latest).ok_or("no request is open; help: say what you want")?;
-    let fetches = matches!(view.decision.as_str(), "pick" | "cancel");
+    let fetches = matches!(view.decision, ActKind::Pick | ActKind::Cancel);
     Ok(if fetches { NEVER_MIND } else { START_OVER })
 }
 
@@ -73,10 +76,10 @@ mod tests {
         Scene::from_toml("bowls.toml", BOWLS).unwrap()
     }
 
-    fn latest(decision: &str, question: Question) -> Latest {
+    fn latest(decision: ActKind, question: Question) -> Latest {
         let view = PolicyView {
             interaction: 3,
-            decision: decision.to_owned(),
+            decision,
             question,
             scene_key: scene().key(),
             belief: vec![0.1, 0.6, 0.3],
@@ -94,14 +97,14 @@ mod tests {
     #[test]
     fn corrections_deny_the_question_or_the_fetched_object() {
         let value = Question::Attribute(AttributeId::from(0), ValueId::from(0));
-        let (picks, idle) = (latest("pick", Question::None), Latest::default());
+        let (picks, idle) = (latest(ActKind::Pick, Question::None), Latest::default());
         let moves = PickPhase::Moving.into();
         let arm = ArmStatus { interaction: 3, object: 5, phase: moves, ..ArmStatus::default() };
         let fetches = Latest { arm: Some(arm), ..picks.clone() };
         for (latest, expected) in [
-            (latest("ask", value), Some("no")),
-            (latest("ask", Question::Point(ObjectId::from(1))), Some("no")),
-            (latest("ask", Question::Which(AttributeId::from(0))), None),
+            (latest(ActKind::Ask, value), Some("no")),
+            (latest(ActKind::Ask, Question::Point(ObjectId::from(1))), Some("no")),
+            (latest(ActKind::Ask, Question::Which(AttributeId::from(0))), None),
             (picks, Some("no, not the white bowl on the counter")),
             (fetches.clone(), Some("no, not the clear bowl")),
             (with(&fetches, |view| view.scene_key = 0), None),
@@ -114,9 +117,9 @@ mod tests {
 
     #[test]
     fn corrections_start_over_or_withdraw_a_pick() {
-        let asks = latest("ask", Question::Point(ObjectId::from(0)));
+        let asks = latest(ActKind::Ask, Question::Point(ObjectId::from(0)));
         assert_eq!(start_over(&asks).unwrap(), "start over");
-        assert_eq!(start_over(&latest("pick", Question::None)).unwrap(), "never mind");
+        assert_eq!(start_over(&latest(ActKind::Pick, Question::None)).unwrap(), "never mind");
         assert!(start_over(&with(&asks, |view| view.interaction = 0)).is_err());
         assert!(start_over(&Latest::default()).is_err());
     }

@@ -31,7 +31,7 @@ fn take_part(study: &mut SimulatedStudy) {
         seq += 1;
         study.say(seq);
         study.ms += 5e3;
-        study.view.decision = "pick".to_owned();
+        study.view.decision = messages::ActKind::Pick;
         study.look();
         let desired = study.desired();
         study.end(Outcome::Delivered, Some(&desired));

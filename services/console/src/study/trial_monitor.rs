@@ -207,6 +207,6 @@ fn too_long(trial: &Trial, robot: &RobotState<'_>, seconds_max: f64) -> Option<E
 
 fn decided(trial: &Trial, robot: &RobotState<'_>) -> Option<Event> {
     let view = robot.view.filter(|view| view.interaction == trial.after + 1)?;
-    let is_new = trial.decided_ms.is_none() && view.decision == "pick";
+    let is_new = trial.decided_ms.is_none() && view.decision == messages::ActKind::Pick;
     is_new.then_some(Event::Decided { decided_ms: robot.ms })
 }

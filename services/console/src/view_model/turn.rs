@@ -1,5 +1,6 @@
 //! Whose turn it is, derived from the latest messages, the same for every viewer.
 
+use messages::ActKind;
 use messages::{ArmStatus, MicrophoneState, PickPhase, PresentationState};
 use serde::Serialize;
 use service::Time;
@@ -85,16 +86,16 @@ pub(super) fn turn(latest: &Latest, group: Option<&GroupStatus>) -> Turn {
     if arm.is_some_and(is_fetching) {
         return plain(Arm, Moving);
     }
-    let decision = view.map_or("", |view| view.decision.as_str());
+    let decision = view.map_or(ActKind::Wait, |view| view.decision);
     let open = view.is_some_and(|view| view.interaction != 0);
     match decision {
-        "ask" if open => {
+        ActKind::Ask if open => {
             let said = view.is_some_and(|view| view.prompt == presented.prompt)
                 && presented.state == PresentationState::Ended;
             if said { plain(Person, Asked) } else { plain(Robot, Understanding) }
         }
         // A pick that is called off is the arm's turn, too, until it has left the object.
-        "pick" | "cancel" if open => plain(Arm, Moving),
+        ActKind::Pick | ActKind::Cancel if open => plain(Arm, Moving),
         _ if arm.is_some_and(|arm| arm.moving != 0) => plain(Arm, Moving),
         _ => {
             let listens =
@@ -115,8 +116,8 @@ mod tests {
 
     use super::*;
 
-    fn view(interaction: u64, decision: &str, prompt: u64) -> PolicyView {
-        PolicyView { interaction, decision: decision.to_owned(), prompt, ..PolicyView::default() }
+    fn view(interaction: u64, decision: ActKind, prompt: u64) -> PolicyView {
+        PolicyView { interaction, decision, prompt, ..PolicyView::default() }
     }
 
     fn said(prompt: u64, state: PresentationState) -> Presented {
@@ -146,16 +147,16 @@ mod tests {
         let holds = ArmStatus { phase: PickPhase::Holding.into(), moving: 1, ..still };
         let done = ArmStatus { phase: PickPhase::Done.into(), ..still };
         for (view, presented, activity, arm, expected) in [
-            (view(0, "wait", 0), nothing, quiet, still, (Nobody, Idle)),
-            (view(0, "wait", 0), nothing, speaks, still, (Person, Hearing)),
-            (view(0, "wait", 0), nothing, pends, still, (Robot, Understanding)),
-            (view(1, "ask", 4), nothing, quiet, still, (Robot, Understanding)),
-            (view(1, "ask", 4), speaking, quiet, still, (Robot, Speaking)),
-            (view(1, "ask", 4), ended(4), quiet, still, (Person, Asked)),
-            (view(1, "pick", 5), ended(4), quiet, still, (Arm, Moving)),
-            (view(1, "cancel", 6), ended(4), quiet, still, (Arm, Moving)),
-            (view(1, "pick", 5), ended(5), quiet, holds, (Arm, Moving)),
-            (view(0, "say", 6), ended(6), quiet, done, (Nobody, Idle)),
+            (view(0, ActKind::Wait, 0), nothing, quiet, still, (Nobody, Idle)),
+            (view(0, ActKind::Wait, 0), nothing, speaks, still, (Person, Hearing)),
+            (view(0, ActKind::Wait, 0), nothing, pends, still, (Robot, Understanding)),
+            (view(1, ActKind::Ask, 4), nothing, quiet, still, (Robot, Understanding)),
+            (view(1, ActKind::Ask, 4), speaking, quiet, still, (Robot, Speaking)),
+            (view(1, ActKind::Ask, 4), ended(4), quiet, still, (Person, Asked)),
+            (view(1, ActKind::Pick, 5), ended(4), quiet, still, (Arm, Moving)),
+            (view(1, ActKind::Cancel, 6), ended(4), quiet, still, (Arm, Moving)),
+            (view(1, ActKind::Pick, 5), ended(5), quiet, holds, (Arm, Moving)),
+            (view(0, ActKind::Say, 6), ended(6), quiet, done, (Nobody, Idle)),
         ] {
             let turn = turn(&latest(view.clone(), presented, activity, arm), None);
             assert_eq!((turn.who, turn.state), expected, "{view:?}");
@@ -166,7 +167,7 @@ mod tests {
     fn turn_shows_a_stop_and_a_missing_service_first() {
         let stopped = ArmStatus { stopped: 1, ..ArmStatus::default() };
         let speaks = Activity { onset_ns: 9, ..Activity::default() };
-        let latest = latest(view(1, "ask", 4), Presented::default(), speaks, stopped);
+        let latest = latest(view(1, ActKind::Ask, 4), Presented::default(), speaks, stopped);
         assert_eq!(turn(&latest, None).state, TurnState::Stopped);
         assert_eq!(turn(&Latest::default(), None).state, TurnState::Down);
     }
@@ -176,7 +177,7 @@ mod tests {
         let microphone = MicrophoneState::Listening.into();
         let hearing = Some(Hearing { microphone, ..Hearing::default() });
         let (quiet, still) = (Activity::default(), ArmStatus::default());
-        let latest = latest(view(0, "wait", 0), Presented::default(), quiet, still);
+        let latest = latest(view(0, ActKind::Wait, 0), Presented::default(), quiet, still);
         assert_eq!(turn(&Latest { hearing, ..latest }, None).state, TurnState::Listening);
     }
 }

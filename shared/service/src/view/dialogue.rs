@@ -1,3 +1,4 @@
+use dialogue::rendering;
 use messages::{Outcome, PolicyView};
 use scene::{Question, Scene};
 use serde::ser::{Serialize, Serializer};
@@ -31,7 +32,7 @@ pub struct DialogueView<'a> {
     /// Certified lower and upper bound on the best policy's value.
     pub bounds: Option<(f64, f64)>,
     /// The best other actions.
-    pub alternatives: Vec<AlternativeView<'a>>,
+    pub alternatives: Vec<AlternativeView>,
     /// Questions asked in the open interaction.
     pub questions: u32,
     /// Expected number of further questions.
@@ -75,10 +76,10 @@ pub enum QuestionView<'a> {
 }
 
 /// An action that the planner has weighed.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct AlternativeView<'a> {
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct AlternativeView {
     /// The action.
-    pub action: &'a str,
+    pub action: String,
     /// Its expected discounted return.
     pub value: f64,
 }
@@ -108,7 +109,7 @@ impl<'a> DialogueView<'a> {
             belief: names.zip(view.belief.iter().copied()).collect(),
             absent: view.absent,
             person: view.person.map(|(p_l, epsilon)| UserView { p_l, epsilon }),
-            decision: &view.decision,
+            decision: view.decision.name(),
             question: QuestionView::new(scene, view.question),
             prompt: view.prompt,
             text: &view.text,
@@ -118,7 +119,10 @@ impl<'a> DialogueView<'a> {
             alternatives: view
                 .alternatives
                 .iter()
-                .map(|(action, value)| AlternativeView { action, value: *value })
+                .map(|(action, value)| AlternativeView {
+                    action: rendering::action(scene, *action),
+                    value: *value,
+                })
                 .collect(),
             questions: view.questions,
             expected_questions: view.expected_questions,

@@ -118,7 +118,7 @@ impl Latest {
         let view = self.view.as_ref()?;
         let Presented { prompt, presentation, state, .. } = self.presented;
         let is_asked = view.interaction != 0
-            && view.decision == "ask"
+            && view.decision == messages::ActKind::Ask
             && prompt == view.prompt
             && state == PresentationState::Ended;
         is_asked.then_some((prompt, presentation))

@@ -23,7 +23,7 @@ fn policy_view(scene: &Scene) -> PolicyView {
         question: Question::Attribute(AttributeId::from(0), ValueId::from(0)),
         prompt: 5,
         text: "Is it white?".to_owned(),
-        decision: "ask".to_owned(),
+        decision: messages::ActKind::Ask,
         value: 41.25,
         bounds: Some((41.0, 41.5)),
         questions: 1,

@@ -14,7 +14,7 @@ pub(in crate::verbs) fn asked(question: Question) -> Latest {
         question,
         prompt: 5,
         text: "Is it so?".into(),
-        decision: "ask".into(),
+        decision: messages::ActKind::Ask,
         ..PolicyView::default()
     };
     let state = PresentationState::Ended.into();
@@ -37,7 +37,7 @@ pub(in crate::verbs) fn ended(id: u64) -> Latest {
     let mut latest = asked(Question::None);
     let view = latest.view.take().map(|view| PolicyView {
         interaction: 0,
-        decision: "say".into(),
+        decision: messages::ActKind::Say,
         last: Some(last),
         ..view
     });

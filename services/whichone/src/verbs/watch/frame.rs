@@ -1,5 +1,6 @@
 //! `watch` as lines of text.
 
+use ::dialogue::rendering;
 use messages::{ArmStatus, PickOutcome, PickPhase, PolicyView};
 use scene::Scene;
 use service::status::GroupState;
@@ -98,12 +99,13 @@ fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> V
         lines.push(format!("the person answers {answers:.0} % and errs in {errs:.1} %"));
     }
     if view.interaction != 0 {
-        let decision = style.paint(Ink::Bold, &view.decision);
+        let decision = style.paint(Ink::Bold, view.decision.name());
         let value = words::value(view.value, view.bounds);
         lines.push(format!("decision: {decision} ({value})"));
         let others = view.alternatives.iter().take(3);
-        let others: Vec<String> =
-            others.map(|(action, value)| format!("{action} {value:.1}")).collect();
+        let others: Vec<String> = others
+            .map(|(action, value)| format!("{} {value:.1}", rendering::action(scene, *action)))
+            .collect();
         if !others.is_empty() {
             let text = cut(&format!("  before {}", others.join(" · ")), columns);
             lines.push(style.paint(Ink::Dim, text).to_string());
