@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use whichone_tests::Group;
 use whichone_tests::console::{Page, Visitor};
 
-/// How often the memory is looked at.
+/// Interval between two readings of the memory.
 const SAMPLE_EVERY: Duration = Duration::from_secs(5);
 /// The bowls that are asked for, in turn.
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
@@ -24,7 +24,7 @@ impl Drop for Ends<'_> {
     }
 }
 
-/// What one page has counted.
+/// Counts of one page.
 #[derive(Default)]
 struct Counted {
     frames: u64,
@@ -81,7 +81,7 @@ fn converse(operator: &mut Page, length: Duration) -> usize {
         operator.until_part("dialogue", |dialogue| dialogue["applied"].as_u64() >= seq);
         let last = operator.converse(object);
         assert_eq!(last["object"], object, "{last}");
-        operator.told.clear();
+        operator.messages.clear();
         operator.lines.clear();
         dialogues += 1;
     }
@@ -94,8 +94,8 @@ fn look_on(mut page: Page, over: &AtomicBool) -> Counted {
         page.look();
         assert!(page.closed.is_none(), "a page was shut out: {:?}", page.closed);
         let now_ms = clock::now().ns() as f64 / 1e6;
-        for told in page.told.drain(..) {
-            if let (Some("joints"), Some(at)) = (told["t"].as_str(), told["at_ms"].as_f64()) {
+        for message in page.messages.drain(..) {
+            if let (Some("joints"), Some(at)) = (message["t"].as_str(), message["at_ms"].as_f64()) {
                 counted.joints_ms.push(now_ms - at);
             }
         }
@@ -124,7 +124,7 @@ fn watch_memory(group: &Group, over: &AtomicBool) -> Vec<f64> {
     memory
 }
 
-/// How soon the robot answers, as the console reports it.
+/// Response times of the robot, as the console reports them.
 fn answers(latency: &Json) -> Table {
     let stages = ["heard_ms", "understood_ms", "decided_ms", "spoken_ms", "total_ms"];
     let row = |which: &str| {
@@ -133,7 +133,7 @@ fn answers(latency: &Json) -> Table {
     };
     Table {
         title: "End of a typed utterance to the first sound, milliseconds".to_owned(),
-        note: format!("As the console tells it, over the latest 500 of {}.", latency["count"]),
+        note: format!("Reported by the console over the latest 500 of {}.", latency["count"]),
         heads: ["", "text", "meaning", "decision", "sound", "all"].map(str::to_owned).to_vec(),
         rows: vec![row("p50"), row("p99")],
     }

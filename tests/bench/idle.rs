@@ -1,10 +1,10 @@
-//! What the group costs while nothing happens.
+//! Cost of an idle group: processor time and memory.
 
 use crate::report::Report;
 use std::time::Duration;
 use whichone_tests::Group;
 
-/// How long the idle group is watched.
+/// Duration of the measurement.
 const WATCHED: Duration = Duration::from_secs(10);
 
 pub(crate) fn measure(report: &mut Report) {

@@ -1,4 +1,4 @@
-//! How steadily joint states come: the intervals between those that the arm sends, for an arm that
+//! Regularity of the joint states: the intervals between those that the arm sends, for an arm that
 //! stands and for one that moves, beside a thread that does nothing but sleep until every tenth
 //! millisecond, measured at the same time on the same machine.
 
@@ -12,11 +12,11 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use whichone_tests::Group;
 
-/// How long each of the two is watched.
+/// Duration of each measurement.
 const WATCHED: Duration = Duration::from_secs(10);
 /// The interval that is promised, milliseconds.
 const NOMINAL_MS: f64 = 10.0;
-/// How often the topic is looked at; it holds the last sixteen joint states.
+/// Polling interval of the topic, which holds the last sixteen joint states.
 const LOOK_EVERY: Duration = Duration::from_millis(30);
 
 pub(crate) fn measure(report: &mut Report) {
@@ -32,7 +32,7 @@ pub(crate) fn measure(report: &mut Report) {
     group.down();
 }
 
-/// What was seen in one stretch of time.
+/// Joint states of one measurement.
 struct Samples {
     sent_ns: Vec<u64>,
     moved: bool,
@@ -89,12 +89,12 @@ struct Peer {
 impl Peer {
     fn start() -> Self {
         let ends = Arc::new(AtomicBool::new(false));
-        let told = Arc::clone(&ends);
+        let stop = Arc::clone(&ends);
         let thread = std::thread::spawn(move || {
             let period = Duration::from_secs_f64(NOMINAL_MS / 1e3);
             let (mut next, mut last) = (Instant::now() + period, Instant::now());
             let mut intervals_ms = Vec::new();
-            while !told.load(Ordering::Relaxed) {
+            while !stop.load(Ordering::Relaxed) {
                 std::thread::sleep(next.saturating_duration_since(Instant::now()));
                 let now = Instant::now();
                 intervals_ms.push((now - last).as_secs_f64() * 1e3);

@@ -1,4 +1,4 @@
-//! What is to be measured.
+//! Options of the benchmark.
 
 pub(crate) const HELP: &str =
     "Usage: bench [--quick] [PART]… [--dialogues N] [--seed S] [--groups N]
@@ -24,7 +24,7 @@ Parts; all of them where none is named:
 const PARTS: [&str; 7] =
     ["--core", "--kinematics", "--joints", "--speech", "--turns", "--spoken", "--console"];
 
-/// What the command line says.
+/// The command line.
 pub(crate) struct Options {
     parts: Vec<String>,
     pub(crate) quick: bool,
@@ -46,17 +46,17 @@ impl Options {
         let quick = words.iter().any(|word| word == "--quick");
         words.retain(|word| word != "--quick");
         match words.iter().find(|word| !PARTS.contains(&word.as_str())) {
-            Some(unknown) => Err(format!("{unknown} is no option")),
+            Some(unknown) => Err(format!("unknown option {unknown}")),
             None => Ok(Self { parts: words, quick, dialogues, seed, groups, viewers, minutes }),
         }
     }
 
-    /// Whether this part is to be measured.
+    /// Returns whether this part is selected.
     pub(crate) fn wants(&self, part: &str) -> bool {
         self.wants_all() || self.parts.iter().any(|asked| asked == part)
     }
 
-    /// Whether all parts are.
+    /// Returns whether all parts are selected.
     pub(crate) fn wants_all(&self) -> bool {
         self.parts.is_empty()
     }

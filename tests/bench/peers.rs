@@ -1,4 +1,4 @@
-//! What the machine itself can do, in the same run: the floor under the group's figures.
+//! The machine's own limits in the same run: the floor under the group's figures.
 
 use crate::report::Report;
 use std::io::Write;

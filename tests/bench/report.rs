@@ -33,7 +33,7 @@ pub(crate) struct Table {
 pub(crate) struct Plot {
     /// Name of its files.
     pub(crate) file: &'static str,
-    /// What grows.
+    /// The growing quantity.
     pub(crate) over: &'static str,
     #[serde(serialize_with = "by_name")]
     pub(crate) series: Vec<Series>,

@@ -9,7 +9,7 @@ use speech::{PlaybackEvent, PlaybackState};
 use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
-use whichone_tests::spoken::{Conditions, Tally, Told, tally};
+use whichone_tests::spoken::{Conditions, Held, Tally, tally};
 
 /// Noise under the speech: how far the speech stands above it, decibels, and how that is called.
 const NOISES: [(f64, &str); 2] = [(40.0, "quiet"), (20.0, "20 dB")];
@@ -21,7 +21,7 @@ const DIALOGUES: (u64, u64) = (60, 6);
 
 pub(crate) fn measure(report: &mut Report, options: &Options) {
     if !can_speak() {
-        return print("without espeak-ng, flite and pocketsphinx there are no spoken dialogues");
+        return print("spoken dialogues are skipped: they need espeak-ng, flite and pocketsphinx");
     }
     let usual = if options.wants_all() { DIALOGUES.1 } else { DIALOGUES.0 };
     let (dialogues, seed) = (options.dialogues.unwrap_or(usual), options.seed);
@@ -30,7 +30,7 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         .iter()
         .map(|(snr_db, name)| {
             let conditions = Conditions { snr_db: *snr_db, barge_in: false, number: 0, seed };
-            (*name, tally(conditions, dialogues, options.groups, tell))
+            (*name, tally(conditions, dialogues, options.groups, show))
         })
         .collect();
     keep(&tallies);
@@ -63,30 +63,30 @@ fn can_speak() -> bool {
         && Path::new("/usr/share/pocketsphinx/model/en-us/en-us").exists()
 }
 
-fn tell(told: &Told) {
-    let how = if told.is_right() { "right" } else { "WRONG" };
-    let Told { number, speaker, wanted, questions, seconds, .. } = told;
+fn show(held: &Held) {
+    let how = if held.is_right() { "right" } else { "WRONG" };
+    let Held { number, speaker, wanted, questions, seconds, .. } = held;
     print(&format!(
         "{number:3} {how} {wanted:7} {speaker:9} {questions} questions {seconds:5.1} s"
     ));
-    if !told.is_right() {
-        told.story.iter().for_each(|line| print(line));
+    if !held.is_right() {
+        held.story.iter().for_each(|line| print(line));
     }
 }
 
 fn row(name: &str, tally: &Tally) -> Vec<String> {
     let (all, (low, high)) = (tally.dialogues.len(), tally.interval());
-    let said = tally.sum(|told| told.said);
+    let said = tally.sum(|held| held.said);
     let share = |of: u32| format!("{of} ({:.1} %)", 100.0 * f64::from(of) / f64::from(said.max(1)));
     vec![
         name.to_owned(),
         format!("{} of {all}", tally.right()),
         format!("{:.1} to {:.1} %", 100.0 * low, 100.0 * high),
-        format!("{:.2}", tally.mean(|told| f64::from(told.questions))),
-        format!("{:.1}", tally.mean(|told| told.seconds)),
+        format!("{:.2}", tally.mean(|held| f64::from(held.questions))),
+        format!("{:.1}", tally.mean(|held| held.seconds)),
         said.to_string(),
-        share(tally.sum(|told| told.rejected)),
-        share(tally.sum(|told| told.misunderstood)),
+        share(tally.sum(|held| held.rejected)),
+        share(tally.sum(|held| held.misunderstood)),
     ]
 }
 
@@ -100,7 +100,7 @@ fn keep(tallies: &[(&str, Tally)]) {
     }
 }
 
-/// How long a sentence needs to be made, and to be broken off.
+/// Measures the time to synthesise and to interrupt a sentence.
 fn voice(report: &mut Report) {
     let folder = tempfile::tempdir().expect("a folder");
     let options = VoiceOptions::new(folder.path());
@@ -114,8 +114,8 @@ fn voice(report: &mut Report) {
         (0..BREAKS).map(|n| time(&mut synthesiser, &format!("Is it number {n}?"))).collect();
     let known: Vec<f64> =
         (0..BREAKS).map(|n| time(&mut synthesiser, &format!("Is it number {n}?"))).collect();
-    report.add("a new sentence made sound", "ms", &new, "not counted as speech");
-    report.add("a sentence said before", "ms", &known, "");
+    report.add("synthesis of a new sentence", "ms", &new, "not counted as speech");
+    report.add("synthesis of a cached sentence", "ms", &known, "");
     // A player that would go on for ever, as a stuck sound card does.
     let script = "case \"$1\" in *silence.wav) ;; *) exec sleep 60 ;; esac";
     let words = ["-c", script, "player"].map(str::to_owned).to_vec();
@@ -133,7 +133,7 @@ fn voice(report: &mut Report) {
             began.elapsed().as_secs_f64() * 1e3
         })
         .collect();
-    report.add("hush to the player's end", "ms", &broken, "bar: 50 ms");
+    report.add("stop speaking to the player's end", "ms", &broken, "bar: 50 ms");
 }
 
 fn playback(playback: u64, state: PlaybackState) -> VoiceEvent {

@@ -2,7 +2,7 @@
 
 use crate::options::Options;
 use crate::report::{Report, Table, print};
-use whichone_tests::turns::{Count, study};
+use whichone_tests::simulated_group::{Count, study};
 
 /// Dialogues where nothing else is said.
 const DIALOGUES: u64 = 500;
@@ -31,7 +31,7 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         note: format!(
             "{dialogues} dialogues of seed {seed} through the real reducers of speech, grounding and \
              policy, the same people under each rule; half of them heard live, half by what arrives \
-             when they have ended. Every person tells the truth. By timing: the same person who \
+             when they have ended. Every user answers truthfully. By timing: the same user who \
              answers in good time gets the right object."
         ),
         heads: heads.map(str::to_owned).to_vec(),

@@ -21,7 +21,7 @@ struct Plan {
     seed: u64,
 }
 
-/// What was done.
+/// Counts of the injected faults.
 #[derive(Debug, Default)]
 struct Counters {
     dialogues: u64,

@@ -1,11 +1,11 @@
-//! What is wanted may not be here, and some things are wanted more often than others.
+//! Absent objects, and prior probabilities by history.
 
 use whichone_tests::{Group, wait_for};
 
 const ABSENT: &str = "dialogue.prior.absent=0.1";
 
 #[test]
-fn who_denies_everything_is_told_that_it_is_not_here() {
+fn denying_everything_ends_with_not_here() {
     let group = Group::up(&[ABSENT]);
     group.say("get me the bowl");
     for _ in 0..40 {
@@ -25,7 +25,7 @@ fn who_denies_everything_is_told_that_it_is_not_here() {
 }
 
 #[test]
-fn somebody_may_want_what_is_not_here() {
+fn simulated_user_may_want_an_absent_object() {
     let group = Group::up(&[ABSENT]);
     let outcome = group.fetch("get me the bowl", "teapot");
     assert_eq!(outcome["outcome"], "not_here", "{outcome}");
@@ -38,7 +38,7 @@ fn somebody_may_want_what_is_not_here() {
 }
 
 #[test]
-fn nobody_wants_what_is_not_here_unless_that_is_considered() {
+fn absent_objects_are_refused_unless_the_prior_considers_them() {
     let group = Group::up(&[]);
     let refused = group.call(&["await", "pick", "--answer-as", "teapot"]);
     assert_eq!(refused.code, Some(64), "{refused:?}");
@@ -48,7 +48,7 @@ fn nobody_wants_what_is_not_here_unless_that_is_considered() {
 }
 
 #[test]
-fn what_is_fetched_often_is_believed_first_after_a_restart_too() {
+fn history_prior_survives_a_restart() {
     let mut group = Group::up(&["dialogue.prior.objects=history"]);
     for _ in 0..3 {
         assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");

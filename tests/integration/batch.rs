@@ -1,4 +1,4 @@
-//! The batch tools as scripts call them: the same code as the services, line by line.
+//! The batch verbs: the code of the services on lines of JSON.
 
 use serde_json::{Value, json};
 use std::process::Command;
@@ -16,7 +16,7 @@ fn outputs(ended: &Ended) -> Vec<Value> {
 }
 
 #[test]
-fn beliefs_agree_with_the_paper_s() {
+fn belief_reproduces_the_public_cases() {
     let text = std::fs::read_to_string(format!("{ROOT}/tests/fixtures/belief/cases_public.json"));
     let cases: Value = serde_json::from_str(&text.unwrap()).unwrap();
     let cases = cases["cases"].as_array().unwrap();
@@ -33,7 +33,7 @@ fn beliefs_agree_with_the_paper_s() {
 }
 
 #[test]
-fn a_bad_line_is_told_and_the_rest_goes_on() {
+fn belief_reports_a_bad_line_and_continues() {
     let scene = json!({"objects": [{"name": "A", "attributes": {"color": "red"}},
                                    {"name": "B", "attributes": {"color": "blue"}}],
                        "values": {"color": ["red", "blue"]}});
@@ -50,7 +50,7 @@ fn a_bad_line_is_told_and_the_rest_goes_on() {
 }
 
 #[test]
-fn utterances_are_read_with_the_scene_s_words() {
+fn ground_reads_synonyms_of_the_scene() {
     let question = json!({"type": "attr", "attribute": "color", "value": "white"});
     let line = json!({"id": 1, "text": "no, the see-through one", "last_question": question});
     let ended = batch(&["ground", "--scene", "config/scenes/bowls.toml"], &[line]);
@@ -60,7 +60,7 @@ fn utterances_are_read_with_the_scene_s_words() {
 }
 
 #[test]
-fn plans_pick_when_sure_and_ask_when_not() {
+fn plan_picks_when_certain_and_asks_otherwise() {
     let scene = ["--scene", "config/scenes/bowls.toml"];
     let lines = [
         json!({"id": 1, "belief": [0.995, 0.001, 0.001, 0.001, 0.001, 0.001]}),
@@ -76,7 +76,7 @@ fn plans_pick_when_sure_and_ask_when_not() {
 }
 
 #[test]
-fn kinematics_there_and_back() {
+fn ik_inverts_fk() {
     let q = [0.1, -0.5, 0.2, 0.9, -0.1, 1.1, 0.3];
     let ended = batch(&["fk", "--limb", "left"], &[json!({"id": 7, "q": q})]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
@@ -90,7 +90,7 @@ fn kinematics_there_and_back() {
 }
 
 #[test]
-fn links_of_another_robot() {
+fn fk_and_ik_read_any_robot_description() {
     let robot = "tests/fixtures/robots/seven_joints.urdf";
     let line = json!({"id": "up", "q": [0, 0, 0, 0, 0, 0, 0]});
     let ended = batch(&["fk", "--robot", robot, "--tip", "flange"], std::slice::from_ref(&line));

@@ -1,4 +1,4 @@
-//! A configuration that is wrong is refused as a whole, with every problem, its file and its key.
+//! An invalid configuration is refused as a whole, with every problem, its file and its key.
 
 use std::path::{Path, PathBuf};
 use whichone_tests::Group;
@@ -49,7 +49,7 @@ fn assert_refused(folder: &tempfile::TempDir, words: &[&str]) {
 }
 
 #[test]
-fn every_problem_is_told_at_once() {
+fn check_and_up_report_every_problem() {
     let folder = edited("dialogue.toml", |text| {
         text.replace("epsilon = 0.01", "epsilon = 1.5").replace("p_l = 0.95", "p_el = 0.95")
     });
@@ -60,7 +60,7 @@ fn every_problem_is_told_at_once() {
 }
 
 #[test]
-fn a_duplicate_value() {
+fn check_and_up_refuse_a_duplicate_value() {
     let folder = edited("scenes/markers.toml", |text| {
         let values = text.find("values").expect("a list of values");
         let (before, list) = text.split_at(values);
@@ -77,35 +77,32 @@ fn a_duplicate_value() {
 }
 
 #[test]
-fn an_object_out_of_reach() {
-    let folder = edited("scenes/bowls.toml", |text| text.replacen("xyz = [0.", "xyz = [4.", 1));
-    assert_refused(&folder, &["bowls.toml", "xyz", "reach"]);
+fn check_and_up_name_file_and_key_of_a_fault() {
+    let cases: [(&str, fn(String) -> String, &[&str]); 4] = [
+        (
+            "scenes/bowls.toml",
+            |text| text.replacen("xyz = [0.", "xyz = [4.", 1),
+            &["bowls.toml", "xyz", "reach"],
+        ),
+        (
+            "scenes/bowls.toml",
+            |text| text[..text.find("[[objects]]").expect("objects")].to_owned(),
+            &["bowls.toml", "objects"],
+        ),
+        (
+            "group.toml",
+            |text| text.replace("scene = \"bowls\"", "scene = \"plates\""),
+            &["group.toml", "scene", "plates"],
+        ),
+        ("arm.toml", |text| format!("{text}\nthis is not = = toml"), &["arm.toml"]),
+    ];
+    for (file, edit, words) in cases {
+        assert_refused(&edited(file, edit), words);
+    }
 }
 
 #[test]
-fn a_scene_without_objects() {
-    let folder = edited("scenes/bowls.toml", |text| {
-        let first = text.find("[[objects]]").expect("objects");
-        text[..first].to_owned()
-    });
-    assert_refused(&folder, &["bowls.toml", "objects"]);
-}
-
-#[test]
-fn a_scene_that_is_not_there() {
-    let folder =
-        edited("group.toml", |text| text.replace("scene = \"bowls\"", "scene = \"plates\""));
-    assert_refused(&folder, &["group.toml", "scene", "plates"]);
-}
-
-#[test]
-fn text_that_is_no_toml() {
-    let folder = edited("arm.toml", |text| format!("{text}\nthis is not = = toml"));
-    assert_refused(&folder, &["arm.toml"]);
-}
-
-#[test]
-fn reload_takes_over_what_is_right_and_refuses_what_is_wrong() {
+fn reload_adopts_valid_and_refuses_invalid_files() {
     let folder = edited("dialogue.toml", |text| text.replace("epsilon = 0.01", "epsilon = 0.02"));
     let mut group = Group::with_config(folder.path().to_owned());
     assert_eq!(group.start(&[]).code, Some(0));
@@ -122,7 +119,7 @@ fn reload_takes_over_what_is_right_and_refuses_what_is_wrong() {
     std::fs::write(&path, text.replace("epsilon = 0.02", "epsilon = 0.05")).unwrap();
     group.must(&["reload"]);
     group.wait_for_restart("policy", policy);
-    assert_eq!(group.incarnation("arm"), arm, "what it does not concern goes on");
+    assert_eq!(group.incarnation("arm"), arm, "unaffected services keep running");
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     group.down();
 }

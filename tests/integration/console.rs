@@ -1,4 +1,4 @@
-//! The console as pages see it: real groups, real sockets.
+//! The console as pages see it, with real groups and sockets.
 
 use std::net::TcpListener;
 
@@ -29,7 +29,7 @@ fn have_it_fetch(page: &mut Page) {
 }
 
 #[test]
-fn a_dialogue_is_followed_from_the_request_to_the_hand_over() {
+fn page_follows_a_dialogue_to_the_hand_over() {
     let group = Group::up(&[]);
     let mut page = group.page(&Visitor::operator(1));
     assert_eq!(page.welcome["protocol"], 2);
@@ -54,9 +54,9 @@ fn a_dialogue_is_followed_from_the_request_to_the_hand_over() {
     });
     page.until_part("world", |world| world["objects"].as_array().unwrap()[4].is_null());
     assert!(
-        page.told
+        page.messages
             .iter()
-            .any(|told| told["t"] == "joints" && told["q"].as_array().unwrap().len() == 17)
+            .any(|message| message["t"] == "joints" && message["q"].as_array().unwrap().len() == 17)
     );
     let (status, _, body) = http(&group.console(), "GET", "/api/state", &[], "");
     let state: Json = serde_json::from_str(&body).unwrap();
@@ -66,7 +66,7 @@ fn a_dialogue_is_followed_from_the_request_to_the_hand_over() {
 }
 
 #[test]
-fn not_that_denies_whatever_is_meant() {
+fn not_that_denies_the_question_or_the_pick() {
     let group = Group::up(&["arm.time_scale=2.0"]);
     let mut page = group.page(&Visitor::operator(1));
     page.until_part("dialogue", |dialogue| dialogue["interaction"] == 0);
@@ -103,7 +103,7 @@ fn not_that_denies_whatever_is_meant() {
 }
 
 #[test]
-fn one_is_in_control_and_hands_it_over() {
+fn one_operator_at_a_time_hands_over_control() {
     let group = Group::up(&["console.handover_s=2.0"]);
     let mut first = group.page(&Visitor::operator(1));
     let mut second = group.page(&Visitor::operator(2));
@@ -119,7 +119,7 @@ fn one_is_in_control_and_hands_it_over() {
     assert!(ok(&first.ask("give_control", &json!({ "viewer": other }))));
     second.until_part("control", |control| control["operator"] == other.as_str());
     assert!(ok(&second.ask("say", &json!({ "text": "hello" }))));
-    // Nobody answers: it goes over by itself.
+    // Without an answer, control passes after the timeout.
     assert!(ok(&first.ask("take_control", &Json::Null)));
     first.until_part("control", |control| control["operator"] == one.as_str());
     assert!(why(&second.ask("restart_service", &json!({ "service": "arm" }))).contains("control"));
@@ -127,13 +127,13 @@ fn one_is_in_control_and_hands_it_over() {
     first.until_line("grounding to be back", |line| {
         line["text"].as_str().unwrap().starts_with("grounding is back")
     });
-    assert!(!ok(&first.ask("restart_service", &json!({ "service": "nobody" }))));
+    assert!(!ok(&first.ask("restart_service", &json!({ "service": "legs" }))));
     drop((first, second));
     group.down();
 }
 
 #[test]
-fn a_page_that_is_loaded_again_goes_on() {
+fn reloaded_page_resumes_its_session() {
     let group = Group::up(&[]);
     let mut page = group.page(&Visitor::operator(1));
     assert!(ok(&page.ask("say", &json!({ "text": "get me the bowl" }))));
@@ -153,7 +153,7 @@ fn a_page_that_is_loaded_again_goes_on() {
 }
 
 #[test]
-fn anybody_may_stop_the_arm() {
+fn every_viewer_may_stop_the_arm() {
     let group = Group::up(&["arm.time_scale=1.0"]);
     let mut operator = group.page(&Visitor::operator(1));
     let mut viewer = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
@@ -172,25 +172,27 @@ fn anybody_may_stop_the_arm() {
 }
 
 #[test]
-fn what_makes_no_sense_is_told_and_harms_nobody() {
+fn invalid_messages_are_reported_and_harmless() {
     let group = Group::up(&[]);
     let place = group.console();
     let mut page = group.page(&Visitor::operator(1));
     for bad in ["", "null", "{\"t\":\"dance\"}", "{\"t\":\"do\"}", "{\"t\":\"hello\"}", "\u{1F916}"]
     {
-        page.told.clear();
+        page.messages.clear();
         page.send_raw(Message::Text(bad.into()));
-        page.until("an error", |page| page.told.iter().any(|t| t["t"] == "error").then_some(()));
+        page.until("an error", |page| {
+            page.messages.iter().any(|t| t["t"] == "error").then_some(())
+        });
     }
-    page.told.clear();
+    page.messages.clear();
     page.send_raw(Message::Binary(vec![9; 7].into()));
-    page.until("an error", |page| page.told.iter().any(|t| t["t"] == "error").then_some(()));
+    page.until("an error", |page| page.messages.iter().any(|t| t["t"] == "error").then_some(()));
     assert!(why(&page.ask("fly", &Json::Null)).contains("fly"));
     assert!(why(&page.ask("say", &json!({ "text": "" }))).contains("words"));
     assert!(why(&page.ask("say", &json!({ "text": "a", "began_ms": -1 }))).contains("began_ms"));
     page.send(&json!({ "t": "ping", "at": 12.5 }));
     page.until("a pong", |page| {
-        page.told.iter().any(|t| t["t"] == "pong" && t["at"] == 12.5).then_some(())
+        page.messages.iter().any(|t| t["t"] == "pong" && t["at"] == 12.5).then_some(())
     });
     page.send_raw(Message::Text("x".repeat(65 << 10).into()));
     page.until("the end of a page that sends too much", |page| page.closed.clone());
@@ -212,13 +214,16 @@ fn what_makes_no_sense_is_told_and_harms_nobody() {
     }
     assert_eq!(http(&place, "POST", "/", &[], "").0, 405);
     let mut page = group.page(&Visitor::operator(1));
-    assert!(ok(&page.ask("say", &json!({ "text": "the clear bowl" }))), "all goes on");
+    assert!(
+        ok(&page.ask("say", &json!({ "text": "the clear bowl" }))),
+        "the group is still running"
+    );
     drop((page, mute));
     group.down();
 }
 
 #[test]
-fn only_pages_of_its_own_come_in() {
+fn foreign_origins_are_refused() {
     let group = Group::up(&[]);
     let place = group.console();
     let foreign = |name, value: &str| Visitor {
@@ -237,7 +242,7 @@ fn only_pages_of_its_own_come_in() {
 }
 
 #[test]
-fn a_token_keeps_others_out() {
+fn token_is_required_where_set() {
     let group = Group::up(&["console.token=open-sesame-123"]);
     let place = group.console();
     let html = "Accept: text/html";
@@ -264,7 +269,7 @@ fn a_token_keeps_others_out() {
 }
 
 #[test]
-fn beyond_this_machine_it_wants_a_token() {
+fn listening_beyond_this_machine_requires_a_token() {
     let mut group = Group::new();
     let refused = group.start(&["console.listen=0.0.0.0:0"]);
     assert_eq!(refused.code, Some(78), "{refused:?}");
@@ -274,7 +279,7 @@ fn beyond_this_machine_it_wants_a_token() {
 }
 
 #[test]
-fn a_taken_port_makes_room_and_only_so_many_may_look() {
+fn port_in_use_is_avoided_and_viewers_are_limited() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port();
     let listen = format!("console.listen=127.0.0.1:{port}");
@@ -292,7 +297,7 @@ fn a_taken_port_makes_room_and_only_so_many_may_look() {
 }
 
 #[test]
-fn a_console_that_is_killed_is_back_at_its_place() {
+fn killed_console_returns_to_its_address() {
     let group = Group::up(&[]);
     let place = group.console();
     let mut page = group.page(&Visitor::operator(1));
@@ -327,7 +332,7 @@ fn a_console_that_is_killed_is_back_at_its_place() {
 }
 
 #[test]
-fn the_page_looks_on_while_services_die() {
+fn page_shows_restarts_of_services() {
     let group = Group::up(&[]);
     let mut page = group.page(&Visitor::operator(1));
     for (service, object) in
@@ -352,7 +357,7 @@ fn the_page_looks_on_while_services_die() {
 }
 
 #[test]
-fn one_that_does_not_read_is_shut_out_and_others_go_on() {
+fn slow_reader_is_disconnected_without_delaying_others() {
     let group = Group::up(&["arm.joint_rate_hz=200.0"]);
     let mut deaf = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
     let mut page = group.page(&Visitor::operator(1));
@@ -377,7 +382,7 @@ fn one_that_does_not_read_is_shut_out_and_others_go_on() {
 }
 
 #[test]
-fn the_console_is_swapped_for_itself() {
+fn console_is_swapped_for_itself() {
     let group = Group::up(&[]);
     let place = group.console();
     let program = whichone_tests::program("whichone-console").display().to_string();
@@ -391,6 +396,10 @@ fn the_console_is_swapped_for_itself() {
     drop(page);
     group.must(&["stop", "console"]);
     group.say("get me the bowl");
-    assert_eq!(group.await_pick(Some("clear"))["object"], "clear", "nobody needs the console");
+    assert_eq!(
+        group.await_pick(Some("clear"))["object"],
+        "clear",
+        "the dialogue works without the console"
+    );
     group.down();
 }

@@ -1,4 +1,4 @@
-//! A study with people, from the first page to the exported files, with real groups and sockets.
+//! A user study through the console, from the first page to the exported files.
 
 use rustix::process::Signal;
 use serde_json::{Value as Json, json};
@@ -98,7 +98,7 @@ fn report(group: &Group) -> Json {
 }
 
 #[test]
-fn a_participant_takes_part_and_the_files_say_what_happened() {
+fn participant_completes_the_study_and_its_files() {
     let group = Group::up(&STUDY);
     let mut page = operator(&group);
     assert_eq!(page.welcome["settings"]["study"], true);
@@ -106,7 +106,7 @@ fn a_participant_takes_part_and_the_files_say_what_happened() {
     let mut shown = vec![interact(&group, &mut page)];
     must(&mut page, "next", json!({}));
 
-    // The console is killed while the second interaction runs, and goes on where it was.
+    // The console is killed while the second interaction runs, and resumes.
     let desired = start(&mut page);
     assert_eq!(page.ask("say", &json!({ "text": "the bowl" }))["ok"], true);
     group.wait_for_decision("ask");
@@ -119,7 +119,7 @@ fn a_participant_takes_part_and_the_files_say_what_happened() {
     must(&mut page, "next", json!({}));
     shown.push(interact(&group, &mut page));
 
-    // Somebody else has to wait.
+    // A second participant has to wait.
     let other = json!({ "page": "f".repeat(32) });
     let waits = ask(&mut page, "begin", other.clone());
     assert!(waits["error"].as_str().unwrap_or_default().contains("wait"), "{waits}");
@@ -148,7 +148,7 @@ fn a_participant_takes_part_and_the_files_say_what_happened() {
     );
     let (_, _, served) = http(&group.console(), "GET", "/study/report.json", &[], "");
     let served: Json = serde_json::from_str(&served).expect("JSON");
-    assert_eq!(served, results, "page and command line reckon alike");
+    assert_eq!(served, results, "page and command line agree");
     let (status, head, _) = http(&group.console(), "GET", "/study/success.svg", &[], "");
     assert!(status == 200 && head.contains("image/svg+xml"), "{head}");
 
@@ -162,7 +162,7 @@ fn a_participant_takes_part_and_the_files_say_what_happened() {
 }
 
 #[test]
-fn within_a_participant_the_policies_are_switched_and_given_back() {
+fn within_subject_design_switches_and_restores_the_planner() {
     let more = ["study.policies=[\"lookahead\", \"entropy\"]", "study.interactions=1"];
     let group = Group::up(&[&STUDY[..], &more, &["study.questionnaire=[]"]].concat());
     let mut page = operator(&group);
@@ -191,7 +191,7 @@ fn within_a_participant_the_policies_are_switched_and_given_back() {
 }
 
 #[test]
-fn somebody_withdraws_in_the_middle_and_nothing_is_left() {
+fn withdrawal_removes_all_data() {
     let group = Group::up(&STUDY);
     let mut page = operator(&group);
     let code = begin(&mut page);
@@ -202,7 +202,7 @@ fn somebody_withdraws_in_the_middle_and_nothing_is_left() {
     assert_eq!(at_stage(&mut page, "withdrawn")["deleted"], true);
     assert!(table(&group, "interactions.csv").is_empty());
     let file = group.paths().study().join(format!("{code}.jsonl"));
-    let kept = std::fs::read_to_string(file).expect("that there was somebody");
+    let kept = std::fs::read_to_string(file).expect("the record that there was a participant");
     assert!(!kept.contains("drawn") && !kept.contains("heard"), "{kept}");
 
     // The next one begins with a robot that has nothing to do.

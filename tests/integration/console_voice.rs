@@ -1,4 +1,4 @@
-//! Voice through the console: sound over a socket, and what becomes of it.
+//! Voice through the console: sound over a socket.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -32,7 +32,10 @@ impl Stream {
     fn begin(page: &mut Page, number: u32) -> Self {
         page.send(&json!({ "t": "ping", "at": number }));
         let pong = page.until("a pong", |page| {
-            page.told.iter().find(|told| told["t"] == "pong" && told["at"] == number).cloned()
+            page.messages
+                .iter()
+                .find(|message| message["t"] == "pong" && message["at"] == number)
+                .cloned()
         });
         let began_ms = pong["server_ms"].as_f64().unwrap();
         Self { number, sent: 0, began: Instant::now(), began_ms }
@@ -84,15 +87,15 @@ fn listening(settings: &[&str]) -> (Group, Page) {
 }
 
 fn receipt(page: &mut Page, stream: u32, status: &str) -> Json {
-    let is = |told: &&Json| {
-        told["t"] == "receipt" && told["stream"] == stream && told["status"] == status
+    let is = |message: &&Json| {
+        message["t"] == "receipt" && message["stream"] == stream && message["status"] == status
     };
-    page.until(status, |page| page.told.iter().find(is).cloned())
+    page.until(status, |page| page.messages.iter().find(is).cloned())
 }
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn a_held_stream_is_one_utterance_with_its_times_and_its_words_while_it_is_spoken() {
+fn held_stream_is_one_utterance_with_times_and_interim_results() {
     let (group, mut page) = listening(&[]);
     let mut stream = Stream::begin(&mut page, 7);
     stream.send(&mut page, HELD, &said("get me the small white bowl", 0.3), |ms| ms);
@@ -105,9 +108,9 @@ fn a_held_stream_is_one_utterance_with_its_times_and_its_words_while_it_is_spoke
     assert!(ended > onset + 1_000.0 && ended <= stream.ms(stream.sent) - stream.began_ms + 1.0);
     let over = receipt(&mut page, 7, "over");
     assert_eq!((&over["utterances"], &over["text"]), (&json!(1), &json!("")));
-    page.until("words while somebody speaks", |page| {
-        let told = |told: &&Json| told["t"] == "partial" && told["text"] != "";
-        page.told.iter().find(told).map(|_| ())
+    page.until("an interim result", |page| {
+        let partial = |message: &&Json| message["t"] == "partial" && message["text"] != "";
+        page.messages.iter().find(partial).map(|_| ())
     });
     page.until_line("what was understood", |line| {
         line["source"] == "stream" && line["understood"].is_array()
@@ -118,7 +121,7 @@ fn a_held_stream_is_one_utterance_with_its_times_and_its_words_while_it_is_spoke
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn an_answer_counts_for_the_question_that_was_heard() {
+fn answer_is_credited_to_the_question_that_was_heard() {
     let (group, mut page) = listening(&ALOUD);
     page.ask("say", &json!({ "text": "get me the bowl" }));
     let asked = page.until("a question said to its end", |page| {
@@ -140,7 +143,7 @@ fn an_answer_counts_for_the_question_that_was_heard() {
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn who_speaks_with_the_key_held_breaks_the_robots_sentence_off() {
+fn barge_in_with_the_key_held_interrupts_the_prompt() {
     let words = "Take as long as you like to think about it. ".repeat(6);
     let script = format!("espeak-ng -s 80 -w $1 \\\"$0 {words}\\\"");
     let command =
@@ -166,7 +169,7 @@ fn who_speaks_with_the_key_held_breaks_the_robots_sentence_off() {
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn a_viewer_who_vanishes_in_the_middle_of_a_word_has_said_what_came() {
+fn lost_connection_ends_the_utterance() {
     let (group, mut page) = listening(&[]);
     let mut watcher = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
     let mut stream = Stream::begin(&mut page, 3);
@@ -184,26 +187,30 @@ fn a_viewer_who_vanishes_in_the_middle_of_a_word_has_said_what_came() {
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn only_the_operators_voice_is_let_in() {
+fn only_the_operator_may_stream_sound() {
     let (group, mut page) = listening(&[]);
     let mut other = group.page(&Visitor::operator(2));
     other.send_raw(frame(1, HELD, 0.0, 0, &[0; PIECE]));
-    let refused = other
-        .until("a refusal", |page| page.told.iter().find(|told| told["t"] == "error").cloned());
+    let refused = other.until("a refusal", |page| {
+        page.messages.iter().find(|message| message["t"] == "error").cloned()
+    });
     assert!(refused["error"].as_str().unwrap().contains("control"), "{refused}");
     let mut stream = Stream::begin(&mut page, 1);
     stream.send(&mut page, HELD, &said("the clear bowl", 0.3), |ms| ms);
     stream.end(&mut page, HELD);
     receipt(&mut page, 1, "accepted");
     other.until_line("what the operator said", |line| line["who"] == "person");
-    assert!(!other.told.iter().any(|told| told["t"] == "receipt"), "it is the operator's");
+    assert!(
+        !other.messages.iter().any(|message| message["t"] == "receipt"),
+        "it is the operator's"
+    );
     drop((page, other));
     group.down();
 }
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn frames_that_lie_about_counts_and_times_do_no_harm() {
+fn frames_with_invalid_counts_and_times_are_harmless() {
     let (group, mut page) = listening(&[]);
     // Hours ago, of the future, no time at all, of a length that cannot be.
     page.send_raw(frame(1, HELD, f64::NAN, 0, &[0; PIECE]));
@@ -212,7 +219,8 @@ fn frames_that_lie_about_counts_and_times_do_no_harm() {
     page.send_raw(frame(2, HELD, 1e300, u64::MAX - 9_000, &[0; PIECE]));
     page.send_raw(Message::Binary(vec![1, 2, 3].into()));
     page.send_raw(frame(3, HELD, 5.0, 0, &[0; 1_601]));
-    let errors = |page: &Page| page.told.iter().filter(|told| told["t"] == "error").count();
+    let errors =
+        |page: &Page| page.messages.iter().filter(|message| message["t"] == "error").count();
     page.until("four refusals", |page| (errors(page) >= 4).then_some(()));
     page.send_raw(frame(2, END, 0.0, 0, &[]));
     for (number, clock) in [(4, -3_600_000.0), (5, 3_600_000.0)] {
@@ -230,7 +238,7 @@ fn frames_that_lie_about_counts_and_times_do_no_harm() {
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn a_stream_outlives_the_service_that_hears_it() {
+fn streams_end_and_resume_across_a_restart_of_speech() {
     let (group, mut page) = listening(&[]);
     let mut stream = Stream::begin(&mut page, 1);
     stream.send(&mut page, HELD, &[0; 8_000], |ms| ms);

@@ -18,7 +18,7 @@ fn fetch_all(group: &Group, rounds: usize, questions_max: u64) {
 }
 
 #[test]
-fn a_hundred_dialogues_with_attribute_questions_in_remote_mode() {
+fn remote_mode_delivers_in_a_hundred_dialogues() {
     let group = Group::up(&["dialogue.open_questions=false"]);
     fetch_all(&group, 100, 3);
     group.verify_journals();
@@ -26,7 +26,7 @@ fn a_hundred_dialogues_with_attribute_questions_in_remote_mode() {
 }
 
 #[test]
-fn every_bowl_by_pointing_alone_in_present_mode() {
+fn present_mode_delivers_every_bowl_by_pointing() {
     let group = Group::up(&["dialogue.planner=no-attribute", "dialogue.mode=present"]);
     fetch_all(&group, 6, 5);
     group.verify_journals();
@@ -34,9 +34,9 @@ fn every_bowl_by_pointing_alone_in_present_mode() {
 }
 
 /// Questions cost the seconds of this robot's voice and arm: the promises are the same, and a policy
-/// that is started anew goes on with the costs it had.
+/// that is restarted keeps the costs that it had.
 #[test]
-fn every_bowl_with_the_robots_own_seconds() {
+fn measured_costs_deliver_every_bowl() {
     let own = "dialogue.costs.from=robot";
     let group = Group::up(&[own, "dialogue.mode=present", "dialogue.planner=optimal"]);
     fetch_all(&group, 3, 3);
@@ -53,51 +53,41 @@ fn every_bowl_with_the_robots_own_seconds() {
 }
 
 #[test]
-fn open_questions_need_no_more() {
+fn open_questions_need_no_more_turns() {
     let group = Group::up(&["dialogue.open_questions=true"]);
     fetch_all(&group, 6, 3);
     group.down();
 }
 
 #[test]
-fn a_request_that_says_enough_needs_no_question() {
+fn only_ambiguous_requests_are_clarified() {
     let group = Group::up(&[]);
     let outcome = group.fetch("the small white plastic bowl from the dishwasher", "white");
     assert_delivered(&outcome, "white", 1);
-    group.down();
-}
-
-#[test]
-fn a_half_specified_request_is_asked_about() {
-    let group = Group::up(&[]);
     group.say("get me the small white bowl");
     let asked = group.wait_for_decision("ask")["text"].as_str().unwrap().to_owned();
-    // Two bowls are small and white, and only their places tell them apart.
+    // Two bowls are small and white, and only their places differ.
     assert!(asked.contains("counter") || asked.contains("dishwasher"), "{asked}");
     assert_delivered(&group.await_pick(Some("white2")), "white2", 3);
     group.down();
 }
 
 #[test]
-fn the_two_markers() {
-    let group = Group::up(&["group.scene=markers"]);
-    for marker in ["red", "blue"] {
-        assert_delivered(&group.fetch("hand me the marker", marker), marker, 2);
+fn other_scenes_are_fetched() {
+    for (scene, request, objects, questions_max) in [
+        ("markers", "hand me the marker", &["red", "blue"][..], 2),
+        ("tools", "I need a tool", &["m_red", "p_black", "w_red"], 6),
+    ] {
+        let group = Group::up(&[&format!("group.scene={scene}")]);
+        for object in objects {
+            assert_delivered(&group.fetch(request, object), object, questions_max);
+        }
+        group.down();
     }
-    group.down();
 }
 
 #[test]
-fn the_ten_tools() {
-    let group = Group::up(&["group.scene=tools"]);
-    for tool in ["m_red", "p_black", "w_red"] {
-        assert_delivered(&group.fetch("I need a tool", tool), tool, 6);
-    }
-    group.down();
-}
-
-#[test]
-fn the_paper_s_own_reading_works_too() {
+fn paper_language_delivers() {
     let group = Group::up(&["dialogue.language=paper"]);
     assert_delivered(&group.fetch("the white one", "white3"), "white3", 3);
     group.down();

@@ -1,4 +1,4 @@
-//! `whichone export` as scripts call it: its text is the problem that `plan` solves.
+//! `whichone export pomdp`: its text is the problem that `plan` solves.
 
 use pomdp::Pomdp;
 use std::process::Command;
@@ -34,7 +34,7 @@ fn every_scene_is_exported_with_the_options_of_plan() {
 }
 
 #[test]
-fn the_file_holds_what_is_printed() {
+fn export_to_a_file_equals_the_printed_text() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("bowls.pomdp").display().to_string();
     let ended = export(&[BOWLS, "--output", &file]);
@@ -49,7 +49,7 @@ fn the_file_holds_what_is_printed() {
 }
 
 #[test]
-fn what_cannot_be_exported_is_told() {
+fn export_reports_unsupported_problems() {
     for (words, code, part) in [
         (&["no/such/scene.toml"][..], 74, "no/such/scene.toml"),
         (&["teapots"], 78, "teapots"),

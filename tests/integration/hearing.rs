@@ -1,4 +1,4 @@
-//! Live speech: a microphone that is a pipe, into which the tests speak with espeak-ng.
+//! Live speech: the microphone is a pipe into which the tests speak with espeak-ng.
 
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -10,21 +10,21 @@ use serde_json::Value;
 use speech::devices::audio::read_wav;
 use whichone_tests::{Group, wait_for};
 
-use crate::speech::spoken;
+use crate::speech::{answer_by_voice, spoken};
 
-/// A pipe that a microphone's program reads, and into which a person speaks.
-struct Person {
+/// A simulated user's voice, in a pipe that the microphone's program reads.
+struct Speaker {
     folder: tempfile::TempDir,
     pipe: File,
     path: PathBuf,
 }
 
-impl Person {
+impl Speaker {
     fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("microphone");
         assert!(Command::new("mkfifo").arg(&path).status().unwrap().success());
-        // Open for both: so nobody waits for the other end.
+        // Opened for both directions, so that opening does not block.
         let pipe = OpenOptions::new().read(true).write(true).open(&path).unwrap();
         Self { folder, pipe, path }
     }
@@ -47,9 +47,9 @@ impl Person {
     }
 }
 
-fn up(person: &Person, mode: &str, more: &[&str]) -> Group {
+fn up(speaker: &Speaker, mode: &str, more: &[&str]) -> Group {
     let mode = format!("speech.microphone.mode={mode}");
-    let command = person.command();
+    let command = speaker.command();
     let mut settings = vec![mode.as_str(), command.as_str()];
     settings.extend(more);
     Group::up(&settings)
@@ -67,23 +67,11 @@ fn wait_for_microphone(group: &Group, state: &str) -> Value {
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn a_spoken_request_is_understood_hands_free() {
-    let mut person = Person::new();
-    let group = up(&person, "hands-free", &[]);
-    person.says("get me the small white bowl");
-    let mut asked = String::new();
-    loop {
-        let dialogue = wait_for("another decision", 20.0, || {
-            Some(group.dialogue())
-                .filter(|d| d["text"] != asked.as_str() && d["decision"] != "wait")
-        });
-        if dialogue["decision"] != "ask" {
-            break;
-        }
-        asked = dialogue["text"].as_str().unwrap().to_owned();
-        let wanted = ["small", "white", "plastic", "counter"];
-        person.says(if wanted.iter().any(|word| asked.contains(word)) { "yes" } else { "no" });
-    }
+fn hands_free_microphone_understands_a_dialogue() {
+    let mut speaker = Speaker::new();
+    let group = up(&speaker, "hands-free", &[]);
+    speaker.says("get me the small white bowl");
+    answer_by_voice(&group, |answer| speaker.says(answer));
     let outcome = group.await_pick(None);
     assert_eq!((&outcome["outcome"], &outcome["object"]), (&"delivered".into(), &"white2".into()));
     let hearing = wait_for_microphone(&group, "listening");
@@ -96,12 +84,12 @@ fn a_spoken_request_is_understood_hands_free() {
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
 fn talk_opens_the_microphone_for_one_utterance() {
-    let mut person = Person::new();
-    let group = up(&person, "push-to-talk", &[]);
+    let mut speaker = Speaker::new();
+    let group = up(&speaker, "push-to-talk", &[]);
     wait_for_microphone(&group, "closed");
     let heard = std::thread::scope(|scope| {
         let talk = scope.spawn(|| group.call(&["talk", "--json", "--seconds", "30"]));
-        person.says("get me the small white bowl");
+        speaker.says("get me the small white bowl");
         talk.join().unwrap()
     });
     let receipt = heard.json();
@@ -121,13 +109,13 @@ fn talk_opens_the_microphone_for_one_utterance() {
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn the_microphone_leaves_out_the_robots_own_voice() {
-    let person = Person::new();
+fn microphone_is_muted_while_the_robot_speaks() {
+    let speaker = Speaker::new();
     let silence = "while :; do head -c 3200 /dev/zero; sleep 0.1; done";
     let silence = format!("speech.microphone.command=[\"sh\", \"-c\", \"{silence}\"]");
     // Nothing plays, but every sentence takes as long as it would sound.
     let aloud = ["speech.voice=espeak-ng", "speech.player=[\"none\"]"];
-    let group = up(&person, "hands-free", &[silence.as_str(), aloud[0], aloud[1]]);
+    let group = up(&speaker, "hands-free", &[silence.as_str(), aloud[0], aloud[1]]);
     wait_for_microphone(&group, "listening");
     group.say("get me the bowl");
     wait_for_microphone(&group, "muted");
@@ -137,7 +125,7 @@ fn the_microphone_leaves_out_the_robots_own_voice() {
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn a_stream_of_sound_is_heard_from_standard_input_and_at_the_pace_of_a_recording() {
+fn listen_streams_standard_input_and_live_files() {
     let folder = tempfile::tempdir().unwrap();
     let group = Group::up(&[]);
     let file = spoken("get me the small white bowl", folder.path());
@@ -150,21 +138,21 @@ fn a_stream_of_sound_is_heard_from_standard_input_and_at_the_pace_of_a_recording
     let mut command = group.command(&["listen", "-", "--json"]);
     let piped = command.stdin(File::open(&raw).unwrap()).output().unwrap();
     assert_eq!(piped.status.code(), Some(0), "{piped:?}");
-    for told in [live, String::from_utf8(piped.stdout).unwrap()] {
+    for output in [live, String::from_utf8(piped.stdout).unwrap()] {
         let lines: Vec<Value> =
-            told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-        let [heard, over] = lines.as_slice() else { panic!("{told}") };
+            output.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        let [heard, over] = lines.as_slice() else { panic!("{output}") };
         assert_eq!((&heard["status"], &over["status"]), (&"accepted".into(), &"over".into()));
-        assert!(heard["note"].as_str().unwrap().contains("small white bowl"), "{told}");
+        assert!(heard["note"].as_str().unwrap().contains("small white bowl"), "{output}");
         assert_eq!(over["note"], "", "nothing was lost");
     }
-    let nobody = group.call(&["listen", "-"]);
-    assert_eq!(nobody.code, Some(1), "{nobody:?}");
+    let silent = group.call(&["listen", "-"]);
+    assert_eq!(silent.code, Some(1), "{silent:?}");
     group.down();
 }
 
 #[test]
-fn what_a_browser_has_recognised_comes_with_its_times_and_alternatives() {
+fn transcript_keeps_its_times_and_alternatives() {
     let group = Group::up(&[]);
     let words = [
         "say",
@@ -198,10 +186,10 @@ fn what_a_browser_has_recognised_comes_with_its_times_and_alternatives() {
 }
 
 #[test]
-fn a_microphone_that_dies_is_started_again_and_one_that_is_off_says_so() {
-    let person = Person::new();
+fn microphone_is_restarted_and_reports_when_it_is_off() {
+    let speaker = Speaker::new();
     let dies = "speech.microphone.command=[\"sh\", \"-c\", \"echo no card >&2; exit 3\"]";
-    let group = up(&person, "hands-free", &[dies]);
+    let group = up(&speaker, "hands-free", &[dies]);
     let hearing = wait_for("the second start", 20.0, || {
         Some(hearing(&group)).filter(|hearing| hearing["restarts"].as_u64() >= Some(2))
     });
@@ -211,7 +199,7 @@ fn a_microphone_that_dies_is_started_again_and_one_that_is_off_says_so() {
     assert!(log.contains("no card"), "{log}");
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear", "typed words do");
     group.down();
-    let group = up(&person, "off", &[]);
+    let group = up(&speaker, "off", &[]);
     let refused = group.call(&["talk"]);
     assert_eq!(refused.code, Some(1));
     assert!(refused.stderr.contains("speech.toml"), "{refused:?}");

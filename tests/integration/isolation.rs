@@ -1,10 +1,10 @@
-//! Groups do not see each other, and leave nothing behind.
+//! Groups are isolated from each other and leave nothing behind.
 
 use rustix::process::{Pid, Signal, kill_process};
 use whichone_tests::{Group, wait_for};
 
 #[test]
-fn two_groups_at_once_serve_two_people() {
+fn two_groups_run_side_by_side() {
     let (one, two) = (Group::up(&[]), Group::up(&["group.scene=markers"]));
     let (bowl, marker) = std::thread::scope(|scope| {
         let bowl = scope.spawn(|| one.fetch("get me the bowl", "white3"));
@@ -13,12 +13,12 @@ fn two_groups_at_once_serve_two_people() {
     });
     assert_eq!((&bowl["object"], &marker["object"]), (&"white3".into(), &"blue".into()));
     one.down();
-    assert_eq!(two.fetch("get me the marker", "red")["object"], "red", "the other goes on");
+    assert_eq!(two.fetch("get me the marker", "red")["object"], "red", "the other group continues");
     two.down();
 }
 
 #[test]
-fn the_same_group_is_not_started_twice() {
+fn a_running_group_is_not_started_twice() {
     let mut group = Group::up(&[]);
     let again = group.start(&[]);
     assert_eq!(again.code, Some(1), "{again:?}");
@@ -28,7 +28,7 @@ fn the_same_group_is_not_started_twice() {
 }
 
 #[test]
-fn nothing_is_left_when_the_supervisor_is_killed() {
+fn killed_supervisor_leaves_no_processes() {
     let mut group = Group::up(&[]);
     let supervisor = group.status()["supervisor_pid"].as_i64().expect("its pid");
     let supervisor = Pid::from_raw(i32::try_from(supervisor).unwrap()).unwrap();
@@ -43,7 +43,7 @@ fn nothing_is_left_when_the_supervisor_is_killed() {
 }
 
 #[test]
-fn verbs_without_a_group_say_how_to_start_one() {
+fn verbs_without_a_group_suggest_up() {
     let group = Group::new();
     for words in [&["status"][..], &["say", "hello"], &["await", "pick"], &["restart", "arm"]] {
         let ended = group.call(words);

@@ -1,10 +1,10 @@
-//! Every planner drives the real group.
+//! Planners in a real group.
 
 use rustix::process::Signal;
 use whichone_tests::Group;
 
 #[test]
-fn every_planner_that_asks_finds_the_right_object() {
+fn every_asking_planner_delivers_the_right_object() {
     for planner in dialogue::registry::names().into_iter().filter(|name| *name != "never-ask") {
         let planner_is = format!("dialogue.planner={planner}");
         let group = Group::up(&[&planner_is, "dialogue.mode=present"]);
@@ -13,14 +13,14 @@ fn every_planner_that_asks_finds_the_right_object() {
             assert_eq!(outcome["outcome"], "delivered", "{planner}: {outcome}\n{}", group.logs());
             assert_eq!(outcome["object"], object, "{planner}: {outcome}");
         }
-        // The check decides everything anew, without what the service has kept.
+        // The check repeats every decision without the service's policy cache.
         group.verify_journals();
         group.down();
     }
 }
 
 #[test]
-fn what_the_optimal_planner_worked_out_outlives_its_process() {
+fn optimal_policy_cache_survives_a_restart() {
     let group = Group::up(&["dialogue.planner=optimal"]);
     let kept = || -> Vec<_> {
         let files = std::fs::read_dir(group.paths().policies()).unwrap().flatten();
@@ -42,7 +42,7 @@ fn what_the_optimal_planner_worked_out_outlives_its_process() {
 }
 
 #[test]
-fn a_planner_that_does_not_exist_is_refused_with_those_that_do() {
+fn unknown_planner_is_refused_with_the_known_ones() {
     let mut group = Group::new();
     let ended = group.start(&["dialogue.planner=oracle"]);
     assert_eq!(ended.code, Some(78), "{ended:?}");

@@ -1,4 +1,4 @@
-//! Programs in Python that take the grounding service's place: those that the documentation holds.
+//! The documentation's programs in Python in the grounding service's place.
 
 use whichone_tests::{Group, program};
 
@@ -12,7 +12,7 @@ fn python() -> String {
 /// The service in Python that the documentation holds takes grounding's place under traffic.
 #[test]
 #[ignore = "needs python3 with iceoryx2"]
-fn a_program_in_python_takes_groundings_place() {
+fn example_in_python_replaces_grounding() {
     let python = python();
     let program_text = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/examples/python/grounding.py");
     let group = Group::up(&[]);
@@ -39,8 +39,8 @@ fn a_program_in_python_takes_groundings_place() {
     group.down();
 }
 
-/// A stand-in for a language model. It knows a word that no reader of ours does, writes down what it
-/// was asked, answers in no form at all when told so, and sleeps when told so.
+/// A stand-in for a language model. It knows a word that the built-in readers do not, logs its
+/// input, and gives invalid output or sleeps where the input says so.
 const STAND_IN: &str = r#"
 import json, re, sys, time
 prompt = sys.stdin.read()
@@ -61,7 +61,7 @@ else:
 
 #[test]
 #[ignore = "needs python3 with iceoryx2"]
-fn a_program_that_reads_text_takes_groundings_place() {
+fn external_program_replaces_grounding() {
     let python = python();
     let by_program = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/examples/python/by_program.py");
     let group = Group::up(&[]);

@@ -1,5 +1,5 @@
-//! Kill any service at any stage of a dialogue: nothing said is lost or counted twice, the right
-//! object is picked once, and the journal folds again to the same belief.
+//! Any service is killed at any stage of a dialogue: no utterance is lost or counted twice, the right
+//! object is picked once, and the journal folds to the same belief.
 
 use rustix::process::Signal;
 use whichone_tests::{Group, wait_for};
@@ -24,42 +24,29 @@ fn assert_delivered(group: &Group, outcome: &serde_json::Value, object: &str) {
 }
 
 #[test]
-fn killed_before_the_request() {
+fn services_killed_at_any_stage_of_the_dialogue_recover() {
     let group = Group::up(&[]);
-    for service in SERVICES {
-        kill(&group, service);
-        group.say("get me the bowl");
-        assert_fetched(&group, "white2");
+    let stages: [(&[&str], &[&str], &str); 3] = [
+        (&[], &["get me the bowl"], "white2"),
+        (&["get me the bowl"], &[], "metal2"),
+        (&["get me the bowl", "the white one"], &[], "white3"),
+    ];
+    for (before, after, object) in stages {
+        for service in SERVICES {
+            before.iter().for_each(|words| group.say(words));
+            if before.len() == 1 {
+                group.wait_for_decision("ask");
+            }
+            kill(&group, service);
+            after.iter().for_each(|words| group.say(words));
+            assert_fetched(&group, object);
+        }
     }
     group.down();
 }
 
 #[test]
-fn killed_while_a_question_stands() {
-    let group = Group::up(&[]);
-    for service in SERVICES {
-        group.say("get me the bowl");
-        group.wait_for_decision("ask");
-        kill(&group, service);
-        assert_fetched(&group, "metal2");
-    }
-    group.down();
-}
-
-#[test]
-fn killed_right_after_an_answer() {
-    let group = Group::up(&[]);
-    for service in SERVICES {
-        group.say("get me the bowl");
-        group.say("the white one");
-        kill(&group, service);
-        assert_fetched(&group, "white3");
-    }
-    group.down();
-}
-
-#[test]
-fn killed_while_the_arm_moves() {
+fn services_killed_during_a_motion_recover() {
     let group = Group::up(&["arm.time_scale=15.0"]);
     for service in SERVICES {
         let outcome = group.fetch_while("the clear bowl", "clear", || {
@@ -71,7 +58,7 @@ fn killed_while_the_arm_moves() {
 }
 
 #[test]
-fn the_arm_is_killed_again_and_again_in_one_pick() {
+fn arm_killed_repeatedly_in_one_pick_recovers() {
     let group = Group::up(&["arm.time_scale=8.0"]);
     let outcome = group.fetch_while("the clear bowl", "clear", || {
         for _ in 0..4 {
@@ -84,7 +71,7 @@ fn the_arm_is_killed_again_and_again_in_one_pick() {
 }
 
 #[test]
-fn all_services_are_killed_at_once() {
+fn all_services_killed_at_once_recover() {
     let group = Group::up(&[]);
     group.say("get me the bowl");
     group.say("the metal one");
@@ -96,7 +83,7 @@ fn all_services_are_killed_at_once() {
 }
 
 #[test]
-fn an_utterance_survives_a_policy_that_is_down() {
+fn utterances_wait_for_a_policy_that_is_down() {
     let group = Group::up(&[]);
     group.say("get me the bowl");
     group.must(&["stop", "policy"]);
@@ -107,7 +94,7 @@ fn an_utterance_survives_a_policy_that_is_down() {
 }
 
 #[test]
-fn the_belief_is_restored_bit_for_bit() {
+fn belief_is_restored_bit_for_bit() {
     let group = Group::up(&[]);
     group.say("the white one");
     let before = group.wait_for_decision("ask");
@@ -119,7 +106,7 @@ fn the_belief_is_restored_bit_for_bit() {
 }
 
 #[test]
-fn the_group_comes_back_where_it_was() {
+fn interaction_survives_down_and_up() {
     let mut group = Group::up(&[]);
     group.say("get me the bowl");
     group.say("the white one");

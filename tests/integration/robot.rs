@@ -1,5 +1,4 @@
-//! The arm with its driver for a Baxter, and the simulated one as a process of the group: real time,
-//! real messages.
+//! The arm with its Baxter driver and the simulated Baxter as processes of a group.
 
 use rustix::process::Signal;
 use serde_json::Value;
@@ -32,7 +31,7 @@ fn assert_delivered(group: &Group, outcome: &Value) {
 }
 
 #[test]
-fn a_dialogue_ends_with_a_pick_by_the_robot() {
+fn dialogue_ends_with_a_pick_by_the_robot() {
     let group = group();
     assert_eq!(group.service("baxter")["actual"], "ready");
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
@@ -41,7 +40,7 @@ fn a_dialogue_ends_with_a_pick_by_the_robot() {
 }
 
 #[test]
-fn the_arm_is_killed_in_the_middle_of_a_motion_and_one_pick_results() {
+fn arm_killed_during_a_motion_picks_once() {
     let group = group();
     let outcome = group.fetch_while("the clear bowl", "clear", || {
         for phase in ["moving", "holding"] {
@@ -56,7 +55,7 @@ fn the_arm_is_killed_in_the_middle_of_a_motion_and_one_pick_results() {
 }
 
 #[test]
-fn the_robots_own_process_is_killed_and_comes_back() {
+fn killed_robot_process_resumes_the_pick() {
     let group = group();
     let outcome = group.fetch_while("the clear bowl", "clear", || {
         wait_for_arm(&group, "moving", |arm| arm["phase"] == "moving");
@@ -71,7 +70,7 @@ fn the_robots_own_process_is_killed_and_comes_back() {
 }
 
 #[test]
-fn the_emergency_stop_latches_and_resume_goes_on() {
+fn emergency_stop_latches_until_resume() {
     let group = group();
     let outcome = group.fetch_while("the clear bowl", "clear", || {
         wait_for_arm(&group, "moving", |arm| arm["phase"] == "moving" && arm["moving"] == true);
@@ -82,7 +81,7 @@ fn the_emergency_stop_latches_and_resume_goes_on() {
             drill(&group, &[word]);
         }
         wait_for_arm(&group, "the robot is back", |arm| arm["hindrance"] == "none");
-        assert_eq!(group.arm()["stopped"], true, "latched until somebody says so");
+        assert_eq!(group.arm()["stopped"], true, "latched until an operator resumes");
         group.must(&["resume-motion"]);
     });
     assert_delivered(&group, &outcome);
@@ -90,7 +89,7 @@ fn the_emergency_stop_latches_and_resume_goes_on() {
 }
 
 #[test]
-fn a_grasp_that_misses_is_told_to_the_person() {
+fn missed_grasp_is_announced() {
     let group = group();
     // More often than is tried, also where a halt in between makes another try.
     drill(&group, &["miss", "9"]);
@@ -104,7 +103,7 @@ fn a_grasp_that_misses_is_told_to_the_person() {
 }
 
 #[test]
-fn a_robot_in_another_time_is_refused_with_the_cure() {
+fn unsynchronised_clock_is_refused_with_a_fix() {
     let mut group = Group::new();
     let ended = group.start(&["arm.driver=baxter"]);
     assert_eq!(ended.code, Some(78), "{ended:?}");

@@ -1,4 +1,4 @@
-//! Dialogues with real sound in real time: a synthesised person at the microphone's program, and the
+//! Dialogues with real sound in real time: a synthesised user at the microphone's program, and the
 //! robot's own voice without a sound card.
 
 use messages::{PresentationState, Presented, topics};
@@ -6,10 +6,10 @@ use service::client::Client;
 use whichone_tests::spoken::{Conditions, tally};
 use whichone_tests::{Group, wait_for};
 
-/// The robot takes as long to ask as its sound does, and keeps that sound for others.
+/// The sound is kept for later prompts, too.
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn a_question_lasts_as_long_as_its_sound_without_a_sound_card() {
+fn prompt_without_a_sound_card_lasts_as_long_as_its_sound() {
     let folder = tempfile::tempdir().unwrap();
     let kept = format!("speech.voice_dir={}", folder.path().display());
     let group = Group::up(&["speech.voice=espeak-ng", "speech.player=[\"none\"]", &kept]);
@@ -35,10 +35,10 @@ fn a_question_lasts_as_long_as_its_sound_without_a_sound_card() {
 
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
-fn whoever_speaks_gets_the_right_bowl() {
+fn spoken_dialogues_deliver_the_right_bowl() {
     let conditions = Conditions { snr_db: 40.0, barge_in: false, number: 0, seed: 1 };
     let tally = tally(conditions, 3, 2, |_| {});
-    for told in &tally.dialogues {
-        assert!(told.is_right(), "{told:#?}");
+    for held in &tally.dialogues {
+        assert!(held.is_right(), "{held:#?}");
     }
 }

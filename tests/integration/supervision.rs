@@ -1,10 +1,10 @@
-//! What an operator does, and what the supervisor does by itself.
+//! The operator's verbs and the supervisor's automatic restarts.
 
 use rustix::process::Signal;
 use whichone_tests::{Group, wait_for};
 
 #[test]
-fn status_shows_what_an_operator_needs() {
+fn status_and_logs_show_services_and_restart_names_an_unknown_one() {
     let group = Group::up(&[]);
     for service in ["speech", "grounding", "policy", "arm"] {
         let row = group.service(service);
@@ -14,11 +14,16 @@ fn status_shows_what_an_operator_needs() {
         }
     }
     assert_eq!(group.call(&["status"]).code, Some(0));
+    let log = group.must(&["logs", "policy", "--tail", "5"]).stdout;
+    assert!(log.contains("ready"), "{log}");
+    let unknown = group.call(&["restart", "legs"]);
+    assert_ne!(unknown.code, Some(0));
+    assert!(unknown.stderr.contains("legs") && unknown.stderr.contains("arm"), "{unknown:?}");
     group.down();
 }
 
 #[test]
-fn a_killed_service_is_back_and_the_others_never_left() {
+fn killed_service_is_restarted_alone() {
     let group = Group::up(&[]);
     let others: Vec<u64> = ["speech", "arm"].iter().map(|s| group.incarnation(s)).collect();
     let before = group.incarnation("policy");
@@ -31,7 +36,7 @@ fn a_killed_service_is_back_and_the_others_never_left() {
 }
 
 #[test]
-fn a_stopped_process_is_noticed_and_replaced() {
+fn watchdog_replaces_a_stopped_process() {
     let group = Group::up(&["group.services.grounding.watchdog_s=1.0"]);
     let before = group.incarnation("grounding");
     group.signal("grounding", Signal::STOP);
@@ -41,7 +46,7 @@ fn a_stopped_process_is_noticed_and_replaced() {
 }
 
 #[test]
-fn hold_keeps_a_service_down_until_it_is_released() {
+fn hold_keeps_a_service_down_until_release() {
     let group = Group::up(&[]);
     group.must(&["hold", "speech"]);
     wait_for("the hold", 10.0, || (group.service("speech")["actual"] == "held").then_some(()));
@@ -53,7 +58,7 @@ fn hold_keeps_a_service_down_until_it_is_released() {
 }
 
 #[test]
-fn a_service_that_keeps_dying_is_given_up_and_the_rest_stays() {
+fn restart_limit_holds_a_failing_service_alone() {
     let group = Group::up(&["group.restart.exits_max=3", "group.restart.backoff_first_ms=10"]);
     wait_for("the arm to be given up", 20.0, || {
         let row = group.service("arm");
@@ -68,22 +73,5 @@ fn a_service_that_keeps_dying_is_given_up_and_the_rest_stays() {
     assert_eq!(group.service("policy")["actual"], "ready");
     group.must(&["start", "arm"]);
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
-    group.down();
-}
-
-#[test]
-fn logs_are_there_to_be_read() {
-    let group = Group::up(&[]);
-    let ended = group.must(&["logs", "policy", "--tail", "5"]);
-    assert!(ended.stdout.contains("ready"), "{}", ended.stdout);
-    group.down();
-}
-
-#[test]
-fn an_unknown_service_is_named_with_the_known_ones() {
-    let group = Group::up(&[]);
-    let ended = group.call(&["restart", "legs"]);
-    assert_ne!(ended.code, Some(0));
-    assert!(ended.stderr.contains("legs") && ended.stderr.contains("arm"), "{}", ended.stderr);
     group.down();
 }

@@ -1,4 +1,4 @@
-//! Replacing a service while the dialogue goes on.
+//! Replacement of a running service.
 
 use whichone_tests::{Group, program};
 
@@ -9,7 +9,7 @@ pub(crate) fn swap(group: &Group, service: &str, command: &[&str]) -> whichone_t
 }
 
 #[test]
-fn grounding_is_swapped_under_traffic() {
+fn grounding_is_swapped_during_dialogues() {
     let group = Group::up(&[]);
     let grounding = program("whichone-grounding").display().to_string();
     for round in 0..6 {
@@ -28,7 +28,7 @@ fn grounding_is_swapped_under_traffic() {
 }
 
 #[test]
-fn the_planner_is_swapped_between_dialogues_and_its_decisions_fold_again() {
+fn planner_is_swapped_and_its_decisions_verify() {
     let group = Group::up(&[]);
     let policy = program("whichone-policy").display().to_string();
     for planner in ["never-ask", "entropy"] {
@@ -44,7 +44,7 @@ fn the_planner_is_swapped_between_dialogues_and_its_decisions_fold_again() {
 }
 
 #[test]
-fn a_service_that_does_not_become_ready_gives_way_to_the_old_one() {
+fn swap_rolls_back_if_the_new_service_is_not_ready() {
     let group = Group::up(&["group.services.grounding.start_deadline_s=1.0"]);
     for command in [&["/bin/sleep", "60"][..], &["/bin/false"], &["/no/such/program"]] {
         let ended = swap(&group, "grounding", command);
@@ -56,7 +56,7 @@ fn a_service_that_does_not_become_ready_gives_way_to_the_old_one() {
 }
 
 #[test]
-fn arguments_that_a_service_does_not_know_are_refused() {
+fn swap_rolls_back_on_unknown_arguments() {
     let group = Group::up(&[]);
     let grounding = program("whichone-grounding").display().to_string();
     let ended = swap(&group, "grounding", &[&grounding, "--language", "klingon"]);

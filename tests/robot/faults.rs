@@ -1,4 +1,4 @@
-//! What goes wrong with a robot, its bridge, and the arm itself.
+//! Faults of the robot, of its bridge, and of the arm's process.
 
 use crate::world::World;
 use dialogue::Rng;
@@ -7,7 +7,7 @@ use messages::{MotionInhibit, MotionOrder, PickOutcome, PickPhase};
 use service::Span;
 
 #[test]
-fn joint_states_that_stay_away_halt_the_arm_until_they_are_back() {
+fn arm_halts_while_joint_states_are_stale() {
     for phase in [PickPhase::Moving, PickPhase::Closing, PickPhase::Holding] {
         let mut world = World::new(&[]);
         world.pick(1, 0);
@@ -22,7 +22,7 @@ fn joint_states_that_stay_away_halt_the_arm_until_they_are_back() {
 }
 
 #[test]
-fn a_third_of_the_joint_states_may_get_lost() {
+fn arm_tolerates_the_loss_of_a_third_of_the_joint_states() {
     for seed in ["1", "2", "3"] {
         let loss = ("arm.simulated.loss", "0.33");
         let mut world = World::new(&[loss, ("arm.simulated.seed", seed)]);
@@ -33,7 +33,7 @@ fn a_third_of_the_joint_states_may_get_lost() {
 }
 
 #[test]
-fn blocked_arm_halts_and_waits_for_a_person() {
+fn blocked_arm_halts_and_waits_for_a_operator() {
     let mut world = World::new(&[]);
     world.pick(1, 3);
     world.run_until("moving", |w| w.phase() == PickPhase::Moving);
@@ -91,7 +91,7 @@ fn killed_arm_resumes_from_the_measured_posture() {
 }
 
 #[test]
-fn the_robots_computer_dies_and_comes_back() {
+fn pick_survives_a_restart_of_the_robot() {
     for seed in 0..12 {
         let mut random = Rng::new(seed);
         let mut world = World::new(&[]);

@@ -1,4 +1,4 @@
-//! The robot fetches, and is told what a Baxter has to be told.
+//! Picks on the simulated Baxter, and the commands that it needs.
 
 use crate::world::World;
 use arm::Order;
@@ -7,7 +7,7 @@ use messages::{MotionInhibit, PickOutcome, PickPhase};
 use service::Span;
 
 #[test]
-fn six_bowls_are_brought_one_after_another() {
+fn robot_delivers_six_bowls_in_turn() {
     let mut world = World::new(&[]);
     for object in 0..6 {
         world.grasps = 0;
@@ -34,7 +34,7 @@ fn arm_fetches_in_every_scene_with_a_slow_and_noisy_robot() {
 }
 
 #[test]
-fn grippers_are_calibrated_before_anything_moves() {
+fn grippers_are_calibrated_before_any_motion() {
     let mut world = World::new(&[]);
     world.pick(1, 2);
     world.run_until("calibrating", |w| w.hindrance() == MotionInhibit::Calibrating);
@@ -54,7 +54,7 @@ fn gripper_commands(world: &World) -> Vec<Command> {
 }
 
 #[test]
-fn limbs_are_commanded_in_position_mode_a_hundred_times_a_second_moving_and_standing() {
+fn both_limbs_get_position_commands_at_100_hz() {
     let mut world = World::new(&[]);
     world.pick(1, 0);
     world.run_until("over", |w| w.phase() == PickPhase::Done);
@@ -76,7 +76,7 @@ fn limbs_are_commanded_in_position_mode_a_hundred_times_a_second_moving_and_stan
 }
 
 #[test]
-fn without_feed_forward_the_robot_lags_and_arrives_all_the_same() {
+fn robot_without_feed_forward_arrives() {
     let mut world = World::new(&[("arm.baxter.feed_forward", "false")]);
     world.pick(1, 3);
     world.run_until("over", |w| w.phase() == PickPhase::Done);

@@ -1,4 +1,4 @@
-//! What stops the robot: the motion stop, the red button, disabled motors.
+//! Stops: the motion stop, the emergency stop, disabled motors.
 
 use crate::world::World;
 use arm::Order;
@@ -17,17 +17,17 @@ fn still_from(world: &World) -> Time {
 }
 
 #[test]
-fn a_motion_stop_at_any_moment_halts_within_100_ms_of_joint_states() {
+fn motion_stop_halts_within_100_ms() {
     let mut slowest = Span(0);
     for (object, after_s) in [(0, 5.0), (1, 5.7), (2, 6.3), (3, 7.1), (4, 8.0), (5, 9.5), (2, 11.0)]
     {
         let mut world = World::new(&[]);
         world.pick(1, object);
         world.run(after_s);
-        let told = world.now;
+        let stopped = world.now;
         world.motion(MotionOrder::Stop);
         world.run(1.0);
-        let took = still_from(&world).since(told);
+        let took = still_from(&world).since(stopped);
         slowest = slowest.max(took);
         assert!(took <= Span::from_ms(100), "{} s for object {object}", took.s());
         assert_eq!((world.status().stopped, world.status().moving), (1, 0));
@@ -77,7 +77,7 @@ fn assert_nothing_is_commanded_since(world: &World, since: Time) {
 
 #[test]
 fn arm_halts_on_disabled_motors_and_faults_and_resumes_the_pick() {
-    for (fault, cures) in [
+    for (fault, repairs) in [
         (DrillKind::Disable, vec![DrillKind::Enable]),
         (DrillKind::Fail, vec![DrillKind::Reset, DrillKind::Enable]),
     ] {
@@ -92,7 +92,7 @@ fn arm_halts_on_disabled_motors_and_faults_and_resumes_the_pick() {
             world.run(1.5);
             assert_eq!((world.status().stopped, world.status().moving), (0, 0));
             assert_nothing_is_commanded_since(&world, off);
-            cures.iter().for_each(|cure| world.drill(*cure, 0.0));
+            repairs.iter().for_each(|repair| world.drill(*repair, 0.0));
             world.run_until("over", |w| w.phase() == PickPhase::Done);
             world.assert_delivered_once();
         }

@@ -1,4 +1,4 @@
-//! The arm's process, the robot's, what each remembers, and what passes between them.
+//! The arm and the simulated Baxter, each in a simulated process, and the messages between them.
 
 use arm::state::ArmState;
 use arm::{ArmNode, In, Order, Out, Report};
@@ -10,21 +10,18 @@ use messages::robot::{Drill, DrillKind, JointState};
 use messages::{
     ActKind, ArmStatus, MotionCommand, MotionInhibit, MotionOrder, PickOutcome, PickPhase, RobotAct,
 };
-use service::lifecycle::Environment;
-use service::service_loop::Program;
-use service::{Effects, Event, Node, Span, Time};
+use service::{Span, Time};
 use std::path::Path;
+use whichone_tests::simulated_group::{Faults, Host, configured};
 
-/// How often the world looks: finer than any deadline in it.
+/// Time step: shorter than any deadline.
 const LOOK_EVERY: Span = Span::from_ms(2);
 
 pub(crate) struct World {
     settings: Settings,
     pub(crate) now: Time,
-    arm: Option<ArmNode>,
-    robot: Option<BaxterNode>,
-    pub(crate) arm_journal: Vec<arm::state::Record>,
-    robot_journal: Vec<baxter::robot::Body>,
+    arm: Host<ArmNode>,
+    robot: Host<BaxterNode>,
     to_arm: Vec<In>,
     act: Option<RobotAct>,
     drills: u64,
@@ -33,7 +30,7 @@ pub(crate) struct World {
     /// When each limb was commanded its joints, left first.
     pub(crate) commanded: [Vec<Time>; 2],
     pub(crate) orders: Vec<(Time, Order)>,
-    /// How often fingers have come to hold something.
+    /// Number of grasps that held.
     pub(crate) grasps: u32,
 }
 
@@ -43,12 +40,10 @@ impl World {
         let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
         let settings = Settings::load(config, Some("baxter"), &over).unwrap();
         let mut world = Self {
+            arm: Host::new(configured::<arm::shell::ArmProgram>(&settings)),
+            robot: Host::new(configured::<baxter::shell::BaxterProgram>(&settings)),
             settings,
             now: Time(1_000_000_000),
-            arm: None,
-            robot: None,
-            arm_journal: Vec::new(),
-            robot_journal: Vec::new(),
             to_arm: Vec::new(),
             act: None,
             drills: 0,
@@ -64,25 +59,22 @@ impl World {
     }
 
     pub(crate) fn start_arm(&mut self) {
-        let config = arm::shell::ArmProgram::config(&Environment::nowhere(), &self.settings);
-        let node = ArmNode::recover(config.unwrap(), self.arm_journal.clone()).unwrap();
-        self.arm = Some(node);
-        self.pass_arm(vec![Event::Started]);
+        let outputs = self.arm.start(self.now);
+        self.route_arm(outputs);
     }
 
     pub(crate) fn kill_arm(&mut self) {
-        (self.arm, self.to_arm) = (None, Vec::new());
+        self.arm.kill();
+        self.to_arm.clear();
     }
 
     pub(crate) fn start_robot(&mut self) {
-        let config = baxter::shell::BaxterProgram::config(&Environment::nowhere(), &self.settings);
-        let node = BaxterNode::recover(config.unwrap(), self.robot_journal.clone()).unwrap();
-        self.robot = Some(node);
-        self.pass_robot(vec![Event::Started]);
+        let outputs = self.robot.start(self.now);
+        self.route_robot(outputs);
     }
 
     pub(crate) fn kill_robot(&mut self) {
-        self.robot = None;
+        self.robot.kill();
     }
 
     pub(crate) fn go(&mut self) {
@@ -90,8 +82,9 @@ impl World {
         self.pass_robot(Vec::new());
         let again = self.now.ns() % 250_000_000 < LOOK_EVERY.0;
         self.to_arm.extend(self.act.filter(|_| again).map(|act| In::Act(Box::new(act))));
-        let events = self.to_arm.drain(..).map(Event::Message).collect();
-        self.pass_arm(events);
+        let inbox = std::mem::take(&mut self.to_arm);
+        let outputs = self.arm.wake(inbox, self.now, &mut Faults::none());
+        self.route_arm(outputs);
     }
 
     pub(crate) fn run(&mut self, seconds: f64) {
@@ -131,15 +124,15 @@ impl World {
         self.to_arm.push(In::Motion(command));
     }
 
-    /// Something happens to the robot.
+    /// Injects a fault into the robot.
     pub(crate) fn drill(&mut self, kind: DrillKind, amount: f64) {
         self.drills += 1;
         let drill = Drill { key: self.drills, amount, kind: kind.code(), ..Drill::default() };
-        self.pass_robot(vec![Event::Message(baxter::In::Drill(drill))]);
+        self.pass_robot(vec![baxter::In::Drill(drill)]);
     }
 
     pub(crate) fn arm_state(&self) -> Option<&ArmState> {
-        self.arm.as_ref().map(ArmNode::state)
+        self.arm.node().map(ArmNode::state)
     }
 
     pub(crate) fn phase(&self) -> PickPhase {
@@ -164,21 +157,14 @@ impl World {
     pub(crate) fn assert_delivered_once(&self) {
         assert_eq!(self.outcome(), PickOutcome::Delivered);
         assert_eq!(self.grasps, 1, "one grasp that holds");
-        let picks = self.arm_journal.iter().filter_map(|record| record.state.pick);
+        let picks = self.arm.journal().iter().filter_map(|record| record.state.pick);
         let phases: Vec<PickPhase> = picks.map(|pick| pick.phase).collect();
         assert!(phases.is_sorted(), "a phase was taken back");
     }
 
-    fn pass_arm(&mut self, events: Vec<Event<In>>) {
-        let Some(node) = &mut self.arm else { return };
-        let mut effects = Effects::default();
-        events.into_iter().for_each(|event| node.on(event, self.now, &mut effects));
-        if node.deadline().is_some_and(|deadline| deadline <= self.now) {
-            node.on(Event::Tick, self.now, &mut effects);
-        }
-        self.arm_journal.extend(effects.take_records());
-        let mut to_robot = Vec::new();
-        for output in effects.take_outputs() {
+    fn route_arm(&mut self, outputs: Vec<Out>) {
+        let mut commands = Vec::new();
+        for output in outputs {
             match output {
                 Out::Status(status) => self.statuses.push(status),
                 Out::Robot(order) => {
@@ -186,42 +172,40 @@ impl World {
                         self.commanded[baxter::robot::side(*limb)].push(self.now);
                     }
                     self.orders.push((self.now, order.clone()));
-                    to_robot.push(Event::Message(hears(order)));
+                    commands.push(to_robot(order));
                 }
                 Out::Joints(_) | Out::World(_) | Out::Trajectory(_) => {}
             }
         }
-        self.pass_robot(to_robot);
+        self.pass_robot(commands);
     }
 
-    fn pass_robot(&mut self, events: Vec<Event<baxter::In>>) {
-        let Some(node) = &mut self.robot else { return };
+    fn pass_robot(&mut self, inbox: Vec<baxter::In>) {
         let held =
             |robot: &Robot| manipulation::Limb::BOTH.map(|l| robot.objects().held(l).is_some());
-        let before = held(node.robot());
-        let mut effects = Effects::default();
-        events.into_iter().for_each(|event| node.on(event, self.now, &mut effects));
-        if node.deadline().is_some_and(|deadline| deadline <= self.now) {
-            node.on(Event::Tick, self.now, &mut effects);
-        }
-        let taken =
-            held(node.robot()).into_iter().zip(before).filter(|(now, before)| *now && !before);
-        self.grasps += taken.count() as u32;
-        self.robot_journal.extend(effects.take_records());
-        for told in effects.take_outputs() {
-            if let baxter::Out::Joints(state) = &told
+        let before = self.robot.node().map(|node| held(node.robot()));
+        let outputs = self.robot.wake(inbox, self.now, &mut Faults::none());
+        let after = self.robot.node().map(|node| held(node.robot()));
+        let limbs = after.into_iter().flatten().zip(before.into_iter().flatten());
+        self.grasps += limbs.filter(|(after, before)| *after && !before).count() as u32;
+        self.route_robot(outputs);
+    }
+
+    fn route_robot(&mut self, outputs: Vec<baxter::Out>) {
+        for output in outputs {
+            if let baxter::Out::Joints(state) = &output
                 && state.len > 1
             {
                 self.joint_states.push(**state);
             }
-            if self.arm.is_some() {
-                self.to_arm.extend(report(told).map(In::Robot));
+            if self.arm.is_up() {
+                self.to_arm.extend(to_arm(output).map(In::Robot));
             }
         }
     }
 }
 
-fn hears(order: Order) -> baxter::In {
+fn to_robot(order: Order) -> baxter::In {
     match order {
         Order::Joints(limb, command) => baxter::In::Joints(limb, command),
         Order::FeedForward(limb, point) => baxter::In::FeedForward(limb, point),
@@ -230,7 +214,7 @@ fn hears(order: Order) -> baxter::In {
     }
 }
 
-fn report(out: baxter::Out) -> Option<Report> {
+fn to_arm(out: baxter::Out) -> Option<Report> {
     match out {
         baxter::Out::Joints(state) => Some(Report::Joints(state)),
         baxter::Out::Assembly(state) => Some(Report::Assembly(state)),

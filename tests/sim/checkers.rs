@@ -1,36 +1,37 @@
-//! What must hold after any dialogue, read from the journals as an outsider would.
+//! Invariants of any dialogue, checked on the journals.
 
-use crate::world::World;
 use config::Settings;
 use dialogue::manager::{Cause, refold, refold_since};
 use messages::{Outcome, PickOutcome, PickPhase};
 use speech::record::Record as Spoken;
+use whichone_tests::simulated_group::SimulatedGroup;
 
 type Verdict = Result<(), String>;
 
-/// Every check, the most telling first.
-pub(crate) fn check(world: &World) -> Verdict {
-    ensure(world.change.is_none(), || "the scene has never changed".to_owned())?;
-    delivered_the_right_one(world)?;
-    picked_once(world)?;
-    numbered_without_gap(world)?;
-    applied_each_once(world)?;
-    nothing_premature(world)?;
-    belief_refolds(world)
+/// Checks all invariants, the most informative first.
+pub(crate) fn check(group: &SimulatedGroup) -> Verdict {
+    ensure(group.change.is_none(), || "the scene has never changed".to_owned())?;
+    delivered_the_right_one(group)?;
+    picked_once(group)?;
+    numbered_without_gap(group)?;
+    applied_each_once(group)?;
+    nothing_premature(group)?;
+    belief_refolds(group)
 }
 
 fn ensure(holds: bool, what: impl FnOnce() -> String) -> Verdict {
     if holds { Ok(()) } else { Err(what()) }
 }
 
-fn delivered_the_right_one(world: &World) -> Verdict {
-    let wanted = (Outcome::Delivered, Some(world.person.wanted));
-    ensure(world.outcome() == Some(wanted), || format!("the end was {:?}", world.outcome()))
+fn delivered_the_right_one(group: &SimulatedGroup) -> Verdict {
+    let wanted = (Outcome::Delivered, group.user.wanted());
+    ensure(group.outcome() == Some(wanted), || format!("the end was {:?}", group.outcome()))
 }
 
 /// At most one grasp that holds and one end for each interaction (I4), of the ordered object (I5).
-fn picked_once(world: &World) -> Verdict {
-    let picks: Vec<_> = world.arm.journal().iter().filter_map(|r| r.state.pick).collect();
+fn picked_once(group: &SimulatedGroup) -> Verdict {
+    let Some(arm) = &group.arm else { return Err("no arm".to_owned()) };
+    let picks: Vec<_> = arm.journal().iter().filter_map(|r| r.state.pick).collect();
     let entered = |phase| {
         picks.windows(2).filter(|w| w[1].phase == phase && w[0].phase != phase).count()
             + usize::from(picks.first().is_some_and(|pick| pick.phase == phase))
@@ -39,11 +40,11 @@ fn picked_once(world: &World) -> Verdict {
     ensure(entered(PickPhase::Done) <= 1, || "done more than once".to_owned())?;
     let Some(last) = picks.last() else { return Err("no pick in the arm's journal".to_owned()) };
     ensure(last.outcome == PickOutcome::Delivered, || format!("the pick ended as {last:?}"))?;
-    ensure(last.object == world.person.wanted, || format!("{last:?} was not wanted"))
+    ensure(Some(last.object) == group.user.wanted(), || format!("{last:?} was not wanted"))
 }
 
-fn numbered_without_gap(world: &World) -> Verdict {
-    let accepted = world.speech.journal().iter().filter_map(|record| match record {
+fn numbered_without_gap(group: &SimulatedGroup) -> Verdict {
+    let accepted = group.speech.journal().iter().filter_map(|record| match record {
         Spoken::Accepted(accepted) => Some((accepted.seq.0, accepted.key)),
         Spoken::Presented(_) => None,
     });
@@ -54,13 +55,13 @@ fn numbered_without_gap(world: &World) -> Verdict {
     distinct.sort_unstable();
     distinct.dedup();
     ensure(distinct.len() == keys.len(), || "one sentence was accepted twice".to_owned())?;
-    let lost = world.person.accepted.iter().find(|key| !keys.contains(key));
+    let lost = group.user.accepted.iter().find(|key| !keys.contains(key));
     ensure(lost.is_none(), || format!("{lost:?} was acknowledged but is not in the journal"))
 }
 
 /// Applied in order, each exactly once (I1).
-fn applied_each_once(world: &World) -> Verdict {
-    let applied = world.policy.journal().iter().filter_map(|record| match &record.cause {
+fn applied_each_once(group: &SimulatedGroup) -> Verdict {
+    let applied = group.policy.journal().iter().filter_map(|record| match &record.cause {
         Cause::Utterance(heard) => Some(heard.seq.0),
         _ => None,
     });
@@ -69,24 +70,24 @@ fn applied_each_once(world: &World) -> Verdict {
     ensure(applied == expected, || format!("applied as {applied:?}"))
 }
 
-/// Nothing is seen before it is durable (I3).
-fn nothing_premature(world: &World) -> Verdict {
-    ensure(world.premature.is_empty(), || world.premature.join("; "))
+/// Nothing becomes visible before it is durable (I3).
+fn nothing_premature(group: &SimulatedGroup) -> Verdict {
+    ensure(group.premature.is_empty(), || group.premature.join("; "))
 }
 
 /// The belief and every decision follow from the journal, bit for bit (I8), those before a change
 /// of the scene under the former settings and the change itself under the new ones.
-fn belief_refolds(world: &World) -> Verdict {
+fn belief_refolds(group: &SimulatedGroup) -> Verdict {
     let manager = |settings: &Settings| settings.manager().map_err(|e| e.to_string());
-    let records = world.policy.journal();
+    let records = group.policy.journal();
     let mut former = 0;
-    if let Some((settings, count)) = &world.before {
+    if let Some((settings, count)) = &group.before {
         let folded = refold(&mut manager(settings)?, &records[..*count]);
         folded.map_err(|e| format!("before the change: {e}"))?;
         former = *count;
     }
     let settings_key = records.last().map_or(0, |record| record.state.settings_key);
-    let mut now = manager(&world.settings)?;
+    let mut now = manager(&group.settings)?;
     let own = refold_since(&mut now, records, settings_key);
     let own = own.map_err(|e| e.to_string())?;
     ensure(own + former == records.len(), || format!("{own} and {former} of {}", records.len()))

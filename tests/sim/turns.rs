@@ -1,12 +1,12 @@
 //! Answers that come late, early, into the next question, and twice: each counts for the question
-//! that it was meant for, so that nothing wrong is fetched because of when somebody spoke.
+//! that it answers, so that timing causes no wrong pick.
 
-use whichone_tests::turns::{Count, study};
+use whichone_tests::simulated_group::{Count, study};
 
 const DIALOGUES: u64 = 60;
 
 #[test]
-fn whenever_people_answer_the_right_object_is_decided_on() {
+fn policy_credits_badly_timed_answers_to_their_questions() {
     let seed = crate::number("WHICHONE_SEED").unwrap_or(1);
     let study = study(crate::number("WHICHONE_SEEDS").unwrap_or(DIALOGUES), seed);
     let of = |rule: &str| -> Vec<&Count> {

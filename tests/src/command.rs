@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// How a command ended.
+/// A command that has ended.
 #[derive(Debug)]
 pub struct Ended {
-    /// Its exit code; none where a signal ended it.
+    /// Its exit code; `None` if a signal ended it.
     pub code: Option<i32>,
-    /// What it printed.
+    /// Its standard output.
     pub stdout: String,
-    /// What it complained about.
+    /// Its standard error.
     pub stderr: String,
 }
 
@@ -20,7 +20,7 @@ impl Ended {
     /// Its output as one JSON value.
     ///
     /// # Panics
-    /// Where it is none.
+    /// If it is not valid JSON.
     pub fn json(&self) -> serde_json::Value {
         serde_json::from_str(&self.stdout).unwrap_or_else(|e| panic!("{e}: {self:?}"))
     }
@@ -29,7 +29,7 @@ impl Ended {
 /// A program of the group, as this build made it.
 ///
 /// # Panics
-/// Where it is not built: `cargo build --workspace` does that, and `scripts/test` does it first.
+/// If it is not built: `cargo build --workspace` does that, and `scripts/test` does it first.
 pub fn program(name: &str) -> PathBuf {
     let test = std::env::current_exe().expect("the test's own path");
     let folder = test.ancestors().find(|folder| folder.join(name).is_file());

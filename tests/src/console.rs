@@ -1,4 +1,4 @@
-//! A page without a browser: a socket of the console's, and what it was told.
+//! A console page without a browser: its socket and the messages that it received.
 
 use crate::{Group, wait_for};
 use serde_json::{Map, Value as Json, json};
@@ -9,45 +9,45 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::http::HeaderValue;
 use tungstenite::{Message, WebSocket, client};
 
-/// How long one look at the socket waits.
+/// Timeout of one look at the socket.
 const LOOK: Duration = Duration::from_millis(20);
-/// How long something is waited for.
+/// Timeout of a wait.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// An open page.
 #[derive(Debug)]
 pub struct Page {
     socket: WebSocket<TcpStream>,
-    /// What the console said at the beginning.
+    /// The console's first message.
     pub welcome: Json,
-    /// The sections as they are now.
+    /// The current sections.
     pub parts: Map<String, Json>,
     /// The transcript, by number.
     pub lines: Vec<Json>,
-    /// Everything else that was told, oldest first.
-    pub told: Vec<Json>,
-    /// Frames that came.
+    /// All other messages, oldest first.
+    pub messages: Vec<Json>,
+    /// Number of received frames.
     pub frames: u64,
-    /// Why the console has closed it: code and reason.
+    /// Code and reason, once the console has closed the socket.
     pub closed: Option<(u16, String)>,
     next: u64,
 }
 
-/// How a page says who it is.
+/// Identity of a page.
 #[derive(Clone, Debug)]
 pub struct Visitor<'a> {
     /// 32 hexadecimal digits.
     pub session: String,
     /// `operator`, `viewer` or `screen`.
     pub role: &'a str,
-    /// The last line that it has.
+    /// The latest line received.
     pub last_line: u64,
     /// More headers of the request.
     pub headers: Vec<(&'static str, String)>,
 }
 
 impl Visitor<'_> {
-    /// One who wishes for control, in a session of this number.
+    /// An operator in the session of this number.
     pub fn operator(number: u32) -> Self {
         let session = format!("{number:032x}");
         Self { session, role: "operator", last_line: 0, headers: Vec::new() }
@@ -72,7 +72,7 @@ impl Group {
 /// One request over HTTP: status, headers and body as text. The request has these further lines.
 ///
 /// # Panics
-/// Where nobody answers.
+/// If there is no answer.
 pub fn http(
     place: &str,
     method: &str,
@@ -103,7 +103,7 @@ impl Page {
     /// Opens a page at `127.0.0.1:PORT` and waits for its welcome.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The console refuses, or does not answer.
     pub fn open(place: &str, visitor: &Visitor<'_>) -> Result<Self, String> {
         let mut page = Self::connect(place, visitor)?;
         let Visitor { session, role, last_line, .. } = visitor;
@@ -122,7 +122,7 @@ impl Page {
         Ok(page)
     }
 
-    /// Opens a socket and says nothing.
+    /// Opens a socket without a greeting.
     ///
     /// # Errors
     /// The console refuses.
@@ -145,14 +145,14 @@ impl Page {
             welcome: Json::Null,
             parts: Map::new(),
             lines: Vec::new(),
-            told: Vec::new(),
+            messages: Vec::new(),
             frames: 0,
             closed: None,
             next: 0,
         })
     }
 
-    /// Says something.
+    /// Sends a message.
     pub fn send(&mut self, message: &Json) {
         self.send_raw(Message::Text(message.to_string().into()));
     }
@@ -164,7 +164,7 @@ impl Page {
         }
     }
 
-    /// Takes in what has come, waiting a moment for the first of it.
+    /// Receives one message, if there is one soon.
     pub fn look(&mut self) {
         match self.socket.read() {
             Ok(Message::Text(text)) => {
@@ -172,8 +172,8 @@ impl Page {
                 self.hear(serde_json::from_str(&text).expect("frames are JSON"));
             }
             Ok(Message::Close(frame)) => {
-                let told = frame.map(|frame| (frame.code.into(), frame.reason.to_string()));
-                self.closed = Some(told.unwrap_or_default());
+                let closed = frame.map(|frame| (frame.code.into(), frame.reason.to_string()));
+                self.closed = Some(closed.unwrap_or_default());
             }
             Ok(_) => {}
             Err(tungstenite::Error::Io(error))
@@ -199,46 +199,46 @@ impl Page {
                 }
                 self.lines.sort_by_key(|line| line["id"].as_u64());
             }
-            _ => self.told.push(message),
+            _ => self.messages.push(message),
         }
     }
 
-    /// Looks until `found` gives something.
+    /// Receives until `found` returns a value, and returns it.
     ///
     /// # Panics
-    /// Where it does not.
+    /// After [`PATIENCE`].
     pub fn until<R>(&mut self, what: &str, mut found: impl FnMut(&Self) -> Option<R>) -> R {
         let until = Instant::now() + PATIENCE;
         loop {
             if let Some(found) = found(self) {
                 return found;
             }
-            let Self { parts, lines, told, closed, .. } = self;
+            let Self { parts, lines, messages, closed, .. } = self;
             assert!(
                 Instant::now() < until,
-                "no {what} within {PATIENCE:?}\n{parts:?}\n{lines:?}\n{told:?}\n{closed:?}"
+                "no {what} within {PATIENCE:?}\n{parts:?}\n{lines:?}\n{messages:?}\n{closed:?}"
             );
             self.look();
         }
     }
 
-    /// Looks until the section `part` is as `is` says.
+    /// Receives until the section `part` satisfies `is`.
     pub fn until_part(&mut self, part: &str, is: impl Fn(&Json) -> bool) -> Json {
         self.until(part, |page| page.parts.get(part).filter(|value| is(value)).cloned())
     }
 
-    /// Looks until there is a line that is as `is` says.
+    /// Receives until a line satisfies `is`.
     pub fn until_line(&mut self, what: &str, is: impl Fn(&Json) -> bool) -> Json {
         self.until(what, |page| page.lines.iter().find(|line| is(line)).cloned())
     }
 
-    /// Has something done, and waits for its answer.
+    /// Sends a command and waits for its answer.
     pub fn ask(&mut self, verb: &str, more: &Json) -> Json {
         let id = self.begin(verb, more);
-        self.until(verb, |page| page.told.iter().find(|told| told["id"] == id).cloned())
+        self.until(verb, |page| page.messages.iter().find(|message| message["id"] == id).cloned())
     }
 
-    /// Has something done.
+    /// Sends a command and returns its number.
     pub fn begin(&mut self, verb: &str, more: &Json) -> u64 {
         self.next += 1;
         let mut message = json!({ "t": "do", "id": self.next, "do": verb });
@@ -249,29 +249,30 @@ impl Page {
         self.next
     }
 
-    /// Its number: `v3`.
+    /// The viewer's name, e.g. `v3`.
     pub fn viewer(&self) -> String {
         self.welcome["viewer"].as_str().unwrap_or_default().to_owned()
     }
 
-    /// The last line that it has.
+    /// The latest line received.
     pub fn last_line(&self) -> u64 {
         self.lines.last().and_then(|line| line["id"].as_u64()).unwrap_or(0)
     }
 
-    /// Answers what is asked as somebody who wants the object, until the interaction has ended; how.
+    /// Answers truthfully as a user who wants the object, until the interaction ends, and returns
+    /// its outcome.
     ///
     /// # Panics
-    /// Where it does not come to an end.
+    /// If it does not end.
     pub fn converse(&mut self, object: &str) -> Json {
         let over = |dialogue: &Json| dialogue["interaction"] == 0 && !dialogue["last"].is_null();
         self.answer_until(object, over)["last"].clone()
     }
 
-    /// Answers what is asked as somebody who wants the object, until the dialogue is as `over` says.
+    /// Answers truthfully as a user who wants the object, until the dialogue satisfies `over`.
     ///
     /// # Panics
-    /// Where it never is.
+    /// If it never does.
     pub fn answer_until(&mut self, object: &str, over: impl Fn(&Json) -> bool) -> Json {
         let (mut answered, mut said) = (None, 0);
         loop {
@@ -296,7 +297,7 @@ impl Page {
         }
     }
 
-    /// What somebody who wants the object says to a question.
+    /// The true answer of a user who wants the object.
     fn answer_for(&self, about: &Json, object: &str) -> String {
         let objects = self.parts["scene"]["objects"].as_array().into_iter().flatten();
         let wanted = objects.into_iter().find(|one| one["name"] == object);

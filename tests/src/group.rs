@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// No call of the command line takes longer.
+/// Timeout of a call of the command line, seconds.
 const CALL_S: f64 = 60.0;
 
 static NUMBER: AtomicU32 = AtomicU32::new(0);
@@ -63,7 +63,7 @@ impl Group {
         ended
     }
 
-    /// Where the group lives.
+    /// Paths of the group.
     pub fn paths(&self) -> &GroupPaths {
         &self.paths
     }
@@ -81,50 +81,50 @@ impl Group {
         run(&mut self.command(words), "", CALL_S)
     }
 
-    /// As [`Group::call`], for what must succeed.
+    /// As [`Group::call`], for calls that must succeed.
     pub fn must(&self, words: &[&str]) -> Ended {
         let ended = self.call(words);
         assert_eq!(ended.code, Some(0), "whichone {words:?}: {ended:?}\n{}", self.logs());
         ended
     }
 
-    /// Says something to the robot.
+    /// Types an utterance.
     pub fn say(&self, text: &str) {
         self.must(&["say", text]);
     }
 
-    /// Waits for the interaction's outcome; with `answer_as`, a person who wants that object
-    /// answers meanwhile.
+    /// Waits for the interaction's outcome; with `answer_as`, a user who wants that object answers
+    /// meanwhile.
     pub fn await_pick(&self, answer_as: Option<&str>) -> Value {
         let mut words = vec!["await", "pick", "--json", "--timeout", "50"];
         words.extend(answer_as.iter().flat_map(|object| ["--answer-as", object]));
         self.call(&words).json()
     }
 
-    /// Asks for "the bowl" (or what `request` says) as somebody who wants `object`, and returns the
+    /// Asks for "the bowl" (or what `request` says) as a user who wants `object`, and returns the
     /// outcome.
     pub fn fetch(&self, request: &str, object: &str) -> Value {
         self.say(request);
         self.await_pick(Some(object))
     }
 
-    /// As [`Group::fetch`]; `then` is done once the arm has been ordered to pick.
+    /// As [`Group::fetch`], calling `then` once the arm has been ordered to pick.
     pub fn fetch_while(&self, request: &str, object: &str, then: impl FnOnce()) -> Value {
         self.say(request);
         std::thread::scope(|scope| {
-            let person = scope.spawn(|| self.await_pick(Some(object)));
+            let user = scope.spawn(|| self.await_pick(Some(object)));
             self.wait_for_decision("pick");
             then();
-            person.join().expect("the person gets an outcome")
+            user.join().expect("the user gets an outcome")
         })
     }
 
-    /// What the arm does, as `watch` shows it.
+    /// The arm's state, as `watch` shows it.
     pub fn arm(&self) -> Value {
         self.must(&["watch", "--once", "--json"]).json()["arm"].take()
     }
 
-    /// What the robot believes and is about to do, as `watch` shows it.
+    /// The dialogue's state, as `watch` shows it.
     pub fn dialogue(&self) -> Value {
         self.must(&["watch", "--once", "--json"]).json()["dialogue"].take()
     }
@@ -159,7 +159,7 @@ impl Group {
 
     /// Sends a signal to a service.
     pub fn signal(&self, service: &str, signal: Signal) {
-        // A process that has just ended by itself is as dead as it should be.
+        // A process that has just ended needs no signal.
         let _ = kill_process(self.pid(service), signal);
     }
 

@@ -1,16 +1,14 @@
-//! What tests share: real processes in a group of their own that leaves nothing behind, with the
-//! command line that their users would type; reducers in simulated processes; people who speak.
+//! Shared by the tests: real process groups that are driven through the command line and leave
+//! nothing behind, simulated groups, and users who speak with real sound.
 
 mod command;
 pub mod console;
 mod group;
-mod host;
+pub mod simulated_group;
 pub mod spoken;
-pub mod turns;
 
 pub use command::{Ended, program, run};
 pub use group::Group;
-pub use host::{Crash, Host, configured};
 
 use config::Settings;
 use std::path::Path;
@@ -18,17 +16,17 @@ use std::path::Path;
 /// The shipped configuration with the profile for tests, and these settings over it.
 ///
 /// # Panics
-/// Where a setting is none.
+/// If a setting is invalid.
 pub fn settings(over: &[(&str, &str)]) -> Settings {
     let config = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config"));
     let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
     preflight::load(config, Some("ci"), &over).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Waits until `fact` gives a value.
+/// Waits until `fact` returns a value, and returns it.
 ///
 /// # Panics
-/// When `seconds` have passed without one: a test that would hang fails instead.
+/// If there is none after `seconds`.
 pub fn wait_for<T>(what: &str, seconds: f64, mut fact: impl FnMut() -> Option<T>) -> T {
     let until = std::time::Instant::now() + std::time::Duration::from_secs_f64(seconds);
     loop {

@@ -31,7 +31,7 @@ impl Seed {
     }
 }
 
-/// What a solver made of the targets.
+/// Results of a solver.
 #[derive(Debug)]
 pub(super) struct Outcome {
     pub(super) name: String,

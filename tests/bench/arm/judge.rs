@@ -1,16 +1,16 @@
-//! Whether an answer is one.
+//! Validity of an answer.
 
 use super::arm;
 use manipulation::{Joints, Limb};
 use nalgebra::Isometry3;
 use robot_model::{Robot, SerialChain};
 
-/// What an answer must keep.
+/// Tolerances of an answer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rule {
     /// Greatest distance in metres and angle in radians.
     tolerance: f64,
-    /// How far beyond a limit a joint may be, radians.
+    /// Tolerance of the joint limits, radians.
     beyond: f64,
 }
 
@@ -18,7 +18,7 @@ impl Rule {
     /// For this project's solver: 1e-6 (and what two ways to compute a pose differ by), the limits
     /// to the last bit.
     pub(super) const OWN: Self = Self { tolerance: 1e-6 + 1e-12, beyond: 0.0 };
-    /// For peers, which are told to stop at 1e-5: twice that, and limits to 1e-6, for some keep
+    /// For peers, which are configured to stop at 1e-5: twice that, and limits to 1e-6, for some keep
     /// them in single precision.
     pub(super) const PEER: Self = Self { tolerance: 2e-5, beyond: 1e-6 };
 }

@@ -35,7 +35,7 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
     clearance::measure(report);
 }
 
-/// How many targets each kind of solver gets: the slow ones the first of them.
+/// Number of targets by kind of solver: slow ones get the first targets only.
 #[derive(Clone, Copy, Debug)]
 struct Effort {
     own: usize,

@@ -1,4 +1,4 @@
-//! How long motions take beside the shortest known, and what planning them costs.
+//! Duration of motions against the shortest known, and the cost of planning them.
 
 use super::{arm, fixture, mean, numbers, rows, seven, timed};
 use crate::report::{Report, Table};

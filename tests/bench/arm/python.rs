@@ -17,11 +17,11 @@ const SCRIPT: &str = include_str!("peers.py");
 /// The interpreter that has them.
 const VARIABLE: &str = "WHICHONE_PEERS_PYTHON";
 
-/// What came back.
+/// The peers' answer.
 #[derive(Debug, Default)]
 pub(super) struct Measured {
     runs: Vec<Run>,
-    /// What was left out, and why.
+    /// Peers that were left out, with the reason.
     pub(super) left_out: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! Time per decision of every planner, from six bowls to scenes that nobody's kitchen holds.
+//! Time per decision of every planner, from six bowls to very large scenes.
 
 use super::scenes::{OPEN, YES_NO, beliefs, configured, random};
 use super::{Effort, micros};

@@ -1,4 +1,4 @@
-//! How fast the certified gap closes: bounds against beliefs looked at and time spent.
+//! Convergence of the certified gap: bounds against expanded beliefs and time.
 
 use super::scenes::{OPEN, YES_NO, configured, random};
 use super::{Effort, micros};
@@ -32,7 +32,7 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
     report.tables.push(Table {
         title: "Certified gap against time".to_owned(),
         note: "Lower and upper bound on the value of the best policy at the uniform belief, costs \
-               in seconds. The search ends by itself where the value is known."
+               in seconds. The search ends where the value is known."
             .to_owned(),
         heads,
         rows,

@@ -1,4 +1,4 @@
-//! The decision core by itself: what deciding and updating cost, and how good the decisions are.
+//! The decision core alone: time of decisions and updates, and quality of the decisions.
 //!
 //! Everything is deterministic but the clock: the same scenes, beliefs and draws in every run.
 
@@ -12,7 +12,7 @@ mod update;
 use crate::report::Report;
 use std::time::Instant;
 
-/// How much is measured.
+/// Amounts of work.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
     /// Most repetitions of one figure.
@@ -24,7 +24,7 @@ pub(crate) struct Effort {
     pub(crate) budget_s: f64,
     /// Dialogues less probable than this are cut short in exact evaluations.
     pub(crate) cut: f64,
-    /// Whether small steps are left out of series.
+    /// Whether series leave out small steps.
     pub(crate) quick: bool,
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn measure(report: &mut Report, effort: Effort) {
 }
 
 /// Microseconds of `act`, sample by sample, until there are enough or patience ends. Each sample
-/// is of something prepared anew, which is not timed.
+/// is of fresh input, whose preparation is not timed.
 fn micros<P>(effort: Effort, mut prepare: impl FnMut() -> P, mut act: impl FnMut(P)) -> Vec<f64> {
     let begun = Instant::now();
     let mut samples = Vec::new();

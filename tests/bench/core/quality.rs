@@ -1,4 +1,4 @@
-//! How good the decisions are: the exact value of every planner's policy beside certified bounds
+//! Quality of the decisions: the exact value of every planner's policy beside certified bounds
 //! on the best one.
 
 use super::Effort;

@@ -1,4 +1,4 @@
-//! How deciding and updating grow with the number of objects and of attributes.
+//! Growth of the time of decisions and updates with the numbers of objects and attributes.
 
 use super::scenes::{OPEN, random};
 use super::{Effort, micros, update};

@@ -1,4 +1,4 @@
-//! What is spoken: sentences, voices, noise.
+//! The corpus: sentences, voices, noise.
 
 use super::noise::pink;
 use super::voices::{Voice, Voices};
@@ -30,7 +30,7 @@ use scene::Question;
 pub(super) struct Clip {
     /// 16 kHz, one channel.
     pub(super) samples: Vec<i16>,
-    /// Where the voice is, samples.
+    /// Range of the voice, samples.
     pub(super) speech: Range<usize>,
 }
 
@@ -112,8 +112,8 @@ impl Corpus {
     }
 }
 
-/// A line of the public utterances, unless it lies in the writing alone: nobody can pronounce an
-/// empty text, and a spelling mistake is none when spoken.
+/// A line of the public utterances; `None` where it exists only in writing, as an empty text or a
+/// spelling mistake.
 fn spoken(scenes: &[Scene], line: &str) -> Option<Sentence> {
     let line: serde_json::Value = serde_json::from_str(line).expect("a line of JSON");
     let kind = line["kind"].as_str()?;

@@ -14,9 +14,9 @@ use std::time::Instant;
 
 /// A stretch of a clip that was taken for speech.
 pub(super) struct Heard {
-    /// Where the detector put the voice, samples.
+    /// Range of the voice by the detector, samples.
     pub(super) speech: Range<usize>,
-    /// Where it took the voice for over, in doubt, so that decoding began, samples.
+    /// Provisional ends of the voice, at which decoding began, samples.
     pub(super) decoded_at: usize,
     /// Best first, as the gate lets them pass or not.
     pub(super) hypotheses: Vec<Hypothesis>,

@@ -1,4 +1,4 @@
-//! What was meant and what was understood, compared.
+//! Comparison of the intended meaning with the understood one.
 
 use super::corpus::Sentence;
 use ::speech::Hypothesis;
@@ -7,7 +7,7 @@ use language::Reader;
 use scene::{Intent, Reading, Response, WordId};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What an utterance says to the robot, as far as it changes anything.
+/// The meaning of an utterance, as far as it affects the robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Meaning {
     base: BTreeSet<WordId>,
@@ -40,7 +40,7 @@ impl Meaning {
         }
     }
 
-    /// Whether the robot does anything about it.
+    /// Returns whether the robot reacts to it.
     pub(super) fn is_acted_on(&self) -> bool {
         *self != Self::default()
     }

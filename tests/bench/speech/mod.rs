@@ -55,7 +55,7 @@ struct Ears {
     _work: tempfile::TempDir,
 }
 
-/// How often each recogniser is started, to see how long that takes.
+/// Number of timed starts of each recogniser.
 const STARTS: usize = 5;
 
 impl Ears {

@@ -10,14 +10,14 @@ use dialogue::{Model, Params};
 use language::{Language, Reader};
 use scene::{Scene, WordId};
 
-/// What sentences are read and believed with.
+/// Readers and models of a scene.
 pub(super) struct Judge {
     reader: Reader,
     spotter: Reader,
     model: Model,
 }
 
-/// What became of a clip.
+/// Score of a clip.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Score {
     pub(super) for_the_robot: bool,
@@ -164,7 +164,7 @@ impl Timing {
         let (Some(first), Some(last)) = (heard.first(), heard.last()) else {
             return Self { onset_s: f64::NAN, release_s: f64::NAN, delay_s: f64::NAN };
         };
-        // Decoding goes on while the pause does; the result is told at the pause's end at the soonest.
+        // Decoding continues during the pause; the result arrives at the pause's end at the earliest.
         let release_s = late(last.speech.end, clip.speech.end);
         let decoded_s = late(last.decoded_at, clip.speech.end) + last.took_s.0;
         Self {

@@ -130,7 +130,7 @@ fn timed(corpus: &Corpus, rows: &[Row]) -> Table {
     }
 }
 
-/// How often words are right that the recogniser is so sure of.
+/// Share of right words by the recogniser's confidence.
 fn reliable(corpus: &Corpus, rows: &[Row]) -> Table {
     const BOUNDS: [f32; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.001];
     let cell = |words: &[(f32, bool)], from: f32, to: f32| {

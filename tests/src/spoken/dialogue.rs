@@ -1,13 +1,16 @@
-//! One spoken dialogue with the real group: a person wants an object, asks for it, answers what is
-//! asked, and gets something.
+//! One spoken dialogue with the real group: a user asks for an object, answers the questions, and
+//! gets something.
 
 use std::collections::HashSet;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use dialogue::Rng;
+use dialogue::{Model, Params, Rng};
+use evaluation::simulation::SimulatedUser;
+use evaluation::simulation::users::{Domain, Manners, Policy, Turn};
 use language::{Language, Reader};
 use messages::{EarState, Outcome, ReceiptStatus};
+use preflight::{Pace, between};
 use scene::{Question, Reading, Scene};
 use serde::Serialize;
 use service::client::Client;
@@ -18,68 +21,72 @@ use speech::devices::voice::Synthesiser;
 use super::room::Room;
 use super::sound::{Pink, SPEAKERS, SPEECH_RMS, levelled};
 use super::taps::{News, Said, Taps};
-use super::words::{Asked, Person};
+use super::words::understand;
 use crate::{Group, wait_for};
 
-/// Under what a dialogue is held.
+/// Conditions of a dialogue.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
-    /// How far speech stands above the noise, decibels.
+    /// Signal to noise ratio, decibels.
     pub snr_db: f64,
-    /// Whether the microphone does not hear the robot, so that people may interrupt it.
+    /// Whether the user may interrupt the robot, whose voice the microphone does not hear.
     pub barge_in: bool,
-    /// Which dialogue: decides what is wanted and by whom, what is said and when.
+    /// Number of the dialogue: determines the object, the voice, the words and the times.
     pub number: u64,
     /// Seed of all dialogues.
     pub seed: u64,
 }
 
-/// How a dialogue went.
+/// A dialogue that was held.
 #[derive(Clone, Debug, Serialize)]
-pub struct Told {
+pub struct Held {
     /// Its number.
     pub number: u64,
-    /// The voice that the person had.
+    /// The user's voice.
     pub speaker: &'static str,
-    /// What was wanted.
+    /// The wanted object.
     pub wanted: String,
-    /// What was brought; nothing where the dialogue did not end.
+    /// The object that was brought, if any.
     pub brought: Option<String>,
     /// Questions that were asked.
     pub questions: u32,
-    /// From the person's first sound to the decision what to bring, seconds.
+    /// From the user's first sound to the decision what to bring, seconds.
     pub seconds: f64,
-    /// Utterances said by the person.
+    /// The user's utterances.
     pub said: u32,
-    /// Those that were heard and taken to be not for the robot, or not heard at all.
+    /// Those that were rejected or not heard.
     pub rejected: u32,
-    /// Those that were taken to say something else than they said.
+    /// Those whose meaning was mistaken.
     pub misunderstood: u32,
-    /// What happened when, to be read.
+    /// Log of the dialogue.
     pub story: Vec<String>,
 }
 
-impl Told {
-    /// Whether the right object was brought.
+impl Held {
+    /// Returns whether the right object was brought.
     pub fn is_right(&self) -> bool {
         self.brought.as_deref() == Some(self.wanted.as_str())
     }
 }
 
+/// Probability of a remark after an answer.
+const SECOND_THOUGHT: f64 = 0.06;
+/// Pause before that remark, seconds.
+const SECOND_THOUGHT_S: (f64, f64) = (0.9, 2.5);
 /// A dialogue that takes longer has failed.
 const LONGEST: Duration = Duration::from_secs(150);
-/// After so much without a reaction to a request it is made again, seconds.
+/// Time without a reaction after which a request is repeated, seconds.
 const PATIENCE_S: f64 = 6.0;
-/// How often the person looks what the robot does.
+/// Time between two looks at the robot's topics.
 const LOOK: Duration = Duration::from_millis(4);
-/// How far the detector's idea of where speech is may be off, seconds.
+/// Tolerance of the detected onset and end, seconds.
 const EDGE_S: f64 = 0.6;
 
 /// Holds a dialogue with a group of its own.
 ///
 /// # Panics
 /// If the group does not start, or a topic breaks.
-pub fn converse(conditions: Conditions) -> Told {
+pub fn converse(conditions: Conditions) -> Held {
     let folder = tempfile::tempdir().expect("a folder");
     let pipe = folder.path().join("microphone");
     let noise = SPEECH_RMS / 10_f64.powf(conditions.snr_db / 20.0);
@@ -91,11 +98,11 @@ pub fn converse(conditions: Conditions) -> Told {
     let scene = config::Settings::load_snapshot(&group.paths().run()).expect("a snapshot").scene;
     let mut talk = Talk::new(&client, scene, room, folder.path(), conditions);
     talk.hold();
-    let told = talk.told();
+    let held = talk.held();
     drop(client);
     group.verify_journals();
     group.down();
-    told
+    held
 }
 
 /// The shipped speech settings with the pipe for a microphone, and a voice that takes its time.
@@ -110,10 +117,10 @@ fn settings(pipe: &Path, conditions: Conditions) -> Vec<String> {
     ]
 }
 
-/// Something that the person said.
+/// An utterance of the user.
 struct Sentence {
     text: String,
-    /// What it was said to.
+    /// The question that it answers.
     question: Question,
     began: Time,
     ended: Time,
@@ -131,7 +138,8 @@ struct Talk {
     speaker: &'static str,
     scene: Scene,
     reader: Reader,
-    person: Person,
+    model: Model,
+    user: SimulatedUser,
     wanted: scene::ObjectId,
     voice: Synthesiser,
     room: Room,
@@ -158,6 +166,7 @@ impl Talk {
         conditions: Conditions,
     ) -> Self {
         let mut rng = Rng::new(conditions.seed);
+        let policy = Policy::Talkative(&Manners::ATTENTIVE);
         let stream = rng.next_u64() ^ conditions.number.wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let number = conditions.number as usize;
         let wanted = scene::ObjectId::from(number % scene.objects().len());
@@ -166,9 +175,10 @@ impl Talk {
             number: conditions.number,
             speaker: speaker.name,
             reader: Reader::new(&scene, Language::Careful),
-            person: Person::new(&scene, wanted, Rng::new(stream)),
+            model: Model::new(&scene, Params::default()),
+            user: SimulatedUser::new(policy, wanted, Rng::new(stream)),
             wanted,
-            voice: speaker.synthesiser(&folder.join("person")),
+            voice: speaker.synthesiser(&folder.join("user")),
             room,
             taps: Taps::open(client),
             begun: HashSet::new(),
@@ -190,7 +200,7 @@ impl Talk {
             self.taps.look();
             (self.taps.ear == Some(EarState::Ready)).then_some(())
         });
-        let request = self.person.request();
+        let request = self.turn(|user, domain| user.request(domain));
         self.say(clock::now() + Span::from_ms(800), request, Question::None);
         let begun = Instant::now();
         while self.taps.view.last.is_none() && begun.elapsed() < LONGEST {
@@ -210,7 +220,7 @@ impl Talk {
         for (said, at) in news.began {
             let words = self.taps.questions.get(&said).cloned();
             if let (Some(words), true) = (words, self.begun.insert(said)) {
-                self.tell(Time(at), format!("robot: {words}"));
+                self.log(Time(at), format!("robot: {words}"));
             }
         }
         for (said, at) in news.ended {
@@ -223,24 +233,28 @@ impl Talk {
         if self.taps.picks && self.decided.is_none() {
             self.decided = Some(clock::now());
             let text = self.taps.view.text.clone();
-            self.tell(clock::now(), format!("robot: {text}"));
+            self.log(clock::now(), format!("robot: {text}"));
         }
     }
 
     /// Answers a question that ended then, after a while of thinking.
     fn answer(&mut self, words: &str, ended: Time) {
-        let asked = self.person.understand(words);
-        self.question = match asked {
-            Asked::Whether(k, v) => Question::Attribute(k, v),
-            Asked::Which(k) => Question::Which(k),
-            Asked::Open => Question::None,
-        };
-        let reaction = Span::from_s(self.person.reaction_s());
-        let text = self.person.answer(asked);
-        let end = self.say(ended + reaction, text, self.question);
-        if let Some((pause_s, text)) = self.person.second_thought() {
-            self.thought = Some(Thought { at: end + Span::from_s(pause_s), text });
+        let question = understand(&self.scene, &self.reader, words);
+        self.question = question;
+        let reaction = Span::from_s(Pace::default().reaction_s(self.user.rng()));
+        let text = self.turn(|user, domain| user.answer(domain, question));
+        let end = self.say(ended + reaction, text, question);
+        if self.user.rng().uniform() < SECOND_THOUGHT {
+            let text = self.turn(|user, domain| user.answer(domain, Question::None));
+            let pause = Span::from_s(between(self.user.rng(), SECOND_THOUGHT_S));
+            self.thought = Some(Thought { at: end + pause, text });
         }
+    }
+
+    /// The words of a turn, without the pauses that a synthesiser makes of commas.
+    fn turn(&mut self, turn: impl Fn(&mut SimulatedUser, Domain<'_>) -> Turn) -> String {
+        let domain = Domain { scene: &self.scene, model: &self.model };
+        turn(&mut self.user, domain).reply.text().unwrap_or_default().replace(',', "")
     }
 
     /// Remarks, and the request again where it met with nothing.
@@ -255,7 +269,7 @@ impl Talk {
         let last = self.sentences.last().map_or(now, |sentence| sentence.ended);
         let unheard = !self.reacted && self.decided.is_none();
         if unheard && now >= last + Span::from_s(PATIENCE_S) && self.requests < 4 {
-            let request = self.person.request_again();
+            let request = format!("get me the {}", self.scene.noun());
             self.say(now, request, Question::None);
         }
     }
@@ -264,7 +278,7 @@ impl Talk {
         self.requests += u32::from(question == Question::None);
         let samples = self.voice.samples(&text).expect("a synthesised voice");
         let (began, ended) = self.room.say(at, levelled(&samples));
-        self.tell(began, format!("person: {text}"));
+        self.log(began, format!("user: {text}"));
         self.sentences.push(Sentence { text, question, began, ended, heard: false });
         ended
     }
@@ -287,21 +301,21 @@ impl Talk {
             (None, true) => "heard OUT OF NOTHING",
             (_, false) => "heard, not for me",
         };
-        self.tell(clock::now(), format!("  {what}: {note} ({snr_db:.0} dB)"));
+        self.log(clock::now(), format!("  {what}: {note} ({snr_db:.0} dB)"));
     }
 
-    fn tell(&mut self, at: Time, what: String) {
+    fn log(&mut self, at: Time, what: String) {
         let began = self.sentences.first().map_or(at, |first| first.began);
         let seconds = (at.ns() as f64 - began.ns() as f64) / 1e9;
         self.story.push(format!("{seconds:7.2} s  {what}"));
     }
 
-    fn told(self) -> Told {
+    fn held(self) -> Held {
         let last = self.taps.view.last.as_ref();
         let delivered = last.filter(|last| last.outcome == Outcome::Delivered);
         let began = self.sentences.first().map_or(Time(0), |first| first.began);
         let ended = self.decided.unwrap_or_else(clock::now);
-        Told {
+        Held {
             number: self.number,
             speaker: self.speaker,
             wanted: self.scene.object(self.wanted).name.clone(),
@@ -316,7 +330,7 @@ impl Talk {
     }
 }
 
-/// What counts of a reading: the words in any order, each once, what is ruled out, and the answer.
+/// The relevant parts of a reading: the words as a set, the exclusions, and the answer.
 fn meaning(reading: &Reading) -> impl PartialEq + use<> {
     let mut base = reading.base.clone();
     base.sort_unstable();

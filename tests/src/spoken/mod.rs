@@ -1,14 +1,14 @@
-//! People who speak to the real group with real sound: synthesised voices over noise, written in
-//! real time to where the robot's microphone program reads.
+//! Simulated users who speak to the real group with real sound: synthesised voices over noise,
+//! written in real time to where the robot's microphone program reads.
 //!
 //! | file | holds |
 //! |---|---|
-//! | `words.rs` | what people say, and what they take the robot's words to ask |
+//! | `words.rs` | what users take the robot's words to ask |
 //! | `sound.rs` | voices and noise |
 //! | `room.rs` | the microphone: a pipe with sound in real time |
-//! | `taps.rs` | what is seen of the robot: its topics |
+//! | `taps.rs` | the robot's topics |
 //! | `dialogue.rs` | one dialogue, from a group's start to its end |
-//! | `tally.rs` | many of them, counted |
+//! | `tally.rs` | many dialogues, counted |
 
 mod dialogue;
 mod room;
@@ -17,8 +17,7 @@ mod tally;
 mod taps;
 mod words;
 
-pub use dialogue::{Conditions, Told, converse};
+pub use dialogue::{Conditions, Held, converse};
 pub use room::Room;
 pub use sound::{Pink, SPEAKERS, SPEECH_RMS, Speaker, levelled};
-pub use tally::{Tally, tally, wilson};
-pub use words::{Asked, Person};
+pub use tally::{Tally, tally};

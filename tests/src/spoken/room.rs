@@ -22,7 +22,7 @@ const RATE_HZ: f64 = 16_000.0;
 /// Samples that are written at a time: 20 ms.
 const FRAME: usize = 320;
 
-/// What is still to be heard: where it begins, counted in samples, and the samples.
+/// Speech still to be heard: its first sample's number, and the samples.
 type Speech = VecDeque<(u64, Vec<i16>)>;
 
 /// The room. Dropping it ends its sound.
@@ -76,7 +76,7 @@ impl Drop for Room {
         self.silent.store(true, Ordering::SeqCst);
         if let Some(thread) = self.thread.take() {
             let ended = thread.join();
-            debug_assert!(ended.is_ok(), "the room's sound broke down");
+            debug_assert!(ended.is_ok(), "the room's sound thread panicked");
         }
     }
 }
@@ -89,8 +89,8 @@ struct Air {
 }
 
 impl Air {
-    /// Each frame is written when its last sample has sounded. Where nobody reads, or not fast
-    /// enough, it is lost as it would be from a real microphone.
+    /// Writes each frame when its last sample has sounded. Without a reader, or with a slow one, it
+    /// is lost as it would be from a real microphone.
     fn sound(mut self) {
         let began = Instant::now();
         let mut pipe: Option<File> = None;
@@ -137,7 +137,7 @@ mod tests {
     use std::io::Read;
 
     #[test]
-    fn speech_sounds_when_it_was_to_and_one_after_the_other() {
+    fn room_plays_speech_on_time_and_in_sequence() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("microphone");
         let room = Room::open(&path, Pink::new(1.0, 1));

@@ -1,17 +1,17 @@
-//! The sound of a person in a room: synthesised voices, and pink noise under them.
+//! The sound of a user in a room: synthesised voices, and pink noise under them.
 
 use std::path::Path;
 
 use dialogue::Rng;
 use speech::devices::voice::{Program, Synthesiser, VoiceOptions};
 
-/// Loudness that every voice is brought to: root mean square of its samples.
+/// Level of every voice: root mean square of its samples.
 pub const SPEECH_RMS: f64 = 2_000.0;
 
 /// A synthesised voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speaker {
-    /// How reports call it.
+    /// Its name in reports.
     pub name: &'static str,
     /// Whether flite speaks; else espeak-ng.
     flite: bool,
@@ -48,7 +48,7 @@ impl Speaker {
     }
 }
 
-/// Brings speech to [`SPEECH_RMS`].
+/// Scales speech to [`SPEECH_RMS`].
 pub fn levelled(samples: &[i16]) -> Vec<i16> {
     let squares: f64 = samples.iter().map(|&s| f64::from(s) * f64::from(s)).sum();
     let rms = (squares / samples.len().max(1) as f64).sqrt().max(1.0);
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn noise_has_its_loudness_and_falls_by_three_decibels_an_octave() {
+    fn pink_noise_has_its_level_and_falls_by_three_decibels_per_octave() {
         let seed = 3;
         let mut noise = Pink::new(250.0, seed);
         let n = 1 << 16;
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn every_voice_is_equally_loud() {
+    fn every_voice_has_the_same_level() {
         let quiet: Vec<i16> = (0..16_000).map(|n| if n % 2 == 0 { 40 } else { -40 }).collect();
         assert!(levelled(&quiet).iter().all(|s| s.unsigned_abs() == SPEECH_RMS as u16));
         assert_eq!(levelled(&[]), Vec::<i16>::new());

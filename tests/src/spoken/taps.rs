@@ -1,4 +1,4 @@
-//! What a person sees and hears of the robot, and what an observer may know beyond that.
+//! The robot's topics: what its user hears, and what an observer may know beyond that.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use messages::{
 use service::bus::{EncodedReader, Reader};
 use service::client::Client;
 
-/// A prompt and which presentation of it.
+/// A prompt and the number of its presentation.
 pub(super) type Said = (u64, u32);
 
 /// Readers of the robot's topics, and the latest of each.
@@ -27,14 +27,14 @@ pub(super) struct Taps {
     pub(super) ear: Option<EarState>,
 }
 
-/// What is new.
+/// Messages that arrived since the last look.
 #[derive(Default)]
 pub(super) struct News {
-    /// Questions that have begun to sound: which, and when.
+    /// Questions that have begun to sound, and when.
     pub(super) began: Vec<(Said, u64)>,
-    /// Questions that were said to their end: which, and when that was.
+    /// Questions that were said to their end, and when.
     pub(super) ended: Vec<(Said, u64)>,
-    /// What became of what was heard.
+    /// Receipts of utterances.
     pub(super) receipts: Vec<Receipt>,
 }
 
@@ -56,7 +56,7 @@ impl Taps {
         }
     }
 
-    /// Takes in everything that has happened.
+    /// Reads everything that has happened.
     ///
     /// # Panics
     /// If a topic breaks.
@@ -72,7 +72,7 @@ impl Taps {
             _ => {}
         };
         self.acts.drain(take).expect("acts");
-        let told = |presented: &Presented| {
+        let note = |presented: &Presented| {
             let said = (presented.prompt, presented.presentation);
             match PresentationState::from_code(presented.state) {
                 Ok(PresentationState::Speaking) => news.began.push((said, presented.started_ns)),
@@ -80,7 +80,7 @@ impl Taps {
                 _ => {}
             }
         };
-        self.presented.drain(told).expect("presented");
+        self.presented.drain(note).expect("presented");
         self.receipts.drain(|receipt| news.receipts.push(*receipt)).expect("receipts");
         let ear = |activity: &Activity| self.ear = EarState::from_code(activity.ear).ok();
         self.activity.drain(ear).expect("activity");

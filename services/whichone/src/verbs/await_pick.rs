@@ -1,4 +1,4 @@
-//! `await pick`: the outcome of an interaction, and a simulated user who meanwhile answers.
+//! `await pick`: the outcome of an interaction, and a simulated user who answers meanwhile.
 
 use std::thread;
 use std::time::Instant;
@@ -28,12 +28,12 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
     let may_be_absent = conversation.may_be_absent();
     let user = wanted.map(|name| TruthfulUser::new(conversation.scene(), name, may_be_absent));
     let mut user = user.transpose().map_err(|what| CliError::new(Exit::Usage, what))?;
-    let mut waiting = Waiting::new(told_before(paths));
+    let mut waiting = Waiting::new(reported_before(paths));
     loop {
         conversation.look()?;
         if let Some(ended) = waiting.look(conversation.latest()) {
             remember(paths, ended.interaction.0)?;
-            return tell(&ended, out);
+            return report(&ended, out);
         }
         let answer = |user: &mut TruthfulUser| {
             user.look(conversation.scene());
@@ -43,13 +43,13 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
             conversation.say(&answer)?;
         }
         if started.elapsed() >= args.timeout {
-            return tell_timeout(&conversation, started, out);
+            return report_timeout(&conversation, started, out);
         }
         thread::sleep(LOOK_EVERY);
     }
 }
 
-fn tell(ended: &Ended, out: &mut Output<'_>) -> Outcome {
+fn report(ended: &Ended, out: &mut Output<'_>) -> Outcome {
     let object = ended.name.as_deref();
     if out.is_json() {
         out.json(&json!({
@@ -71,7 +71,7 @@ pub(super) fn sentence(ended: &Ended) -> String {
         How::Delivered => "delivered",
         How::Failed => "failed to fetch",
         How::Cancelled => "cancelled",
-        How::Abandoned => "abandoned: nobody answered",
+        How::Abandoned => "abandoned: no answer",
         How::SceneChanged => "ended: the scene was changed",
         How::NotHere => "concluded that it is not here",
     };
@@ -80,7 +80,7 @@ pub(super) fn sentence(ended: &Ended) -> String {
     format!("{what}{object} after {questions} and {}", words::time(ended.seconds))
 }
 
-fn tell_timeout(conversation: &Conversation, started: Instant, out: &mut Output<'_>) -> Outcome {
+fn report_timeout(conversation: &Conversation, started: Instant, out: &mut Output<'_>) -> Outcome {
     let seconds = started.elapsed().as_secs_f64();
     if out.is_json() {
         let questions = conversation.latest().view.as_ref().map_or(0, |view| view.questions);
@@ -97,8 +97,8 @@ fn tell_timeout(conversation: &Conversation, started: Instant, out: &mut Output<
     Ok(Exit::NotReached)
 }
 
-/// The last interaction that an earlier `await` of this run told of.
-fn told_before(paths: &GroupPaths) -> u64 {
+/// Returns the last interaction that an earlier `await` of this run reported.
+fn reported_before(paths: &GroupPaths) -> u64 {
     let text = std::fs::read_to_string(paths.run().join(AWAITED)).unwrap_or_default();
     text.trim().parse().unwrap_or(0)
 }
@@ -108,7 +108,7 @@ fn remember(paths: &GroupPaths, interaction: u64) -> Result<(), CliError> {
     std::fs::write(&path, format!("{interaction}\n")).map_err(|error| CliError::file(&path, &error))
 }
 
-/// Holds the number of the last interaction told of.
+/// File with the number of the last reported interaction.
 const AWAITED: &str = "awaited";
 
 #[cfg(test)]
@@ -117,24 +117,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn outcomes_are_told_in_a_sentence() {
+    fn await_writes_an_outcome_as_a_sentence() {
         let ended = example::ended(3).view.and_then(|view| view.last).unwrap();
-        let told = sentence(&ended);
-        assert_eq!(told, "delivered clear after 2 questions and 12.5 s");
+        assert_eq!(sentence(&ended), "delivered clear after 2 questions and 12.5 s");
         let cancelled =
             Ended { outcome: How::Cancelled, questions: 1, object: None, name: None, ..ended };
         assert_eq!(sentence(&cancelled), "cancelled after 1 question and 12.5 s");
     }
 
     #[test]
-    fn what_was_told_of_is_remembered_for_as_long_as_the_group_runs() {
+    fn await_remembers_what_it_reported_while_the_group_runs() {
         let home = tempfile::tempdir().unwrap();
         let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
-        assert_eq!(told_before(&paths), 0);
+        assert_eq!(reported_before(&paths), 0);
         std::fs::create_dir_all(paths.run()).unwrap();
         remember(&paths, 41).unwrap();
-        assert_eq!(told_before(&paths), 41);
+        assert_eq!(reported_before(&paths), 41);
         std::fs::write(paths.run().join(AWAITED), "?").unwrap();
-        assert_eq!(told_before(&paths), 0);
+        assert_eq!(reported_before(&paths), 0);
     }
 }

@@ -1,4 +1,4 @@
-//! `chat`: talking to the robot in the terminal.
+//! `chat`: a dialogue with the robot in the terminal.
 
 use std::io::{self, BufRead, IsTerminal};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
@@ -17,9 +17,9 @@ use crate::cli::ChatArgs;
 use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, note};
 
-/// How long the end of a chat waits for what was said last to come to its end.
+/// Time that the end of a chat waits for the last interaction to end.
 const LAST_WORDS: Duration = Duration::from_secs(120);
-/// How long a started group may take to stop.
+/// Time that a started group may take to stop.
 const STOP: Duration = Duration::from_secs(60);
 
 /// Talks until `quit` or the end of the input.
@@ -134,7 +134,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         self.out.line(format_args!("{robot} {text}"))
     }
 
-    /// Tells of words that were not taken; accepted ones stand in the terminal already.
+    /// Prints why words were refused; accepted ones are in the terminal already.
     fn refused(&mut self, receipt: &Receipt) -> Result<(), CliError> {
         if receipt.status == ReceiptStatus::Accepted.code() {
             return Ok(());
@@ -171,8 +171,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         Ok(())
     }
 
-    /// Nobody will say any more: waits for what was said to come to its end, or to a question that
-    /// nobody will answer.
+    /// Waits, at the end of the input, until the interaction ends or a question is left unanswered.
     fn finish(&mut self, interrupt: &Interrupt) -> Outcome {
         let until = Instant::now() + LAST_WORDS;
         let mut over_since = None;
@@ -195,8 +194,8 @@ impl<'a, 'b> Chat<'a, 'b> {
         self.conversation.is_heard() && seen.is_settled() && (rests || asks)
     }
 
-    /// How long to stay once all is over: until the robot's last words are said, but they may have
-    /// been cut short.
+    /// Time to stay once all is over: until the robot's last words are said, which may have been cut
+    /// short.
     fn farewell(&self) -> Duration {
         let view = self.conversation.latest().view.as_ref();
         let said = self.printed.map(|(prompt, _)| prompt);

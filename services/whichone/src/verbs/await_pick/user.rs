@@ -1,13 +1,15 @@
-//! A simulated user who never errs.
+//! The truthful simulated user of `--answer-as`, at the group's topics.
 
 use std::collections::HashSet;
 
-use dialogue::{Answer, Model, Params};
-use scene::{Question, Scene};
+use dialogue::{Model, Params};
+use evaluation::simulation::SimulatedUser;
+use evaluation::simulation::users::Domain;
+use scene::Scene;
 
 use service::view::Latest;
 
-/// Somebody who wants one object and answers every question once it was asked to its end.
+/// A user who wants one object and answers every question once it was asked to its end.
 pub(super) struct TruthfulUser {
     scene: Scene,
     model: Model,
@@ -16,27 +18,27 @@ pub(super) struct TruthfulUser {
 }
 
 impl TruthfulUser {
-    /// Somebody who wants the object of that name. Where the robot considers that the wanted object
-    /// is not here (`may_be_absent`), the scene need not have it.
+    /// A user who wants the object of that name. With `may_be_absent`, where the robot considers
+    /// that the wanted object is not here, the scene need not have it.
     ///
     /// # Errors
-    /// The scene has no such object, and it is not considered.
+    /// The scene has no such object, and absence is not considered.
     pub(super) fn new(scene: &Scene, name: &str, may_be_absent: bool) -> Result<Self, String> {
         if scene.object_named(name).is_none() && !may_be_absent {
             let names: Vec<&str> = scene.objects().iter().map(|o| o.name.as_str()).collect();
-            let names = names.join(", ");
             return Err(format!(
-                "the scene has no object {name}; there are {names}. Somebody who wants what is not \
-                 here can be played where dialogue.prior.absent is above 0"
+                "expected an object of the scene ({}), found {name}; help: to simulate a user who \
+                 wants an absent object, set dialogue.prior.absent above 0",
+                names.join(", ")
             ));
         }
-        // The truth does not depend on the parameters.
+        // True answers do not depend on the parameters.
         let model = Model::new(scene, Params::default());
         let (scene, name) = (scene.clone(), name.to_owned());
         Ok(Self { scene, model, name, answered: HashSet::new() })
     }
 
-    /// Looks at the scene, which may have changed.
+    /// Adopts the scene in force, which may have changed.
     pub(super) fn look(&mut self, scene: &Scene) {
         if scene.key() != self.scene.key() {
             self.model = Model::new(scene, Params::default());
@@ -44,10 +46,10 @@ impl TruthfulUser {
         }
     }
 
-    /// What this person says now, if anything: each presentation of a question gets one answer.
+    /// Returns the answer to the standing question, once for each of its presentations.
     ///
-    /// Nothing is said while earlier words are not yet applied, because the question may be
-    /// answered already, and an answer that comes after the end would be a new request.
+    /// While earlier words are not yet applied there is none: the question may be answered already,
+    /// and an answer after the end would be a new request.
     pub(super) fn answer(&mut self, seen: &Latest) -> Option<String> {
         let question = seen.open_question().filter(|_| seen.is_settled())?;
         let view = seen.view.as_ref()?;
@@ -55,21 +57,15 @@ impl TruthfulUser {
         if !is_of_scene || !self.answered.insert(question) {
             return None;
         }
-        let wanted = self.scene.object_named(&self.name);
-        let answer = match (wanted, view.question) {
-            (Some(wanted), question) => Answer::truthful(&self.model, question, wanted),
-            // Nothing that the robot can name is true of what is not here.
-            (None, Question::Which(_) | Question::None) => Answer::Silence,
-            (None, Question::Point(_) | Question::Attribute(..)) => Answer::No,
-        };
-        let text = answer.text(&self.scene);
-        (!text.is_empty()).then(|| text.to_owned())
+        let domain = Domain { scene: &self.scene, model: &self.model };
+        let mut user = SimulatedUser::truthful(self.scene.object_named(&self.name));
+        user.answer(domain, view.question).reply.text().map(str::to_owned)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use scene::ObjectId;
+    use scene::{ObjectId, Question};
     use serde_json::json;
 
     use super::super::super::conversation::example::{asked, ended, unapplied};
@@ -90,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn answers_are_true() {
+    fn answer_as_user_answers_truthfully() {
         let scene = scene();
         let color = scene.attribute_named("color").unwrap();
         let blue = scene.value_named(color, "blue").unwrap();
@@ -103,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn each_presentation_is_answered_once_and_only_while_it_stands() {
+    fn answer_as_user_answers_each_presentation_once_and_only_while_it_stands() {
         let mut user = TruthfulUser::new(&scene(), "R", false).unwrap();
         let mut seen = asked(Question::Point(ObjectId(0)));
         assert_eq!(user.answer(&seen), None, "another scene's question");
@@ -117,9 +113,10 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_here_is_wanted_only_where_that_is_considered() {
-        let told = TruthfulUser::new(&scene(), "G", false).err().unwrap();
-        assert!(told.starts_with("the scene has no object G; there are R, B, none."), "{told}");
+    fn answer_as_user_may_want_an_absent_object_only_where_that_is_considered() {
+        let error = TruthfulUser::new(&scene(), "G", false).err().unwrap();
+        let expected = "expected an object of the scene (R, B, none), found G; help:";
+        assert!(error.starts_with(expected), "{error}");
         let color = scene().attribute_named("color").unwrap();
         let red = scene().value_named(color, "red").unwrap();
         assert_eq!(answer("G", Question::Attribute(color, red)).as_deref(), Some("no"));
@@ -128,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_changed_scene_changes_the_truth() {
+    fn answer_as_user_follows_a_changed_scene() {
         let mut user = TruthfulUser::new(&scene(), "B", false).unwrap();
         let object = json!({"name": "B", "attributes": {"color": "red"}});
         let changed = Scene::from_json("scene", &json!({ "objects": [object] })).unwrap();

@@ -1,29 +1,29 @@
-//! Which interaction is waited for.
+//! The interaction that `await pick` waits for.
 
 use messages::Ended;
 
 use service::view::Latest;
 
-/// Looks in a row that must find everything applied before an old outcome is told. The services
-/// publish their parts of one step within microseconds, but not at once.
+/// Consecutive looks that must find everything applied before an old outcome is reported. The
+/// services publish their parts of one step within microseconds, but not at once.
 const LOOKS: u32 = 3;
 
 /// Waits for the end of one interaction: the one that is open, or that words already accepted will
-/// open; else the latest that nobody was told of; else the next.
+/// open; else the latest that was not reported yet; else the next.
 #[derive(Debug)]
 pub(super) struct Waiting {
-    told: u64,
+    reported: u64,
     goal: Option<u64>,
     settled: u32,
 }
 
 impl Waiting {
-    /// Somebody was told of interaction `told` already; 0 for none.
-    pub(super) fn new(told: u64) -> Self {
-        Self { told, goal: None, settled: 0 }
+    /// Waits for an interaction after `reported`, the latest that was reported; 0 for none.
+    pub(super) fn new(reported: u64) -> Self {
+        Self { reported, goal: None, settled: 0 }
     }
 
-    /// The end that was waited for, if it has come.
+    /// Returns the end that was waited for, if it has come.
     pub(super) fn look(&mut self, seen: &Latest) -> Option<Ended> {
         let view = seen.view.as_ref()?;
         if let Some(goal) = self.goal {
@@ -38,7 +38,7 @@ impl Waiting {
             return None;
         }
         self.settled += 1;
-        let last = view.last.clone().filter(|last| last.interaction.0 > self.told);
+        let last = view.last.clone().filter(|last| last.interaction.0 > self.reported);
         last.filter(|_| self.settled >= LOOKS)
     }
 }
@@ -50,47 +50,50 @@ mod tests {
     use super::super::super::conversation::example::{asked, ended, listening, unapplied};
     use super::*;
 
-    /// Which interaction's end is told after all these looks, and at which of them.
-    fn told(before: u64, looks: &[Latest]) -> Option<(usize, u64)> {
+    /// The interaction whose end is reported after these looks, and at which of them.
+    fn reported(before: u64, looks: &[Latest]) -> Option<(usize, u64)> {
         let mut waiting = Waiting::new(before);
         let ends = looks.iter().map(|seen| waiting.look(seen)).enumerate();
         ends.into_iter().find_map(|(n, ended)| Some((n, ended?.interaction.0)))
     }
 
     #[test]
-    fn the_latest_outcome_is_told_unless_it_was_told_already() {
+    fn await_reports_the_latest_outcome_once() {
         let looks = [ended(7), ended(7), ended(7), ended(7)];
-        assert_eq!(told(0, &looks), Some((2, 7)));
-        assert_eq!(told(6, &looks), Some((2, 7)));
-        assert_eq!(told(7, &looks), None);
+        assert_eq!(reported(0, &looks), Some((2, 7)));
+        assert_eq!(reported(6, &looks), Some((2, 7)));
+        assert_eq!(reported(7, &looks), None);
         assert_eq!(
-            told(7, &[looks.to_vec(), vec![asked(Question::None), ended(8)]].concat()),
+            reported(7, &[looks.to_vec(), vec![asked(Question::None), ended(8)]].concat()),
             Some((5, 8))
         );
     }
 
     #[test]
-    fn words_that_are_not_applied_yet_come_first() {
+    fn await_puts_pending_words_first() {
         for pending in [unapplied(ended(6)), listening(ended(6))] {
             let looks = [vec![pending; 5], vec![asked(Question::None), ended(7)]].concat();
-            assert_eq!(told(0, &looks), Some((6, 7)));
+            assert_eq!(reported(0, &looks), Some((6, 7)));
         }
         // They may also lead to nothing.
         let looks = [unapplied(ended(6)), ended(6), ended(6), ended(6)];
-        assert_eq!(told(0, &looks), Some((3, 6)));
+        assert_eq!(reported(0, &looks), Some((3, 6)));
     }
 
     #[test]
-    fn an_open_interaction_is_waited_for_even_if_the_next_one_follows_at_once() {
+    fn await_finds_the_end_of_an_open_interaction_even_if_the_next_follows_at_once() {
         let mut next = ended(7);
         if let Some(view) = &mut next.view {
             view.interaction = 8;
         }
-        assert_eq!(told(0, &[asked(Question::None), asked(Question::None), next]), Some((2, 7)));
+        assert_eq!(
+            reported(0, &[asked(Question::None), asked(Question::None), next]),
+            Some((2, 7))
+        );
     }
 
     #[test]
-    fn nothing_is_told_before_something_is_seen() {
-        assert_eq!(told(0, &[Latest::default(), Latest::default(), Latest::default()]), None);
+    fn await_reports_nothing_before_the_first_view() {
+        assert_eq!(reported(0, &[Latest::default(), Latest::default(), Latest::default()]), None);
     }
 }

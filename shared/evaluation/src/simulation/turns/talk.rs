@@ -120,7 +120,7 @@ impl Talk<'_> {
         self.value -= self.discount * self.room.problem.cost(Action::Ask(question));
         self.discount *= costs.discount;
         let began_s = self.now_s;
-        self.now_s += log_normal(self.user.user().rng(), QUESTION_S.0, QUESTION_S.1);
+        self.now_s += log_normal(self.user.user_mut().rng(), QUESTION_S.0, QUESTION_S.1);
         self.asked.push((
             question,
             Candidate { began_s, ended_s: self.now_s, complete: true, answered_s: None },

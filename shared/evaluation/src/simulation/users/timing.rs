@@ -150,7 +150,12 @@ impl TimedUser {
     }
 
     /// The user without timing.
-    pub fn user(&mut self) -> &mut SimulatedUser {
+    pub fn user(&self) -> &SimulatedUser {
+        &self.user
+    }
+
+    /// The user without timing, to change what is wanted or to draw from the same generator.
+    pub fn user_mut(&mut self) -> &mut SimulatedUser {
         &mut self.user
     }
 

@@ -1,5 +1,5 @@
-//! The scene is edited and reloaded while a question stands: the dialogue goes on with what is
-//! there now.
+//! The scene is edited and reloaded while a question stands; the dialogue continues with the new
+//! scene.
 
 use crate::config::edited;
 use std::path::Path;
@@ -43,14 +43,14 @@ fn reload(group: &Group) {
 }
 
 #[test]
-fn one_bowl_goes_another_comes_and_the_right_one_is_fetched() {
+fn reload_replaces_an_object_within_the_interaction() {
     let (group, folder) = group();
     group.say("get me the small white bowl");
     let before = group.wait_for_decision("ask");
     edit(folder.path(), &["white"], WHITE4);
     reload(&group);
     let after = group.wait_for_decision("ask");
-    assert_eq!(after["interaction"], before["interaction"], "it goes on: {after}");
+    assert_eq!(after["interaction"], before["interaction"], "the interaction continues: {after}");
     assert!(after["belief"]["white"].is_null(), "{after}");
     let p = |name: &str| after["belief"][name].as_f64().unwrap();
     assert!((p("white4") - p("white2")).abs() < 1e-9, "it counts with what was said: {after}");
@@ -69,7 +69,7 @@ fn one_bowl_goes_another_comes_and_the_right_one_is_fetched() {
 }
 
 #[test]
-fn somebody_who_answers_meanwhile_follows_the_change() {
+fn reload_keeps_the_answers_of_a_simulated_user() {
     let (group, folder) = group();
     group.say("get me the bowl");
     group.wait_for_decision("ask");
@@ -86,7 +86,7 @@ fn somebody_who_answers_meanwhile_follows_the_change() {
 }
 
 #[test]
-fn where_every_bowl_is_gone_the_person_has_to_ask_again() {
+fn reload_of_a_disjoint_scene_ends_the_interaction() {
     let (group, folder) = group();
     group.say("get me the bowl");
     group.wait_for_decision("ask");
@@ -101,7 +101,7 @@ fn where_every_bowl_is_gone_the_person_has_to_ask_again() {
 }
 
 #[test]
-fn other_settings_leave_the_question_and_the_journal_verifies() {
+fn reload_of_other_settings_keeps_the_question() {
     let (group, folder) = group();
     group.say("the white one");
     let before = group.wait_for_decision("ask");

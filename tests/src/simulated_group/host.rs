@@ -5,7 +5,9 @@ use config::Settings;
 use service::lifecycle::Environment;
 use service::{Effects, Event, Node, Time};
 
-/// Where in a pass the process dies.
+use super::Faults;
+
+/// The point of a pass at which the process dies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crash {
     /// After deciding, before the sync: the records are gone and nothing was seen.
@@ -14,13 +16,13 @@ pub enum Crash {
     AfterOutputs(usize),
 }
 
-/// A node, its journal, and how to make it anew.
+/// A node, its journal, and the configuration that each start gets.
 #[allow(missing_debug_implementations, reason = "nodes have none")]
 pub struct Host<N: Node> {
     config: Box<dyn Fn() -> N::Config>,
     node: Option<N>,
     journal: Vec<N::Record>,
-    /// How often it was started.
+    /// Number of starts.
     pub incarnation: u32,
 }
 
@@ -33,10 +35,10 @@ where
         Self { config: Box::new(config), node: None, journal: Vec::new(), incarnation: 0 }
     }
 
-    /// Starts the process, if it is not up. Returns what its start makes visible.
+    /// Starts the process, if it is not up. Returns the outputs of its start.
     ///
     /// # Panics
-    /// Where its journal cannot be gone on from.
+    /// If recovery from its journal fails.
     pub fn start(&mut self, now: Time) -> Vec<N::Out> {
         if self.node.is_some() {
             return Vec::new();
@@ -47,28 +49,51 @@ where
         self.pass(vec![Event::Started], now, None)
     }
 
-    /// Ends the process, and has the next one started with another configuration.
+    /// Kills the process; the next one starts with another configuration.
     pub fn replace(&mut self, config: impl Fn() -> N::Config + 'static) {
         (self.node, self.config) = (None, Box::new(config));
     }
 
-    /// Whether it runs.
+    /// Kills the process.
+    pub fn kill(&mut self) {
+        self.node = None;
+    }
+
+    /// Returns whether the process runs.
     pub fn is_up(&self) -> bool {
         self.node.is_some()
     }
 
-    /// What is durable.
+    /// The records that were synced.
     pub fn journal(&self) -> &[N::Record] {
         &self.journal
     }
 
-    /// When it wants to be woken.
+    /// Time of the next tick.
     pub fn deadline(&self) -> Option<Time> {
         self.node.as_ref().and_then(Node::deadline)
     }
 
+    /// The running node.
+    pub fn node(&self) -> Option<&N> {
+        self.node.as_ref()
+    }
+
+    /// One pass of the main loop if there is anything to do: the inbox, and a tick that is due. The
+    /// process may die in it.
+    pub fn wake(&mut self, inbox: Vec<N::In>, now: Time, faults: &mut Faults) -> Vec<N::Out> {
+        let due = self.deadline().is_some_and(|deadline| deadline <= now);
+        if inbox.is_empty() && !due {
+            return Vec::new();
+        }
+        let tick = due.then_some(Event::Tick);
+        let events = inbox.into_iter().map(Event::Message).chain(tick).collect();
+        let crash = if self.is_up() { faults.crash(now) } else { None };
+        self.pass(events, now, crash)
+    }
+
     /// One pass of the main loop: the events, then the sync, then the outputs, in the order of the
-    /// real driver. Returns what became visible.
+    /// real driver. Returns the outputs that became visible.
     pub fn pass(
         &mut self,
         events: Vec<Event<N::In>>,
@@ -92,10 +117,10 @@ where
     }
 }
 
-/// Makes the configuration that the real program would give its node.
+/// Returns the configuration that the real program gives its node.
 ///
 /// # Panics
-/// Where the settings give none.
+/// If the settings are invalid for it.
 pub fn configured<P: service::service_loop::Program>(
     settings: &Settings,
 ) -> impl Fn() -> <P::Node as Node>::Config + use<P> {

@@ -1,10 +1,6 @@
-//! People who do not answer as the model hopes: the dialogue ends all the same.
+//! Users outside the observation model: the dialogue ends all the same.
 
 use whichone_tests::{Group, wait_for};
-
-fn outcome_of(group: &Group) -> serde_json::Value {
-    group.await_pick(None)
-}
 
 /// Answers every question with what `answer` says to the n-th, until the interaction is over.
 fn answer_with(group: &Group, answer: impl Fn(usize) -> &'static str) -> serde_json::Value {
@@ -15,34 +11,27 @@ fn answer_with(group: &Group, answer: impl Fn(usize) -> &'static str) -> serde_j
         }
         group.say(answer(n));
     }
-    outcome_of(group)
+    group.await_pick(None)
 }
 
 #[test]
-fn who_contradicts_himself_gets_some_object() {
+fn contradictory_and_negative_answers_end_with_a_pick() {
     let group = Group::up(&[]);
-    group.say("get me the bowl");
-    let outcome = answer_with(&group, |n| if n % 2 == 0 { "yes" } else { "no" });
-    assert_eq!(outcome["outcome"], "delivered", "{outcome}");
+    for answers in [["yes", "no"], ["no", "no"]] {
+        group.say("get me the bowl");
+        let outcome = answer_with(&group, |n| answers[n % 2]);
+        assert_eq!(outcome["outcome"], "delivered", "{answers:?}: {outcome}");
+    }
     group.verify_journals();
     group.down();
 }
 
 #[test]
-fn who_denies_everything_gets_some_object() {
-    let group = Group::up(&[]);
-    group.say("get me the bowl");
-    let outcome = answer_with(&group, |_| "no");
-    assert_eq!(outcome["outcome"], "delivered", "{outcome}");
-    group.down();
-}
-
-#[test]
-fn who_falls_silent_is_asked_again_and_then_left_alone() {
+fn silence_is_prompted_again_and_then_abandoned() {
     let group =
         Group::up(&["dialogue.turns.response_window_s=0.2", "dialogue.turns.repeats_max=2"]);
     group.say("get me the bowl");
-    let outcome = outcome_of(&group);
+    let outcome = group.await_pick(None);
     assert_eq!(outcome["outcome"], "abandoned", "{outcome}");
     assert_eq!(outcome["questions"], 1, "one question, said three times: {outcome}");
     assert_eq!(group.fetch("get me the bowl", "clear")["object"], "clear");
@@ -50,7 +39,7 @@ fn who_falls_silent_is_asked_again_and_then_left_alone() {
 }
 
 #[test]
-fn words_that_the_scene_does_not_have_lead_nowhere_but_to_an_end() {
+fn unknown_words_end_with_a_pick() {
     let group = Group::up(&["dialogue.turns.questions_max=6"]);
     group.say("get me the bowl");
     let outcome = answer_with(&group, |_| "the purple one");
@@ -60,17 +49,17 @@ fn words_that_the_scene_does_not_have_lead_nowhere_but_to_an_end() {
 }
 
 #[test]
-fn a_withdrawn_request_ends_the_interaction() {
+fn withdrawn_request_ends_the_interaction() {
     let group = Group::up(&[]);
     group.say("get me the bowl");
     group.say("never mind");
-    let outcome = outcome_of(&group);
+    let outcome = group.await_pick(None);
     assert_eq!(outcome["outcome"], "cancelled", "{outcome}");
     group.down();
 }
 
 #[test]
-fn who_sees_the_wrong_one_being_fetched_says_so_and_gets_the_right_one() {
+fn correction_during_the_pick_delivers_the_right_object() {
     let group = Group::up(&["arm.time_scale=0.5"]);
     group.say("get me the white bowl on the counter");
     let object = wait_for("the arm on its way", 30.0, || {
@@ -91,7 +80,7 @@ fn who_sees_the_wrong_one_being_fetched_says_so_and_gets_the_right_one() {
 }
 
 #[test]
-fn talk_that_is_not_for_the_robot_begins_nothing() {
+fn unrelated_talk_opens_no_interaction() {
     let group = Group::up(&[]);
     group.say("what's the weather like today");
     let dialogue = wait_for("the utterance to be applied", 10.0, || {
@@ -102,7 +91,7 @@ fn talk_that_is_not_for_the_robot_begins_nothing() {
 }
 
 #[test]
-fn what_cannot_be_an_utterance_is_refused_with_its_reason() {
+fn invalid_utterances_are_refused_with_a_reason() {
     let group = Group::up(&[]);
     let long = "bowl ".repeat(20_000);
     for (text, reason) in [("   ", "empty utterance"), (long.as_str(), "bytes")] {
@@ -110,12 +99,12 @@ fn what_cannot_be_an_utterance_is_refused_with_its_reason() {
         assert_ne!(ended.code, Some(0));
         assert!(format!("{ended:?}").contains(reason), "{ended:?}");
     }
-    assert_eq!(group.fetch("get me the bowl", "metal")["object"], "metal", "and goes on");
+    assert_eq!(group.fetch("get me the bowl", "metal")["object"], "metal", "it still serves");
     group.down();
 }
 
 #[test]
-fn stop_halts_the_arm_until_it_is_released() {
+fn spoken_stop_latches_until_resume() {
     let group = Group::up(&["arm.time_scale=4.0"]);
     let outcome = group.fetch_while("the clear bowl", "clear", || {
         group.say("stop");
@@ -123,7 +112,7 @@ fn stop_halts_the_arm_until_it_is_released() {
         wait_for("rest", 10.0, || (group.arm()["moving"] == false).then_some(()));
         let before = group.arm()["phase"].clone();
         std::thread::sleep(std::time::Duration::from_millis(500));
-        assert_eq!(group.arm()["phase"], before, "nothing goes on");
+        assert_eq!(group.arm()["phase"], before, "the arm stays halted");
         group.must(&["resume-motion"]);
     });
     assert_eq!(outcome["object"], "clear", "{outcome}");

@@ -1,4 +1,4 @@
-//! What the robot learns about the person who answers.
+//! The learned error rate of the user.
 
 use whichone_tests::{Group, wait_for};
 
@@ -9,11 +9,11 @@ fn errs(group: &Group) -> f64 {
 }
 
 #[test]
-fn who_denies_everything_is_known_for_it_after_the_interaction_and_a_restart() {
+fn error_rate_is_learned_and_survives_a_restart() {
     let mut group = Group::up(&[LEARNS]);
     let before = wait_for("the policy", 10.0, || group.dialogue()["person"]["epsilon"].as_f64());
     group.say("get me the bowl");
-    // Something must be true of what is wanted: whoever denies everything errs.
+    // Something must be true of the wanted object: to deny everything is to err.
     for _ in 0..30 {
         if group.dialogue()["decision"] != "ask" {
             break;
@@ -33,7 +33,7 @@ fn who_denies_everything_is_known_for_it_after_the_interaction_and_a_restart() {
 }
 
 #[test]
-fn where_nothing_is_learned_nothing_is_shown() {
+fn error_rate_is_hidden_unless_learned() {
     let group = Group::up(&[]);
     assert!(group.dialogue()["person"].is_null());
     group.down();

@@ -1,4 +1,4 @@
-//! A person who points: alone or with words, and only where that is switched on.
+//! Pointing gestures, alone or with words.
 
 use rustix::process::Signal;
 use serde_json::Value;
@@ -20,7 +20,7 @@ fn point(group: &Group, at: [&str; 3], more: &[&str]) -> Value {
 }
 
 #[test]
-fn gestures_are_refused_with_the_key_to_set_and_change_nothing() {
+fn gestures_are_refused_unless_enabled() {
     let group = Group::up(&[]);
     let before = group.dialogue();
     let refused = group.call(&["point", "0.70", "0.2", "-0.12", "--say", "the white one"]);
@@ -33,7 +33,7 @@ fn gestures_are_refused_with_the_key_to_set_and_change_nothing() {
 }
 
 #[test]
-fn pointing_alone_opens_an_interaction_and_answers_nothing() {
+fn gesture_alone_opens_an_interaction_and_answers_nothing() {
     let group = Group::up(&[ON]);
     let receipt = point(&group, CLEAR, &[]);
     assert_eq!((&receipt["status"], &receipt["utterance"]), (&"accepted".into(), &1.into()));
@@ -54,7 +54,7 @@ fn pointing_alone_opens_an_interaction_and_answers_nothing() {
 }
 
 #[test]
-fn a_hand_and_words_together_need_fewer_questions() {
+fn gesture_with_words_needs_fewer_questions() {
     let group = Group::up(&[ON]);
     point(&group, CLEAR, &["--say", "get me the big plastic bowl"]);
     let outcome = group.await_pick(Some("clear"));
@@ -64,7 +64,7 @@ fn a_hand_and_words_together_need_fewer_questions() {
 }
 
 #[test]
-fn a_gesture_survives_the_kill_of_any_service() {
+fn gesture_survives_the_kill_of_any_service() {
     let group = Group::up(&[ON]);
     for service in ["speech", "grounding", "policy", "arm"] {
         point(&group, CLEAR, &[]);
@@ -77,7 +77,7 @@ fn a_gesture_survives_the_kill_of_any_service() {
 }
 
 #[test]
-fn a_place_where_nobody_points_is_refused() {
+fn implausible_targets_are_refused() {
     let group = Group::up(&[ON]);
     for at in [["nan", "0", "0"], ["0", "5000", "0"]] {
         let refused = group.call(&[&["point"], &at[..]].concat());

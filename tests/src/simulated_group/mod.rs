@@ -1,0 +1,280 @@
+//! The real reducers of all services in one thread and in simulated time, with a simulated bus,
+//! voice, recogniser and user.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `host.rs` | one reducer in a simulated process, with its journal |
+//! | `faults.rs` | faults drawn from a seed: kills, lost and doubled messages |
+//! | `user.rs` | the user, and how words reach the robot |
+//! | `routes.rs` | who receives what of the services' messages |
+//! | `attribution.rs` | a study of turn-taking: to which question each answer is credited |
+
+mod attribution;
+mod faults;
+mod host;
+mod routes;
+mod user;
+
+use config::Settings;
+use dialogue::{Model, Rng};
+use evaluation::simulation::users::Domain;
+use grounding::GroundingNode;
+use messages::{ActKind, Outcome, PolicyView};
+use policy::PolicyNode;
+use preflight::log_normal;
+use scene::{ObjectId, Scene};
+use service::{Span, Time};
+use speech::{PlaybackEvent, PlaybackRequest, PlaybackState, SpeechNode};
+
+pub use attribution::{Count, RULES, Study, study};
+pub use faults::Faults;
+pub use host::{Crash, Host, configured};
+pub use user::{Channel, GroupUser};
+
+/// Time between two passes.
+const STEP: Span = Span::from_ms(10);
+/// A dialogue that takes longer is stuck.
+const END: Time = Time(240_000_000_000);
+/// Duration of a robot's sentence: median, seconds, and standard deviation of the logarithm.
+const SENTENCE_S: (f64, f64) = (1.9, 0.12);
+/// A sentence in a group that is quick, so that faults hit more of its dialogue.
+const QUICK_SENTENCE_S: (f64, f64) = (0.4, 0.0);
+
+/// A sentence that the voice is saying.
+struct Saying {
+    playback: u64,
+    ends: Time,
+}
+
+/// A sound that a recogniser is decoding: the robot's, by its number, or the client's.
+struct Decoding {
+    done: Time,
+    sound: Option<u64>,
+    utterance: usize,
+}
+
+/// Messages that wait for each process.
+#[derive(Default)]
+struct Inboxes {
+    speech: Vec<speech::In>,
+    grounding: Vec<Box<messages::Utterance>>,
+    policy: Vec<policy::In>,
+    arm: Vec<arm::In>,
+}
+
+/// The services of a group, and everything around them.
+#[allow(missing_debug_implementations, reason = "nodes have none")]
+pub struct SimulatedGroup {
+    /// The settings in force.
+    pub settings: Settings,
+    /// The settings before the scene was changed, and how many of the policy's records are theirs.
+    pub before: Option<(Settings, usize)>,
+    /// Settings that come into force once the first question is decided; `None` when they have.
+    pub change: Option<Settings>,
+    /// The service of that name.
+    pub speech: Host<SpeechNode>,
+    /// The service of that name.
+    pub policy: Host<PolicyNode>,
+    /// The service of that name; without it a dialogue ends with the decision what to pick.
+    pub arm: Option<Host<arm::ArmNode>>,
+    /// The user.
+    pub user: GroupUser,
+    /// Acts that became visible before their decision was durable.
+    pub premature: Vec<String>,
+    grounding: Host<GroundingNode>,
+    model: Model,
+    faults: Faults,
+    sentence_s: (f64, f64),
+    rng: Rng,
+    now: Time,
+    inboxes: Inboxes,
+    /// When each process is started again: speech, grounding, policy, arm.
+    restarts: [Option<Time>; 4],
+    saying: Option<Saying>,
+    decoding: Vec<Decoding>,
+    picked: Option<ObjectId>,
+    view: PolicyView,
+    story: Vec<String>,
+}
+
+impl SimulatedGroup {
+    /// A group of all services with a quick voice.
+    pub fn new(settings: Settings, user: GroupUser, faults: Faults) -> Self {
+        Self {
+            model: Model::new(&settings.scene, settings.dialogue.params),
+            speech: Host::new(configured::<speech::shell::SpeechProgram>(&settings)),
+            grounding: Host::new(configured::<grounding::shell::GroundingProgram>(&settings)),
+            policy: Host::new(configured::<policy::shell::PolicyProgram>(&settings)),
+            arm: Some(Host::new(configured::<arm::shell::ArmProgram>(&settings))),
+            settings,
+            before: None,
+            change: None,
+            user,
+            premature: Vec::new(),
+            faults,
+            sentence_s: QUICK_SENTENCE_S,
+            rng: Rng::new(0),
+            now: Time(1),
+            inboxes: Inboxes::default(),
+            restarts: [Some(Time(1)); 4],
+            saying: None,
+            decoding: Vec::new(),
+            picked: None,
+            view: PolicyView::default(),
+            story: Vec::new(),
+        }
+    }
+
+    /// A group without arm and faults, whose voice takes as long as a real one.
+    pub fn talking(settings: Settings, user: GroupUser, seed: u64) -> Self {
+        let (arm, sentence_s, rng) = (None, SENTENCE_S, Rng::new(seed));
+        Self { arm, sentence_s, rng, ..Self::new(settings, user, Faults::none()) }
+    }
+
+    /// Changes the scene under the dialogue, right after the first question was decided.
+    #[must_use]
+    pub fn with_change(mut self, to: Settings) -> Self {
+        self.change = Some(to);
+        self
+    }
+
+    /// The log of the dialogue.
+    pub fn story(&self) -> String {
+        self.story.join("\n")
+    }
+
+    /// Returns the outcome of the interaction and its object.
+    pub fn outcome(&self) -> Option<(Outcome, Option<ObjectId>)> {
+        self.view.last.as_ref().map(|ended| (ended.outcome, ended.object))
+    }
+
+    /// Runs until the interaction is over and published, or the time is up.
+    pub fn run(&mut self) {
+        self.user.request(Domain { scene: &self.settings.scene, model: &self.model });
+        while self.now < END && !self.is_over() {
+            self.now = self.now + STEP;
+            self.change_the_scene();
+            self.restart();
+            self.finish_sentence();
+            self.user_speaks();
+            self.finish_decoding();
+            self.pass_all();
+        }
+    }
+
+    fn is_over(&self) -> bool {
+        let Some(arm) = &self.arm else { return self.picked.is_some() };
+        let up = self.speech.is_up() && self.policy.is_up() && arm.is_up();
+        up && self.view.last.is_some() && self.view.interaction == 0
+    }
+
+    fn log(&mut self, what: impl std::fmt::Display) {
+        self.story.push(format!("{:9.3} s  {what}", user::seconds(self.now)));
+    }
+
+    fn scene(&self) -> &Scene {
+        &self.settings.scene
+    }
+
+    /// Restarts all services with the other scene, each after a delay of its own: what one of them
+    /// sends may reach another that still has the former.
+    fn change_the_scene(&mut self) {
+        let is_time = self.view.decision == ActKind::Ask && self.policy.is_up();
+        let Some(to) = self.change.take_if(|_| is_time) else { return };
+        self.log("the scene changes");
+        self.speech.replace(configured::<speech::shell::SpeechProgram>(&to));
+        self.grounding.replace(configured::<grounding::shell::GroundingProgram>(&to));
+        self.policy.replace(configured::<policy::shell::PolicyProgram>(&to));
+        if let Some(arm) = &mut self.arm {
+            arm.replace(configured::<arm::shell::ArmProgram>(&to));
+        }
+        self.restarts = std::array::from_fn(|_| Some(self.now + self.faults.downtime()));
+        let wanted = self.user.wanted().map(|object| &self.scene().object(object).name);
+        let wanted = wanted.and_then(|name| to.scene.object_named(name));
+        self.user.want(Some(wanted.expect("the wanted object stays")));
+        self.model = Model::new(&to.scene, to.dialogue.params);
+        let records = self.policy.journal().len();
+        self.before = Some((std::mem::replace(&mut self.settings, to), records));
+    }
+
+    fn restart(&mut self) {
+        let now = self.now;
+        let [speech, grounding, policy, arm] =
+            self.restarts.each_mut().map(|at| at.take_if(|at| *at <= now).is_some());
+        if speech {
+            let outputs = self.speech.start(now);
+            self.saying = None;
+            self.route_speech(outputs);
+        }
+        if grounding {
+            let outputs = self.grounding.start(now);
+            self.route_grounding(outputs);
+        }
+        if policy {
+            let outputs = self.policy.start(now);
+            self.route_policy(outputs);
+        }
+        if let Some(host) = self.arm.as_mut().filter(|_| arm) {
+            let outputs = host.start(now);
+            self.route_arm(outputs);
+        }
+    }
+
+    fn pass_all(&mut self) {
+        let now = self.now;
+        let inbox = std::mem::take(&mut self.inboxes.speech);
+        let outputs = self.speech.wake(inbox, now, &mut self.faults);
+        self.note_death(0, self.speech.is_up(), "speech");
+        self.route_speech(outputs);
+        let inbox = std::mem::take(&mut self.inboxes.grounding);
+        let outputs = self.grounding.wake(inbox, now, &mut self.faults);
+        self.note_death(1, self.grounding.is_up(), "grounding");
+        self.route_grounding(outputs);
+        let inbox = std::mem::take(&mut self.inboxes.policy);
+        let outputs = self.policy.wake(inbox, now, &mut self.faults);
+        self.note_death(2, self.policy.is_up(), "policy");
+        self.route_policy(outputs);
+        let inbox = std::mem::take(&mut self.inboxes.arm);
+        let Some(arm) = &mut self.arm else { return };
+        let outputs = arm.wake(inbox, now, &mut self.faults);
+        let is_up = arm.is_up();
+        self.note_death(3, is_up, "arm");
+        self.route_arm(outputs);
+    }
+
+    /// Schedules the restart of a process that has died in its pass.
+    fn note_death(&mut self, which: usize, is_up: bool, name: &str) {
+        if !is_up && self.restarts[which].is_none() {
+            self.restarts[which] = Some(self.now + self.faults.downtime());
+            self.log(format_args!("{name} dies"));
+        }
+    }
+
+    fn finish_sentence(&mut self) {
+        let now = self.now;
+        if let Some(saying) = self.saying.take_if(|saying| saying.ends <= now) {
+            self.voice(saying.playback, PlaybackState::Ended);
+        }
+    }
+
+    fn voice(&mut self, playback: u64, state: PlaybackState) {
+        let event = PlaybackEvent { playback, state };
+        self.inboxes.speech.push(speech::In::Playback(event));
+    }
+
+    fn speak(&mut self, line: &PlaybackRequest) {
+        self.stop_speaking();
+        let length_s = log_normal(&mut self.rng, self.sentence_s.0, self.sentence_s.1);
+        self.log(format_args!("robot: {}", line.text));
+        let ends = self.now + Span::from_s(length_s);
+        self.saying = Some(Saying { playback: line.playback, ends });
+        self.voice(line.playback, PlaybackState::Started);
+    }
+
+    fn stop_speaking(&mut self) {
+        if let Some(saying) = self.saying.take() {
+            self.log("robot: …");
+            self.voice(saying.playback, PlaybackState::Interrupted);
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Who receives what of the services' messages, as often as the faults let it arrive.
+
+use std::iter::repeat_n;
+
+use evaluation::simulation::users::TimedUtterance;
+use messages::{ActKind, PresentationState, Presented, Source};
+use service::{Span, Time};
+use speech::devices::stream::SpeechSegment;
+use speech::stream_events::{Began, LIVE_FROM, StreamEvent};
+use speech::{Hypothesis, Recognised, RecognisedSegment};
+
+use super::user::{Channel, key, seconds, time};
+use super::{Decoding, SimulatedGroup};
+
+/// Time from the first sound of an utterance to its detection.
+const DETECTION: Span = Span::from_ms(100);
+
+impl SimulatedGroup {
+    /// Sends what the user begins and ends to say, by the user's channel.
+    pub(super) fn user_speaks(&mut self) {
+        let now = self.now;
+        let story = self.user.begins(now, &self.settings.scene);
+        story.into_iter().for_each(|line| self.log(line));
+        for n in 0..self.user.begun.len() {
+            let live = self.user.channel == Channel::Live;
+            let begun = &mut self.user.begun[n];
+            let (onset, end) = (time(begun.utterance.onset_s), time(begun.utterance.end_s));
+            let detected = !begun.onset_sent && now >= onset + DETECTION;
+            let ended = !begun.end_sent && now >= end;
+            (begun.onset_sent, begun.end_sent) =
+                (begun.onset_sent || detected, begun.end_sent || ended);
+            if live && detected {
+                self.inboxes
+                    .speech
+                    .push(speech::In::Stream(StreamEvent::Began(live_onset(n, onset))));
+            }
+            if live && ended {
+                let segment = SpeechSegment { onset, end, samples: Vec::new(), speech: 0..0 };
+                let sound = LIVE_FROM + n as u64;
+                self.inboxes.speech.push(speech::In::Stream(StreamEvent::Ended { sound, segment }));
+            } else if ended {
+                let done = time(begun.utterance.result_s);
+                self.decoding.push(Decoding { done, sound: None, utterance: n });
+            }
+        }
+        for injection in self.user.sends(now) {
+            let copies = self.faults.copies(now);
+            let message = speech::In::Injection(injection);
+            self.inboxes.speech.extend(repeat_n(message, copies));
+        }
+    }
+
+    /// Hands over what the recognisers have decoded.
+    pub(super) fn finish_decoding(&mut self) {
+        let now = self.now;
+        let done: Vec<Decoding> = self.decoding.extract_if(.., |one| one.done <= now).collect();
+        for Decoding { sound, utterance, .. } in done {
+            let Some(sound) = sound else {
+                self.user.send_transcript(utterance, now);
+                continue;
+            };
+            let begun = &self.user.begun[utterance];
+            let TimedUtterance { onset_s, end_s, .. } = begun.utterance;
+            let hypotheses = Ok(vec![Hypothesis::certain(begun.text.clone())]);
+            let span_s = (0.0, end_s - onset_s);
+            let segment = RecognisedSegment { span_s, snr_db: 40.0, hypotheses };
+            let recognised = Recognised { sound, segments: Ok(vec![segment]) };
+            self.inboxes.speech.push(speech::In::Recognised(recognised));
+        }
+    }
+
+    pub(super) fn route_speech(&mut self, outputs: Vec<speech::Out>) {
+        for output in outputs {
+            let copies = self.faults.copies(self.now);
+            match output {
+                speech::Out::Utterance(utterance) => {
+                    self.inboxes.grounding.extend(repeat_n(utterance, copies));
+                }
+                speech::Out::Receipt(receipt) if copies > 0 => self.user.acknowledge(&receipt),
+                speech::Out::Receipt(_) => {}
+                speech::Out::Presented(presented) => {
+                    self.user_hears(&presented);
+                    let message = policy::In::Presented(presented);
+                    self.inboxes.policy.extend(repeat_n(message, copies));
+                }
+                speech::Out::Activity(activity) => {
+                    self.inboxes.policy.extend(repeat_n(policy::In::Activity(activity), copies));
+                }
+                speech::Out::Motion(command) => {
+                    self.inboxes.arm.push(arm::In::Motion(command));
+                }
+                speech::Out::Speak(line) => self.speak(&line),
+                speech::Out::StopSpeaking => self.stop_speaking(),
+                speech::Out::Recognise(sound, _) => {
+                    let utterance = (sound - LIVE_FROM) as usize;
+                    let timed = &self.user.begun[utterance].utterance;
+                    let done = self.now + Span::from_s(timed.result_s - timed.end_s);
+                    self.decoding.push(Decoding { done, sound: Some(sound), utterance });
+                }
+                speech::Out::Hearing(_)
+                | speech::Out::Partial(_)
+                | speech::Out::InterimSamples(..)
+                | speech::Out::DecodeEarly(..) => {}
+                speech::Out::OpenMicrophone(..) => unreachable!("no client opens the microphone"),
+            }
+        }
+    }
+
+    /// The user hears the robot's questions, whatever the bus loses.
+    fn user_hears(&mut self, presented: &Presented) {
+        let ended = match presented.state.get() {
+            PresentationState::Speaking => false,
+            PresentationState::Ended => true,
+            _ => return,
+        };
+        let ends = match (ended, &self.saying) {
+            (false, Some(saying)) => saying.ends,
+            (false, None) => self.now,
+            (true, _) => Time(presented.ended_ns),
+        };
+        let presentation = (presented.prompt, presented.presentation);
+        let times = (Time(presented.started_ns), ends);
+        self.user.hear((&self.settings.scene, &self.model), presentation, times, ended);
+    }
+
+    #[allow(clippy::vec_box, reason = "the node's own output type")]
+    pub(super) fn route_grounding(&mut self, outputs: Vec<Box<messages::Observation>>) {
+        for observation in outputs {
+            for _ in 0..self.faults.copies(self.now) {
+                // The bus may hand over a doubled message out of turn.
+                self.inboxes.policy.insert(0, policy::In::Observation(observation.clone()));
+            }
+        }
+    }
+
+    pub(super) fn route_policy(&mut self, outputs: Vec<policy::Out>) {
+        for output in outputs {
+            let copies = self.faults.copies(self.now);
+            match output {
+                policy::Out::Mark(mark) => {
+                    self.inboxes.speech.extend(repeat_n(speech::In::Mark(mark), copies));
+                }
+                policy::Out::Act(act) => {
+                    self.check_durable(&act);
+                    if act.kind() == Ok(ActKind::Ask)
+                        && let Ok(question) = act.question.try_into()
+                    {
+                        self.user.announce(act.prompt, act.scene_key, question);
+                    }
+                    self.picked = self.picked.or(act.pick().map(|(_, object)| object));
+                    let (to_speech, to_arm) = (speech::In::Act(act.clone()), arm::In::Act(act));
+                    self.inboxes.speech.extend(repeat_n(to_speech, copies));
+                    self.inboxes.arm.extend(repeat_n(to_arm, copies));
+                }
+                policy::Out::View(view) => self.view = *view,
+            }
+        }
+    }
+
+    pub(super) fn route_arm(&mut self, outputs: Vec<arm::Out>) {
+        for output in outputs {
+            if let arm::Out::Status(status) = output {
+                let copies = self.faults.copies(self.now);
+                self.inboxes.policy.extend(repeat_n(policy::In::Arm(status), copies));
+                self.inboxes.speech.extend(repeat_n(speech::In::Arm(status), copies));
+            }
+        }
+    }
+
+    /// Records acts that become visible before they are durable.
+    fn check_durable(&mut self, act: &messages::RobotAct) {
+        let durable = self.policy.journal().last().map_or(0, |record| record.state.act.id.0);
+        if act.act > durable && act.kind != ActKind::Wait {
+            self.premature.push(format!("act {} before record {durable}", act.act));
+        }
+    }
+
+    /// Seconds since the dialogue began.
+    pub(super) fn seconds(&self) -> f64 {
+        seconds(self.now)
+    }
+}
+
+fn live_onset(n: usize, at: Time) -> Began {
+    Began {
+        sound: LIVE_FROM + n as u64,
+        at,
+        stream: key(n),
+        segment: None,
+        source: Source::Microphone,
+        interrupts: true,
+    }
+}
