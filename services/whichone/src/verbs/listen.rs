@@ -1,4 +1,4 @@
-//! `listen`: recorded and streamed speech.
+//! `listen`: recognition of recordings and streams.
 
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -6,30 +6,29 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use audio::{RATE_HZ, SampleClock, read_wav};
 use messages::{AudioChunk, Receipt, ReceiptStatus, Sound};
 use service::audio::AudioStream;
 use service::client::Client;
 use service::clock;
 use service::exit::Exit;
 use service::group::GroupPaths;
-use speech::devices::audio::{RATE_HZ, read_wav};
-use speech::devices::stream::SampleClock;
 
 use super::speak;
 use crate::cli::ListenArgs;
 use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
-/// Samples that are streamed at a time: a twentieth of a second.
-const PIECE: usize = RATE_HZ as usize / 20;
-/// Longest recording that is streamed, seconds.
+/// Samples per block of a stream: a twentieth of a second.
+const BLOCK: usize = RATE_HZ as usize / 20;
+/// Longest recording for streaming, seconds.
 const LONGEST_S: f64 = 3_600.0;
-/// How long one look at the sound waits for it.
-const LOOK: Duration = Duration::from_millis(20);
-/// How often a stream's end is told until it is confirmed.
-const END_EVERY: Duration = Duration::from_millis(250);
+/// Polling interval.
+const POLL_EVERY: Duration = Duration::from_millis(20);
+/// Resend interval for the end of a stream.
+const RESEND_END_EVERY: Duration = Duration::from_millis(250);
 
-/// Lets the robot listen, and tells what was heard.
+/// Sends a recording or a stream to the robot and prints the results.
 pub(super) fn listen(paths: &GroupPaths, args: &ListenArgs, out: &mut Output<'_>) -> Outcome {
     if args.file == Path::new("-") {
         return stream(paths, args, from_stdin(), out);
@@ -49,17 +48,17 @@ pub(super) fn listen(paths: &GroupPaths, args: &ListenArgs, out: &mut Output<'_>
     speak::give(paths, Sound::Wav(path), args.timeout, out)
 }
 
-/// Pieces of sound, or why there are none.
-type Pieces = Receiver<Result<Vec<i16>, String>>;
+/// Blocks of samples, or the error of reading them.
+type Blocks = Receiver<Result<Vec<i16>, String>>;
 
-/// Streams pieces in real time and prints receipts as they come.
-fn stream(paths: &GroupPaths, args: &ListenArgs, pieces: Pieces, out: &mut Output<'_>) -> Outcome {
+/// Streams blocks in real time and prints receipts as they arrive.
+fn stream(paths: &GroupPaths, args: &ListenArgs, blocks: Blocks, out: &mut Output<'_>) -> Outcome {
     let client = Client::join(paths)?;
     let flags = if args.echo_free { AudioChunk::ECHO_FREE } else { 0 };
     let mut stream = AudioStream::open(&client, flags)?;
-    let (mut times, mut told) = (SampleClock::default(), Told::default());
+    let (mut times, mut printed) = (SampleClock::default(), Printed::default());
     loop {
-        match pieces.recv_timeout(LOOK) {
+        match blocks.recv_timeout(POLL_EVERY) {
             Ok(Ok(samples)) => {
                 let taken = times.read(samples.len(), clock::now());
                 stream.send(taken, &samples)?;
@@ -68,7 +67,7 @@ fn stream(paths: &GroupPaths, args: &ListenArgs, pieces: Pieces, out: &mut Outpu
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break,
         }
-        told.tell(&stream.receipts()?, out)?;
+        printed.print(&stream.receipts()?, out)?;
     }
     let (until, mut ended) = (Instant::now() + args.timeout, None::<Instant>);
     while !stream.is_over() {
@@ -77,25 +76,25 @@ fn stream(paths: &GroupPaths, args: &ListenArgs, pieces: Pieces, out: &mut Outpu
                 format!("no answer within {} s; see: whichone status", args.timeout.as_secs());
             return Err(CliError::new(Exit::NotReached, what));
         }
-        if ended.is_none_or(|ended| ended.elapsed() >= END_EVERY) {
+        if ended.is_none_or(|ended| ended.elapsed() >= RESEND_END_EVERY) {
             stream.end(clock::now())?;
             ended = Some(Instant::now());
         }
-        thread::sleep(LOOK);
-        told.tell(&stream.receipts()?, out)?;
+        thread::sleep(POLL_EVERY);
+        printed.print(&stream.receipts()?, out)?;
     }
-    told.outcome()
+    printed.outcome()
 }
 
-/// What has been told of a stream.
+/// Printed receipts of a stream.
 #[derive(Default)]
-struct Told {
+struct Printed {
     segments: Vec<u32>,
     accepted: bool,
 }
 
-impl Told {
-    fn tell(&mut self, receipts: &[Receipt], out: &mut Output<'_>) -> Result<(), CliError> {
+impl Printed {
+    fn print(&mut self, receipts: &[Receipt], out: &mut Output<'_>) -> Result<(), CliError> {
         for receipt in receipts {
             if self.segments.contains(&receipt.segment) {
                 continue;
@@ -103,11 +102,11 @@ impl Told {
             self.segments.push(receipt.segment);
             self.accepted |= receipt.status == ReceiptStatus::Accepted.code();
             match speak::tell(receipt, out) {
-                // One utterance that is refused does not end the others.
+                // A rejected utterance does not end the stream.
                 Err(trouble) if receipt.status == ReceiptStatus::Refused.code() => {
                     crate::output::note(trouble);
                 }
-                told => told?,
+                printed => printed?,
             }
         }
         Ok(())
@@ -115,29 +114,29 @@ impl Told {
 
     fn outcome(&self) -> Outcome {
         match self.segments.len() {
-            0 | 1 => Err(CliError::new(Exit::NotReached, "nobody was heard to speak".to_owned())),
+            0 | 1 => Err(CliError::new(Exit::NotReached, "no speech found".to_owned())),
             _ => Ok(if self.accepted { Exit::Ok } else { Exit::NotReached }),
         }
     }
 }
 
-fn from_samples(samples: Vec<i16>) -> Pieces {
-    let (send, pieces) = sync_channel(0);
+fn from_samples(samples: Vec<i16>) -> Blocks {
+    let (send, blocks) = sync_channel(0);
     thread::spawn(move || {
         let mut pace = Pace::begin();
-        for piece in samples.chunks(PIECE) {
-            pace.wait(piece.len());
-            if send.send(Ok(piece.to_vec())).is_err() {
+        for block in samples.chunks(BLOCK) {
+            pace.wait(block.len());
+            if send.send(Ok(block.to_vec())).is_err() {
                 return;
             }
         }
     });
-    pieces
+    blocks
 }
 
-/// Sound as it comes; what comes faster than it was spoken waits in its pipe.
-fn from_stdin() -> Pieces {
-    let (send, pieces) = sync_channel(0);
+/// Reads standard input, at most in real time.
+fn from_stdin() -> Blocks {
+    let (send, blocks) = sync_channel(0);
     thread::spawn(move || {
         let mut input = match past_header(BufReader::new(io::stdin())) {
             Ok(input) => input,
@@ -147,10 +146,10 @@ fn from_stdin() -> Pieces {
             }
         };
         let mut pace = Pace::begin();
-        let mut bytes = [0; 2 * PIECE];
+        let mut bytes = [0; 2 * BLOCK];
         loop {
             let mut filled = 0;
-            // A piece is as long as what is there, but of whole samples.
+            // A block holds the available bytes, as whole samples.
             while filled == 0 || filled % 2 == 1 {
                 match input.read(&mut bytes[filled..]) {
                     Ok(0) => return,
@@ -170,31 +169,31 @@ fn from_stdin() -> Pieces {
             }
         }
     });
-    pieces
+    blocks
 }
 
-/// Skips a WAV header, if there is one, and checks what it says.
+/// Skips and checks a WAV header, if there is one.
 fn past_header(mut input: BufReader<impl Read + 'static>) -> Result<Box<dyn Read>, String> {
-    const CURE: &str = "convert it, e.g.: ffmpeg -i FILE -ar 16000 -ac 1 -f s16le - | whichone \
+    const HELP: &str = "help: convert it, e.g.: ffmpeg -i FILE -ar 16000 -ac 1 -f s16le - | whichone \
         listen -";
     let first = input.fill_buf().map_err(|error| format!("standard input: {error}"))?;
     if !first.starts_with(b"RIFF") {
         return Ok(Box::new(input));
     }
     let header = hound::WavReader::new(input);
-    let header = header.map_err(|error| format!("standard input: {error}; {CURE}"))?;
+    let header = header.map_err(|error| format!("standard input: {error}; {HELP}"))?;
     let spec = header.spec();
     if (spec.sample_rate, spec.channels, spec.bits_per_sample) != (RATE_HZ, 1, 16) {
         let hound::WavSpec { sample_rate, channels, bits_per_sample, .. } = spec;
         return Err(format!(
-            "standard input has {channels} channels of {bits_per_sample} bits at {sample_rate} Hz, \
-             not one of 16 bits at {RATE_HZ} Hz; {CURE}"
+            "standard input: expected 1 channel of 16 bits at {RATE_HZ} Hz, found {channels} of \
+             {bits_per_sample} bits at {sample_rate} Hz; {HELP}"
         ));
     }
     Ok(Box::new(header.into_inner()))
 }
 
-/// Holds back what comes faster than it was spoken.
+/// Limits a stream to real time.
 struct Pace {
     began: Instant,
     samples: usize,
@@ -205,13 +204,13 @@ impl Pace {
         Self { began: Instant::now(), samples: 0 }
     }
 
-    /// Waits until these samples can have been spoken.
+    /// Waits until these samples could have been recorded.
     fn wait(&mut self, samples: usize) {
         self.samples += samples;
         let spoken = Duration::from_secs_f64(self.samples as f64 / f64::from(RATE_HZ));
         match spoken.checked_sub(self.began.elapsed()) {
             Some(early) => thread::sleep(early),
-            // Whoever paused does not catch up.
+            // A pause is not caught up.
             None => *self = Self::begin(),
         }
     }
@@ -242,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_header_is_skipped_and_checked() {
+    fn listen_skips_and_checks_a_wav_header() {
         assert_eq!(read(&[1, 2, 3, 4, 5, 6]), Ok(vec![1, 2, 3, 4, 5, 6]));
         assert_eq!(read(wav(16_000).leak()), Ok(vec![1, 2]));
         let error = read(wav(44_100).leak()).unwrap_err();

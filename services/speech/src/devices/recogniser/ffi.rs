@@ -180,8 +180,8 @@ impl Decoder {
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         // SAFETY: `ps` is alive until `drop`. The samples are only read, and only during the call;
         // `full_utt` (the last argument) says that they are the whole utterance, so that the mean
-        // is taken over all of it. A stream is begun anew each time: the noise tracker then starts
-        // equal for equal audio.
+        // is taken over all of it. A new stream is begun each time, so that the noise tracker starts
+        // from the same state.
         let failed = unsafe {
             (lib.ps_start_stream)(ps) < 0
                 || (lib.ps_start_utt)(ps) < 0

@@ -5,7 +5,6 @@
 //! continues, a [`SegmentEvent::Paused`] carries the same segment as the end. Memory is bounded by the
 //! longest utterance.
 
-mod clock;
 mod half_duplex;
 mod playback_mask;
 
@@ -13,8 +12,8 @@ use std::ops::Range;
 
 use service::Time;
 
-pub use clock::SampleClock;
-pub(crate) use clock::shifted;
+pub use audio::SampleClock;
+pub(crate) use audio::shifted;
 pub use half_duplex::{Duplex, MaskedStream};
 pub use playback_mask::PlaybackMask;
 

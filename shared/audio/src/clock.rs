@@ -2,9 +2,9 @@
 
 use std::collections::VecDeque;
 
-use service::Time;
+use dialogue::time::Time;
 
-/// Nanoseconds of one sample at [`RATE_HZ`](crate::devices::audio::RATE_HZ), exactly.
+/// Nanoseconds of one sample at [`RATE_HZ`](crate::RATE_HZ), exactly.
 const SAMPLE_NS: i64 = 62_500;
 /// Length of an interval over which reads are compared.
 const INTERVAL_NS: i64 = 250_000_000;
@@ -45,7 +45,7 @@ impl SampleClock {
 }
 
 /// Returns the time `samples` after `time`, or before it.
-pub(crate) fn shifted(time: Time, samples: i64) -> Time {
+pub fn shifted(time: Time, samples: i64) -> Time {
     Time((time.ns() as i64 + samples * SAMPLE_NS).max(0) as u64)
 }
 
