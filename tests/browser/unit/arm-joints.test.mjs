@@ -24,7 +24,7 @@ function moving(buffer, late, seconds = 3) {
 describe("the joints' names", () => {
   it("are those of the protocol, in its order", () => {
     const source = readFileSync(
-      new URL("../../../shared/messages/src/messages/arm.rs", import.meta.url),
+      new URL("../../../shared/messages/src/fixed/arm.rs", import.meta.url),
       "utf8",
     );
     const list = source.match(/JOINT_STATE_NAMES: \[&str; JOINT_STATE_LEN\] = \[([^\]]*)\]/)[1];

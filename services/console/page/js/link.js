@@ -130,7 +130,7 @@ class Link {
   }
 
   /**
-   * Waits until something said reaches the server: a connection that broke comes back by itself.
+   * Waits until the connection is up: a broken one is restored automatically.
    * @param {number} patienceMs
    * @returns {Promise<void>} fails with a `LinkError`
    */
@@ -325,12 +325,12 @@ function ownUrl() {
   return `${scheme}//${location.host}/ws`;
 }
 
-/** A server that wants its token refuses sockets without a reason; a page's request tells. */
+/** A server that requires its token rejects sockets without a reason; a page request shows it. */
 async function askForToken() {
   try {
     const answer = await fetch("/api/state", { method: "HEAD", cache: "no-store" });
     if (answer.status === 401) location.assign("/login");
   } catch {
-    // Nobody is there: that is what the page says anyway.
+    // Unreachable: the page shows that already.
   }
 }

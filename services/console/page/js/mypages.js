@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * The other pages of the same person: tabs of one browser tell each other which viewers they are, so
+ * The other pages of the same person: tabs of one browser report to each other which viewers they are, so
  * that control moves between them at once.
  * @param {{link: any, store: any}} context
  * @returns {{isMine: (viewer: string|null) => boolean, fetch: () => void}} `fetch` has the page of

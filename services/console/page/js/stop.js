@@ -14,35 +14,35 @@ export function stopper({ link, store }, refused) {
   let wanted = false;
   /** Whether a stop was sent and not confirmed in time: the warning stays until it is. */
   let late = false;
-  const tell = (state) => {
+  const notify = (state) => {
     if (store.get("stop")?.state !== state) store.set("stop", { state });
   };
   const send = async () => {
     try {
       await link.do("stop", {}, CONFIRM_MS);
       wanted = false;
-      tell("idle");
+      notify("idle");
     } catch (error) {
       if (error.code === "refused") {
         wanted = false;
-        tell("idle");
+        notify("idle");
         return refused(error);
       }
       late ||= error.code === "late";
-      tell("undelivered");
+      notify("undelivered");
       if (error.code === "late") link.reconnect();
     }
   };
   store.set("stop", { state: "idle" });
   link.on("status", ({ state }) => {
     if (!wanted || state !== "up" || store.get("stop")?.state !== "undelivered") return;
-    if (!late) tell("sent");
+    if (!late) notify("sent");
     send();
   });
   return () => {
     [wanted, late] = [true, false];
     const sent = send();
-    if (link.isUp) tell("sent");
+    if (link.isUp) notify("sent");
     return sent;
   };
 }

@@ -55,7 +55,7 @@ export class Store {
 
   /**
    * A server that keeps fewer lines than the page has seen is another one: its transcript starts
-   * anew.
+   * again.
    * @param {number|undefined} firstLine number of the first line that the server keeps, 0 for none
    */
   resume(firstLine) {
@@ -63,7 +63,7 @@ export class Store {
     if (lost && this.lastLine > 0) this.set("lines", []);
   }
 
-  /** The line after which a server goes on: the last few may have changed meanwhile. */
+  /** The line after which a server continues: the last few may have changed meanwhile. */
   get resumeAfter() {
     return Math.max(0, this.lastLine - OVERLAP);
   }

@@ -79,7 +79,7 @@ export async function loadStrings(language) {
   document.documentElement.lang = language;
 }
 
-/** A console that is just being started anew is asked again so often. */
+/** How often a console that is restarting is asked again. */
 const TRIES = 4;
 /** And after this time, milliseconds. */
 const TRY_AGAIN_MS = 400;

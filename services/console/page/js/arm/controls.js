@@ -64,7 +64,7 @@ export class CameraControls {
   /**
    * Carries a flight on.
    * @param {number} now milliseconds
-   * @returns {boolean} whether it goes on
+   * @returns {boolean} whether it continues
    */
   step(now) {
     if (!this.#flight) return false;

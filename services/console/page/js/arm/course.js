@@ -84,7 +84,7 @@ export class CourseLine {
    * @param {any} trajectory section `trajectory`
    */
   show(trajectory) {
-    // Times may be told anew for the same way.
+    // Times may be updated for the same trajectory.
     const key = trajectory ? JSON.stringify(trajectory.phases) : null;
     if (key === this.#shown) return;
     this.#shown = key;

@@ -13,7 +13,7 @@ const QUESTIONS = ["stats", "clearStats", "shown", "forward", "spin", "lose", "r
 
 /**
  * Shows the arm in 3D. The page has the elements, what a person does to them, and the connection;
- * the picture itself is drawn by somebody else, who is told what is new (see `openPicture`).
+ * the picture itself is drawn elsewhere (see `openPicture`).
  * @param {HTMLElement} element gets `armView`, which tests ask
  * @param {{link: any, store: any, t: (key: string, args?: object) => string}} page
  */
@@ -51,7 +51,7 @@ function sayInWords(element, parts, store, t) {
   });
 }
 
-/** What is done with what the picture says by itself. */
+/** Handlers of the picture's notifications. */
 function hearing(element, { notice }, overlay, t) {
   return ({ picture, lost }) => {
     if (lost) {
@@ -73,39 +73,41 @@ function follow(picture, overlay, store, link) {
   const think = () => {
     const thoughts = thoughtsOf(store.get("dialogue"), store.get("scene"));
     overlay.setThoughts(thoughts);
-    picture.tell("setThoughts", thoughts);
+    picture.notify("setThoughts", thoughts);
   };
   store.subscribe("scene", (scene) => {
     if (scene && scene.key !== key) {
       key = scene.key;
       overlay.setScene(scene);
-      picture.tell("setScene", scene);
+      picture.notify("setScene", scene);
     }
     think();
   });
   store.subscribe("dialogue", think);
-  store.subscribe("world", (world) => picture.tell("setWorld", world));
-  store.subscribe("trajectory", (trajectory) => picture.tell("setTrajectory", trajectory));
-  store.subscribe("arm", (arm) => picture.tell("setArm", arm));
+  store.subscribe("world", (world) => picture.notify("setWorld", world));
+  store.subscribe("trajectory", (trajectory) => picture.notify("setTrajectory", trajectory));
+  store.subscribe("arm", (arm) => picture.notify("setArm", arm));
   link.on("joints", (message) => {
-    // Threads count from instants of their own, which the browser tells on one clock.
+    // Threads count from instants of their own, which the browser converts to one clock.
     const clockMs = link.toServer(0) - performance.timeOrigin;
-    picture.tell("setJoints", message, link.serverNow(), clockMs);
+    picture.notify("setJoints", message, link.serverNow(), clockMs);
   });
 }
 
 /** Has the picture follow the page: its size, its theme, whether it is seen, and who looks at it. */
 function watch(picture, { stage, canvas, buttons }, overlay) {
-  watchTheme(stage, (dark) => picture.tell("setTheme", dark));
+  watchTheme(stage, (dark) => picture.notify("setTheme", dark));
   watchSize(stage, (size) => {
     overlay.setSize(size);
-    picture.tell("setSize", size);
+    picture.notify("setSize", size);
   });
-  watchSeen(stage, (seen) => picture.tell("setSeen", seen));
-  forwardInput(stage, canvas, (what, ...args) => picture.tell(what, ...args));
+  watchSeen(stage, (seen) => picture.notify("setSeen", seen));
+  forwardInput(stage, canvas, (what, ...args) => picture.notify(what, ...args));
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   for (const button of buttons.filter(({ dataset }) => VIEWS.includes(dataset.view ?? ""))) {
-    button.addEventListener("click", () => picture.tell("look", button.dataset.view, calm.matches));
+    button.addEventListener("click", () =>
+      picture.notify("look", button.dataset.view, calm.matches),
+    );
   }
 }
 

@@ -22,12 +22,12 @@ const READ = [
  * Sends what a person does to the picture.
  * @param {HTMLElement} stage takes the keys
  * @param {HTMLCanvasElement} canvas
- * @param {(what: string, ...args: any[]) => void} tell
+ * @param {(what: string, ...args: any[]) => void} notify
  */
-export function forwardInput(stage, canvas, tell) {
+export function forwardInput(stage, canvas, notify) {
   const forward = (event) => {
     const fields = READ.flatMap((name) => (name in event ? [[name, event[name]]] : []));
-    tell("happen", event.type, Object.fromEntries(fields));
+    notify("happen", event.type, Object.fromEntries(fields));
   };
   forwardPointers(canvas, forward);
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
@@ -41,8 +41,8 @@ export function forwardInput(stage, canvas, tell) {
     },
     { passive: false },
   );
-  stage.addEventListener("keydown", (event) => pressed(event, tell));
-  // Browsers tell of two fingers on a touchpad as of the wheel with Control, which nobody pressed.
+  stage.addEventListener("keydown", (event) => pressed(event, notify));
+  // Browsers notify of two fingers on a touchpad as of the wheel with Control, which nobody pressed.
   for (const type of /** @type {const} */ (["keydown", "keyup"])) {
     const listen = (event) => event.key === "Control" && forward(event);
     document.addEventListener(type, listen, { passive: true, capture: true });
@@ -64,10 +64,10 @@ function forwardPointers(canvas, forward) {
   }
 }
 
-function pressed(event, tell) {
+function pressed(event, notify) {
   const [what, ...args] = KEYS[event.key] ?? [];
   if (event.ctrlKey || event.metaKey || event.altKey || !what) return;
   event.preventDefault();
   event.stopPropagation();
-  tell(what, ...args);
+  notify(what, ...args);
 }

@@ -22,7 +22,7 @@ const STREAM_MS = 120;
 const JUDGED = 24;
 /** Bounds of how far the picture is behind the server's clock. */
 const DELAY_MS = { least: 20, most: 300, first: 45 };
-/** How fast the delay may change with a message, so that nobody sees it. */
+/** How fast the delay may change with a message, so that it is invisible. */
 const SLEW_MS = { up: 6, down: 2 };
 /** A message older than the last by more than this is of another life of the server. */
 const AGAIN_MS = 1_000;

@@ -22,5 +22,5 @@ export function labelPlaces(things, camera, { width, height }) {
   });
 }
 
-/** Nobody sees less, and what does not change need not be told. */
+/** Smaller changes are invisible and are not sent. */
 const tenths = (pixels) => Math.round(10 * pixels) / 10;

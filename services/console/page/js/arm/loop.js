@@ -13,7 +13,7 @@ export class Loop {
   /**
    * @param {object} does
    * @param {() => boolean} does.isShown whether anybody can see the picture
-   * @param {(at: number) => boolean} does.draw draws quickly; whether something goes on moving
+   * @param {(at: number) => boolean} does.draw draws quickly; whether something still moves
    * @param {() => void} does.drawFinely what stands
    */
   constructor(does) {

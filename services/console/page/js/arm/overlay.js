@@ -123,7 +123,7 @@ export class Overlay {
     else this.#place();
   }
 
-  /** Takes the sizes of all labels anew. */
+  /** Measures all labels again. */
   #measure() {
     for (const label of this.#labels) {
       label.width = label.node.offsetWidth;

@@ -64,7 +64,7 @@ export class Painter {
     this.#size = size;
   }
 
-  /** Has what shiny things mirror be made anew. @param {boolean} dark */
+  /** Renders the environment map again. @param {boolean} dark */
   light(dark) {
     this.#isDark = dark;
     this.#studio?.dispose();

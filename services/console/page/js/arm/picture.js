@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The page's end of the picture: it tells what is to be shown and asks what is, by messages, whoever
- * draws. What the picture says by itself is heard by `heard`.
+ * The page's end of the picture: it sends what is to be shown and queries what is shown, by messages,
+ * to the worker or to the page itself. Notifications of the picture go to `heard`.
  */
 export class Picture {
   #port;

@@ -10,12 +10,12 @@ import { Painter } from "./painter.js";
 import { Pointed } from "./pointed.js";
 import { Tableau } from "./tableau.js";
 
-/** The picture goes on for so long after the last new joints: the next ones may be late. */
+/** The picture is drawn for this long after the last joint states: the next ones may be late. */
 const LINGER_MS = 250;
 /** The same while the arm says that it moves. */
 const MOVING_MS = 2_000;
 
-/** The picture. Draws only when something changes and somebody can see it. */
+/** The picture. Draws only when something changes and it is visible. */
 export class ArmView {
   tableau = new Tableau();
   camera = new PerspectiveCamera(FIELD_DEG, 1, 0.05, 30);
@@ -173,7 +173,7 @@ export class ArmView {
     this.#loop.request();
   }
 
-  /** @param {number} at milliseconds @returns {boolean} whether anything goes on moving */
+  /** @param {number} at milliseconds @returns {boolean} whether anything still moves */
   #draw(at) {
     const begun = performance.now();
     const sample = this.joints.sample(this.#toServer(begun));

@@ -41,7 +41,7 @@ export class Requests {
   }
 
   /**
-   * Takes in a `done` of the server. One that nobody waits for is ignored.
+   * Takes in a `done` of the server. One without a waiting request is ignored.
    * @param {{id: number, ok: boolean, error?: string}} done
    */
   done(done) {

@@ -4,7 +4,7 @@ export const LINES_MAX = 200;
 
 /**
  * The transcript with further lines: in the order of their ids, the newer one of an id counts, and
- * of all the latest. Lines of another transcript (the group was started anew) replace it.
+ * of all the latest. Lines of another transcript (the group was restarted) replace it.
  * @template {{id: number, at_ms?: number}} L
  * @param {L[]} known oldest first
  * @param {L[]} more

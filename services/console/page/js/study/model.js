@@ -43,7 +43,7 @@ export function progressOf(person) {
 }
 
 /**
- * What the end of an interaction is told with, as a string's key.
+ * The string's key for the end of an interaction.
  * @param {any} trial
  */
 export function outcomeKey(trial) {

@@ -47,7 +47,7 @@ const SCREENS = {
 };
 
 /**
- * Draws a screen anew.
+ * Redraws a screen.
  * @param {HTMLElement} element
  * @param {string} screen
  * @param {Shown} shown

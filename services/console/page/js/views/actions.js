@@ -2,7 +2,7 @@
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
 import { escapeStops, stopper } from "../stop.js";
-import { attempt, reason, tell } from "./attempt.js";
+import { attempt, notify, reason } from "./attempt.js";
 
 /** A press so soon after the stop is not meant for what the button has become, milliseconds. */
 const LATCH_MS = 800;
@@ -29,7 +29,7 @@ export function mountActions(element, context) {
   const button = h("button", { type: "button", id: "stop", class: "stop" }, mark, text);
   element.append(button);
 
-  const press = stopper(context, (error) => tell(reason(/** @type {any} */ (error), t)));
+  const press = stopper(context, (error) => notify(reason(/** @type {any} */ (error), t)));
   let pressedAt = Number.NEGATIVE_INFINITY;
   const touch = matchMedia("(hover: none)");
   let askedAt = null;

@@ -15,7 +15,7 @@ export async function attempt(promise, { t }) {
   try {
     return await promise;
   } catch (error) {
-    tell(reason(/** @type {any} */ (error), t));
+    notify(reason(/** @type {any} */ (error), t));
     return null;
   }
 }
@@ -33,7 +33,7 @@ export function reason(error, t) {
  * Shows a sentence for some seconds.
  * @param {string} text
  */
-export function tell(text) {
+export function notify(text) {
   const old = document.querySelector(".toast");
   old?.remove();
   const toast = h("div", { class: "toast", role: "alert", text });

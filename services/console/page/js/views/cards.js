@@ -3,7 +3,7 @@ import { calm, eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { density, likely, marks, rank, readable } from "../model/ranking.js";
 import { makeCard, updateCard } from "./card.js";
 
-/** Most cards that are shown before somebody asks for all of them. */
+/** Most cards that are shown until all are requested. */
 const MOST = 12;
 /** Most cards that are shown at all. */
 const ALL_MOST = 150;

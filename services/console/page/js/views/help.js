@@ -97,7 +97,7 @@ function languages(t) {
   );
 }
 
-/** What a key does by itself, outside of text fields. */
+/** The action of a single key outside of text fields. */
 function act(event, { link, store, t }, open) {
   const key = event.key.toLowerCase();
   const given = answers(store.get("dialogue"), store.get("scene"));

@@ -2,8 +2,8 @@
 import { h } from "../dom.js";
 
 /**
- * Mounts a part of the page that is loaded by itself. If it cannot be, its place says so, and the
- * rest of the page goes on.
+ * Mounts a part of the page that is loaded separately. If that fails, its place says so, and the
+ * rest of the page works.
  * @param {HTMLElement} element
  * @param {() => Promise<any>} load
  * @param {string} mount name of the function that the module exports

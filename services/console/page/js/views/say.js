@@ -40,7 +40,7 @@ export function mountSay(element, { link, store, t }) {
     if (input.value === "") beganAt = null;
     else beganAt ??= performance.now();
   });
-  // Also where the button is off: then the reason is told.
+  // Also while the button is disabled: the reason is shown then.
   input.addEventListener("keydown", (event) => {
     if (event.key !== "Enter" || event.isComposing) return;
     event.preventDefault();
@@ -69,7 +69,7 @@ export function mountSay(element, { link, store, t }) {
     }
   }
 
-  /** Who types where nobody is in control takes it. */
+  /** Typing takes control if there is no operator. */
   async function ready() {
     if (whoControls(store.get("control"), store.get("welcome")) === "free") {
       await link.do("take_control");

@@ -43,7 +43,7 @@ export function mountTranscript(element, { store, t }) {
   }
   new ResizeObserver(() => follows && toEnd()).observe(list);
 
-  /** A line that came again is another object: it is made anew. */
+  /** A line that was sent again is another object: it is redrawn. */
   const versions = new WeakMap();
   let version = 0;
   const key = (line) => {

@@ -33,7 +33,7 @@ export function kept(storage) {
       if (typeof found?.[name] === typeof DEFAULTS[name]) choices[name] = found[name];
     }
   } catch {
-    // What somebody else wrote there is no choice.
+    // Invalid stored values are ignored.
   }
   if (choices.engine !== "browser") choices.engine = "robot";
   return choices;

@@ -14,7 +14,7 @@ export class Dictation {
 
   /**
    * @param {{language: () => string, partial: (text: string, beganMs: number) => void,
-   *   heard: (said: any) => void, failed: (code: string) => void, tell: () => void}} context
+   *   heard: (said: any) => void, failed: (code: string) => void, notify: () => void}} context
    */
   constructor(context) {
     this.context = context;
@@ -39,10 +39,10 @@ export class Dictation {
   #next() {
     const Recognition = recognitionOf();
     if (!Recognition) return false;
-    const { language, partial, heard, failed, tell } = this.context;
+    const { language, partial, heard, failed, notify } = this.context;
     const began = performance.now();
     const fail = (code) => {
-      // Silence is no fault while nobody has to say anything.
+      // Silence is not a fault while no speech is expected.
       if (code !== "no-speech") this.#wanted = false;
       failed(code);
     };
@@ -51,7 +51,7 @@ export class Dictation {
       partial("", began);
       this.#vain = performance.now() - began < VAIN_MS ? this.#vain + 1 : 0;
       if (this.#wanted && this.#vain < VAIN_MAX) this.#next();
-      tell();
+      notify();
     };
     const continuous = true;
     const options = { Recognition, language: language(), continuous, partial, heard };

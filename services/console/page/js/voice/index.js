@@ -19,9 +19,9 @@ export { playback, REPLY } from "./playback.js";
 export function mountVoice(element, { link, store, t }) {
   const storage = stored();
   let draw = () => {};
-  const tell = () => draw();
-  const playback = makePlayback({ link, store, storage, tell });
-  const talk = new Talk({ link, store, playback, choices: kept(storage), tell });
+  const notify = () => draw();
+  const playback = makePlayback({ link, store, storage, notify });
+  const talk = new Talk({ link, store, playback, choices: kept(storage), notify });
   const view = build(element, {
     t,
     hasBrowser: recognitionOf() !== null,
@@ -47,8 +47,8 @@ export function mountVoice(element, { link, store, t }) {
     show(view, { sign: sign(known), talk, playback, t });
   };
   draw = eachFrame(drawNow);
-  store.subscribe(["link", "turn", "hearing", "welcome"], tell);
-  // A page that nobody sees hears nobody.
+  store.subscribe(["link", "turn", "hearing", "welcome"], notify);
+  // A hidden page does not listen.
   addEventListener("pagehide", () => talk.close());
   // At once: no button is without its words for as long as a frame.
   drawNow();

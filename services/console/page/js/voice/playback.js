@@ -10,18 +10,18 @@ export const REPLY = "voice:reply";
 
 /**
  * Plays what the robot says.
- * @param {{link: any, store: any, storage: Storage|null, tell: () => void}} context `tell` is called
+ * @param {{link: any, store: any, storage: Storage|null, notify: () => void}} context `notify` is called
  *   when `locked`, `muted` or `sounds` has changed
  */
-export function playback({ link, store, storage, tell }) {
-  return new Playback(link, store, storage, tell);
+export function playback({ link, store, storage, notify }) {
+  return new Playback(link, store, storage, notify);
 }
 
 class Playback {
   #link;
   #store;
   #storage;
-  #tell;
+  #notify;
   /** @type {AudioContext|null} */
   #context = null;
   /** @type {Map<string, Promise<AudioBuffer>>} */
@@ -33,11 +33,11 @@ class Playback {
   /** Page time at which the person had last ended, and whether a reply to it was measured. */
   #endedAt = NaN;
 
-  constructor(link, store, storage, tell) {
+  constructor(link, store, storage, notify) {
     this.#link = link;
     this.#store = store;
     this.#storage = storage;
-    this.#tell = tell;
+    this.#notify = notify;
     this.#muted = storage?.getItem(MUTED) === "yes";
     store.subscribe("speaking", () => this.#look());
     for (const event of ["pointerdown", "keydown"]) {
@@ -64,7 +64,7 @@ class Playback {
     this.#muted = muted;
     this.#storage?.setItem(MUTED, muted ? "yes" : "no");
     this.#look();
-    this.#tell();
+    this.#notify();
   }
 
   /** The person speaks: the robot is silent here at once, and stays so for what it was saying. */
@@ -112,7 +112,7 @@ class Playback {
     const { source } = this.#playing;
     this.#playing = { key: "", source: null };
     source?.stop();
-    this.#tell();
+    this.#notify();
   }
 
   async #start(speaking) {
@@ -135,7 +135,7 @@ class Playback {
         if (this.#playing.source !== source) return;
         // The key stays: it is not to begin again while the robot's clock catches up.
         this.#playing.source = null;
-        this.#tell();
+        this.#notify();
       };
       this.#playing.source = source;
       source.start(0, offset);
@@ -143,7 +143,7 @@ class Playback {
     } catch (error) {
       console.warn(`${speaking.url}: ${error}`);
     } finally {
-      this.#tell();
+      this.#notify();
     }
   }
 

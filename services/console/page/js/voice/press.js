@@ -1,5 +1,5 @@
 // @ts-check
-/** A press that is shorter than this was a click: it goes on until the next one, milliseconds. */
+/** A shorter press was a click, which lasts until the next one, milliseconds. */
 const CLICK_MS = 350;
 
 /**

@@ -8,13 +8,13 @@ export function recognitionOf(scope = /** @type {any} */ (globalThis)) {
 }
 
 /**
- * What a browser's recogniser has told, as the verb `say` takes it.
- * @param {{transcript: string, confidence: number}[]} told best first; a confidence of 0 is unknown
+ * Returns a result of the browser's recogniser as arguments of `say`.
+ * @param {{transcript: string, confidence: number}[]} results best first; a confidence of 0 is unknown
  * @returns {{text: string, alternatives?: {text: string, weight: number}[]}|null} null for no words
  */
-export function utterance(told) {
+export function utterance(results) {
   const texts = new Map();
-  for (const { transcript, confidence } of told) {
+  for (const { transcript, confidence } of results) {
     const text = transcript.trim();
     if (text) texts.set(text, Math.max(texts.get(text) ?? 0, confidence));
   }

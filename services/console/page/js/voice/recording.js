@@ -13,7 +13,7 @@ const WARM_MS = 20_000;
 /** A microphone and what of its sound goes to the robot. */
 export class Recording {
   #link;
-  #tell;
+  #notify;
   /** @type {Microphone|null} */
   #microphone = null;
   /** @type {Promise<void>|null} */
@@ -34,11 +34,11 @@ export class Recording {
   /**
    * @param {any} link
    * @param {{choices: () => import("./choices.js").Choices, muted: () => boolean,
-   *   tell: () => void, gone: () => void}} context `gone` is called when the device is taken away
+   *   notify: () => void, gone: () => void}} context `gone` is called when the device is taken away
    */
-  constructor(link, { choices, muted, tell, gone }) {
+  constructor(link, { choices, muted, notify, gone }) {
     this.#link = link;
-    this.#tell = tell;
+    this.#notify = notify;
     this.choices = choices;
     this.muted = muted;
     this.gone = gone;
@@ -122,7 +122,7 @@ export class Recording {
     this.#microphone = null;
     this.#preRoll.take();
     this.levelDb = QUIETEST_DB;
-    this.#tell();
+    this.#notify();
   }
 
   #flags() {
@@ -134,6 +134,6 @@ export class Recording {
     this.levelDb = levelDb(samples);
     if (!this.#stream) this.#preRoll.push(samples, takenMs);
     else if (!this.#stream.send(samples, takenMs, this.#flags())) this.slow = true;
-    this.#tell();
+    this.#notify();
   }
 }

@@ -17,7 +17,7 @@ export class Talk {
   #link;
   #store;
   #playback;
-  #tell;
+  #notify;
   #choices;
   #press = idle();
   #handsFree = false;
@@ -33,18 +33,18 @@ export class Talk {
 
   /**
    * @param {{link: any, store: any, playback: any, choices: import("./choices.js").Choices,
-   *   tell: () => void}} context `tell` is called when anything has changed
+   *   notify: () => void}} context `notify` is called when anything has changed
    */
-  constructor({ link, store, playback, choices, tell }) {
+  constructor({ link, store, playback, choices, notify }) {
     this.#link = link;
     this.#store = store;
     this.#playback = playback;
     this.#choices = choices;
-    this.#tell = tell;
+    this.#notify = notify;
     this.#recording = new Recording(link, {
       choices: () => this.#choices,
       muted: () => playback.muted,
-      tell,
+      notify,
       gone: () => this.#fail("voice.fault.gone"),
     });
     this.#dictation = new Dictation({
@@ -53,7 +53,7 @@ export class Talk {
         store.set("partial", { stream: null, text, onset_ms: link.toServer(at) }),
       heard: (said) => void this.#say(said),
       failed: (code) => this.#unheard(code),
-      tell,
+      notify,
     });
     link.on("receipt", (receipt) => this.#receipt(receipt));
     store.subscribe(["link", "control"], () => this.#follow());
@@ -112,7 +112,7 @@ export class Talk {
       void this.#begin();
     }
     if (before && !this.talks) this.#end();
-    this.#tell();
+    this.#notify();
   }
 
   /** @param {boolean} on */
@@ -120,7 +120,7 @@ export class Talk {
     this.#handsFree = on;
     if (on) void this.#begin();
     else if (!this.talks) this.#end();
-    this.#tell();
+    this.#notify();
   }
 
   /** @param {Partial<import("./choices.js").Choices>} change */
@@ -129,7 +129,7 @@ export class Talk {
     this.#clear();
     this.close();
     if (this.#handsFree) void this.#begin();
-    this.#tell();
+    this.#notify();
   }
 
   /** Closes the microphone. */
@@ -149,7 +149,7 @@ export class Talk {
     this.fault = { key, args };
     this.#press = idle();
     this.#handsFree = false;
-    this.#tell();
+    this.#notify();
     return false;
   }
 
@@ -166,7 +166,7 @@ export class Talk {
       if (this.talks || this.#handsFree) this.#recording.send();
       else this.#ready();
     }
-    this.#tell();
+    this.#notify();
   }
 
   /** The microphone was opened for a press that is over: the browser had asked the person first. */
@@ -175,7 +175,7 @@ export class Talk {
     this.#recording.keepWarm();
   }
 
-  /** Who talks where nobody is in control takes it. */
+  /** Talking takes control if there is no operator. */
   async #inControl() {
     const who = whoControls(this.#store.get("control"), this.#store.get("welcome"));
     if (!this.#link.isUp) return this.#fail("voice.fault.link");
@@ -192,7 +192,7 @@ export class Talk {
   async #open() {
     try {
       const opened = this.#recording.open();
-      this.#tell();
+      this.#notify();
       await opened;
       return true;
     } catch (error) {
@@ -206,7 +206,7 @@ export class Talk {
     this.#tail = window.setTimeout(() => {
       this.#recording.held = false;
       if (!this.#handsFree && this.#recording.isSending) this.#recording.end();
-      this.#tell();
+      this.#notify();
     }, TAIL_MS);
   }
 
@@ -222,7 +222,7 @@ export class Talk {
     } else if (this.#handsFree && this.#recording.isOpen && who === "mine") {
       this.#recording.send();
     }
-    this.#tell();
+    this.#notify();
   }
 
   #receipt({ stream, status, text, ended_ms: endedMs, utterances }) {
@@ -236,10 +236,10 @@ export class Talk {
     } else if (stream === this.#recording.number) {
       this.#over(text, utterances);
     }
-    this.#tell();
+    this.#notify();
   }
 
-  /** The robot has done with the stream; what goes on is a new one. */
+  /** The robot has closed the stream; further sound opens a new one. */
   #over(text, utterances) {
     const goesOn = this.#recording.isSending;
     this.#recording.lose();
@@ -251,7 +251,7 @@ export class Talk {
   #unheard(code) {
     if (code !== "no-speech") this.#fail(recognitionFault(code), { code });
     else if (!this.#handsFree) this.note = { key: "voice.note.nothing" };
-    this.#tell();
+    this.#notify();
   }
 
   async #say({ text, alternatives, beganMs, endedMs }) {
@@ -263,6 +263,6 @@ export class Talk {
     } catch (error) {
       this.fault = { key: "voice.fault.refused", args: { reason: error.message } };
     }
-    this.#tell();
+    this.#notify();
   }
 }
