@@ -42,7 +42,7 @@ fn page_follows_a_dialogue_to_the_hand_over() {
     let last = page.converse("metal2");
     assert_eq!((&last["outcome"], &last["object"]), (&json!("delivered"), &json!("metal2")));
     let person = page.until_line("what was understood", |line| {
-        line["who"] == "person" && line["answers"].is_string() && line["understood"].is_array()
+        line["who"] == "person" && line["answers"].is_array() && line["understood"].is_array()
     });
     let meaning = person["understood"][0]["text"].as_str().unwrap();
     assert!(["yes", "no"].iter().any(|word| meaning.contains(word)), "{person}");
@@ -77,7 +77,7 @@ fn not_that_denies_the_question_or_the_pick() {
     page.until_part("turn", |turn| turn["state"] == "asked");
     let value = asked["question"]["value"].as_str().unwrap().to_owned();
     assert!(ok(&page.ask("not_that", &Json::Null)));
-    let line = page.until_line("the denial", |line| line["answers"].is_string());
+    let line = page.until_line("the denial", |line| line["answers"].is_array());
     assert_eq!((&line["text"], &line["understood"][0]["text"]), (&json!("no"), &json!("no")));
     page.until_part("dialogue", |dialogue| dialogue["question"]["value"] != value.as_str());
     // The evidence goes; the request stays.

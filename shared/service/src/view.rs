@@ -11,7 +11,10 @@ mod latest;
 use serde::Serialize;
 
 pub use arm::ArmView;
-pub use dialogue::{AlternativeView, DialogueView, EndedView, QuestionView, UserView};
+pub use dialogue::{
+    ActionView, AlternativeView, AttributionView, DialogueView, EndedView, QuestionView, ShareView,
+    UserView,
+};
 pub use hearing::HearingView;
 pub use latest::{Arrived, Latest, LatestTopics, PromptId, drain, quiet};
 

@@ -3,8 +3,7 @@
 //! Pure. Both become words that a user could say too, so that they are in the transcript and in the
 //! journal, and do nothing that a dialogue could not.
 
-use messages::ActKind;
-use messages::{ArmStatus, PickPhase, PolicyView};
+use messages::{ActKind, ArmStatus, PickPhase, PolicyView};
 use scene::{ObjectId, Question, Scene};
 use service::view::Latest;
 

@@ -4,7 +4,7 @@ mod simulated_study;
 
 use dialogue::Rng;
 use evaluation::user_study::{Event, Participant, Protocol, Stage, Status, Verdict};
-use messages::Outcome;
+use messages::{ActKind, Outcome};
 use scene::Scene;
 use serde_json::{Map, json};
 
@@ -31,7 +31,7 @@ fn take_part(study: &mut SimulatedStudy) {
         seq += 1;
         study.say(seq);
         study.ms += 5e3;
-        study.view.decision = messages::ActKind::Pick;
+        study.view.decision = ActKind::Pick;
         study.look();
         let desired = study.desired();
         study.end(Outcome::Delivered, Some(&desired));

@@ -2,7 +2,7 @@
 //! robot. Pure.
 
 use evaluation::user_study::{Event, Fault, Participant, Source, Stage, Trial, Verdict};
-use messages::{Ended, Outcome, PolicyView};
+use messages::{ActKind, Ended, Outcome, PolicyView};
 
 use super::robot_state::{NotReady, RobotState};
 use super::study_controller::StudyController;
@@ -207,6 +207,6 @@ fn too_long(trial: &Trial, robot: &RobotState<'_>, seconds_max: f64) -> Option<E
 
 fn decided(trial: &Trial, robot: &RobotState<'_>) -> Option<Event> {
     let view = robot.view.filter(|view| view.interaction == trial.after + 1)?;
-    let is_new = trial.decided_ms.is_none() && view.decision == messages::ActKind::Pick;
+    let is_new = trial.decided_ms.is_none() && view.decision == ActKind::Pick;
     is_new.then_some(Event::Decided { decided_ms: robot.ms })
 }

@@ -29,9 +29,9 @@ pub struct Line {
     /// What it may mean, most likely first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub understood: Vec<Meaning>,
-    /// The question that it answers.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub answers: Option<String>,
+    /// The questions that the policy attributed it to, most probable first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub answers: Vec<Answered>,
     /// Outcome of the interaction that has ended.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outcome: Option<Outcome>,
@@ -47,6 +47,15 @@ pub struct Meaning {
     pub text: String,
     /// Its probability.
     pub weight: f64,
+}
+
+/// A question that an utterance answers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Answered {
+    /// Its words.
+    pub question: String,
+    /// Probability that the utterance answers it.
+    pub share: f64,
 }
 
 impl Line {

@@ -16,6 +16,8 @@ mod understood;
 #[cfg(test)]
 mod tests;
 
+use std::collections::VecDeque;
+
 use messages::{
     Activity, ArmStatus, Hearing, Observation, PolicyView, Presented, Receipt, RobotAct,
     TrajectoryView, WorldView,
@@ -28,7 +30,7 @@ use service::view::{ArmView, DialogueView, HearingView, Latest};
 
 pub use event::DialogueEvent;
 pub use latency::{Latency, Stages};
-pub use line::{Line, Meaning};
+pub use line::{Answered, Line, Meaning};
 pub use transcript::Transcript;
 pub use turn::{Turn, TurnState};
 
@@ -36,6 +38,9 @@ use sections::{
     SceneSection, SpeakingSection, TrajectorySection, TurnSection, WorldSection, labels,
 };
 pub(crate) use services::missing;
+
+/// Utterances whose readings are remembered.
+const READINGS_MAX: usize = 16;
 
 /// A moment on both clocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -59,6 +64,8 @@ pub struct ViewModel {
     /// Whether the sound of the line that is being presented can be fetched.
     has_sound: bool,
     prompts: prompts::Prompts,
+    /// Readings of the latest utterances.
+    readings: VecDeque<understood::Readings>,
     transcript: Transcript,
     latency: Latency,
     /// The turn, and when its state began.
@@ -81,6 +88,7 @@ impl ViewModel {
             group: None,
             has_sound: false,
             prompts: prompts::Prompts::default(),
+            readings: VecDeque::new(),
             transcript,
             latency: Latency::default(),
             turn: None,
@@ -137,6 +145,7 @@ impl ViewModel {
             self.events.push(DialogueEvent::Ended(ended.clone()));
         }
         self.latest.view = Some(view);
+        self.attribute();
     }
 
     /// Takes in what the policy has decided.
@@ -178,10 +187,24 @@ impl ViewModel {
     pub fn on_observation(&mut self, observation: &Observation) {
         self.is_changed = true;
         self.latency.on_observation(observation);
-        let open = self.latest.view.as_ref().map_or(0, |view| view.interaction);
-        let understood = understood::read(&self.scene, observation, &self.prompts, open);
-        if let Some(understood) = understood {
-            self.transcript.on_understood(observation.seq, understood);
+        let Some(readings) = understood::read(&self.scene, observation) else { return };
+        if self.readings.iter().all(|known| known.seq != readings.seq) {
+            if self.readings.len() == READINGS_MAX {
+                self.readings.pop_front();
+            }
+            self.readings.push_back(readings);
+        }
+        self.attribute();
+    }
+
+    /// Shows the latest utterance with the shares that the policy has given to each question.
+    fn attribute(&mut self) {
+        let Some(view) = &self.latest.view else { return };
+        let attributed = &view.attributed;
+        let readings = self.readings.iter().find(|known| known.seq == attributed.utterance);
+        if let Some(readings) = readings {
+            let understood = readings.attribute(attributed, &self.prompts);
+            self.transcript.on_understood(attributed.utterance.0, understood);
         }
     }
 

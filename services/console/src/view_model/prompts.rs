@@ -18,7 +18,6 @@ pub(super) struct Prompt {
     pub(super) id: u64,
     pub(super) presentation: u32,
     pub(super) question: Question,
-    pub(super) interaction: u64,
     pub(super) text: String,
 }
 
@@ -38,7 +37,6 @@ impl Prompts {
             id: act.prompt,
             presentation: act.presentation,
             question: if asks { question } else { Question::None },
-            interaction: act.interaction,
             text: text.to_owned(),
         });
     }

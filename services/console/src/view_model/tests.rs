@@ -1,9 +1,10 @@
 //! Messages folded into the view model, in the order and number in which services really send them.
 
 use super::*;
+use dialogue::{Attributed, QuestionShare};
 use messages::{
     ActKind, Ended, FixedText, InteractionId, Interpretation, MicrophoneState, Outcome, PickPhase,
-    PresentationState, ReceiptStatus, UtteranceSeq, WireReading,
+    PresentationState, PromptId, ReceiptStatus, UtteranceSeq, WireReading,
 };
 use scene::{AttributeId, Question, Reading, Response, ValueId};
 use serde_json::{Map, Value as Json};
@@ -120,33 +121,47 @@ fn view_model_ignores_repeated_messages() {
     assert_eq!(count(|event| matches!(event, DialogueEvent::Ended { .. })), 1);
 }
 
+/// As `view`, after the policy has attributed utterance 2 with these shares.
+fn attributed(shares: &[(u64, f64)], none: f64) -> PolicyView {
+    let question =
+        |&(prompt, share)| QuestionShare { prompt: PromptId(prompt), presentation: 1, share };
+    let questions = shares.iter().map(question).collect();
+    let attributed = Attributed { utterance: UtteranceSeq(2), questions, none };
+    PolicyView { attributed, ..view(1, None) }
+}
+
 #[test]
-fn transcript_shows_an_answer_with_its_question_in_either_order() {
-    for observation_first in [true, false] {
+fn transcript_shows_the_policys_attribution_in_any_order_of_messages() {
+    for order in [[0, 1, 2], [2, 0, 1], [1, 2, 0], [2, 1, 0]] {
         let mut model = model();
-        model.on_view(view(1, None), now(1));
-        model.on_act(&asks(4, 1));
-        if observation_first {
-            model.on_observation(&no(2, 4));
+        model.on_act(&asks(3, 1));
+        model.on_act(&RobotAct { text: FixedText::truncated("Is it big?"), ..asks(4, 1) });
+        for step in order {
+            match step {
+                0 => model.on_receipt(&receipt(2, ReceiptStatus::Accepted, "no"), now(2)),
+                1 => model.on_observation(&no(2, 4)),
+                _ => model.on_view(attributed(&[(3, 0.75), (4, 0.2)], 0.05), now(2)),
+            }
         }
-        model.on_receipt(&receipt(2, ReceiptStatus::Accepted, "no"), now(2));
-        model.on_observation(&no(2, 4));
         let line = model.transcript().lines().next().unwrap().clone();
-        assert_eq!(line.understood[0].text, "no", "{observation_first}");
-        assert_eq!(line.answers.as_deref(), Some("Is it the white one?"));
+        // The earlier question has the larger share, although the later one was the latest asked.
+        let answers: Vec<(&str, f64)> =
+            line.answers.iter().map(|a| (a.question.as_str(), a.share)).collect();
+        assert_eq!(answers, [("Is it the white one?", 0.75), ("Is it big?", 0.2)], "{order:?}");
+        assert_eq!(line.understood[0].text, "no");
         assert_eq!((line.who, line.source.as_str()), (Speaker::Person, "typed"));
     }
 }
 
 #[test]
-fn transcript_ignores_questions_of_another_interaction() {
+fn transcript_shows_no_question_for_an_utterance_that_answers_none() {
     let mut model = model();
     model.on_act(&asks(4, 1));
-    model.on_view(view(2, Some(delivered(1))), now(1));
     model.on_receipt(&receipt(2, ReceiptStatus::Accepted, "no"), now(2));
     model.on_observation(&no(2, 4));
+    model.on_view(attributed(&[], 1.0), now(2));
     let line = model.transcript().lines().find(|line| line.seq == Some(2)).unwrap().clone();
-    assert_eq!(line.answers, None);
+    assert_eq!((line.answers.len(), line.understood[0].text.as_str()), (0, "a request"));
 }
 
 #[test]

@@ -196,7 +196,7 @@ impl Transcript {
             seq: None,
             confidence: None,
             understood: Vec::new(),
-            answers: None,
+            answers: Vec::new(),
             outcome: None,
             said: None,
         }

@@ -1,7 +1,6 @@
 //! Whose turn it is, derived from the latest messages, the same for every viewer.
 
-use messages::ActKind;
-use messages::{ArmStatus, MicrophoneState, PickPhase, PresentationState};
+use messages::{ActKind, ArmStatus, MicrophoneState, PickPhase, PresentationState};
 use serde::Serialize;
 use service::Time;
 use service::status::GroupStatus;
@@ -86,16 +85,15 @@ pub(super) fn turn(latest: &Latest, group: Option<&GroupStatus>) -> Turn {
     if arm.is_some_and(is_fetching) {
         return plain(Arm, Moving);
     }
-    let decision = view.map_or(ActKind::Wait, |view| view.decision);
-    let open = view.is_some_and(|view| view.interaction != 0);
-    match decision {
-        ActKind::Ask if open => {
+    let open = view.filter(|view| view.interaction != 0).map(|view| view.decision);
+    match open {
+        Some(ActKind::Ask) => {
             let said = view.is_some_and(|view| view.prompt == presented.prompt)
                 && presented.state == PresentationState::Ended;
             if said { plain(Person, Asked) } else { plain(Robot, Understanding) }
         }
         // A pick that is called off is the arm's turn, too, until it has left the object.
-        ActKind::Pick | ActKind::Cancel if open => plain(Arm, Moving),
+        Some(ActKind::Pick | ActKind::Cancel) => plain(Arm, Moving),
         _ if arm.is_some_and(|arm| arm.moving != 0) => plain(Arm, Moving),
         _ => {
             let listens =

@@ -1,97 +1,112 @@
-//! What an utterance was understood to say, in words.
+//! The meaning of an utterance in words, weighted by the policy's attribution.
 
-use messages::{AskedQuestion, Interpretation, Observation};
-use scene::{Intent, Question, Reading, Response, Scene};
+use dialogue::Attributed;
+use messages::{Observation, UtteranceSeq};
+use scene::{Intent, Reading, Response, Scene};
 
-use super::line::Meaning;
+use super::line::{Answered, Meaning};
 use super::prompts::Prompts;
 
-/// Ways to understand an utterance that are shown.
+/// Most meanings and questions that are shown.
 const SHOWN_MAX: usize = 4;
-/// Less likely ones are not.
+/// Less probable ones are not shown.
 const WEIGHT_MIN: f64 = 0.01;
 
-/// What is shown of an observation.
+/// The readings of an utterance before its attribution is known.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Understood {
-    pub(super) meanings: Vec<Meaning>,
-    pub(super) answers: Option<String>,
+pub(super) struct Readings {
+    pub(super) seq: UtteranceSeq,
+    readings: Vec<WeightedReading>,
 }
 
-/// What was understood while `interaction` was open; none where it speaks of another scene or makes no sense.
-pub(super) fn read(
-    scene: &Scene,
-    observation: &Observation,
-    prompts: &Prompts,
-    interaction: u64,
-) -> Option<Understood> {
+#[derive(Clone, Debug, PartialEq)]
+struct WeightedReading {
+    text: String,
+    /// Probability among the readings that answer the same question.
+    weight: f64,
+    /// Prompt and presentation of that question.
+    answers: Option<(u64, u32)>,
+}
+
+/// What is shown of an utterance.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Understood {
+    pub(super) meanings: Vec<Meaning>,
+    pub(super) answers: Vec<Answered>,
+}
+
+/// Reads an observation; none if it is of another scene or invalid.
+pub(super) fn read(scene: &Scene, observation: &Observation) -> Option<Readings> {
     if observation.scene_key != scene.key() {
         return None;
     }
-    let all = observation.interpretations(scene.words().len()).ok()?;
+    let interpretations = observation.interpretations(scene.words().len()).ok()?;
     let asked = observation.asked().ok()?;
-    // What was asked in another interaction is answered no more.
-    let stands = |asked: &AskedQuestion| {
-        let prompt = prompts.find(asked.prompt, asked.presentation);
-        prompt.is_none_or(|prompt| prompt.interaction == interaction)
-    };
-    let answered = answered(&all, asked, observation.onset_ns);
-    let answered = answered.filter(|at| asked.get(*at).is_some_and(stands));
-    let mut meant: Vec<&Interpretation> = all
-        .iter()
-        .filter(|meant| meant.answers == answered && meant.weight >= WEIGHT_MIN)
-        .collect();
-    meant.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    let meanings = meant.iter().take(SHOWN_MAX).map(|meant| Meaning {
-        text: words(scene, &meant.reading),
-        weight: (meant.weight * 1e3).round() / 1e3,
+    let readings = interpretations.iter().map(|interpretation| WeightedReading {
+        text: words(scene, &interpretation.reading),
+        weight: interpretation.weight,
+        answers: (interpretation.answers)
+            .and_then(|at| asked.get(at))
+            .map(|asked| (asked.prompt, asked.presentation)),
     });
-    let question = answered.and_then(|at| asked.get(at));
-    let answers = question.and_then(|asked| question_text(scene, asked, prompts));
-    Some(Understood { meanings: meanings.collect(), answers })
+    let seq = UtteranceSeq(observation.seq);
+    Some(Readings { seq, readings: readings.collect() })
 }
 
-/// The latest question whose sound had begun before the utterance, if the utterance means something
-/// else as an answer to it than as no answer: it says yes or no, or says it with other words.
-fn answered(all: &[Interpretation], asked: &[AskedQuestion], onset_ns: u64) -> Option<usize> {
-    let latest = asked.iter().position(|asked| asked.began_ns <= onset_ns)?;
-    let best = |question: Option<usize>| {
-        let meant = all.iter().filter(|meant| meant.answers == question);
-        meant.max_by(|a, b| a.weight.total_cmp(&b.weight)).map(|meant| &meant.reading)
-    };
-    let reading = best(Some(latest))?;
-    let informs = reading.intent == Intent::Inform;
-    let says = reading.response != Response::None || best(None).is_some_and(|none| none != reading);
-    (informs && says).then_some(latest)
-}
-
-fn question_text(scene: &Scene, asked: &AskedQuestion, prompts: &Prompts) -> Option<String> {
-    if let Some(prompt) = prompts.find(asked.prompt, asked.presentation) {
-        return Some(prompt.text.clone());
+impl Readings {
+    /// Weights the readings by the shares of the questions that they answer, as the belief does.
+    pub(super) fn attribute(&self, attributed: &Attributed, prompts: &Prompts) -> Understood {
+        let share = |answers: Option<(u64, u32)>| match answers {
+            None => attributed.none,
+            Some(key) => (attributed.questions.iter())
+                .find(|question| (question.prompt.0, question.presentation) == key)
+                .map_or(0.0, |question| question.share),
+        };
+        let mut meanings: Vec<Meaning> = Vec::new();
+        for reading in &self.readings {
+            let weight = reading.weight * share(reading.answers);
+            match meanings.iter_mut().find(|known| known.text == reading.text) {
+                Some(known) => known.weight += weight,
+                None => meanings.push(Meaning { text: reading.text.clone(), weight }),
+            }
+        }
+        meanings.sort_by(|a, b| b.weight.total_cmp(&a.weight));
+        meanings.retain(|meaning| meaning.weight >= WEIGHT_MIN);
+        meanings.truncate(SHOWN_MAX);
+        meanings.iter_mut().for_each(|meaning| meaning.weight = rounded(meaning.weight));
+        let mut shares = attributed.questions.clone();
+        shares.sort_by(|a, b| b.share.total_cmp(&a.share));
+        let answers = shares.iter().filter(|question| question.share >= WEIGHT_MIN);
+        let answers = answers.filter_map(|question| {
+            let prompt = prompts.find(question.prompt.0, question.presentation)?;
+            Some(Answered { question: prompt.text.clone(), share: rounded(question.share) })
+        });
+        Understood { meanings, answers: answers.take(SHOWN_MAX).collect() }
     }
-    let question = Question::try_from(asked.question).ok()?;
-    let ours = asked.scene == scene.key() && scene.contains(question);
-    ours.then(|| scene.phrase(question))
+}
+
+fn rounded(weight: f64) -> f64 {
+    (weight * 1e3).round() / 1e3
 }
 
 /// A reading in words.
 fn words(scene: &Scene, reading: &Reading) -> String {
     let word = |id: &scene::WordId| scene.words().get(id.index()).map_or("?", String::as_str);
-    let mut parts: Vec<String> = Vec::new();
-    match reading.intent {
-        Intent::Inform => {}
+    let intent = match reading.intent {
+        Intent::Inform => None,
         Intent::None => return "nothing for me".to_owned(),
-        Intent::Stop => parts.push("stop".to_owned()),
-        Intent::Cancel => parts.push("never mind".to_owned()),
-        Intent::Repeat => parts.push("say that again".to_owned()),
-        Intent::StartOver => parts.push("start over".to_owned()),
-        Intent::AskBack => parts.push("a question to me".to_owned()),
-    }
-    match reading.response {
-        Response::Yes => parts.push("yes".to_owned()),
-        Response::No => parts.push("no".to_owned()),
-        Response::None => {}
-    }
+        Intent::Stop => Some("stop"),
+        Intent::Cancel => Some("never mind"),
+        Intent::Repeat => Some("say that again"),
+        Intent::StartOver => Some("start over"),
+        Intent::AskBack => Some("a question to me"),
+    };
+    let response = match reading.response {
+        Response::Yes => Some("yes"),
+        Response::No => Some("no"),
+        Response::None => None,
+    };
+    let mut parts: Vec<String> = intent.into_iter().chain(response).map(str::to_owned).collect();
     parts.extend(reading.base.iter().map(|id| word(id).to_owned()));
     parts.extend(reading.excluded.iter().map(|group| {
         let group: Vec<&str> = group.iter().map(word).collect();

@@ -1,5 +1,6 @@
-use dialogue::rendering;
-use messages::{Outcome, PolicyView};
+use dialogue::Action;
+use dialogue::Attributed;
+use messages::{ActKind, Outcome, PolicyView};
 use scene::{Question, Scene};
 use serde::ser::{Serialize, Serializer};
 
@@ -17,8 +18,8 @@ pub struct DialogueView<'a> {
     pub absent: f64,
     /// What the robot has learnt about its user.
     pub person: Option<UserView>,
-    /// The decision in force: `ask`, `pick`, `wait`, `say` or `cancel`.
-    pub decision: &'a str,
+    /// Kind of the decision in force.
+    pub decision: ActKind,
     /// The question in force; none where it is of another scene.
     pub question: Option<QuestionView<'a>>,
     /// Prompt of the robot's latest line, 0 for none.
@@ -32,7 +33,9 @@ pub struct DialogueView<'a> {
     /// Certified lower and upper bound on the best policy's value.
     pub bounds: Option<(f64, f64)>,
     /// The best other actions.
-    pub alternatives: Vec<AlternativeView>,
+    pub alternatives: Vec<AlternativeView<'a>>,
+    /// The questions that the latest utterance was attributed to.
+    pub attributed: AttributionView,
     /// Questions asked in the open interaction.
     pub questions: u32,
     /// Expected number of further questions.
@@ -75,11 +78,51 @@ pub enum QuestionView<'a> {
     },
 }
 
-/// An action that the planner has weighed.
+/// An action, in the scene's names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum ActionView<'a> {
+    /// Do nothing for a turn.
+    Wait,
+    /// Fetch an object.
+    Pick {
+        /// The object's name.
+        object: &'a str,
+    },
+    /// Conclude that the wanted object is not here.
+    NotHere,
+    /// Ask a question.
+    #[serde(untagged)]
+    Ask(QuestionView<'a>),
+}
+
+/// The questions that an utterance was attributed to.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct AlternativeView {
+pub struct AttributionView {
+    /// The utterance, 0 before the first.
+    pub utterance: u64,
+    /// Probability that it answers each presentation of a question.
+    pub questions: Vec<ShareView>,
+    /// Probability that it answers no question.
+    pub none: f64,
+}
+
+/// The share of one presentation of a question in an utterance.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct ShareView {
+    /// The prompt.
+    pub prompt: u64,
+    /// Which presentation of it.
+    pub presentation: u32,
+    /// Probability that the utterance answers it.
+    pub share: f64,
+}
+
+/// An action that the planner has weighed.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct AlternativeView<'a> {
     /// The action.
-    pub action: String,
+    pub action: ActionView<'a>,
     /// Its expected discounted return.
     pub value: f64,
 }
@@ -109,7 +152,7 @@ impl<'a> DialogueView<'a> {
             belief: names.zip(view.belief.iter().copied()).collect(),
             absent: view.absent,
             person: view.person.map(|(p_l, epsilon)| UserView { p_l, epsilon }),
-            decision: view.decision.name(),
+            decision: view.decision,
             question: QuestionView::new(scene, view.question),
             prompt: view.prompt,
             text: &view.text,
@@ -120,10 +163,11 @@ impl<'a> DialogueView<'a> {
                 .alternatives
                 .iter()
                 .map(|(action, value)| AlternativeView {
-                    action: rendering::action(scene, *action),
+                    action: ActionView::new(scene, *action),
                     value: *value,
                 })
                 .collect(),
+            attributed: AttributionView::new(&view.attributed),
             questions: view.questions,
             expected_questions: view.expected_questions,
             last: view.last.as_ref().map(|last| EndedView {
@@ -133,6 +177,37 @@ impl<'a> DialogueView<'a> {
                 questions: last.questions,
                 seconds: last.seconds,
             }),
+        }
+    }
+}
+
+impl<'a> ActionView<'a> {
+    /// Names an action's parts.
+    pub fn new(scene: &'a Scene, action: Action) -> Self {
+        match action {
+            Action::Wait => Self::Wait,
+            Action::Pick(object) => match scene.objects().get(object.index()) {
+                Some(object) => Self::Pick { object: &object.name },
+                None => Self::NotHere,
+            },
+            Action::Ask(question) => {
+                Self::Ask(QuestionView::new(scene, question).unwrap_or(QuestionView::None))
+            }
+        }
+    }
+}
+
+impl AttributionView {
+    fn new(attributed: &Attributed) -> Self {
+        let questions = attributed.questions.iter().map(|question| ShareView {
+            prompt: question.prompt.0,
+            presentation: question.presentation,
+            share: question.share,
+        });
+        Self {
+            utterance: attributed.utterance.0,
+            questions: questions.collect(),
+            none: attributed.none,
         }
     }
 }

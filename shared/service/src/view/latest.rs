@@ -1,6 +1,6 @@
 use messages::{
-    Activity, ArmStatus, Hearing, PolicyView, PresentationState, Presented, Receipt, ReceiptStatus,
-    topics,
+    ActKind, Activity, ArmStatus, Hearing, PolicyView, PresentationState, Presented, Receipt,
+    ReceiptStatus, topics,
 };
 
 use crate::Time;
@@ -118,7 +118,7 @@ impl Latest {
         let view = self.view.as_ref()?;
         let Presented { prompt, presentation, state, .. } = self.presented;
         let is_asked = view.interaction != 0
-            && view.decision == messages::ActKind::Ask
+            && view.decision == ActKind::Ask
             && prompt == view.prompt
             && state == PresentationState::Ended;
         is_asked.then_some((prompt, presentation))

@@ -2,10 +2,12 @@
 //! file.
 
 use super::*;
+use ::dialogue::Action;
+use ::dialogue::{Attributed, QuestionShare};
 use messages::{
-    Activity, ArmStatus, Ended, FixedText, Hearing, InteractionId, MicrophoneState, MotionInhibit,
-    Outcome, PickPhase, PolicyView, PresentationState, Presented, Receipt, ReceiptStatus,
-    UtteranceSeq,
+    ActKind, Activity, ArmStatus, Ended, FixedText, Hearing, InteractionId, MicrophoneState,
+    MotionInhibit, Outcome, PickPhase, PolicyView, PresentationState, Presented, PromptId, Receipt,
+    ReceiptStatus, UtteranceSeq,
 };
 use scene::{AttributeId, Question, Scene, ValueId};
 
@@ -23,7 +25,18 @@ fn policy_view(scene: &Scene) -> PolicyView {
         question: Question::Attribute(AttributeId::from(0), ValueId::from(0)),
         prompt: 5,
         text: "Is it white?".to_owned(),
-        decision: messages::ActKind::Ask,
+        decision: ActKind::Ask,
+        alternatives: vec![
+            (Action::Wait, 40.5),
+            (Action::Ask(Question::Which(AttributeId::from(1))), 40.0),
+            (Action::Pick(1.into()), -25.0),
+            (Action::Pick(6.into()), -30.0),
+        ],
+        attributed: Attributed {
+            utterance: UtteranceSeq(3),
+            questions: vec![QuestionShare { prompt: PromptId(4), presentation: 1, share: 0.75 }],
+            none: 0.25,
+        },
         value: 41.25,
         bounds: Some((41.0, 41.5)),
         questions: 1,

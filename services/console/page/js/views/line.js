@@ -1,6 +1,8 @@
 // @ts-check
 import { h } from "../dom.js";
 
+/** Smaller shares of a question are not shown. */
+const SMALL = 0.05;
 /** A hypothesis as sure as that needs no figure. */
 const SURE = 0.995;
 
@@ -23,12 +25,11 @@ export function makeLine(line, t) {
 
 /** The time of day, where this page is. */
 function clockOf(line, language) {
-  if (typeof line.unix_ms !== "number") return line.clock;
   const form = { hour: "2-digit", minute: "2-digit", second: "2-digit", hourCycle: "h23" };
   return new Date(line.unix_ms).toLocaleTimeString(language, form);
 }
 
-/** What was understood, each hypothesis a chip with its weight. */
+/** The meanings, each a chip with its probability. */
 function understood(line, t) {
   const all = line.understood ?? [];
   return all.slice(0, 5).map(({ text, weight }) => {
@@ -42,8 +43,10 @@ function circumstances(line, t) {
   const notes = [];
   if (line.who === "unmeant")
     notes.push(h("span", { class: "note strong", text: t("line.unmeant") }));
-  if (line.answers) {
-    notes.push(h("span", { class: "note", text: t("line.answers", { question: line.answers }) }));
+  for (const { question, share } of line.answers ?? []) {
+    if (share < SMALL) continue;
+    const percent = share < SURE ? ` ${t.percent(share)}` : "";
+    notes.push(h("span", { class: "note", text: t("line.answers", { question }) + percent }));
   }
   if (typeof line.confidence === "number" && line.source !== "typed") {
     const share = t.percent(line.confidence);

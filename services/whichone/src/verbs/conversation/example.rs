@@ -1,7 +1,8 @@
 //! Moments of a dialogue, for tests.
 
 use messages::{
-    Activity, Ended, InteractionId, Outcome, PolicyView, PresentationState, Presented, UtteranceSeq,
+    ActKind, Activity, Ended, InteractionId, Outcome, PolicyView, PresentationState, Presented,
+    UtteranceSeq,
 };
 use scene::Question;
 use service::view::Latest;
@@ -14,7 +15,7 @@ pub(in crate::verbs) fn asked(question: Question) -> Latest {
         question,
         prompt: 5,
         text: "Is it so?".into(),
-        decision: messages::ActKind::Ask,
+        decision: ActKind::Ask,
         ..PolicyView::default()
     };
     let state = PresentationState::Ended.into();
@@ -37,7 +38,7 @@ pub(in crate::verbs) fn ended(id: u64) -> Latest {
     let mut latest = asked(Question::None);
     let view = latest.view.take().map(|view| PolicyView {
         interaction: 0,
-        decision: messages::ActKind::Say,
+        decision: ActKind::Say,
         last: Some(last),
         ..view
     });

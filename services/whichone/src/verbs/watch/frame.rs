@@ -104,7 +104,7 @@ fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> V
         lines.push(format!("decision: {decision} ({value})"));
         let others = view.alternatives.iter().take(3);
         let others: Vec<String> = others
-            .map(|(action, value)| format!("{} {value:.1}", rendering::action(scene, *action)))
+            .map(|(a, value)| format!("{} {value:.1}", rendering::action(scene, *a)))
             .collect();
         if !others.is_empty() {
             let text = cut(&format!("  before {}", others.join(" · ")), columns);
