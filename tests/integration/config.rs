@@ -76,9 +76,12 @@ fn check_and_up_refuse_a_duplicate_value() {
     assert_refused(&group, &["markers.toml", "red"]);
 }
 
+/// An edit of a file's text.
+type Edit = fn(String) -> String;
+
 #[test]
 fn check_and_up_name_file_and_key_of_a_fault() {
-    let cases: [(&str, fn(String) -> String, &[&str]); 4] = [
+    let cases: [(&str, Edit, &[&str]); 4] = [
         (
             "scenes/bowls.toml",
             |text| text.replacen("xyz = [0.", "xyz = [4.", 1),

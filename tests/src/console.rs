@@ -1,6 +1,10 @@
 //! A console page without a browser: its socket and the messages that it received.
 
 use crate::{Group, wait_for};
+use dialogue::{Model, Params};
+use evaluation::simulation::SimulatedUser;
+use evaluation::simulation::users::Domain;
+use scene::{Scene, question_from_json};
 use serde_json::{Map, Value as Json, json};
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -298,16 +302,16 @@ impl Page {
     }
 
     /// The true answer of a user who wants the object.
-    fn answer_for(&self, about: &Json, object: &str) -> String {
-        let objects = self.parts["scene"]["objects"].as_array().into_iter().flatten();
-        let wanted = objects.into_iter().find(|one| one["name"] == object);
-        let attribute = about["attribute"].as_str().unwrap_or_default();
-        let value = wanted.map_or(Json::Null, |one| one["attributes"][attribute].clone());
-        let yes = |is: bool| if is { "yes" } else { "no" }.to_owned();
-        match (&about["value"], &about["object"]) {
-            (Json::String(asked), _) => yes(value == *asked.as_str()),
-            (_, Json::String(pointed)) => yes(pointed == object),
-            _ => value.as_str().unwrap_or("I do not know").to_owned(),
-        }
+    fn answer_for(&self, question: &Json, object: &str) -> String {
+        let objects = self.parts["scene"]["objects"].as_array().expect("objects").iter();
+        let named = |one: &Json| json!({ "name": one["name"], "attributes": one["attributes"] });
+        let objects: Vec<Json> = objects.map(named).collect();
+        let scene = Scene::from_json("the page's scene", &json!({ "objects": objects }))
+            .unwrap_or_else(|problems| panic!("{problems:?}"));
+        let question = question_from_json(&scene, question).unwrap_or_else(|e| panic!("{e}"));
+        let model = Model::new(&scene, Params::default());
+        let mut user = SimulatedUser::truthful(scene.object_named(object));
+        let turn = user.answer(Domain { scene: &scene, model: &model }, question);
+        turn.reply.text().unwrap_or("I do not know").to_owned()
     }
 }
