@@ -56,7 +56,7 @@ pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, Node
         None => Ok(state),
         Some(q) => Err(NodeError {
             what: format!("the journal has an arm at {q:?} rad, outside its joint limits"),
-            cure: "start the group afresh: whichone up --fresh".to_owned(),
+            help: "start a new journal with `whichone up --fresh`".to_owned(),
         }),
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Arguments: the group's name, the file, and optionally `--fresh`.
 
-#![expect(clippy::unwrap_used, reason = "a fixture that cannot go on has to say so")]
+#![expect(clippy::unwrap_used, reason = "a fixture fails loudly")]
 
 use std::path::PathBuf;
 use std::process::ExitCode;

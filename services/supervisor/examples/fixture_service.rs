@@ -2,7 +2,7 @@
 //!
 //! Notes what happens to it in the file `events` of the group's folder, one line each.
 
-#![expect(clippy::unwrap_used, reason = "a fixture that cannot go on has to say so")]
+#![expect(clippy::unwrap_used, reason = "a fixture fails loudly")]
 
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
@@ -53,7 +53,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// What the service does when it is told to end.
+/// Behaviour of the service on a shutdown request.
 enum Ending {
     Prompt,
     After(Duration),
@@ -62,9 +62,9 @@ enum Ending {
 
 /// Becomes ready and beats; `each_pass` may end it with a code.
 fn serve(mut each_pass: impl FnMut(Duration) -> Option<u8>, ending: Ending) -> ExitCode {
-    let told = Arc::new(AtomicBool::new(false));
+    let requested = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGTERM, signal_hook::consts::SIGINT] {
-        signal_hook::flag::register(signal, Arc::clone(&told)).unwrap();
+        signal_hook::flag::register(signal, Arc::clone(&requested)).unwrap();
     }
     let orphaned = watch_lifeline();
     let since = Instant::now();
@@ -78,7 +78,7 @@ fn serve(mut each_pass: impl FnMut(Duration) -> Option<u8>, ending: Ending) -> E
             return ExitCode::from(code);
         }
         let is_orphan = orphaned.load(Ordering::Relaxed);
-        if !is_orphan && !told.load(Ordering::Relaxed) {
+        if !is_orphan && !requested.load(Ordering::Relaxed) {
             continue;
         }
         let told_at = *told_at.get_or_insert_with(Instant::now);

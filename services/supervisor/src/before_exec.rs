@@ -8,7 +8,7 @@ use rustix::io::{Errno, FdFlags, fcntl_setfd};
 use rustix::process::{Pid, Signal, getppid, set_parent_process_death_signal, setpriority_process};
 
 /// Makes the command's process inherit `fds` and no other descriptor beyond the standard three, run
-/// with niceness `nice`, and be told to end (TERM) when the calling thread ends. A niceness that is
+/// with niceness `nice`, and receive TERM when the calling thread ends. A niceness that is
 /// not permitted is left as it is.
 ///
 /// To be called, like `spawn`, on the process's main thread only: the signal is sent when the

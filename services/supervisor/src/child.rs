@@ -55,7 +55,7 @@ impl Child {
 
     /// Reaps the ended child, after killing what is left of its process group.
     ///
-    /// In this order: until it is reaped, nobody else can be given its number, nor its group's.
+    /// In this order: until it is reaped, its pid and its group's are not reused.
     pub(crate) fn reap(self) -> ProcessExit {
         if let Err(error) = self.kill_group()
             && error != Errno::SRCH
@@ -69,7 +69,7 @@ impl Child {
                 (None, None) => unreachable!("only ended children were asked for"),
             },
             Ok(None) => unreachable!("the wait was a blocking one"),
-            // Reaped by somebody else: a defect, but the process has ended all the same.
+            // Reaped elsewhere: a defect, but the process has ended all the same.
             Err(error) => {
                 tracing::error!(pid = %self.pid, %error, "exit status lost");
                 ProcessExit::Signal(Signal::KILL.as_raw())

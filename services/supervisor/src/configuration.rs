@@ -1,4 +1,4 @@
-//! Where the supervisor's orders come from.
+//! The supervisor's configuration.
 
 use std::fmt;
 use std::io;
@@ -10,7 +10,7 @@ pub use from_settings::from_settings;
 
 mod from_settings;
 
-/// Reads the configuration anew: at the start, and whenever the operator asks for it. On failure,
+/// Loads the configuration: at the start and on reload. On failure,
 /// every problem, one line each.
 pub type Load = Box<dyn FnMut() -> Result<Configuration, Vec<String>>>;
 

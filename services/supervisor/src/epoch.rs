@@ -16,7 +16,7 @@ use service::group::GroupPaths;
 /// The file cannot be read or written, or holds no number.
 pub(crate) fn open(paths: &GroupPaths, fresh: bool) -> io::Result<u64> {
     let found = match read(paths) {
-        // A fresh start is the cure for a file that cannot be understood.
+        // A fresh start replaces an invalid file.
         Err(error) if fresh && error.kind() == ErrorKind::InvalidData => None,
         found => found?,
     };
@@ -42,7 +42,7 @@ fn read(paths: &GroupPaths) -> io::Result<Option<u64>> {
         text => text?,
     };
     let number = text.trim().parse().map_err(|_| {
-        let what = format!("{}: {text:?} is no epoch; start with --fresh", path.display());
+        let what = format!("{}: expected an epoch number, found {text:?}; help: start with `whichone up --fresh`", path.display());
         io::Error::new(ErrorKind::InvalidData, what)
     });
     number.map(Some)

@@ -83,7 +83,7 @@ impl Machine {
         }
     }
 
-    /// What is wanted of it.
+    /// Desired state.
     pub fn wanted(&self) -> Wanted {
         self.wanted
     }
@@ -122,7 +122,7 @@ impl Machine {
     }
 
     /// Moves the deadline of a live incarnation: the supervisor itself stood still for `by`, and
-    /// no service may be judged by time in which nobody could listen.
+    /// no service is judged by time in which its notifications were not read.
     pub fn postpone(&mut self, by: Duration) {
         if self.is_live() {
             self.deadline = self.deadline.map(|deadline| deadline + by);
@@ -230,7 +230,7 @@ impl Machine {
         None
     }
 
-    /// After an exit that nobody asked for.
+    /// Handles an unrequested exit.
     fn again(&mut self, clean: bool, ready_for: Option<Duration>, now: Time) -> Option<Effect> {
         match self.limits.restart {
             Restart::Never | Restart::OnFailure if clean => {
@@ -285,7 +285,7 @@ impl Machine {
         Some(effect)
     }
 
-    /// Ends a live incarnation because somebody asked for it; one that is ending already goes on.
+    /// Stops a live incarnation on request; one that is already stopping continues to do so.
     fn end(&mut self, reason: Why, now: Time) -> Option<Effect> {
         match self.state {
             State::Starting { .. } | State::Ready { .. } => {

@@ -1,4 +1,4 @@
-//! `whichone-supervisor`: runs one group of services until it is told to stop.
+//! `whichone-supervisor`: runs one group of services until it is stopped.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -26,10 +26,10 @@ struct Arguments {
     /// A profile of the configuration, laid over it.
     #[arg(long, value_name = "NAME")]
     profile: Option<String>,
-    /// A value that counts more than the files', e.g. group.scene=tools.
+    /// Override a configuration value, e.g. group.scene=tools.
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
     set: Vec<(String, String)>,
-    /// Put the journals aside and begin anew.
+    /// Start with new journals; the old ones are kept.
     #[arg(long)]
     fresh: bool,
     /// Leave the terminal's session.
@@ -38,7 +38,7 @@ struct Arguments {
 }
 
 fn key_and_value(text: &str) -> Result<(String, String), String> {
-    let (key, value) = text.split_once('=').ok_or("write KEY=VALUE")?;
+    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE")?;
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }
 
@@ -46,7 +46,7 @@ fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Nobody to tell where standard error is closed.
+            // Nothing to do if standard error is closed.
             let _ = error.print();
             return if error.use_stderr() { Exit::Usage.code() } else { Exit::Ok.code() };
         }
@@ -83,9 +83,9 @@ fn run(arguments: Arguments) -> Exit {
 /// A broken invariant ends the process with the code that says so. The services notice that their
 /// lifeline has ended and end by themselves.
 fn end_on_panic() {
-    let tell = std::panic::take_hook();
+    let report = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        tell(panic);
+        report(panic);
         std::process::exit(i32::from(Exit::Invariant as u8));
     }));
 }

@@ -86,7 +86,7 @@ impl Drop for NotifySocket {
     }
 }
 
-/// The lines of a datagram that mean something here; all others are somebody else's extensions.
+/// The lines of a datagram that mean something here; all others are foreign extensions.
 fn parse(datagram: &[u8]) -> Vec<Notification> {
     String::from_utf8_lossy(datagram).lines().filter_map(line).collect()
 }

@@ -1,5 +1,4 @@
-//! Making sure that an earlier supervisor of the group, and everything that it had started, is
-//! gone.
+//! Check that a previous supervisor of the group, and everything that it had started, is gone.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, Write};
@@ -22,26 +21,26 @@ const KILL_PATIENCE: Duration = Duration::from_secs(5);
 /// How often it is looked.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
-/// The group is not this supervisor's to run.
+/// Failure to take over the group.
 #[derive(Debug, Error)]
 pub enum PreviousRunError {
-    /// Another supervisor runs it.
-    #[error("group {group} is running already{}", with_pid(.pid))]
+    /// Another supervisor is running it.
+    #[error("group {group} is already running{}", with_pid(.pid))]
     Running {
         /// The group's name.
         group: String,
         /// The other supervisor's process, if it has written it down yet.
         pid: Option<u32>,
     },
-    /// Processes of an earlier one do not end even when killed.
-    #[error("processes of an earlier run of the group do not end: {}", .0.join(", "))]
+    /// Processes of a previous run survive SIGKILL.
+    #[error("processes of a previous run of the group do not end: {}", .0.join(", "))]
     Undying(Vec<String>),
     /// A lock file cannot be used.
     #[error("{}: {error}", .path.display())]
     Io {
         /// The lock file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Cause.
         error: io::Error,
     },
 }
@@ -88,12 +87,12 @@ pub(crate) fn await_end(paths: &GroupPaths, patience: Duration) -> Result<File, 
     if is_free(&alive) {
         return Ok(alive);
     }
-    tracing::warn!(left = ?names(&leftovers(paths)), "waiting for services of an earlier run");
+    tracing::warn!(left = ?names(&leftovers(paths)), "waiting for services of a previous run");
     if wait(&alive, patience) {
         return Ok(alive);
     }
     let left = leftovers(paths);
-    tracing::warn!(left = ?names(&left), "killing services of an earlier run");
+    tracing::warn!(left = ?names(&left), "killing services of a previous run");
     left.iter().for_each(|process| kill(process.pid, paths));
     if wait(&alive, KILL_PATIENCE) {
         return Ok(alive);
@@ -125,14 +124,14 @@ fn leftovers(paths: &GroupPaths) -> Vec<Process> {
 fn is_of(pid: Pid, paths: &GroupPaths, lock: &Path) -> bool {
     let environment = procfs::environment(pid);
     let is = |key, value: &std::ffi::OsStr| environment.get(key) == Some(value);
-    let told = environment.get(ENV_INCARNATION).is_some()
+    let marked = environment.get(ENV_INCARNATION).is_some()
         && is(ENV_GROUP, paths.name().as_str().as_ref())
         && is(ENV_HOME, paths.home().as_os_str());
-    told || procfs::has_open(pid, lock)
+    marked || procfs::has_open(pid, lock)
 }
 
-/// Kills a process of the group; nobody else can be hit, since it is looked at again when its
-/// descriptor already stands for it.
+/// Kills a process of the group. It is checked again once its descriptor is open, so that a reused
+/// pid is never hit.
 fn kill(pid: Pid, paths: &GroupPaths) {
     let Ok(pidfd) = pidfd_open(pid, PidfdFlags::empty()) else { return };
     let lock = paths.alive_lock();
@@ -158,9 +157,9 @@ mod tests {
         let paths = GroupPaths::in_home(home.path(), &GroupName::new("lab").unwrap()).unwrap();
         std::fs::create_dir_all(paths.root()).unwrap();
         let first = take_group(&paths).unwrap();
-        let told = take_group(&paths).unwrap_err().to_string();
+        let error = take_group(&paths).unwrap_err().to_string();
         let me = std::process::id();
-        assert_eq!(told, format!("group lab is running already (supervisor {me})"));
+        assert_eq!(error, format!("group lab is already running (supervisor {me})"));
         drop(first);
         take_group(&paths).unwrap();
     }

@@ -1,4 +1,4 @@
-//! What `/proc` tells about processes.
+//! Processes as `/proc` lists them.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -11,7 +11,7 @@ use rustix::process::Pid;
 /// that Rust's standard library is shipped for.
 const TICKS_PER_S: f64 = 100.0;
 
-/// One process as its `stat` line tells it.
+/// One process, from its `stat` line.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Process {
     pub(crate) pid: Pid,

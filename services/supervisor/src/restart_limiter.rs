@@ -1,4 +1,4 @@
-//! How soon a service that ended is started again, and when it is given up.
+//! Restart limiter: backoff of restarts, and giving up after too many exits.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::Time;
 use crate::spec::RestartLimits;
 
-/// The unasked exits of one service.
+/// The unrequested exits of one service.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RestartLimiter {
     /// Exits that may still lie within the window, oldest first; never more than `exits_max`.
@@ -17,7 +17,7 @@ pub(crate) struct RestartLimiter {
     spared: bool,
 }
 
-/// What follows an unasked exit.
+/// Consequence of an unrequested exit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Verdict {
     /// Start again at once.

@@ -23,7 +23,7 @@ pub enum ScheduleError {
     Unknown {
         /// The service whose `after` is wrong.
         service: String,
-        /// The name in it that nobody has.
+        /// The unknown name.
         missing: String,
     },
     /// Services that wait for each other.

@@ -63,7 +63,7 @@ impl Server {
         Ok(Self { listener: listen(path)?, connections: BTreeMap::new(), next: 0 })
     }
 
-    /// Listens anew at `path`; connections stay.
+    /// Listens at `path` again; connections stay open.
     ///
     /// # Errors
     /// The socket cannot be made.

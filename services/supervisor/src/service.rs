@@ -186,7 +186,7 @@ impl Service {
         match effect {
             Effect::Kill => tracing::warn!(service, incarnation, "killed: it did not end"),
             Effect::Abort => tracing::warn!(service, incarnation, "aborted: it no longer beats"),
-            Effect::Terminate => tracing::info!(service, incarnation, "told to end"),
+            Effect::Terminate => tracing::info!(service, incarnation, "asked to shut down"),
             Effect::Spawn => {}
         }
         running.killed |= effect == Effect::Kill;

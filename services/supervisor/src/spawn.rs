@@ -50,7 +50,7 @@ pub(crate) enum SpawnError {
     Io {
         /// The program's path.
         program: String,
-        /// What the operating system says.
+        /// Cause.
         error: io::Error,
     },
 }
@@ -155,7 +155,7 @@ mod tests {
         assert!(matches!(find(&[""], anywhere), Err(SpawnError::Empty)));
         assert!(matches!(find(&["no-such-program"], anywhere), Err(SpawnError::Missing(_))));
         assert!(matches!(find(&["./none"], anywhere), Err(SpawnError::Missing(_))));
-        let told = find(&["./plain"], folder.path());
-        assert!(matches!(told, Err(SpawnError::NotExecutable(_))), "{told:?}");
+        let found = find(&["./plain"], folder.path());
+        assert!(matches!(found, Err(SpawnError::NotExecutable(_))), "{found:?}");
     }
 }

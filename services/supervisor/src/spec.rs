@@ -1,4 +1,4 @@
-//! What the supervisor is told about a group: its services in order, and the limits it keeps.
+//! Specification of a group: its services in order, and their limits.
 
 use std::time::Duration;
 

@@ -39,7 +39,7 @@ mod requests;
 mod start;
 mod waits;
 
-/// How often things are looked at that nobody tells of: sizes of logs, files of topics.
+/// Polling period of sizes of logs and files of topics, which notify of no change.
 const TICK: Duration = Duration::from_secs(1);
 
 /// How much later than asked for the loop may go round before time is taken to have stood still.
@@ -87,7 +87,7 @@ impl Supervisor {
     /// Takes the group, makes its folders and its shared memory, and wants its services up.
     ///
     /// To be called on the process's main thread, which must also be the one that runs it:
-    /// services are told to end when the thread that started them does. Waits for the services of
+    /// services are asked to shut down when the thread that started them does. Waits for the services of
     /// an earlier supervisor that was killed, and takes over TERM, INT, HUP and CHLD.
     ///
     /// # Errors
@@ -120,7 +120,7 @@ impl Supervisor {
     }
 
     /// The supervisor itself may have been stopped, or the whole machine. No service is judged by
-    /// such a time: nobody listened.
+    /// such a time, in which no notification was read.
     fn forgive_standstill(&mut self, now: Time) {
         let pass = now.saturating_sub(self.last_pass);
         self.last_pass = now;
@@ -173,12 +173,12 @@ impl Supervisor {
         if !self.told_ready && self.group.state() == service::status::GroupState::Ready {
             self.told_ready = true;
             tracing::info!(ms = now.as_millis(), "every service is ready");
-            self.systemd.tell("READY=1");
+            self.systemd.notify("READY=1");
         }
     }
 
     fn tick(&mut self, now: Time) {
-        self.systemd.tell("WATCHDOG=1");
+        self.systemd.notify("WATCHDOG=1");
         self.server.drop_slow(now);
         self.bound_logs();
         self.check_topics(now);

@@ -1,4 +1,4 @@
-//! Replacing a service's program while the group goes on, and putting the old one back when the new
+//! Replacement of a service's program while the group runs, and rollback when the new
 //! one does not become ready.
 //!
 //! Pure: it looks at the service's machine after each of its events and says what to do next.
@@ -27,7 +27,7 @@ enum Step {
 pub enum Move {
     /// Nothing yet.
     Wait,
-    /// The new command was not ready in time: put the old one back and restart, then go on asking.
+    /// The new command was not ready in time: restore the old one and restart, then keep polling.
     Restore,
     /// Finished: the new command is ready.
     Kept,
@@ -38,7 +38,7 @@ pub enum Move {
 }
 
 impl Swap {
-    /// To be made before the machine is told to restart.
+    /// Created before the machine receives the restart.
     pub fn new(machine: &Machine) -> Self {
         Self { step: Step::Trying, earlier: machine.incarnation() }
     }

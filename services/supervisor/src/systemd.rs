@@ -1,4 +1,4 @@
-//! What the supervisor tells the init system that started it, if one did: that the group is ready,
+//! Notifications to the init system that started the supervisor, if any: that the group is ready,
 //! that it stops, and that the main loop goes round.
 
 use std::env;
@@ -36,11 +36,11 @@ impl Systemd {
         }
     }
 
-    pub(crate) fn tell(&self, state: &str) {
+    pub(crate) fn notify(&self, state: &str) {
         if let Some((socket, address)) = &self.socket
             && let Err(error) = socket.send_to_addr(state.as_bytes(), address)
         {
-            tracing::debug!(%error, state, "the init system was not told");
+            tracing::debug!(%error, state, "the init system was not notified");
         }
     }
 }

@@ -24,8 +24,8 @@ pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
 
 /// A robot that asks which one you mean before it fetches it.
 ///
-/// A group of services hears you, works out which object you want, asks when
-/// it is worth asking, and fetches it. `whichone chat` is the quickest way to try it.
+/// A group of services understands your request, infers which object you want, asks when
+/// a question is worth its time, and fetches the object. Try it with `whichone chat`.
 #[derive(Debug, Parser)]
 #[command(
     verbatim_doc_comment,
@@ -36,7 +36,7 @@ pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
     after_help = EXIT_CODES
 )]
 pub struct Cli {
-    /// The group that is meant: each name is a robot of its own.
+    /// Name of the group; each group is a robot of its own.
     #[arg(
         long,
         global = true,
@@ -46,100 +46,104 @@ pub struct Cli {
         default_value = GroupName::DEFAULT
     )]
     pub group: GroupName,
-    /// Print JSON in place of text for people.
+    /// Print JSON instead of text.
     #[arg(long, global = true)]
     pub json: bool,
-    /// What to do.
+    /// The verb.
     #[command(subcommand)]
     pub verb: Verb,
 }
 
 const EXIT_CODES: &str = "\
-Exit codes: 0 done; 1 not reached; 64 called wrongly; 70 an invariant is broken; 74 a file cannot
-be read or written; 78 the configuration is wrong.";
+Exit codes: 0 success; 1 goal not reached; 64 usage error; 70 broken invariant; 74 storage error;
+78 configuration error.";
 
-/// What the program does.
+/// Verbs of the program.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
-    /// Start the group and stay, until Ctrl-C or `whichone down`.
+    /// Start the group and run it until Ctrl-C or `whichone down`.
     Up(UpArgs),
-    /// Stop the group in order, and report what did not end by itself.
+    /// Stop the group in order and report processes that had to be killed.
     Down(DownArgs),
-    /// Show what the group does.
+    /// Show the state of the group and its services.
     ///
-    /// The exit code is 0 if every service that is wanted up is ready, else 1.
+    /// The exit code is 0 if every service that should run is ready, else 1.
     Status,
-    /// Start a service, or lift a hold on it, and wait until it is ready.
+    /// Start a service or release its hold, and wait until it is ready.
     Start(ServiceArgs),
     /// Stop a service and wait for its end.
     Stop(ServiceArgs),
     /// Stop a service, start it again, and wait until it is ready.
     Restart(RestartArgs),
-    /// Stop a service and keep it from running until it is released.
+    /// Stop a service and keep it stopped until it is released.
     Hold(ServiceArgs),
     /// Let a held service run again.
     Release(ServiceArgs),
-    /// Show what the services log.
+    /// Show the logs of the services.
     Logs(LogsArgs),
-    /// Read the configuration anew and restart the services that it concerns.
+    /// Reload the configuration and restart the affected services.
     Reload(ReloadArgs),
-    /// Check a configuration: tell every problem, or what would run.
+    /// Check a configuration: list every problem, or the services that would run.
     Check(CheckArgs),
-    /// Replace a service's program while the dialogue goes on.
+    /// Replace the program of a service while the dialogue continues.
     ///
-    /// The old one comes back if the new one does not become ready.
+    /// Rolls back to the old program if the new one does not become ready.
     Swap(SwapArgs),
     /// Say something to the robot.
     Say(SayArgs),
-    /// Point at a place, as the person whom the robot sees.
+    /// Point at a place, as the user in front of the robot.
     ///
-    /// Metres in frame `base` of the robot: x forward, y left, z up. Taken where
-    /// `dialogue.gesture.enabled` is set.
+    /// Metres in frame `base` of the robot: x forward, y left, z up. Requires
+    /// `dialogue.gesture.enabled`.
     Point(PointArgs),
-    /// Let the robot listen to a WAV file.
+    /// Play a WAV file to the robot's speech recogniser.
     Listen(ListenArgs),
     /// Talk to the robot through the microphone of its computer.
     ///
-    /// The robot falls silent and listens until you have paused, and what it understood is printed.
-    /// Taken where `speech.microphone.mode` is not `off`.
+    /// The robot stops speaking, listens until you pause, and prints the recognised text. Requires
+    /// `speech.microphone.mode` other than `off`.
     Talk(TalkArgs),
-    /// See what the robot believes, asks and does, live.
+    /// Show the belief, the dialogue, the arm and the services, live.
     Watch(WatchArgs),
-    /// Talk to the robot in this terminal; starts a group if none runs.
+    /// Talk to the robot in this terminal; starts a group if none is running.
     Chat(ChatArgs),
-    /// Wait for an outcome and print it.
+    /// Wait for the outcome of an interaction and print it.
     Await(AwaitArgs),
-    /// Stop the arm at once, and keep it stopped.
+    /// Stop the arm at once and latch the stop.
     StopMotion(MotionArgs),
-    /// Let the arm move again.
+    /// Release the motion stop.
     ResumeMotion(MotionArgs),
-    /// Show what a service has recorded, or check it.
+    /// List or verify the journal of a service.
     Journal(JournalArgs),
     /// Print a completion script for a shell.
     Completions(CompletionsArgs),
-    /// Look for what is missing on this machine, and tell the cure.
+    /// Check this machine for missing dependencies and suggest fixes.
     ///
-    /// It looks at programs, the configuration, folders, shared memory, what killed groups have
-    /// left, the recogniser, the voice and the microphone.
+    /// Checks programs, configuration, folders, shared memory, leftovers of killed groups, the
+    /// recogniser, the voice and the microphone.
     Doctor(ConfigArgs),
-    /// Read test cases, one JSON object a line, and print the belief after each.
+    /// Read test cases, one JSON object per line, and print the belief after each.
     Belief(BeliefArgs),
-    /// Read utterances, one JSON object a line, and print what each says about the scene.
-    Ground(GroundArgs),
-    /// Read beliefs, one JSON object a line, and print the robot's next action for each.
-    Plan(PlanArgs),
-    /// Print a scene's decision problem for other programs.
-    Export(ExportArgs),
-    /// Compare the policies: with simulated people, or report what real ones have given.
+    /// Read utterances, one JSON object per line, and print the meaning of each in the scene.
     ///
-    /// With simulated people it prints, per policy and kind of people, how often the wanted object is brought, with how
-    /// many questions, in how many seconds, and what that is worth, each with its 95 % interval.
+    /// Input: `id`, `text`, and optionally `last_question`, the question that the utterance may
+    /// answer: {"type":"point","object":ID}, {"type":"attr","attribute":K,"value":V},
+    /// {"type":"which","attribute":K} or {"type":"none"}.
+    Ground(GroundArgs),
+    /// Read beliefs, one JSON object per line, and print the robot's next action for each.
+    Plan(PlanArgs),
+    /// Print the decision problem of a scene for other programs.
+    Export(ExportArgs),
+    /// Compare policies with simulated users, or report the results of a study with people.
+    ///
+    /// With simulated users it prints, per policy and user model, the success rate, the number of
+    /// questions, the duration in seconds and the return, each with its 95 % interval.
     /// The same seed gives the same table, byte for byte, on any number of threads.
     Study(StudyArgs),
-    /// See what the arm would do, without a group.
+    /// Show the arm's motions without a group.
     Arm(ArmVerbArgs),
-    /// Read joint positions, one JSON object a line, and print the pose of every link.
+    /// Read joint positions, one JSON object per line, and print the pose of every link.
     Fk(ArmArgs),
-    /// Read poses of an arm's last link, one JSON object a line, and print joint positions.
+    /// Read poses of an arm's last link, one JSON object per line, and print joint positions.
     Ik(ArmArgs),
 }

@@ -1,4 +1,4 @@
-//! Why a verb ends before its time.
+//! Errors of the verbs.
 
 use std::io;
 
@@ -10,16 +10,16 @@ use service::exit::{Exit, Failure};
 use service::group::GroupError;
 use service::launch::LaunchError;
 
-/// What every verb ends with: the exit code of a verb that said all there is to say, or trouble.
+/// Result of a verb: its exit code, or an error to print.
 pub type Outcome = Result<Exit, CliError>;
 
-/// Why a verb ends before its time.
+/// Error of a verb.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
-    /// Something to tell the person, with the exit code that tells it to scripts.
+    /// A message for people, with an exit code for scripts.
     #[error(transparent)]
     Failure(#[from] Failure),
-    /// Nobody takes what is printed: a closed pipe is no failure, anything else is.
+    /// Failed output: a closed pipe is not a failure, anything else is.
     #[error("cannot print: {0}")]
     Output(io::Error),
 }

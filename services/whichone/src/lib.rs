@@ -12,7 +12,7 @@ use service::exit::Exit;
 
 use crate::cli::Cli;
 use crate::error::CliError;
-use crate::output::{Output, complain};
+use crate::output::{Output, print_error};
 
 pub mod batch;
 pub mod cli;
@@ -23,12 +23,12 @@ pub mod scene_file;
 
 pub mod verbs;
 
-/// Runs the command line `arguments`, program name first, and says how the process should end.
+/// Runs the command line `arguments`, program name first, and returns the exit code of the process.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     let cli = match Cli::try_parse_from(arguments) {
         Ok(cli) => cli,
         Err(error) => {
-            // Nobody to tell where the output is closed.
+            // Nothing to do if the output is closed.
             let _ = error.print();
             return if error.use_stderr() { Exit::Usage } else { Exit::Ok };
         }
@@ -37,11 +37,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     let ended = verbs::run(cli, &mut out).and_then(|exit| out.flush().map(|()| exit));
     match ended {
         Ok(exit) => exit,
-        // Whoever read this has seen enough.
+        // The reader has closed the pipe.
         Err(CliError::Output(error)) if error.kind() == ErrorKind::BrokenPipe => Exit::Ok,
-        Err(trouble) => {
-            complain(&trouble);
-            match trouble {
+        Err(error) => {
+            print_error(&error);
+            match error {
                 CliError::Failure(failure) => failure.exit,
                 CliError::Output(_) => Exit::Storage,
             }

@@ -1,8 +1,7 @@
-//! The one place that prints.
+//! Output of the verbs.
 //!
-//! Invariant: what a verb has to say goes to standard output, for people or as JSON; progress and
-//! trouble go to standard error. Colour appears on terminals only, and never where `NO_COLOR` is
-//! set.
+//! Invariant: results go to standard output, as text or as JSON; progress and errors go to standard
+//! error. Colour appears on terminals only, and never where `NO_COLOR` is set.
 
 use std::fmt::{self, Display};
 use std::io::{self, BufWriter, IsTerminal, Write};
@@ -83,7 +82,7 @@ impl<'a> Output<'a> {
     /// Prints a line, at once.
     ///
     /// # Errors
-    /// Nobody takes it.
+    /// The output is closed or full.
     pub fn line(&mut self, text: impl Display) -> Result<(), CliError> {
         self.queue_line(text)?;
         self.flush()
@@ -92,7 +91,7 @@ impl<'a> Output<'a> {
     /// Prints a line some time before [`Output::flush`] returns.
     ///
     /// # Errors
-    /// Nobody takes it.
+    /// The output is closed or full.
     pub fn queue_line(&mut self, text: impl Display) -> Result<(), CliError> {
         writeln!(self.sink, "{text}").map_err(CliError::Output)
     }
@@ -100,7 +99,7 @@ impl<'a> Output<'a> {
     /// Prints a value as one line of JSON, at once.
     ///
     /// # Errors
-    /// Nobody takes it.
+    /// The output is closed or full.
     pub fn json(&mut self, value: &impl Serialize) -> Result<(), CliError> {
         self.queue_json(value)?;
         self.flush()
@@ -109,7 +108,7 @@ impl<'a> Output<'a> {
     /// Prints a value as one line of JSON some time before [`Output::flush`] returns.
     ///
     /// # Errors
-    /// Nobody takes it.
+    /// The output is closed or full.
     pub fn queue_json(&mut self, value: &impl Serialize) -> Result<(), CliError> {
         serde_json::to_writer(&mut self.sink, value).map_err(|e| CliError::Output(e.into()))?;
         self.sink.write_all(b"\n").map_err(CliError::Output)
@@ -118,7 +117,7 @@ impl<'a> Output<'a> {
     /// Prints text as it is, at once.
     ///
     /// # Errors
-    /// Nobody takes it.
+    /// The output is closed or full.
     pub fn text(&mut self, text: &str) -> Result<(), CliError> {
         self.sink.write_all(text.as_bytes()).map_err(CliError::Output)?;
         self.flush()
@@ -127,7 +126,7 @@ impl<'a> Output<'a> {
     /// Makes everything printed so far appear.
     ///
     /// # Errors
-    /// Nobody takes it.
+    /// The output is closed or full.
     pub fn flush(&mut self) -> Result<(), CliError> {
         self.sink.flush().map_err(CliError::Output)
     }
@@ -155,16 +154,16 @@ impl<T: Display> Display for Painted<T> {
     }
 }
 
-/// Says something beside the verb's result, on standard error.
+/// Prints a note beside the verb's result, on standard error.
 pub fn note(text: impl Display) {
-    // Where standard error is closed nobody wants to know.
+    // Nothing to do if standard error is closed.
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Tells what went wrong.
-pub fn complain(trouble: &CliError) {
+/// Prints an error on standard error.
+pub fn print_error(error: &CliError) {
     let style = Style { colour: io::stderr().is_terminal() && colour_is_welcome() };
-    note(format_args!("{} {trouble}", style.paint(Ink::Red, "error:")));
+    note(format_args!("{} {error}", style.paint(Ink::Red, "error:")));
 }
 
 fn colour_is_welcome() -> bool {

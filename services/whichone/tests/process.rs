@@ -1,5 +1,5 @@
 //! The program as a process: exit codes, streams, and what happens where nothing runs.
-#![expect(clippy::unwrap_used, reason = "a test that cannot go on says where")]
+#![expect(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use std::io::Write;
 use std::path::Path;
@@ -32,7 +32,7 @@ impl Home {
         assert_eq!(output.status.code(), Some(code), "{line}: {out}{err}");
         assert!(format!("{out}{err}").contains(part), "{line}: {out}{err}");
         if code > 1 {
-            assert_eq!(out, "", "{line}: trouble is told on standard error");
+            assert_eq!(out, "", "{line}: errors go to standard error");
         }
     }
 }
@@ -57,16 +57,16 @@ fn wrong_calls_exit_64_and_help_0() {
 #[test]
 fn without_a_group_every_verb_says_how_to_start_one() {
     let home = Home::new();
-    let cure = "whichone up";
+    let help = "whichone up";
     for line in ["say hello", "watch --once", "await pick", "stop-motion", "restart arm", "reload"]
     {
-        home.check(line, 1, cure);
+        home.check(line, 1, help);
     }
-    home.check("status", 1, cure);
+    home.check("status", 1, help);
     home.check("status --json --group lab", 1, "{\"name\":\"lab\",\"state\":\"down\",");
-    home.check("logs arm", 64, cure);
+    home.check("logs arm", 64, help);
     home.check("down", 0, "not running");
-    home.check("journal speech", 1, cure);
+    home.check("journal speech", 1, help);
 }
 
 #[test]
@@ -82,8 +82,8 @@ fn a_configuration_is_looked_for_and_checked() {
     home.check("check --config nowhere", 78, "nowhere");
     home.check(&format!("up --config {shipped} --set arm.speed=2"), 78, "arm.speed");
     let output = home.run(&format!("check --json --config {shipped} --set dialogue.alpa=1"));
-    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(told["problems"][0]["key"], "dialogue.alpa");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["problems"][0]["key"], "dialogue.alpa");
 }
 
 #[test]

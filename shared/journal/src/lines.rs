@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_no_text_is_told() {
+    fn a_file_that_is_no_text_is_requested() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("A.jsonl");
         fs::write(&path, b"\xff\n").unwrap();

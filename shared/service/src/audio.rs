@@ -39,7 +39,7 @@ impl AudioStream {
         })
     }
 
-    /// Names the stream in receipts and in what is told while somebody speaks.
+    /// Key of the stream in receipts and interim results.
     pub fn key(&self) -> RequestKey {
         self.key
     }
@@ -91,8 +91,7 @@ impl AudioStream {
         self.chunks.send(&chunk)
     }
 
-    /// What became of what was said so far: one receipt for each utterance as soon as it is known,
-    /// and last the one that tells that the stream is over.
+    /// Returns the new receipts: one for each utterance, and a last one at the end of the stream.
     ///
     /// # Errors
     /// The topic fails.
@@ -108,7 +107,7 @@ impl AudioStream {
         Ok(receipts)
     }
 
-    /// Whether the service has said that the stream is over.
+    /// Whether the service has confirmed the end of the stream.
     pub fn is_over(&self) -> bool {
         self.is_over
     }

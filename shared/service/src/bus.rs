@@ -8,12 +8,12 @@ use messages::topics::Topic;
 use messages::{Epoch, Incarnation, Service, Stamp, WireField};
 use serde::de::DeserializeOwned;
 
-mod doorbell;
+mod wake;
 mod encoded;
 mod open;
 mod ports;
 
-pub use doorbell::{Bell, Ear};
+pub use wake::{WakeNotifier, WakeListener};
 pub use encoded::{EncodedReader, EncodedWriter};
 pub use open::Topics;
 pub use ports::{Reader, Writer};
@@ -163,8 +163,8 @@ impl Bus {
     ///
     /// # Errors
     /// iceoryx2 refuses.
-    pub fn ear(&self, service: Service) -> Result<Ear, BusError> {
-        Ear::open(self, service)
+    pub fn wake_listener(&self, service: Service) -> Result<WakeListener, BusError> {
+        WakeListener::open(self, service)
     }
 
     pub(crate) fn node(&self) -> &Node<Ipc> {

@@ -1,4 +1,4 @@
-//! A client of a running group: gives it things to hear, and sees what it does.
+//! A client of a running group: submits utterances and motion orders and reads its topics.
 //!
 //! Clients poll; they are few, short-lived, and must not cost the services anything.
 
@@ -8,6 +8,7 @@ use crate::bus::{
 use crate::clock;
 use crate::group::GroupPaths;
 use crate::lifecycle::Environment;
+use crate::submission::Submission;
 use crate::{Span, Time};
 use messages::{
     ArmStatus, Epoch, Injection, MotionCommand, MotionOrder, PolicyView, Receipt, RequestKey,
@@ -15,9 +16,9 @@ use messages::{
 };
 use std::time::Duration;
 
-/// How often an unanswered injection is sent again.
+/// Time between two transmissions of an unconfirmed motion order.
 const RESEND_EVERY: Span = Span::from_ms(250);
-/// How often a client looks for an answer.
+/// Time between two looks at the topics.
 const POLL_EVERY: Duration = Duration::from_millis(2);
 
 /// A client's access to the group.
@@ -26,11 +27,11 @@ pub struct Client {
     bus: Bus,
 }
 
-/// A client's request was not answered.
+/// Failure of a client's request.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ClientError {
-    /// The group has no epoch: it never ran.
-    #[error("no group {0} is running; start it with: whichone up --group {0}")]
+    /// No such group is running.
+    #[error("group {0} is not running; help: start it with `whichone up --group {0}`")]
     NoGroup(String),
     /// Its shared memory cannot be opened.
     #[error(transparent)]
@@ -38,12 +39,12 @@ pub enum ClientError {
     /// A topic failed.
     #[error(transparent)]
     Port(#[from] PortError),
-    /// Nobody answered.
-    #[error("{what}: no answer within {seconds} s; see: whichone status")]
+    /// No answer in time.
+    #[error("{what}: no answer within {seconds} s; help: see `whichone status`")]
     Timeout {
-        /// What was asked.
+        /// The service.
         what: &'static str,
-        /// How long was waited.
+        /// The timeout, seconds.
         seconds: f64,
     },
 }
@@ -52,7 +53,7 @@ impl Client {
     /// Joins the group.
     ///
     /// # Errors
-    /// It does not run, or its messages are of another build.
+    /// The group is not running, or its messages are of another build.
     pub fn join(paths: &GroupPaths) -> Result<Self, ClientError> {
         let none = || ClientError::NoGroup(paths.name().to_string());
         if !paths.ipc().is_dir() {
@@ -74,12 +75,12 @@ impl Client {
         Ok(Self { bus: Bus::open(paths, name, identity)? })
     }
 
-    /// The group's shared memory, for other topics.
+    /// The group's shared memory.
     pub fn bus(&self) -> &Bus {
         &self.bus
     }
 
-    /// What the policy thinks.
+    /// Reads the policy's view.
     ///
     /// # Errors
     /// Another build.
@@ -87,9 +88,8 @@ impl Client {
         self.bus.encoded_reader(&topics::VIEW)
     }
 
-    /// Gives `sound` to the speech service and waits until it says what became of it: once for
-    /// text, once for every utterance in a sound file. Sent again under the same key until then, so
-    /// that a restart in between neither loses nor doubles it.
+    /// Submits `sound` to the speech service and returns its receipts: one for text, one for every
+    /// utterance in a sound file.
     ///
     /// # Errors
     /// No answer within `patience`.
@@ -97,8 +97,7 @@ impl Client {
         self.inject_said(sound, (clock::now(), Time(0)), patience)
     }
 
-    /// As [`Client::inject`], with when the person began to say it and had ended (0: when it
-    /// arrives).
+    /// As [`Client::inject`], with the start and end of the utterance (0: its arrival).
     ///
     /// # Errors
     /// As [`Client::inject`].
@@ -113,9 +112,9 @@ impl Client {
         deliver(&writer, &receipts, sound, said, patience)
     }
 
-    /// Points at a place, metres, frame `base`, as the person whom the robot sees; `words` is what is
-    /// said meanwhile, empty for nothing. Otherwise as [`Client::inject`]: where gestures do not
-    /// count the receipt is a refusal that names the setting.
+    /// Submits a pointing gesture at a place (metres, frame `base`) with the words that accompany it,
+    /// if any. Otherwise as [`Client::inject`]: where gestures are disabled the receipt is a refusal
+    /// that names the setting.
     ///
     /// # Errors
     /// As [`Client::inject`].
@@ -128,7 +127,7 @@ impl Client {
         self.inject(Sound::Point { target_m, words: words.to_owned() }, patience)
     }
 
-    /// As [`Client::inject`], with topics that are already open.
+    /// As [`Client::inject`], with open topics.
     ///
     /// # Errors
     /// As [`Client::inject`].
@@ -142,7 +141,7 @@ impl Client {
         deliver(writer, receipts, sound, (clock::now(), Time(0)), patience)
     }
 
-    /// Latches or releases the motion stop and waits until the arm says so.
+    /// Latches or releases the motion stop and waits for the arm's confirmation.
     ///
     /// # Errors
     /// No answer within `patience`.
@@ -173,40 +172,29 @@ impl Client {
     }
 }
 
-/// Sends a sound until it is answered.
+/// Submits a sound and waits for its receipts.
 fn deliver(
     writer: &EncodedWriter<Injection>,
     receipts: &Reader<Receipt>,
     sound: Sound,
-    (began, ended): (Time, Time),
+    said: (Time, Time),
     patience: Span,
 ) -> Result<Vec<Receipt>, ClientError> {
-    let started = clock::now();
-    let (onset_ns, end_ns) = (began.ns(), ended.ns());
-    let injection = Injection { key: random_key(), onset_ns, end_ns, sound };
-    let mut answers: Vec<Receipt> = Vec::new();
-    let mut sent: Option<Time> = None;
-    while clock::now() < started + patience {
-        if sent.is_none_or(|at| clock::now() >= at + RESEND_EVERY) {
-            writer.send(&injection)?;
-            sent = Some(clock::now());
+    let mut submission = Submission::new(sound, said, clock::now(), patience);
+    while !submission.is_expired(clock::now()) {
+        if let Some(request) = submission.due(clock::now()) {
+            writer.send(request)?;
         }
-        receipts.drain(|receipt| {
-            let new = answers.iter().all(|a| a.segment != receipt.segment);
-            if receipt.request() == injection.key && new {
-                answers.push(*receipt);
-            }
-        })?;
-        if answers.first().is_some_and(|first| answers.len() >= first.segments as usize) {
-            answers.sort_by_key(|receipt| receipt.segment);
-            return Ok(answers);
+        receipts.drain(|receipt| submission.on_receipt(receipt))?;
+        if let Some(receipts) = submission.receipts() {
+            return Ok(receipts.to_vec());
         }
         std::thread::sleep(POLL_EVERY);
     }
     Err(ClientError::Timeout { what: "speech", seconds: patience.s() })
 }
 
-/// A key that no other request has.
+/// Returns a unique key.
 pub fn random_key() -> RequestKey {
     let mut key = [0; 16];
     let filled = rustix::rand::getrandom(&mut key, rustix::rand::GetRandomFlags::empty());

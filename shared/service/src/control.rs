@@ -1,8 +1,8 @@
-//! The control protocol: what an operator asks and what the supervisor answers.
+//! The control protocol between operators and the supervisor.
 //!
 //! One connection to the group's control socket carries one request and one reply, each a JSON
-//! object on a line of its own. A request that waits is answered when what it waits for has
-//! happened, or cannot happen any more, or its time is up; never both.
+//! object on a line of its own. A request that waits is answered once: when its condition
+//! holds, cannot hold any more, or its time is up.
 
 use std::path::PathBuf;
 
@@ -18,13 +18,13 @@ mod client;
 /// Longest request, bytes; a command line of a swap is the longest part of any.
 pub const REQUEST_BYTES_MAX: usize = 64 << 10;
 
-/// What an operator asks for. `wait_ms` of 0 asks for an answer at once.
+/// A request of an operator. With `wait_ms` of 0 it is answered at once.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "verb", rename_all = "kebab-case", deny_unknown_fields)]
 pub enum Request {
-    /// Whether anybody listens. Answered by [`Reply::Done`].
+    /// A liveness check. Answered by [`Reply::Done`].
     Ping,
-    /// Everything an operator needs to know. Answered by [`Reply::Status`].
+    /// The state of the group. Answered by [`Reply::Status`].
     Status,
     /// Waits until every service that is wanted up is ready.
     WaitReady {
@@ -79,7 +79,7 @@ pub enum Request {
         /// The folder in which the command is meant: the caller's own.
         directory: PathBuf,
     },
-    /// Reads the configuration anew and restarts the services that it concerns. Answered by
+    /// Reloads the configuration and restarts the affected services. Answered by
     /// [`Reply::Reloaded`].
     Reload {
         /// How long to wait for them to be ready.
@@ -89,13 +89,13 @@ pub enum Request {
     Down,
 }
 
-/// What the supervisor answers.
+/// An answer of the supervisor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "reply", rename_all = "kebab-case")]
 pub enum Reply {
-    /// It is so, or it has been begun.
+    /// The request is fulfilled or under way.
     Done {
-        /// What is so, in a sentence.
+        /// The result, in a sentence.
         message: String,
     },
     /// See [`Request::Status`].
@@ -107,7 +107,7 @@ pub enum Reply {
     },
     /// The group is down.
     Down(DownReport),
-    /// It is not so.
+    /// The request is refused.
     Refused(Refusal),
 }
 
@@ -125,27 +125,27 @@ pub struct DownReport {
     pub seconds: f64,
 }
 
-/// Why a request was not fulfilled.
+/// Reason for which a request is not fulfilled.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Refusal {
-    /// What kind of trouble it is.
+    /// Kind of the refusal.
     pub kind: RefusalKind,
-    /// What is wrong, in a sentence.
+    /// The reason, in a sentence.
     pub message: String,
     /// More lines: problems of a configuration, or the tail of a log.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub details: Vec<String>,
 }
 
-/// The kinds of trouble.
+/// Kinds of refusals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RefusalKind {
-    /// The request makes no sense: no such service, no such program.
+    /// An invalid request: no such service, no such program.
     Usage,
-    /// The configuration is wrong.
+    /// An invalid configuration.
     Config,
-    /// What was waited for has not happened, or was taken back.
+    /// The awaited condition was not reached, or the change was rolled back.
     NotReached,
 }
 
@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn requests_are_lines_that_a_person_could_type() {
+    fn control_requests_are_plain_json_lines() {
         check_line(Request::Ping, r#"{"verb":"ping"}"#);
         check_line(Request::WaitReady { wait_ms: 5000 }, r#"{"verb":"wait-ready","wait_ms":5000}"#);
         check_line(
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn a_misspelt_request_is_refused_with_the_reason() {
+    fn control_requests_with_spelling_errors_are_rejected() {
         let wrong = [r#"{"verb":"strat"}"#, r#"{"verb":"stop"}"#, "{"];
         for line in wrong {
             let error = serde_json::from_str::<Request>(line).unwrap_err().to_string();

@@ -38,11 +38,11 @@ impl Exit {
     }
 }
 
-/// Why a service ended before its time.
+/// Premature end of a service.
 #[derive(Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct Failure {
-    /// The exit code that tells the supervisor what to do about it.
+    /// The exit code, from which the supervisor decides about a restart.
     pub exit: Exit,
     /// For the log and the operator's status.
     pub message: String,

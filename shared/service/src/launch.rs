@@ -1,4 +1,4 @@
-//! Starting a supervisor from the command line: in the foreground, or detached from the terminal.
+//! Start of a supervisor from the command line: in the foreground, or detached from the terminal.
 
 use std::env;
 use std::ffi::OsString;
@@ -27,7 +27,7 @@ const ANSWER_PATIENCE: Duration = Duration::from_secs(2);
 /// Rotation of the supervisor's own log, before it has read any configuration.
 const LOG_BYTES_MAX: u64 = 8 << 20;
 
-/// What a supervisor is started with.
+/// Options of a supervisor.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Options {
     /// The group to run.
@@ -36,13 +36,13 @@ pub struct Options {
     pub config: PathBuf,
     /// Name of a profile in it.
     pub profile: Option<String>,
-    /// Values that count more than those of the files: dotted key and TOML value.
+    /// Overrides of configuration values: dotted key and TOML value.
     pub set: Vec<(String, String)>,
-    /// Whether to put the journals aside and begin a new epoch.
+    /// Whether to keep the old journals apart and start a new epoch.
     pub fresh: bool,
 }
 
-/// A supervisor did not come up.
+/// Failure to start a supervisor.
 #[derive(Debug, Error)]
 pub enum LaunchError {
     /// It could not be started, or its log could not be made.
@@ -50,7 +50,7 @@ pub enum LaunchError {
     Io {
         /// The program or file.
         path: PathBuf,
-        /// What the operating system says.
+        /// Cause.
         error: io::Error,
     },
     /// It ended before it listened.
@@ -64,7 +64,7 @@ pub enum LaunchError {
     /// It does not listen in time.
     #[error("the supervisor is not up after {} s; see {}", .after.as_secs_f64(), .log.display())]
     Late {
-        /// How long it was waited for.
+        /// The timeout.
         after: Duration,
         /// Its log.
         log: PathBuf,
@@ -188,7 +188,7 @@ impl Launched {
         let socket = self.paths.control_socket();
         loop {
             let answer = call(&socket, &Request::Status, ANSWER_PATIENCE);
-            // The group may be one that somebody else runs already.
+            // Another supervisor may already be running the group.
             if let Ok(Reply::Status(status)) = answer
                 && status.supervisor_pid == self.process.id()
             {

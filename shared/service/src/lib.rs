@@ -20,6 +20,7 @@ mod reducer;
 pub mod service_loop;
 pub mod shm_cleanup;
 pub mod status;
+pub mod submission;
 pub mod view;
 pub mod worker_channel;
 

@@ -2,7 +2,7 @@
 //!
 //! The protocol is that of `sd_notify`: datagrams to `$NOTIFY_SOCKET`. The lifeline is a pipe that
 //! only the supervisor could write to: its end of file says that the supervisor is gone. The
-//! service then ends by itself, and if it cannot, a guard thread kills its whole process group.
+//! service then shuts down, and if it cannot, a guard thread kills its whole process group.
 
 use crate::exit::{Exit, Failure};
 use crate::group::{self, GroupName, GroupPaths};
@@ -22,7 +22,7 @@ const ORPHAN_GRACE: Duration = Duration::from_secs(15);
 /// Longest time between two beats.
 const BEAT_MAX: Span = Span::from_ms(500);
 
-/// What the supervisor told this process through its environment.
+/// The environment that the supervisor has set for this process.
 #[derive(Clone, Debug)]
 pub struct Environment {
     /// The group's folders.
@@ -66,8 +66,8 @@ impl Environment {
 
 fn text(key: &str) -> Result<String, Failure> {
     std::env::var(key).map_err(|_| {
-        let cure = "services are started by their supervisor: whichone up";
-        Failure::new(Exit::Usage, format!("{key} is not set; {cure}"))
+        let help = "help: services are started by their supervisor, `whichone up`";
+        Failure::new(Exit::Usage, format!("{key} is not set; {help}"))
     })
 }
 
@@ -132,12 +132,12 @@ impl Lifecycle {
         let fds: Vec<BorrowedFd<'_>> = also.iter().copied().chain(self.fds()).collect();
         let mut polled: Vec<PollFd<'_>> =
             fds.iter().map(|fd| PollFd::new(fd, PollFlags::IN)).collect();
-        // Interrupted by a signal or not: whoever waits looks at everything then.
+        // Interrupted by a signal or not: the caller looks at everything afterwards.
         let _ = poll(&mut polled, Some(&timeout));
     }
 
-    /// Whether the service has been told to end.
-    pub fn told_to_end(&mut self) -> bool {
+    /// Whether the service has been asked to shut down.
+    pub fn shutdown_requested(&mut self) -> bool {
         let mut byte = [0_u8; 16];
         let signalled = std::io::Read::read(&mut self.signals, &mut byte).is_ok_and(|n| n > 0);
         signalled || self.lifeline.as_ref().is_some_and(orphaned)
@@ -154,7 +154,7 @@ impl Lifecycle {
         self.notifier.say(&[NotifyState::Stopping]);
     }
 
-    /// Beats where a beat is due. Called by the main loop after a full pass and by nobody else, so
+    /// Sends a beat if one is due. Called only by the main loop after a full pass, so
     /// that a beat means that work is being done.
     pub fn beat(&mut self, now: Time, pending_since: Option<Time>) {
         if self.last_beat.is_some_and(|last| now < last + self.beat_every) {
@@ -181,7 +181,7 @@ fn lifeline() -> std::io::Result<Option<OwnedFd>> {
         return Err(bad());
     }
     // SAFETY: the descriptor is open (just asked), was inherited for this purpose, and its number
-    // is used by nobody else in this process.
+    // is used nowhere else in this process.
     #[allow(unsafe_code)]
     let fd = unsafe { OwnedFd::from_raw_fd(raw) };
     rustix::io::fcntl_setfd(&fd, rustix::io::FdFlags::CLOEXEC)?;

@@ -1,5 +1,5 @@
 //! The services' logs: files that the services themselves append to, so that nothing is lost when
-//! either side dies and nobody waits for a reader. The supervisor only bounds them.
+//! either side dies and no writer waits for a reader. The supervisor only bounds their size.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom};
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use config::Log;
 
-/// Lines and bytes of a log's tail as told to an operator.
+/// Lines and bytes of a log's tail that is shown to an operator.
 const TAIL_LINES_MAX: usize = 12;
 const TAIL_BYTES_MAX: u64 = 4096;
 
@@ -145,7 +145,7 @@ mod tests {
         write!(log, "old{}new", "x".repeat(200)).unwrap();
         assert!(bound(&path, &limits(2)).unwrap());
         write!(log, "next").unwrap();
-        assert_eq!(read(&path), "next", "the writer goes on at the beginning");
+        assert_eq!(read(&path), "next", "the writer continues at the beginning");
         let kept = read(&numbered(&path, 1));
         assert_eq!(kept.len(), 100);
         assert!(kept.ends_with("new"));
@@ -162,9 +162,9 @@ mod tests {
         assert_eq!(tail(&path, 7), ["after", "[1mlast"]);
         let many: String = (0..1000).map(|line| format!("line {line}\n")).collect();
         fs::write(&path, many).unwrap();
-        let told = tail(&path, 0);
-        assert_eq!(told.len(), TAIL_LINES_MAX);
-        assert_eq!(told.last().unwrap(), "line 999");
+        let lines = tail(&path, 0);
+        assert_eq!(lines.len(), TAIL_LINES_MAX);
+        assert_eq!(lines.last().unwrap(), "line 999");
         assert_eq!(tail(&path, 1 << 40).len(), TAIL_LINES_MAX);
         assert_eq!(tail(&folder.path().join("none"), 0), [""; 0]);
     }

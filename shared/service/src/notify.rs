@@ -1,6 +1,6 @@
-//! What a service tells its supervisor: `sd_notify` datagrams, sent without ever waiting.
+//! Notifications to the supervisor: `sd_notify` datagrams, sent without ever waiting.
 //!
-//! A receiver that has stopped reading has a full queue. Its service goes on with its work: a beat
+//! A receiver that has stopped reading has a full queue. Its service keeps working: a beat
 //! that finds no room is dropped, and the next one follows. What is said only once (that the
 //! service is ready, or ending) is said again with the next datagram that finds room.
 
@@ -19,7 +19,7 @@ pub(crate) struct Notifier {
 }
 
 impl Notifier {
-    /// To `$NOTIFY_SOCKET`; to nobody where that is not set.
+    /// To `$NOTIFY_SOCKET`; disabled where that is not set.
     ///
     /// # Errors
     /// The operating system gives no socket.
@@ -66,7 +66,7 @@ fn lines(states: &[NotifyState<'_>]) -> String {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 mod tests {
     use super::*;
     use std::sync::mpsc;

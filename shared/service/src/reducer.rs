@@ -62,10 +62,10 @@ pub enum Never {}
 
 /// A node cannot be recovered.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{what} ({cure})")]
+#[error("{what} (help: {help})")]
 pub struct NodeError {
     /// What is wrong.
     pub what: String,
     /// What the operator can do.
-    pub cure: String,
+    pub help: String,
 }

@@ -4,7 +4,7 @@
 //! Commit is where the promises are kept: all records of a pass are appended and synced once, and
 //! only then does anything of it become visible to others.
 
-use crate::bus::{Bus, Ear, Identity, PortError};
+use crate::bus::{Bus, WakeListener, Identity, PortError};
 use crate::clock;
 use crate::exit::{Exit, Failure};
 use crate::inspection::{self, Finding, Part};
@@ -157,12 +157,12 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
     let node = P::Node::recover(config, records)?;
     let identity = Identity { epoch: environment.epoch, incarnation: environment.incarnation };
     let bus = Bus::open(&environment.paths, P::SERVICE.name(), identity)?;
-    let ear = bus.ear(P::SERVICE)?;
+    let wake_listener = bus.wake_listener(P::SERVICE)?;
     let (devices, inbox) =
         worker_channel::channel().map_err(|e| Failure::new(Exit::NotReached, e.to_string()))?;
     let context = Context { bus: &bus, settings: &settings, devices, environment: &environment };
     let shell = P::Shell::open(&context)?;
-    let mut service = Loop::<P> { node, shell, journal, inbox, ear, effects: Effects::default() };
+    let mut service = Loop::<P> { node, shell, journal, inbox, wake_listener, effects: Effects::default() };
     service.node.on(Event::Started, clock::now(), &mut service.effects);
     service.commit()?;
     drive(lifecycle, &mut service)
@@ -246,7 +246,7 @@ pub fn drive(mut lifecycle: Lifecycle, cycle: &mut impl Cycle) -> Result<(), Fai
         let now = clock::now();
         let (fds, until) = cycle.wake(now);
         lifecycle.wait(&fds, until.min(lifecycle.next_beat(now)).since(now));
-        if !is_ending && lifecycle.told_to_end() {
+        if !is_ending && lifecycle.shutdown_requested() {
             is_ending = true;
             lifecycle.stopping();
             cycle.shut_down();
@@ -268,7 +268,7 @@ struct Loop<P: Program> {
     shell: P::Shell,
     journal: Option<Journal<Record<P>>>,
     inbox: DeviceReceiver<In<P>>,
-    ear: Ear,
+    wake_listener: WakeListener,
     effects: Effects<Out<P>, Record<P>>,
 }
 
@@ -276,7 +276,7 @@ impl<P: Program> Cycle for Loop<P> {
     fn wake(&self, now: Time) -> (Vec<BorrowedFd<'_>>, Time) {
         let latest = now + LOOK_EVERY;
         let until = self.node.deadline().map_or(latest, |deadline| deadline.min(latest));
-        (vec![self.ear.fd(), self.inbox.fd()], until)
+        (vec![self.wake_listener.fd(), self.inbox.fd()], until)
     }
 
     fn shut_down(&mut self) {
@@ -297,7 +297,7 @@ impl<P: Program> Cycle for Loop<P> {
 impl<P: Program> Loop<P> {
     /// Feeds everything that waits to the node.
     fn take_in(&mut self) -> Result<(), Failure> {
-        self.ear.clear();
+        self.wake_listener.clear();
         self.inbox.clear();
         let mut arrived = Vec::new();
         self.shell.drain(&mut |message| arrived.push(message))?;
@@ -341,7 +341,7 @@ impl<P: Program> Loop<P> {
         }
         let Some(snapshot) = self.node.snapshot() else { return Ok(()) };
         journal.rotate(&snapshot).map_err(|e| Failure::new(Exit::Storage, e.to_string()))?;
-        tracing::info!(records = snapshot.len(), "journal begun anew from a snapshot");
+        tracing::info!(records = snapshot.len(), "journal rotated with a snapshot");
         Ok(())
     }
 }

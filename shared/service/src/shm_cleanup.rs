@@ -31,7 +31,7 @@ pub struct NoRoom {
 }
 
 /// Refuses to start where shared memory is short: a full one is no error later on but the death
-/// (SIGBUS) of whoever touches it.
+/// (SIGBUS) of the process that touches it.
 ///
 /// # Errors
 /// Less than `needed_mib` free.
@@ -91,7 +91,7 @@ pub fn remove_leftovers(paths: &GroupPaths) -> Vec<PathBuf> {
     left.iter().for_each(|path| {
         let _ = std::fs::remove_file(path);
     });
-    // iceoryx2's bookkeeping of the group as a whole is always the last to go, and nobody's fault.
+    // iceoryx2's bookkeeping of the group as a whole is always the last to go and not a leftover.
     left.into_iter().filter(|path| !path.to_string_lossy().ends_with("global_mgmt")).collect()
 }
 

@@ -1,4 +1,4 @@
-//! What `status` tells: plain, serialisable facts.
+//! Status of a group and its services, as `whichone status` shows it.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::process_exit::ProcessExit;
 pub struct GroupStatus {
     /// Its name.
     pub name: String,
-    /// What it does as a whole.
+    /// State of the group as a whole.
     pub state: GroupState,
     /// The supervisor's process.
     pub supervisor_pid: u32,
@@ -43,11 +43,11 @@ pub struct GroupStatus {
 pub struct ServiceStatus {
     /// Its name.
     pub name: String,
-    /// What is wanted of it.
+    /// Desired state.
     pub wanted: Wanted,
-    /// What it does.
+    /// Actual state.
     pub actual: Actual,
-    /// Why it does not do what is wanted: what it waits for, why it is held.
+    /// Reason for a difference between the two: awaited services, cause of a hold.
     pub why: Option<String>,
     /// Its process.
     pub pid: Option<u32>,
@@ -59,15 +59,15 @@ pub struct ServiceStatus {
     pub restarts: u32,
     /// Time since the last beat of its main loop, milliseconds.
     pub beat_age_ms: Option<u64>,
-    /// Age of its oldest input that it has not dealt with, milliseconds, as it last said.
+    /// Age of its oldest pending input, milliseconds, as last reported.
     pub input_age_ms: Option<u64>,
-    /// Its version, as it said.
+    /// Its reported version.
     pub version: Option<String>,
-    /// What it says that it does.
+    /// Its reported activity.
     pub says: Option<String>,
     /// The command that has replaced the configured one.
     pub swapped: Option<Vec<String>>,
-    /// How the incarnation before ended.
+    /// End of the previous incarnation.
     pub last_exit: Option<LastExit>,
     /// The last lines of its log, where it is held.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -79,7 +79,7 @@ pub struct ServiceStatus {
 }
 
 impl ServiceStatus {
-    /// What it does, in one word for people.
+    /// One word for the state.
     pub fn state(&self) -> &'static str {
         match self.actual {
             Actual::Down if self.wanted == Wanted::Up => "waiting",
@@ -100,13 +100,13 @@ pub struct LastExit {
     pub incarnation: u32,
     /// How it ended.
     pub exit: ProcessExit,
-    /// What it was stopped for, if it had failed to do something.
+    /// The missed deadline for which it was stopped, if any.
     pub failure: Option<Failure>,
     /// Whether it had to be killed.
     pub killed: bool,
     /// How long ago, seconds.
     pub age_s: f64,
-    /// All of this in a few words.
+    /// Summary.
     pub text: String,
 }
 

@@ -1,6 +1,6 @@
 //! Topics on real shared memory: what is refused, what is dropped, what a late reader still gets.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
 use iceoryx2::prelude::ZeroCopySend;
 use messages::schema::{Field, Schema};

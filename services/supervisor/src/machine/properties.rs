@@ -78,7 +78,7 @@ impl World {
                 self.starts.push(self.now);
             }
             Some(Effect::Terminate | Effect::Abort | Effect::Kill) => {
-                prop_assert!(self.lives, "a signal to nobody");
+                prop_assert!(self.lives, "a signal without a process");
             }
             None => {}
         }

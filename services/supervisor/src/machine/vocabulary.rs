@@ -21,7 +21,7 @@ pub enum Event {
     Restart,
     /// It is to be kept from running until released.
     Hold,
-    /// Lifts a hold, whoever put it.
+    /// Lifts a hold of the operator or the supervisor.
     Release,
     /// It said that it is ready.
     Ready,

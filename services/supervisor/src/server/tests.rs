@@ -24,7 +24,7 @@ impl Bench {
         stream
     }
 
-    /// Lets every connection go on and collects the requests.
+    /// Serves every connection and collects the requests.
     fn requests(&mut self) -> Vec<(Client, Request)> {
         let clients: Vec<Client> = self.server.connections.keys().copied().collect();
         let take = |client| Some((client, self.server.advance(client, PollFlags::IN, NOW)?));

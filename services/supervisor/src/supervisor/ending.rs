@@ -30,11 +30,11 @@ pub(super) struct Ending {
 pub(super) enum Cause {
     /// The operator wants it so.
     Asked,
-    /// The process was told to end.
+    /// The process was asked to shut down.
     Signal,
     /// A critical service was given up.
     Critical(HeldBecause),
-    /// Its files were removed by somebody else: it is started again.
+    /// Its files were removed from outside: it is restarted.
     FilesGone,
     /// They were removed again, or could not be made again.
     Unusable,
@@ -48,7 +48,7 @@ impl Supervisor {
             Some(_) => {}
             None => {
                 tracing::info!(?cause, "the group stops");
-                self.systemd.tell("STOPPING=1");
+                self.systemd.notify("STOPPING=1");
                 self.ending = Some(Ending { cause, since: now });
                 self.group.stop(now);
             }
@@ -74,14 +74,14 @@ impl Supervisor {
         }
     }
 
-    /// Leaves nothing behind, tells those who waited for it, and says how the process ends.
+    /// Cleans up, answers the waiting clients, and returns the exit code.
     pub(super) fn finish(mut self, ending: Ending) -> Exit {
         self.clear_all();
         let report = self.clear_files(ending);
         let Self { around, server, waits, taken, started, services, .. } = self;
         let now = started.elapsed();
         let paths = around.paths.clone();
-        // Released before anybody is told, so that whoever is told can start the group anew.
+        // Released before the answers, so that a client can restart the group at once.
         drop((services, around, taken));
         let mut server: Server = server;
         let down = Reply::Down(report);
@@ -129,7 +129,7 @@ impl Supervisor {
         self.end(cause, now);
     }
 
-    /// Makes everything anew that lies in the run folder, and starts the group.
+    /// Recreates the run folder and starts the group.
     fn renew(&mut self) -> Result<(), StartError> {
         let failed = |what| move |error| StartError::Io { what, error };
         let paths = &self.around.paths;

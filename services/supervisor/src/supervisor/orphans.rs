@@ -14,7 +14,7 @@ use crate::procfs::{self, Process};
 /// How long the kernel may take to end the last processes that were killed.
 const END_PATIENCE: Duration = Duration::from_secs(2);
 
-/// The last ones are told by name when the group is down.
+/// Number of orphans reported by name when the group is down.
 const ORPHANS_REPORTED_MAX: usize = 100;
 
 impl Supervisor {
@@ -30,13 +30,13 @@ impl Supervisor {
             .filter(|process| !process.is_zombie)
             .collect();
         let name = self.name(service).to_owned();
-        // Told here, and condemned: a killed process may take a while to end, and is not to be
-        // told of again meanwhile.
+        // Reported here, and condemned: a killed process may take a while to end, and is not to be
+        // reported again meanwhile.
         self.condemned.extend(left.iter().map(|process| process.pid));
         self.report_orphans(&left, &name);
     }
 
-    /// Reaps children that are nobody's any more, and kills those that no running incarnation has
+    /// Reaps orphaned children, and kills those that no running incarnation has
     /// started.
     pub(super) fn clear_orphans(&mut self) {
         for process in self.orphans() {
@@ -61,11 +61,11 @@ impl Supervisor {
         }
     }
 
-    /// Reaps a orphan, or kills it, which is told once: it may take a while to end.
+    /// Reaps an orphan, or kills it, which is reported once: it may take a while to end.
     fn clear(&mut self, process: Process, of: &str) {
         let pid = process.pid;
         if process.is_zombie {
-            // Its number cannot be anybody else's: it is this process's own child.
+            // Its pid cannot be reused: it is this process's own child.
             let _ = waitpid(Some(pid), WaitOptions::NOHANG);
             self.condemned.retain(|&condemned| condemned != pid);
         } else {
@@ -120,10 +120,10 @@ impl Supervisor {
     }
 }
 
-/// Kills one of this process's own children, whose number is nobody else's until it is reaped.
+/// Kills one of this process's own children, whose pid is not reused until it is reaped.
 fn kill(pid: Pid) {
     if let Ok(pidfd) = pidfd_open(pid, PidfdFlags::empty()) {
-        // It may have ended by itself.
+        // It may have ended already.
         let _ = pidfd_send_signal(&pidfd, Signal::KILL);
     }
 }

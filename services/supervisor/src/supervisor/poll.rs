@@ -13,9 +13,9 @@ use crate::server::Client;
 pub(super) struct Ready {
     /// Services whose process has ended.
     pub(super) ended: Vec<usize>,
-    /// Whether somebody connects.
+    /// Whether a client connects.
     pub(super) listener: bool,
-    /// Connections that can go on.
+    /// Connections with new data.
     pub(super) clients: Vec<(Client, PollFlags)>,
 }
 

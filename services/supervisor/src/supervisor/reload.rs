@@ -10,7 +10,7 @@ use crate::spec::ServiceSpec;
 use service::control::{Refusal, RefusalKind, Reply};
 
 impl Supervisor {
-    /// Reads the configuration anew and restarts what it concerns; or, where anything is wrong
+    /// Reloads the configuration and restarts the affected services; or, where anything is wrong
     /// with it, changes nothing at all.
     pub(super) fn reload(
         &mut self,

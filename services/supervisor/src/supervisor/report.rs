@@ -1,4 +1,4 @@
-//! What `status` tells.
+//! Status reports.
 
 use std::time::Duration;
 

@@ -73,7 +73,7 @@ impl Supervisor {
     fn await_ready(&mut self, client: Client, service: usize, after: u32, wait_ms: u64, now: Time) {
         let name = self.name(service);
         let message = match wait_ms {
-            0 => format!("{name} is told to start"),
+            0 => format!("{name} is starting"),
             _ => format!("{name} is ready"),
         };
         self.wait_for(client, Goal::Ready(vec![(service, after)]), wait_ms, done(message), now);
@@ -100,7 +100,7 @@ impl Supervisor {
         self.give(service, event, now);
         let name = self.name(service);
         let message = match (event, wait_ms) {
-            (_, 0) => format!("{name} is told to end"),
+            (_, 0) => format!("{name} is stopping"),
             (Event::Hold, _) => format!("{name} is held"),
             _ => format!("{name} is down"),
         };

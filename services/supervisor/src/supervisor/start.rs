@@ -30,7 +30,7 @@ use crate::systemd::Systemd;
 /// A group cannot be started.
 #[derive(Debug, Error)]
 pub enum StartError {
-    /// The configuration is wrong; every problem is told.
+    /// An invalid configuration, with every problem.
     #[error("{}", .0.join("\n"))]
     Config(Vec<String>),
     /// The services cannot be put in order.
@@ -50,7 +50,7 @@ pub enum StartError {
     Io {
         /// What was to be done.
         what: &'static str,
-        /// What the operating system says.
+        /// Cause.
         error: io::Error,
     },
 }
@@ -147,7 +147,7 @@ fn raise(
 }
 
 /// Services of a supervisor that was killed end by themselves (an arm comes to rest first) and get
-/// as long for it as when they are told to.
+/// as long for it as on request.
 fn longest_stop(spec: &GroupSpec) -> Duration {
     let deadlines = spec.services.iter().map(|service| service.stop_deadline);
     deadlines.max().unwrap_or_default()

@@ -8,7 +8,7 @@ use crate::machine::{Actual, Wanted};
 use crate::server::Client;
 use service::control::{Refusal, RefusalKind, Reply};
 
-/// A client, what it waits for, and what it is told then.
+/// A client, the condition it waits for, and its answer.
 #[derive(Debug)]
 pub(super) struct Wait {
     pub(super) client: Client,
@@ -39,7 +39,7 @@ enum Standing {
 }
 
 impl Supervisor {
-    /// Answers at once where nobody wants to wait or there is nothing to wait for, else later.
+    /// Answers at once without a wait or where the condition holds, else later.
     pub(super) fn wait_for(
         &mut self,
         client: Client,

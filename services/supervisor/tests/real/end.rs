@@ -43,7 +43,7 @@ fn a_stopped_process_still_ends_in_order() {
     send(group.pid("arm"), Signal::STOP);
     let begun = Instant::now();
     let report = down(&mut group);
-    assert_eq!(report.killed, [""; 0], "it was woken and ended by itself");
+    assert_eq!(report.killed, [""; 0], "it was woken and shut down");
     assert!(begun.elapsed() < Duration::from_secs(10));
     assert_eq!(group.events().last().unwrap(), "arm 1 ended");
 }

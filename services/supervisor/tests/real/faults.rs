@@ -112,7 +112,7 @@ fn time_in_which_everything_stood_still_is_held_against_nobody() {
     let watched = |name| with(service(name, &[]), "watchdog_ms", json!(2000));
     let group = Group::ready(vec![watched("arm"), watched("policy")]);
     let (arm, supervisor) = (group.pid("arm"), group.supervisor_pid());
-    // The policy goes on beating into a queue that nobody empties; the arm does not even beat.
+    // The policy keeps beating into a full queue; the arm does not even beat.
     send(arm, Signal::STOP);
     send(supervisor, Signal::STOP);
     std::thread::sleep(Duration::from_secs(3));
@@ -128,7 +128,7 @@ fn time_in_which_everything_stood_still_is_held_against_nobody() {
 fn files_removed_by_hand_restart_the_group_once() {
     let group = Group::ready(vec![service("arm", &[]), service("policy", &[])]);
     std::fs::remove_dir_all(group.paths.run()).unwrap();
-    wait_for("the group to be made anew", || {
+    wait_for("the group to be recreated", || {
         let call = |request| {
             service::control::call(&group.paths.control_socket(), request, crate::harness::PATIENCE)
         };

@@ -95,7 +95,7 @@ fn a_detached_group_comes_up_and_goes_down() {
     assert!(settings.exists());
     let error = home.launch().wait_listening(PATIENCE).unwrap_err();
     assert_eq!(error.exit(), Exit::NotReached);
-    let first = format!("group lab is running already (supervisor {})", status.supervisor_pid);
+    let first = format!("group lab is already running (supervisor {})", status.supervisor_pid);
     assert!(error.to_string().contains(&first), "{error}");
     assert!(matches!(home.ask(&Request::Down), Reply::Down(_)));
     assert!(!home.paths.run().exists());
@@ -109,8 +109,8 @@ fn a_wrong_configuration_is_told_in_full() {
     let error = home.launch().wait_listening(PATIENCE).unwrap_err();
     assert_eq!(error.exit(), Exit::Config);
     assert!(matches!(error, LaunchError::Ended { .. }));
-    let told = error.to_string();
-    assert!(told.contains("arm.toml") && told.contains("dialogue.toml"), "{told}");
+    let error = error.to_string();
+    assert!(error.contains("arm.toml") && error.contains("dialogue.toml"), "{error}");
 }
 
 #[test]

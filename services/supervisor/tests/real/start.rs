@@ -75,9 +75,9 @@ fn a_second_supervisor_is_refused_with_the_first_ones_number() {
     let log = tempfile::NamedTempFile::new().unwrap();
     let status = second.stderr(log.reopen().unwrap()).status().unwrap();
     assert_eq!(status.code(), Some(1));
-    let told = std::fs::read_to_string(log.path()).unwrap();
+    let log = std::fs::read_to_string(log.path()).unwrap();
     let pid = group.supervisor_pid();
-    assert!(told.contains(&format!("running already (supervisor {pid})")), "{told}");
+    assert!(log.contains(&format!("already running (supervisor {pid})")), "{log}");
     group.done(&Request::WaitReady { wait_ms: WAIT_MS });
 }
 

@@ -13,7 +13,7 @@ use super::ConfigArgs;
 /// Where the lines come from.
 #[derive(Clone, Debug, Default, Args)]
 pub struct InputArgs {
-    /// Read this file in place of standard input.
+    /// Read this file instead of standard input.
     #[arg(long, value_name = "FILE")]
     pub input: Option<PathBuf>,
 }
@@ -32,7 +32,7 @@ pub struct GroundArgs {
     /// The scene, TOML or JSON.
     #[arg(long, value_name = "FILE")]
     pub scene: PathBuf,
-    /// How utterances are read.
+    /// Interpretation of utterances.
     #[arg(long, value_enum, default_value_t = LanguageArg::Careful)]
     pub language: LanguageArg,
     /// The lines.
@@ -43,19 +43,19 @@ pub struct GroundArgs {
 /// The decision problem: what the robot may do, and what it costs.
 #[derive(Clone, Debug, Args)]
 pub struct ProblemArgs {
-    /// Whether person and robot share the room; the robot points only then.
+    /// Whether user and robot share the room; the robot points only in mode `present`.
     #[arg(long, value_enum, default_value_t = ModeArg::Remote)]
     pub mode: ModeArg,
-    /// Do not ask "Is it white?".
+    /// Exclude questions like "Is it white?".
     #[arg(long)]
     pub no_attr: bool,
-    /// Do not ask "What colour is it?".
+    /// Exclude questions like "What colour is it?".
     #[arg(long)]
     pub no_which: bool,
-    /// What actions cost and a pick is worth; the configuration's where nothing is said.
+    /// Costs of actions and rewards of picks [default: the configuration's].
     #[arg(long, value_name = "PRESET", value_parser = cost_names())]
     pub costs: Option<String>,
-    /// The configuration, for what is not said here.
+    /// The configuration, for everything else.
     #[command(flatten)]
     pub config: ConfigArgs,
 }
@@ -66,7 +66,7 @@ pub struct PlanArgs {
     /// The scene, TOML or JSON.
     #[arg(long, value_name = "FILE")]
     pub scene: PathBuf,
-    /// What decides; the configuration's where nothing is said.
+    /// The planner [default: the configuration's].
     #[arg(long, value_name = "NAME", value_parser = planner_names())]
     pub planner: Option<String>,
     /// The problem.
@@ -80,15 +80,15 @@ pub struct PlanArgs {
 /// Arguments of `export`.
 #[derive(Debug, Args)]
 pub struct ExportArgs {
-    /// The form.
+    /// The format.
     #[arg(value_enum)]
     pub what: Exported,
-    /// The scene: a file, TOML or JSON, or the name of one of the configuration's.
+    /// The scene: a TOML or JSON file, or the name of a scene of the configuration.
     pub scene: PathBuf,
     /// The problem.
     #[command(flatten)]
     pub problem: ProblemArgs,
-    /// Write to this file in place of standard output.
+    /// Write to this file instead of standard output.
     #[arg(long, value_name = "FILE")]
     pub output: Option<PathBuf>,
 }
@@ -96,18 +96,17 @@ pub struct ExportArgs {
 /// What can be exported.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Exported {
-    /// The decision problem that the planners solve, in Cassandra's text form, which public
-    /// solvers read.
+    /// The decision problem of the planners in Cassandra's text format, which public solvers read.
     Pomdp,
 }
 
 /// Arguments of `fk` and `ik`.
 #[derive(Debug, Args)]
 pub struct ArmArgs {
-    /// A robot's description (URDF); that of Baxter, which is built in, where nothing is said.
+    /// A robot description (URDF) [default: the built-in Baxter].
     #[arg(long, value_name = "FILE")]
     pub robot: Option<PathBuf>,
-    /// Which of its arms.
+    /// The arm.
     #[command(flatten)]
     pub which: WhichArm,
     /// The lines.
@@ -122,7 +121,7 @@ pub struct WhichArm {
     /// The arm of a robot with Baxter's names.
     #[arg(long, value_enum)]
     pub limb: Option<LimbArg>,
-    /// The last link of the arm of any robot; seven joints move it.
+    /// The last link of an arm with seven joints, of any robot.
     #[arg(long, value_name = "LINK")]
     pub tip: Option<String>,
 }
@@ -130,27 +129,27 @@ pub struct WhichArm {
 /// [`Language`] on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LanguageArg {
-    /// Synonyms, negation, corrections, requests to stop or to start over.
+    /// With synonyms, negation, corrections, and requests to stop or to start over.
     Careful,
-    /// The scene's own words and the answer words, as in the publication.
+    /// With the scene's own words and answer words only, as in the publication.
     Paper,
 }
 
 /// [`Mode`] on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum ModeArg {
-    /// The person does not see the robot.
+    /// The user does not see the robot.
     Remote,
-    /// The person sees what the robot points at.
+    /// The user sees what the robot points at.
     Present,
 }
 
 /// [`Limb`] on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum LimbArg {
-    /// The arm at the robot's left.
+    /// The left arm.
     Left,
-    /// The arm at the robot's right.
+    /// The right arm.
     Right,
 }
 

@@ -10,13 +10,13 @@ use super::talk::seconds;
 /// Which configuration.
 #[derive(Clone, Debug, Default, Args)]
 pub struct ConfigArgs {
-    /// Folder of the configuration; found by itself as ./config or beside the program.
+    /// Folder of the configuration [default: ./config, else `config` beside the program].
     #[arg(long, value_name = "DIR", env = "WHICHONE_CONFIG", hide_env_values = true)]
     pub config: Option<PathBuf>,
-    /// A profile to lay over it, from its folder `profiles`.
+    /// A profile from the folder `profiles` of the configuration.
     #[arg(long, value_name = "NAME")]
     pub profile: Option<String>,
-    /// A value that counts more than the files', e.g. group.scene=tools; may be repeated.
+    /// Override a configuration value, e.g. group.scene=tools; may be repeated.
     #[arg(long, value_name = "KEY=VALUE", value_parser = key_and_value)]
     pub set: Vec<(String, String)>,
 }
@@ -27,16 +27,16 @@ pub struct UpArgs {
     /// The configuration.
     #[command(flatten)]
     pub config: ConfigArgs,
-    /// Return once the supervisor runs, and leave the group running in the background.
+    /// Run the group in the background; return once its supervisor runs.
     #[arg(long, short)]
     pub detach: bool,
-    /// With --detach: return only once this is so.
+    /// With --detach: return only in this state.
     #[arg(long, value_name = "WHAT")]
     pub wait: Option<WaitFor>,
-    /// Longest wait, seconds.
+    /// Timeout, seconds.
     #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
     pub timeout: Duration,
-    /// Put the journals of earlier runs aside and begin anew.
+    /// Start with new journals; those of earlier runs are kept in `journal-EPOCH`.
     #[arg(long)]
     pub fresh: bool,
 }
@@ -51,7 +51,7 @@ pub enum WaitFor {
 /// Arguments of `down`.
 #[derive(Debug, Args)]
 pub struct DownArgs {
-    /// Longest wait, seconds; the group goes on stopping after it.
+    /// Timeout, seconds; the group continues to stop after it.
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds)]
     pub timeout: Duration,
 }
@@ -61,7 +61,7 @@ pub struct DownArgs {
 pub struct ServiceArgs {
     /// Name of the service.
     pub service: String,
-    /// Longest wait, seconds; 0 returns at once.
+    /// Timeout, seconds; 0 returns at once.
     #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
     pub timeout: Duration,
 }
@@ -71,10 +71,10 @@ pub struct ServiceArgs {
 pub struct RestartArgs {
     /// Name of the service.
     pub service: String,
-    /// Give a swapped service its configured program back.
+    /// Restore the configured program of a swapped service.
     #[arg(long)]
     pub original: bool,
-    /// Longest wait, seconds; 0 returns at once.
+    /// Timeout, seconds; 0 returns at once.
     #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
     pub timeout: Duration,
 }
@@ -82,12 +82,12 @@ pub struct RestartArgs {
 /// Arguments of `logs`.
 #[derive(Debug, Args)]
 pub struct LogsArgs {
-    /// Name of a service, or `supervisor`; all of them where nothing is said.
+    /// Name of a service, or `supervisor` [default: all].
     pub service: Option<String>,
-    /// Go on with what is logged from now on.
+    /// Follow the logs.
     #[arg(long, short)]
     pub follow: bool,
-    /// Last lines to show.
+    /// Number of lines from the end.
     #[arg(long, short = 'n', value_name = "N", default_value_t = 40)]
     pub tail: usize,
 }
@@ -95,7 +95,7 @@ pub struct LogsArgs {
 /// Arguments of `reload`.
 #[derive(Debug, Args)]
 pub struct ReloadArgs {
-    /// Longest wait for the restarted services, seconds; 0 returns at once.
+    /// Timeout for the restarted services, seconds; 0 returns at once.
     #[arg(long, value_name = "S", default_value = "30", value_parser = seconds)]
     pub timeout: Duration,
 }
@@ -106,7 +106,7 @@ pub struct CheckArgs {
     /// The configuration.
     #[command(flatten)]
     pub config: ConfigArgs,
-    /// Show every value and the file that it comes from.
+    /// Show every value and its origin.
     #[arg(long)]
     pub values: bool,
 }
@@ -119,12 +119,12 @@ pub struct SwapArgs {
     /// The new program and its arguments.
     #[arg(last = true, required = true, value_name = "COMMAND")]
     pub command: Vec<String>,
-    /// Longest wait for the decision, seconds.
+    /// Timeout, seconds.
     #[arg(long, value_name = "S", default_value = "120", value_parser = seconds)]
     pub timeout: Duration,
 }
 
 fn key_and_value(text: &str) -> Result<(String, String), String> {
-    let (key, value) = text.split_once('=').ok_or("write KEY=VALUE, e.g. group.scene=tools")?;
+    let (key, value) = text.split_once('=').ok_or("expected KEY=VALUE, e.g. group.scene=tools")?;
     Ok((key.trim().to_owned(), value.trim().to_owned()))
 }

@@ -11,23 +11,22 @@ use super::ConfigArgs;
 /// Arguments of `say`.
 #[derive(Debug, Args)]
 pub struct SayArgs {
-    /// The words.
+    /// Words of the utterance.
     #[arg(required = true, value_name = "TEXT")]
     pub text: Vec<String>,
-    /// It was spoken, and began so many seconds ago; another recogniser made text of it.
+    /// Age of the utterance's beginning, seconds: it was spoken and recognised elsewhere.
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub began_ago: Option<Duration>,
-    /// It was spoken, and ended so many seconds ago.
+    /// Age of the utterance's end, seconds: it was spoken and recognised elsewhere.
     #[arg(long, value_name = "S", value_parser = seconds)]
     pub ended_ago: Option<Duration>,
-    /// What may have been said instead, with its weight; TEXT itself has what is left of 1. Can be
-    /// repeated.
+    /// An alternative hypothesis with its weight; TEXT itself has the rest of 1. May be repeated.
     #[arg(long = "or", value_name = "TEXT=WEIGHT", value_parser = alternative)]
     pub alternatives: Vec<(String, f64)>,
-    /// How sure each word of TEXT is, 0 to 1, with commas between.
+    /// Confidence of each word of TEXT, 0 to 1, separated by commas.
     #[arg(long, value_name = "P,P,…", value_delimiter = ',')]
     pub confidence: Vec<f32>,
-    /// Longest wait until it is accepted, seconds.
+    /// Timeout for the receipt, seconds.
     #[arg(long, value_name = "S", default_value = "10", value_parser = seconds)]
     pub timeout: Duration,
 }
@@ -44,10 +43,10 @@ pub struct PointArgs {
     /// Up from the robot's base, metres.
     #[arg(value_name = "Z", allow_negative_numbers = true)]
     pub z: f64,
-    /// What is said meanwhile.
+    /// Words that accompany the gesture.
     #[arg(long, value_name = "TEXT", default_value = "", hide_default_value = true)]
     pub say: String,
-    /// Longest wait until it is accepted, seconds.
+    /// Timeout for the receipt, seconds.
     #[arg(long, value_name = "S", default_value = "10", value_parser = seconds)]
     pub timeout: Duration,
 }
@@ -59,14 +58,14 @@ pub struct ListenArgs {
     /// samples, low byte first, at 16 kHz, with a WAV header or without.
     #[arg(value_name = "FILE.wav")]
     pub file: PathBuf,
-    /// Stream the file as fast as it was spoken, as if somebody spoke just now.
+    /// Stream the file in real time, like live speech.
     #[arg(long)]
     pub live: bool,
-    /// The stream does not hold the robot's own voice (a headset): whoever speaks interrupts the
-    /// robot. Without it nothing is listened to while the robot speaks.
+    /// The stream is free of the robot's own voice (a headset), so that speech interrupts the robot.
+    /// Otherwise the stream is ignored while the robot speaks.
     #[arg(long)]
     pub echo_free: bool,
-    /// Longest wait until it is recognised, seconds.
+    /// Timeout for the result, seconds.
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds)]
     pub timeout: Duration,
 }
@@ -74,10 +73,10 @@ pub struct ListenArgs {
 /// Arguments of `talk`.
 #[derive(Debug, Args)]
 pub struct TalkArgs {
-    /// Longest time until you have said it, seconds.
+    /// Longest utterance, seconds.
     #[arg(long, value_name = "S", default_value = "10", value_parser = seconds)]
     pub seconds: Duration,
-    /// Longest wait for what was understood, seconds.
+    /// Timeout for the result, seconds.
     #[arg(long, value_name = "S", default_value = "20", value_parser = seconds)]
     pub timeout: Duration,
 }
@@ -85,7 +84,7 @@ pub struct TalkArgs {
 /// Arguments of `watch`.
 #[derive(Debug, Args)]
 pub struct WatchArgs {
-    /// Print one picture and end.
+    /// Print one snapshot and exit.
     #[arg(long)]
     pub once: bool,
 }
@@ -93,10 +92,10 @@ pub struct WatchArgs {
 /// Arguments of `chat`.
 #[derive(Debug, Args)]
 pub struct ChatArgs {
-    /// The configuration, where a group has to be started.
+    /// The configuration of a group to be started.
     #[command(flatten)]
     pub config: ConfigArgs,
-    /// Leave a group that was started for this chat running.
+    /// Keep a group running that was started for this chat.
     #[arg(long)]
     pub keep: bool,
 }
@@ -104,13 +103,13 @@ pub struct ChatArgs {
 /// Arguments of `await`.
 #[derive(Debug, Args)]
 pub struct AwaitArgs {
-    /// What to wait for.
+    /// The event to wait for.
     #[arg(value_enum)]
     pub what: Awaited,
-    /// Longest wait, seconds.
+    /// Timeout, seconds.
     #[arg(long, value_name = "S", default_value = "120", value_parser = seconds)]
     pub timeout: Duration,
-    /// Answer the robot's questions meanwhile, truthfully, as somebody who wants this object.
+    /// Answer the robot's questions truthfully, as a user who wants this object.
     #[arg(long, value_name = "OBJECT")]
     pub answer_as: Option<String>,
 }
@@ -118,14 +117,14 @@ pub struct AwaitArgs {
 /// What can be waited for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Awaited {
-    /// The end of an interaction; told at once if no earlier `await` has told of it.
+    /// The end of an interaction; printed at once if no earlier `await` has printed it.
     Pick,
 }
 
 /// Arguments of `stop-motion` and `resume-motion`.
 #[derive(Debug, Args)]
 pub struct MotionArgs {
-    /// Longest wait until the arm confirms, seconds.
+    /// Timeout for the arm's confirmation, seconds.
     #[arg(long, value_name = "S", default_value = "5", value_parser = seconds)]
     pub timeout: Duration,
 }
@@ -136,13 +135,13 @@ pub struct JournalArgs {
     /// Name of the service.
     #[arg(default_value = "policy", value_parser = ["speech", "policy", "arm"])]
     pub service: String,
-    /// Check that it holds together; exit code 70 if not.
+    /// Verify the journal's invariants; exit code 70 if one is broken.
     ///
-    /// Of the policy: every utterance applied once and in order, every state the one that follows
-    /// from the one before it, bit for bit, and no interaction with two deliveries.
+    /// For the policy: every utterance is applied once and in order, every state is reproduced bit for
+    /// bit from the one before, and no interaction delivers twice.
     #[arg(long)]
     pub verify: bool,
-    /// The configuration that the journal was written with, where the group does not run.
+    /// The configuration of the journal, if the group is not running.
     #[command(flatten)]
     pub config: ConfigArgs,
 }
@@ -155,9 +154,9 @@ pub struct CompletionsArgs {
     pub shell: Shell,
 }
 
-/// A length of time that people wait.
+/// Parses a timeout.
 pub(super) fn seconds(text: &str) -> Result<Duration, String> {
-    let wrong = || "write seconds, e.g. 30".to_owned();
+    let wrong = || "expected seconds, e.g. 30".to_owned();
     let seconds: f64 = text.trim().parse().map_err(|_| wrong())?;
     let sensible = (0.0..=SECONDS_MAX).contains(&seconds);
     sensible.then(|| Duration::from_secs_f64(seconds)).ok_or_else(wrong)
@@ -165,14 +164,14 @@ pub(super) fn seconds(text: &str) -> Result<Duration, String> {
 
 /// A text with its weight.
 fn alternative(text: &str) -> Result<(String, f64), String> {
-    let wrong = || "write TEXT=WEIGHT with a weight between 0 and 1, e.g. `the red one=0.3`";
+    let wrong = || "expected TEXT=WEIGHT with a weight between 0 and 1, e.g. `the red one=0.3`";
     let (text, weight) = text.rsplit_once('=').ok_or_else(wrong)?;
     let weight: f64 = weight.trim().parse().map_err(|_| wrong())?;
     let is_share = weight > 0.0 && weight < 1.0;
     is_share.then(|| (text.to_owned(), weight)).ok_or_else(|| wrong().to_owned())
 }
 
-/// A month: nobody waits longer, and sums of times stay far from overflow.
+/// Longest timeout, a month: sums of times stay far from overflow.
 const SECONDS_MAX: f64 = 2_678_400.0;
 
 #[cfg(test)]
@@ -188,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn seconds_are_numbers_that_somebody_would_wait() {
+    fn timeouts_are_finite_and_not_negative() {
         assert_eq!(seconds("0.5"), Ok(Duration::from_millis(500)));
         assert_eq!(seconds("0"), Ok(Duration::ZERO));
         for wrong in ["", "-1", "soon", "NaN", "inf", "1e300"] {

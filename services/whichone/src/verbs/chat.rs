@@ -43,7 +43,7 @@ fn talk(paths: &GroupPaths, interrupt: &Interrupt, out: &mut Output<'_>) -> Outc
     chat.conversation.first_look()?;
     chat.greet()?;
     let lines = typed_lines();
-    while !interrupt.is_told() {
+    while !interrupt.is_requested() {
         chat.look()?;
         match lines.try_recv() {
             Ok(line) => match line.trim() {
@@ -175,7 +175,7 @@ impl<'a, 'b> Chat<'a, 'b> {
     fn finish(&mut self, interrupt: &Interrupt) -> Outcome {
         let until = Instant::now() + LAST_WORDS;
         let mut over_since = None;
-        while Instant::now() < until && !interrupt.is_told() {
+        while Instant::now() < until && !interrupt.is_requested() {
             self.look()?;
             if !self.is_over() {
                 over_since = None;

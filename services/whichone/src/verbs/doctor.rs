@@ -27,7 +27,7 @@ pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>
             Ok(settings) => {
                 Finding::good("configuration", format!("scene {}", settings.group.scene))
             }
-            Err(trouble) => Finding::bad("configuration", trouble.to_string()),
+            Err(error) => Finding::bad("configuration", error.to_string()),
         },
         shared_memory(settings.as_ref().ok()),
         left_behind(paths),
@@ -76,8 +76,8 @@ fn programs() -> Finding {
     if missing.is_empty() {
         return Finding::good("programs", folder.display().to_string());
     }
-    let cure = "build all of them: cargo build --release --workspace";
-    Finding::bad("programs", format!("{} has no {}; {cure}", folder.display(), missing.join(", ")))
+    let help = "help: build all programs with `cargo build --release --workspace`";
+    Finding::bad("programs", format!("{} lacks {}; {help}", folder.display(), missing.join(", ")))
 }
 
 /// Where the page is, or whether it has its port.
@@ -90,8 +90,8 @@ fn page(paths: &GroupPaths, settings: &Settings) -> Finding {
     match TcpListener::bind(wanted) {
         Ok(_) => Finding::good(WHAT, format!("{wanted} is free")),
         Err(error) => {
-            let cure = "one of the 15 ports behind it will be taken, or set console.listen";
-            Finding::poor(WHAT, format!("{wanted}: {error}; {cure}"))
+            let help = "help: one of the next 15 ports will be used, or set console.listen";
+            Finding::poor(WHAT, format!("{wanted}: {error}; {help}"))
         }
     }
 }
@@ -105,8 +105,8 @@ fn folder(paths: &GroupPaths) -> Finding {
     match written.and_then(|()| fs::remove_file(&probe)) {
         Ok(()) => Finding::good(WHAT, home.display().to_string()),
         Err(error) => {
-            let cure = "make it writable, or name another one in WHICHONE_HOME";
-            Finding::bad(WHAT, format!("{}: {error}; {cure}", home.display()))
+            let help = "help: make it writable, or set WHICHONE_HOME to another folder";
+            Finding::bad(WHAT, format!("{}: {error}; {help}", home.display()))
         }
     }
 }
@@ -140,8 +140,8 @@ fn left_behind(paths: &GroupPaths) -> Finding {
             Finding::good(WHAT, format!("none of {}", words::count(groups.len() as u64, "group")))
         }
         [first, ..] => {
-            let cure = format!("remove them: whichone down --group {first}");
-            Finding::poor(WHAT, format!("of killed groups: {}; {cure}", dead.join(", ")))
+            let help = format!("help: remove them with `whichone down --group {first}`");
+            Finding::poor(WHAT, format!("of killed groups: {}; {help}", dead.join(", ")))
         }
     }
 }
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_killed_groups_traces_are_found() {
+    fn doctor_finds_the_leftovers_of_a_killed_group() {
         let (_home, paths) = lab();
         assert_eq!(left_behind(&paths).note, "none of 0 groups");
         fs::create_dir_all(paths.run()).unwrap();
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_cannot_be_written_is_told_with_the_cure() {
+    fn doctor_reports_a_folder_that_cannot_be_written() {
         let (home, paths) = lab();
         assert_eq!(folder(&paths).state, Condition::Good);
         let file = home.path().join("file");

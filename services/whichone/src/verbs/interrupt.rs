@@ -1,4 +1,4 @@
-//! Ending when the person says so.
+//! Interruption by the user.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,8 +7,8 @@ use service::exit::Exit;
 
 use crate::error::CliError;
 
-/// Whether the person wants to end: Ctrl-C, or a request of the system's. Only for verbs that have
-/// something to put back in order; others are simply ended.
+/// A request to end: Ctrl-C or SIGTERM. Only for verbs that have something to clean up; others are
+/// simply terminated.
 #[derive(Clone, Debug)]
 pub(super) struct Interrupt(Arc<AtomicBool>);
 
@@ -18,15 +18,15 @@ impl Interrupt {
     /// # Errors
     /// The operating system refuses.
     pub(super) fn listen() -> Result<Self, CliError> {
-        let told = Arc::new(AtomicBool::new(false));
+        let requested = Arc::new(AtomicBool::new(false));
         for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-            signal_hook::flag::register(signal, Arc::clone(&told))
+            signal_hook::flag::register(signal, Arc::clone(&requested))
                 .map_err(|error| CliError::new(Exit::NotReached, format!("signals: {error}")))?;
         }
-        Ok(Self(told))
+        Ok(Self(requested))
     }
 
-    /// Whether it is time to end.
+    /// Whether an interruption was requested.
     pub(super) fn is_told(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

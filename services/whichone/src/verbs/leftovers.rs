@@ -1,4 +1,4 @@
-//! What a group that was killed has left on the machine.
+//! Cleanup after a killed group.
 
 use std::fs::{File, TryLockError};
 use std::io::ErrorKind;
@@ -24,9 +24,9 @@ pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBu
     let until = Instant::now() + timeout;
     while some_service_lives(paths) {
         if Instant::now() >= until {
-            let what = format!("group {}: services without a supervisor still run", paths.name());
-            let cure = "wait, or start the group and stop it again";
-            return Err(CliError::new(Exit::NotReached, format!("{what}; {cure}")));
+            let what = format!("group {}: services without a supervisor are still running", paths.name());
+            let help = "help: wait, or start the group and stop it again";
+            return Err(CliError::new(Exit::NotReached, format!("{what}; {help}")));
         }
         thread::sleep(LOOK_EVERY);
     }
@@ -71,8 +71,8 @@ mod tests {
         let (_home, paths) = paths();
         let service = File::create(paths.alive_lock()).unwrap();
         service.lock_shared().unwrap();
-        let trouble = remove(&paths, Duration::from_millis(60)).unwrap_err();
-        assert!(trouble.to_string().contains("still run"), "{trouble}");
+        let error = remove(&paths, Duration::from_millis(60)).unwrap_err();
+        assert!(error.to_string().contains("still running"), "{error}");
         assert!(paths.run().is_dir());
         drop(service);
         remove(&paths, Duration::ZERO).unwrap();

@@ -32,7 +32,7 @@ pub(super) fn logs(paths: &GroupPaths, args: &LogsArgs, out: &mut Output<'_>) ->
     let lines = in_order_of_time(lines);
     let several = files.len() > 1;
     for (service, line) in &lines[lines.len().saturating_sub(args.tail)..] {
-        tell(several, service, line, out)?;
+        print(several, service, line, out)?;
     }
     if !args.follow {
         return Ok(Exit::Ok);
@@ -50,7 +50,7 @@ fn follow(
     out: &mut Output<'_>,
 ) -> Result<(), CliError> {
     if args.service.is_none() {
-        // A service that was not there before has all of its log still to be told.
+        // The log of a new service is printed from its beginning.
         let new = self::files(paths, None)?;
         let known = |file: &LogFile| files.iter().any(|k| k.service() == file.service());
         let new: Vec<LogFile> = new.into_iter().filter(|file| !known(file)).collect();
@@ -62,10 +62,10 @@ fn follow(
         let new = file.new_lines().map_err(|e| CliError::file(file.path(), &e))?;
         lines.extend(new.into_iter().map(|line| (file.service().to_owned(), line)));
     }
-    in_order_of_time(lines).iter().try_for_each(|(service, line)| tell(several, service, line, out))
+    in_order_of_time(lines).iter().try_for_each(|(service, line)| print(several, service, line, out))
 }
 
-fn tell(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Result<(), CliError> {
+fn print(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Result<(), CliError> {
     if out.is_json() {
         return out.json(&json!({ "service": service, "line": line }));
     }
@@ -87,11 +87,11 @@ fn files(paths: &GroupPaths, service: Option<&str>) -> Result<Vec<LogFile>, CliE
         }
         Some(name) => {
             let what = format!("there is no log of {name} in {}", paths.log().display());
-            let cure = match names.is_empty() {
+            let help = match names.is_empty() {
                 true => "start the group first: whichone up".to_owned(),
                 false => format!("there are {}", names.join(", ")),
             };
-            Err(CliError::new(Exit::Usage, format!("{what}; {cure}")))
+            Err(CliError::new(Exit::Usage, format!("{what}; {help}")))
         }
     }
 }

@@ -20,7 +20,7 @@ use crate::output::Output;
 /// How long the supervisor may take for an answer, beyond what it is asked to wait for.
 const ANSWER_PATIENCE: Duration = Duration::from_secs(5);
 
-/// Why a request was not fulfilled.
+/// Reason for which a request is not fulfilled.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Unanswered {
     /// There was no reply.
@@ -90,7 +90,7 @@ pub(super) fn release(paths: &GroupPaths, args: ServiceArgs, out: &mut Output<'_
     order(paths, &Request::Release { service, wait_ms: ms(timeout) }, timeout, out)
 }
 
-/// Has the configuration read anew.
+/// Reloads the configuration.
 pub(super) fn reload(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) -> Outcome {
     order(paths, &Request::Reload { wait_ms: ms(timeout) }, timeout, out)
 }
@@ -173,7 +173,7 @@ fn not_running(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) -> O
     Ok(Exit::Ok)
 }
 
-/// Has one request fulfilled and tells what came of it.
+/// Sends one request and prints its result.
 fn order(paths: &GroupPaths, request: &Request, wait: Duration, out: &mut Output<'_>) -> Outcome {
     match ask(paths, request, wait)? {
         Reply::Done { message } if out.is_json() => out.json(&json!({ "message": message }))?,
@@ -193,7 +193,7 @@ fn order(paths: &GroupPaths, request: &Request, wait: Duration, out: &mut Output
     Ok(Exit::Ok)
 }
 
-/// As the supervisor is asked to wait; nobody waits for more milliseconds than fit.
+/// A wait in milliseconds, as requests carry it.
 fn ms(time: Duration) -> u64 {
     u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }

@@ -1,4 +1,4 @@
-//! Where things are: the group's folders, and the folder of the configuration.
+//! Paths: the group's folders, and the folder of the configuration.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use service::group::{GroupName, GroupPaths};
 use crate::cli::ConfigArgs;
 use crate::error::CliError;
 
-/// A file that tells a folder of this configuration from another that happens to have its name.
+/// A file that every configuration folder holds.
 const MARK: &str = "group.toml";
 
 /// The folders of the group.
@@ -57,9 +57,9 @@ pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, CliError> {
     find(&env::current_dir().unwrap_or_default(), env::current_exe().ok().as_deref())
         .map(|found| absolute(&found))
         .ok_or_else(|| {
-            let what = format!("no configuration: there is no ./config with {MARK}");
-            let cure = "name its folder with --config DIR or WHICHONE_CONFIG";
-            CliError::new(Exit::Config, format!("{what}; {cure}"))
+            let what = format!("no configuration found: ./config/{MARK} is missing");
+            let help = "help: pass --config DIR or set WHICHONE_CONFIG";
+            CliError::new(Exit::Config, format!("{what}; {help}"))
         })
 }
 
@@ -69,7 +69,7 @@ fn find(here: &Path, program: Option<&Path>) -> Option<PathBuf> {
     folders.into_iter().find(|folder| folder.join(MARK).is_file())
 }
 
-/// Other processes are told of it, and they work in other folders.
+/// The path is passed to other processes, which work in other folders.
 fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }

@@ -1,4 +1,4 @@
-//! `say`, `talk` and `point`: giving the robot something to hear or see.
+//! `say`, `talk` and `point`: submission of utterances and gestures.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::cli::{PointArgs, SayArgs, TalkArgs};
 use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, note};
 
-/// Says words, and tells whether they were accepted.
+/// Submits an utterance and prints its receipt.
 pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> Outcome {
     let spoken = args.began_ago.is_some()
         || args.ended_ago.is_some()
@@ -27,7 +27,7 @@ pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> O
     let client = Client::join(paths)?;
     let patience = Span::from_s(args.timeout.as_secs_f64());
     let (sound, said) = (transcript(args)?, when(args)?);
-    tell_all(&client.inject_said(sound, said, patience)?, out)
+    print_all(&client.inject_said(sound, said, patience)?, out)
 }
 
 /// When it was said.
@@ -35,7 +35,7 @@ fn when(args: &SayArgs) -> Result<(Time, Time), CliError> {
     let ended = args.ended_ago.unwrap_or_default();
     let began = args.began_ago.unwrap_or(ended);
     if began < ended {
-        let what = "nobody ends before he begins: --began-ago is the longer time";
+        let what = "expected --began-ago to be at least --ended-ago";
         return Err(CliError::new(Exit::Usage, what));
     }
     let now = clock::now();
@@ -54,14 +54,14 @@ fn transcript(args: &SayArgs) -> Result<Sound, CliError> {
     Ok(Sound::Transcript { hypotheses: std::iter::once(best).chain(others).collect() })
 }
 
-/// Points at a place, and tells whether that was accepted.
+/// Submits a pointing gesture and prints its receipt.
 pub(super) fn point(paths: &GroupPaths, args: &PointArgs, out: &mut Output<'_>) -> Outcome {
     let patience = Span::from_s(args.timeout.as_secs_f64());
     let client = Client::join(paths)?;
-    tell_all(&client.point([args.x, args.y, args.z], &args.say, patience)?, out)
+    print_all(&client.point([args.x, args.y, args.z], &args.say, patience)?, out)
 }
 
-/// Opens the microphone for one utterance, and tells what was heard.
+/// Opens the microphone for one utterance and prints its receipt.
 pub(super) fn talk(paths: &GroupPaths, args: &TalkArgs, out: &mut Output<'_>) -> Outcome {
     let longest_s = args.seconds.as_secs_f64();
     if !out.is_json() {
@@ -70,7 +70,7 @@ pub(super) fn talk(paths: &GroupPaths, args: &TalkArgs, out: &mut Output<'_>) ->
     give(paths, Sound::Talk { longest_s }, args.seconds + args.timeout, out)
 }
 
-/// Gives a sound to the robot, and tells what became of it.
+/// Submits a sound and prints its receipts.
 pub(super) fn give(
     paths: &GroupPaths,
     sound: Sound,
@@ -79,19 +79,19 @@ pub(super) fn give(
 ) -> Outcome {
     let client = Client::join(paths)?;
     let receipts = client.inject(sound, Span::from_s(timeout.as_secs_f64()))?;
-    tell_all(&receipts, out)
+    print_all(&receipts, out)
 }
 
-fn tell_all(receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
+fn print_all(receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
     for receipt in receipts {
-        tell(receipt, out)?;
+        print(receipt, out)?;
     }
     let accepted = |receipt: &Receipt| receipt.status == ReceiptStatus::Accepted.code();
     Ok(if receipts.iter().any(accepted) { Exit::Ok } else { Exit::NotReached })
 }
 
-/// Tells what became of an utterance.
-pub(super) fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), CliError> {
+/// Prints the receipt of an utterance.
+pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), CliError> {
     let unclear = |error: messages::WireError| CliError::new(Exit::NotReached, error.to_string());
     let status = ReceiptStatus::from_code(receipt.status).map_err(unclear)?;
     let source = Source::from_code(receipt.source).map_err(unclear)?;
@@ -115,8 +115,8 @@ pub(super) fn tell(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), CliErr
             out.line(format_args!("heard{seq}: {note}{how}"))?;
         }
         (ReceiptStatus::NotForMe, _) => {
-            let told = format!("heard, but not meant for the robot: {note}");
-            out.line(style.paint(Ink::Yellow, told))?;
+            let text = format!("heard, but not meant for the robot: {note}");
+            out.line(style.paint(Ink::Yellow, text))?;
         }
         (ReceiptStatus::Over, _) if note.is_empty() => {}
         (ReceiptStatus::Over, _) => out.line(style.paint(Ink::Yellow, note))?,

@@ -143,9 +143,9 @@ mod tests {
             "strays_killed": 1, "services": [service],
         });
         let status = serde_json::from_value(status).unwrap();
-        let told = lines(&status, Style::default());
+        let printed = lines(&status, Style::default());
         assert_eq!(
-            told,
+            printed,
             [
                 "group lab is degraded: scene bowls, up 1 min 1 s, supervisor 7, configuration /c \
                  with profile ci, 1 orphan killed",

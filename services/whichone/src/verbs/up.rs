@@ -65,12 +65,12 @@ fn refuse_twice(paths: &GroupPaths) -> Result<(), CliError> {
     }
     let name = paths.name();
     let pid = operate::status_of(paths)?.supervisor_pid;
-    let what = format!("group {name} is running already (supervisor {pid})");
+    let what = format!("group {name} is already running (supervisor {pid})");
     Err(CliError::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
 }
 
 /// What the supervisor is started with. It checks the configuration itself; here it is checked
-/// first so that problems are told without its log around them.
+/// first so that problems are printed without its log around them.
 fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Options, CliError> {
     paths::settings(config)?;
     Ok(Options {

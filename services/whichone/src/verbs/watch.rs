@@ -55,7 +55,7 @@ fn follow(
     out: &mut Output<'_>,
 ) -> Result<(), CliError> {
     let (mut drawn, mut asked) = (None::<Instant>, Instant::now());
-    while !interrupt.is_told() {
+    while !interrupt.is_requested() {
         model.look()?;
         if asked.elapsed() >= STATUS_EVERY {
             ask_supervisor(model);

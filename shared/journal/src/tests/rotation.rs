@@ -2,7 +2,7 @@
 
 use std::io;
 
-use super::{Entry, TestJournal, entry, header};
+use super::{Entry, TestJournal, entry};
 use crate::rotate::Step;
 use crate::{Journal, KEPT, RotateError, SyncError, read};
 

@@ -1,7 +1,7 @@
 //! Readers and writers of topics whose payloads are postcard in a byte slice.
 
-use super::doorbell::Bell;
-use super::open::{Gate, bells, open_topic};
+use super::wake::WakeNotifier;
+use super::open::{Gate, notifiers, open_topic};
 use super::{Bus, BusError, Ipc, PortError};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
@@ -22,7 +22,7 @@ const BYTES_MAX: usize = 16 << 20;
 pub struct EncodedWriter<T: Schema> {
     topic: &'static str,
     publisher: Publisher<Ipc, [u8], Stamp>,
-    bells: Vec<Bell>,
+    notifiers: Vec<WakeNotifier>,
     stamp: Stamp,
     _service: PortFactory<Ipc, [u8], Stamp>,
     _payload: PhantomData<T>,
@@ -39,9 +39,9 @@ impl<T: Schema> EncodedWriter<T> {
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create()
             .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
-        let bells = bells(bus, topic)?;
+        let notifiers = notifiers(bus, topic)?;
         let (topic, stamp) = (topic.name, bus.stamp());
-        Ok(Self { topic, publisher, bells, stamp, _service: service, _payload: PhantomData })
+        Ok(Self { topic, publisher, notifiers, stamp, _service: service, _payload: PhantomData })
     }
 
     /// Encodes and sends the payload.
@@ -61,7 +61,7 @@ impl<T: Schema> EncodedWriter<T> {
         let mut sample = loan.map_err(|e| failed(format!("{e:?}")))?;
         *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
         sample.write_from_slice(&bytes).send().map_err(|e| failed(format!("{e:?}")))?;
-        self.bells.iter().for_each(Bell::ring);
+        self.notifiers.iter().for_each(WakeNotifier::notify);
         Ok(())
     }
 }

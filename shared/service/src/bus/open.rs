@@ -1,6 +1,6 @@
 //! Opening topics: the same bounds and the same schema check for every payload kind.
 
-use super::doorbell::{self, Bell};
+use super::wake::{self, WakeNotifier};
 use super::{Bus, BusError, Ipc};
 use iceoryx2::prelude::*;
 use iceoryx2::service::attribute::{AttributeKey, AttributeValue};
@@ -66,7 +66,7 @@ pub(super) fn refused(topic: &Topic, error: &PublishSubscribeOpenOrCreateError) 
 #[derive(Debug)]
 pub struct Topics {
     _topics: Vec<Box<dyn std::fmt::Debug>>,
-    _bells: Vec<PortFactory<Ipc>>,
+    _notifiers: Vec<PortFactory<Ipc>>,
 }
 
 impl Topics {
@@ -76,8 +76,8 @@ impl Topics {
     /// iceoryx2 refuses, or a topic of another schema stands there.
     pub fn create(bus: &Bus) -> Result<Self, BusError> {
         let topics = topics::ALL.iter().map(|topic| keep(bus, topic)).collect::<Result<_, _>>()?;
-        let bells = Service::ALL.iter().map(|&s| doorbell::open(bus, s));
-        Ok(Self { _topics: topics, _bells: bells.collect::<Result<_, _>>()? })
+        let notifiers = Service::ALL.iter().map(|&s| wake::open(bus, s));
+        Ok(Self { _topics: topics, _notifiers: notifiers.collect::<Result<_, _>>()? })
     }
 }
 
@@ -110,9 +110,9 @@ fn keep(bus: &Bus, topic: &Topic) -> Result<Box<dyn std::fmt::Debug>, BusError> 
     ))
 }
 
-/// The bells of a topic's readers.
-pub(super) fn bells(bus: &Bus, topic: &Topic) -> Result<Vec<Bell>, BusError> {
-    topic.readers.iter().map(|&service| Bell::open(bus, service)).collect()
+/// The notifiers of a topic's readers.
+pub(super) fn notifiers(bus: &Bus, topic: &Topic) -> Result<Vec<WakeNotifier>, BusError> {
+    topic.readers.iter().map(|&service| WakeNotifier::open(bus, service)).collect()
 }
 
 /// Turns away messages of another epoch and of an earlier incarnation of the writer than has

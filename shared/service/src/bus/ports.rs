@@ -3,8 +3,8 @@
 //! A writer never blocks: a slow or stopped reader loses the oldest message, and is sent again what
 //! matters.
 
-use super::doorbell::Bell;
-use super::open::{Gate, bells, open_topic};
+use super::wake::WakeNotifier;
+use super::open::{Gate, notifiers, open_topic};
 use super::{Bus, BusError, Ipc, PortError, WireMessage};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::BackpressureStrategy;
@@ -17,7 +17,7 @@ use messages::topics::Topic;
 pub struct Writer<T: WireMessage> {
     topic: &'static str,
     publisher: Publisher<Ipc, T, Stamp>,
-    bells: Vec<Bell>,
+    notifiers: Vec<WakeNotifier>,
     stamp: Stamp,
     _service: PortFactory<Ipc, T, Stamp>,
 }
@@ -31,8 +31,8 @@ impl<T: WireMessage> Writer<T> {
             .backpressure_strategy(BackpressureStrategy::DiscardData)
             .create()
             .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
-        let bells = bells(bus, topic)?;
-        Ok(Self { topic: topic.name, publisher, bells, stamp: bus.stamp(), _service: service })
+        let notifiers = notifiers(bus, topic)?;
+        Ok(Self { topic: topic.name, publisher, notifiers, stamp: bus.stamp(), _service: service })
     }
 
     /// Sends the message and wakes the topic's readers. That it was sent does not mean that it was
@@ -46,7 +46,7 @@ impl<T: WireMessage> Writer<T> {
         *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
         let sent = sample.write_payload(*message).send();
         sent.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
-        self.bells.iter().for_each(Bell::ring);
+        self.notifiers.iter().for_each(WakeNotifier::notify);
         Ok(())
     }
 }

@@ -1,4 +1,4 @@
-//! The operator's side of the control socket.
+//! Client of the control socket.
 
 use std::io::{self, BufRead, BufReader, ErrorKind, Write};
 use std::os::unix::net::UnixStream;
@@ -9,45 +9,45 @@ use thiserror::Error;
 
 use super::{Reply, Request};
 
-/// Why a request got no reply.
+/// Failure to get a reply.
 #[derive(Debug, Error)]
 pub enum CallError {
-    /// Nobody listens: the group does not run.
-    #[error("no group {group} is running; start it with `whichone up{}`", of(.group))]
+    /// The group is not running.
+    #[error("group {group} is not running; help: start it with `whichone up{}`", of(.group))]
     NoGroup {
         /// The group's name.
         group: String,
     },
-    /// The supervisor did not answer in time.
+    /// No answer in time.
     #[error("the supervisor of group {group} did not answer within {} s", .timeout.as_secs_f64())]
     TimedOut {
         /// The group's name.
         group: String,
-        /// How long it was waited for.
+        /// The timeout.
         timeout: Duration,
     },
-    /// The connection broke: the supervisor ended meanwhile.
+    /// The supervisor ended before its answer.
     #[error("the supervisor of group {group} ended before it answered")]
     Closed {
         /// The group's name.
         group: String,
     },
-    /// The answer is not one, as of a supervisor of another version.
+    /// An invalid answer, e.g. of a supervisor of another version.
     #[error(
-        "the supervisor of group {group} answered what this program does not understand: {why}"
+        "invalid answer of the supervisor of group {group}: {why}; help: use one version of all programs"
     )]
     Unintelligible {
         /// The group's name.
         group: String,
-        /// Where the understanding ended.
+        /// The parser's error.
         why: String,
     },
-    /// The socket cannot be used.
+    /// Failure of the socket.
     #[error("{}: {error}", .path.display())]
     Io {
         /// The control socket.
         path: PathBuf,
-        /// What the operating system says.
+        /// Cause.
         error: io::Error,
     },
 }
@@ -60,7 +60,8 @@ fn of(group: &str) -> String {
     }
 }
 
-/// Asks the supervisor at control socket `path` and waits for its reply, at most for `timeout`.
+/// Sends a request to the supervisor at control socket `path` and waits for the reply, at most
+/// `timeout`.
 ///
 /// For a request that itself waits, `timeout` should be longer than its `wait_ms`.
 ///
@@ -134,31 +135,31 @@ mod tests {
     }
 
     #[test]
-    fn without_a_group_it_says_how_to_start_one() {
+    fn control_client_suggests_how_to_start_a_missing_group() {
         let (_home, path) = socket("lab");
-        let told = call(&path, &Request::Ping, SHORT).unwrap_err().to_string();
-        assert_eq!(told, "no group lab is running; start it with `whichone up --group lab`");
+        let error = call(&path, &Request::Ping, SHORT).unwrap_err().to_string();
+        assert_eq!(error, "group lab is not running; help: start it with `whichone up --group lab`");
         drop(UnixListener::bind(&path).unwrap());
-        let told = call(&path, &Request::Ping, SHORT).unwrap_err();
-        assert!(matches!(told, CallError::NoGroup { .. }), "a socket that was left behind: {told}");
+        let error = call(&path, &Request::Ping, SHORT).unwrap_err();
+        assert!(matches!(error, CallError::NoGroup { .. }), "a stale socket: {error}");
         let (_home, path) = socket("whichone");
-        let told = call(&path, &Request::Ping, SHORT).unwrap_err().to_string();
-        assert_eq!(told, "no group whichone is running; start it with `whichone up`");
+        let error = call(&path, &Request::Ping, SHORT).unwrap_err().to_string();
+        assert_eq!(error, "group whichone is not running; help: start it with `whichone up`");
     }
 
     #[test]
-    fn every_way_not_to_answer_is_told() {
+    fn control_client_distinguishes_missing_answers() {
         assert!(matches!(answered_with(""), Err(CallError::Closed { .. })));
         assert!(matches!(answered_with("{\"reply\":"), Err(CallError::Closed { .. })));
         assert!(matches!(answered_with("?\n"), Err(CallError::Unintelligible { .. })));
         let (_home, path) = socket("lab");
         let _silent = UnixListener::bind(&path).unwrap();
-        let told = call(&path, &Request::Ping, SHORT).unwrap_err();
-        assert!(matches!(told, CallError::TimedOut { .. }), "{told}");
+        let error = call(&path, &Request::Ping, SHORT).unwrap_err();
+        assert!(matches!(error, CallError::TimedOut { .. }), "{error}");
     }
 
     #[test]
-    fn an_answer_is_handed_on() {
+    fn control_client_returns_the_reply() {
         let reply = answered_with("{\"reply\":\"done\",\"message\":\"so\"}\n").unwrap();
         assert_eq!(reply, Reply::Done { message: "so".into() });
     }

@@ -15,7 +15,7 @@ fn append(paths: &GroupPaths, service: &str, text: &str) {
     file.write_all(text.as_bytes()).unwrap();
 }
 
-fn told(paths: &GroupPaths, service: Option<&str>, tail: usize) -> Vec<String> {
+fn printed(paths: &GroupPaths, service: Option<&str>, tail: usize) -> Vec<String> {
     let args = LogsArgs { service: service.map(str::to_owned), follow: false, tail };
     let mut bytes = Vec::new();
     logs(paths, &args, &mut Output::to(&mut bytes, false)).unwrap();
@@ -28,12 +28,12 @@ fn lines_of_all_services_come_in_order_of_time() {
     append(&paths, "arm", "2026-01-01T00:00:01.5Z  INFO one\n  and more\n");
     append(&paths, "arm", "2026-01-01T00:00:03.0Z  INFO three\n");
     append(&paths, "policy", "{\"timestamp\":\"2026-01-01T00:00:02.0Z\",\"level\":\"INFO\"}\n");
-    let lines = told(&paths, None, 100);
+    let lines = printed(&paths, None, 100);
     let order: Vec<&str> = lines.iter().map(|line| line.split(' ').next().unwrap()).collect();
     assert_eq!(order, ["arm", "arm", "policy", "arm"], "{lines:?}");
     assert!(lines[1].ends_with("  and more"));
-    assert_eq!(told(&paths, None, 1).len(), 1);
-    assert_eq!(told(&paths, Some("arm"), 1), ["2026-01-01T00:00:03.0Z  INFO three"]);
+    assert_eq!(printed(&paths, None, 1).len(), 1);
+    assert_eq!(printed(&paths, Some("arm"), 1), ["2026-01-01T00:00:03.0Z  INFO three"]);
 }
 
 #[test]
@@ -41,15 +41,15 @@ fn an_unknown_service_is_told_with_those_that_have_a_log() {
     let (_home, paths) = group();
     append(&paths, "arm", "line\n");
     let args = LogsArgs { service: Some("leg".into()), follow: false, tail: 1 };
-    let trouble = logs(&paths, &args, &mut Output::to(Vec::new(), false)).unwrap_err();
-    assert!(trouble.to_string().ends_with("there are arm"), "{trouble}");
+    let error = logs(&paths, &args, &mut Output::to(Vec::new(), false)).unwrap_err();
+    assert!(error.to_string().ends_with("there are arm"), "{error}");
 }
 
 #[test]
 fn what_a_log_says_cannot_act_upon_the_terminal() {
     let (_home, paths) = group();
     append(&paths, "arm", "\x1b[2Jgone\r\n");
-    assert_eq!(told(&paths, Some("arm"), 5), ["[2Jgone"]);
+    assert_eq!(printed(&paths, Some("arm"), 5), ["[2Jgone"]);
 }
 
 #[test]

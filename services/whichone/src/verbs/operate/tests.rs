@@ -7,7 +7,7 @@ use serde_json::Value as Json;
 use super::*;
 
 /// What is asked, printed, and how it ends, when the supervisor answers with `reply`.
-fn told(
+fn run(
     reply: Json,
     json: bool,
     verb: impl FnOnce(&GroupPaths, &mut Output<'_>) -> Outcome,
@@ -32,7 +32,7 @@ fn told(
     });
     let mut printed = Vec::new();
     let ended =
-        verb(&paths, &mut Output::to(&mut printed, json)).map_err(|trouble| match trouble {
+        verb(&paths, &mut Output::to(&mut printed, json)).map_err(|error| match error {
             CliError::Failure(failure) => (failure.exit, failure.message),
             CliError::Output(error) => panic!("{error}"),
         });
@@ -47,13 +47,13 @@ fn arm() -> ServiceArgs {
 #[test]
 fn what_is_asked_is_what_the_verb_says() {
     let done = || json!({"reply": "done", "message": "arm is so"});
-    let (asked, printed, ended) = told(done(), false, |paths, out| hold(paths, arm(), out));
+    let (asked, printed, ended) = run(done(), false, |paths, out| hold(paths, arm(), out));
     assert_eq!(asked, json!({"verb": "hold", "service": "arm", "wait_ms": 1500}));
     assert_eq!((printed.as_str(), ended), ("arm is so\n", Ok(Exit::Ok)));
-    let (asked, printed, _) = told(done(), true, |paths, out| start(paths, arm(), out));
+    let (asked, printed, _) = run(done(), true, |paths, out| start(paths, arm(), out));
     assert_eq!(asked["verb"], "start");
     assert_eq!(printed, "{\"message\":\"arm is so\"}\n");
-    let (asked, ..) = told(done(), false, |paths, out| {
+    let (asked, ..) = run(done(), false, |paths, out| {
         let (service, command) = ("arm".to_owned(), vec!["python3".to_owned()]);
         swap(paths, SwapArgs { service, command, timeout: Duration::from_secs(1) }, out)
     });
@@ -68,7 +68,7 @@ fn a_refusal_is_told_with_its_details_and_its_kind() {
     for (kind, exit) in kinds {
         let refused =
             json!({"reply": "refused", "kind": kind, "message": "no", "details": ["why"]});
-        let (_, printed, ended) = told(refused, false, |paths, out| release(paths, arm(), out));
+        let (_, printed, ended) = run(refused, false, |paths, out| release(paths, arm(), out));
         assert_eq!((printed.as_str(), ended), ("", Err((exit, "no\n  why".to_owned()))));
     }
 }
@@ -77,7 +77,7 @@ fn a_refusal_is_told_with_its_details_and_its_kind() {
 fn a_reload_names_what_it_restarted() {
     let reloaded = |names: Json| {
         let reply = json!({"reply": "reloaded", "restarted": names});
-        told(reply, false, |paths, out| reload(paths, Duration::ZERO, out)).1
+        run(reply, false, |paths, out| reload(paths, Duration::ZERO, out)).1
     };
     assert!(reloaded(json!(["policy", "arm"])).ends_with("restarted: policy, arm\n"));
     assert!(reloaded(json!([])).ends_with("no service had to be restarted\n"));
@@ -88,7 +88,7 @@ fn the_end_of_a_group_is_told_with_what_did_not_end_by_itself() {
     let report = json!({"reply": "down", "killed": ["arm"], "strays": [], "leftovers": ["/dev/x"],
                         "seconds": 0.25});
     let bring_down = |paths: &GroupPaths, out: &mut Output<'_>| down(paths, Duration::ZERO, out);
-    let (_, printed, ended) = told(report, false, bring_down);
+    let (_, printed, ended) = run(report, false, bring_down);
     let lines: Vec<&str> = printed.lines().collect();
     assert_eq!(lines[0], "group lab is down after 250 ms");
     assert_eq!(lines[1], "  did not end when asked and were killed: arm");
@@ -99,6 +99,6 @@ fn the_end_of_a_group_is_told_with_what_did_not_end_by_itself() {
 #[test]
 fn an_answer_that_makes_no_sense_is_no_success() {
     let reply = json!({"reply": "done", "message": "what?"});
-    let (_, _, ended) = told(reply, false, |paths, out| down(paths, Duration::ZERO, out));
+    let (_, _, ended) = run(reply, false, |paths, out| down(paths, Duration::ZERO, out));
     assert!(ended.unwrap_err().1.contains("does not understand"));
 }

@@ -1,5 +1,5 @@
 //! Wake-ups. An event says only "look": it may come once for many messages, or never where its
-//! listener was dead, so the woken side always drains everything and also looks by itself at times.
+//! listener was dead, so the woken side always drains everything and also polls from time to time.
 
 use super::{Bus, BusError, Ipc};
 use iceoryx2::port::{listener::Listener, notifier::Notifier};
@@ -11,14 +11,14 @@ use std::os::fd::BorrowedFd;
 
 /// Listens for wake-ups of one service.
 #[derive(Debug)]
-pub struct Ear {
+pub struct WakeListener {
     listener: Listener<Ipc>,
     _topic: PortFactory<Ipc>,
 }
 
 /// Wakes one service.
 #[derive(Debug)]
-pub struct Bell {
+pub struct WakeNotifier {
     notifier: Notifier<Ipc>,
     _topic: PortFactory<Ipc>,
 }
@@ -37,7 +37,7 @@ pub(super) fn open(bus: &Bus, service: Service) -> Result<PortFactory<Ipc>, BusE
         .map_err(|e| BusError::ipc(&name, format!("{e:?}")))
 }
 
-impl Ear {
+impl WakeListener {
     pub(super) fn open(bus: &Bus, service: Service) -> Result<Self, BusError> {
         let topic = open(bus, service)?;
         let listener = topic
@@ -66,7 +66,7 @@ impl Ear {
     }
 }
 
-impl Bell {
+impl WakeNotifier {
     pub(super) fn open(bus: &Bus, service: Service) -> Result<Self, BusError> {
         let topic = open(bus, service)?;
         let notifier = topic
@@ -76,8 +76,8 @@ impl Bell {
         Ok(Self { notifier, _topic: topic })
     }
 
-    /// Wakes the service, if it is there. A failure is no error: it looks by itself soon.
-    pub(super) fn ring(&self) {
+    /// Wakes the service, if it is there. A failure is harmless: the service polls as well.
+    pub(super) fn notify(&self) {
         if let Err(error) = self.notifier.notify() {
             tracing::debug!(?error, "wake-up not delivered");
         }

@@ -1,0 +1,108 @@
+//! A request to the speech service, resent under one key until its receipts have arrived, so that
+//! a restart in between neither loses nor doubles it.
+
+use messages::{Injection, Receipt, RequestKey, Sound};
+
+use crate::client::random_key;
+use crate::{Span, Time};
+
+/// Time between two transmissions of an unanswered request.
+const RESEND_EVERY: Span = Span::from_ms(250);
+
+/// One request on its way. Pure: the caller sends what [`Submission::due`] returns and feeds every
+/// receipt of the topic to [`Submission::on_receipt`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Submission {
+    injection: Injection,
+    expires: Time,
+    sent: Option<Time>,
+    receipts: Vec<Receipt>,
+}
+
+impl Submission {
+    /// A request that was said from `began` to `ended` (0: its arrival) and expires after
+    /// `patience`.
+    pub fn new(sound: Sound, (began, ended): (Time, Time), now: Time, patience: Span) -> Self {
+        let (onset_ns, end_ns) = (began.ns(), ended.ns());
+        let injection = Injection { key: random_key(), onset_ns, end_ns, sound };
+        Self { injection, expires: now + patience, sent: None, receipts: Vec::new() }
+    }
+
+    /// Key of the request, which its receipts repeat.
+    pub fn key(&self) -> RequestKey {
+        self.injection.key
+    }
+
+    /// Returns the request if it is due for its first or a further transmission, and marks it as
+    /// sent.
+    pub fn due(&mut self, now: Time) -> Option<&Injection> {
+        if self.sent.is_some_and(|sent| now < sent + RESEND_EVERY) {
+            return None;
+        }
+        self.sent = Some(now);
+        Some(&self.injection)
+    }
+
+    /// Takes a receipt; those of other requests and repeated ones are ignored.
+    pub fn on_receipt(&mut self, receipt: &Receipt) {
+        let new = self.receipts.iter().all(|known| known.segment != receipt.segment);
+        if receipt.request() == self.key() && new {
+            self.receipts.push(*receipt);
+            self.receipts.sort_by_key(|receipt| receipt.segment);
+        }
+    }
+
+    /// Returns the receipts once all of them have arrived: one for text, one for each utterance of a
+    /// sound file, in order.
+    pub fn receipts(&self) -> Option<&[Receipt]> {
+        let first = self.receipts.first()?;
+        (self.receipts.len() >= first.segments as usize).then_some(&self.receipts)
+    }
+
+    /// Whether the patience has run out without all receipts.
+    pub fn is_expired(&self, now: Time) -> bool {
+        now >= self.expires && self.receipts().is_none()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(ms: u64) -> Time {
+        Time(0) + Span::from_ms(ms)
+    }
+
+    fn submission() -> Submission {
+        Submission::new(Sound::Text("hello".into()), (at(0), at(0)), at(0), Span::from_ms(1_000))
+    }
+
+    #[test]
+    fn a_submission_is_resent_under_one_key_until_it_expires() {
+        let mut submission = submission();
+        let key = submission.key();
+        let sent: Vec<u64> = (0..1_000)
+            .step_by(50)
+            .filter(|&ms| submission.due(at(ms)).is_some_and(|request| request.key == key))
+            .collect();
+        assert_eq!(sent, [0, 250, 500, 750]);
+        assert!(!submission.is_expired(at(999)));
+        assert!(submission.is_expired(at(1_000)));
+    }
+
+    #[test]
+    fn a_submission_is_complete_with_one_receipt_for_each_segment() {
+        let mut submission = submission();
+        let key = submission.key();
+        let other = RequestKey([7; 16]);
+        let arrivals =
+            [(0, other, None), (1, key, None), (1, key, None), (0, key, Some(vec![0, 1]))];
+        for (segment, key, expected) in arrivals {
+            let receipt = Receipt { segment, segments: 2, key: key.0, ..Receipt::default() };
+            submission.on_receipt(&receipt);
+            let found = submission.receipts().map(|all| all.iter().map(|r| r.segment).collect());
+            assert_eq!(found, expected);
+        }
+        assert!(!submission.is_expired(at(9_000)));
+    }
+}
