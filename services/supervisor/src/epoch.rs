@@ -42,7 +42,10 @@ fn read(paths: &GroupPaths) -> io::Result<Option<u64>> {
         text => text?,
     };
     let number = text.trim().parse().map_err(|_| {
-        let what = format!("{}: expected an epoch number, found {text:?}; help: start with `whichone up --fresh`", path.display());
+        let what = format!(
+            "{}: expected an epoch number, found {text:?}; help: start with `whichone up --fresh`",
+            path.display()
+        );
         io::Error::new(ErrorKind::InvalidData, what)
     });
     number.map(Some)

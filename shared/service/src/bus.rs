@@ -8,15 +8,15 @@ use messages::topics::Topic;
 use messages::{Epoch, Incarnation, Service, Stamp, WireField};
 use serde::de::DeserializeOwned;
 
-mod wake;
 mod encoded;
 mod open;
 mod ports;
+mod wake;
 
-pub use wake::{WakeNotifier, WakeListener};
 pub use encoded::{EncodedReader, EncodedWriter};
 pub use open::Topics;
 pub use ports::{Reader, Writer};
+pub use wake::{WakeListener, WakeNotifier};
 
 pub(crate) type Ipc = ipc::Service;
 

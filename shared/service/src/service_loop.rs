@@ -4,7 +4,7 @@
 //! Commit is where the promises are kept: all records of a pass are appended and synced once, and
 //! only then does anything of it become visible to others.
 
-use crate::bus::{Bus, WakeListener, Identity, PortError};
+use crate::bus::{Bus, Identity, PortError, WakeListener};
 use crate::clock;
 use crate::exit::{Exit, Failure};
 use crate::inspection::{self, Finding, Part};

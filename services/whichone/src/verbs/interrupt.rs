@@ -27,7 +27,7 @@ impl Interrupt {
     }
 
     /// Whether an interruption was requested.
-    pub(super) fn is_told(&self) -> bool {
+    pub(super) fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }

@@ -24,7 +24,8 @@ pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBu
     let until = Instant::now() + timeout;
     while some_service_lives(paths) {
         if Instant::now() >= until {
-            let what = format!("group {}: services without a supervisor are still running", paths.name());
+            let what =
+                format!("group {}: services without a supervisor are still running", paths.name());
             let help = "help: wait, or start the group and stop it again";
             return Err(CliError::new(Exit::NotReached, format!("{what}; {help}")));
         }

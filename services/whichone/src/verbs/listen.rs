@@ -101,7 +101,7 @@ impl Printed {
             }
             self.segments.push(receipt.segment);
             self.accepted |= receipt.status == ReceiptStatus::Accepted.code();
-            match speak::tell(receipt, out) {
+            match speak::print(receipt, out) {
                 // A rejected utterance does not end the stream.
                 Err(trouble) if receipt.status == ReceiptStatus::Refused.code() => {
                     crate::output::note(trouble);

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
-use serde_json::json;
+use serde::Serialize;
 use service::exit::Exit;
 use service::group::GroupPaths;
 
@@ -62,12 +62,21 @@ fn follow(
         let new = file.new_lines().map_err(|e| CliError::file(file.path(), &e))?;
         lines.extend(new.into_iter().map(|line| (file.service().to_owned(), line)));
     }
-    in_order_of_time(lines).iter().try_for_each(|(service, line)| print(several, service, line, out))
+    in_order_of_time(lines)
+        .iter()
+        .try_for_each(|(service, line)| print(several, service, line, out))
+}
+
+/// A line with `--json`.
+#[derive(Serialize)]
+struct Line<'a> {
+    service: &'a str,
+    line: &'a str,
 }
 
 fn print(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Result<(), CliError> {
     if out.is_json() {
-        return out.json(&json!({ "service": service, "line": line }));
+        return out.json(&Line { service, line });
     }
     let line: String = line.chars().filter(|&c| !c.is_control() || c == '\t').collect();
     if !several {
@@ -86,10 +95,10 @@ fn files(paths: &GroupPaths, service: Option<&str>) -> Result<Vec<LogFile>, CliE
             Ok(vec![LogFile::new(name, paths.log_file(name))])
         }
         Some(name) => {
-            let what = format!("there is no log of {name} in {}", paths.log().display());
+            let what = format!("no log of {name} in {}", paths.log().display());
             let help = match names.is_empty() {
-                true => "start the group first: whichone up".to_owned(),
-                false => format!("there are {}", names.join(", ")),
+                true => "help: start the group with `whichone up`".to_owned(),
+                false => format!("help: existing logs: {}", names.join(", ")),
             };
             Err(CliError::new(Exit::Usage, format!("{what}; {help}")))
         }

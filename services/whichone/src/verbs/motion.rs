@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use messages::MotionOrder;
-use serde_json::json;
+use serde::Serialize;
 use service::Span;
 use service::client::Client;
 use service::exit::Exit;
@@ -11,6 +11,12 @@ use service::group::GroupPaths;
 
 use crate::error::Outcome;
 use crate::output::Output;
+
+/// State of the motion stop.
+#[derive(Serialize)]
+struct MotionStop {
+    stopped: bool,
+}
 
 /// Latches or releases the motion stop, and returns once the arm has confirmed it.
 pub(super) fn motion(
@@ -22,9 +28,9 @@ pub(super) fn motion(
     Client::join(paths)?.motion(order, Span::from_s(timeout.as_secs_f64()))?;
     let stopped = order == MotionOrder::Stop;
     if out.is_json() {
-        out.json(&json!({ "stopped": stopped }))?;
+        out.json(&MotionStop { stopped })?;
     } else if stopped {
-        out.line("the arm is stopped; let it move again with: whichone resume-motion")?;
+        out.line("the arm is stopped; release it with `whichone resume-motion`")?;
     } else {
         out.line("the arm may move")?;
     }

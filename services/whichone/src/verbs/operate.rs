@@ -6,7 +6,7 @@ use std::time::Duration;
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Pid, PidfdFlags, pidfd_open};
 use rustix::time::Timespec;
-use serde_json::json;
+use serde::Serialize;
 use service::control::{CallError, DownReport, Refusal, Reply, Request, call};
 use service::exit::Exit;
 use service::group::GroupPaths;
@@ -173,13 +173,25 @@ fn not_running(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) -> O
     Ok(Exit::Ok)
 }
 
+/// A fulfilled request with `--json`.
+#[derive(Serialize)]
+struct Done {
+    message: String,
+}
+
+/// A reload with `--json`.
+#[derive(Serialize)]
+struct Reloaded {
+    restarted: Vec<String>,
+}
+
 /// Sends one request and prints its result.
 fn order(paths: &GroupPaths, request: &Request, wait: Duration, out: &mut Output<'_>) -> Outcome {
     match ask(paths, request, wait)? {
-        Reply::Done { message } if out.is_json() => out.json(&json!({ "message": message }))?,
+        Reply::Done { message } if out.is_json() => out.json(&Done { message })?,
         Reply::Done { message } => out.line(message)?,
         Reply::Reloaded { restarted } if out.is_json() => {
-            out.json(&json!({ "restarted": restarted }))?;
+            out.json(&Reloaded { restarted })?;
         }
         Reply::Reloaded { restarted } if restarted.is_empty() => {
             out.line("the configuration is in force; no service had to be restarted")?;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use messages::{Receipt, ReceiptStatus, Sound, Source};
-use serde_json::json;
+use serde::Serialize;
 use service::client::Client;
 use service::clock;
 use service::exit::Exit;
@@ -90,6 +90,19 @@ fn print_all(receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
     Ok(if receipts.iter().any(accepted) { Exit::Ok } else { Exit::NotReached })
 }
 
+/// A receipt with `--json`.
+#[derive(Serialize)]
+struct Printed<'a> {
+    status: ReceiptStatus,
+    utterance: Option<u64>,
+    note: &'a str,
+    source: Source,
+    confidence: f32,
+    snr_db: f32,
+    onset_ns: u64,
+    end_ns: u64,
+}
+
 /// Prints the receipt of an utterance.
 pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), CliError> {
     let unclear = |error: messages::WireError| CliError::new(Exit::NotReached, error.to_string());
@@ -98,11 +111,16 @@ pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), CliEr
     let note = receipt.note.as_str().map_err(unclear)?;
     let utterance = receipt.utterance().map(|seq| seq.0);
     if out.is_json() {
-        return out.json(&json!({
-            "status": status, "utterance": utterance, "note": note, "source": source,
-            "confidence": receipt.confidence, "snr_db": receipt.snr_db,
-            "onset_ns": receipt.onset_ns, "end_ns": receipt.end_ns,
-        }));
+        return out.json(&Printed {
+            status,
+            utterance,
+            note,
+            source,
+            confidence: receipt.confidence,
+            snr_db: receipt.snr_db,
+            onset_ns: receipt.onset_ns,
+            end_ns: receipt.end_ns,
+        });
     }
     let style = out.style();
     let spoken = matches!(source, Source::Wav | Source::Microphone);

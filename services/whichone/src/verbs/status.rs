@@ -1,6 +1,6 @@
 //! `status`: what an operator needs to see.
 
-use serde_json::json;
+use serde::Serialize;
 use service::control::CallError;
 use service::exit::Exit;
 use service::group::GroupPaths;
@@ -38,10 +38,18 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     Ok(if status.state == GroupState::Ready { Exit::Ok } else { Exit::NotReached })
 }
 
+/// A group that is not running, with `--json`.
+#[derive(Serialize)]
+struct Down<'a> {
+    name: &'a str,
+    state: &'static str,
+    services: [(); 0],
+}
+
 fn down(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     let name = paths.name();
     if out.is_json() {
-        out.json(&json!({ "name": name, "state": "down", "services": [] }))?;
+        out.json(&Down { name: name.as_str(), state: "down", services: [] })?;
     } else {
         out.line(format_args!("group {name} is not running; start it with: whichone up"))?;
     }
@@ -127,6 +135,8 @@ fn coloured(service: &ServiceStatus, line: String, style: Style) -> String {
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     #[test]

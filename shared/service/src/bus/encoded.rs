@@ -1,7 +1,7 @@
 //! Readers and writers of topics whose payloads are postcard in a byte slice.
 
-use super::wake::WakeNotifier;
 use super::open::{Gate, notifiers, open_topic};
+use super::wake::WakeNotifier;
 use super::{Bus, BusError, Ipc, PortError};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};

@@ -3,8 +3,8 @@
 //! A writer never blocks: a slow or stopped reader loses the oldest message, and is sent again what
 //! matters.
 
-use super::wake::WakeNotifier;
 use super::open::{Gate, notifiers, open_topic};
+use super::wake::WakeNotifier;
 use super::{Bus, BusError, Ipc, PortError, WireMessage};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::BackpressureStrategy;

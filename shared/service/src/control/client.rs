@@ -138,7 +138,10 @@ mod tests {
     fn control_client_suggests_how_to_start_a_missing_group() {
         let (_home, path) = socket("lab");
         let error = call(&path, &Request::Ping, SHORT).unwrap_err().to_string();
-        assert_eq!(error, "group lab is not running; help: start it with `whichone up --group lab`");
+        assert_eq!(
+            error,
+            "group lab is not running; help: start it with `whichone up --group lab`"
+        );
         drop(UnixListener::bind(&path).unwrap());
         let error = call(&path, &Request::Ping, SHORT).unwrap_err();
         assert!(matches!(error, CallError::NoGroup { .. }), "a stale socket: {error}");

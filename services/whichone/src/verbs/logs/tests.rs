@@ -42,7 +42,7 @@ fn an_unknown_service_is_told_with_those_that_have_a_log() {
     append(&paths, "arm", "line\n");
     let args = LogsArgs { service: Some("leg".into()), follow: false, tail: 1 };
     let error = logs(&paths, &args, &mut Output::to(Vec::new(), false)).unwrap_err();
-    assert!(error.to_string().ends_with("there are arm"), "{error}");
+    assert!(error.to_string().ends_with("existing logs: arm"), "{error}");
 }
 
 #[test]

@@ -4,6 +4,8 @@ use std::thread;
 
 use serde_json::Value as Json;
 
+use serde_json::json;
+
 use super::*;
 
 /// What is asked, printed, and how it ends, when the supervisor answers with `reply`.
@@ -31,11 +33,10 @@ fn run(
         }
     });
     let mut printed = Vec::new();
-    let ended =
-        verb(&paths, &mut Output::to(&mut printed, json)).map_err(|error| match error {
-            CliError::Failure(failure) => (failure.exit, failure.message),
-            CliError::Output(error) => panic!("{error}"),
-        });
+    let ended = verb(&paths, &mut Output::to(&mut printed, json)).map_err(|error| match error {
+        CliError::Failure(failure) => (failure.exit, failure.message),
+        CliError::Output(error) => panic!("{error}"),
+    });
     let asked = serde_json::from_str(&supervisor.join().unwrap()).unwrap();
     (asked, String::from_utf8(printed).unwrap(), ended)
 }
