@@ -162,7 +162,8 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
         worker_channel::channel().map_err(|e| Failure::new(Exit::NotReached, e.to_string()))?;
     let context = Context { bus: &bus, settings: &settings, devices, environment: &environment };
     let shell = P::Shell::open(&context)?;
-    let mut service = Loop::<P> { node, shell, journal, inbox, wake_listener, effects: Effects::default() };
+    let mut service =
+        Loop::<P> { node, shell, journal, inbox, wake_listener, effects: Effects::default() };
     service.node.on(Event::Started, clock::now(), &mut service.effects);
     service.commit()?;
     drive(lifecycle, &mut service)

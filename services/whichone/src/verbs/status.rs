@@ -23,10 +23,11 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     };
     let hearing = hearing::look(paths);
     if out.is_json() {
-        let mut json = serde_json::to_value(&status).unwrap_or_default();
-        json["console"] = console::url(paths).into();
-        json["hearing"] = json!(hearing.as_ref().map(HearingView::new));
-        out.json(&json)?;
+        out.json(&Printed {
+            status: &status,
+            console: console::url(paths),
+            hearing: hearing.as_ref().map(HearingView::new),
+        })?;
     } else {
         let mut lines = lines(&status, out.style());
         lines.extend(console::url(paths).map(|url| format!("console {url}")));
@@ -36,6 +37,15 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
         }
     }
     Ok(if status.state == GroupState::Ready { Exit::Ok } else { Exit::NotReached })
+}
+
+/// A running group with `--json`.
+#[derive(Serialize)]
+struct Printed<'a> {
+    #[serde(flatten)]
+    status: &'a GroupStatus,
+    console: Option<String>,
+    hearing: Option<HearingView<'a>>,
 }
 
 /// A group that is not running, with `--json`.

@@ -2,10 +2,12 @@
 
 use std::time::Duration;
 
+use serde::Serialize;
 use service::control::{CallError, Request};
 use service::exit::Exit;
 use service::group::GroupPaths;
 use service::launch::{self, Options};
+use service::status::GroupStatus;
 
 use super::{console, operate, paths};
 use crate::cli::{ConfigArgs, UpArgs, WaitFor};
@@ -14,6 +16,14 @@ use crate::output::{Output, note};
 
 /// A new supervisor first waits this long for services of one that was killed.
 const EARLIER_SERVICES: Duration = Duration::from_secs(25);
+
+/// A started group with `--json`.
+#[derive(Serialize)]
+struct Started {
+    #[serde(flatten)]
+    status: GroupStatus,
+    console: Option<String>,
+}
 
 /// Starts the group: in the foreground, where this process becomes its supervisor, or detached.
 pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Outcome {
@@ -31,9 +41,7 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
     };
     let status = operate::status_of(paths)?;
     if out.is_json() {
-        let mut json = serde_json::to_value(&status).unwrap_or_default();
-        json["console"] = console::url(paths).into();
-        out.json(&json)?;
+        out.json(&Started { status, console: console::url(paths) })?;
     } else {
         let pid = status.supervisor_pid;
         out.line(format_args!("group {name} is up (supervisor {pid}): {ready}"))?;

@@ -1,8 +1,7 @@
+use serde_json::Value as Json;
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixListener;
 use std::thread;
-
-use serde_json::Value as Json;
 
 use serde_json::json;
 
