@@ -47,9 +47,7 @@ fn write(path: &Path, table: &PolicyTable) -> io::Result<()> {
             fs::remove_file(entry.path())?;
         }
     }
-    let beside = path.with_extension("new");
-    fs::write(&beside, bytes)?;
-    fs::rename(beside, path)
+    service::replace_file(path, bytes)
 }
 
 #[cfg(test)]

@@ -27,11 +27,7 @@ pub(crate) fn open(paths: &GroupPaths, fresh: bool) -> io::Result<u64> {
         None => {}
     }
     let epoch = now_s().max(found.map_or(1, |epoch| epoch + 1));
-    let path = paths.epoch_file();
-    let new = path.with_extension("new");
-    fs::write(&new, format!("{epoch}\n"))?;
-    fs::File::open(&new)?.sync_all()?;
-    fs::rename(&new, &path)?;
+    service::replace_file_synced(&paths.epoch_file(), format!("{epoch}\n"))?;
     Ok(epoch)
 }
 

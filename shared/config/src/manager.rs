@@ -3,7 +3,7 @@
 use dialogue::manager::{Manager, Setup};
 use dialogue::registry::{self, UnknownPlanner};
 use dialogue::{Confusion, Model, NotAConfusion};
-use scene::Fnv1a;
+use scene::StableHash;
 
 use crate::{Section, Settings};
 
@@ -70,7 +70,7 @@ impl Settings {
 
     /// Returns the identity of everything that the manager decides by, with that planner.
     pub fn manager_key(&self, planner: &str) -> u64 {
-        let mut hash = Fnv1a::new();
+        let mut hash = StableHash::default();
         if planner != self.dialogue.planner {
             hash.text(planner);
         }

@@ -1,8 +1,7 @@
 //! The settings in force, as the supervisor hands them to the services: one file, so that a
 //! service never sees the scene or the robot of one version with the values of another.
 
-use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
 use diagnostics::Diagnostic;
@@ -43,15 +42,9 @@ impl Settings {
     /// # Errors
     /// The folder cannot be written.
     pub fn write_snapshot(&self, run_dir: &Path) -> io::Result<()> {
-        let path = run_dir.join(SNAPSHOT_FILE);
-        let new = run_dir.join(format!("{SNAPSHOT_FILE}.new"));
-        let header =
-            "# The settings in force. Edit the files of the configuration folder instead.\n";
-        let mut file = fs::File::create(&new)?;
-        file.write_all(header.as_bytes())?;
-        file.write_all(self.snapshot().as_bytes())?;
-        drop(file);
-        fs::rename(new, path)
+        let header = "# The settings in force. Edit the configuration folder instead.\n";
+        let text = format!("{header}{}", self.snapshot());
+        journal::replace_file(&run_dir.join(SNAPSHOT_FILE), text)
     }
 
     /// Reads the snapshot in a group's run folder, checked as the files were but for the arm's

@@ -64,19 +64,6 @@ impl Lines {
     }
 }
 
-/// Puts `lines` in the place of a file's content: readers see the one or the other, whatever happens.
-///
-/// # Errors
-/// It cannot be written.
-pub fn replace(path: &Path, lines: &str) -> io::Result<()> {
-    let beside = path.with_extension("new");
-    let mut file = File::create(&beside)?;
-    file.write_all(lines.as_bytes())?;
-    file.sync_all()?;
-    fs::rename(&beside, path)?;
-    File::open(path.parent().unwrap_or(Path::new(".")))?.sync_all()
-}
-
 /// The files with that ending in a folder, by name, with their texts; none where there is no folder.
 ///
 /// # Errors
@@ -119,7 +106,7 @@ mod tests {
         lines.append("four\n").unwrap();
         let files = read_folder(path.parent().unwrap(), "jsonl").unwrap();
         assert_eq!(files, [(path.clone(), "one\ntwo\nfour\n".to_owned())]);
-        replace(&path, "gone\n").unwrap();
+        crate::replace_file_synced(&path, "gone\n").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "gone\n");
         assert_eq!(read_folder(path.parent().unwrap(), "jsonl").unwrap().len(), 1);
     }

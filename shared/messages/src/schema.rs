@@ -36,12 +36,12 @@ pub trait Schema {
 
     /// Returns the key that both sides of a topic must agree on.
     fn key() -> SchemaKey {
-        let mut hash = Fnv::default();
-        hash.write(Self::NAME);
+        let mut hash = scene::StableHash::default();
+        hash.bytes(Self::NAME.as_bytes());
         for Field { name, ty, offset, size, detail } in Self::fields() {
-            hash.write(&format!("{name}:{ty}@{offset}+{size} {detail};"));
+            hash.bytes(format!("{name}:{ty}@{offset}+{size} {detail};").as_bytes());
         }
-        SchemaKey(hash.0)
+        SchemaKey(hash.value())
     }
 }
 
@@ -52,23 +52,6 @@ pub struct SchemaKey(pub u64);
 impl std::fmt::Display for SchemaKey {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{:016x}", self.0)
-    }
-}
-
-/// FNV-1a, 64 bit: small, stable, and good enough to tell honest mistakes apart.
-struct Fnv(u64);
-
-impl Default for Fnv {
-    fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Fnv {
-    fn write(&mut self, text: &str) {
-        for byte in text.bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
     }
 }
 

@@ -105,12 +105,13 @@ fn an_object_that_the_arm_cannot_fetch() {
         found.into_iter().next().unwrap()
     };
     let far = complaints(&bowl_with("xyz", "xyz = [2.0, 0.2, -0.125]"), &[]);
-    let expected = "scenes/bowls.toml: objects[0].xyz: `red_one` is out of reach of both limbs: ";
+    let expected =
+        "scenes/bowls.toml:12: objects[0].xyz: `red_one` is out of reach of both limbs: ";
     assert!(far.starts_with(expected), "{far}");
     let left = complaints(&bowl_with("xyz", "xyz = [0.7, -0.8, -0.125]"), &[("arm.limb", "left")]);
     assert!(left.contains("`red_one` is out of reach of the left limb: "), "{left}");
     let wide = complaints(&bowl_with("grasp_width", "grasp_width = 0.09"), &[]);
-    let expected = "scenes/bowls.toml: objects[0].grasp_width: `red_one` cannot be grasped: ";
+    let expected = "scenes/bowls.toml:14: objects[0].grasp_width: `red_one` cannot be grasped: ";
     assert!(wide.starts_with(expected), "{wide}");
     let thin = complaints(&bowl_with("grasp_width", "grasp_width = 0.002"), &[]);
     assert!(thin.contains("`red_one` is too thin to be detected: at least 2.1 mm"), "{thin}");
@@ -139,7 +140,7 @@ fn a_scene_without_places_cannot_be_worked_in() {
     assert_eq!(
         complaints,
         [
-            "scenes/bowls.toml: objects[0].xyz: `one` has no place, so it cannot be fetched (add `xyz`, `size` and `grasp_width`)"
+            "scenes/bowls.toml:6: objects[0].xyz: `one` has no place, so it cannot be fetched; help: add `xyz`, `size` and `grasp_width`"
         ]
     );
 }
@@ -168,7 +169,7 @@ fn faults_of_a_description_are_located() {
     let found =
         complaints(&[("robots/baxter.urdf", &broken), ("robots/baxter.srdf", BAXTER_SRDF)], &[]);
     assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].starts_with("robots/baxter.urdf: line "), "{found:?}");
+    assert!(found[0].starts_with("robots/baxter.urdf:157: "), "{found:?}");
     assert!(found[0].contains("joint \"left_s0\": <limit> has velocity=\"fast\""), "{found:?}");
 }
 

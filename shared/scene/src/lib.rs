@@ -16,6 +16,7 @@ mod model;
 mod question;
 mod question_json;
 mod reading;
+mod stable_hash;
 mod toml_form;
 mod wording;
 
@@ -23,8 +24,8 @@ mod wording;
 mod tests;
 
 pub use ids::{AttributeId, ObjectId, ValueId, WordId};
-pub use key::Fnv1a;
 pub use model::{Attribute, Object, Placement, Role, Scene, Value};
 pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};
 pub use reading::{Doubt, Intent, Reading, Response};
+pub use stable_hash::StableHash;

@@ -223,14 +223,10 @@ impl GroupPaths {
     /// Prefix of everything that iceoryx2 makes in shared memory for this group: two groups differ
     /// even where they share a name in different homes.
     pub fn ipc_prefix(&self) -> String {
-        format!("wo{:016x}_", fnv(self.root.as_os_str().as_encoded_bytes()))
+        let mut hash = scene::StableHash::default();
+        hash.bytes(self.root.as_os_str().as_encoded_bytes());
+        format!("wo{:016x}_", hash.value())
     }
-}
-
-fn fnv(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
 }
 
 #[cfg(test)]

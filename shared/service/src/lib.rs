@@ -26,4 +26,5 @@ pub mod worker_channel;
 
 pub use dialogue::time::{Span, Time};
 pub use effects::Effects;
+pub use journal::{replace_file, replace_file_synced};
 pub use reducer::{Event, Never, Node, NodeError};

@@ -41,10 +41,7 @@ impl TranscriptStore {
         }
         (self.written, self.is_due) = (now, false);
         let text: String = lines.map(|line| line.to_text() + "\n").collect();
-        let new = self.path.with_extension("new");
-        // Readers see the old lines or the new ones.
-        let written = fs::write(&new, text).and_then(|()| fs::rename(&new, &self.path));
-        if let Err(error) = written {
+        if let Err(error) = journal::replace_file(&self.path, text) {
             tracing::debug!(%error, "transcript not stored");
         }
     }

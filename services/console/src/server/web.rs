@@ -122,7 +122,5 @@ impl Web {
 
 /// Replaces the file with the address atomically.
 fn write_url(path: &Path, url: &str) -> std::io::Result<()> {
-    let new = path.with_extension("new");
-    std::fs::write(&new, format!("{url}\n"))?;
-    std::fs::rename(new, path)
+    journal::replace_file(path, format!("{url}\n"))
 }

@@ -47,7 +47,7 @@ impl Files {
     pub(super) fn replace(&mut self, id: &str, entries: &[Entry]) -> io::Result<()> {
         self.open.remove(id);
         let text: String = entries.iter().map(Entry::to_line).collect();
-        lines::replace(&self.path(id), &text)
+        journal::replace_file_synced(&self.path(id), &text)
     }
 
     fn lines(&self, id: &str) -> io::Result<Lines> {

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
-use scene::{Fnv1a, Scene};
+use scene::{Scene, StableHash};
 
 use super::RecogniserUnavailable;
 use crate::devices::language_model::{Trigram, Weights, common_words, scene_sentences};
@@ -85,7 +85,7 @@ impl SceneFiles {
 fn origin(scene: &Scene, weights: Weights, pronouncing: &Path) -> u64 {
     let program = std::env::current_exe().unwrap_or_default();
     let scene = (scene.name(), scene.noun(), scene.objects(), scene.attributes(), scene.words());
-    let mut hash = Fnv1a::new();
+    let mut hash = StableHash::default();
     hash.text(&format!("{scene:?} {weights:?} {} {}", version(pronouncing), version(&program)));
     hash.value()
 }
@@ -98,7 +98,7 @@ fn version(file: &Path) -> String {
 }
 
 fn contents(dictionary: &str, model: &str) -> u64 {
-    let mut hash = Fnv1a::new();
+    let mut hash = StableHash::default();
     hash.text(dictionary);
     hash.text(model);
     hash.value()
