@@ -1,4 +1,4 @@
-//! `arm.toml`: which arm, how it moves, and where it brings things.
+//! `arm.toml`: driver, limb and motion of the arm.
 
 use diagnostics::Fields;
 
@@ -13,13 +13,13 @@ pub struct Arm {
     pub motion: Motion,
     /// Simulated seconds per second.
     pub time_scale: f64,
-    /// Whether an object that was handed over is put back in its place in the simulated world.
+    /// Objects return to their places in the simulated world after a hand-over.
     pub restock: bool,
-    /// How often joint states are published, Hz.
+    /// Rate of published joint states, Hz.
     pub joint_rate_hz: f64,
-    /// How grasps are tried.
+    /// Attempts at grasps.
     pub grasp: Grasps,
-    /// What is expected of a Baxter, for the driver of that name.
+    /// Tolerances of a Baxter.
     pub baxter: Baxter,
     /// The simulated Baxter.
     pub simulated: Simulated,
@@ -57,33 +57,32 @@ pub struct Motion {
     pub margin_m: f64,
 }
 
-/// How grasps are tried.
+/// Attempts at grasps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grasps {
-    /// How often in all, where the fingers close on nothing.
+    /// Attempts in all if the fingers close without an object.
     pub attempts: u32,
-    /// Standard deviation of the distance between where an object stands and where it is taken to
-    /// stand, across the fingers, metres; simulated worlds only.
+    /// Standard deviation of the objects' positions across the fingers, metres; simulated worlds only.
     pub error_m: f64,
 }
 
-/// What is expected of a Baxter. The defaults are those of the robot's own trajectory server, but
-/// for the goal time, in which a real arm cannot settle.
+/// Tolerances of a Baxter. The defaults are those of the robot's own trajectory server, except for the
+/// goal time, which is too short there for a real arm to settle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Baxter {
-    /// How far a joint may be from where it was commanded to be during a motion, radians.
+    /// Maximum tracking error of a joint during a motion, radians.
     pub path_tolerance_rad: f64,
-    /// How far a joint may be from where a motion ends, radians.
+    /// Maximum error of a joint at the end of a motion, radians.
     pub goal_tolerance_rad: f64,
-    /// How long after its end a motion may take to arrive, seconds.
+    /// Time allowed for settling after the end of a motion, seconds.
     pub goal_time_s: f64,
-    /// Below this a joint stands still, rad/s.
+    /// Speed below which a joint counts as stationary, rad/s.
     pub still_rad_s: f64,
-    /// Age beyond which joint states are too old to move by, seconds.
+    /// Age at which joint states are stale, seconds.
     pub stale_s: f64,
-    /// The speed ratio that the robot is told: a trajectory has its limits in itself.
+    /// Speed ratio sent to the robot; trajectories respect the limits by themselves.
     pub speed_ratio: f64,
-    /// Whether the robot is told velocity and acceleration beside the position.
+    /// Send velocity and acceleration beside the position.
     pub feed_forward: bool,
 }
 
@@ -94,15 +93,15 @@ pub struct Simulated {
     pub lag_s: f64,
     /// Standard deviation of measured joint positions, radians.
     pub noise_rad: f64,
-    /// Share of joint states that get lost.
+    /// Share of joint states that are lost.
     pub loss: f64,
-    /// Seed of everything that is random in it.
+    /// Seed of its random numbers.
     pub seed: u64,
-    /// Whether its motors are on as it comes up.
+    /// The motors are enabled at start.
     pub enabled: bool,
 }
 
-/// What moves.
+/// The driver of the joints.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Driver {
     /// The kinematic model of Baxter in a simulated world.

@@ -1,20 +1,20 @@
-//! `console.toml`: where the operator's page is served, and to whom.
+//! `console.toml`: the web page.
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
 use diagnostics::Fields;
 
-/// The operator's page.
+/// The web page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Console {
-    /// Where it is served; port 0 stands for any.
+    /// Address and port; port 0 for any free one.
     pub listen: SocketAddr,
-    /// What a visitor has to know, if anything. Always there where `listen` is beyond this machine.
+    /// Access token; present if `listen` accepts other machines.
     pub token: Option<String>,
-    /// Pages open at a time.
+    /// Maximum number of open pages.
     pub viewers_max: usize,
-    /// Time after which control goes to who asked for it, where its holder does not answer.
+    /// Time after which a request for control is granted if the operator does not answer.
     pub handover: Duration,
     /// Language of the page, e.g. `en`.
     pub language: String,
@@ -61,7 +61,7 @@ fn token(f: &mut Fields<'_>) -> Option<String> {
     Some(token)
 }
 
-/// It is part of a path, so it must be a plain name.
+/// Reads the language, which is part of a path and so must be a plain name.
 fn language(f: &mut Fields<'_>) -> String {
     let language = f.text("language");
     let plain =

@@ -1,4 +1,4 @@
-//! `dialogue.toml`: how the robot understands, believes and decides.
+//! `dialogue.toml`: understanding, belief and decisions.
 
 use dialogue::user_model::Reaction;
 use dialogue::{Actions, Attribution, Costs, Fault, Mode, Params, Prior, TurnTaking};
@@ -11,33 +11,33 @@ use diagnostics::Fields;
 /// The dialogue.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dialogue {
-    /// How utterances are read.
+    /// Reading of utterances.
     pub language: Language,
     /// Parameters of the observation model (section 3.6 of the paper).
     pub params: Params,
     /// Name of the planner; one of [`dialogue::registry::names`].
     pub planner: String,
-    /// What the robot may do.
+    /// Kinds of questions that are allowed.
     pub actions: Actions,
-    /// What its actions cost.
+    /// Costs and rewards of actions.
     pub costs: Costs,
-    /// Where the costs of its questions come from.
+    /// Source of the costs of questions.
     pub costs_from: CostsFrom,
-    /// How turns are taken.
+    /// Turn-taking.
     pub turns: TurnTaking,
-    /// What is believed before anything is said.
+    /// Prior belief.
     pub prior: Prior,
-    /// How pointing gestures are understood.
+    /// Pointing gestures.
     pub gesture: Gesture,
 }
 
-/// Where the costs of questions come from.
+/// Source of the costs of questions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CostsFrom {
-    /// The numbers that are written down, one for each kind of question.
+    /// Configured numbers, one per kind of question.
     #[default]
     Config,
-    /// The robot's own voice and arm in the scene at hand, for each question alone.
+    /// Durations of voice and arm in the scene, one per question.
     Robot,
 }
 
@@ -71,7 +71,7 @@ fn params(f: &mut Fields<'_>) -> Params {
         epsilon: f.any_number("epsilon"),
         alpha: f.any_number("alpha"),
     };
-    tell(params.check(), f);
+    report(params.check(), f);
     params
 }
 
@@ -85,7 +85,7 @@ fn costs(f: &mut Fields<'_>) -> (Costs, CostsFrom) {
         wrong: f.any_number("wrong"),
         discount: f.any_number("discount"),
     };
-    tell(costs.check(), f);
+    report(costs.check(), f);
     (costs, f.choice("from", &[("config", CostsFrom::Config), ("robot", CostsFrom::Robot)]))
 }
 
@@ -113,8 +113,8 @@ fn reaction(f: &mut Fields<'_>, median_s: &'static str, log_sd: &'static str) ->
     Reaction::new(f.number(median_s, 0.05..=60.0), f.number(log_sd, 0.05..=2.0))
 }
 
-/// The model's own checks, for the values that are numbers at all.
-fn tell(faults: Vec<Fault>, f: &mut Fields<'_>) {
+/// Reports the faults that a model finds in its parameters, except for values that are not numbers.
+fn report(faults: Vec<Fault>, f: &mut Fields<'_>) {
     for (key, what, help) in faults {
         if !f.is_wrong(key) {
             f.problem(key, what, help);

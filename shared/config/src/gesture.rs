@@ -1,4 +1,4 @@
-//! `[gesture]` of `dialogue.toml`: people who point.
+//! `[gesture]` of `dialogue.toml`: pointing gestures.
 
 use dialogue::gesture::{Direction, Gestures};
 use scene::Scene;
@@ -7,18 +7,18 @@ use diagnostics::Fields;
 use diagnostics::Report;
 use diagnostics::Table;
 
-/// How pointing gestures are understood.
+/// Pointing gestures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gesture {
-    /// Whether they are taken at all.
+    /// Accept gestures.
     pub enabled: bool,
-    /// Parameters of their observation.
+    /// Parameters of the observation model.
     pub model: Gestures,
-    /// Where the person's pointing ray starts, metres, frame `base`.
+    /// Origin of the pointing ray, metres, frame `base`.
     pub person_xyz_m: [f64; 3],
 }
 
-/// Farthest coordinate of a person, metres.
+/// Maximum coordinate of the user, metres.
 const PERSON_MAX_M: f64 = 20.0;
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Gesture {
@@ -41,7 +41,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Gesture {
     Gesture { enabled, model, person_xyz_m }
 }
 
-/// Reports an object that stands where the person does: nobody can point at it.
+/// Reports an object at the position of the user, at which a ray cannot point.
 pub(crate) fn check(scene: &Scene, gesture: &Gesture, tree: &Table, report: &mut Report) {
     if !gesture.enabled {
         return;

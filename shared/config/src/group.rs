@@ -1,4 +1,4 @@
-//! `group.toml`: which scene, which services, and how they are kept up.
+//! `group.toml`: scene, services and their restart policy.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ pub struct Group {
     /// The services, the built-in ones first, then the others in the order of the text. Every
     /// `after` names one of them and they form no cycle.
     pub services: Vec<Service>,
-    /// How often and how fast a service that ends is started again.
+    /// Restart policy.
     pub restart: RestartLimits,
     /// Logs of the services.
     pub log: Log,
@@ -24,15 +24,15 @@ pub struct Group {
 /// Intensity and backoff of restarts, the same for every service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RestartLimits {
-    /// Unasked exits within [`window`](Self::window) after which a service is held.
+    /// Unexpected exits within [`window`](Self::window) after which a service is held.
     pub exits_max: u32,
     /// See [`exits_max`](Self::exits_max).
     pub window: Duration,
-    /// First pause before a new start; each further one doubles it.
+    /// First pause before a restart; it doubles each time.
     pub backoff_first: Duration,
-    /// Longest pause before a new start; not below the first.
+    /// Maximum pause before a restart; at least the first.
     pub backoff_max: Duration,
-    /// Time of being ready after which pauses begin anew with the first.
+    /// Time of readiness after which the pause is reset to the first.
     pub backoff_reset: Duration,
 }
 

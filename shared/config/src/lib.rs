@@ -1,12 +1,13 @@
-//! The settings of a group: read once, checked as a whole, and the same for every service.
+//! The configuration of a group: parsed, checked as a whole, and equal for every service. Checks that
+//! need the robot's kinematics are in `preflight`.
 //!
-//! Invariant: a [`Settings`] is complete and consistent. Reading either yields one or every
-//! problem at once, each with its file, key and help; no service ever meets a wrong value.
+//! Invariant: a [`Settings`] is complete and consistent. Loading returns one, or every problem at once
+//! with its file, line, key and help; no service ever meets an invalid value.
 //!
-//! Values come in layers, each over the one before: the defaults (the files of `config/` as they
-//! were when this was built), the files of the configuration folder, a profile, and overrides from
-//! the command line. The supervisor resolves them when the group starts or reloads, and writes a
-//! snapshot; services read only that, so that editing a file changes nothing until it is asked for.
+//! Values come in layers, each over the one before: the defaults (the files of `config/` at build
+//! time), the files of the configuration folder, a profile, and overrides from the command line. The
+//! supervisor resolves them when the group starts or reloads, and writes a snapshot; services read only
+//! that, so that edited files take effect with a reload.
 
 mod arm;
 mod console;
@@ -51,19 +52,19 @@ use crate::resolved::Resolved;
 /// All settings of a group. Two are equal when their snapshots are.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// The scene, the services and how they are kept up.
+    /// Scene, services and restart policy.
     pub group: Group,
-    /// Understanding, believing, deciding.
+    /// Understanding, belief and decisions.
     pub dialogue: Dialogue,
-    /// Hearing and speaking.
+    /// Recognition and voice.
     pub speech: Speech,
-    /// Moving.
+    /// The arm.
     pub arm: Arm,
-    /// A study with people.
+    /// The user study.
     pub study: Study,
-    /// The operator's page.
+    /// The web page.
     pub console: Console,
-    /// The objects and the words for them. Every object has a place that the arm can reach.
+    /// The scene; after `preflight`, every object has a place that the arm can reach.
     pub scene: Scene,
     /// Measured seconds of every question and pick, under [`CostsFrom::Robot`]; set by
     /// `preflight`, read from a snapshot.
@@ -73,7 +74,7 @@ pub struct Settings {
 
 impl Settings {
     /// Reads the configuration folder `dir` with a profile (`profiles/NAME.toml`) and overrides
-    /// (`("arm.time_scale", "50")`; a value that is not TOML is a text).
+    /// (`("arm.time_scale", "50")`; a value that is not TOML is a string).
     ///
     /// # Errors
     /// Every problem of every file at once.
@@ -85,8 +86,8 @@ impl Settings {
         load::load(dir, profile, overrides)
     }
 
-    /// The merged values of one section as TOML: what a service that reads only that section
-    /// depends on.
+    /// The merged values of one section as TOML, the dependency of a service that reads only that
+    /// section.
     pub fn section_text(&self, section: Section) -> String {
         self.resolved.section_text(section)
     }
@@ -125,8 +126,8 @@ impl Settings {
         self.resolved.tree.source_of(key).diagnostic(&path, what, help)
     }
 
-    /// Where the sound of the robot's latest sentences is kept, if anywhere: where the operator says,
-    /// else in the group's run folder `run` if there is a console that plays it elsewhere.
+    /// Folder of the sound of the robot's latest sentences, if any: the configured one, else one in the
+    /// group's run folder `run` if there is a console that plays them elsewhere.
     pub fn voice_dir(&self, run: &Path) -> Option<PathBuf> {
         let has_console = self.group.services.iter().any(|service| service.name == "console");
         let own = has_console.then(|| run.join("said"));

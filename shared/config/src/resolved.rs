@@ -1,4 +1,4 @@
-//! The layers merged: what the settings were made of.
+//! The merged layers behind the settings.
 
 use crate::files::RobotFiles;
 use diagnostics::Report;
@@ -44,7 +44,7 @@ impl Section {
         format!("{}.toml", self.name())
     }
 
-    /// The file as it is shipped, which is also what holds where nothing else is said.
+    /// The shipped file, which holds the defaults.
     fn shipped(self) -> &'static str {
         match self {
             Self::Group => include_str!("../../../config/group.toml"),
@@ -68,7 +68,7 @@ pub struct Origin {
     pub from: String,
 }
 
-/// What a checked [`Settings`](crate::Settings) was made of.
+/// The sources of a checked [`Settings`](crate::Settings).
 #[derive(Clone, Debug)]
 pub(crate) struct Resolved {
     /// One table per section, complete.

@@ -8,14 +8,13 @@ use diagnostics::Report;
 use diagnostics::suggestion;
 use diagnostics::{Node, Source, Table};
 
-/// The services that every group has, in the order in which they are listed.
+/// The services of every group, in the order in which they are listed.
 pub const BUILT_IN: [&str; 5] = ["speech", "grounding", "policy", "arm", "console"];
 
-/// The services that a group may have beside those and whose programs come with them: the simulated
-/// Baxter.
+/// Optional services whose programs ship with the others: the simulated Baxter.
 pub const OPTIONAL: [&str; 1] = ["baxter"];
 
-/// What a service is where nothing else is said.
+/// Defaults of a service.
 const EACH: &str = r#"
 after = []
 critical = false
@@ -39,24 +38,24 @@ pub struct Service {
     pub command: Option<Vec<String>>,
     /// Services that must be ready before this one is started for the first time.
     pub after: Vec<String>,
-    /// Whether the whole group stops in order when this service is given up.
+    /// Stop the whole group when this service is held.
     pub critical: bool,
     /// Time from start to readiness.
     pub start_deadline: Duration,
-    /// Longest silence between two beats once ready; `None` where there is no watchdog.
+    /// Maximum time between two heartbeats once ready; `None` without a watchdog.
     pub watchdog: Option<Duration>,
-    /// Time from the request to stop to the kill.
+    /// Time from the stop request to the kill.
     pub stop_deadline: Duration,
     /// Scheduling niceness, −20 … 19.
     pub nice: i32,
-    /// Which exits are followed by a new start.
+    /// Exits that are followed by a restart.
     pub restart: Restart,
 }
 
-/// Which exits are followed by a new start.
+/// Exits that are followed by a restart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restart {
-    /// Every exit that nobody asked for, even a clean one.
+    /// Every unexpected exit, even a clean one.
     Always,
     /// Every exit but a clean one (code 0).
     OnFailure,
@@ -64,7 +63,7 @@ pub enum Restart {
     Never,
 }
 
-/// Lays the defaults of a service under every service that `group` names.
+/// Completes every service of `group` with the defaults.
 pub(crate) fn complete(group: &mut Table, report: &mut Report) {
     let source = Source::built_in();
     let each = Table::parse(EACH, &source, report).expect("the defaults are TOML");
@@ -127,7 +126,7 @@ fn check_name(name: &str, f: &mut Fields<'_>) {
     }
 }
 
-/// Every `after` must name a service, and following them must come to an end.
+/// Reports an `after` that names no service, and cycles.
 fn check_order(services: &[Service], f: &mut Fields<'_>) {
     let names: Vec<&str> = services.iter().map(|service| &*service.name).collect();
     for service in services {
@@ -151,7 +150,7 @@ fn check_order(services: &[Service], f: &mut Fields<'_>) {
     }
 }
 
-/// A way along `after` that comes back to where it began.
+/// Returns a cycle along `after`.
 fn cycle(services: &[Service]) -> Option<Vec<&str>> {
     let find = |name: &str| services.iter().find(|service| service.name == name);
     let mut done: Vec<&str> = Vec::new();

@@ -1,14 +1,14 @@
-//! `speech.toml`: how the robot hears and speaks.
+//! `speech.toml`: recognition and voice.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
 use diagnostics::Fields;
 
-/// Hearing and speaking.
+/// Recognition and voice.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Speech {
-    /// What says the robot's questions.
+    /// The voice.
     pub voice: Voice,
     /// The voice's own name for a voice or language, e.g. `en-us`.
     pub voice_name: String,
@@ -20,23 +20,22 @@ pub struct Speech {
     /// Folder in which the sound of the latest sentences is kept, if the operator names one
     /// ([`Settings::voice_dir`](crate::Settings::voice_dir)).
     pub voice_dir: Option<PathBuf>,
-    /// Program, with its arguments before the file, that plays a WAV file; found by itself where
-    /// nothing is said. `none` plays nothing for as long as it would take.
+    /// Program, with its arguments before the file, that plays a WAV file; `None` to detect it. `none` plays nothing for as long as it would take.
     pub player: Option<Vec<String>>,
-    /// What turns audio into words.
+    /// The recogniser.
     pub recogniser: Recogniser,
     /// The program, with its arguments, that turns audio into words; there if `recogniser` is
     /// [`Recogniser::Command`].
     pub recogniser_command: Option<Vec<String>>,
     /// The model file of whisper.cpp; there if `recogniser` is [`Recogniser::Whisper`].
     pub whisper_model: Option<PathBuf>,
-    /// Folder of the recogniser's acoustic model; found by itself where nothing is said.
+    /// Folder of the recogniser's acoustic model; `None` to detect it.
     pub model_dir: Option<PathBuf>,
-    /// How much speech must be about the scene to be taken as meant for the robot, 0 … 1.
+    /// Minimum score of speech that counts as addressed to the robot, 0 … 1.
     pub accept_score_min: f64,
-    /// Quiet that ends an utterance.
+    /// Silence that ends an utterance.
     pub closing_pause: Duration,
-    /// Longest utterance that is listened to in one piece.
+    /// Maximum length of an utterance.
     pub spoken_max: Duration,
     /// Longest typed or injected utterance, bytes of UTF-8.
     pub utterance_bytes_max: usize,
@@ -52,11 +51,11 @@ pub struct Microphone {
     /// When it listens.
     pub mode: MicrophoneMode,
     /// Program with its arguments that writes one channel of signed 16-bit samples, low byte first,
-    /// at 16 kHz, to its standard output; found by itself where nothing is said.
+    /// at 16 kHz, to its standard output; `None` to detect it.
     pub command: Option<Vec<String>>,
-    /// Whether people may interrupt the robot: only where the microphone does not hear it.
+    /// Users may interrupt the robot: only if the microphone does not hear it.
     pub barge_in: bool,
-    /// How long after a sentence of the robot's the microphone still hears it.
+    /// Time after a sentence of the robot for which the microphone still hears it.
     pub echo_pause: Duration,
 }
 
@@ -67,11 +66,11 @@ pub enum MicrophoneMode {
     Off,
     /// All the time.
     HandsFree,
-    /// For one utterance, when somebody asks to talk.
+    /// For one utterance, on request.
     PushToTalk,
 }
 
-/// What says the robot's questions.
+/// The program that speaks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Voice {
     /// The first that this machine has, else print.
@@ -86,7 +85,7 @@ pub enum Voice {
     Print,
 }
 
-/// What turns audio into words.
+/// The recogniser: audio to words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recogniser {
     /// The first that this machine has, else none.
@@ -158,7 +157,7 @@ fn microphone(f: &mut Fields<'_>) -> Microphone {
     }
 }
 
-/// What the utterance topic carries at most, bytes.
+/// Capacity of the utterance topic, bytes.
 const UTTERANCE_BYTES_MAX: u32 = 16_384;
 
 /// Each program has its own names for its voices.

@@ -13,9 +13,9 @@ pub struct Diagnostic {
     pub line: Option<u32>,
     /// Dotted key or element, e.g. `objects[2].attributes.color`; empty for the file as a whole.
     pub key: String,
-    /// What was found, and what was expected.
+    /// The problem: expected and found.
     pub what: String,
-    /// How to fix it; may be empty.
+    /// The fix; may be empty.
     pub help: String,
 }
 

@@ -28,7 +28,7 @@ impl TextFile {
     }
 }
 
-/// Where a value was written.
+/// The place of a value in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
     /// Path of the file, or another name.
@@ -109,7 +109,7 @@ pub enum Node {
 pub struct Table {
     /// Keys and values.
     pub entries: Vec<(String, Node)>,
-    /// Where the table was written.
+    /// Its place.
     pub source: Source,
 }
 
@@ -119,7 +119,7 @@ impl Node {
         Self::Scalar(Scalar::Text(text.into()), source.clone())
     }
 
-    /// Where the value was written.
+    /// The place of the value.
     pub fn source(&self) -> &Source {
         match self {
             Self::Scalar(_, source) | Self::List(_, source) | Self::Table(Table { source, .. }) => {

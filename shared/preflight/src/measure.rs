@@ -5,12 +5,12 @@ use scene::{AttributeId, ObjectId, Question, Scene, ValueId};
 
 use crate::{Motions, Pace, Voice};
 
-/// What single actions take of the person's time.
+/// Returns the duration of every single action for the user.
 ///
-/// A question takes what passes from deciding on it to its answer recognised: saying it, then, in
-/// expectation, reacting, one word, and the recogniser; a pointing question also the way of the arm
-/// there from rest. A pick takes what passes to its hand-over. Where the arm's motions are not
-/// given, or not those of pointing, these lists are empty.
+/// A question lasts from the decision until its answer is recognised: speaking, then the expected
+/// reaction, one word, and the recogniser; a pointing question also the motion of the arm from rest. A
+/// pick lasts until its hand-over. Without motions, or without those of pointing, these lists are
+/// empty.
 pub fn measure(scene: &Scene, voice: &Voice, pace: &Pace, motions: Option<&Motions>) -> Durations {
     let answer_s = pace.mean_answer_s();
     let asked_s = |question| voice.seconds(&scene.phrase(question)) + answer_s;

@@ -1,4 +1,4 @@
-//! How long the arm takes, by the trajectories that it would move along.
+//! Durations of the arm's motions, from planned trajectories.
 
 use manipulation::{
     Arms, Cuboid, Limb, ObjectPose, PickPhase, PlanError, PlanSettings, PointPhase, Robot,
@@ -6,8 +6,8 @@ use manipulation::{
 };
 use scene::{ObjectId, Scene};
 
-/// Seconds of every motion that an interaction can hold, from every posture that it can begin in:
-/// at rest, or still aiming at an object after a pointing question.
+/// Seconds of every motion of an interaction, from every posture in which it can begin: at rest, or
+/// aiming at an object after a pointing question.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motions {
     /// Per object, seconds from the decision to its hand-over: from rest first, then from aiming
@@ -17,19 +17,19 @@ pub struct Motions {
     points: Vec<Vec<f64>>,
 }
 
-/// Which motions are planned.
+/// The motions to plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// Picks from rest.
     Picks,
-    /// Picks and pointing from rest: what single actions take.
+    /// Picks and pointing from rest, for the durations of single actions.
     FromRest,
-    /// Also from aiming at each object: what a whole interaction takes. Their number grows with the
-    /// square of that of the objects.
+    /// Also from aiming at each object, for the duration of a whole interaction. Their number grows
+    /// with the square of the number of objects.
     Pairs,
 }
 
-/// Why the motions of a scene cannot be computed.
+/// A motion that cannot be planned.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MotionError {
     /// The object has no place.
@@ -38,11 +38,11 @@ pub enum MotionError {
     /// The arm cannot do it, even from rest.
     #[error("the arm cannot {what} object `{object}`: {error}")]
     Plan {
-        /// What it cannot do.
+        /// The action.
         what: &'static str,
-        /// With what.
+        /// The object.
         object: String,
-        /// Why not.
+        /// The reason.
         error: Refusal,
     },
 }
@@ -97,7 +97,7 @@ impl Motions {
             if extent == Extent::Pairs {
                 for (i, (_, limb, arms)) in aims.iter().enumerate() {
                     let aimed = Posture { arms: *arms, away: Some(*limb) };
-                    motions.go_on(&planner, &aimed).map_err(failed("come back from", i))?;
+                    motions.add_from(&planner, &aimed).map_err(failed("come back from", i))?;
                 }
             }
         }
@@ -106,7 +106,7 @@ impl Motions {
 
     /// Adds what follows from one posture of aiming. Where the arm cannot do it from there, it goes
     /// to rest first.
-    fn go_on(&mut self, planner: &Planner<'_>, aimed: &Posture) -> Result<(), Refusal> {
+    fn add_from(&mut self, planner: &Planner<'_>, aimed: &Posture) -> Result<(), Refusal> {
         let count = self.picks[0].len();
         let tried = count <= OBJECTS_MAX;
         let home_s = planner.home_s(aimed)?;
@@ -174,13 +174,13 @@ impl Planner<'_> {
     }
 }
 
-/// Why the arm does not do it from where it stands.
+/// Reason for which a motion is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Refusal {
     /// No motion is found.
     #[error(transparent)]
     Plan(Box<PlanError>),
-    /// The other limb would do it, and this one is away from rest.
+    /// The other limb would have to move, and this one is away from rest.
     #[error("the other limb is away from rest")]
     OtherLimb,
 }
@@ -215,7 +215,7 @@ mod tests {
     use crate::testing::bowls;
 
     #[test]
-    fn the_bowls_take_what_their_trajectories_take() {
+    fn picks_take_the_duration_of_their_trajectories() {
         let scene = bowls();
         let settings = PlanSettings::default();
         let motions =

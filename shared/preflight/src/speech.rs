@@ -1,4 +1,4 @@
-//! How long speech takes: the robot's, the person's, and until it is recognised.
+//! Durations of speech: the robot's, the user's, and recognition.
 
 use dialogue::Rng;
 use dialogue::user_model::SPOKEN;
@@ -14,8 +14,8 @@ pub struct Voice {
 
 /// Seconds of a sentence at [`REFERENCE_WPM`], whatever its length: onset and final fall.
 const SENTENCE_S: f64 = 0.55;
-/// Seconds per letter at [`REFERENCE_WPM`]. Letters tell an English sentence's length better than
-/// its words do.
+/// Seconds per letter at [`REFERENCE_WPM`]. Letters predict the length of an English sentence better
+/// than words.
 const LETTER_S: f64 = 0.055;
 /// The speed at which the two were measured.
 const REFERENCE_WPM: f64 = 165.0;
@@ -28,8 +28,8 @@ impl Default for Voice {
 }
 
 impl Voice {
-    /// How long the voice takes to say `text`, seconds: a fit to what espeak-ng's voice `en-us`
-    /// takes for the questions of the bowls, a fifth off at most.
+    /// Returns the seconds that the voice takes for `text`: a fit to espeak-ng's voice `en-us` on the
+    /// questions of the bowls, with an error of at most a fifth.
     pub fn seconds(&self, text: &str) -> f64 {
         let letters = text.chars().filter(|c| c.is_alphanumeric()).count();
         if letters == 0 {
@@ -39,7 +39,7 @@ impl Voice {
     }
 }
 
-/// How people talk, and how long the recogniser takes.
+/// Timing of users and of the recogniser.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pace {
     /// From the end of a question to the answer's first sound: median, seconds, and standard

@@ -1,8 +1,8 @@
-//! A robot as its description file says it is: links, joints, limits, shapes and named postures.
+//! Robots from description files: links, joints, limits, shapes and named postures.
 //!
-//! [`Robot::parse`] reads a URDF, and an SRDF beside it for named postures and for the links that
-//! may touch. It reports every fault of the two texts at once, each with its line and its help.
-//! [`Robot::baxter`] is the robot that is built in, from the very files in `config/robots`.
+//! [`Robot::read`] reads a URDF, and an SRDF beside it for named postures and for the links that may
+//! touch. It reports every problem of both at once, each with its line and help. [`Robot::baxter`] is
+//! the built-in robot, from the files in `config/robots`.
 //!
 //! This crate is pure: no IO, no clock, no threads. Units are metres, radians, kilograms and
 //! seconds; a pose places a frame in its parent's frame, or, where it says so, in the root's.

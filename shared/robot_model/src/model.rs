@@ -1,4 +1,4 @@
-//! What a robot consists of.
+//! Parts of a robot.
 
 use nalgebra::{Isometry3, Matrix3, Unit, Vector3};
 
@@ -21,9 +21,9 @@ pub struct Link {
     pub name: String,
     /// Mass and inertia, where the description states them.
     pub inertial: Option<Inertial>,
-    /// What it occupies, in the order of the file.
+    /// Collision shapes, in the order of the file.
     pub collision: Vec<Body>,
-    /// What it looks like, in the order of the file.
+    /// Visual shapes, in the order of the file.
     pub visual: Vec<Body>,
 }
 
@@ -86,12 +86,12 @@ pub enum Shape {
     },
 }
 
-/// How a link moves against its parent. Positions are radians, those of a prismatic joint metres.
+/// A joint between a link and its parent. Positions are radians, for a prismatic joint metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {
     /// Unique among the joints.
     pub name: String,
-    /// What it lets the child do.
+    /// Its degree of freedom.
     pub kind: JointKind,
     /// Index of the parent in [`Robot::links`].
     pub parent: usize,
@@ -103,7 +103,7 @@ pub struct Joint {
     pub axis: Unit<Vector3<f64>>,
     /// Always there for revolute and prismatic joints, never for fixed ones.
     pub limits: Option<Limits>,
-    /// The joint that this one follows, if it does not move by itself.
+    /// The joint that this one mimics, if any.
     pub mimic: Option<Mimic>,
 }
 
@@ -120,7 +120,7 @@ pub enum JointKind {
     Prismatic,
 }
 
-/// What a joint may do. With x for rad, or m where it slides:
+/// Limits of a joint, with x for rad, or for m if it is prismatic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Least position, x; −∞ for a continuous joint.
@@ -140,8 +140,8 @@ pub struct Limits {
 /// Position = `multiplier` × the other joint's position + `offset`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mimic {
-    /// Index of the followed joint in [`Robot::joints`]. It moves by itself: where the file lets
-    /// one follower follow another, the two rules are put together here.
+    /// Index of the followed joint in [`Robot::joints`]. It mimics no other: chained rules
+    /// of the file are combined here.
     pub joint: usize,
     /// Factor.
     pub multiplier: f64,
@@ -173,7 +173,7 @@ impl JointKind {
 }
 
 impl Joint {
-    /// Whether it moves by itself: neither fixed nor following another joint.
+    /// Returns true for a joint that is neither fixed nor mimics another.
     pub fn is_movable(&self) -> bool {
         self.kind != JointKind::Fixed && self.mimic.is_none()
     }
@@ -195,7 +195,7 @@ impl Robot {
         &self.joints
     }
 
-    /// The link that nothing carries.
+    /// The link without a parent joint.
     pub fn root(&self) -> &Link {
         &self.links[0]
     }
@@ -215,7 +215,7 @@ impl Robot {
         self.joints.iter().find(|joint| joint.name == name)
     }
 
-    /// The joint that carries a link; none for the root.
+    /// The parent joint of a link; none for the root.
     ///
     /// # Panics
     /// If there is no such link.
@@ -234,13 +234,13 @@ impl Robot {
         self.postures.iter().find(|posture| posture.group == group && posture.name == name)
     }
 
-    /// The pairs of links between which contact is not looked for, each with its smaller index
+    /// The pairs of links that may touch, each with its smaller index
     /// first, in the order of the file.
     pub fn may_touch(&self) -> &[(usize, usize)] {
         &self.may_touch
     }
 
-    /// Whether contact between two links (by their indices) is not looked for.
+    /// Returns true if contact between two links (by their indices) is permitted.
     pub fn is_touch_allowed(&self, a: usize, b: usize) -> bool {
         self.may_touch.contains(&(a.min(b), a.max(b)))
     }

@@ -1,4 +1,4 @@
-//! Naming an object with as few words as tell it apart.
+//! Short descriptions that distinguish an object.
 
 use crate::{AttributeId, ObjectId, Role, Scene, Value, ValueId};
 

@@ -32,8 +32,8 @@ impl Scene {
         report.verdict(scene)
     }
 
-    /// The JSON form, which [`Scene::from_json`] reads back to a scene of the same key. Wording is
-    /// left out.
+    /// The JSON form, which [`Scene::from_json`] reads back to a scene of the same key. Wordings are
+    /// omitted.
     pub fn to_json(&self) -> Json {
         let mut values = Map::new();
         let mut synonyms = Map::new();

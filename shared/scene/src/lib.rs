@@ -1,11 +1,9 @@
-//! The scene: the objects that can be asked for, their attributes and values, and the words that
-//! people use for them.
+//! The scene: objects that can be requested, their attributes and values, and the words for them.
 //!
-//! This crate is pure: no IO, no clock, no threads. It is read from text that somebody else loaded
-//! ([`Scene::from_toml`], [`Scene::from_json`]) and reports every problem of that text at once.
-//! It also holds the vocabulary that language and dialogue share: [`Question`] (what the robot
-//! asks, section 3.2 of the paper) and [`Reading`] (what an utterance was understood to say,
-//! section 3.6).
+//! This crate is pure: no IO, no clock, no threads. [`Scene::from_toml`] and [`Scene::from_json`] parse
+//! text and report every problem of it at once. The types that language and dialogue share are here as
+//! well: [`Question`] (section 3.2 of the publication) and [`Reading`], an understood utterance
+//! (section 3.6).
 
 mod check;
 mod describe;

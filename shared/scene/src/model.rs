@@ -27,11 +27,11 @@ pub struct Object {
     pub name: String,
     /// Value per attribute, in the scene's attribute order; an object may lack one.
     pub values: Vec<Option<ValueId>>,
-    /// Where it stands; scenes without geometry (JSON) have none.
+    /// Place and size, if the scene has geometry.
     pub placement: Option<Placement>,
 }
 
-/// Where an object stands and how large it is, in frame `base` of the robot.
+/// Place and size of an object in frame `base` of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
     /// Centre of the object, metres, frame `base`.
@@ -66,13 +66,13 @@ pub struct Value {
     pub name: String,
     /// Other words and phrases for it, lower case.
     pub synonyms: Vec<String>,
-    /// How a question names it, e.g. `in the dishwasher`; the name itself where nothing is said.
+    /// Its form in questions, e.g. `in the dishwasher`; the name by default.
     pub spoken: String,
     /// The same string in `V`.
     pub word: WordId,
 }
 
-/// How a value is used in a sentence; its `spoken` form tells.
+/// Grammatical role of a value, determined by its `spoken` form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// "white": stands before a noun, has degrees.
@@ -84,7 +84,7 @@ pub enum Role {
 }
 
 impl Value {
-    /// How the value is used in a sentence.
+    /// Returns the grammatical role of the value.
     pub fn role(&self) -> Role {
         match self.spoken.split_once(' ') {
             Some(("a" | "an", _)) => Role::Kind,
@@ -97,7 +97,7 @@ impl Value {
     }
 }
 
-/// Where each name is, so that a lookup costs the same in any scene.
+/// Indices by name, so that a lookup costs the same in any scene.
 #[derive(Clone, Debug, PartialEq)]
 struct Names {
     objects: HashMap<String, ObjectId>,
@@ -139,7 +139,7 @@ impl Scene {
         &self.name
     }
 
-    /// What the objects are called when nothing distinguishes them, e.g. `bowl`.
+    /// The common noun of the objects, e.g. `bowl`.
     pub fn noun(&self) -> &str {
         &self.noun
     }
@@ -227,7 +227,7 @@ impl Scene {
         &words[start..ends[i.index()]]
     }
 
-    /// Whether the question names an object, attribute and value that this scene has.
+    /// Returns true if the scene has the object, attribute and value of the question.
     pub fn contains(&self, question: Question) -> bool {
         match question {
             Question::None => true,

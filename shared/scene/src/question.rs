@@ -1,4 +1,4 @@
-//! What the robot asked last: `(Q_t, Q_v)` of section 3.3, and the open question of section 7.
+//! The robot's questions: `(Q_t, Q_v)` of section 3.3, and the open question of section 7.
 
 use crate::{AttributeId, ObjectId, ValueId};
 

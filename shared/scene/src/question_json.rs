@@ -4,7 +4,7 @@ use serde_json::{Value as Json, json};
 
 use crate::{AttributeId, Question, Reading, Scene};
 
-/// Why a JSON value is not a question about this scene.
+/// An invalid question in JSON.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum QuestionError {
     /// Neither `null` nor an object with a string `type`.
@@ -36,7 +36,7 @@ pub enum QuestionError {
 /// `{"type":"attr","attribute":K,"value":V}` or `{"type":"which","attribute":K}`.
 ///
 /// # Errors
-/// What keeps it from being a question about this scene.
+/// The first thing that is invalid in this scene.
 pub fn question_from_json(scene: &Scene, json: &Json) -> Result<Question, QuestionError> {
     if json.is_null() {
         return Ok(Question::None);

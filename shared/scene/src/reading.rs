@@ -1,5 +1,4 @@
-//! What an utterance was understood to say: `(l_b, l_r)` of section 3.6 with the extensions that
-//! people need (excluded values, intents).
+//! Understood utterances: `(l_b, l_r)` of section 3.6, extended by excluded values and intents.
 
 use crate::WordId;
 
@@ -18,7 +17,7 @@ pub enum Response {
     None,
 }
 
-/// What the person wants with the utterance.
+/// The purpose of an utterance.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
@@ -27,17 +26,17 @@ pub enum Intent {
     /// Says something about the wanted object, or answers.
     #[default]
     Inform,
-    /// Not meant for the robot, or without content.
+    /// Not addressed to the robot, or without content.
     None,
-    /// Stop moving, now.
+    /// Stop moving at once.
     Stop,
-    /// The request is withdrawn.
+    /// Withdraw the request.
     Cancel,
-    /// Say the question again.
+    /// Repeat the question.
     Repeat,
-    /// Forget what was said and begin anew.
+    /// Forget everything said and start over.
     StartOver,
-    /// A question to the robot ("what colours do you have?").
+    /// Ask the robot a question ("what colours do you have?").
     AskBack,
 }
 
@@ -51,14 +50,14 @@ pub struct Reading {
     pub response: Response,
     /// Groups of words; an object that has every value of a group is ruled out.
     pub excluded: Vec<Vec<WordId>>,
-    /// What the person wants with it.
+    /// Its purpose.
     pub intent: Intent,
-    /// How doubtful its parts are.
+    /// Doubts about its parts.
     pub doubt: Doubt,
 }
 
-/// How doubtful it is that a reading's parts are what was said: for each the probability that it
-/// was something else, 0 (certain, as of typed words) to 1. What is missing at an end is certain.
+/// Doubts about the parts of a reading: for each the probability that something else was said, from 0
+/// (certain, as for typed words) to 1. Entries missing at the end are certain.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Doubt {
     /// By word of [`Reading::base`].

@@ -1,20 +1,20 @@
-//! The words of the robot's questions.
+//! Wording of the robot's questions.
 
 use crate::{Question, Scene};
 
-/// Yes/no wordings of an attribute that brings none.
+/// Default yes/no wordings of an attribute.
 pub(crate) const ASK_YES_NO: [&str; 1] = ["Is the {attribute} {value}?"];
-/// Open wordings of an attribute that brings none.
+/// Default open wordings of an attribute.
 pub(crate) const ASK_WHICH: [&str; 1] = ["What is the {attribute}?"];
-/// Wordings of a scene that brings none for the question what is wanted.
+/// Default wordings of the first prompt.
 pub(crate) const ASK_WANTED: [&str; 1] = ["Which {noun} would you like?"];
-/// Wordings of a scene that brings none for the question about what is pointed at.
+/// Default wordings of a pointing question.
 pub(crate) const ASK_POINT: [&str; 3] = ["This one?", "Is it this one?", "Do you mean this one?"];
 
-/// Most values that are read out as what there is to choose from.
+/// Most values that are read out as options.
 const CHOICES_MAX: usize = 4;
 
-/// The wordings of the questions that no attribute words; at least one of each.
+/// Wordings of questions that are not about an attribute; at least one of each.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Asks {
     pub(crate) wanted: Vec<String>,
@@ -22,9 +22,8 @@ pub(crate) struct Asks {
 }
 
 impl Scene {
-    /// What the robot says to ask `question`: "Is it in the dishwasher?", "What colour is it?",
-    /// "This one?" (while it points). The usual wording, and the one that durations are reckoned
-    /// with.
+    /// Returns the usual wording of `question`: "Is it in the dishwasher?", "What colour is it?",
+    /// "This one?" (while pointing). Durations are calculated with it.
     ///
     /// # Panics
     /// If the question is not of this scene ([`Scene::contains`]).
@@ -32,11 +31,10 @@ impl Scene {
         self.phrase_variant(question, 0, 1)
     }
 
-    /// What the robot says as its `n`-th question (the prompt's number) when it asks `question`
-    /// for the `presentation`-th time, from 1. The wordings of a kind are taken in turn; said
-    /// again, a question begins with "Sorry", then says what may be answered. The same arguments
-    /// give the same words, so that a replay says the same; variant 0 said once is
-    /// [`Scene::phrase`].
+    /// Returns the wording of `question` as the `n`-th prompt, presented for the `presentation`-th
+    /// time, from 1. Wordings take turns; a repeated question begins with "Sorry", then
+    /// lists the possible answers. The result depends on the arguments alone, so that a replay gives
+    /// the same words; variant 0 presented once is [`Scene::phrase`].
     ///
     /// # Panics
     /// If the question is not of this scene ([`Scene::contains`]).
@@ -47,9 +45,9 @@ impl Scene {
         let plain = self.fill(&wordings[at as usize], question);
         match presentation {
             0 | 1 => plain,
-            2 => format!("Sorry: {}", begun_small(&plain)),
+            2 => format!("Sorry: {}", in_lower_case(&plain)),
             odd if odd % 2 == 1 => self.with_choices(question, plain),
-            _ => format!("Once more: {}", begun_small(&plain)),
+            _ => format!("Once more: {}", in_lower_case(&plain)),
         }
     }
 
@@ -84,7 +82,7 @@ impl Scene {
         match question {
             Question::Attribute(k, v) => {
                 let spoken = &self.attributes()[k.index()].values[v.index()].spoken;
-                format!("{}: yes or no?", begun_large(spoken))
+                format!("{}: yes or no?", capitalised(spoken))
             }
             Question::Point(_) => format!("{open}: yes or no?"),
             Question::Which(k) => {
@@ -98,16 +96,16 @@ impl Scene {
                     {
                         format!("{open}: {} or {last}?", first.join(", "))
                     }
-                    _ => format!("Once more: {}", begun_small(&plain)),
+                    _ => format!("Once more: {}", in_lower_case(&plain)),
                 }
             }
-            Question::None => format!("Once more: {}", begun_small(&plain)),
+            Question::None => format!("Once more: {}", in_lower_case(&plain)),
         }
     }
 }
 
-/// A sentence that goes on after a colon: "Is it" begins small, "LED" does not.
-fn begun_small(text: &str) -> String {
+/// Returns a sentence that continues after a colon: "Is it" in lower case, "LED" unchanged.
+fn in_lower_case(text: &str) -> String {
     let mut chars = text.chars();
     match (chars.next(), chars.next()) {
         (Some(first), Some(second)) if second.is_lowercase() => {
@@ -117,13 +115,13 @@ fn begun_small(text: &str) -> String {
     }
 }
 
-fn begun_large(text: &str) -> String {
+fn capitalised(text: &str) -> String {
     let mut chars = text.chars();
     let first = chars.next().into_iter().flat_map(char::to_uppercase);
     first.chain(chars).collect()
 }
 
-/// The first `{…}` of a wording that is none of the slots and would be read out as it stands.
+/// Returns the first `{…}` of a wording that is not one of the slots.
 pub(crate) fn unknown_slot(wording: &str, slots: &[&str]) -> Option<String> {
     let mut rest = wording;
     while let Some(open) = rest.find('{') {
@@ -140,10 +138,10 @@ pub(crate) fn unknown_slot(wording: &str, slots: &[&str]) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{begun_large, begun_small};
+    use super::{capitalised, in_lower_case};
 
     #[test]
-    fn a_sentence_begins_small_after_a_colon() {
+    fn a_sentence_continues_in_lower_case_after_a_colon() {
         for (text, small) in [
             ("Is it white?", "is it white?"),
             ("Äpfel?", "äpfel?"),
@@ -151,9 +149,9 @@ mod tests {
             ("A?", "A?"),
             ("", ""),
         ] {
-            assert_eq!(begun_small(text), small);
+            assert_eq!(in_lower_case(text), small);
         }
-        assert_eq!(begun_large("in the dishwasher"), "In the dishwasher");
-        assert_eq!(begun_large("éclair"), "Éclair");
+        assert_eq!(capitalised("in the dishwasher"), "In the dishwasher");
+        assert_eq!(capitalised("éclair"), "Éclair");
     }
 }

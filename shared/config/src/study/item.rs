@@ -1,4 +1,4 @@
-//! What a questionnaire asks, and which answers it takes.
+//! Questions of a questionnaire and their answers.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Json;
@@ -11,23 +11,23 @@ const TEXT_MAX: usize = 2000;
 pub struct Item {
     /// Its name in the data: letters, digits and `_`.
     pub id: String,
-    /// What the participant reads.
+    /// Its text.
     pub text: String,
-    /// Which answers there are.
+    /// Kind of its answers.
     pub kind: Kind,
-    /// What a [`Kind::Choice`] offers; empty for others.
+    /// Options of a [`Kind::Choice`]; empty for others.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub options: Vec<String>,
-    /// What the least value of a [`Kind::Likert`] stands for.
+    /// Label of the least value of a [`Kind::Likert`].
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub low: String,
-    /// What its greatest value stands for.
+    /// Label of its greatest value.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub high: String,
-    /// How many values it has.
+    /// Number of its values.
     #[serde(default)]
     pub points: u8,
-    /// Whether it must be answered.
+    /// An answer is required.
     pub required: bool,
 }
 

@@ -1,4 +1,4 @@
-//! `study.toml`: a study with people.
+//! `study.toml`: a user study.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -11,14 +11,14 @@ mod protocol;
 pub use item::{Item, Kind};
 pub use protocol::{Design, Objects, Order, Protocol};
 
-/// A study with people.
+/// A user study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// Whether the console conducts one.
+    /// The console offers the study.
     pub enabled: bool,
-    /// What was decided. Its policies are named: the configured planner where nothing else was said.
+    /// The protocol; its policies default to the configured planner.
     pub protocol: Protocol,
-    /// How long a service may be away before the interaction is spoilt.
+    /// Absence of a service after which an interaction is repeated.
     pub fault: Duration,
     /// Folder of the data; the group's own where nothing is said.
     pub data_dir: Option<PathBuf>,
@@ -80,7 +80,7 @@ fn questionnaire(f: &mut Fields<'_>) -> Vec<Item> {
     items
 }
 
-/// What holds for a question where nothing is said.
+/// Defaults of a question.
 const DEFAULTS: &str = r#"id = ""
 text = ""
 kind = ""

@@ -1,4 +1,4 @@
-//! What a lab has decided before the first participant comes.
+//! The protocol of a user study.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use super::Item;
 pub struct Protocol {
     /// The study's name, for participants and pictures.
     pub title: String,
-    /// What participants agree to; empty for no such page.
+    /// Consent text; empty for none.
     pub consent: String,
     /// The steps of the instructions.
     pub instructions: Vec<String>,
@@ -18,9 +18,9 @@ pub struct Protocol {
     pub interactions: u32,
     /// Practice interactions before them.
     pub warmup: u32,
-    /// How the desired object is drawn.
+    /// Draw of the desired object.
     pub objects: Objects,
-    /// Who meets which policy.
+    /// Assignment of policies to participants.
     pub design: Design,
     /// The policies, at least one.
     pub policies: Vec<String>,
@@ -28,31 +28,31 @@ pub struct Protocol {
     pub order: Order,
     /// Longest interaction, seconds.
     pub seconds_max: f64,
-    /// Whether participants see what the robot believes.
+    /// Show the belief to participants.
     pub show_belief: bool,
-    /// Whether the words said and asked are kept.
+    /// Store the words of user and robot.
     pub keep_words: bool,
-    /// What is asked at the end.
+    /// The questionnaire at the end.
     pub questionnaire: Vec<Item>,
 }
 
-/// How the desired object is drawn.
+/// Draw of the desired object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Objects {
-    /// Each time anew, every object alike.
+    /// Independent each time, uniform.
     Uniform,
     /// Among those that this participant, and then the whole study, has had least often.
     Balanced,
 }
 
-/// Who meets which policy.
+/// Assignment of policies to participants.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Design {
-    /// Everybody meets all.
+    /// Every participant meets all.
     Within,
-    /// Everybody meets one.
+    /// Every participant meets one.
     Between,
 }
 

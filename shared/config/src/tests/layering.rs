@@ -1,4 +1,4 @@
-//! Which layer wins, and what the values become.
+//! Precedence of layers, and the resulting values.
 
 use std::path::Path;
 use std::time::Duration;
@@ -46,7 +46,7 @@ fn an_almost_empty_folder_gives_the_shipped_values() {
 }
 
 #[test]
-fn the_defaults_are_what_the_documentation_says() {
+fn defaults_are_as_documented() {
     let Settings { group, dialogue, speech, arm, .. } = Folder::new(&[]).load(None, &[]).unwrap();
     let names: Vec<_> = group.services.iter().map(|service| service.name.as_str()).collect();
     assert_eq!(names, BUILT_IN);
@@ -135,7 +135,7 @@ fn services_can_be_added_and_keep_their_order() {
 }
 
 #[test]
-fn a_layer_can_take_an_optional_value_back() {
+fn a_layer_can_remove_an_optional_value() {
     let folder = Folder::new(&[
         ("speech.toml", "player = ['aplay']\nmodel_dir = '/opt/model'"),
         ("profiles/plain.toml", "[speech]\nplayer = []\nmodel_dir = ''"),

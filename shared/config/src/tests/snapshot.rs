@@ -1,4 +1,4 @@
-//! What the supervisor writes is what the services read.
+//! Snapshots: services read what the supervisor wrote.
 
 use std::fs;
 

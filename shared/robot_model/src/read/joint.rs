@@ -11,7 +11,7 @@ use super::reader::{Reader, child};
 /// A joint as the file writes it: other parts are still names.
 pub(super) struct Written<'a> {
     pub(super) name: &'a str,
-    /// What to call it in faults.
+    /// Its name in diagnostics.
     pub(super) element: String,
     pub(super) kind: JointKind,
     pub(super) parent: &'a str,

@@ -32,7 +32,7 @@ pub(super) fn read<'a>(
     Link { name: name.to_owned(), inertial, collision, visual }
 }
 
-/// Notes a material that the whole description may use.
+/// Adds a material that the whole description may use.
 pub(super) fn material<'a>(
     reader: &mut Reader<'a>,
     node: Node<'a, 'a>,

@@ -1,4 +1,4 @@
-//! Attributes with their checks; every fault is noted, and reading goes on with a harmless value.
+//! Attributes with their checks; an invalid one is reported and read as a harmless value.
 
 use diagnostics::{Diagnostic, Diagnostics, Report, TextFile};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
@@ -63,7 +63,7 @@ impl<'a> Reader<'a> {
         self.report.verdict(value)
     }
 
-    /// The document's element; anything but `<robot>` is a fault.
+    /// Returns the root element; reports anything but `<robot>`.
     pub(super) fn root(&mut self) -> Node<'a, 'a> {
         let root = self.xml.root_element();
         if !root.has_tag_name("robot") {
@@ -73,14 +73,14 @@ impl<'a> Reader<'a> {
         root
     }
 
-    /// The element's name, and what to call the element in faults.
+    /// Returns the element's name, and the name of the element in diagnostics.
     pub(super) fn named(&mut self, node: Node<'a, 'a>) -> (&'a str, String) {
         let kind = node.tag_name().name();
         let name = self.name(node, kind);
         (name, if name.is_empty() { kind.to_owned() } else { format!("{kind} {name:?}") })
     }
 
-    /// The attribute `name`; empty, and a fault, if it is missing.
+    /// Returns the attribute `name`; reports a missing one.
     pub(super) fn name(&mut self, node: Node<'a, 'a>, element: &str) -> &'a str {
         let name = node.attribute("name").unwrap_or_default().trim();
         if name.is_empty() {

@@ -4,7 +4,7 @@ use roxmltree::Node;
 
 use super::reader::Reader;
 
-/// What an element may have: its name, its attributes, its children.
+/// Known attributes and children of an element.
 type Known = (&'static str, &'static [&'static str], &'static [&'static str]);
 
 const KNOWN: [Known; 20] = [

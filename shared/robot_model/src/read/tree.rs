@@ -1,4 +1,4 @@
-//! How links and joints hang together.
+//! The tree of links and joints.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ use super::reader::Reader;
 type Links<'a> = Vec<(Link, Node<'a, 'a>)>;
 type Joints<'a> = Vec<(Written<'a>, Node<'a, 'a>)>;
 
-/// The robot, links parents first; none, and a fault, if it is not one tree.
+/// Returns the robot, links parents first; reports a description that is not one tree.
 pub(super) fn build<'a>(
     reader: &mut Reader<'a>,
     name: String,
@@ -28,7 +28,7 @@ pub(super) fn build<'a>(
     let named = |(joint, _): &(Written<'_>, _)| {
         places.contains_key(joint.parent) && places.contains_key(joint.child)
     };
-    // Wrong and missing names would be told again as loose ends.
+    // Unknown and missing names would be reported again as loose ends.
     if reader.count() > before || links.is_empty() || !joints.iter().all(named) {
         return None;
     }
@@ -36,7 +36,7 @@ pub(super) fn build<'a>(
     Some(assembled(name, links, joints, &order, &rules, &places))
 }
 
-/// The index of every name; a name that is there twice is a fault.
+/// Returns the index of every name; reports duplicates.
 fn indices<'n, 'a: 'n>(
     reader: &mut Reader<'a>,
     all: impl Iterator<Item = (&'n str, Node<'a, 'a>)>,
@@ -85,7 +85,7 @@ fn carriers(
     carriers
 }
 
-/// What each following joint follows in the end, with the rules on the way put together.
+/// Returns for each joint the rule by which it follows another, chained rules combined.
 fn rules(
     reader: &mut Reader<'_>,
     names: &HashMap<String, usize>,
@@ -99,7 +99,7 @@ fn rules(
         for _ in 0..=joints.len() {
             let Some(next) = joints[rule.joint].0.mimic else { break };
             let Some(&followed) = names.get(next.joint) else {
-                // An end that another joint names wrongly is told at that joint.
+                // An end that another joint names wrongly is reported at that joint.
                 if rule.joint == start && !next.joint.is_empty() {
                     what = Some(format!("it mimics {:?}, which is not a joint", next.joint));
                     let others =
@@ -130,8 +130,8 @@ fn rules(
     rules
 }
 
-/// The links from the root outwards, children in the order of the file; none, and a fault, if not
-/// all of them hang on one root.
+/// Returns the links from the root outwards, children in the order of the file; reports links that are
+/// not part of one tree.
 fn order(
     reader: &mut Reader<'_>,
     links: &Links<'_>,
@@ -169,7 +169,7 @@ fn order(
     (reader.count() == before).then_some(order)
 }
 
-/// Notes the loop that a link without a root above it hangs on, once per loop.
+/// Reports the loop above a link without a root, once per loop.
 fn loop_from(
     reader: &mut Reader<'_>,
     start: usize,
@@ -186,7 +186,7 @@ fn loop_from(
         way.push(joint);
         at = places[joints[joint].0.parent];
     }
-    // Where the way ends in a link that it did not pass, that loop has been told.
+    // A way that ends in a link that it did not pass leads into a reported loop.
     let Some(first) = way.iter().position(|&joint| places[joints[joint].0.child] == at) else {
         return;
     };

@@ -87,8 +87,8 @@ fn trunk_and_head_shapes_are_the_facts() {
     assert_eq!(shapes, 30 + 7 + 2, "nothing else is in the way");
 }
 
-/// What is looked for is what the reference pairs list, but for two pairs of capsules that cannot
-/// part: a description permits contact of whole links.
+/// Checked pairs are the reference pairs, except for two pairs of capsules that always touch: a
+/// description permits contact of whole links.
 #[test]
 fn permitted_contacts_are_those_without_a_reference_pair() {
     let robot = Robot::baxter();
@@ -175,7 +175,7 @@ fn fingers_follow_each_other() {
 }
 
 #[test]
-fn it_can_be_drawn_in_colour() {
+fn every_visual_has_a_colour() {
     let robot = Robot::baxter();
     let visual: Vec<&Body> = robot.links().iter().flat_map(|link| &link.visual).collect();
     assert!(visual.len() > 50);

@@ -1,10 +1,10 @@
-//! Whatever the text, reading it ends with a robot or with faults.
+//! Arbitrary text: reading returns a robot or diagnostics.
 
 use robot_model::{BAXTER_SRDF, BAXTER_URDF, JointKind, Robot};
 
 use crate::samples::{Random, fixture};
 
-/// What is put into a text: things that mean something there, in the wrong place.
+/// Insertions: meaningful text in the wrong place.
 const PIECES: [&str; 24] = [
     "<",
     ">",
@@ -82,7 +82,7 @@ fn broken(text: &str, random: &mut Random) -> String {
     text.into_iter().collect()
 }
 
-/// What holds of every robot that was read.
+/// Checks the invariants of a robot.
 fn check(robot: &Robot) {
     assert_eq!(robot.links().len(), robot.joints().len() + 1);
     for (i, joint) in robot.joints().iter().enumerate() {
@@ -102,7 +102,7 @@ fn check(robot: &Robot) {
     assert!(chain.manipulability(&q) >= 0.0 || chain.manipulability(&q).is_nan());
 }
 
-/// How many of the mutated texts still describe a robot.
+/// Counts the mutated texts that still describe a robot.
 fn survivors(urdf: &str, srdf: Option<&str>, seeds: std::ops::Range<u64>) -> usize {
     let mut good = 0;
     for seed in seeds {
@@ -143,7 +143,7 @@ fn mutated_files_never_panic() {
 }
 
 #[test]
-fn long_chains_and_deep_files_are_read_or_refused() {
+fn long_chains_are_read_and_deep_files_rejected() {
     let n = 3000;
     let mut text = String::from("<robot name=\"snake\"><link name=\"l0\"/>");
     for i in 0..n {
@@ -163,7 +163,7 @@ fn long_chains_and_deep_files_are_read_or_refused() {
 }
 
 #[test]
-fn entities_cannot_blow_a_file_up() {
+fn entity_expansion_is_rejected() {
     let text = "<!DOCTYPE r [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;&a;&a;\">]>\
                 <robot name=\"&b;\"/>";
     let faults = Robot::parse(text, None).unwrap_err();

@@ -10,7 +10,7 @@ fn frames_are_the_reference() {
     for limb in ["left", "right"] {
         let text = fixture(&format!("baxter/fk_reference_{limb}.csv"));
         let mut lines = text.lines();
-        // The file tells two tools apart; the description's own is the electric one.
+        // The file has two tools; the one of the description is the electric one.
         let columns: Vec<(usize, String)> = lines
             .next()
             .unwrap()

@@ -1,4 +1,4 @@
-//! What the tests draw from: random numbers and reference files.
+//! Random numbers and reference files for tests.
 
 use std::path::Path;
 
