@@ -33,10 +33,10 @@ pub use collision::{ArmShape, Capsule, Clearance, Cuboid, Gap};
 pub use gripper::attached_pose;
 pub use kinematics::chain::{Axis, Chain, Frame, Jacobian, LineError, ZeroPosture};
 pub use kinematics::inverse::{IkSolution, TOLERANCE_M, TOLERANCE_RAD, Unreachable};
-pub use kinematics::limb::{JOINTS, Joints, Limb};
+pub use kinematics::limb::{Arms, JOINTS, Joints, Limb};
 pub use kinematics::limits::{self, MotionLimits, PositionLimits};
 pub use planning::{
-    Arms, Grasp, GraspError, ObjectPose, PickPhase, PickPlan, PlanError, PlanSettings, PointPhase,
+    Grasp, GraspError, ObjectPose, PickPhase, PickPlan, PlanError, PlanSettings, PointPhase,
     PointPlan, check_reachable, plan_delivery, plan_pick, plan_point, plan_return,
 };
 pub use robot::{Arm, Robot, Unsuitable};

@@ -7,7 +7,6 @@ use crate::robot::{Arm, Robot};
 pub use shape::{Capsule, Cuboid};
 
 pub(crate) mod block;
-pub(crate) mod held;
 mod shape;
 #[cfg(test)]
 mod tests;

@@ -80,6 +80,33 @@ impl fmt::Display for Limb {
     }
 }
 
+/// Joint positions of both arms, radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arms {
+    /// The left arm's.
+    pub left: Joints,
+    /// The right arm's.
+    pub right: Joints,
+}
+
+impl Arms {
+    /// One arm's joint positions.
+    pub fn of(&self, limb: Limb) -> &Joints {
+        match limb {
+            Limb::Left => &self.left,
+            Limb::Right => &self.right,
+        }
+    }
+
+    /// One arm's joint positions, to be changed.
+    pub fn of_mut(&mut self, limb: Limb) -> &mut Joints {
+        match limb {
+            Limb::Left => &mut self.left,
+            Limb::Right => &mut self.right,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

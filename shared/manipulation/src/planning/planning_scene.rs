@@ -3,46 +3,19 @@
 use nalgebra::{Isometry3, UnitQuaternion};
 
 use super::error::PlanError;
+use super::held_object::Held;
 use super::static_obstacles::{self, Obstacle};
 use crate::baxter::DEFAULT_SPEED_RATIO;
 use crate::collision::Cuboid;
 use crate::collision::block::Block;
-use crate::collision::held::Held;
 use crate::collision::{ArmShape, Gap};
 use crate::kinematics::chain::Chain;
-use crate::kinematics::limb::{Joints, Limb};
+use crate::kinematics::limb::{Arms, Joints, Limb};
 use crate::kinematics::limits::MotionLimits;
 use crate::planning::grasp::ObjectPose;
 use crate::robot::{Arm, Robot};
 use crate::trajectory::Trajectory;
 use crate::trajectory::joint_path::{blocking, largest_change, searched, simple};
-
-/// Joint positions of both arms, radians.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arms {
-    /// The left arm's.
-    pub left: Joints,
-    /// The right arm's.
-    pub right: Joints,
-}
-
-impl Arms {
-    /// One arm's joint positions.
-    pub fn of(&self, limb: Limb) -> &Joints {
-        match limb {
-            Limb::Left => &self.left,
-            Limb::Right => &self.right,
-        }
-    }
-
-    /// One arm's joint positions, to be changed.
-    pub fn of_mut(&mut self, limb: Limb) -> &mut Joints {
-        match limb {
-            Limb::Left => &mut self.left,
-            Limb::Right => &mut self.right,
-        }
-    }
-}
 
 /// Settings of plans. Lengths in metres, frame `base`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,10 +7,10 @@ use serde::{Deserialize, Serialize};
 
 use super::error::{Furthest, PlanError};
 use super::fetch::HOME;
-use super::planning_scene::{Arms, PlanSettings, PlanningScene, Search};
+use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
 use crate::kinematics::chain::positive;
-use crate::kinematics::limb::{Joints, Limb};
+use crate::kinematics::limb::{Arms, Joints, Limb};
 use crate::robot::Robot;
 use crate::trajectory::{Stage, Timeline, Trajectory, refuse_outside};
 

@@ -4,7 +4,7 @@ use super::*;
 use crate::collision::Clearance;
 use crate::collision::Cuboid;
 use crate::gripper::{STROKE_M, attached_pose};
-use crate::kinematics::limb::{Joints, Limb};
+use crate::kinematics::limb::{Arms, Joints, Limb};
 use crate::planning::grasp::ObjectPose;
 use crate::samples::{Random, arm, full, named, neutral, robot};
 use crate::trajectory::Timeline;

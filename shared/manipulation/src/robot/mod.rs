@@ -13,9 +13,8 @@ use robot_model::Robot as Description;
 use crate::collision::ArmShape;
 use crate::collision::{Capsule, Cuboid};
 use crate::kinematics::chain::{Chain, ZeroPosture};
-use crate::kinematics::limb::{Joints, Limb};
+use crate::kinematics::limb::{Arms, Joints, Limb};
 use crate::kinematics::limits::MotionLimits;
-use crate::planning::Arms;
 
 pub use describe::Unsuitable;
 

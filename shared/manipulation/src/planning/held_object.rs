@@ -4,9 +4,10 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 
 use crate::collision::block::Block;
 use crate::collision::{ArmShape, Gap};
-use crate::planning::Obstacle;
-use crate::planning::grasp::ObjectPose;
 use crate::robot::Arm;
+
+use super::Obstacle;
+use super::grasp::ObjectPose;
 
 /// A box that is fixed in the gripper, from where it stood.
 #[derive(Clone, Debug)]
