@@ -18,7 +18,7 @@ fn prompt_without_a_sound_card_lasts_as_long_as_its_sound() {
     group.say("get me the bowl");
     let said = wait_for("a question said to its end", 20.0, || {
         let latest = presented.latest().unwrap()?;
-        (latest.state == PresentationState::Ended.code()).then_some(latest)
+        (latest.state == PresentationState::Ended).then_some(latest)
     });
     let entries = std::fs::read_dir(folder.path()).unwrap();
     let files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();

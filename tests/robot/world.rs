@@ -150,7 +150,7 @@ impl World {
     }
 
     pub(crate) fn hindrance(&self) -> MotionInhibit {
-        MotionInhibit::from_code(self.status().hindrance).unwrap()
+        self.status().hindrance.get()
     }
 
     /// The pick's object was brought, after one grasp that held.

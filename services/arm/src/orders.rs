@@ -27,7 +27,8 @@ impl ArmNode {
             return;
         }
         let is_new = id != self.act.id;
-        let (Ok(kind), Ok(question)) = (act.kind(), Question::try_from(act.question)) else {
+        let kind = act.kind.get();
+        let Ok(question) = Question::try_from(act.question) else {
             if is_new {
                 tracing::warn!(%id, "invalid act ignored");
             }

@@ -214,7 +214,7 @@ impl Robot {
     }
 
     fn drill(&mut self, drill: &Drill, now: Time) {
-        let Ok(kind) = DrillKind::from_code(drill.kind) else { return };
+        let kind = drill.kind.get();
         if self.drilled.contains(&drill.key) {
             return;
         }

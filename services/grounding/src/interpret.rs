@@ -8,7 +8,7 @@ use scene::{Doubt, Question, Reading};
 /// question's weights sum to 1.
 pub(crate) fn interpretations(
     config: &Config,
-    heard: &[Hypothesis<'_>],
+    heard: &[Hypothesis],
     asked: &[AskedQuestion],
 ) -> Result<Vec<Interpretation>, WireError> {
     let at_most = READINGS_MAX / (asked.len() + 1);
@@ -35,14 +35,14 @@ fn question(config: &Config, asked: &AskedQuestion) -> Result<Question, WireErro
 /// What was said if it answers `question`: the likeliest readings, whose weights sum to 1.
 fn readings(
     config: &Config,
-    heard: &[Hypothesis<'_>],
+    heard: &[Hypothesis],
     question: Question,
     at_most: usize,
 ) -> Vec<(f64, Reading)> {
     let mut together: Vec<(f64, Reading)> = Vec::new();
     for hypothesis in heard {
-        let Hypothesis { text, weight: heard, confidence } = hypothesis;
-        for (share, reading) in config.reader.readings(text, confidence, question) {
+        let Hypothesis { text, weight: heard, word_confidence } = hypothesis;
+        for (share, reading) in config.reader.readings(text, word_confidence, question) {
             let share = share * heard;
             match together.iter_mut().find(|(_, known)| says_the_same(known, &reading)) {
                 Some((weight, known)) => {
@@ -81,8 +81,8 @@ fn blend(a: &Doubt, b: &Doubt, part: f64) -> Doubt {
 }
 
 /// A word of the best hypothesis that the scene does not have, for the robot's reply.
-pub(crate) fn unknown(config: &Config, best: &Hypothesis<'_>) -> Option<String> {
-    config.reader.unknown_words(best.text).into_iter().next()
+pub(crate) fn unknown(config: &Config, best: &Hypothesis) -> Option<String> {
+    config.reader.unknown_words(&best.text).into_iter().next()
 }
 
 #[cfg(test)]
@@ -94,8 +94,8 @@ mod tests {
     const BOWLS: &str =
         include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml"));
 
-    fn heard<'a>(text: &'a str, weight: f64, confidence: &[f32]) -> Hypothesis<'a> {
-        Hypothesis { text, weight, confidence: confidence.to_vec() }
+    fn heard(text: &str, weight: f64, confidence: &[f32]) -> Hypothesis {
+        Hypothesis { weight, word_confidence: confidence.to_vec(), ..Hypothesis::certain(text) }
     }
 
     #[test]

@@ -6,9 +6,9 @@ use messages::{
 };
 use service::Span;
 
+use crate::Hypothesis;
 use crate::devices::microphone::MicrophoneStatus;
 use crate::devices::stream::SpeechSegment;
-use crate::hypothesis::Hypothesis;
 use crate::stream_events::StreamEvent;
 
 /// Events delivered to the reducer.

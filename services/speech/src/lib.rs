@@ -6,7 +6,6 @@
 
 pub mod devices;
 mod doctor;
-pub mod hypothesis;
 mod inspection;
 mod io;
 mod pending_sounds;
@@ -26,11 +25,11 @@ use service::{Effects, Event, Node, NodeError, Span, Time};
 use stream_events::StreamEvent;
 use utterance_intake::UtteranceIntake;
 
-pub use hypothesis::Hypothesis;
 pub use io::{
     In, Out, PlaybackEvent, PlaybackRequest, PlaybackState, Recognised, RecognisedSegment,
     RecognitionInput,
 };
+pub use messages::Hypothesis;
 
 /// How often everything not yet superseded is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);

@@ -77,9 +77,8 @@ impl PromptPlayer {
 
     /// Handles the policy's current decision, which is resent periodically.
     pub(crate) fn on_act(&mut self, act: &RobotAct, now: Time, fx: &mut Fx) {
-        let (Ok(kind), Ok(question), Ok(text)) =
-            (act.kind(), Question::try_from(act.question), act.text.as_str())
-        else {
+        let kind = act.kind.get();
+        let (Ok(question), Ok(text)) = (Question::try_from(act.question), act.text.as_str()) else {
             tracing::warn!(act = act.act, "invalid act rejected");
             return;
         };

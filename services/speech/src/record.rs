@@ -5,7 +5,7 @@ use messages::{RequestKey, Source, UtteranceSeq};
 use serde::{Deserialize, Serialize};
 use service::Time;
 
-use crate::hypothesis::Hypothesis;
+use crate::Hypothesis;
 
 /// A journal record of the speech service.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -267,8 +267,8 @@ fn utterance_carries_all_hypotheses_with_word_confidences() {
     let outputs = speech.take(0.8, recognised(sound, Some(hypotheses)));
     let utterance = outputs.utterance().unwrap();
     let sent = utterance.hypotheses().unwrap();
-    assert_eq!((sent.len(), sent[0].text, sent[0].weight), (2, "the clear one", 0.75));
-    let rounded: Vec<f32> = sent[0].confidence.iter().map(|c| (c * 10.0).round()).collect();
+    assert_eq!((sent.len(), &*sent[0].text, sent[0].weight), (2, "the clear one", 0.75));
+    let rounded: Vec<f32> = sent[0].word_confidence.iter().map(|c| (c * 10.0).round()).collect();
     assert_eq!(rounded, [9.0, 6.0]);
 }
 

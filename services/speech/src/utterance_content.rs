@@ -33,11 +33,10 @@ impl UtteranceContent {
     ///
     /// # Errors
     /// Invalid weights or confidences, for the client.
-    pub(crate) fn transcript(transcript: Vec<(String, f64, Vec<f32>)>) -> Result<Self, String> {
-        let mut hypotheses = Vec::new();
-        for (text, weight, word_confidence) in transcript {
+    pub(crate) fn transcript(mut hypotheses: Vec<Hypothesis>) -> Result<Self, String> {
+        for Hypothesis { text, weight, word_confidence } in &hypotheses {
             let words = text.split_whitespace().count();
-            if !(weight.is_finite() && weight > 0.0) {
+            if !(weight.is_finite() && *weight > 0.0) {
                 return Err(format!("transcript: expected a weight above 0, found {weight}"));
             }
             if let Some(wrong) = word_confidence.iter().find(|c| !(0.0..=1.0).contains(*c)) {
@@ -51,7 +50,6 @@ impl UtteranceContent {
                     "transcript: expected at most {words} confidences, one per word, found {found}"
                 ));
             }
-            hypotheses.push(Hypothesis { text, weight, word_confidence });
         }
         hypotheses.sort_by(|a, b| b.weight.total_cmp(&a.weight));
         hypotheses.truncate(HYPOTHESES_MAX);
@@ -94,13 +92,16 @@ mod tests {
     use super::*;
 
     fn transcript(weight: f64, confidence: &[f32]) -> Result<Vec<Hypothesis>, String> {
-        let one = vec![("the red one".to_owned(), weight, confidence.to_vec())];
+        let word_confidence = confidence.to_vec();
+        let one = vec![Hypothesis { text: "the red one".to_owned(), weight, word_confidence }];
         UtteranceContent::transcript(one).map(|content| content.hypotheses)
     }
 
     #[test]
     fn transcript_keeps_the_best_hypotheses_first() {
-        let many = (1..=9).map(|n| (n.to_string(), f64::from(n), Vec::new())).collect();
+        let many = (1..=9)
+            .map(|n| Hypothesis { weight: f64::from(n), ..Hypothesis::certain(n.to_string()) })
+            .collect();
         let hypotheses = UtteranceContent::transcript(many).unwrap().hypotheses;
         assert_eq!((hypotheses.len(), hypotheses[0].text.as_str()), (HYPOTHESES_MAX, "9"));
         assert_eq!(transcript(2.0, &[0.5, 1.0]).unwrap()[0].word_confidence, [0.5, 1.0]);

@@ -1,7 +1,7 @@
 //! Payloads of variable size: postcard in a byte slice.
 
-use crate::RequestKey;
 use crate::schema::payloads;
+use crate::{Hypothesis, RequestKey};
 use dialogue::{ActKind, Action, Attributed, Ended, Outcome};
 use scene::Question;
 use serde::{Deserialize, Serialize};
@@ -51,7 +51,7 @@ pub enum Sound {
     Transcript {
         /// What may have been said: text, weight above 0 (their sum need not be 1), and how sure
         /// each blank-separated word is, 0 to 1; words beyond the end are certain.
-        hypotheses: Vec<(String, f64, Vec<f32>)>,
+        hypotheses: Vec<Hypothesis>,
     },
 }
 

@@ -30,14 +30,6 @@ pub trait WireCode: Copy + 'static {
         self.into()
     }
 
-    /// Returns the variant of a code.
-    ///
-    /// # Errors
-    /// An invalid code.
-    fn from_code(code: Code<Self>) -> Result<Self, WireError> {
-        Self::from_byte(code.byte)
-    }
-
     /// Returns the byte of this variant.
     fn to_byte(self) -> u8;
 
@@ -188,15 +180,6 @@ macro_rules! wire_enum {
             /// Returns the code in a message.
             pub const fn code(self) -> $crate::wire::Code<Self> {
                 $crate::wire::Code::from_raw(match self { $(Self::$variant => $code,)+ })
-            }
-
-            /// Returns the variant of a code.
-            ///
-            /// # Errors
-            /// An invalid code.
-            pub fn from_code(code: $crate::wire::Code<Self>) -> Result<Self, $crate::WireError> {
-                $crate::wire::WireField::check(&code)?;
-                Ok(code.get())
             }
         }
     };

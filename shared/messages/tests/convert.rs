@@ -78,15 +78,15 @@ proptest! {
         let confidence: Vec<f32> = codes.iter().map(|code| f32::from(*code) / 255.0).collect();
         let heard: Vec<Hypothesis> = texts
             .iter()
-            .map(|text| Hypothesis { text, weight: 2.0, confidence: confidence.clone() })
+            .map(|text| Hypothesis { weight: 2.0, word_confidence: confidence.clone(), ..Hypothesis::certain(text) })
             .collect();
         let mut utterance = Utterance::default();
         utterance.set_hypotheses(&heard).unwrap();
         let read = utterance.hypotheses().unwrap();
         prop_assert_eq!(read.len(), texts.len());
         for (read, expected) in read.iter().zip(&texts) {
-            prop_assert_eq!(read.text, expected.as_str());
-            prop_assert_eq!(&read.confidence, &confidence);
+            prop_assert_eq!(&read.text, expected);
+            prop_assert_eq!(&read.word_confidence, &confidence);
             prop_assert!((read.weight - 1.0 / texts.len() as f64).abs() < 1e-12);
         }
     }
@@ -106,8 +106,7 @@ proptest! {
     #[test]
     fn any_span_is_read_or_refused(start in any::<u32>(), len in any::<u32>(), count in any::<u8>()) {
         let mut utterance = Utterance::default();
-        let heard = Hypothesis { text: "größe", weight: 1.0, ..Hypothesis::default() };
-        utterance.set_hypotheses(&[heard]).unwrap();
+        utterance.set_hypotheses(&[Hypothesis::certain("größe")]).unwrap();
         (utterance.hypotheses[0].start, utterance.hypotheses[0].len) = (start, len);
         utterance.hypothesis_count = count;
         let _ = utterance.hypotheses();

@@ -102,7 +102,7 @@ impl AudioStream {
                 receipts.push(*receipt);
             }
         })?;
-        let over = |receipt: &Receipt| receipt.status == ReceiptStatus::Over.code();
+        let over = |receipt: &Receipt| receipt.status == ReceiptStatus::Over;
         self.is_over |= receipts.iter().any(over);
         Ok(receipts)
     }

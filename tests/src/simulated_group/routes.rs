@@ -142,7 +142,7 @@ impl SimulatedGroup {
                 }
                 policy::Out::Act(act) => {
                     self.check_durable(&act);
-                    if act.kind() == Ok(ActKind::Ask)
+                    if act.kind == ActKind::Ask
                         && let Ok(question) = act.question.try_into()
                     {
                         self.user.announce(act.prompt, act.scene_key, question);

@@ -7,7 +7,7 @@ use evaluation::simulation::SimulatedUser;
 use evaluation::simulation::users::{
     Domain, Habits, Policy, Reply, TimedUser, TimedUtterance, Timing,
 };
-use messages::{Injection, Receipt, RequestKey, Sound};
+use messages::{Hypothesis, Injection, Receipt, RequestKey, Sound};
 use scene::{ObjectId, Question, Scene};
 use service::{Span, Time};
 
@@ -180,7 +180,7 @@ impl GroupUser {
     /// Sends the words of utterance `n`, with their times.
     pub(super) fn send_transcript(&mut self, n: usize, now: Time) {
         let Begun { utterance, text, .. } = self.begun[n].clone();
-        let hypotheses = vec![(text, 1.0, Vec::new())];
+        let hypotheses = vec![Hypothesis::certain(text)];
         self.inject(n, &utterance, Sound::Transcript { hypotheses }, now);
     }
 

@@ -214,7 +214,7 @@ impl Talk {
     fn follow(&mut self, news: News) {
         for receipt in &news.receipts {
             let note = receipt.note.as_str().unwrap_or_default().to_owned();
-            let accepted = receipt.status == ReceiptStatus::Accepted.code();
+            let accepted = receipt.status == ReceiptStatus::Accepted;
             self.heard(Time(receipt.onset_ns), &note, accepted, receipt.snr_db);
         }
         for (said, at) in news.began {

@@ -63,26 +63,26 @@ impl Taps {
     pub(super) fn look(&mut self) -> News {
         let mut news = News::default();
         let (questions, picks) = (&mut self.questions, &mut self.picks);
-        let take = |act: &RobotAct| match act.kind() {
-            Ok(ActKind::Ask) => {
+        let take = |act: &RobotAct| match act.kind.get() {
+            ActKind::Ask => {
                 let text = act.text.as_str().unwrap_or_default().to_owned();
                 questions.insert((act.prompt, act.presentation), text);
             }
-            Ok(ActKind::Pick) => *picks = true,
+            ActKind::Pick => *picks = true,
             _ => {}
         };
         self.acts.drain(take).expect("acts");
         let note = |presented: &Presented| {
             let said = (presented.prompt, presented.presentation);
-            match PresentationState::from_code(presented.state) {
-                Ok(PresentationState::Speaking) => news.began.push((said, presented.started_ns)),
-                Ok(PresentationState::Ended) => news.ended.push((said, presented.ended_ns)),
+            match presented.state.get() {
+                PresentationState::Speaking => news.began.push((said, presented.started_ns)),
+                PresentationState::Ended => news.ended.push((said, presented.ended_ns)),
                 _ => {}
             }
         };
         self.presented.drain(note).expect("presented");
         self.receipts.drain(|receipt| news.receipts.push(*receipt)).expect("receipts");
-        let ear = |activity: &Activity| self.ear = EarState::from_code(activity.ear).ok();
+        let ear = |activity: &Activity| self.ear = Some(activity.ear.get());
         self.activity.drain(ear).expect("activity");
         while let Some(view) = self.views.take().expect("views") {
             self.view = view;

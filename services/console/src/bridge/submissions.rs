@@ -1,7 +1,7 @@
 //! Words of viewers on their way to the robot: sent under one key until they are answered, so that
 //! no restart in between loses or doubles them.
 
-use messages::{Injection, Receipt, ReceiptStatus, Sound};
+use messages::{Hypothesis, Injection, Receipt, ReceiptStatus, Sound};
 use service::bus::EncodedWriter;
 use service::client::random_key;
 use service::{Span, Time};
@@ -42,9 +42,10 @@ impl Submissions {
         }
         let Words { text, alternatives, spoken, began, ended } = words;
         let sound = if spoken {
-            let sure = |(text, weight)| (text, weight, Vec::new());
-            let first = (text, 1.0, Vec::new());
-            let hypotheses = std::iter::once(first).chain(alternatives.into_iter().map(sure));
+            let other =
+                |(text, weight): (String, f64)| Hypothesis { weight, ..Hypothesis::certain(text) };
+            let first = Hypothesis::certain(text);
+            let hypotheses = std::iter::once(first).chain(alternatives.into_iter().map(other));
             Sound::Transcript { hypotheses: hypotheses.collect() }
         } else {
             Sound::Text(text)

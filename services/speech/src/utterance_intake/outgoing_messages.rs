@@ -1,7 +1,6 @@
 //! Messages about utterances.
 
 use super::origin::Origin;
-use crate::Hypothesis;
 use crate::record::Accepted;
 use crate::utterance_content::as_text;
 use messages::{AskedQuestion, FixedText, Receipt, ReceiptStatus, Utterance};
@@ -56,8 +55,8 @@ pub(super) fn utterance(accepted: &Accepted) -> Utterance {
     };
     let asked: Vec<AskedQuestion> = accepted.asked.iter().map(AskedQuestion::from).collect();
     utterance.set_asked(&asked);
-    let hypotheses: Vec<_> = accepted.hypotheses.iter().map(Hypothesis::view).collect();
-    if utterance.set_hypotheses(&hypotheses).is_err() {
+    let hypotheses = &accepted.hypotheses;
+    if utterance.set_hypotheses(hypotheses).is_err() {
         // The best one fits (its length was checked); the others are a refinement.
         let fitted = utterance.set_hypotheses(hypotheses.get(..1).unwrap_or_default());
         debug_assert!(fitted.is_ok(), "an accepted utterance fits");

@@ -136,7 +136,7 @@ impl<'a, 'b> Chat<'a, 'b> {
 
     /// Prints why words were refused; accepted ones are in the terminal already.
     fn refused(&mut self, receipt: &Receipt) -> Result<(), CliError> {
-        if receipt.status == ReceiptStatus::Accepted.code() {
+        if receipt.status == ReceiptStatus::Accepted {
             return Ok(());
         }
         let why = receipt.note.as_str().unwrap_or("no reason was given");

@@ -40,28 +40,27 @@ pub(super) fn noise(snr_db: f32) -> Option<String> {
 /// Renders microphone and recogniser as one line.
 pub(super) fn line(hearing: &Hearing, style: Style) -> String {
     let why = hearing.note.as_str().unwrap_or("?");
-    let microphone = match MicrophoneState::from_code(hearing.microphone) {
-        Ok(MicrophoneState::Off) => style.paint(Ink::Dim, format!("off ({why})")),
-        Ok(MicrophoneState::Closed) => style.paint(Ink::Dim, "opened by: whichone talk".to_owned()),
-        Ok(MicrophoneState::Opening) => {
+    let microphone = match hearing.microphone.get() {
+        MicrophoneState::Off => style.paint(Ink::Dim, format!("off ({why})")),
+        MicrophoneState::Closed => style.paint(Ink::Dim, "opened by: whichone talk".to_owned()),
+        MicrophoneState::Opening => {
             style.paint(Ink::Yellow, format!("{why} has delivered no audio yet"))
         }
-        Ok(MicrophoneState::Listening) => {
+        MicrophoneState::Listening => {
             style.paint(Ink::Green, format!("listening ({why}, {:.0} dB)", hearing.level_db))
         }
-        Ok(MicrophoneState::Muted) => {
+        MicrophoneState::Muted => {
             style.paint(Ink::Green, "muted while the robot speaks".to_owned())
         }
-        Ok(MicrophoneState::Broken) => {
+        MicrophoneState::Broken => {
             let restarts = hearing.restarts;
             style.paint(Ink::Red, format!("not working ({why}; {restarts} attempts)"))
         }
-        Err(_) => style.paint(Ink::Red, "in an unknown state".to_owned()),
     };
     let mut line = format!("microphone {microphone}");
-    match EarState::from_code(hearing.ear) {
-        Ok(EarState::Loading) => line += "; recogniser loading",
-        Ok(EarState::Off) => line += "; speech recognition off",
+    match hearing.ear.get() {
+        EarState::Loading => line += "; recogniser loading",
+        EarState::Off => line += "; speech recognition off",
         _ => {}
     }
     if hearing.measured != 0 {

@@ -100,10 +100,10 @@ impl Printed {
                 continue;
             }
             self.segments.push(receipt.segment);
-            self.accepted |= receipt.status == ReceiptStatus::Accepted.code();
+            self.accepted |= receipt.status == ReceiptStatus::Accepted;
             match speak::print(receipt, out) {
                 // A rejected utterance does not end the stream.
-                Err(trouble) if receipt.status == ReceiptStatus::Refused.code() => {
+                Err(trouble) if receipt.status == ReceiptStatus::Refused => {
                     crate::output::note(trouble);
                 }
                 printed => printed?,

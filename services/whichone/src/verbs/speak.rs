@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use messages::{Receipt, ReceiptStatus, Sound, Source};
+use messages::{Hypothesis, Receipt, ReceiptStatus, Sound, Source};
 use serde::Serialize;
 use service::client::Client;
 use service::clock;
@@ -49,8 +49,11 @@ fn transcript(args: &SayArgs) -> Result<Sound, CliError> {
         let what = format!("the alternatives weigh {others} and leave nothing of 1 for the text");
         return Err(CliError::new(Exit::Usage, what));
     }
-    let best = (args.text.join(" "), 1.0 - others, args.confidence.clone());
-    let others = args.alternatives.iter().map(|(text, weight)| (text.clone(), *weight, Vec::new()));
+    let (weight, word_confidence) = (1.0 - others, args.confidence.clone());
+    let best = Hypothesis { text: args.text.join(" "), weight, word_confidence };
+    let others = args.alternatives.iter();
+    let others = others
+        .map(|(text, weight)| Hypothesis { weight: *weight, ..Hypothesis::certain(text.clone()) });
     Ok(Sound::Transcript { hypotheses: std::iter::once(best).chain(others).collect() })
 }
 
@@ -86,7 +89,7 @@ fn print_all(receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
     for receipt in receipts {
         print(receipt, out)?;
     }
-    let accepted = |receipt: &Receipt| receipt.status == ReceiptStatus::Accepted.code();
+    let accepted = |receipt: &Receipt| receipt.status == ReceiptStatus::Accepted;
     Ok(if receipts.iter().any(accepted) { Exit::Ok } else { Exit::NotReached })
 }
 
@@ -106,8 +109,8 @@ struct Printed<'a> {
 /// Prints the receipt of an utterance.
 pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), CliError> {
     let unclear = |error: messages::WireError| CliError::new(Exit::NotReached, error.to_string());
-    let status = ReceiptStatus::from_code(receipt.status).map_err(unclear)?;
-    let source = Source::from_code(receipt.source).map_err(unclear)?;
+    let status = receipt.status.get();
+    let source = receipt.source.get();
     let note = receipt.note.as_str().map_err(unclear)?;
     let utterance = receipt.utterance().map(|seq| seq.0);
     if out.is_json() {

@@ -3,7 +3,7 @@
 use crate::fixed::common::WireQuestion;
 use crate::schema::wire_struct;
 use crate::text::FixedText;
-use crate::wire::{Code, WireCode, WireError, wire_codes};
+use crate::wire::{Code, wire_codes};
 use crate::{ActKind, InteractionId, PickId};
 use iceoryx2::prelude::ZeroCopySend;
 use scene::ObjectId;
@@ -51,18 +51,10 @@ wire_struct! {
 }
 
 impl RobotAct {
-    /// [`ActKind`] of the act.
-    ///
-    /// # Errors
-    /// An unknown byte.
-    pub fn kind(&self) -> Result<ActKind, WireError> {
-        ActKind::from_code(self.kind)
-    }
-
     /// The pick that it orders, if it orders one.
     pub fn pick(&self) -> Option<(PickId, ObjectId)> {
         let object = u16::try_from(self.object).ok()?;
-        (self.kind == ActKind::Pick.code()).then_some((self.pick_id(), ObjectId(object)))
+        (self.kind == ActKind::Pick).then_some((self.pick_id(), ObjectId(object)))
     }
 
     /// The key of the pick that it orders or gives up.

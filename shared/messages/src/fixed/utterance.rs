@@ -6,6 +6,7 @@ use crate::schema::wire_struct;
 use crate::text::{FixedText, TextTooLong};
 use crate::wire::{Code, WireError, wire_enum};
 use iceoryx2::prelude::ZeroCopySend;
+use serde::{Deserialize, Serialize};
 
 /// Longest utterance, all hypotheses together, in bytes.
 pub const UTTERANCE_BYTES_MAX: usize = 16_380;
@@ -46,15 +47,28 @@ wire_struct! {
     }
 }
 
-/// What an utterance may have said.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Hypothesis<'a> {
+/// One recognised wording of an utterance.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Hypothesis {
     /// The words.
-    pub text: &'a str,
-    /// Probability among the hypotheses.
+    pub text: String,
+    /// Relative weight among the hypotheses, above 0.
     pub weight: f64,
-    /// How sure each blank-separated word is, 0 to 1. Words beyond the end are certain.
-    pub confidence: Vec<f32>,
+    /// Probability of each blank-separated word, 0 to 1. Words beyond the end are certain.
+    pub word_confidence: Vec<f32>,
+}
+
+impl Hypothesis {
+    /// Returns the only hypothesis of a typed text.
+    pub fn certain(text: impl Into<String>) -> Self {
+        Self { text: text.into(), weight: 1.0, word_confidence: Vec::new() }
+    }
+
+    /// Returns a hypothesis of words with their confidences.
+    pub fn of_words(words: impl IntoIterator<Item = (String, f32)>, weight: f64) -> Self {
+        let (words, word_confidence): (Vec<_>, Vec<_>) = words.into_iter().unzip();
+        Self { text: words.join(" "), weight, word_confidence }
+    }
 }
 
 wire_struct! {
@@ -93,15 +107,15 @@ impl Utterance {
     ///
     /// # Errors
     /// Their texts together are longer than [`UTTERANCE_BYTES_MAX`].
-    pub fn set_hypotheses(&mut self, heard: &[Hypothesis<'_>]) -> Result<(), TextTooLong> {
+    pub fn set_hypotheses(&mut self, heard: &[Hypothesis]) -> Result<(), TextTooLong> {
         let used = &heard[..heard.len().min(HYPOTHESES_MAX)];
         let total: f64 = used.iter().map(|heard| heard.weight).sum();
         let mut text = String::new();
         for (slot, heard) in self.hypotheses.iter_mut().zip(used) {
             let (start, len) = (text.len() as u32, heard.text.len() as u32);
-            let confidence = confidence_codes(&heard.confidence);
+            let confidence = confidence_codes(&heard.word_confidence);
             *slot = WireHypothesis { start, len, weight: heard.weight / total, confidence };
-            text.push_str(heard.text);
+            text.push_str(&heard.text);
         }
         self.hypothesis_count = used.len() as u8;
         self.text = FixedText::new(&text)?;
@@ -112,7 +126,7 @@ impl Utterance {
     ///
     /// # Errors
     /// Counts, spans, weights or bytes that make no sense.
-    pub fn hypotheses(&self) -> Result<Vec<Hypothesis<'_>>, WireError> {
+    pub fn hypotheses(&self) -> Result<Vec<Hypothesis>, WireError> {
         let count = usize::from(self.hypothesis_count);
         let used = self
             .hypotheses
@@ -123,9 +137,9 @@ impl Utterance {
             .map(|h| {
                 let end = h.start.saturating_add(h.len) as usize;
                 let words = text.get(h.start as usize..end);
-                let text = words.ok_or(WireError::new("hypothesis span", h.start))?;
+                let text = words.ok_or(WireError::new("hypothesis span", h.start))?.to_owned();
                 let weight = checked_share("weight", h.weight)?;
-                Ok(Hypothesis { text, weight, confidence: confidences(&h.confidence) })
+                Ok(Hypothesis { text, weight, word_confidence: confidences(&h.confidence) })
             })
             .collect()
     }

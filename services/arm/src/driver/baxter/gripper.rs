@@ -64,12 +64,12 @@ impl Gripper {
 
     pub(super) fn condition(&self, now: Time) -> Condition {
         let Some((state, heard)) = &self.state else { return Condition::Unheard };
-        let other = self.properties.is_some_and(|p| p.ui_type != UiType::Electric.code());
+        let other = self.properties.is_some_and(|p| p.ui_type != UiType::Electric);
         if now.since(*heard) > STALE {
             Condition::Stale
         } else if is(state.error) || other {
             Condition::Faulty
-        } else if state.calibrated == Tristate::False.code() {
+        } else if state.calibrated == Tristate::False {
             Condition::Uncalibrated
         } else {
             Condition::Ready
@@ -85,11 +85,11 @@ impl Gripper {
     /// dead zone have closed on themselves.
     pub(super) fn holding(&self, now: Time) -> Option<bool> {
         let (state, heard) = self.state?;
-        if now.since(heard) > STALE || state.calibrated == Tristate::False.code() {
+        if now.since(heard) > STALE || state.calibrated == Tristate::False {
             return None;
         }
         let apart = f64::from(state.position) > DEAD_ZONE_PERCENT;
-        match Tristate::from_code(state.gripping).ok()? {
+        match state.gripping.get() {
             Tristate::True => Some(apart),
             Tristate::False => Some(false),
             // A gripper without a sense of its own: closed fingers that stand apart have something

@@ -4,10 +4,10 @@ use std::time::{Duration, Instant};
 
 use super::worker::snr_db;
 use super::*;
+use crate::Hypothesis;
 use crate::RecognisedSegment;
 use crate::devices::recogniser::RecogniseError;
 use crate::devices::testing::{self, bowls, write_wav};
-use crate::hypothesis::Hypothesis;
 
 const PATIENCE: Duration = Duration::from_secs(20);
 

@@ -15,9 +15,9 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use serde::Deserialize;
 
 use super::{RecogniseError, Recogniser, RecogniserUnavailable};
+use crate::Hypothesis;
 use crate::devices::audio::RATE_HZ;
 use crate::devices::language_model;
-use crate::hypothesis::Hypothesis;
 
 /// Program and limits.
 #[derive(Clone, Debug, PartialEq)]

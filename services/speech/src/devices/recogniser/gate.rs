@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use language::{Language, Reader};
 use scene::{Intent, ObjectId, Question, Reading, Response, Scene, WordId};
 
+use crate::Hypothesis;
 use crate::devices::language_model::scene_sentences;
-use crate::hypothesis::Hypothesis;
 
 /// Speech that is shown as heard but not acted on.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,7 +13,7 @@ use std::ops::Range;
 
 use scene::Scene;
 
-use crate::hypothesis::Hypothesis;
+use crate::Hypothesis;
 
 pub use command::{Command, CommandOptions};
 pub use gate::{Gate, Rejected};

@@ -12,9 +12,9 @@ use super::word_confidence::hypotheses;
 use super::{
     InterimDecoder, InterimDecoderOpener, RecogniseError, Recogniser, RecogniserUnavailable,
 };
+use crate::Hypothesis;
 use crate::devices::audio::{denoised, with_noise_floor};
 use crate::devices::language_model::Weights;
-use crate::hypothesis::Hypothesis;
 
 /// Files and settings of the recogniser.
 #[derive(Clone, Debug, PartialEq)]

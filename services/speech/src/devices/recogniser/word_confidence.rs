@@ -6,7 +6,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::hypothesis::Hypothesis;
+use crate::Hypothesis;
 
 /// Hypotheses that support words. The lighter ones weigh nothing.
 const SUPPORTERS_MAX: usize = 50;

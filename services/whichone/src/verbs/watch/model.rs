@@ -82,7 +82,7 @@ impl WatchModel {
 
     fn heard(&mut self, receipt: &Receipt) {
         let Ok(text) = receipt.note.as_str() else { return };
-        let is = |status: ReceiptStatus| receipt.status == status.code();
+        let is = |status: ReceiptStatus| receipt.status == status;
         if is(ReceiptStatus::Accepted) && receipt.seq > self.before.unwrap_or(0) {
             self.say(Speaker::Person, text.to_owned());
         } else if is(ReceiptStatus::NotForMe) && Time(receipt.end_ns) > self.began {

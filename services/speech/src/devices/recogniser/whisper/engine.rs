@@ -12,10 +12,10 @@ use whisper_rs::{
 };
 
 use super::WhisperOptions;
+use crate::Hypothesis;
 use crate::devices::audio::RATE_HZ;
 use crate::devices::language_model;
 use crate::devices::recogniser::{RecogniseError, Recogniser};
-use crate::hypothesis::Hypothesis;
 
 /// More threads hardly help the small models that answer in time, and other services need some.
 const THREADS_MAX: usize = 4;
