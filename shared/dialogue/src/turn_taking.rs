@@ -1,7 +1,7 @@
 //! Settings of turn-taking.
 
 use crate::Attribution;
-use crate::user_model::Reaction;
+use crate::user_model::{Reaction, TYPED};
 
 /// How the robot takes turns with the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,4 +24,20 @@ pub struct TurnTaking {
     pub spoken: Reaction,
     /// Reaction time of typed answers.
     pub typed: Reaction,
+}
+
+impl Default for TurnTaking {
+    /// As in the shipped configuration.
+    fn default() -> Self {
+        Self {
+            response_window_s: 15.0,
+            repeats_max: 3,
+            questions_max: 20,
+            attribution: Attribution::Mixture,
+            defers: true,
+            repeats_same: true,
+            spoken: Reaction::default(),
+            typed: Reaction::new(TYPED.0, TYPED.1),
+        }
+    }
 }

@@ -141,6 +141,11 @@ impl Manager {
         &self.turns
     }
 
+    /// Replaces the settings of turn-taking: studies compare several.
+    pub fn set_turns(&mut self, turns: TurnTaking) {
+        self.turns = turns;
+    }
+
     /// Returns the identity of setup and planner.
     pub fn key(&self) -> u64 {
         self.key

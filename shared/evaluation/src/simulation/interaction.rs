@@ -1,12 +1,18 @@
-//! One interaction, from the request to the hand-over, as the policy's service conducts it.
+//! One interaction in turns, from the request to the hand-over: the user's replies, the clock and the
+//! costs. The dialogue itself is conducted by the dialogue manager.
 
-use dialogue::{Action, Costs, DecisionProblem, Posterior, Rng};
+use dialogue::manager::{Cause, Manager, Setup, State, Utterance};
+use dialogue::time::{Span, Time};
+use dialogue::{
+    ActKind, Action, Attribution, Costs, DecisionProblem, Interpretation, Planner, Presentation,
+    Prior, PriorObjects, Rng, TurnTaking, rendering,
+};
 use language::Reader;
 use preflight::{Motions, Pace, Voice};
 use scene::{Intent, ObjectId, Question, Reading, Response, Scene};
 
+use crate::simulation::cached_planner::CachedPlanner;
 use crate::simulation::users::{Domain, Reply, SimulatedUser, Turn};
-use crate::simulation::{Choice, Memo};
 
 /// Everything about a study but policy and people.
 #[derive(Clone, Copy, Debug)]
@@ -17,8 +23,8 @@ pub struct Room<'a> {
     pub reader: &'a Reader,
     /// What is decided, and at what cost.
     pub problem: DecisionProblem<'a>,
-    /// When the robot gives up.
-    pub patience: Patience,
+    /// How the robot takes turns.
+    pub turns: TurnTaking,
     /// How fast the robot speaks.
     pub voice: Voice,
     /// How fast people speak and the recogniser works.
@@ -34,23 +40,23 @@ impl<'a> Room<'a> {
     pub fn domain(&self) -> Domain<'a> {
         Domain { scene: self.scene, model: self.problem.model }
     }
-}
 
-/// How long the robot goes on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Patience {
-    /// Seconds after a question in which an answer is waited for.
-    pub response_window_s: f64,
-    /// How often a question is repeated into silence before the interaction is given up.
-    pub repeats_max: u32,
-    /// Questions, repetitions included, after which the robot picks what is most likely.
-    pub questions_max: u32,
-}
-
-impl Default for Patience {
-    /// As in the configuration that comes with the program.
-    fn default() -> Self {
-        Self { response_window_s: 15.0, repeats_max: 3, questions_max: 20 }
+    /// Returns a dialogue manager that decides by a planner. Each utterance follows the question that
+    /// it answers, so it is attributed by its onset.
+    pub fn manager(&self, planner: CachedPlanner) -> Manager {
+        let DecisionProblem { model, costs, actions, durations } = self.problem;
+        let setup = Setup {
+            scene: self.scene.clone(),
+            model: model.clone(),
+            costs,
+            durations: durations.cloned(),
+            actions,
+            prior: Prior { objects: PriorObjects::Uniform, smoothing: 1.0, absent: 0.0 },
+            gestures: None,
+            turns: TurnTaking { attribution: Attribution::Onset, ..self.turns },
+        };
+        let planner: Box<dyn Planner + Send> = Box::new(planner);
+        Manager::new(setup, planner, 0).without_recall()
     }
 }
 
@@ -67,6 +73,17 @@ pub enum End {
     Abandoned,
     /// The robot understood that nothing is wanted any more.
     Cancelled,
+}
+
+impl End {
+    /// Returns the reward of this end.
+    pub(crate) fn worth(self, costs: &Costs) -> f64 {
+        match self {
+            Self::Right => costs.correct,
+            Self::Wrong => -costs.wrong,
+            Self::Waited | Self::Abandoned | Self::Cancelled => costs.wait_value(),
+        }
+    }
 }
 
 /// What came of an interaction.
@@ -89,118 +106,87 @@ pub struct Outcome {
     pub misplaced: u32,
 }
 
-/// Conducts one interaction. `clock` draws durations alone.
+/// Plays one interaction of `user` with `manager`. `clock` draws durations alone.
 pub fn interact(
     room: &Room<'_>,
-    memo: &mut Memo<'_>,
+    manager: &mut Manager,
     user: &mut SimulatedUser,
     clock: &mut Rng,
 ) -> Outcome {
-    let request = user.request(room.domain());
-    let mut talk = Talk::new(room, memo.beginning(&room.problem), clock);
-    if room.request && matches!(request.reply, Reply::Words(_)) {
-        talk.hear(&request.reply, Question::None);
-    }
+    let state = manager.first();
+    let mut play = Play {
+        room,
+        manager,
+        clock,
+        state,
+        aimed: None,
+        questions: 0,
+        waits: 0,
+        answers: 0,
+        seconds: 0.0,
+        value: 0.0,
+        discount: 1.0,
+    };
+    play.begin(&user.request(room.domain()));
     loop {
-        let end = match talk.decide(memo).action {
-            Action::Pick(object) => return talk.pick(object, user.wanted()),
-            Action::Wait => talk.wait(user),
-            Action::Ask(_) if talk.questions >= room.patience.questions_max => {
-                let likeliest = talk.posterior.belief().most_likely();
-                return talk.pick(likeliest, user.wanted());
-            }
-            Action::Ask(question) => talk.ask(question, user),
+        let act = &play.state.act;
+        let end = match (act.kind, act.pick) {
+            (ActKind::Pick, Some((_, object))) => return play.pick(object, user.wanted()),
+            (ActKind::Ask, _) => play.ask(act.question, user),
+            (ActKind::Wait, _) => play.wait(user),
+            _ => Some(play.closed()),
         };
         if let Some(end) = end {
-            return talk.end(end, None);
+            return play.end(end, None);
         }
     }
 }
 
-/// What an utterance asks for.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Next {
-    /// To decide anew.
-    Decide,
-    /// To ask the same once more.
-    Repeat,
-    /// Nothing: it was not meant for the robot.
-    Nothing,
-    /// To leave it.
-    Cancel,
-}
-
-/// An interaction in progress.
-struct Talk<'r, 'a> {
+/// An interaction in progress: user, clock and costs. The dialogue itself is the manager's.
+struct Play<'r, 'a> {
     room: &'r Room<'a>,
+    manager: &'r mut Manager,
     clock: &'r mut Rng,
-    beginning: Posterior,
-    posterior: Posterior,
+    state: State,
     aimed: Option<ObjectId>,
-    step: u32,
     questions: u32,
+    waits: u32,
     answers: u32,
     seconds: f64,
     value: f64,
     discount: f64,
 }
 
-impl<'r, 'a> Talk<'r, 'a> {
-    fn new(room: &'r Room<'a>, beginning: Posterior, clock: &'r mut Rng) -> Self {
-        Self {
-            room,
-            clock,
-            posterior: beginning.clone(),
-            beginning,
-            aimed: None,
-            step: 0,
-            questions: 0,
-            answers: 0,
-            seconds: 0.0,
-            value: 0.0,
-            discount: 1.0,
+impl<'r, 'a> Play<'r, 'a> {
+    /// Makes the user's request, or a bare one where the user makes none.
+    fn begin(&mut self, request: &Turn) {
+        if self.room.request && matches!(request.reply, Reply::Words(_)) {
+            self.hear(&request.reply, None, 0.0, 0.0);
+        }
+        if self.state.open.is_none() && self.state.ended.is_none() {
+            let utterance = self
+                .utterance(None, vec![Interpretation { weight: 1.0, ..Interpretation::default() }]);
+            self.step(&Cause::Utterance(utterance));
         }
     }
 
-    fn costs(&self) -> Costs {
-        self.room.problem.costs
+    fn now(&self) -> Time {
+        Time(0) + Span::from_s(self.seconds)
     }
 
-    fn decide(&mut self, memo: &mut Memo<'_>) -> Choice {
-        let choice = memo.choose(&self.room.problem, &self.posterior, self.step);
-        self.step += 1;
-        choice
+    fn step(&mut self, cause: &Cause) {
+        let now = self.now();
+        self.manager.step(&mut self.state, cause, now);
     }
 
     /// Pays for an action.
     fn pay(&mut self, action: Action) {
         self.value -= self.discount * self.room.problem.cost(action);
-        self.discount *= self.costs().discount;
+        self.discount *= self.room.problem.costs.discount;
     }
 
-    /// Asks until something is said that counts.
+    /// Presents the standing question, with the arm aiming where it points, and waits for its answer.
     fn ask(&mut self, question: Question, user: &mut SimulatedUser) -> Option<End> {
-        let patience = self.room.patience;
-        let mut silences = 0;
-        loop {
-            self.present(question);
-            let turn = user.answer(self.room.domain(), question);
-            let next = self.listen(&turn, question);
-            self.posterior.see_answer(next != Next::Nothing);
-            match next {
-                Next::Decide => return None,
-                Next::Cancel => return Some(End::Cancelled),
-                Next::Repeat => silences = 0,
-                Next::Nothing => silences += 1,
-            }
-            if silences > patience.repeats_max || self.questions >= patience.questions_max {
-                return (silences > 0).then_some(End::Abandoned);
-            }
-        }
-    }
-
-    /// Says the question, with the arm aiming where it points.
-    fn present(&mut self, question: Question) {
         self.pay(Action::Ask(question));
         self.questions += 1;
         let aimed = match question {
@@ -211,71 +197,110 @@ impl<'r, 'a> Talk<'r, 'a> {
             self.seconds += motions.point_s(self.aimed, object).unwrap_or(0.0);
         }
         self.aimed = aimed;
+        let began = self.now();
         self.seconds += self.room.voice.seconds(&self.room.scene.phrase(question));
+        let presentation = Presentation {
+            prompt: self.state.act.prompt,
+            number: self.state.act.presentation,
+            question,
+            scene: self.state.scene_key,
+            began,
+            ended: Some(self.now()),
+            complete: true,
+        };
+        let turn = user.answer(self.room.domain(), question);
+        self.listen(&turn, Some(presentation));
+        None
     }
 
-    /// Waits for the answer and takes it in. One that comes after the window is spoken into the
-    /// repeated question, and the person answers that one instead.
-    fn listen(&mut self, turn: &Turn, question: Question) -> Next {
-        let window_s = self.room.patience.response_window_s;
-        let reaction_s = self.room.pace.reaction_s(self.clock) + turn.late_s;
-        if turn.reply == Reply::Silence || reaction_s > window_s {
-            self.seconds += window_s;
-            return Next::Nothing;
-        }
-        let speech_s = self.room.pace.speech_s(self.clock, turn.reply.words());
-        let recogniser_s = self.room.pace.recogniser_s(self.clock);
-        let next = self.hear(&turn.reply, question);
-        let heard_s = reaction_s + speech_s + recogniser_s;
-        self.seconds += if next == Next::Nothing { window_s.max(heard_s) } else { heard_s };
-        next
-    }
-
-    /// A turn without a question. Where nobody says anything the robot would wait for ever.
+    /// A turn without a question. Where the user is silent the robot would wait for ever.
     fn wait(&mut self, user: &mut SimulatedUser) -> Option<End> {
         let turn = user.answer(self.room.domain(), Question::None);
-        let window_s = self.room.patience.response_window_s;
-        if turn.reply == Reply::Silence || self.step > self.room.patience.questions_max {
-            self.seconds += window_s;
+        self.waits += 1;
+        if turn.reply == Reply::Silence || self.waits > self.manager.turns().questions_max {
+            self.seconds += self.manager.response_window_s(&self.state);
             return Some(End::Waited);
         }
         self.pay(Action::Wait);
-        match self.listen(&turn, Question::None) {
-            Next::Cancel => Some(End::Cancelled),
-            _ => None,
+        self.listen(&turn, None);
+        None
+    }
+
+    /// Waits for the user's reply and passes it on. One that comes after the window is spoken into
+    /// the repeated question, and the user answers that one instead.
+    fn listen(&mut self, turn: &Turn, presentation: Option<Presentation>) {
+        let window_s = self.manager.response_window_s(&self.state);
+        let reaction_s = self.room.pace.reaction_s(self.clock) + turn.late_s;
+        let began_s = self.seconds;
+        if turn.reply != Reply::Silence && reaction_s <= window_s {
+            let speech_s = self.room.pace.speech_s(self.clock, turn.reply.words());
+            let recogniser_s = self.room.pace.recogniser_s(self.clock);
+            let standing = self.state.act.id;
+            self.seconds += reaction_s + speech_s + recogniser_s;
+            self.hear(&turn.reply, presentation, began_s + reaction_s, speech_s);
+            if self.state.act.id != standing {
+                return;
+            }
+        }
+        self.seconds = self.seconds.max(began_s + window_s);
+        if presentation.is_some() {
+            self.step(&Cause::Silence);
         }
     }
 
-    /// Updates the belief with what was said, as the policy's service does it.
-    fn hear(&mut self, said: &Reply, question: Question) -> Next {
-        let model = self.room.problem.model;
-        let hypotheses: Vec<(f64, Question, Reading)> = match said {
-            Reply::Silence => return Next::Nothing,
+    /// Passes on what was said.
+    fn hear(
+        &mut self,
+        reply: &Reply,
+        presentation: Option<Presentation>,
+        onset_s: f64,
+        speech_s: f64,
+    ) {
+        let answers = presentation.map(|_| 0);
+        let question = presentation.map_or(Question::None, |put| put.question);
+        let interpretations: Vec<Interpretation> = match reply {
+            Reply::Silence => return,
             Reply::Answer(answer) => {
-                self.answers += 1;
-                let heard = [(1.0, question, answer.reading(model))];
-                self.posterior.update_mixture(model, &heard);
-                return Next::Decide;
+                let reading = answer.reading(self.room.problem.model);
+                vec![Interpretation { weight: 1.0, answers, reading }]
             }
             Reply::Words(words) => words
                 .iter()
-                .map(|(text, weight)| (*weight, question, self.room.reader.read(text, question)))
+                .map(|(text, weight)| {
+                    let reading = self.room.reader.read(text, question);
+                    Interpretation { weight: *weight, answers, reading }
+                })
                 .collect(),
         };
-        let likeliest = hypotheses.iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        match likeliest.map_or(Intent::None, |(.., reading)| reading.intent) {
-            Intent::Inform => {
-                self.answers += u32::from(likeliest.is_some_and(|(.., r)| says_something(r)));
-                self.posterior.update_mixture(model, &hypotheses);
-                Next::Decide
-            }
-            Intent::StartOver => {
-                self.posterior = self.beginning.clone();
-                Next::Decide
-            }
-            Intent::Repeat | Intent::AskBack | Intent::Stop => Next::Repeat,
-            Intent::None => Next::Nothing,
-            Intent::Cancel => Next::Cancel,
+        let likeliest = interpretations.iter().max_by(|a, b| a.weight.total_cmp(&b.weight));
+        self.answers += u32::from(likeliest.is_some_and(|it| says_something(&it.reading)));
+        let utterance = Utterance {
+            onset: Time(0) + Span::from_s(onset_s),
+            end: Time(0) + Span::from_s(onset_s + speech_s),
+            ..self.utterance(presentation, interpretations)
+        };
+        self.step(&Cause::Utterance(utterance));
+    }
+
+    fn utterance(
+        &self,
+        presentation: Option<Presentation>,
+        interpretations: Vec<Interpretation>,
+    ) -> Utterance {
+        Utterance {
+            seq: self.state.applied.next(),
+            presentations: presentation.into_iter().collect(),
+            accepted: self.now(),
+            interpretations,
+            ..Utterance::default()
+        }
+    }
+
+    /// Returns the end of an interaction that the manager has closed.
+    fn closed(&self) -> End {
+        match self.state.ended.as_ref().map(|ended| ended.outcome) {
+            Some(dialogue::Outcome::Abandoned) => End::Abandoned,
+            _ => End::Cancelled,
         }
     }
 
@@ -285,12 +310,7 @@ impl<'r, 'a> Talk<'r, 'a> {
     }
 
     fn end(mut self, end: End, picked: Option<ObjectId>) -> Outcome {
-        let worth = match end {
-            End::Right => self.costs().correct,
-            End::Wrong => -self.costs().wrong,
-            End::Waited | End::Abandoned | End::Cancelled => self.costs().wait_value(),
-        };
-        self.value += self.discount * worth;
+        self.value += self.discount * end.worth(&self.room.problem.costs);
         let talk_s = self.seconds;
         if let Some(object) = picked {
             self.seconds += self.fetch_s(object);
@@ -306,16 +326,18 @@ impl<'r, 'a> Talk<'r, 'a> {
         }
     }
 
-    /// The robot says what it fetches while it sets out.
+    /// Returns the seconds of a pick. The robot says what it fetches while it sets out.
     fn fetch_s(&self, object: ObjectId) -> f64 {
-        let text = format!("I will get the {}.", self.room.scene.describe(object));
-        let said_s = self.room.voice.seconds(&text);
+        let said_s = self.room.voice.seconds(&rendering::text(self.room.scene, &self.state.act));
         self.room.motions.map_or(said_s, |motions| motions.pick_s(self.aimed, object).max(said_s))
     }
 }
 
 fn says_something(reading: &Reading) -> bool {
-    reading.response != Response::None || !reading.base.is_empty() || !reading.excluded.is_empty()
+    let says = reading.response != Response::None
+        || !reading.base.is_empty()
+        || !reading.excluded.is_empty();
+    says && reading.intent == Intent::Inform
 }
 
 #[cfg(test)]

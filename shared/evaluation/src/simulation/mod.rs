@@ -9,15 +9,15 @@
 //!
 //! | what | where |
 //! |---|---|
-//! | one interaction, from the request to the hand-over | `interaction.rs` |
-//! | what the policy decides, remembered by belief | `memo.rs` |
+//! | one interaction with the dialogue manager, from the request to the hand-over | `interaction.rs` |
+//! | a planner that remembers its decisions | `cached_planner.rs` |
 //! | the simulated user: errors, wording, recogniser, timing | `users/` |
 //! | the same dialogues with people and robot talking in real time | `turns/` |
 //! | means, intervals, histograms | `stats.rs`, `tally.rs` |
 
+mod cached_planner;
 mod draw;
 mod interaction;
-mod memo;
 mod stats;
 mod tally;
 #[cfg(test)]
@@ -25,8 +25,10 @@ mod testing;
 pub mod turns;
 pub mod users;
 
-pub use interaction::{End, Outcome, Patience, Room, interact};
-pub use memo::{Choice, Memo, Shared, Situation};
+use dialogue::manager::Manager;
+pub use interaction::{End, Outcome, Room, interact};
+
+pub use cached_planner::{CachedPlanner, SharedDecisions, Situation};
 pub use stats::{Interval, Mean, wilson};
 pub use tally::{HISTOGRAM, Tally};
 pub use users::{SimulatedUser, UserKind};
@@ -34,10 +36,10 @@ pub use users::{SimulatedUser, UserKind};
 /// Interactions that are counted together.
 pub const CHUNK: u64 = 500;
 
-/// Counts the interactions `numbers` of `kind`'s people with the policy behind `memo`.
+/// Counts the interactions `numbers` of `kind`'s people with the policy of `manager`.
 pub fn interactions(
     room: &Room<'_>,
-    memo: &mut Memo<'_>,
+    manager: &mut Manager,
     kind: UserKind,
     seed: u64,
     numbers: std::ops::Range<u64>,
@@ -46,7 +48,7 @@ pub fn interactions(
     for number in numbers {
         let mut user = kind.user(room.domain(), seed, number);
         let mut clock = draw::stream(seed, draw::Stream::Clock, number);
-        tally.add(&interact(room, memo, &mut user, &mut clock));
+        tally.add(&interact(room, manager, &mut user, &mut clock));
     }
     tally
 }

@@ -1,28 +1,29 @@
-//! Choices that threads share: a planner that thinks long is not asked twice.
+//! Decisions that threads share: a slow planner is not asked twice.
 
 use std::collections::HashMap;
-use std::sync::{PoisonError, RwLock};
+use std::sync::{Arc, PoisonError, RwLock};
 
-use evaluation::simulation::{Choice, Shared, Situation};
+use dialogue::Decision;
+use evaluation::simulation::{SharedDecisions, Situation};
 
-/// The choices of one policy. Each thread looks into its own memory first, so locks are seldom
-/// waited for.
+/// Decisions of one planner. Each thread looks into its own cache first, so locks are rarely
+/// contended.
 #[derive(Default)]
-pub(super) struct Board(RwLock<HashMap<Situation, Choice>>);
+pub(super) struct Board(RwLock<HashMap<Situation, Arc<Decision>>>);
 
-/// Most choices that are kept; the first ones stay, as they are the ones that come again.
-const CHOICES_MAX: usize = 1 << 19;
+/// Most decisions that are kept; the first ones stay, as they are the most frequent.
+const DECISIONS_MAX: usize = 1 << 19;
 
-impl Shared for Board {
-    fn find(&self, situation: &Situation) -> Option<Choice> {
+impl SharedDecisions for Board {
+    fn find(&self, situation: &Situation) -> Option<Arc<Decision>> {
         // Every entry is whole, also where a thread has panicked.
-        self.0.read().unwrap_or_else(PoisonError::into_inner).get(situation).copied()
+        self.0.read().unwrap_or_else(PoisonError::into_inner).get(situation).cloned()
     }
 
-    fn keep(&self, situation: &Situation, choice: Choice) {
-        let mut choices = self.0.write().unwrap_or_else(PoisonError::into_inner);
-        if choices.len() < CHOICES_MAX {
-            choices.insert(situation.clone(), choice);
+    fn add(&self, situation: &Situation, decision: &Arc<Decision>) {
+        let mut decisions = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        if decisions.len() < DECISIONS_MAX {
+            decisions.insert(situation.clone(), Arc::clone(decision));
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use dialogue::{Durations, Mode};
-use evaluation::simulation::{Patience, Room};
+use dialogue::{Durations, Mode, TurnTaking};
+use evaluation::simulation::Room;
 use language::{Language, Reader};
 use manipulation::Robot;
 use preflight::{ArmSetup, Extent, Motions, Pace, Voice, measure};
@@ -18,7 +18,7 @@ use crate::verbs::planning::{Problem, of_scene};
 pub(super) struct House {
     reader: Reader,
     problem: Problem,
-    patience: Patience,
+    turns: TurnTaking,
     voice: Voice,
     pace: Pace,
     motions: Option<Motions>,
@@ -37,21 +37,14 @@ impl House {
         let scene = args.scene.as_deref().unwrap_or(Path::new(PAPER_SCENE));
         let problem = of_scene(scene, &preset(args))?;
         let settings = problem.settings.as_ref();
-        let patience = settings.map_or_else(Patience::default, |settings| {
-            let turns = settings.dialogue.turns;
-            Patience {
-                response_window_s: turns.response_window_s,
-                repeats_max: turns.repeats_max,
-                questions_max: turns.questions_max,
-            }
-        });
+        let turns = settings.map_or_else(TurnTaking::default, |it| it.dialogue.turns);
         let voice = settings.map_or_else(Voice::default, |settings| Voice {
             words_per_minute: f64::from(settings.speech.voice_words_per_minute),
         });
         let language = settings.map_or(Language::default(), |s| s.dialogue.language);
         let (reader, request) = (Reader::new(&problem.scene, language), !args.no_request);
         let (motions, pace) = (motions(&problem)?, Pace::default());
-        let mut house = Self { reader, problem, patience, voice, pace, motions, request };
+        let mut house = Self { reader, problem, turns, voice, pace, motions, request };
         if args.measured_costs {
             house.problem.durations = Some(house.durations());
         }
@@ -64,7 +57,7 @@ impl House {
             scene: &self.problem.scene,
             reader: &self.reader,
             problem: self.problem.decision(),
-            patience: self.patience,
+            turns: self.turns,
             voice: self.voice,
             pace: &self.pace,
             motions: self.motions.as_ref(),

@@ -5,11 +5,14 @@
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 use std::thread;
 
-use dialogue::registry;
-use evaluation::simulation::{CHUNK, Memo, Room, Tally, interactions, turns};
+use dialogue::manager::Manager;
+use dialogue::{Attribution, TurnTaking, registry};
+use evaluation::simulation::{
+    CHUNK, CachedPlanner, Room, SharedDecisions, Tally, interactions, turns,
+};
 
 use super::board::Board;
 use super::design::{People, Row};
@@ -35,8 +38,8 @@ pub(super) fn run(
     let pieces: Vec<Piece> = (0..rows.len())
         .flat_map(|row| (0..chunks).map(move |chunk| Piece { row, chunk }))
         .collect();
-    let boards: HashMap<&str, Board> =
-        rows.iter().map(|row| (row.policy.as_str(), Board::default())).collect();
+    let boards: HashMap<&str, Arc<Board>> =
+        rows.iter().map(|row| (row.policy.as_str(), Arc::default())).collect();
     let next = AtomicUsize::new(0);
     let (counted, arrived) = mpsc::channel();
     let mut done: Vec<Option<Tally>> = vec![None; pieces.len()];
@@ -44,8 +47,8 @@ pub(super) fn run(
         for _ in 0..threads.min(pieces.len()) {
             let (counted, next, pieces, boards) = (counted.clone(), &next, &pieces, &boards);
             scope.spawn(move || {
-                let memos = HashMap::new();
-                let mut worker = Worker { room: house.room(), rows, count, seed, boards, memos };
+                let managers = HashMap::new();
+                let mut worker = Worker { room: house.room(), rows, count, seed, boards, managers };
                 while let Some((at, piece)) = take(next, pieces) {
                     // Nobody to count for any more.
                     if counted.send((at, worker.count(piece))).is_err() {
@@ -85,29 +88,37 @@ struct Worker<'a> {
     rows: &'a [Row],
     count: u64,
     seed: u64,
-    boards: &'a HashMap<&'a str, Board>,
-    memos: HashMap<&'a str, Memo<'a>>,
+    boards: &'a HashMap<&'a str, Arc<Board>>,
+    managers: HashMap<&'a str, Manager>,
 }
 
 impl Worker<'_> {
     fn count(&mut self, piece: Piece) -> Tally {
         let Row { policy, people } = &self.rows[piece.row];
-        if !self.memos.contains_key(policy.as_str()) {
-            // The command line has let only known names pass.
+        if !self.managers.contains_key(policy.as_str()) {
+            // The command line has accepted only known names.
             let Ok(planner) = registry::planner(policy) else { return Tally::default() };
-            let mut memo = Memo::new(planner);
+            let mut planner = CachedPlanner::new(planner);
             if let Some(board) = self.boards.get(policy.as_str()) {
-                memo = memo.sharing(board);
+                let board: Arc<dyn SharedDecisions> = board.clone();
+                planner = planner.sharing(board);
             }
-            self.memos.insert(policy, memo);
+            self.managers.insert(policy, self.room.manager(planner));
         }
-        let Some(memo) = self.memos.get_mut(policy.as_str()) else { return Tally::default() };
+        let Some(manager) = self.managers.get_mut(policy.as_str()) else {
+            return Tally::default();
+        };
         let first = piece.chunk * CHUNK;
         let numbers = first..(first + CHUNK).min(self.count);
         match people {
-            People::InTurns(kind) => interactions(&self.room, memo, *kind, self.seed, numbers),
+            People::InTurns(kind) => {
+                // Dialogues in real time leave other settings behind.
+                let attribution = Attribution::Onset;
+                manager.set_turns(TurnTaking { attribution, ..self.room.turns });
+                interactions(&self.room, manager, *kind, self.seed, numbers)
+            }
             People::RealTime { rules, kind, .. } => {
-                turns::dialogues(&self.room, memo, rules, kind, self.seed, numbers)
+                turns::dialogues(&self.room, manager, rules, kind, self.seed, numbers)
             }
         }
     }

@@ -24,7 +24,7 @@ impl House {
             scene: &self.scene,
             reader: &self.reader,
             problem: yes_no(&self.model),
-            patience: Patience::default(),
+            turns: TurnTaking::default(),
             voice: Voice::default(),
             pace: &self.pace,
             motions: None,
@@ -34,11 +34,11 @@ impl House {
 }
 
 fn play(house: &House, planner: &str, wanted: &str, turns: Vec<Turn>) -> Outcome {
-    let mut memo = Memo::new(registry::planner(planner).unwrap());
+    let mut manager = house.room().manager(CachedPlanner::new(registry::planner(planner).unwrap()));
     let wanted = house.scene.object_named(wanted).unwrap();
     interact(
         &house.room(),
-        &mut memo,
+        &mut manager,
         &mut SimulatedUser::scripted(wanted, turns),
         &mut Rng::new(1),
     )
@@ -58,8 +58,8 @@ fn the_model_s_people_average_out_to_the_evaluation() {
             if planner.uses_user_model() {
                 continue;
             }
-            let mut memo = Memo::new(registry::planner(name).unwrap());
-            let tally = interactions(room, &mut memo, UserKind::Model, seed, 0..n);
+            let mut manager = room.manager(CachedPlanner::new(registry::planner(name).unwrap()));
+            let tally = interactions(room, &mut manager, UserKind::Model, seed, 0..n);
             let exact = evaluate(&mut *planner, &room.problem, &Belief::uniform(6), 1e-9);
             let case = format!("seed {seed}, {name}: {exact:?}");
             let spread = (exact.success * (1.0 - exact.success) / n as f64).sqrt();
@@ -88,7 +88,7 @@ fn a_request_that_says_enough_is_fetched_at_once() {
 fn silence_is_asked_into_again_and_then_given_up() {
     let house = House::new();
     let outcome = play(&house, "lookahead", "metal", vec![]);
-    let patience = Patience::default();
+    let patience = TurnTaking::default();
     assert_eq!((outcome.end, outcome.questions), (End::Abandoned, patience.repeats_max + 1));
     assert!(outcome.talk_s > 4.0 * patience.response_window_s);
     let costs = Costs::SECONDS;
@@ -112,7 +112,7 @@ fn what_is_not_an_answer_is_dealt_with_as_the_policy_does() {
     let late = [vec![Turn::SILENT, late], yes(9)].concat();
     let late = play(&house, "lookahead", "metal", late);
     assert_eq!(late.questions, plain.questions + 1);
-    assert!(late.talk_s > plain.talk_s + Patience::default().response_window_s);
+    assert!(late.talk_s > plain.talk_s + TurnTaking::default().response_window_s);
 }
 
 #[test]
@@ -120,14 +120,18 @@ fn who_waits_for_ever_gets_what_waiting_is_worth() {
     let house = House::new();
     let mut room = house.room();
     room.problem.costs = Costs::PREDECESSOR;
-    let mut memo = Memo::new(registry::planner("never-ask").unwrap());
+    let mut manager = room.manager(CachedPlanner::new(registry::planner("never-ask").unwrap()));
     let wanted = ObjectId(0);
     let mut nobody = SimulatedUser::scripted(wanted, vec![]);
-    let outcome = interact(&room, &mut memo, &mut nobody, &mut Rng::new(1));
+    let outcome = interact(&room, &mut manager, &mut nobody, &mut Rng::new(1));
     assert_eq!((outcome.end, outcome.questions), (End::Waited, 0));
     assert_eq!(outcome.value, Costs::PREDECESSOR.wait_value());
     let turns = vec![Turn::SILENT, Turn::words("it's in the dishwasher")];
-    let outcome =
-        interact(&room, &mut memo, &mut SimulatedUser::scripted(wanted, turns), &mut Rng::new(1));
+    let outcome = interact(
+        &room,
+        &mut manager,
+        &mut SimulatedUser::scripted(wanted, turns),
+        &mut Rng::new(1),
+    );
     assert!((outcome.value - (-1.0 + 0.9 * 10.0)).abs() < 1e-9 || outcome.end != End::Right);
 }

@@ -17,14 +17,14 @@ pub use rules::{Rules, UnknownRule};
 
 use crate::simulation::draw::{Stream, stream};
 use crate::simulation::interaction::Room;
-use crate::simulation::memo::Memo;
 use crate::simulation::tally::Tally;
 use crate::simulation::users::TimedKind;
+use dialogue::manager::Manager;
 
 /// Counts the dialogues `numbers` under these rules.
 pub fn dialogues(
     room: &Room<'_>,
-    memo: &mut Memo<'_>,
+    manager: &mut Manager,
     rules: &Rules,
     kind: &TimedKind,
     seed: u64,
@@ -33,7 +33,7 @@ pub fn dialogues(
     let mut tally = Tally::default();
     for number in numbers {
         let rng = stream(seed, Stream::Turns, number);
-        tally.add(&talk::talk(room, memo, rules, kind, rng));
+        tally.add(&talk::talk(room, manager, rules, kind, rng));
     }
     tally
 }

@@ -1,73 +1,73 @@
-//! The robot's side of a dialogue in real time.
+//! A dialogue in real time: the user's speech, the robot's voice and the clock. The dialogue itself is
+//! conducted by the dialogue manager.
 
+use dialogue::manager::{Cause, Floor, Manager, State, Utterance};
+use dialogue::time::{Span, Time};
 use dialogue::user_model::Reaction;
-use dialogue::{Action, Attribution, Candidate, Posterior, Rng, Shares};
+use dialogue::{ActKind, Action, Attribution, Interpretation, Presentation, Rng, TurnTaking};
 use scene::Question;
 
 use super::rules::Rules;
 use crate::simulation::draw::log_normal;
 use crate::simulation::interaction::{End, Outcome, Room};
-use crate::simulation::memo::Memo;
 use crate::simulation::users::{Reply, TimedKind, TimedUser, TimedUtterance};
 
 /// How long the robot takes to say a question: median, seconds, and standard deviation of the
 /// logarithm. The web interface's voice and its delay, not the arm's own voice.
 const QUESTION_S: (f64, f64) = (1.9, 0.12);
+/// Presentations that an utterance carries.
+const PRESENTATIONS_MAX: usize = 4;
 
-/// Conducts one dialogue.
+/// Plays one dialogue with `manager`, which takes on these rules.
 pub(super) fn talk(
     room: &Room<'_>,
-    memo: &mut Memo<'_>,
+    manager: &mut Manager,
     rules: &Rules,
     kind: &TimedKind,
     rng: Rng,
 ) -> Outcome {
     let mut user = kind.user(room.domain(), room.pace, rules.open, rng);
     let (median_s, log_sd) = room.pace.reaction_s;
+    // With push-to-talk users wait for the click before they speak.
+    let click_s = if rules.open { 0.0 } else { kind.click_s };
+    manager.set_turns(TurnTaking {
+        response_window_s: rules.window_s,
+        repeats_max: u32::MAX,
+        attribution: rules.attribution,
+        defers: rules.hold,
+        repeats_same: rules.same,
+        spoken: Reaction::new(median_s + click_s, log_sd),
+        ..room.turns
+    });
+    let now_s = user.request_s(room.domain());
+    let state = manager.first();
     let mut talk = Talk {
         room,
         rules,
-        reaction: Reaction::new(median_s, log_sd),
-        answers: kind.answers,
-        now_s: user.request_s(room.domain()),
+        manager,
+        state,
         user,
-        posterior: memo.beginning(&room.problem),
-        asked: Vec::new(),
-        step: 0,
+        now_s,
+        put: Vec::new(),
         heard: 0,
         misplaced: 0,
         value: 0.0,
         discount: 1.0,
     };
-    let mut answered = true;
-    loop {
-        let action = talk.plan(memo, answered);
-        match action {
-            Action::Pick(object) => {
-                let right = Some(object) == talk.user.user().wanted();
-                return talk.end(if right { End::Right } else { End::Wrong });
-            }
-            Action::Wait => return talk.end(End::Waited),
-            Action::Ask(question) => {
-                talk.ask(question);
-                answered = talk.listen();
-                talk.posterior.see_answer(answered);
-            }
-        }
-    }
+    let request = Interpretation { weight: 1.0, ..Interpretation::default() };
+    talk.tell(now_s, now_s, vec![], vec![request]);
+    talk.run()
 }
 
 struct Talk<'a> {
     room: &'a Room<'a>,
     rules: &'a Rules,
-    reaction: Reaction,
-    /// Share of questions that people answer.
-    answers: f64,
+    manager: &'a mut Manager,
+    state: State,
     user: TimedUser,
     now_s: f64,
-    posterior: Posterior,
-    asked: Vec<(Question, Candidate)>,
-    step: u32,
+    /// Presentations, oldest first.
+    put: Vec<Presentation>,
     heard: u32,
     misplaced: u32,
     value: f64,
@@ -75,139 +75,156 @@ struct Talk<'a> {
 }
 
 impl Talk<'_> {
-    /// Decides on the belief as it is when planning begins. A robot that holds plans again where
-    /// something was said meanwhile; a naive one does not notice.
-    fn plan(&mut self, memo: &mut Memo<'_>, answered: bool) -> Action {
+    fn run(mut self) -> Outcome {
         loop {
-            let action = self.decide(memo, answered);
-            let done_s = self.now_s + self.rules.planner_s;
-            if !self.rules.hold && self.rules.attribution == Attribution::Naive {
-                self.now_s = done_s;
-                return action;
+            if !self.plan() {
+                continue;
             }
-            let mut heard = self.take_in(done_s);
-            self.now_s = done_s;
-            if self.rules.hold {
-                while let Some(until_s) = self.user.busy_until_s(self.now_s) {
-                    heard |= self.take_in(until_s);
-                    self.now_s = until_s;
+            match (self.state.act.kind, self.state.act.pick) {
+                (ActKind::Pick, Some((_, object))) => {
+                    let right = Some(object) == self.user.user().wanted();
+                    return self.end(if right { End::Right } else { End::Wrong });
                 }
-            }
-            if !(heard && self.rules.hold) {
-                return action;
+                (ActKind::Ask, _) => {
+                    self.ask(self.state.act.question);
+                    self.listen();
+                }
+                (ActKind::Wait, _) => return self.end(End::Waited),
+                _ => return self.end(End::Abandoned),
             }
         }
     }
 
-    fn decide(&mut self, memo: &mut Memo<'_>, answered: bool) -> Action {
-        let choice = memo.choose(&self.room.problem, &self.posterior, self.step);
-        self.step += 1;
-        let last = self.asked.last().map(|asked| asked.0);
-        match choice.action {
-            Action::Ask(_) if self.asked.len() >= self.room.patience.questions_max as usize => {
-                Action::Pick(self.posterior.belief().most_likely())
-            }
-            Action::Ask(question) if !answered && !self.rules.same && last == Some(question) => {
-                Action::Ask(choice.instead.unwrap_or(question))
-            }
-            action => action,
+    /// Spends the time that planning takes; returns whether its decision still stands. A naive robot
+    /// does not listen meanwhile.
+    fn plan(&mut self) -> bool {
+        let planned = self.state.act.id;
+        let done_s = self.now_s + self.rules.planner_s;
+        if self.rules.hold || self.rules.attribution != Attribution::Naive {
+            self.take_in(done_s);
+        }
+        self.now_s = self.now_s.max(done_s);
+        if self.rules.hold {
+            self.wait_for_the_user();
+        }
+        self.state.act.id == planned
+    }
+
+    /// Listens until the user has finished speaking, and makes the deferred decision.
+    fn wait_for_the_user(&mut self) {
+        while let Some(until_s) = self.user.busy_until_s(self.now_s) {
+            self.take_in(until_s);
+            self.now_s = until_s;
+        }
+        if self.is_deferred() {
+            self.step(&Cause::Quiet);
         }
     }
 
-    /// Says the question.
+    fn is_deferred(&self) -> bool {
+        self.state.open.as_ref().is_some_and(|open| open.deferred.is_some())
+    }
+
+    fn step(&mut self, cause: &Cause) {
+        self.manager.step(&mut self.state, cause, time(self.now_s));
+    }
+
+    /// Says the standing question.
     fn ask(&mut self, question: Question) {
-        let costs = self.room.problem.costs;
         self.value -= self.discount * self.room.problem.cost(Action::Ask(question));
-        self.discount *= costs.discount;
-        let began_s = self.now_s;
-        self.now_s += log_normal(self.user.user_mut().rng(), QUESTION_S.0, QUESTION_S.1);
-        self.asked.push((
+        self.discount *= self.room.problem.costs.discount;
+        let began = time(self.now_s);
+        self.now_s += log_normal(self.user.user().rng(), QUESTION_S.0, QUESTION_S.1);
+        self.put.push(Presentation {
+            prompt: self.state.act.prompt,
+            number: self.state.act.presentation,
             question,
-            Candidate { began_s, ended_s: self.now_s, complete: true, answered_s: None },
-        ));
-        let asked = (self.asked.len() as u64 - 1, question);
+            scene: self.state.scene_key,
+            began,
+            ended: Some(time(self.now_s)),
+            complete: true,
+        });
+        let asked = (self.put.len() as u64 - 1, question);
         self.user.question_ended(self.room.domain(), asked, self.now_s);
     }
 
-    /// Listens until something is heard, or the window has passed; whether something was.
-    fn listen(&mut self) -> bool {
+    /// Listens until the decision changes or the response window has passed.
+    fn listen(&mut self) {
+        let standing = self.state.act.id;
         // What arrived while the robot spoke ends its listening at once.
-        if self.take_in(self.now_s) {
-            return true;
-        }
-        let mut until_s = self.now_s + self.rules.window_s;
-        loop {
-            while let Some(utterance) = self.user.result(until_s) {
-                self.now_s = utterance.result_s;
-                if self.hear(&utterance) {
-                    return true;
-                }
+        self.take_in(self.now_s);
+        let mut until_s = self.now_s + self.manager.response_window_s(&self.state);
+        while self.state.act.id == standing && !self.is_deferred() {
+            if let Some(utterance) = self.user.result(until_s) {
+                self.now_s = self.now_s.max(utterance.result_s);
+                self.hear(&utterance);
+                continue;
             }
             self.now_s = until_s;
             match self.user.busy_until_s(self.now_s) {
                 Some(busy_s) if self.rules.hold => until_s = busy_s,
-                _ => return false,
+                _ => return self.step(&Cause::Silence),
             }
+        }
+        if self.is_deferred() {
+            self.wait_for_the_user();
         }
     }
 
-    /// Takes in what arrives until then; whether anything did.
-    fn take_in(&mut self, until_s: f64) -> bool {
-        let mut heard = false;
+    /// Takes in what arrives until then.
+    fn take_in(&mut self, until_s: f64) {
         while let Some(utterance) = self.user.result(until_s) {
-            heard |= self.hear(&utterance);
+            self.now_s = self.now_s.max(utterance.result_s);
+            self.hear(&utterance);
         }
-        heard
     }
 
-    /// Updates the belief with an answer; whether there was one.
-    fn hear(&mut self, utterance: &TimedUtterance) -> bool {
-        let Reply::Answer(answer) = utterance.reply else { return false };
-        let model = self.room.problem.model;
-        let addressed = self.addressed(utterance);
-        let reading = answer.reading(model);
-        let questions = self.asked.iter().map(|asked| asked.0);
-        let mut heard: Vec<_> =
-            questions.zip(&addressed.questions).map(|(q, w)| (*w, q, reading.clone())).collect();
-        heard.push((addressed.none, Question::None, reading));
-        let likeliest = (0..heard.len()).max_by(|a, b| heard[*a].0.total_cmp(&heard[*b].0));
-        self.posterior.update_mixture(model, &heard);
+    /// Passes on an answer, and notes whether it was attributed to another question.
+    fn hear(&mut self, utterance: &TimedUtterance) {
+        let Reply::Answer(answer) = utterance.reply else { return };
+        let reading = answer.reading(self.room.problem.model);
+        let presentations: Vec<Presentation> =
+            self.put.iter().rev().take(PRESENTATIONS_MAX).copied().collect();
+        let places = (0..presentations.len()).map(Some).chain([None]);
+        let interpretations = places
+            .map(|answers| Interpretation { weight: 1.0, answers, reading: reading.clone() })
+            .collect();
+        self.tell(utterance.onset_s, utterance.end_s, presentations, interpretations);
         self.heard += 1;
-        let meant = utterance.question;
-        let taken = likeliest.and_then(|at| self.asked.get_mut(at));
-        self.misplaced += u32::from(taken.as_ref().is_none_or(|asked| asked.0 != meant));
-        if let Some(asked) = taken {
-            asked.1.answered_s = Some(utterance.end_s);
-        }
-        true
+        let attributed = &self.state.attributed;
+        let best = attributed.questions.iter().max_by(|a, b| a.share.total_cmp(&b.share));
+        let best = best.filter(|best| best.share >= attributed.none);
+        let put = best.and_then(|best| self.put.iter().find(|put| put.prompt == best.prompt));
+        self.misplaced += u32::from(put.is_none_or(|put| put.question != utterance.question));
     }
 
-    fn addressed(&self, utterance: &TimedUtterance) -> Shares {
-        let asked: Vec<Candidate> = self.asked.iter().map(|asked| asked.1).collect();
-        let asked = &asked;
-        match self.rules.attribution {
-            Attribution::Naive => Shares::only(asked.len().checked_sub(1), asked.len()),
-            Attribution::Onset => Shares::latest_said(asked, utterance.onset_s),
-            Attribution::Mixture => {
-                // With push-to-talk people wait for the click before they speak.
-                let delay_s = self.user.timing().click_s;
-                let rate = |seconds: f64| self.reaction.rate(seconds - delay_s, self.answers);
-                Shares::spoken(asked, utterance.onset_s, rate)
-            }
-        }
+    fn tell(
+        &mut self,
+        onset_s: f64,
+        end_s: f64,
+        presentations: Vec<Presentation>,
+        interpretations: Vec<Interpretation>,
+    ) {
+        let busy = self.user.busy_until_s(self.now_s).is_some();
+        let floor = Floor { pending: if busy { 2 } else { 0 }, ..Floor::default() };
+        let utterance = Utterance {
+            seq: self.state.applied.next(),
+            presentations,
+            onset: time(onset_s),
+            end: time(end_s),
+            accepted: time(self.now_s),
+            interpretations,
+            more: self.manager.more_is_coming(&floor, time(self.now_s)),
+            ..Utterance::default()
+        };
+        self.step(&Cause::Utterance(utterance));
     }
 
     fn end(mut self, end: End) -> Outcome {
-        let costs = self.room.problem.costs;
-        let worth = match end {
-            End::Right => costs.correct,
-            End::Wrong => -costs.wrong,
-            End::Waited | End::Abandoned | End::Cancelled => costs.wait_value(),
-        };
-        self.value += self.discount * worth;
+        self.value += self.discount * end.worth(&self.room.problem.costs);
         Outcome {
             end,
-            questions: self.asked.len() as u32,
+            questions: self.put.len() as u32,
             talk_s: self.now_s,
             seconds: self.now_s,
             value: self.value,
@@ -215,4 +232,8 @@ impl Talk<'_> {
             misplaced: self.misplaced,
         }
     }
+}
+
+fn time(seconds: f64) -> Time {
+    Time(0) + Span::from_s(seconds)
 }

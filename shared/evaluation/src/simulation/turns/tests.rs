@@ -1,8 +1,8 @@
 use super::*;
-use crate::simulation::interaction::Patience;
+use crate::simulation::CachedPlanner;
 use crate::simulation::testing::{bowls, yes_no};
 use crate::simulation::users::TimedKind;
-use dialogue::{Model, Params, registry};
+use dialogue::{Model, Params, TurnTaking, registry};
 use language::{Language, Reader};
 use preflight::{Pace, Voice};
 
@@ -15,14 +15,14 @@ fn run(rules: &str, talker: &TimedKind, n: u64) -> Tally {
         scene: &scene,
         reader: &reader,
         problem: yes_no(&model),
-        patience: Patience::default(),
+        turns: TurnTaking::default(),
         voice: Voice::default(),
         pace: &pace,
         motions: None,
         request: true,
     };
-    let mut memo = Memo::new(registry::planner("lookahead").unwrap());
-    dialogues(&room, &mut memo, &Rules::parse(rules).unwrap(), talker, 1, 0..n)
+    let mut manager = room.manager(CachedPlanner::new(registry::planner("lookahead").unwrap()));
+    dialogues(&room, &mut manager, &Rules::parse(rules).unwrap(), talker, 1, 0..n)
 }
 
 /// The published figures and those of an independent simulation: 75 to 80 % and 35 s.

@@ -1,0 +1,148 @@
+//! Planner that remembers its decisions by belief.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use dialogue::user_model::Joint;
+use dialogue::{Belief, Decision, DecisionProblem, Planner, Posterior, Step};
+
+/// What a decision depends on: whether it is the interaction's first, and the posterior's key.
+pub type Situation = (bool, Vec<i64>);
+
+/// Decisions that several caches of one planner share. It may forget, and must never return another
+/// situation's decision.
+pub trait SharedDecisions: Send + Sync {
+    /// Returns the decision, if it is known.
+    fn find(&self, situation: &Situation) -> Option<Arc<Decision>>;
+
+    /// Adds a decision.
+    fn add(&self, situation: &Situation, decision: &Arc<Decision>);
+}
+
+/// A planner that is asked once per belief.
+///
+/// It decides on the belief that represents all of one key ([`Posterior::rounded`]), so a decision is
+/// a function of the key. The planner is asked once for the first step and once for all later ones, as
+/// [`dialogue::evaluate`] does: one that draws random numbers is studied for these draws.
+pub struct CachedPlanner {
+    planner: Box<dyn Planner + Send>,
+    shared: Option<Arc<dyn SharedDecisions>>,
+    known: HashMap<Situation, Arc<Decision>>,
+    situation: Situation,
+}
+
+/// Most beliefs that are remembered.
+const BELIEFS_MAX: usize = 1 << 17;
+
+impl CachedPlanner {
+    /// Returns a cache of that planner's decisions on one problem.
+    pub fn new(planner: Box<dyn Planner + Send>) -> Self {
+        let (known, situation) = (HashMap::new(), (true, Vec::new()));
+        Self { planner, shared: None, known, situation }
+    }
+
+    /// Adds the decisions of other caches of the same planner on the same problem.
+    #[must_use]
+    pub fn sharing(self, shared: Arc<dyn SharedDecisions>) -> Self {
+        Self { shared: Some(shared), ..self }
+    }
+
+    /// Returns the decision at `self.situation`; `posterior` makes the posterior that has its key.
+    fn cached(
+        &mut self,
+        problem: &DecisionProblem<'_>,
+        posterior: impl FnOnce() -> Posterior,
+    ) -> Decision {
+        if let Some(known) = self.known.get(&self.situation) {
+            return Decision::clone(known);
+        }
+        let others = self.shared.as_ref().and_then(|shared| shared.find(&self.situation));
+        let decision = others.unwrap_or_else(|| {
+            let posterior = posterior();
+            let step = Step { interaction: 0, step: u32::from(!self.situation.0) };
+            let posterior = posterior.rounded().unwrap_or(posterior);
+            let decision = Arc::new(posterior.decide(&mut *self.planner, problem, step));
+            self.shared.iter().for_each(|shared| shared.add(&self.situation, &decision));
+            decision
+        });
+        if self.known.len() >= BELIEFS_MAX {
+            self.known.clear();
+        }
+        self.known.insert(self.situation.clone(), Arc::clone(&decision));
+        Decision::clone(&decision)
+    }
+}
+
+impl Planner for CachedPlanner {
+    fn name(&self) -> &'static str {
+        self.planner.name()
+    }
+
+    fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
+        self.situation.0 = step.step == 0;
+        belief.key_into(&mut self.situation.1);
+        self.cached(problem, || Posterior::Object(belief.clone()))
+    }
+
+    fn decide_with(
+        &mut self,
+        problem: &DecisionProblem<'_>,
+        joint: &Joint,
+        step: Step,
+    ) -> Decision {
+        self.situation.0 = step.step == 0;
+        joint.key_into(&mut self.situation.1);
+        self.cached(problem, || Posterior::ObjectAndPerson(joint.clone()))
+    }
+
+    fn uses_user_model(&self) -> bool {
+        self.planner.uses_user_model()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulation::testing::{bowls, yes_no};
+    use dialogue::{Model, Params, registry};
+    use std::sync::Mutex;
+
+    #[derive(Default)]
+    struct Board(Mutex<HashMap<Situation, Arc<Decision>>>);
+
+    impl SharedDecisions for Board {
+        fn find(&self, situation: &Situation) -> Option<Arc<Decision>> {
+            self.0.lock().unwrap().get(situation).cloned()
+        }
+
+        fn add(&self, situation: &Situation, decision: &Arc<Decision>) {
+            self.0.lock().unwrap().insert(situation.clone(), Arc::clone(decision));
+        }
+    }
+
+    #[test]
+    fn cached_planner_decides_like_its_planner_and_shares_its_decisions() {
+        let scene = bowls();
+        let model = Model::new(&scene, Params::default());
+        let problem = yes_no(&model);
+        let belief = Belief::uniform(6);
+        for name in registry::names() {
+            let board = Arc::new(Board::default());
+            let cache = || {
+                let shared: Arc<dyn SharedDecisions> = board.clone();
+                CachedPlanner::new(registry::planner(name).unwrap()).sharing(shared)
+            };
+            let (mut one, mut other) = (cache(), cache());
+            for step in [0, 1] {
+                let step = Step { interaction: 0, step };
+                let mut planner = registry::planner(name).unwrap();
+                let rounded = Belief::from_key(&belief.key()).unwrap();
+                let direct = planner.decide(&problem, &rounded, step);
+                assert_eq!(one.decide(&problem, &belief, step), direct, "{name}");
+                let later = Step { interaction: 9, step: 7 * step.step };
+                assert_eq!(other.decide(&problem, &belief, later), direct, "{name}");
+            }
+            assert_eq!(board.0.lock().unwrap().len(), 2, "{name}: asked once per situation");
+        }
+    }
+}
