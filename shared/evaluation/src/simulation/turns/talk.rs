@@ -134,7 +134,7 @@ impl Talk<'_> {
         self.value -= self.discount * self.room.problem.cost(Action::Ask(question));
         self.discount *= self.room.problem.costs.discount;
         let began = time(self.now_s);
-        self.now_s += log_normal(self.user.user().rng(), QUESTION_S.0, QUESTION_S.1);
+        self.now_s += log_normal(self.user.user_mut().rng(), QUESTION_S.0, QUESTION_S.1);
         self.put.push(Presentation {
             prompt: self.state.act.prompt,
             number: self.state.act.presentation,
