@@ -1,34 +1,22 @@
-//! Words of viewers on their way to the robot: sent under one key until they are answered, so that
-//! no restart in between loses or doubles them.
+//! Utterances of viewers and of the study on their way to the robot.
 
 use messages::{Hypothesis, Injection, Receipt, ReceiptStatus, Sound};
 use service::bus::EncodedWriter;
-use service::client::random_key;
+use service::submission::Submission;
 use service::{Span, Time};
 
 use crate::hub::command::Words;
 use crate::hub::outbound::Answer;
 use crate::hub::{Hub, ViewerId};
 
-/// How often words without an answer are sent again.
-const RESEND_EVERY: Span = Span::from_ms(250);
-/// How long an answer is waited for.
+/// How long a receipt may take.
 const PATIENCE: Span = Span::from_ms(8_000);
-/// Words on their way at a time.
+/// Most utterances on their way.
 const WORDS_MAX: usize = 32;
 
-/// Words on their way.
+/// Utterances without a receipt, each with the viewer and command that wait for it.
 #[derive(Debug, Default)]
-pub(super) struct Submissions(Vec<Waiting>);
-
-#[derive(Debug)]
-struct Waiting {
-    /// Who waits for the answer; nobody for words of the study's.
-    viewer: Option<(ViewerId, u64)>,
-    injection: Injection,
-    began: Time,
-    sent: Option<Time>,
-}
+pub(super) struct Submissions(Vec<(Option<(ViewerId, u64)>, Submission)>);
 
 impl Submissions {
     pub(super) fn add(
@@ -38,7 +26,7 @@ impl Submissions {
         now: Time,
     ) -> Result<(), String> {
         if self.0.len() >= WORDS_MAX {
-            return Err("too much is being said at a time; wait a moment".to_owned());
+            return Err("too many utterances at a time; help: wait a moment".to_owned());
         }
         let Words { text, alternatives, spoken, began, ended } = words;
         let sound = if spoken {
@@ -50,10 +38,8 @@ impl Submissions {
         } else {
             Sound::Text(text)
         };
-        let onset_ns = began.unwrap_or(now).ns();
-        let end_ns = ended.map_or(0, Time::ns);
-        let injection = Injection { key: random_key(), onset_ns, end_ns, sound };
-        self.0.push(Waiting { viewer, injection, began: now, sent: None });
+        let said = (began.unwrap_or(now), ended.unwrap_or(Time(0)));
+        self.0.push((viewer, Submission::new(sound, said, now, PATIENCE)));
         Ok(())
     }
 
@@ -61,39 +47,32 @@ impl Submissions {
         self.0.is_empty()
     }
 
-    /// Sends what is due and gives up what nobody answers.
+    /// Sends what is due and gives up what has expired.
     pub(super) fn pass(&mut self, writer: &EncodedWriter<Injection>, hub: &Hub, now: Time) {
-        for said in &mut self.0 {
-            if said.sent.is_none_or(|sent| now >= sent + RESEND_EVERY) {
-                if let Err(error) = writer.send(&said.injection) {
-                    tracing::debug!(%error, "words not sent yet");
-                }
-                said.sent = Some(now);
+        for (_, submission) in &mut self.0 {
+            if let Some(Err(error)) = submission.due(now).map(|request| writer.send(request)) {
+                tracing::debug!(%error, "utterance not sent yet");
             }
         }
-        self.0.retain(|said| {
-            let waits = now < said.began + PATIENCE;
-            if let Some((viewer, id)) = said.viewer.filter(|_| !waits) {
-                let why = "the speech service does not answer; see the list of services";
+        for (viewer, _) in self.0.extract_if(.., |(_, submission)| submission.is_expired(now)) {
+            if let Some((viewer, id)) = viewer {
+                let why = "the speech service does not answer; help: see the list of services";
                 hub.answer(viewer, id, Err(why.to_owned()));
             }
-            waits
-        });
+        }
     }
 
-    /// What became of some words.
+    /// Answers the command that waits for a receipt.
     pub(super) fn on_receipt(&mut self, receipt: &Receipt, hub: &Hub) {
-        let Some(at) = self.0.iter().position(|said| said.injection.key == receipt.request())
-        else {
-            return;
-        };
-        let Some((viewer, id)) = self.0.swap_remove(at).viewer else { return };
+        let key = receipt.request();
+        let Some(at) = self.0.iter().position(|(_, waiting)| waiting.key() == key) else { return };
+        let Some((viewer, id)) = self.0.swap_remove(at).0 else { return };
         let note = receipt.note.as_str().unwrap_or_default();
-        let outcome = match receipt.status.get() {
+        let answer = match receipt.status.get() {
             ReceiptStatus::Accepted => Ok(Some(Answer::Accepted { seq: receipt.seq })),
             ReceiptStatus::NotForMe => Err(format!("heard, but not taken for a request: {note}")),
             _ => Err(note.to_owned()),
         };
-        hub.answer(viewer, id, outcome);
+        hub.answer(viewer, id, answer);
     }
 }

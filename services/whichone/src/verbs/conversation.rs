@@ -11,13 +11,14 @@ use std::time::{Duration, Instant};
 use config::Settings;
 use messages::{Injection, PolicyView, Receipt, RequestKey, Sound, topics};
 use scene::Scene;
-use service::Span;
 use service::bus::EncodedWriter;
-use service::client::{Client, random_key};
+use service::client::Client;
 use service::clock;
 use service::exit::Exit;
 use service::group::GroupPaths;
+use service::submission::Submission;
 use service::view::{Latest, LatestTopics, quiet};
+use service::{Span, Time};
 
 use crate::error::CliError;
 
@@ -28,8 +29,6 @@ pub(super) mod example;
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(5);
 /// How long the policy may be silent before it is taken to be down.
 const FIRST_PATIENCE: Duration = Duration::from_secs(1);
-/// How often words that have no receipt yet are sent again.
-const RESEND_EVERY: Duration = Duration::from_millis(250);
 /// How often it is checked that the group is still the same one.
 const CHECK_EVERY: Duration = Duration::from_secs(1);
 
@@ -38,7 +37,7 @@ pub(super) struct Conversation {
     topics: LatestTopics,
     injections: Option<EncodedWriter<Injection>>,
     /// Words on their way to the robot, first to last; only the first has been sent.
-    saying: VecDeque<Words>,
+    saying: VecDeque<Submission>,
     /// Keys of everything said here.
     own: HashSet<RequestKey>,
     latest: Latest,
@@ -49,11 +48,6 @@ pub(super) struct Conversation {
     folder: u64,
     checked: Instant,
     client: Client,
-}
-
-struct Words {
-    injection: Injection,
-    sent: Option<Instant>,
 }
 
 impl Conversation {
@@ -109,10 +103,10 @@ impl Conversation {
             self.injections = Some(self.client.bus().encoded_writer(&topics::INJECTION)?);
         }
         let sound = Sound::Text(text.to_owned());
-        let injection =
-            Injection { key: random_key(), onset_ns: clock::now().ns(), end_ns: 0, sound };
-        self.own.insert(injection.key);
-        self.saying.push_back(Words { injection, sent: None });
+        let now = clock::now();
+        let submission = Submission::new(sound, (now, Time(0)), now, Span(u64::MAX / 2));
+        self.own.insert(submission.key());
+        self.saying.push_back(submission);
         Ok(())
     }
 
@@ -170,18 +164,17 @@ impl Conversation {
     }
 
     fn answered(&mut self, key: RequestKey) {
-        if self.saying.front().is_some_and(|words| words.injection.key == key) {
+        if self.saying.front().is_some_and(|submission| submission.key() == key) {
             self.saying.pop_front();
         }
     }
 
     fn send(&mut self) {
-        let (Some(writer), Some(words)) = (&self.injections, self.saying.front_mut()) else {
+        let (Some(writer), Some(submission)) = (&self.injections, self.saying.front_mut()) else {
             return;
         };
-        if words.sent.is_none_or(|sent| sent.elapsed() >= RESEND_EVERY) {
-            quiet(writer.send(&words.injection).map(Some));
-            words.sent = Some(Instant::now());
+        if let Some(request) = submission.due(clock::now()) {
+            quiet(writer.send(request).map(Some));
         }
     }
 
