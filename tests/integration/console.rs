@@ -287,7 +287,7 @@ fn port_in_use_is_avoided_and_viewers_are_limited() {
     let place = group.console();
     assert!(!place.ends_with(&format!(":{port}")), "{place}");
     let log = std::fs::read_to_string(group.paths().log_file("console")).unwrap();
-    assert!(log.contains("another port was taken"), "{log}");
+    assert!(log.contains("another one is used"), "{log}");
     assert_eq!(group.status()["console"], format!("http://{place}/"));
     let (_first, _second) = (group.page(&Visitor::operator(1)), group.page(&Visitor::operator(2)));
     let refused = Page::open(&place, &Visitor::operator(3)).unwrap_err();

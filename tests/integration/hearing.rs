@@ -174,9 +174,9 @@ fn transcript_keeps_its_times_and_alternatives() {
     assert_eq!(spoken_ns, 1_500_000_000);
     assert_eq!(group.await_pick(Some("clear"))["object"], "clear");
     for (more, why) in [
-        (["--confidence", "1,1,1,1"], "3 words has 4"),
+        (["--confidence", "1,1,1,1"], "found 4"),
         (["--or", "x=1.5"], "TEXT=WEIGHT"),
-        (["--began-ago", "soon"], "write seconds"),
+        (["--began-ago", "soon"], "expected seconds"),
     ] {
         let wrong = group.call(&["say", "the clear bowl", more[0], more[1]]);
         assert_ne!(wrong.code, Some(0));

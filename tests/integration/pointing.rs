@@ -82,7 +82,7 @@ fn implausible_targets_are_refused() {
     for at in [["nan", "0", "0"], ["0", "5000", "0"]] {
         let refused = group.call(&[&["point"], &at[..]].concat());
         assert_eq!(refused.code, Some(1), "{refused:?}");
-        assert!(refused.stderr.contains("metres in frame base"), "{refused:?}");
+        assert!(refused.stderr.contains("m in frame base"), "{refused:?}");
     }
     assert_eq!(group.call(&["point", "1", "2"]).code, Some(64));
     group.down();

@@ -147,23 +147,23 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_arm_is_told_why() {
+    fn rejected_arms_name_the_reason() {
         let seven = fixture("seven_joints.urdf");
-        let told = |robot, limb, tip| arm(robot, limb, tip).unwrap_err().to_string();
+        let error = |robot, limb, tip| arm(robot, limb, tip).unwrap_err().to_string();
         assert_eq!(
-            told(Some(&seven), None, Some("link_3")),
+            error(Some(&seven), None, Some("link_3")),
             "3 of robot \"seven_joints\"'s joints move link \"link_3\" (a1, a2, a3); an arm has 7"
         );
-        assert!(told(None, None, Some("pedestal")).contains("0 of robot \"baxter\"'s joints"));
-        let unknown = told(Some(&seven), Some(LimbArg::Left), None);
+        assert!(error(None, None, Some("pedestal")).contains("0 of robot \"baxter\"'s joints"));
+        let unknown = error(Some(&seven), Some(LimbArg::Left), None);
         assert!(
             unknown.contains("has no link \"left_gripper\"; it has world, link_0"),
             "{unknown}"
         );
-        let nowhere = told(Some(Path::new("/nowhere.urdf")), None, Some("x"));
+        let nowhere = error(Some(Path::new("/nowhere.urdf")), None, Some("x"));
         assert!(nowhere.starts_with("/nowhere.urdf: "), "{nowhere}");
         let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml");
-        let no_xml = told(Some(&manifest), None, Some("x"));
-        assert!(no_xml.contains("Cargo.toml:1: document: it is not well-formed XML"), "{no_xml}");
+        let no_xml = error(Some(&manifest), None, Some("x"));
+        assert!(no_xml.contains("Cargo.toml:1: document: malformed XML"), "{no_xml}");
     }
 }

@@ -21,6 +21,8 @@ const MOMENTS: usize = 240;
 /// Series of the gripper's path, after those of the joints, and of everything grey.
 const GRIPPER: usize = JOINTS.len();
 const GREY: usize = 6;
+/// Width of margins and legend, pixels.
+const AROUND_PANELS: u32 = 205;
 
 /// Returns the chart, about that many pixels wide.
 pub(super) fn chart(pick: &Pick<'_>, width: u32) -> Chart {
@@ -41,7 +43,7 @@ pub(super) fn chart(pick: &Pick<'_>, width: u32) -> Chart {
     let names = pick.robot.arm(limb).joint_names.iter();
     let prefix = format!("{limb}_");
     let legend = names.map(|name| name.strip_prefix(&prefix).unwrap_or(name).to_owned());
-    let panel = width.saturating_sub(230) / 2;
+    let panel = width.saturating_sub(AROUND_PANELS) / 2;
     Chart {
         title: format!("{limb} limb fetches {name}: {seconds:.2} s"),
         note: String::new(),
@@ -99,7 +101,7 @@ fn path(pick: &Pick<'_>, heading: &str, label: &str, axis: usize) -> Panel {
         let outline = vec![low, (high.0, low.1), high, (low.0, high.1), low];
         shapes.push((series, Shape::Line(outline)));
         let name = pick.scene.object(index.into()).name.clone();
-        shapes.push((series, Shape::Text((low.0, 0.5 * (low.1 + high.1)), name)));
+        shapes.push((series, Shape::Text((high.0, 0.5 * (low.1 + high.1)), name)));
     }
     shapes.push((GRIPPER, Shape::Line(path)));
     shapes.push((GRIPPER, Shape::Marks(marks)));

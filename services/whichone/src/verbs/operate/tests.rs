@@ -84,7 +84,7 @@ fn a_reload_names_what_it_restarted() {
 }
 
 #[test]
-fn the_end_of_a_group_is_told_with_what_did_not_end_by_itself() {
+fn down_reports_killed_services_and_leftovers() {
     let report = json!({"reply": "down", "killed": ["arm"], "strays": [], "leftovers": ["/dev/x"],
                         "seconds": 0.25});
     let bring_down = |paths: &GroupPaths, out: &mut Output<'_>| down(paths, Duration::ZERO, out);
@@ -97,8 +97,8 @@ fn the_end_of_a_group_is_told_with_what_did_not_end_by_itself() {
 }
 
 #[test]
-fn an_answer_that_makes_no_sense_is_no_success() {
+fn invalid_answer_is_an_error() {
     let reply = json!({"reply": "done", "message": "what?"});
     let (_, _, ended) = run(reply, false, |paths, out| down(paths, Duration::ZERO, out));
-    assert!(ended.unwrap_err().1.contains("does not understand"));
+    assert!(ended.unwrap_err().1.contains("invalid answer of the supervisor"));
 }
