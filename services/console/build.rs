@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use flate2::{Compression, write::GzEncoder};
 
-/// What compresses to more than this share of itself is served as it is.
+/// Largest compressed share of the original size at which the compressed form is served.
 const WORTH_IT: f64 = 0.9;
 
 fn main() -> Result<(), Box<dyn Error>> {

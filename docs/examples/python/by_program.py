@@ -1,4 +1,4 @@
-"""Grounding by a program of your own: a language model on this machine, say.
+"""Grounding by an external program, for example a local language model.
 
     whichone swap grounding -- python3 docs/examples/python/by_program.py PROGRAM [ARGUMENT…]
 
@@ -10,9 +10,9 @@ on standard output:
                    "intent": "inform"}]}
 
 `question` is the place of the question answered, null for none; all keys may be left out. For each
-question the weights are made to sum to 1. A program that is too slow, fails, or says what the scene
-does not have, is not believed: that utterance is read by word spotting, and standard error says why.
-The same utterance is answered as before: what was said to it is kept for a while.
+question the weights are made to sum to 1. If the program is too slow, fails, or names something that
+the scene does not have, the utterance is read by word spotting instead, and standard error says why.
+A repeated utterance gets the same answer: answers are cached for a while.
 """
 
 import json
@@ -22,7 +22,7 @@ import time
 
 from grounding import NO_QUESTION, empty, hypotheses, observe, places, serve
 
-# People wait for about a second; the policy holds its tongue for longer, but the talk is dead then.
+# People wait for about a second; the policy stays silent for longer, but the dialogue stalls.
 SECONDS_MAX = 1.5
 KEPT_MAX = 64
 RESPONSES = ["none", "yes", "no"]
@@ -30,7 +30,7 @@ INTENTS = ["inform", "none", "stop", "cancel", "repeat", "start_over", "ask_back
 
 
 def question(scene, asked):
-    """A question in words; one about another scene asks nothing that this one could answer."""
+    """A question in words; a question about another scene is empty."""
     number = asked.question
     if asked.scene != scene.key or number.kind == 0:
         return {}
@@ -41,8 +41,8 @@ def question(scene, asked):
 
 
 def prompt(scene, utterance):
-    """What the program is told. What a person said stands in quotes as JSON, so that it is data and
-    never an instruction of ours."""
+    """The prompt for the program. A person's words are quoted as JSON, so that they are data and never
+    an instruction."""
     asked = [{"place": n} | question(scene, asked)
              for n, asked in enumerate(utterance.asked[:utterance.asked_count])]
     heard = [{"text": text, "weight": weight} for text, weight, _ in hypotheses(utterance)]
@@ -55,7 +55,7 @@ def prompt(scene, utterance):
 
 
 def run(command, text, bond):
-    """The program's answer. The supervisor hears beats meanwhile."""
+    """Runs the program and returns its answer, sending beats to the supervisor meanwhile."""
     pipe = subprocess.PIPE
     until = time.monotonic() + SECONDS_MAX
     with subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True) as program:
@@ -70,23 +70,23 @@ def run(command, text, bond):
                     if time.monotonic() > until or bond.ends():
                         raise OSError(f"no answer in {SECONDS_MAX} s") from None
         finally:
-            # Whatever went wrong, nobody waits for it.
+            # Do not wait for a program that is still running after a failure.
             if program.poll() is None:
                 program.kill()
     if program.returncode != 0:
-        raise ValueError(f"it ended with {program.returncode}")
+        raise ValueError(f"the program exited with {program.returncode}")
     return answer
 
 
 def share(number):
     """A probability, or an error."""
     if not 0.0 <= float(number) <= 1.0:
-        raise ValueError(f"{number} is no probability")
+        raise ValueError(f"{number} is not a probability")
     return float(number)
 
 
 def fill(slot, given, words, place, total):
-    """One reading of the answer into its place in the message."""
+    """Writes one reading of the answer to its place in the message."""
     base = [words.index(word) for word in given.get("base", [])][:len(slot.base)]
     groups = given.get("excluded", [])[:len(slot.excluded)]
     slot.question, slot.weight = place, share(given.get("weight", 1.0)) / total

@@ -28,7 +28,7 @@ WORDS = re.compile(r"[^\W_]+(?:[-'][^\W_]+)*")
 
 
 class Scene:
-    """What grounding needs of the scene: its words in order, and the key of its problem."""
+    """The scene as grounding needs it: its words in order, and the key of its problem."""
 
     def __init__(self, text):
         scene = tomllib.loads(text)
@@ -74,7 +74,7 @@ class Scene:
 
 
 def hypotheses(utterance):
-    """What was heard: text, weight, and the doubt of each blank-separated word."""
+    """Yields each recognition hypothesis: text, weight, and the doubt of each blank-separated word."""
     text = bytes(utterance.text.bytes)[:utterance.text.len]
     for heard in utterance.hypotheses[:utterance.hypothesis_count]:
         words = text[heard.start:heard.start + heard.len].decode()
@@ -82,10 +82,10 @@ def hypotheses(utterance):
 
 
 def empty(layout, scene, utterance):
-    """The observation of an utterance, but for what it says."""
+    """The observation of an utterance, without readings."""
     observation = layout.structs["Observation"]()
     for field, _ in observation._fields_:
-        # What both messages have is handed on: which utterance, which questions, which gesture.
+        # Fields that both messages have are copied: utterance, questions, gesture.
         if field != "reserved" and hasattr(utterance, field):
             setattr(observation, field, getattr(utterance, field))
     observation.scene_key = scene.key
@@ -99,13 +99,13 @@ def places(utterance):
 
 
 def observe(layout, scene, utterance):
-    """The observation of an utterance: each hypothesis for each question and for none. What words
-    say to a question this reader does not ask, so the readings differ in their question alone."""
+    """The observation of an utterance: each hypothesis for each question and for none. This
+    reader ignores the question, so the readings differ in their question alone."""
     observation = empty(layout, scene, utterance)
     heard = list(hypotheses(utterance))
     readings = [(place, *said) for place in places(utterance) for said in heard]
     if not heard and utterance.gesture.present:
-        # Somebody points and says nothing: one reading, without a word.
+        # A pointing gesture without words: one reading, without a word.
         readings = [(NO_QUESTION, "", 1.0, [])]
     observation.reading_count = len(readings)
     for reading, (place, text, weight, doubts) in zip(observation.readings, readings):
@@ -121,7 +121,7 @@ def observe(layout, scene, utterance):
 
 
 def serve(observe_one):
-    """Runs as the service: an observation for every utterance, until told to end."""
+    """Runs the service: one observation per utterance, until it is asked to shut down."""
     bond = Bond()
     layout = Layout(LAYOUT)
     bus = Bus(layout, "grounding")

@@ -72,7 +72,7 @@ class Layout:
             return type("FixedText", (ctypes.Structure,), text)
         # The structs' own names on the wire leave the prefix out.
         known = INTEGERS.get(kind) or self.structs.get(kind.removeprefix("Wire"))
-        # What no service here reads, as sound, stays bytes.
+        # Types that no service here reads, such as sound, stay bytes.
         return known or ctypes.c_uint8 * length
 
 
@@ -89,7 +89,7 @@ class Bus:
         config = iox2.config.default()
         config.global_cfg.prefix = iox2.FileName.new(f"wo{fnv1a(os.fsencode(self.root)):016x}_")
         config.global_cfg.root_path = iox2.Path.new(os.path.join(self.root, "run", "ipc"))
-        # Cleaning up after the dead is the supervisor's.
+        # The supervisor cleans up after dead processes.
         config.global_cfg.node.cleanup_dead_nodes_on_creation = False
         config.global_cfg.node.cleanup_dead_nodes_on_destruction = False
         config.global_cfg.service.cleanup_dead_nodes_on_open = False
@@ -99,7 +99,7 @@ class Bus:
         self.newest = {}
 
     def topic(self, name, message):
-        """Opens a topic that the supervisor has made; refused where the schema is another."""
+        """Opens a topic that the supervisor has made; rejected if the schema differs."""
         key = iox2.AttributeKey.new("schema")
         value = iox2.AttributeValue.new(self.layout.keys[message])
         verifier = iox2.AttributeVerifier.new().require(key, value)
@@ -114,7 +114,7 @@ class Bus:
         return self.node.service_builder(name).event().open()
 
     def receive(self, subscriber):
-        """Every message that waits, without those of other epochs and earlier incarnations."""
+        """Yields the waiting messages, without those of other epochs and earlier incarnations."""
         while (sample := subscriber.receive()) is not None:
             stamp = sample.user_header().contents
             epoch, incarnation = stamp.epoch, stamp.incarnation
@@ -136,22 +136,22 @@ class Bus:
 
 
 class Bond:
-    """What the supervisor hears of this process, and this process of the supervisor."""
+    """The connection to the supervisor: readiness and beats out, shutdown requests in."""
 
     def __init__(self):
-        self.told = False
-        signal.signal(signal.SIGTERM, self._tell)
-        signal.signal(signal.SIGINT, self._tell)
+        self.is_stopping = False
+        signal.signal(signal.SIGTERM, self._stop)
+        signal.signal(signal.SIGINT, self._stop)
         self.lifeline = int(os.environ["WHICHONE_LIFELINE_FD"])
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self.socket.setblocking(False)
         self.beaten = 0.0
 
-    def _tell(self, *_):
-        self.told = True
+    def _stop(self, *_):
+        self.is_stopping = True
 
     def say(self, text):
-        """Sends a datagram; one that finds no room is dropped. Says whether it went."""
+        """Sends a datagram; one that finds no room is dropped. Returns whether it was sent."""
         try:
             self.socket.sendto(text.encode(), os.environ["NOTIFY_SOCKET"])
         except OSError:
@@ -159,11 +159,11 @@ class Bond:
         return True
 
     def beat(self):
-        """Beats where a beat is due: called once in each pass of the main loop."""
+        """Sends a beat if one is due: called once in each pass of the main loop."""
         if time.monotonic() - self.beaten >= BEAT_S:
             self.beaten = time.monotonic()
             self.say("WATCHDOG=1\nX_INPUT_AGE_MS=0\n")
 
     def ends(self):
-        """Whether it is time to end: told to, or the supervisor is gone."""
-        return self.told or bool(select.select([self.lifeline], [], [], 0)[0])
+        """Returns whether to shut down: on request, or because the supervisor is gone."""
+        return self.is_stopping or bool(select.select([self.lifeline], [], [], 0)[0])

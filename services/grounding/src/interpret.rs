@@ -1,4 +1,5 @@
-//! What an utterance may mean: each hypothesis as an answer to each question, equal ones together.
+//! Possible meanings of an utterance: each hypothesis as an answer to each question, equal ones
+//! together.
 
 use crate::Config;
 use messages::{AskedQuestion, Hypothesis, Interpretation, READINGS_MAX, WireError};
@@ -32,7 +33,7 @@ fn question(config: &Config, asked: &AskedQuestion) -> Result<Question, WireErro
     Ok(if is_known { question } else { Question::None })
 }
 
-/// What was said if it answers `question`: the likeliest readings, whose weights sum to 1.
+/// Returns the likeliest readings if the utterance answers `question`; their weights sum to 1.
 fn readings(
     config: &Config,
     heard: &[Hypothesis],

@@ -1,8 +1,8 @@
 //! Grounding: turns an utterance's words into what they say about the scene.
 //!
-//! What an utterance says depends on the question that it answers, and which one that is only the
-//! policy can judge. So every hypothesis is read as an answer to each question that it may answer,
-//! and to none.
+//! The meaning of an utterance depends on the question that it answers, and only the policy can
+//! judge which one that is. So every hypothesis is read as an answer to each question that it may
+//! answer, and to none.
 //!
 //! Stateless: an observation depends on the scene and the utterance alone, so this service can be
 //! killed or swapped at any moment and forgets nothing.
@@ -16,7 +16,7 @@ use messages::{Fits, FixedText, Interpretation, Observation, Utterance, WireErro
 use scene::{Reading, Scene};
 use service::{Effects, Event, Never, Node, NodeError, Time};
 
-/// How it reads: the scene and its reader.
+/// The scene and its reader.
 pub struct Config {
     /// The scene.
     pub scene: Scene,
@@ -78,7 +78,7 @@ impl GroundingNode {
         };
         let heard = utterance.hypotheses()?;
         let mut meant = if heard.is_empty() && utterance.gesture.target_m()?.is_some() {
-            // Somebody points and says nothing: one reading, without a word.
+            // A pointing gesture without words: one reading, without a word.
             vec![Interpretation { weight: 1.0, answers: None, reading: Reading::default() }]
         } else {
             interpretations(&self.config, &heard, utterance.asked()?)?

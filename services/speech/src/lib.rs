@@ -31,7 +31,7 @@ pub use io::{
 };
 pub use messages::Hypothesis;
 
-/// How often everything not yet superseded is sent again.
+/// Interval at which everything not yet superseded is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);
 
 type Fx = Effects<Out, Record>;
@@ -49,7 +49,7 @@ pub struct Config {
     pub reader: language::Reader,
     /// Longest utterance, bytes.
     pub utterance_bytes_max: usize,
-    /// Whether pointing gestures are accepted.
+    /// `true` if pointing gestures are accepted.
     pub gestures: bool,
 }
 

@@ -29,7 +29,7 @@ pub struct Accepted {
     pub hypotheses: Vec<Hypothesis>,
     /// The point that was pointed at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
-    /// Where it came from.
+    /// Origin of the utterance.
     pub source: Source,
     /// The latest questions whose sound had begun by then, newest first.
     pub asked: Vec<Presentation>,

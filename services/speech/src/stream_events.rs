@@ -92,7 +92,7 @@ pub struct Began {
     pub segment: Option<u32>,
     /// Its source.
     pub source: Source,
-    /// Whether it interrupts the robot.
+    /// `true` if it interrupts the robot.
     pub interrupts: bool,
 }
 

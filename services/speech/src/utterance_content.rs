@@ -11,7 +11,7 @@ pub(crate) struct UtteranceContent {
     pub(crate) hypotheses: Vec<Hypothesis>,
     /// The point that was pointed at, metres, frame `base`.
     pub(crate) gesture: Option<[f64; 3]>,
-    /// Where it came from.
+    /// Origin of the utterance.
     pub(crate) source: Source,
 }
 

@@ -43,7 +43,7 @@ pub struct Motion {
     pub speed_ratio: f64,
     /// Height above an object at which a grasp is approached, metres.
     pub hover_m: f64,
-    /// Where objects are handed over, metres.
+    /// Position at which objects are handed over, metres.
     pub hand_over_xyz_m: [f64; 3],
     /// Height of the table, metres.
     pub table_z_m: f64,
@@ -80,7 +80,7 @@ pub struct Baxter {
     pub still_rad_s: f64,
     /// Age at which joint states are stale, seconds.
     pub stale_s: f64,
-    /// Speed ratio sent to the robot; trajectories respect the limits by themselves.
+    /// Speed ratio sent to the robot; trajectories respect the limits regardless.
     pub speed_ratio: f64,
     /// Send velocity and acceleration beside the position.
     pub feed_forward: bool,

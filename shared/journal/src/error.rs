@@ -3,7 +3,7 @@
 use std::io;
 
 /// Way out for a journal that another version wrote.
-const FRESH: &str = "help: start the version that wrote it, or start anew with `whichone up \
+const FRESH: &str = "help: start the version that wrote it, or start over with `whichone up \
                      --fresh`, which keeps the old file";
 
 /// Failure to open or read a journal.
@@ -59,7 +59,7 @@ pub enum JournalOpenError {
     /// Damage to acknowledged records.
     #[error(
         "corrupt at byte {at}, before record {seq}, with valid records after it; help: inspect the \
-         file, then start anew with `whichone up --fresh`, which keeps it"
+         file, then start over with `whichone up --fresh`, which keeps it"
     )]
     Corrupt {
         /// Offset of the first damaged frame.

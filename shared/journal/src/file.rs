@@ -45,7 +45,7 @@ pub struct Reading<R> {
     pub records: Vec<R>,
     /// Number of the first of them.
     pub first_seq: u64,
-    /// How the file ends.
+    /// The ending of the file.
     pub ending: Ending,
 }
 

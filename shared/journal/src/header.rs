@@ -33,7 +33,7 @@ pub(crate) struct StoredHeader {
     pub(crate) first_seq: u64,
     /// The checksum that the first frame refers to.
     pub(crate) crc: u32,
-    /// Where the first frame starts.
+    /// Offset of the first frame.
     pub(crate) len: usize,
 }
 

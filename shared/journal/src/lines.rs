@@ -31,7 +31,7 @@ impl Lines {
     /// is cut off.
     ///
     /// # Errors
-    /// It cannot be read or written, or is no UTF-8.
+    /// It cannot be read or written, or is not UTF-8.
     pub fn open(path: &Path) -> io::Result<(Self, String)> {
         let mut file = OpenOptions::new().read(true).append(true).open(path)?;
         let mut bytes = Vec::new();
@@ -64,7 +64,8 @@ impl Lines {
     }
 }
 
-/// The files with that ending in a folder, by name, with their texts; none where there is no folder.
+/// Returns the files with that extension in a folder, by name, with their texts; none if the folder
+/// does not exist.
 ///
 /// # Errors
 /// The file that cannot be read, and why.

@@ -30,7 +30,8 @@ impl Lock {
             }
             Err(TryLockError::Error(error)) => return Err(io("lock the journal")(error)),
         }
-        // The number only serves messages, so its loss in a crash is no harm and it is not synced.
+        // The number only serves messages, so losing it in a crash is harmless and it is not
+        // synced.
         file.set_len(0).map_err(io("write the lock file"))?;
         writeln!(file, "{}", std::process::id()).map_err(io("write the lock file"))?;
         Ok(Self { _file: file })

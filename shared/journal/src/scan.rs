@@ -6,30 +6,30 @@ use crate::JournalOpenError;
 use crate::frame::{self, Frame, PREFIX_BYTES};
 use crate::header::StoredHeader;
 
-/// How a journal file ends.
+/// Endings of a journal file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ending {
     /// With its last whole frame.
     Whole,
     /// With a write that was never acknowledged; opening the journal cuts it off.
     Torn {
-        /// Where the torn frame starts.
+        /// Offset of the torn frame.
         at: u64,
         /// Bytes from there to the end of the file.
         bytes: u64,
     },
     /// With records that had been acknowledged and can no longer be reached.
     Corrupt {
-        /// Where the damaged frame starts.
+        /// Offset of the damaged frame.
         at: u64,
         /// Number of the first record that cannot be read.
         seq: u64,
-        /// Where the next valid frame starts.
+        /// Offset of the next valid frame.
         resumes_at: u64,
     },
 }
 
-/// What a scan found before the ending.
+/// Records and positions found by a scan before the ending.
 #[derive(Debug)]
 pub(crate) struct Scan<R> {
     pub(crate) records: Vec<R>,
@@ -68,7 +68,7 @@ impl Position {
 /// Reads every record of a file, up to the first frame that is not valid in its place.
 ///
 /// # Errors
-/// `Undecodable`; damage is no error here but an [`Ending`].
+/// `Undecodable`; damage is not an error but an [`Ending`].
 pub(crate) fn scan<R: DeserializeOwned>(
     bytes: &[u8],
     stored: &StoredHeader,
@@ -91,8 +91,8 @@ pub(crate) fn scan<R: DeserializeOwned>(
     }
 }
 
-/// Tells a torn tail from corruption: frames are written one after the other, each only after the
-/// one before was acknowledged, so a valid frame proves that everything before it was.
+/// Distinguishes a torn tail from corruption: each frame is written only after the one before was
+/// acknowledged, so a valid frame proves that everything before it was valid.
 fn ending_of(rest: &[u8], position: &Position) -> Ending {
     let at = position.end;
     let expected = position.next_seq;

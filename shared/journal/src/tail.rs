@@ -129,7 +129,7 @@ impl Batch {
         Ok(())
     }
 
-    /// What postcard makes of a sequence of the records.
+    /// Returns the postcard encoding of a sequence of the records.
     pub(crate) fn body(&self) -> Vec<u8> {
         let mut buffer = [0; COUNT_BYTES_MAX];
         let count = postcard::to_slice(&self.count, &mut buffer).expect("a count fits");

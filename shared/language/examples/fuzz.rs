@@ -1,5 +1,4 @@
-//! Throws text at the reader that nobody would say, and measures how long it takes with what
-//! people do say.
+//! Feeds unlikely text to the reader and compares its reading time with that of plausible text.
 //!
 //! ```sh
 //! cargo run --release -p language --example fuzz [N] [SEED]
@@ -57,7 +56,7 @@ impl Random {
     }
 }
 
-/// What there is to read: the sentences of the tables, and every word in them.
+/// The corpus: the sentences of the tables, and every word in them.
 struct Corpus {
     sentences: Vec<&'static str>,
     words: Vec<&'static str>,

@@ -49,7 +49,7 @@ impl Answers {
         self.given.clear();
     }
 
-    /// Whether the last answer is a no.
+    /// Returns whether the last answer is a no.
     pub(crate) fn denies(&self) -> bool {
         self.given.last().is_some_and(|given| given.answer == Answer::No)
     }
@@ -88,7 +88,7 @@ fn is_doubled(tags: &[Tag<'_>], from: usize, to: usize) -> bool {
     first.word == second.word && !second.is_any(classes![Yes No Repair Filler])
 }
 
-/// The answer that a tag gives by itself.
+/// Returns the answer that a tag gives on its own.
 pub(crate) fn answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> Option<Answer> {
     let denied = at > clause.span.start && tags[at - 1].is(Class::Not);
     if denied {

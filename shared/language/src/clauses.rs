@@ -9,7 +9,7 @@ use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 use crate::topic::ClauseAnalysis;
 
-/// What a clause is about.
+/// Topic of a clause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Topic {
     /// The wanted object, or the dialogue itself.
@@ -32,7 +32,7 @@ pub(crate) struct Clause {
 }
 
 impl Clause {
-    /// Whether the value at this tag describes the wanted object.
+    /// Returns whether the value at this tag describes the wanted object.
     pub(crate) fn counts(&self, at: usize) -> bool {
         self.topic == Topic::On && !self.distractors.contains(&at)
     }

@@ -27,7 +27,7 @@ const EVEN: f64 = 0.1;
 /// Distance over which the rest of a row falls by the factor `e`. With it the nearest of the six
 /// bowls' words gets between a quarter and nine tenths of its row.
 const FALL: f64 = 0.15;
-/// How much farther a synonym is than the value's own name: fewer people say it.
+/// Extra distance of a synonym over the value's own name: fewer people say it.
 const SYNONYM: f64 = 0.2;
 /// Longest form of a value that is compared, in sounds.
 const SOUNDS_MAX: usize = 48;
@@ -115,7 +115,7 @@ fn word_sounds(word: &str, all: &mut Vec<char>) {
     }
 }
 
-/// How far apart the nearest forms of two words are, 0 for the same sounds.
+/// Returns the distance of the nearest forms of two words, 0 for the same sounds.
 fn distance(one: &[Vec<char>], other: &[Vec<char>]) -> f64 {
     let rarity = |form: usize| if form == 0 { 0.0 } else { SYNONYM };
     let pairs = one.iter().enumerate().flat_map(|(n, one)| {
@@ -150,12 +150,12 @@ fn edits(one: &[char], other: &[char]) -> f64 {
     row.last().copied().unwrap_or(0.0)
 }
 
-/// What it costs to leave a sound out or to put it in.
+/// Returns the cost of deleting or inserting a sound.
 fn loss(sound: char) -> f64 {
     if sound.is_lowercase() || matches!(sound, 'H' | 'W' | 'Y') { 0.4 } else { 0.7 }
 }
 
-/// What it costs to take one sound for another.
+/// Returns the cost of substituting one sound for another.
 fn swap(a: char, b: char) -> f64 {
     const ALIKE: [&str; 4] = ["PTK", "SXF0J", "MN", "LRW"];
     match (a.is_lowercase(), b.is_lowercase()) {

@@ -1,5 +1,5 @@
-//! What the tags add up to: values asserted, groups ruled out, answers given. One pass from left
-//! to right, as a extractor goes.
+//! Collects the content of the tags: values asserted, groups ruled out, answers given. One pass
+//! from left to right, like an incremental extractor.
 
 use std::ops::Deref;
 
@@ -23,7 +23,7 @@ pub(crate) struct Asserted<'a> {
     value: &'a ValueSense,
     /// Probability that something else was meant.
     pub(crate) doubt: f64,
-    /// How many times "or" was said before it.
+    /// Number of "or" before it.
     pub(crate) choice: usize,
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct Excluded {
     pub(crate) doubt: f64,
 }
 
-/// What an utterance says.
+/// Content of an utterance.
 #[derive(Debug, Default)]
 pub(crate) struct Content<'a> {
     /// Values that the wanted object is said to have.
@@ -71,7 +71,7 @@ struct Extractor<'a, 'm> {
     wondering: bool,
     /// A repair that waits for what replaces the words before it.
     repair: Option<repair::Strength>,
-    /// How many times "or" was said.
+    /// Number of "or" so far.
     choices: usize,
 }
 
@@ -207,7 +207,7 @@ impl<'a> Extractor<'a, '_> {
         self.content.base.push(Asserted { value, doubt, choice: self.choices });
     }
 
-    /// Whether the value asked about is among those said.
+    /// Returns whether the value asked about is among those said.
     fn agrees(&self) -> bool {
         let QuestionWords::Value(_, asked) = self.asked else { return false };
         self.content.base.iter().any(|value| value.word == asked)
@@ -347,12 +347,12 @@ impl<'a> Extractor<'a, '_> {
     }
 }
 
-/// Whether two values say something about the same attribute.
+/// Returns whether two values belong to the same attribute.
 pub(crate) fn rivals(a: &ValueSense, b: &ValueSense) -> bool {
     a.attributes.iter().any(|k| b.attributes.contains(k))
 }
 
-/// Whether a value says where something is.
+/// Returns whether a value is a location.
 pub(crate) fn is_place(value: &ValueSense) -> bool {
     value.role == Role::Place
 }

@@ -1,4 +1,4 @@
-//! Marks whose part only their neighbours tell: "one", "so", misheard values and nouns.
+//! Disambiguates words by their neighbours: "one", "so", misheard values and nouns.
 
 use scene::Role;
 
@@ -7,7 +7,7 @@ use crate::tagger::{Tag, doubts};
 use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 
-/// Settles what only the neighbours tell.
+/// Resolves the tags that depend on their neighbours.
 pub(crate) fn disambiguate(lexicon: &Lexicon, tags: &mut [Tag<'_>]) {
     for at in 0..tags.len() {
         let settled = match tags[at].sense {
@@ -137,7 +137,7 @@ fn misheard(lexicon: &Lexicon, tags: &[Tag<'_>], at: usize) -> Option<(Sense, f6
     belongs.then_some((Sense::Value(value), doubt))
 }
 
-/// What may follow the noun of a noun phrase.
+/// Classes that may follow the noun of a noun phrase.
 const AFTER_NOUN: &[Class] = classes![Preposition Courtesy Filler Pointer];
 
 /// "the small white bold": where the noun belongs.

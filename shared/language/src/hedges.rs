@@ -1,4 +1,4 @@
-//! How sure a person is who says "I think so" or "probably".
+//! The speaker's confidence as expressed by hedges such as "I think so" or "probably".
 //!
 //! | words | sure | from |
 //! |---|---|---|
@@ -97,7 +97,7 @@ const SURE_LEAST: f64 = 0.55;
 /// "maybe" as an answer.
 pub(crate) const MAYBE: f64 = 0.6;
 
-/// How sure somebody is who says this phrase, 1 for a phrase that hedges nothing.
+/// Returns the confidence that a phrase expresses, 1 for a phrase that is not a hedge.
 pub(crate) fn sureness(class: Class, phrase: &str) -> f64 {
     let of = |rows: &[(f64, &[&str])]| {
         let said = |words: &[&str]| phrase.split(' ').any(|word| words.contains(&word));
@@ -117,7 +117,7 @@ pub(crate) fn sureness(class: Class, phrase: &str) -> f64 {
     }
 }
 
-/// "I don't think", where "think" is no phrase of its own.
+/// "I don't think", where "think" is not a phrase of its own.
 fn sureness_of(tag: &Tag<'_>) -> f64 {
     match tag.sense {
         Sense::Class(Class::Hedge | Class::Likely | Class::Unsure) => tag.sure,
@@ -151,7 +151,7 @@ pub(crate) fn hedge(tags: &mut [Tag<'_>], clauses: &[Clause]) {
     }
 }
 
-/// Whether a clause says anything that a hedge in it weakens.
+/// Returns whether a clause has content that a hedge in it weakens.
 fn says_more(clause: &[Tag<'_>]) -> bool {
     clause.iter().any(|tag| {
         tag.value().is_some() || tag.is_any(classes![Yes No WeakYes WeakNo Not Except Other])

@@ -1,4 +1,4 @@
-//! What the person wants with an utterance.
+//! The intent of an utterance.
 
 use scene::Intent;
 
@@ -42,8 +42,8 @@ pub(crate) fn intent(
     }
 }
 
-/// Whether the clause gives this command to the robot: nothing strange is said beside it, and it
-/// is not negated.
+/// Returns whether the clause gives this command to the robot: nothing unrelated is said beside it,
+/// and it is not negated.
 pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool {
     let range = clause.span.clone();
     let Some(at) = range.clone().find(|&at| tags[at].is(class)) else { return false };
@@ -107,7 +107,7 @@ fn is_only_huh(tags: &[Tag<'_>]) -> bool {
         && tags.iter().all(|tag| huh(tag) || tag.is_any(classes![Filler Courtesy It Be]))
 }
 
-/// Whether anything was said that is meant for the robot.
+/// Returns whether anything was said that is meant for the robot.
 fn informs(tags: &[Tag<'_>], clauses: &[Clause], content: &Content<'_>) -> bool {
     const REPLIES: &[Class] = classes![Yes No Unsure Hedge Likely Indifferent Reply];
     !content.answers.is_empty()

@@ -15,7 +15,7 @@ use crate::token_class::Class;
 use crate::tokens::{Gap, Token, Tokens};
 use crate::vocabulary;
 
-/// What a word or phrase is taken for.
+/// Classes of a word or phrase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sense {
     /// A value, by its place in [`Lexicon::value`].
@@ -40,17 +40,17 @@ struct Phrase {
     /// Counts only where its clause ends: "it is", but not "it is white".
     closing: bool,
     sense: Sense,
-    /// How sure somebody is who says it.
+    /// The speaker's confidence.
     sure: f64,
 }
 
 /// A phrase found in an utterance.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PhraseMatch {
-    /// How many words it takes.
+    /// Number of words in the phrase.
     pub(crate) words: usize,
     pub(crate) sense: Sense,
-    /// How sure somebody is who says it.
+    /// The speaker's confidence.
     pub(crate) sure: f64,
 }
 
@@ -150,7 +150,7 @@ impl Lexicon {
         self.sounds.get(&skeleton(word)?).copied().flatten()
     }
 
-    /// Whether a recogniser or a hurried hand could have made the word of the scene's noun.
+    /// Returns whether a recogniser or a typist could have turned the scene's noun into the word.
     pub(crate) fn is_like_noun(&self, word: &str) -> bool {
         const LETTERS_MAX: usize = 24;
         word.len() <= LETTERS_MAX
@@ -158,12 +158,12 @@ impl Lexicon {
                 || skeleton(word).is_some_and(|sounds| skeleton(&self.noun) == Some(sounds)))
     }
 
-    /// Whether the word is everyday English, whatever else it might be made of.
+    /// Returns whether the word is everyday English, whatever else it may resemble.
     pub(crate) fn is_common(&self, word: &str) -> bool {
         self.common.contains(word)
     }
 
-    /// Whether a closing phrase stands where its clause ends.
+    /// Returns whether a closing phrase ends its clause.
     fn closes(&self, phrase: &Phrase, tokens: &[Token<'_>], end: usize) -> bool {
         if !phrase.closing {
             return true;
@@ -296,8 +296,8 @@ impl Lexicon {
     }
 }
 
-/// How many words the rest of a phrase takes, if it is there. Adverbs may stand inside: "I don't
-/// really care".
+/// Returns the number of words that the rest of a phrase takes, if it matches. Adverbs may stand
+/// inside: "I don't really care".
 fn matched(rest: &[Box<str>], after: &[Token<'_>]) -> Option<usize> {
     const ADVERBS: &[&str] =
         &["really", "just", "honestly", "even", "truly", "actually", "also", "still", "maybe"];

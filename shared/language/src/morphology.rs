@@ -1,7 +1,7 @@
 //! The forms in which a value's words turn up: plurals, comparatives, compounds written apart.
 
 /// Inflected forms of a word: plural, and for a quality its comparative, superlative and "-ish".
-/// Forms that no English speaker would build do no harm: nobody says them.
+/// Ungrammatical forms are harmless, because people do not say them.
 pub(crate) fn inflected(word: &str, quality: bool) -> Vec<String> {
     let Some(last) = word.chars().last().filter(char::is_ascii_alphabetic) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! What a "no" or "not" is good for: an answer, a repair, a determiner, or nothing.
+//! Function of a "no" or "not": an answer, a repair, a determiner, or none.
 
 use crate::clauses::Clause;
 use crate::content::{Asserted, rivals};
@@ -8,7 +8,7 @@ use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 
-/// What a "no" does.
+/// Function of a "no".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NoUse {
     /// "no, the clear one".
@@ -19,7 +19,7 @@ pub(crate) enum NoUse {
     Determiner,
 }
 
-/// Tells the uses of "no" apart by what has been said and what follows.
+/// Distinguishes the uses of "no" by what has been said and what follows.
 pub(crate) fn use_of_no(
     lexicon: &Lexicon,
     tags: &[Tag<'_>],
@@ -50,7 +50,7 @@ pub(crate) fn use_of_no(
     if !base.is_empty() && leads_to_value(&tags[at + 1..]) { NoUse::Repair } else { NoUse::Answer }
 }
 
-/// Whether a value is asserted soon, before the sentence ends or turns.
+/// Returns whether a value is asserted soon, before the sentence ends or turns.
 fn leads_to_value(tags: &[Tag<'_>]) -> bool {
     const REACH: usize = 10;
     for (n, tag) in tags.iter().take(REACH).enumerate() {

@@ -1,4 +1,4 @@
-//! What a "not" rules out: the noun phrases in its scope, as groups of values.
+//! Scope of a "not": the noun phrases that it rules out, as groups of values.
 
 use scene::Role;
 
@@ -48,12 +48,12 @@ impl<'a> NegationScope<'a> {
         Self { groups, joined: false, coordinated: false, strayed: 0, doubt }
     }
 
-    /// Whether nothing has been ruled out yet.
+    /// Returns whether nothing has been ruled out yet.
     pub(crate) fn is_pending(&self) -> bool {
         self.groups.iter().all(Group::is_open)
     }
 
-    /// Whether the noun phrase at hand is complete, so that what follows is another.
+    /// Returns whether the current noun phrase is complete, so that what follows is another.
     fn is_closed(&self) -> bool {
         self.last().headed && !self.joined
     }
@@ -144,7 +144,7 @@ impl<'a> NegationScope<'a> {
         !self.is_pending() || self.strayed <= STRAYS_MAX
     }
 
-    /// Whether a verb may still come between the negation and what it denies.
+    /// Returns whether a verb may still come between the negation and its object.
     pub(crate) fn reaches_verb(&self) -> bool {
         self.is_pending() && self.strayed == 0
     }

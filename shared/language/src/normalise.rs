@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use unicode_normalization::UnicodeNormalization;
 use unicode_normalization::char::is_combining_mark;
 
-/// How much of an utterance is read, in characters. Twenty minutes of speech fit; the bound keeps
-/// a pasted book from occupying the reader.
+/// Largest length of an utterance that is read, in characters. Twenty minutes of speech fit; the
+/// bound keeps a pasted book from occupying the reader.
 pub const TEXT_CHARS_MAX: usize = 16_384;
 
 /// Lower-cases, takes letters apart from their accents, maps typographic quotes and dashes to

@@ -11,8 +11,8 @@ use crate::token_class::Class;
 
 /// Most readings of one utterance.
 pub const READINGS_MAX: usize = 4;
-/// What a "maybe" that is no answer weighs as a yes, judged. That yes is doubted besides, so that
-/// it moves the odds by little.
+/// Weight as a yes of a "maybe" that is not an answer, judged. That yes is doubted as well, so that
+/// it moves the odds little.
 const MAYBE_WEIGHT: f64 = 0.4;
 
 /// An utterance after parsing.

@@ -1,4 +1,4 @@
-//! How a word sounds, coarsely, for words that a recogniser took for others ("wide" for "white",
+//! Coarse phonetic forms of words, for words that a recogniser took for others ("wide" for "white",
 //! "mettle" for "metal").
 
 /// The consonants of a word as classes that recognisers confuse, voicing and spelling aside:
@@ -22,7 +22,7 @@ pub(crate) fn skeleton(word: &str) -> Option<String> {
     Some(sounds)
 }
 
-/// Whether a letter usually spells a vowel.
+/// Returns whether a letter usually spells a vowel.
 pub(crate) fn is_vowel_letter(letter: u8) -> bool {
     matches!(letter, b'a' | b'e' | b'i' | b'o' | b'u')
 }

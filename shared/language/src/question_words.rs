@@ -2,7 +2,7 @@
 
 use scene::{AttributeId, Question, Scene, WordId};
 
-/// What was asked, in words of the scene.
+/// A question, in words of the scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum QuestionWords<'a> {
     /// Nothing.
@@ -16,8 +16,8 @@ pub(crate) enum QuestionWords<'a> {
 }
 
 impl QuestionWords<'_> {
-    /// Whether the words answer the question when they are ruled out: what was asked about is
-    /// among what they rule out.
+    /// Returns whether ruling out `group` answers the question, because the value asked about is in
+    /// it.
     pub(crate) fn is_denied_by(self, group: &[WordId]) -> bool {
         match self {
             Self::Value(_, asked) => group.iter().all(|word| *word == asked),

@@ -15,7 +15,7 @@ use crate::question_words::SceneQuestions;
 use crate::tagger::tag;
 use crate::tokens::Tokens;
 
-/// How utterances are read.
+/// Options of the reader.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
@@ -23,7 +23,7 @@ use crate::tokens::Tokens;
 pub enum Language {
     /// Word spotting, exactly as in section 3.6 of the paper.
     Paper,
-    /// What a careful extractor takes: synonyms, negation with scope, repairs, intents.
+    /// A careful extractor: synonyms, negation with scope, repairs, intents.
     #[default]
     Careful,
 }

@@ -9,7 +9,7 @@ use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 
-/// How decidedly the words before are taken back.
+/// Strength with which the words before are taken back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Strength {
     /// "the red uh blue one".
@@ -73,8 +73,8 @@ impl<'a> Replacement<'a> {
         }
     }
 
-    /// "the small white, I mean the small metal bowl": the speaker goes back to a word said before
-    /// and begins anew from there (Levelt 1983, "retracing").
+    /// "the small white, I mean the small metal bowl": the speaker returns to a word said before
+    /// and continues from there (Levelt 1983, "retracing").
     fn retraced(&self, base: &[Asserted<'_>]) -> Option<usize> {
         let first = self.values.first().filter(|_| !self.anaphoric)?;
         base.iter().position(|old| old.word == first.word)

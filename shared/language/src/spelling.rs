@@ -35,7 +35,7 @@ impl SpellingIndex {
         }
     }
 
-    /// What the word stands for, if exactly one meaning is one slip away.
+    /// Returns the meaning of the word, if exactly one is one slip away.
     pub(crate) fn correct(&self, word: &str) -> Option<u32> {
         let letters = word.chars().count();
         if !(KNOWN_LETTERS_MIN - 1..=LETTERS_MAX).contains(&letters) {

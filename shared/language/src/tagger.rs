@@ -17,7 +17,7 @@ pub(crate) struct Tag<'a> {
     /// Probability that something else was said: the recogniser's doubt, and that of taking the
     /// word for another.
     pub(crate) doubt: f64,
-    /// How sure the person is of it.
+    /// The speaker's confidence in it.
     pub(crate) sure: f64,
 }
 
@@ -153,8 +153,8 @@ fn written_apart(lexicon: &Lexicon, tokens: &[Token<'_>]) -> Option<Guess> {
     })
 }
 
-/// "mark her", "cab in it": neighbours that together sound like one long value; a shorter one
-/// where a noun phrase goes on (`described`).
+/// "mark her", "cab in it": neighbours that together sound like one long value; a shorter one where
+/// a noun phrase continues (`described`).
 fn heard_apart(lexicon: &Lexicon, tokens: &[Token<'_>], described: bool) -> Option<Guess> {
     (2..=3).filter(|&words| words <= tokens.len()).find_map(|words| {
         let run = &tokens[..words];

@@ -19,7 +19,7 @@ pub(crate) enum Gap {
 pub(crate) struct Token<'a> {
     pub(crate) word: &'a str,
     pub(crate) gap: Gap,
-    /// How sure it is that this was said, 0 to 1.
+    /// Probability that this was said.
     pub(crate) confidence: f32,
 }
 
@@ -27,7 +27,7 @@ pub(crate) struct Token<'a> {
 #[derive(Debug, Default)]
 pub(crate) struct Tokens<'a> {
     pub(crate) words: Vec<Token<'a>>,
-    /// Braces, tags or shell marks: nobody says these.
+    /// Braces, tags or shell characters, which do not occur in speech.
     pub(crate) code: bool,
 }
 
@@ -139,7 +139,7 @@ fn opened(word: &str) -> Option<&'static str> {
     })
 }
 
-/// Whether "…'s" is "… is" and not a possessive.
+/// Returns whether "…'s" is "… is" and not a possessive.
 fn takes_is(stem: &str) -> bool {
     matches!(
         stem,
@@ -174,7 +174,7 @@ fn word_end(text: &str) -> usize {
     end
 }
 
-/// What follows a hyphen that ties two words together.
+/// Returns the part after a hyphen that joins two words.
 fn hyphenated(text: &str) -> Option<&str> {
     text.strip_prefix('-').filter(|after| after.starts_with(char::is_alphanumeric))
 }

@@ -1,4 +1,4 @@
-//! What a clause is about, judged by the words in it.
+//! Topic of a clause, judged by its words.
 
 use std::ops::Range;
 
@@ -74,7 +74,7 @@ impl<'a> ClauseAnalysis<'a> {
         if distractors > 0 && distractors == self.values && !named && !wished {
             return Topic::Off;
         }
-        // "I painted it white, blue and green": what goes on in a list stays in it.
+        // "I painted it white, blue and green": a continued list keeps its topic.
         let listed = self.tags[self.range.start].gap < Gap::Stop && self.is_fragment();
         let after_distractors = before
             .is_some_and(|before| before.topic == Topic::Off && !before.distractors.is_empty());
@@ -133,7 +133,7 @@ impl<'a> ClauseAnalysis<'a> {
             return false;
         }
         let about_it = self.has(classes![It]) || self.has_the_one() || self.confirms();
-        let told = self.has(classes![Story]) && !about_it;
+        let is_story = self.has(classes![Story]) && !about_it;
         match opening {
             Class::Story | Class::When => !about_it,
             // "shall we go out for coffee"
@@ -141,7 +141,7 @@ impl<'a> ClauseAnalysis<'a> {
                 let ours = self.clause().get(at + 1).is_some_and(|next| next.is(Class::First));
                 ours && matches!(self.clause()[at].word, "shall" | "should")
             }
-            Class::First => told || self.has(classes![When]) && !about_it,
+            Class::First => is_story || self.has(classes![When]) && !about_it,
             // "he small white bowl" is a "the" that was not heard well.
             Class::Third => {
                 let described = self.clause().get(at + 1).is_some_and(|tag| tag.value().is_some());
@@ -152,7 +152,7 @@ impl<'a> ClauseAnalysis<'a> {
                 let ours = self.clause().get(at + 1).is_some_and(|owned| {
                     owned.is_any(SCENE_NAMES) || owned.value().is_some() || self.owns_kind(at + 1)
                 });
-                told || !ours && !about_it && self.unknown > 0
+                is_story || !ours && !about_it && self.unknown > 0
             }
             _ => false,
         }
@@ -197,7 +197,7 @@ impl<'a> ClauseAnalysis<'a> {
         values.filter(|&value| self.lexicon.value(value).role == Role::Place).count()
     }
 
-    /// "that's the one" and the like, whatever is told after it.
+    /// "that's the one" and the like, whatever story follows.
     fn confirms(&self) -> bool {
         let shown = |tag: &Tag<'_>| matches!(tag.word, "that" | "this" | "it");
         self.clause().iter().any(|tag| tag.is_any(classes![Yes WeakYes No]) && shown(tag))
@@ -294,7 +294,7 @@ impl<'a> ClauseAnalysis<'a> {
         !self.has(VERBS)
     }
 
-    /// Whether the clause names something to fetch.
+    /// Returns whether the clause names something to fetch.
     fn requests(&self) -> bool {
         let fetches = || {
             let clause = self.clause();

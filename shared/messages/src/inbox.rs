@@ -9,7 +9,7 @@ pub struct Inbox {
     applied: UtteranceSeq,
 }
 
-/// What to do with a numbered message.
+/// Treatment of a numbered message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// It is next: apply it, durably, then call [`Inbox::advance`].
@@ -31,7 +31,7 @@ impl Inbox {
         self.applied
     }
 
-    /// What to do with message `seq`.
+    /// Returns the treatment of message `seq`.
     pub fn judge(&self, seq: UtteranceSeq) -> Verdict {
         if seq <= self.applied {
             Verdict::Duplicate

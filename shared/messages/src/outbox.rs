@@ -17,7 +17,7 @@ pub struct Outbox<T> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{waiting} utterances are still waiting to be understood; say it again in a moment")]
 pub struct Full {
-    /// How many wait.
+    /// Number of waiting messages.
     pub waiting: usize,
 }
 
@@ -47,7 +47,7 @@ impl<T> Outbox<T> {
     }
 
     /// The receiver has applied everything up to `mark`. A mark beyond our own last number means
-    /// that our journal was lost; numbering goes on after it.
+    /// that our journal was lost; numbering continues after it.
     pub fn acknowledge(&mut self, mark: UtteranceSeq) {
         while self.waiting.front().is_some_and(|(seq, _)| *seq <= mark) {
             self.waiting.pop_front();
@@ -55,17 +55,17 @@ impl<T> Outbox<T> {
         self.last = self.last.max(mark);
     }
 
-    /// What is to be sent now, in order.
+    /// Returns the messages to send now, in order.
     pub fn window(&self) -> impl Iterator<Item = &(UtteranceSeq, T)> {
         self.waiting.iter().take(self.window)
     }
 
-    /// How many wait.
+    /// Returns the number of waiting messages.
     pub fn len(&self) -> usize {
         self.waiting.len()
     }
 
-    /// Whether nothing waits.
+    /// Returns whether no message is waiting.
     pub fn is_empty(&self) -> bool {
         self.waiting.is_empty()
     }

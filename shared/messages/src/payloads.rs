@@ -24,11 +24,11 @@ pub struct Injection {
     /// When the person had ended, monotonic clock; 0: when it arrives. Of a recording it is found
     /// out.
     pub end_ns: u64,
-    /// What is to be heard.
+    /// Text to be heard.
     pub sound: Sound,
 }
 
-/// What a client gives.
+/// A client's input.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Sound {
     /// Written words.
@@ -39,23 +39,23 @@ pub enum Sound {
     Point {
         /// The point that is pointed at, metres, frame `base`.
         target_m: [f64; 3],
-        /// What is said with it; empty for nothing.
+        /// Accompanying text; may be empty.
         words: String,
     },
-    /// What a person says into the microphone of the robot's computer from now on: one utterance.
+    /// Speech into the microphone of the robot's computer from now on: one utterance.
     Talk {
         /// Longest wait for its end, seconds.
         longest_s: f64,
     },
     /// Speech that another recogniser has recognised already, a browser's say.
     Transcript {
-        /// What may have been said: text, weight above 0 (their sum need not be 1), and how sure
-        /// each blank-separated word is, 0 to 1; words beyond the end are certain.
+        /// Hypotheses: text, weight above 0 (their sum need not be 1), and the confidence of each
+        /// blank-separated word, 0 to 1; words beyond the end are certain.
         hypotheses: Vec<Hypothesis>,
     },
 }
 
-/// What the policy thinks, for people and their tools. Policy to clients.
+/// The policy's belief and decision, for people and their tools. Policy to clients.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PolicyView {
     /// The scene's key, to match object names.
@@ -68,14 +68,14 @@ pub struct PolicyView {
     pub belief: Vec<f64>,
     /// Probability that the wanted object is not here; 0 where that is not believed possible.
     pub absent: f64,
-    /// What is expected of the person, where the robot learns that: `p_l`, the probability that a
+    /// Estimated parameters of the user, if the robot learns them: `p_l`, the probability that a
     /// question is answered, and `ε`, that an answer is wrong.
     pub person: Option<(f64, f64)>,
     /// The question that stands.
     pub question: Question,
     /// Its prompt, 0 for none.
     pub prompt: u64,
-    /// What the robot last said or asked.
+    /// The robot's last sentence or question.
     pub text: String,
     /// Kind of the standing decision.
     pub decision: ActKind,
@@ -101,7 +101,7 @@ pub struct PolicyView {
     pub planner: String,
 }
 
-/// Where the objects are in the simulated world. Arm to clients.
+/// Object poses in the simulated world. Arm to clients.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WorldView {
     /// When it was so.
@@ -115,7 +115,7 @@ pub struct WorldView {
     pub grippers: [[f64; 7]; 2],
 }
 
-/// Points of a trajectory that are told at most.
+/// Largest number of points in a published trajectory.
 pub const TRAJECTORY_POINTS_MAX: usize = 256;
 
 /// The way that a gripper is planned to take in the motion under way. Arm to clients; no phases
@@ -130,8 +130,8 @@ pub struct TrajectoryView {
     pub object: Option<u16>,
     /// The limb that moves: 0 left, 1 right.
     pub limb: u8,
-    /// When the motion began, monotonic clock. Told anew with each phase, so that what has delayed
-    /// the motion moves this on.
+    /// Start of the motion, monotonic clock. Published with each phase change, including any delay
+    /// of the motion so far.
     pub began_ns: u64,
     /// The phases in order, over or not; at most [`TRAJECTORY_POINTS_MAX`] points in all.
     pub phases: Vec<PhaseWay>,
@@ -140,15 +140,15 @@ pub struct TrajectoryView {
 /// The gripper's way in one phase.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PhaseWay {
-    /// What the phase is for.
+    /// Purpose of the phase.
     pub phase: MotionPhase,
-    /// Where the point between the finger tips is, metres, frame `base`.
+    /// Position of the point between the finger tips, metres, frame `base`.
     pub points_m: Vec<[f64; 3]>,
     /// When it is there, seconds since the motion began; as many as there are points.
     pub t_s: Vec<f64>,
 }
 
-/// What a part of a motion is for.
+/// Purpose of a part of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MotionPhase {

@@ -1,4 +1,4 @@
-//! What the arm answers to an ordered pick: the idempotent half of "never picks twice".
+//! The arm's answers to an ordered pick: the idempotent half of "never picks twice".
 
 use crate::{PickId, PickOutcome, PickPhase};
 use scene::ObjectId;
@@ -11,13 +11,13 @@ pub struct Pick {
     pub id: PickId,
     /// The object.
     pub object: ObjectId,
-    /// How far it has come.
+    /// Progress of the pick.
     pub phase: PickPhase,
-    /// How it ended.
+    /// Outcome of the pick.
     pub outcome: PickOutcome,
 }
 
-/// What to do with an ordered pick.
+/// Treatment of an ordered pick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
     /// Take it on.

@@ -50,7 +50,7 @@ pub struct Topic {
     pub payload: &'static str,
     /// Bytes of a message; 0 for a byte slice.
     pub size: fn() -> usize,
-    /// Who writes; clients where none is named.
+    /// The writer; clients if none is named.
     pub writer: Option<Service>,
     /// Services that are woken after a send.
     pub readers: &'static [Service],
@@ -93,7 +93,7 @@ pub const INJECTION: Topic = Topic {
     history: 0,
     ..topic::<Injection>("speech/inject", None)
 };
-/// Clients to speech, ten or more a second while somebody streams.
+/// Clients to speech, ten or more a second while a client streams.
 pub const AUDIO: Topic = Topic {
     readers: &[Service::Speech],
     writers_max: CLIENTS_MAX,
@@ -126,7 +126,7 @@ pub const ACTIVITY: Topic = Topic {
 };
 /// Speech to clients.
 pub const HEARING: Topic = topic::<Hearing>("speech/hearing", Some(Service::Speech));
-/// Speech to clients, some three a second while somebody speaks.
+/// Speech to clients, about three a second while a user speaks.
 pub const PARTIAL: Topic =
     Topic { buffer: WINDOW, ..topic::<Partial>("speech/partial", Some(Service::Speech)) };
 /// Grounding to policy.
@@ -174,7 +174,7 @@ pub mod robot {
     use super::*;
     use crate::robot::*;
 
-    const fn told<T: Schema>(name: &'static str) -> Topic {
+    const fn command<T: Schema>(name: &'static str) -> Topic {
         Topic { buffer: 4, history: 0, ..topic::<T>(name, Some(Service::Arm)) }
     }
 
@@ -192,18 +192,18 @@ pub mod robot {
     pub const STATE: Topic = measured::<AssemblyState>("robot/state");
     /// Arm to robot, 100 Hz, left and right.
     pub const JOINT_COMMAND: [Topic; 2] = [
-        told::<JointCommand>("robot/limb/left/joint_command"),
-        told::<JointCommand>("robot/limb/right/joint_command"),
+        command::<JointCommand>("robot/limb/left/joint_command"),
+        command::<JointCommand>("robot/limb/right/joint_command"),
     ];
     /// Arm to robot while a limb moves, left and right.
     pub const INVERSE_DYNAMICS_COMMAND: [Topic; 2] = [
-        told::<JointTrajectoryPoint>("robot/limb/left/inverse_dynamics_command"),
-        told::<JointTrajectoryPoint>("robot/limb/right/inverse_dynamics_command"),
+        command::<JointTrajectoryPoint>("robot/limb/left/inverse_dynamics_command"),
+        command::<JointTrajectoryPoint>("robot/limb/right/inverse_dynamics_command"),
     ];
     /// Arm to robot, left and right.
     pub const SET_SPEED_RATIO: [Topic; 2] = [
-        told::<SpeedRatio>("robot/limb/left/set_speed_ratio"),
-        told::<SpeedRatio>("robot/limb/right/set_speed_ratio"),
+        command::<SpeedRatio>("robot/limb/left/set_speed_ratio"),
+        command::<SpeedRatio>("robot/limb/right/set_speed_ratio"),
     ];
     /// Robot to clients, 100 Hz, left and right.
     pub const ENDPOINT_STATE: [Topic; 2] = [
@@ -212,8 +212,8 @@ pub mod robot {
     ];
     /// Arm to robot, left and right.
     pub const GRIPPER_COMMAND: [Topic; 2] = [
-        told::<EndEffectorCommand>("robot/end_effector/left_gripper/command"),
-        told::<EndEffectorCommand>("robot/end_effector/right_gripper/command"),
+        command::<EndEffectorCommand>("robot/end_effector/left_gripper/command"),
+        command::<EndEffectorCommand>("robot/end_effector/right_gripper/command"),
     ];
     /// Robot to arm, left and right.
     pub const GRIPPER_STATE: [Topic; 2] = [

@@ -95,7 +95,7 @@ impl<E: WireCode> std::fmt::Debug for Code<E> {
 
 /// The type of a field in a fixed-layout message.
 pub trait WireField {
-    /// Whether some bytes of it are invalid.
+    /// `true` if some of its bytes may be invalid.
     const CHECKED: bool = false;
 
     /// Checks the codes inside.

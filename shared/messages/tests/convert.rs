@@ -1,4 +1,4 @@
-//! What goes onto the wire comes off it unchanged, and what makes no sense is refused.
+//! Wire round trips are lossless, and invalid data is rejected.
 
 use messages::{
     ASKED_MAX, AskedQuestion, BASE_WORDS_MAX, Code, EXCLUDED_GROUPS_MAX, EXCLUDED_WORDS_MAX, Fits,

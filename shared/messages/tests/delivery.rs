@@ -6,7 +6,7 @@ use messages::inbox::{Inbox, Verdict};
 use messages::outbox::Outbox;
 use proptest::prelude::*;
 
-/// What the wire does with a window of messages.
+/// Simulated delivery of a window of messages.
 #[derive(Clone, Copy, Debug)]
 enum Fault {
     LoseAll,

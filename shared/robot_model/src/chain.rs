@@ -25,8 +25,8 @@ pub struct SerialChain<'a> {
     robot: &'a Robot,
     /// Every joint, root first.
     joints: Vec<usize>,
-    /// The joints that decide where the tip is: those that move by themselves, and those that
-    /// are followed by one on the way; in the order of the way.
+    /// The joints that determine the tip's pose: the driven ones on the way, and those that drive a
+    /// joint on the way; in the order of the way.
     movable: Vec<usize>,
 }
 

@@ -8,8 +8,8 @@ impl Robot {
     /// The pose of every link in the root's frame, in the order of [`Robot::links`]; quaternions
     /// have w ≥ 0.
     ///
-    /// `positions` is asked for the joints that move by themselves, in radians or metres; limits
-    /// are not looked at. Joints that follow others follow.
+    /// `positions` is called for the driven joints, in radians or metres; limits are ignored. Mimic
+    /// joints follow.
     pub fn poses(&self, positions: impl Fn(&Joint) -> f64) -> Vec<Isometry3<f64>> {
         let mut poses = Vec::with_capacity(self.links.len());
         poses.push(Isometry3::identity());
@@ -20,7 +20,7 @@ impl Robot {
         poses
     }
 
-    /// The position of any joint, given those that move by themselves; 0 for a fixed one.
+    /// Returns the position of any joint, given those of the driven joints; 0 for a fixed one.
     pub fn position(&self, joint: &Joint, positions: impl Fn(&Joint) -> f64) -> f64 {
         match (joint.kind, joint.mimic) {
             (JointKind::Fixed, _) => 0.0,

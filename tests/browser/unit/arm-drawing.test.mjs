@@ -61,7 +61,7 @@ describe("the picture's messages", () => {
       else if (what === "fail") port2.postMessage({ id, error: "no" });
       else port2.postMessage({ id, value: [what, ...args] });
     };
-    picture.tell("look", "above");
+    picture.call("look", "above");
     assert.deepEqual(await picture.ask("forward", 1, 2), ["forward", 1, 2]);
     await assert.rejects(picture.ask("fail"), /^Error: no$/);
     assert.deepEqual(heard, [{ told: "look" }]);

@@ -101,7 +101,7 @@ export function eachFrame(draw) {
   };
 }
 
-/** Whether the person asked for little motion. */
+/** Returns whether the person asked for reduced motion. */
 export function calm() {
   return matchMedia("(prefers-reduced-motion: reduce)").matches;
 }

@@ -14,9 +14,9 @@ const PING_MS = 2_000;
  * busy or asleep has not looked, and finds what came meanwhile when it does.
  */
 const SILENT_PINGS = 3;
-/** How soon a connection must answer after the page was out of sight, milliseconds. */
+/** Deadline for an answer from a connection after the page was hidden, milliseconds. */
 const PROBE_MS = 1_200;
-/** How long an answer is waited for, milliseconds. */
+/** Timeout of a request, milliseconds. */
 const DEADLINE_MS = 10_000;
 /** The server closes with it when another page uses the same session. */
 const REPLACED = 4001;
@@ -98,7 +98,7 @@ class Link {
     return this.#status;
   }
 
-  /** Whether something said now reaches the server. */
+  /** Returns whether a message sent now reaches the server. */
   get isUp() {
     return this.#status.state === "up";
   }
@@ -186,7 +186,7 @@ class Link {
   /** Connects again at once, e.g. because an answer that matters did not come. */
   reconnect() {
     this.#drop();
-    this.#tell({ state: "connecting", retryAt: null });
+    this.#update({ state: "connecting", retryAt: null });
     this.#open();
   }
 
@@ -207,7 +207,7 @@ class Link {
     socket.onopen = () => this.#hello();
     socket.onmessage = (event) => this.#hear(socket, event.data);
     socket.onclose = (event) => this.#lost(socket, event.code);
-    this.#tell({ retryAt: null });
+    this.#update({ retryAt: null });
   }
 
   #hello() {
@@ -246,25 +246,25 @@ class Link {
     this.#clock.add(this.#helloAt, this.#now(), message.server_ms);
     this.welcome = message;
     this.#emit("welcome", message);
-    this.#tell({ state: "up", attempt: 0, retryAt: null });
+    this.#update({ state: "up", attempt: 0, retryAt: null });
     this.#ping();
   }
 
   #ponged(message) {
     clearTimeout(this.#probe);
     this.#clock.add(message.at, this.#now(), message.server_ms);
-    this.#tell({ tripMs: this.#clock.tripMs });
+    this.#update({ tripMs: this.#clock.tripMs });
   }
 
   #lost(socket, code) {
     if (socket !== this.#socket) return;
     this.#drop();
-    if (code === REPLACED) return this.#tell({ state: "replaced", retryAt: null });
+    if (code === REPLACED) return this.#update({ state: "replaced", retryAt: null });
     const attempt = this.#status.attempt + 1;
     if (attempt === ATTEMPTS) this.#options.refused();
     const wait = backoffMs(attempt, Math.random());
     this.#retry = setTimeout(() => this.#open(), wait);
-    this.#tell({ state: "down", attempt, retryAt: this.#now() + wait });
+    this.#update({ state: "down", attempt, retryAt: this.#now() + wait });
   }
 
   #drop() {
@@ -308,7 +308,7 @@ class Link {
   }
 
   /** @param {Partial<Status>} change */
-  #tell(change) {
+  #update(change) {
     const since =
       change.state && change.state !== this.#status.state ? this.#now() : this.#status.since;
     this.#status = { ...this.#status, ...change, since };

@@ -19,7 +19,7 @@ import { mountTranscript } from "./views/transcript.js";
 import { mountTurn } from "./views/turn.js";
 import { mountWhy } from "./views/why.js";
 
-/** How long the page's words wait for the language that the console is set to, milliseconds. */
+/** Longest wait for the console's language before the page's texts are rendered, milliseconds. */
 const WELCOME_MS = 400;
 
 /** @param {string} id @returns {HTMLElement} */
@@ -61,7 +61,7 @@ document.documentElement.dataset.ready = "";
 mountPart(at("voice"), () => import("./voice/index.js"), "mountVoice", context);
 afterPaint(() => mountPart(at("arm"), () => import("./arm/index.js"), "mountArm", context));
 
-/** What is heavy waits until the page has been seen. */
+/** Runs `f` once the page has been painted and is idle: for heavy parts. */
 function afterPaint(f) {
   const idle = globalThis.requestIdleCallback ?? ((g) => setTimeout(g, 200));
   requestAnimationFrame(() => setTimeout(() => idle(f, { timeout: 1_000 }), 0));

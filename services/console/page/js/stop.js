@@ -1,5 +1,5 @@
 // @ts-check
-/** How long the robot may take to confirm a stop, milliseconds. */
+/** Deadline for the robot to confirm a stop, milliseconds. */
 const CONFIRM_MS = 1_500;
 
 /**
@@ -12,7 +12,7 @@ const CONFIRM_MS = 1_500;
  */
 export function stopper({ link, store }, refused) {
   let wanted = false;
-  /** Whether a stop was sent and not confirmed in time: the warning stays until it is. */
+  /** True if a stop was sent and not confirmed in time: the warning stays until it is. */
   let late = false;
   const notify = (state) => {
     if (store.get("stop")?.state !== state) store.set("stop", { state });

@@ -5,7 +5,7 @@ import { mergeLines } from "./model/lines.js";
 const OVERLAP = 10;
 
 /**
- * What the page knows. Sections are those of the server's `state`, and of the page itself: `lines`
+ * State of the page. Sections are those of the server's `state`, and the page's own: `lines`
  * (transcript, oldest first), `partial`, `link` (status), `welcome`.
  */
 export class Store {

@@ -79,9 +79,9 @@ export async function loadStrings(language) {
   document.documentElement.lang = language;
 }
 
-/** How often a console that is restarting is asked again. */
+/** Number of attempts while the console is restarting. */
 const TRIES = 4;
-/** And after this time, milliseconds. */
+/** Delay between attempts, milliseconds. */
 const TRY_AGAIN_MS = 400;
 
 /**

@@ -39,7 +39,7 @@ use transcript_store::TranscriptStore;
 
 /// Most commands of one pass; the rest waits for the next.
 const COMMANDS_MAX: usize = 128;
-/// How often joints are sent, moving and at rest.
+/// Intervals between joint states, moving and at rest.
 const JOINTS_EVERY: (Span, Span) = (Span::from_ms(33), Span::from_ms(500));
 /// Joints that change by less are at rest, radians or percent.
 const STILL: f64 = 1e-4;

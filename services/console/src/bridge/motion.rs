@@ -8,9 +8,9 @@ use crate::hub::Hub;
 use crate::hub::command::Motion;
 use crate::hub::outbound::Answer;
 
-/// How often an unconfirmed order is repeated.
+/// Interval at which an unconfirmed order is repeated.
 const RESEND_EVERY: Span = Span::from_ms(50);
-/// How long the arm may take to confirm an order.
+/// Deadline for the arm to confirm an order.
 const PATIENCE: Span = Span::from_ms(5_000);
 /// Most orders that wait for a confirmation; the latest is in force.
 const ORDERS_MAX: usize = 64;

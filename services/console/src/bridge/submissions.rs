@@ -9,7 +9,7 @@ use crate::hub::command::Words;
 use crate::hub::outbound::Answer;
 use crate::hub::{Hub, ViewerId};
 
-/// How long a receipt may take.
+/// Deadline of a receipt.
 const PATIENCE: Span = Span::from_ms(8_000);
 /// Most utterances on their way.
 const WORDS_MAX: usize = 32;

@@ -13,9 +13,9 @@ use crate::hub::command::Command;
 use crate::hub::outbound::Answer;
 use crate::server::App;
 
-/// How often the supervisor is asked.
+/// Interval at which the supervisor is polled.
 const ASK_EVERY: Duration = Duration::from_secs(1);
-/// How long it may take to answer.
+/// Timeout of its answer.
 const PATIENCE: Duration = Duration::from_secs(2);
 
 /// A restart that a viewer has requested.

@@ -40,7 +40,7 @@ pub struct Words {
     pub text: String,
     /// Other hypotheses of a browser's recogniser, with weights.
     pub alternatives: Vec<(String, f64)>,
-    /// Whether a browser's recogniser has heard it; else it was typed.
+    /// `true` if a browser's recogniser has heard it, `false` if it was typed.
     pub spoken: bool,
     /// When the user began, if known.
     pub began: Option<Time>,
@@ -61,6 +61,6 @@ pub struct Motion {
     pub viewer: ViewerId,
     /// The number that the page gave it.
     pub id: u64,
-    /// Whether to latch the stop; else to release it.
+    /// `true` latches the stop, `false` releases it.
     pub stop: bool,
 }

@@ -6,7 +6,7 @@ use service::{Span, Time};
 
 use super::ViewerId;
 
-/// How long a page may take to reload without losing control.
+/// Time within which a page may reload without losing control.
 pub const RELOAD: Span = Span::from_ms(15_000);
 
 /// The holder of control, and the viewer who has requested it.

@@ -61,16 +61,16 @@ pub struct PageSettings {
     pub language: String,
     /// Voice settings.
     pub voice: VoiceSettings,
-    /// Whether a study runs.
+    /// `true` if a study runs.
     pub study: bool,
 }
 
 /// Voice settings that concern pages.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct VoiceSettings {
-    /// Whether it recognises speech.
+    /// `true` if it recognises speech.
     pub recogniser: bool,
-    /// Whether it speaks.
+    /// `true` if it speaks.
     pub voice: bool,
 }
 
@@ -79,7 +79,7 @@ pub struct VoiceSettings {
 pub struct Done<'a> {
     /// The command's number.
     pub id: u64,
-    /// Whether it was carried out.
+    /// `true` if it was carried out.
     pub ok: bool,
     /// The reason of a refusal.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -100,12 +100,12 @@ pub enum Answer {
     },
     /// The motion stop has changed.
     Motion {
-        /// Whether it is latched.
+        /// `true` if the stop is latched.
         stopped: bool,
     },
     /// The viewer has control, or asks for it.
     Control {
-        /// Whether it has control.
+        /// `true` if the viewer has control.
         granted: bool,
         /// When it gets control unless the operator keeps it, milliseconds.
         #[serde(skip_serializing_if = "Option::is_none")]

@@ -28,10 +28,10 @@ use crate::hub::Hub;
 use crate::hub::outbound::PageSettings;
 pub use access::Access;
 
-/// How often the server reports progress.
+/// Interval of the server's progress reports.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 
-/// What the server serves.
+/// State and files that the server serves.
 #[derive(Debug)]
 pub struct App {
     /// Shared with the main loop.

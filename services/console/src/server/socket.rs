@@ -17,15 +17,15 @@ use crate::hub::outbound::{PageMessage, Welcome};
 use crate::hub::{Hub, OutboundFrame, ViewerId, ms};
 use crate::voice::PcmFrame;
 
-/// How long a page has for its first message.
+/// Deadline for a page's first message.
 const HELLO_PATIENCE: Duration = Duration::from_secs(10);
-/// How long a page may take to read a frame.
+/// Timeout for writing a frame to a page.
 const READ_PATIENCE: Duration = Duration::from_secs(10);
 /// Longest silence of a page, pongs included.
 const SILENCE_MAX: Duration = Duration::from_secs(60);
 /// Close code of a page that was replaced by another one of its session.
 const REPLACED: u16 = 4001;
-/// How often a page is pinged.
+/// Interval between pings to a page.
 const PROBE_EVERY: Duration = Duration::from_secs(20);
 
 type Out = SplitSink<WebSocket, Frame>;

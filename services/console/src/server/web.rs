@@ -15,9 +15,9 @@ use super::{App, listen, serve};
 const WORKERS: usize = 2;
 /// Longest standstill of the web server's tasks.
 const STANDSTILL: Span = Span::from_ms(2_000);
-/// How often a port is tried while every one is taken.
+/// Interval between attempts to bind while every port is taken.
 const BIND_EVERY: Span = Span::from_ms(2_000);
-/// How long pages have to close their sockets.
+/// Grace period for pages to close their sockets.
 const CLOSE: Duration = Duration::from_secs(2);
 
 /// The web server and its address.

@@ -1,4 +1,4 @@
-//! What the study serves over HTTP: the data and the results, read from its files each time.
+//! The study's HTTP endpoints: data and results, read from its files on each request.
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -44,9 +44,9 @@ use trial_monitor::{DialogueLine, RobotRequest};
 
 pub use http::routes;
 
-/// How often the same request is made again while it does not come true.
+/// Interval at which an unfulfilled request is repeated.
 const REQUEST_EVERY: Span = Span::from_ms(2_000);
-/// How often an unfulfilled request to the supervisor is repeated.
+/// Interval at which an unfulfilled request to the supervisor is repeated.
 const ORDER_EVERY: Span = Span::from_ms(10_000);
 /// Words that cancel an open interaction.
 const CANCEL: &str = "never mind";
@@ -63,7 +63,7 @@ struct Running {
     fault_ms: f64,
     /// The latest request, and when it was made.
     requested: Option<(RobotRequest, Time)>,
-    /// What keeps the study from continuing, for the experimenter.
+    /// Obstacle that keeps the study from continuing, for the experimenter.
     trouble: Option<String>,
 }
 
@@ -98,7 +98,7 @@ impl Study {
         })))
     }
 
-    /// Whether pages may begin a study.
+    /// Returns whether pages may begin a study.
     pub fn is_offered(&self) -> bool {
         self.0.is_some()
     }

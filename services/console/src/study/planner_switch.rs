@@ -9,9 +9,9 @@ use service::control::{Reply, Request, call};
 
 use super::trial_monitor::RobotRequest;
 
-/// How long the supervisor may take: longer than a failed swap with its rollback.
+/// Deadline of the supervisor: longer than a failed swap with its rollback.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// How long the policy may take to become ready after a restart.
+/// Deadline for the policy to become ready after a restart.
 const READY_MS: u64 = 30_000;
 
 /// A request and its result.

@@ -12,17 +12,17 @@ pub(super) struct RobotState<'a> {
     pub(super) ms: f64,
     /// The scene in force.
     pub(super) scene: &'a Scene,
-    /// What the policy believes and decides.
+    /// The policy's belief and decision.
     pub(super) view: Option<&'a PolicyView>,
     /// A required service that is not ready.
     pub(super) missing: Option<&'a str>,
-    /// Whether the arm moves or is stopped.
+    /// `true` if the arm moves or is stopped.
     pub(super) arm_is_busy: bool,
-    /// Whether the planner is being switched or is still to be restored.
+    /// `true` if the planner is being switched or is still to be restored.
     pub(super) is_switching: bool,
 }
 
-/// Why an interaction cannot begin yet.
+/// Reason why an interaction cannot begin yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum NotReady {
     /// A service is not ready, or the policy has published nothing yet.

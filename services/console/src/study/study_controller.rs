@@ -22,7 +22,7 @@ pub(super) struct StudyController {
     pub(super) missing_since: Option<f64>,
 }
 
-/// What is asked for, by a participant's page (which has a secret of its own) or the experimenter.
+/// Requests of a participant's page (which has a secret of its own) or of the experimenter.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Command {
     /// A participant begins.
@@ -56,7 +56,7 @@ impl StudyController {
         Self { protocol, group, people, missing_since: None }
     }
 
-    /// What holds for who comes next.
+    /// Returns the settings for the next participant.
     pub(super) fn protocol(&self) -> &Protocol {
         &self.protocol
     }
@@ -66,7 +66,7 @@ impl StudyController {
         &self.people
     }
 
-    /// Who takes part now.
+    /// Returns the current participant.
     pub(super) fn active(&self) -> Option<&Participant> {
         self.people.iter().rev().find(|person| !person.stage.is_final())
     }
@@ -91,7 +91,7 @@ impl StudyController {
         }
     }
 
-    /// What follows from what is asked for; `seed` is fresh.
+    /// Applies a request; `seed` is fresh.
     ///
     /// # Errors
     /// The command is not possible now.
@@ -229,7 +229,7 @@ impl StudyController {
         }))
     }
 
-    /// What there is so far, for who comes next.
+    /// Returns the records so far, for the next participant.
     fn counts(&self) -> Counts {
         let mut policies: Vec<(String, usize)> = Vec::new();
         for person in self.people.iter().filter(|person| person.status().counts()) {
@@ -243,8 +243,8 @@ impl StudyController {
     }
 }
 
-/// What is kept of a participant whose data is deleted: the plan that was drawn, so that the design
-/// stays balanced; the planner that is still to be given back; and that it was deleted.
+/// Returns the record of a participant whose data is deleted: the drawn plan, so that the design stays
+/// balanced; the planner that is still to be restored; and the deletion itself.
 pub(super) fn kept(person: &Participant, deleted: &Entry) -> Vec<Entry> {
     let begun = Event::Begun(Box::new(person.begun.clone()));
     let switched =

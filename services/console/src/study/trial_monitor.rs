@@ -1,5 +1,5 @@
-//! What the study makes of what it sees: how the running interaction goes, and what it wants of the
-//! robot. Pure.
+//! Progress of the running interaction and the study's requests to the robot, derived from what it
+//! observes. Pure.
 
 use evaluation::user_study::{Event, Fault, Participant, Source, Stage, Trial, Verdict};
 use messages::{ActKind, Ended, Outcome, PolicyView};
@@ -10,10 +10,10 @@ use super::study_controller::StudyController;
 /// Utterances and questions of an interaction that are written down.
 const LINES_MAX: usize = 500;
 
-/// What the study wants of the robot.
+/// The study's requests to the robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum RobotRequest {
-    /// What stands is to be called off.
+    /// Cancel the current goal.
     Cancel,
     /// The policy is to decide by that planner.
     Switch(String),
@@ -39,7 +39,7 @@ pub(super) enum DialogueLine {
     Asked {
         /// The question's number.
         prompt: u64,
-        /// How often it was asked before, and once.
+        /// The number of earlier attempts, plus one.
         presentation: u32,
         /// The words.
         words: String,
@@ -53,7 +53,7 @@ impl StudyController {
         Some((person, person.trial()?))
     }
 
-    /// What follows from something that was said.
+    /// Returns the consequences of an utterance.
     pub(super) fn said(
         &self,
         said: &DialogueLine,
@@ -78,7 +78,7 @@ impl StudyController {
         Some((person.id().to_owned(), event))
     }
 
-    /// What follows from what is robot; ask again once it is written down.
+    /// Returns the consequences of the robot's state; call it again once they are written down.
     pub(super) fn look(
         &mut self,
         robot: &RobotState<'_>,
@@ -97,7 +97,7 @@ impl StudyController {
         Some((person.id().to_owned(), event?))
     }
 
-    /// What the study wants of the robot just now.
+    /// Returns the study's current request to the robot.
     pub(super) fn request(&self, robot: &RobotState<'_>) -> Option<RobotRequest> {
         let view = robot.view?;
         if let Some(person) = self.owing() {

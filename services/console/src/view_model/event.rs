@@ -12,7 +12,7 @@ pub enum DialogueEvent {
         prompt: u64,
         /// Which presentation of it.
         presentation: u32,
-        /// What it asks, if anything.
+        /// The question asked, if any.
         question: Question,
         /// Its words.
         text: String,

@@ -13,7 +13,7 @@ pub struct Line {
     pub at_ms: f64,
     /// Time, milliseconds since 1970.
     pub unix_ms: u64,
-    /// Who said it.
+    /// The speaker.
     pub who: Speaker,
     /// The words.
     pub text: String,
@@ -26,7 +26,7 @@ pub struct Line {
     /// Probability of the text among all that it may have been.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confidence: Option<f32>,
-    /// What it may mean, most likely first.
+    /// Possible meanings, most likely first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub understood: Vec<Meaning>,
     /// The questions that the policy attributed it to, most probable first.

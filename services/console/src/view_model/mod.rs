@@ -61,7 +61,7 @@ pub struct ViewModel {
     world: Option<WorldView>,
     trajectory: TrajectoryView,
     group: Option<GroupStatus>,
-    /// Whether the sound of the line that is being presented can be fetched.
+    /// `true` if the sound of the presented line can be fetched.
     has_sound: bool,
     prompts: prompts::Prompts,
     /// Readings of the latest utterances.
@@ -71,7 +71,7 @@ pub struct ViewModel {
     /// The turn, and when its state began.
     turn: Option<(Turn, Time)>,
     events: Vec<DialogueEvent>,
-    /// Whether a message has arrived since the sections were made last.
+    /// `true` if a message has arrived since the sections were last made.
     is_changed: bool,
     is_scene_changed: bool,
 }

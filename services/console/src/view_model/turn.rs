@@ -1,4 +1,4 @@
-//! Whose turn it is, derived from the latest messages, the same for every viewer.
+//! The current turn, derived from the latest messages, the same for every viewer.
 
 use messages::{ActKind, ArmStatus, MicrophoneState, PickPhase, PresentationState};
 use serde::Serialize;
@@ -8,7 +8,7 @@ use service::view::Latest;
 
 use super::services;
 
-/// Who acts next.
+/// The next to act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Actor {
@@ -19,7 +19,8 @@ pub enum Actor {
     /// The arm moves.
     Arm,
     /// No one.
-    Nobody,
+    #[serde(rename = "nobody")]
+    NoOne,
 }
 
 /// The state of the turn.
@@ -46,10 +47,10 @@ pub enum TurnState {
     Down,
 }
 
-/// Whose turn it is, and in which state.
+/// The current turn: who acts, and in which state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Turn {
-    /// Who acts.
+    /// The next to act.
     pub who: Actor,
     /// The state.
     pub state: TurnState,
@@ -60,16 +61,16 @@ pub struct Turn {
 /// Returns whose turn it is, the gravest state first: a stop and a missing service come before
 /// everything else, a user who is speaking before what the robot does meanwhile.
 pub(super) fn turn(latest: &Latest, group: Option<&GroupStatus>) -> Turn {
-    use Actor::{Arm, Nobody, Person, Robot};
+    use Actor::{Arm, NoOne, Person, Robot};
     use TurnState::*;
     let Latest { view, presented, activity, hearing, arm, .. } = latest;
     let (view, arm) = (view.as_ref(), arm.as_ref());
     let plain = |who, state| Turn { who, state, onset: None };
     if arm.is_some_and(|arm| arm.stopped != 0) {
-        return plain(Nobody, Stopped);
+        return plain(NoOne, Stopped);
     }
     if view.is_none() || arm.is_none() || group.is_some_and(|g| services::missing(g).is_some()) {
-        return plain(Nobody, Down);
+        return plain(NoOne, Down);
     }
     if let Some(activity) = activity {
         if activity.onset_ns > 0 {
@@ -98,7 +99,7 @@ pub(super) fn turn(latest: &Latest, group: Option<&GroupStatus>) -> Turn {
         _ => {
             let listens =
                 hearing.is_some_and(|hearing| hearing.microphone == MicrophoneState::Listening);
-            if listens { plain(Person, Listening) } else { plain(Nobody, Idle) }
+            if listens { plain(Person, Listening) } else { plain(NoOne, Idle) }
         }
     }
 }
@@ -134,7 +135,7 @@ mod tests {
 
     #[test]
     fn turn_follows_the_dialogue() {
-        use Actor::{Arm, Nobody, Person, Robot};
+        use Actor::{Arm, NoOne, Person, Robot};
         use TurnState::{Asked, Hearing, Idle, Moving, Speaking, Understanding};
         let (quiet, still) = (Activity::default(), ArmStatus::default());
         let speaks = Activity { onset_ns: 9, pending: 1, ..quiet };
@@ -145,7 +146,7 @@ mod tests {
         let holds = ArmStatus { phase: PickPhase::Holding.into(), moving: 1, ..still };
         let done = ArmStatus { phase: PickPhase::Done.into(), ..still };
         for (view, presented, activity, arm, expected) in [
-            (view(0, ActKind::Wait, 0), nothing, quiet, still, (Nobody, Idle)),
+            (view(0, ActKind::Wait, 0), nothing, quiet, still, (NoOne, Idle)),
             (view(0, ActKind::Wait, 0), nothing, speaks, still, (Person, Hearing)),
             (view(0, ActKind::Wait, 0), nothing, pends, still, (Robot, Understanding)),
             (view(1, ActKind::Ask, 4), nothing, quiet, still, (Robot, Understanding)),
@@ -154,7 +155,7 @@ mod tests {
             (view(1, ActKind::Pick, 5), ended(4), quiet, still, (Arm, Moving)),
             (view(1, ActKind::Cancel, 6), ended(4), quiet, still, (Arm, Moving)),
             (view(1, ActKind::Pick, 5), ended(5), quiet, holds, (Arm, Moving)),
-            (view(0, ActKind::Say, 6), ended(6), quiet, done, (Nobody, Idle)),
+            (view(0, ActKind::Say, 6), ended(6), quiet, done, (NoOne, Idle)),
         ] {
             let turn = turn(&latest(view.clone(), presented, activity, arm), None);
             assert_eq!((turn.who, turn.state), expected, "{view:?}");

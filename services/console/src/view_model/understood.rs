@@ -28,7 +28,7 @@ struct WeightedReading {
     answers: Option<(u64, u32)>,
 }
 
-/// What is shown of an utterance.
+/// The displayed view of an utterance.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Understood {
     pub(super) meanings: Vec<Meaning>,

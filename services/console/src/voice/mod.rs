@@ -23,9 +23,9 @@ pub use frame::PcmFrame;
 use stream_table::{FrameKind, Name, StreamTable};
 use timestamps::Timestamps;
 
-/// How often the end of a stream is repeated.
+/// Interval at which the end of a stream is repeated.
 const AGAIN: Span = Span::from_ms(250);
-/// How long the robot may take to confirm the end of a stream.
+/// Deadline for the robot to confirm the end of a stream.
 const PATIENCE: Span = Span::from_ms(20_000);
 
 /// The streams of all viewers.
@@ -43,7 +43,7 @@ struct Stream {
     timestamps: Timestamps,
     /// When it ended, and when the end was sent last.
     ended: Option<(Time, Time)>,
-    /// Whether its viewer has gone.
+    /// `true` if its viewer has gone.
     deserted: bool,
 }
 

@@ -10,7 +10,7 @@ const GAP_MAX: u64 = 960_000;
 /// Names a stream: its viewer, and the number that the page gave it.
 pub(super) type Name = (ViewerId, u32);
 
-/// How a frame continues its stream.
+/// A frame's relation to its stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FrameKind {
     /// It begins a stream.

@@ -46,7 +46,7 @@ pub enum ProcessError {
     },
 }
 
-/// How a wait ended.
+/// Outcome of a wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
     /// The program succeeded.

@@ -17,7 +17,7 @@ pub(super) struct AcceptedUtterances {
     outbox: Outbox<Accepted>,
     /// The latest ones, applied or not.
     recent: VecDeque<Accepted>,
-    /// Whether the policy's mark is known. Before that a number could be assigned twice.
+    /// `true` if the policy's mark is known. Before that a number could be assigned twice.
     is_marked: bool,
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use dialogue::user_model::Joint;
 use dialogue::{Belief, Decision, DecisionProblem, Planner, Posterior, Step};
 
-/// What a decision depends on: whether it is the interaction's first, and the posterior's key.
+/// The inputs of a decision: whether it is the interaction's first, and the posterior's key.
 pub type Situation = (bool, Vec<i64>);
 
 /// Decisions that several caches of one planner share. It may forget, and must never return another

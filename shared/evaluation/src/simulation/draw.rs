@@ -3,13 +3,13 @@
 use dialogue::Rng;
 pub(crate) use preflight::{between, log_normal};
 
-/// What a stream of random numbers is for. Each has its own, so that a person who says one thing
-/// more does not change how long anything takes.
+/// Purpose of a stream of random numbers. Each has its own, so that one more utterance of a user
+/// does not change any duration.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Stream {
-    /// What the person wants, is like and says.
+    /// The user's goal, traits and utterances.
     Person = 1,
-    /// How long things take.
+    /// Durations.
     Clock = 2,
     /// Dialogues in real time.
     Turns = 3,

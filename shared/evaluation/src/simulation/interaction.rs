@@ -21,17 +21,17 @@ pub struct Room<'a> {
     pub scene: &'a Scene,
     /// Reads what people say about them.
     pub reader: &'a Reader,
-    /// What is decided, and at what cost.
+    /// Decision rule and costs.
     pub problem: DecisionProblem<'a>,
-    /// How the robot takes turns.
+    /// Turn-taking rules.
     pub turns: TurnTaking,
-    /// How fast the robot speaks.
+    /// Duration model of the robot's speech.
     pub voice: Voice,
-    /// How fast people speak and the recogniser works.
+    /// Duration model of people's speech and of the recogniser.
     pub pace: &'a Pace,
-    /// How long the arm takes; none: it takes no time.
+    /// Duration model of the arm; none: it takes no time.
     pub motions: Option<&'a Motions>,
-    /// Whether people begin with a request; else the robot begins, knowing nothing.
+    /// `true` if people begin with a request; else the robot begins without knowledge.
     pub request: bool,
 }
 
@@ -60,7 +60,7 @@ impl<'a> Room<'a> {
     }
 }
 
-/// How an interaction ended.
+/// Reasons for which an interaction ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// The wanted object was handed over.
@@ -69,7 +69,7 @@ pub enum End {
     Wrong,
     /// The policy waits, and nothing will happen any more.
     Waited,
-    /// Nobody answered, however often the robot asked.
+    /// The user answered none of the robot's repeated questions.
     Abandoned,
     /// The robot understood that nothing is wanted any more.
     Cancelled,
@@ -86,10 +86,10 @@ impl End {
     }
 }
 
-/// What came of an interaction.
+/// Outcome of an interaction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outcome {
-    /// How it ended.
+    /// Reason for which it ended.
     pub end: End,
     /// Questions asked, repetitions included.
     pub questions: u32,

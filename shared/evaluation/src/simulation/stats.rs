@@ -58,7 +58,7 @@ impl Mean {
         self.squares += other.squares + between * between * a * b / (a + b);
     }
 
-    /// How many numbers were added.
+    /// Number of values added.
     pub fn count(&self) -> u64 {
         self.count
     }

@@ -1,4 +1,4 @@
-//! What interactions add up to.
+//! Aggregate results of interactions.
 
 use crate::simulation::interaction::{End, Outcome};
 use crate::simulation::stats::{Interval, Mean, wilson};

@@ -79,7 +79,7 @@ pub enum Event {
     },
     /// The interaction ended, and counts unless it is practice.
     Ended {
-        /// How.
+        /// How the interaction ended.
         verdict: Verdict,
         /// The robot's number of it, 0 where nothing was said.
         interaction: u64,
@@ -113,7 +113,7 @@ pub enum Event {
     },
     /// Has done everything.
     Finished,
-    /// The participant went on after the page or the console was gone.
+    /// The participant continued after the page or the console was gone.
     Resumed {
         /// The page that asked for it.
         session: String,

@@ -113,7 +113,7 @@ pub struct Participant {
     pub session: String,
     /// Present stage.
     pub stage: Stage,
-    /// Whether there was consent, where it is asked for.
+    /// `true` if consent was given, where it is required.
     pub consented: bool,
     /// Every interaction, the spoilt ones too, in order.
     pub trials: Vec<Trial>,
@@ -121,7 +121,7 @@ pub struct Participant {
     pub switched: Option<String>,
     /// The questionnaire's answers.
     pub answers: Map<String, Json>,
-    /// Whether the data was deleted.
+    /// `true` if the data was deleted.
     pub deleted: bool,
 }
 

@@ -13,7 +13,7 @@ const LETTERS: &[u8] = b"ACDEFGHJKMNPQRTUVWXY34679";
 pub struct Step {
     /// The policy that decides.
     pub policy: String,
-    /// Whether it is practice, which does not count.
+    /// `true` if it is practice, which does not count.
     pub practice: bool,
 }
 

@@ -209,8 +209,8 @@ impl Trial {
     /// Seconds from the first sound or key of the first utterance to the end: the hand-over, where
     /// there was one. None where nothing was said.
     ///
-    /// The robot's own reckoning begins when that utterance was accepted; what lay before is added.
-    /// So it is exact even where the console was away as the interaction ended.
+    /// The robot measures from the acceptance of that utterance; the time before is added. So the
+    /// duration is exact even if the console was down when the interaction ended.
     pub fn seconds(&self) -> Option<f64> {
         let Some(End::Verdict { seconds, ended_ms, .. }) = &self.end else { return None };
         let first = self.said.first();

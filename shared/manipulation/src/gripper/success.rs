@@ -1,5 +1,5 @@
-//! Whether a grasp takes hold: the open fingers come down on both sides of an object that stands a
-//! little beside where it is taken to stand.
+//! Test of whether a grasp holds: the open fingers come down on both sides of an object that stands
+//! slightly off its assumed place.
 //!
 //! The model is one-dimensional, across the fingers. An object of width `w` fits between fingers
 //! `o` apart while it stands no further than `(o − w) / 2` from their middle; beyond that a finger

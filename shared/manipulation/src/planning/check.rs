@@ -1,4 +1,4 @@
-//! Whether a scene's objects can be fetched at all.
+//! Check that a scene's objects can be fetched.
 
 use super::choices::Choices;
 use super::error::{Furthest, PlanError};

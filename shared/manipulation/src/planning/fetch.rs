@@ -21,7 +21,7 @@ pub(crate) struct Hold {
 #[derive(Clone, Debug)]
 pub(crate) struct Carry {
     pub(crate) waypoints: Vec<Joints>,
-    /// Whether the waypoints are a straight line of the gripper, 5 mm apart.
+    /// `true` if the waypoints are a straight line of the gripper, 5 mm apart.
     pub(crate) straight: bool,
 }
 

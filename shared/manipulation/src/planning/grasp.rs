@@ -52,7 +52,7 @@ pub enum GraspError {
     Malformed {
         /// Name.
         what: &'static str,
-        /// Whether it must also be positive.
+        /// `true` if it must also be positive.
         positive: bool,
     },
 }

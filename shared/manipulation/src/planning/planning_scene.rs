@@ -337,7 +337,7 @@ const HAND_M: f64 = 0.1;
 /// Time between two checks of a motion, seconds.
 const CHECK_S: f64 = 0.02;
 
-/// Whether random trees may search for a path.
+/// Permission for random trees to search for a path.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Search {
     /// Direct lines and via postures only: microseconds to milliseconds.

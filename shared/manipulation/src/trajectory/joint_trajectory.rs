@@ -203,7 +203,7 @@ impl Trajectory {
         self.sample(0.0).0
     }
 
-    /// Where it ends.
+    /// Returns the end position.
     pub fn end(&self) -> Joints {
         self.sample(self.duration_s()).0
     }

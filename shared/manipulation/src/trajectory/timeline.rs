@@ -7,7 +7,7 @@ use crate::trajectory::joint_trajectory::Trajectory;
 /// One stage of a plan.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage<P> {
-    /// What it is for.
+    /// Purpose of the part.
     pub phase: P,
     /// The arm's motion; standing still where only the gripper moves.
     pub motion: Trajectory,

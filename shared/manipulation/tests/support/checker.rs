@@ -27,7 +27,7 @@ const TABLE_MIDDLE_M: [f64; 2] = [0.95, 0.0];
 struct Part {
     solid: Solid,
     link: usize,
-    /// Whether what the gripper holds may touch it.
+    /// `true` if the held object may touch it.
     wrist: bool,
 }
 

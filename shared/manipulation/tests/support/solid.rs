@@ -100,8 +100,8 @@ impl Solid {
         }
     }
 
-    /// How deep this solid at `pose` and `other` at `there` overlap, metres, as far as points of
-    /// their surfaces show; 0 if they do not.
+    /// Returns the overlap depth of this solid at `pose` and `other` at `there`, metres, as far as
+    /// points of their surfaces show; 0 if they do not overlap.
     pub(crate) fn overlap(
         &self,
         pose: &Isometry3<f64>,

@@ -1,4 +1,4 @@
-//! What the arm tells, and how it is stopped.
+//! The arm's state and the motion stop.
 
 use crate::schema::wire_struct;
 use crate::wire::{Code, wire_codes, wire_enum};
@@ -27,7 +27,7 @@ wire_codes!(PickOutcome {
 });
 
 wire_enum! {
-    /// What keeps the robot from moving at all, the gravest where there are several.
+    /// Reason why the robot cannot move at all, the gravest of several.
     MotionInhibit {
         /// Nothing.
         None = 0,
@@ -39,7 +39,7 @@ wire_enum! {
         Disabled = 3,
         /// The robot has not been heard yet, or not all of it.
         Unheard = 4,
-        /// What was measured is too old to be relied on.
+        /// The measurements are too old to rely on.
         Stale = 5,
         /// A gripper has a fault, or is not the electric one.
         Gripper = 6,
@@ -105,7 +105,7 @@ wire_struct! {
 }
 
 wire_enum! {
-    /// What the motion stop is told.
+    /// Commands to the motion stop.
     MotionOrder {
         /// Halt and latch.
         Stop = 0,

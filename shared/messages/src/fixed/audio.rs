@@ -39,7 +39,7 @@ wire_struct! {
         first_sample: u64,
         /// When its first sample was taken, monotonic clock.
         taken_ns: u64,
-        /// How many of `samples` are used.
+        /// Number of used entries of `samples`.
         count: u32,
         /// Sum of [`AudioChunk::END`], [`AudioChunk::HELD`] and [`AudioChunk::ECHO_FREE`].
         flags: u8,
@@ -53,8 +53,8 @@ wire_struct! {
 impl AudioChunk {
     /// The stream ends with this chunk.
     pub const END: u8 = 1;
-    /// The person holds a key while speaking: whoever does so may interrupt the robot, and the
-    /// utterance ends when it is released.
+    /// The person holds a key while speaking, so they may interrupt the robot, and the utterance
+    /// ends when the key is released.
     pub const HELD: u8 = 2;
     /// The robot's own voice is not in it (a headset, cancelled echo): the person may interrupt the
     /// robot.
@@ -70,7 +70,7 @@ impl AudioChunk {
         self.samples.0.get(..self.count as usize).unwrap_or_default()
     }
 
-    /// Whether a flag is set.
+    /// Returns whether a flag is set.
     pub fn is(&self, flag: u8) -> bool {
         self.flags & flag != 0
     }

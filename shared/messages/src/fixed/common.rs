@@ -1,4 +1,4 @@
-//! What several messages share.
+//! Definitions shared by several messages.
 
 use crate::schema::wire_struct;
 use crate::wire::{self, WireError};
@@ -9,7 +9,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use scene::Question;
 
 wire_struct! {
-    /// Who sent a message; the user header of every topic.
+    /// The sender of a message; the user header of every topic.
     Stamp = "Stamp" {
         /// Epoch of the group's journals.
         epoch: u64,
@@ -62,7 +62,7 @@ wire_struct! {
         began_ns: u64,
         /// When its sound ended or was broken off; 0 while it lasts.
         ended_ns: u64,
-        /// What was asked.
+        /// The question that was asked.
         question: WireQuestion,
         /// Which presentation of the prompt.
         presentation: u32,

@@ -41,7 +41,7 @@ impl WireGesture {
     }
 }
 
-/// Whether somebody could point there: finite, and not farther than [`POINTED_AT_MAX_M`].
+/// Returns whether a person can point there: finite, and not farther than [`POINTED_AT_MAX_M`].
 pub fn is_somewhere(target_m: &[f64; 3]) -> bool {
     target_m.iter().all(|x| x.abs() <= POINTED_AT_MAX_M)
 }

@@ -1,4 +1,4 @@
-//! What an utterance was understood to say.
+//! The interpretation of an utterance.
 
 use crate::fixed::common::{AskedQuestion, checked_share};
 use crate::fixed::gesture::WireGesture;
@@ -54,7 +54,7 @@ wire_struct! {
 }
 
 impl WireReading {
-    /// The interpretation on the wire; words beyond the bounds are left out, and the caller told.
+    /// Encodes the interpretation; words beyond the bounds are left out and reported to the caller.
     pub fn new(interpretation: &Interpretation) -> (Self, Fits) {
         let Interpretation { weight, answers, reading } = interpretation;
         let mut wire = Self {
@@ -79,7 +79,7 @@ impl WireReading {
         (wire, if fits { Fits::Whole } else { Fits::Cut })
     }
 
-    /// What it stands for. `words` is `|V|` of the scene, `asked` the number of questions.
+    /// Decodes it. `words` is `|V|` of the scene, `asked` the number of questions.
     ///
     /// # Errors
     /// Counts, codes, doubts, questions or words that make no sense then.
@@ -131,7 +131,7 @@ fn doubts(slots: &[f32], used: usize) -> Result<Vec<f64>, WireError> {
     used[..known].iter().map(|doubt| checked_share("doubt", f64::from(*doubt))).collect()
 }
 
-/// Whether everything fitted into a fixed layout.
+/// Result of encoding into a fixed layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fits {
     /// All of it.
@@ -158,7 +158,7 @@ fn checked_words(slots: &[u16], count: u8, known: usize) -> Result<Vec<WordId>, 
 }
 
 wire_struct! {
-    /// What an utterance was understood to say. Grounding to policy, one for each utterance.
+    /// The interpretation of an utterance. Grounding to policy, one for each utterance.
     Observation = "Observation" {
         /// The utterance's [`UtteranceSeq`].
         seq: u64,
@@ -176,15 +176,15 @@ wire_struct! {
         accepted_ns: u64,
         /// When it was read.
         grounded_ns: u64,
-        /// How many of `readings` are used.
+        /// Number of used entries of `readings`.
         reading_count: u8,
-        /// How many of `asked` are used.
+        /// Number of used entries of `asked`.
         asked_count: u8,
         /// [`Source`] of the utterance.
         source: Code<Source>,
         /// Zero.
         reserved: [u8; 5],
-        /// What it may mean: for each question asked and for none, most likely first.
+        /// Possible meanings: for each question asked and for none, most likely first.
         readings: [WireReading; READINGS_MAX],
         /// A word that the scene does not have, for the robot's reply; may be empty.
         unknown: FixedText<60>,
@@ -192,7 +192,7 @@ wire_struct! {
 }
 
 impl Observation {
-    /// What the utterance may mean. `words` is `|V|` of the scene.
+    /// Decodes the possible meanings of the utterance. `words` is `|V|` of the scene.
     ///
     /// # Errors
     /// As [`WireReading::interpretation`]; or none or too many.

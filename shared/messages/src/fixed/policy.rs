@@ -1,4 +1,4 @@
-//! What the robot has decided, and how far its belief has come.
+//! The robot's decisions and the progress of its belief.
 
 use crate::fixed::common::WireQuestion;
 use crate::schema::wire_struct;
@@ -27,7 +27,7 @@ wire_struct! {
         interaction: u64,
         /// [`PromptId`] of an `Ask` or `Say`.
         prompt: u64,
-        /// How often the prompt has been asked for: 1, and one more for each repetition.
+        /// Number of times the prompt has been requested: 1, and one more for each repetition.
         presentation: u32,
         /// [`ActKind`].
         kind: Code<ActKind>,
@@ -45,7 +45,7 @@ wire_struct! {
         decided_ns: u64,
         /// The utterance that it answers, 0 for none.
         utterance: u64,
-        /// What to say.
+        /// Text to say.
         text: FixedText<244>,
     }
 }

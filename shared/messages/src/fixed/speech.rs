@@ -1,4 +1,4 @@
-//! What speech tells the others: prompts said, people heard, injections answered.
+//! Messages from speech: prompt progress, activity, hearing, receipts of injections.
 
 use crate::schema::wire_struct;
 use crate::text::FixedText;
@@ -7,7 +7,7 @@ use crate::{RequestKey, Source, UtteranceSeq};
 use iceoryx2::prelude::ZeroCopySend;
 
 wire_enum! {
-    /// How far the robot has come with saying a prompt.
+    /// Progress of a prompt.
     PresentationState {
         /// Nothing was said yet.
         Silent = 0,
@@ -15,13 +15,13 @@ wire_enum! {
         Speaking = 1,
         /// Said to its end; from now on an answer can be meant for it.
         Ended = 2,
-        /// Broken off; nobody heard it whole.
+        /// Broken off before its end.
         Interrupted = 3,
     }
 }
 
 impl PresentationState {
-    /// Whether somebody may have heard some of it.
+    /// Returns whether a user may have heard some of it.
     pub fn has_begun(self) -> bool {
         self != Self::Silent
     }
@@ -46,9 +46,9 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// Whether somebody is speaking to the robot just now. Speech to policy, which holds its tongue.
+    /// Speech activity of a user. Speech to policy, which stays silent meanwhile.
     Activity = "Activity" {
-        /// When the person began to speak, 0 while nobody speaks.
+        /// Start of the user's speech, 0 while there is none.
         onset_ns: u64,
         /// Sounds that are still being recognised, and utterances that are not yet applied.
         pending: u32,
@@ -60,7 +60,7 @@ wire_struct! {
 }
 
 wire_enum! {
-    /// Whether spoken sound can be recognised.
+    /// Availability of speech recognition.
     EarState {
         /// The recogniser is being loaded.
         Loading = 0,
@@ -72,11 +72,11 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What the microphone of the robot's computer does.
+    /// State of the microphone of the robot's computer.
     MicrophoneState {
         /// There is none, or it is switched off.
         Off = 0,
-        /// It is opened when somebody asks to talk.
+        /// It is opened when a user asks to talk.
         Closed = 1,
         /// Its program was started and has given no sound yet.
         Opening = 2,
@@ -90,14 +90,14 @@ wire_enum! {
 }
 
 wire_struct! {
-    /// How well the robot hears. Speech to clients.
+    /// Quality of the robot's hearing. Speech to clients.
     Hearing = "Hearing" {
         /// When the last utterance began to be heard, 0 for none.
         onset_ns: u64,
         /// Loudness of the microphone over the last fifth of a second, decibels below full scale,
         /// -100 where nothing is known.
         level_db: f32,
-        /// How far the last utterance stood above the noise around it, decibels, 0 to 60.
+        /// Level of the last utterance above the noise around it, decibels, 0 to 60.
         snr_db: f32,
         /// Times that the microphone's program died.
         restarts: u32,
@@ -119,8 +119,8 @@ wire_struct! {
 }
 
 wire_struct! {
-    /// What an utterance that is being spoken has come to so far; the receipt tells what it was in the
-    /// end. Speech to clients.
+    /// Interim result of an utterance that is still being spoken; the receipt holds the final one.
+    /// Speech to clients.
     Partial = "Partial" {
         /// [`RequestKey`] that the utterance's receipt will have.
         stream: [u8; 16],
@@ -147,7 +147,7 @@ impl Partial {
 }
 
 wire_enum! {
-    /// What became of an injection.
+    /// Outcome of an injection.
     ReceiptStatus {
         /// Durable; it will be applied.
         Accepted = 0,
@@ -155,7 +155,8 @@ wire_enum! {
         Refused = 1,
         /// Heard, but not meant for the robot; `note` holds what was heard.
         NotForMe = 2,
-        /// A stream is over, and everything said in it has its receipt; `note` tells what was lost.
+        /// A stream has ended, and everything said in it has its receipt; `note` reports what was
+        /// lost.
         Over = 3,
     }
 }
@@ -177,7 +178,7 @@ wire_struct! {
         end_ns: u64,
         /// Probability of the text heard among all that it may have been, 0 to 1; 1 for text.
         confidence: f32,
-        /// How far the speech stood above the noise around it, decibels, 0 to 60; 0 for text.
+        /// Level of the speech above the noise around it, decibels, 0 to 60; 0 for text.
         snr_db: f32,
         /// [`ReceiptStatus`].
         status: Code<ReceiptStatus>,

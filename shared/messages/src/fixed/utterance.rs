@@ -12,12 +12,12 @@ use serde::{Deserialize, Serialize};
 pub const UTTERANCE_BYTES_MAX: usize = 16_380;
 /// Hypotheses of one utterance.
 pub const HYPOTHESES_MAX: usize = 5;
-/// Words of one hypothesis whose confidence is told.
+/// Words of one hypothesis whose confidence is published.
 pub const CONFIDENCES_MAX: usize = 32;
 /// Presentations of questions that an utterance may answer.
 pub const ASKED_MAX: usize = 4;
 wire_enum! {
-    /// Where an utterance came from.
+    /// Origin of an utterance.
     Source {
         /// Typed or injected text.
         Text = 0,
@@ -41,8 +41,8 @@ wire_struct! {
         len: u32,
         /// Probability among the hypotheses; they sum to 1.
         weight: f64,
-        /// How sure each word is, words being what blanks separate: 0 (not said) to 255 (certain).
-        /// Of words beyond these nothing is known.
+        /// Confidence of each blank-separated word: 0 (not said) to 255 (certain). Unknown for
+        /// words beyond these.
         confidence: [u8; CONFIDENCES_MAX],
     }
 }
@@ -79,7 +79,7 @@ wire_struct! {
         /// The latest questions whose sound had begun when the utterance was accepted, newest
         /// first.
         asked: [AskedQuestion; ASKED_MAX],
-        /// Where the person points, if anywhere.
+        /// Target of the pointing gesture, if any.
         gesture: WireGesture,
         /// When the person began to speak or type.
         onset_ns: u64,
@@ -89,13 +89,14 @@ wire_struct! {
         accepted_ns: u64,
         /// [`Source`].
         source: Code<Source>,
-        /// How many of `hypotheses` are used; the first is the best. 0 for a gesture without words.
+        /// Number of used entries of `hypotheses`; the first is the best. 0 for a gesture without
+        /// words.
         hypothesis_count: u8,
-        /// How many of `asked` are used.
+        /// Number of used entries of `asked`.
         asked_count: u8,
         /// Zero.
         reserved: [u8; 5],
-        /// What was heard, most likely first.
+        /// Recognition hypotheses, most likely first.
         hypotheses: [WireHypothesis; HYPOTHESES_MAX],
         /// The text of all hypotheses, one after another.
         text: FixedText<UTTERANCE_BYTES_MAX>,

@@ -31,7 +31,7 @@ wire_struct! {
         error: u8,
         /// [`EstopButton`].
         estop_button: Code<EstopButton>,
-        /// What stopped it: 0 nothing, 1 a person, 2 unknown, 3 a joint's fault, 4 its computer.
+        /// Cause of the stop: 0 none, 1 a person, 2 unknown, 3 a joint's fault, 4 its computer.
         estop_source: u8,
         /// Zero.
         reserved: [u8; 2],

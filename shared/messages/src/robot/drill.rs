@@ -1,11 +1,11 @@
-//! What is done to the simulated robot from outside: by the people around it, and by faults.
+//! External influences on the simulated robot: people around it, and faults.
 
 use crate::schema::wire_struct;
 use crate::wire::{Code, wire_enum};
 use iceoryx2::prelude::ZeroCopySend;
 
 wire_enum! {
-    /// What happens to the simulated robot.
+    /// An external influence on the simulated robot.
     DrillKind {
         /// `set_super_enable` true: motors on.
         Enable = 0,
@@ -13,9 +13,9 @@ wire_enum! {
         Disable = 1,
         /// `set_super_reset`: faults and emergency stop are cleared; the motors stay off.
         Reset = 2,
-        /// Somebody presses the red button.
+        /// A person presses the red button.
         PressEstop = 3,
-        /// Somebody releases it; the robot stays stopped until it is reset.
+        /// A person releases it; the robot stays stopped until it is reset.
         ReleaseEstop = 4,
         /// A part of it fails.
         Fail = 5,

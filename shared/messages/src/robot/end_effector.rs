@@ -18,7 +18,7 @@ wire_enum! {
 }
 
 wire_enum! {
-    /// What is mounted: [`EndEffectorProperties::ui_type`].
+    /// Mounted end effector: [`EndEffectorProperties::ui_type`].
     UiType {
         /// Nothing.
         NoGripper = 0,
@@ -34,7 +34,7 @@ wire_enum! {
 /// [`EndEffectorState::command_sequence`] of a gripper that does not count commands.
 pub const NO_SEQUENCE: u32 = 0;
 
-/// What a gripper is told: the words of [`EndEffectorCommand::command`].
+/// Commands to a gripper: the words of [`EndEffectorCommand::command`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
     /// `calibrate`: finds both ends of the fingers' travel; before it none but this is obeyed.
@@ -73,21 +73,21 @@ wire_struct! {
         timestamp_ns: u64,
         /// The gripper's own number.
         id: u32,
-        /// Whether it is switched on.
+        /// True if it is switched on.
         enabled: Code<Tristate>,
-        /// Whether it has been calibrated.
+        /// True if it has been calibrated.
         calibrated: Code<Tristate>,
-        /// Whether it takes commands.
+        /// True if it accepts commands.
         ready: Code<Tristate>,
-        /// Whether the fingers move.
+        /// True if the fingers are moving.
         moving: Code<Tristate>,
-        /// Whether the fingers stopped at something: the force threshold was met on the way.
+        /// True if the fingers stopped at something: the force threshold was met on the way.
         gripping: Code<Tristate>,
-        /// Whether the fingers came to the end of a command without meeting anything.
+        /// True if the fingers came to the end of a command without meeting anything.
         missed: Code<Tristate>,
-        /// Whether it has a fault; it has to be reset then.
+        /// True if it has a fault; it has to be reset then.
         error: Code<Tristate>,
-        /// Whether it grips by opening.
+        /// True if it grips by opening.
         reverse: Code<Tristate>,
         /// Percent: 0 closed, 100 open.
         position: f32,
@@ -97,7 +97,7 @@ wire_struct! {
         command_sequence: u32,
         /// The last command.
         command: FixedText<28>,
-        /// Who sent it.
+        /// The sender.
         command_sender: FixedText<28>,
     }
 }
@@ -128,9 +128,9 @@ wire_struct! {
         senses_position: u8,
         /// Zero.
         reserved: [u8; 3],
-        /// Who made it.
+        /// The manufacturer.
         manufacturer: FixedText<60>,
-        /// What it is.
+        /// The product name.
         product: FixedText<60>,
         /// Its serial number.
         serial_number: FixedText<28>,
@@ -166,7 +166,7 @@ impl EndEffectorCommand {
         }
     }
 
-    /// What it says.
+    /// Decodes it.
     ///
     /// # Errors
     /// A word that no gripper knows, or a `go` without a position.
@@ -197,7 +197,7 @@ impl EndEffectorCommand {
 }
 
 impl EndEffectorState {
-    /// Whether this state is of a gripper that has handled `command`.
+    /// Returns whether this state is of a gripper that has handled `command`.
     pub fn has_handled(&self, command: &EndEffectorCommand) -> bool {
         let numbered = [command.sequence, NO_SEQUENCE].contains(&self.command_sequence);
         numbered && self.command_sender == command.sender

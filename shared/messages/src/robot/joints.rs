@@ -10,8 +10,8 @@ pub const LIMB_JOINTS: usize = 7;
 /// Most joints in one joint state: 7 a limb, head pan and nod, torso.
 pub const JOINTS_MAX: usize = 17;
 
-/// How a joint command is meant. Baxter also knows 3, torque, and 4, raw position, which bypasses
-/// its collision avoidance; neither is ever used here.
+/// Control mode of a joint command. Baxter also knows 3, torque, and 4, raw position, which
+/// bypasses its collision avoidance; neither is ever used here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JointMode {
     /// `POSITION_MODE`, radians.
@@ -48,7 +48,7 @@ wire_struct! {
     JointCommand = "JointCommand" {
         /// [`JointMode`].
         mode: i32,
-        /// How many of the entries below count.
+        /// Number of used entries below.
         len: u32,
         /// Radians or rad/s, after the mode.
         command: [f64; LIMB_JOINTS],
@@ -64,7 +64,7 @@ wire_struct! {
     JointState = "JointState" {
         /// `header.stamp`, monotonic clock.
         stamp_ns: u64,
-        /// How many of the entries below count.
+        /// Number of used entries below.
         len: u32,
         /// Zero.
         reserved: u32,
@@ -97,7 +97,7 @@ wire_struct! {
 
 wire_struct! {
     /// `std_msgs/Float64` on `set_speed_ratio`: the share of its greatest velocity that a limb may
-    /// use in position mode; 0.3 until it is told.
+    /// use in position mode; 0.3 until the first message.
     SpeedRatio = "SpeedRatio" {
         /// 0 to 1.
         data: f64,
@@ -139,7 +139,7 @@ impl JointCommand {
     /// Name and value of each joint.
     ///
     /// # Errors
-    /// A length beyond the bound, or a name that is no text.
+    /// A length beyond the bound, or a name that is not text.
     pub fn joints(&self) -> Result<Vec<(&str, f64)>, WireError> {
         let (names, command) = (self.names.get(..self.len as usize), &self.command);
         let names = names.ok_or(WireError::new("joint command length", self.len))?;
@@ -147,12 +147,11 @@ impl JointCommand {
     }
 }
 
-/// What is known of one joint: position, velocity, effort.
+/// State of one joint: position, velocity, effort.
 pub type Measurement = [f64; 3];
 
 impl JointState {
-    /// What was measured of `joints` at `stamp_ns`: at most 17 names with position, velocity and
-    /// effort.
+    /// Measurements of `joints` at `stamp_ns`: at most 17 names with position, velocity and effort.
     ///
     /// # Errors
     /// More joints, or a name that is too long.
@@ -174,7 +173,7 @@ impl JointState {
     /// Name, position, velocity and effort of each joint.
     ///
     /// # Errors
-    /// A length beyond the bound, a name that is no text, or a position that is no number.
+    /// A length beyond the bound, a name that is not text, or a position that is not a number.
     pub fn joints(&self) -> Result<Vec<(&str, Measurement)>, WireError> {
         let names = self.name.get(..self.len as usize);
         let names = names.ok_or(WireError::new("joint state length", self.len))?;

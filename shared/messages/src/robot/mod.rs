@@ -1,4 +1,4 @@
-//! The robot's own topics: what a Baxter is told and what it tells, in the words of its interface.
+//! The robot's own topics: commands to and states of a Baxter, in the terms of its interface.
 //!
 //! Messages have the names, fields and meanings of `baxter_core_msgs`, `sensor_msgs` and
 //! `trajectory_msgs`, so that a bridge to ROS copies fields and decides nothing. What differs: a

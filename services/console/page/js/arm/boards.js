@@ -3,7 +3,7 @@
 const LEVEL_M = 0.015;
 /** Objects that are no farther apart stand on one board. */
 const CLOSE_M = 0.3;
-/** How far a board reaches beyond what stands on it. */
+/** Margin of a board around the objects on it. */
 const RIM_M = 0.05;
 
 /**
@@ -14,7 +14,8 @@ const RIM_M = 0.05;
  */
 
 /**
- * What the objects stand on: a board under each group that stands equally high and close.
+ * Boards under the objects: one per group of objects that stand at the same height and close
+ * together.
  * @param {{xyz: number[], size: number[], yaw: number}[]} places of the objects
  * @returns {Board[]}
  */
@@ -62,7 +63,7 @@ const REACH_M = 0.3;
 const APART_M = 0.06;
 
 /**
- * Where the objects are that a person has taken: side by side on the person's side of the table.
+ * Places of the objects that a person has taken: side by side on the person's side of the table.
  * @param {{xyz: number[], size: number[]}[]} places of all objects
  * @param {number[]} taken which of them, in the order in which they are to stand
  * @returns {Map<number, [number, number, number]>} their centres, by object

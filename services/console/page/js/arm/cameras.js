@@ -55,7 +55,7 @@ export function viewOf(name, { low, high }, aspect) {
     return Math.max(Math.abs(x) / slopes[0], Math.abs(y) / slopes[1]) + ahead;
   }
 
-  /** Where a corner is in the picture, -1 to 1. */
+  /** A corner's place in the picture, -1 to 1. */
   function onto(corner, from, far) {
     const [x, y, ahead] = seenFrom(corner, from);
     return [x / ((far - ahead) * slopes[0]), y / ((far - ahead) * slopes[1])];
@@ -68,7 +68,7 @@ export function viewOf(name, { low, high }, aspect) {
 }
 
 /**
- * What must be in the picture: the objects and the robot's upper body and reach.
+ * Points that must be in the picture: the objects and the robot's upper body and reach.
  * @param {{xyz: number[], size: number[]}[]} places of the objects
  * @param {{low: number[], high: number[]}} robot bounds of the robot as it stands
  * @param {boolean} narrow whether the picture is higher than wide: then the robot's foot is left out

@@ -2,11 +2,11 @@
 import { Spherical, Vector3 } from "../../vendor/three/build/three.module.js";
 import { OrbitControls } from "../../vendor/three/examples/jsm/controls/OrbitControls.js";
 
-/** How near and how far the eye may be, metres. */
+/** Nearest and farthest distance of the camera, metres. */
 const [NEAREST_M, FARTHEST_M] = [0.5, 9];
-/** How far from straight above the eye may be, radians: a little below the horizon. */
+/** Largest angle of the camera from straight above, radians: a little below the horizon. */
 const LOWEST_RAD = 1.62;
-/** How long the camera takes to another view, milliseconds. */
+/** Duration of a camera move to another view, milliseconds. */
 const FLIGHT_MS = 700;
 /** Up is z; spherical coordinates of three have y up. */
 const UPRIGHT = (v) => new Vector3(v.x, v.z, -v.y);
@@ -17,7 +17,7 @@ export class CameraControls {
   #orbit;
   /** @type {{from: any, to: any, at: number}|null} */
   #flight = null;
-  /** Whether a person has moved the camera from where the page put it. */
+  /** True if a person has moved the camera from where the page put it. */
   isMoved = false;
 
   /**

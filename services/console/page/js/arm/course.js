@@ -74,7 +74,7 @@ export class CourseLine {
     this.object.renderOrder = 2;
   }
 
-  /** Whether a way is shown. */
+  /** Returns whether a trajectory is shown. */
   get isShown() {
     return this.object.visible;
   }

@@ -1,5 +1,5 @@
 // @ts-check
-/** How long the next try waits after the robot's description could not be had, milliseconds. */
+/** Delay before the robot's description is requested again after a failure, milliseconds. */
 const RETRY_MS = 2_000;
 
 /**

@@ -6,7 +6,7 @@
 
 const CHILD_OF_JOINT = /^child\[link="(.*)"\]$/s;
 
-/** As much of an element as urdf-loader asks for; where the picture is drawn there is no DOM. */
+/** The part of an element that urdf-loader needs; there is no DOM in the drawing worker. */
 export class TreeElement {
   #attributes;
   nodeName;

@@ -6,7 +6,7 @@ const KEPT = 600;
 export class Rolling {
   /** @type {number[]} */
   #values = [];
-  /** How many there have been. */
+  /** Number of samples so far. */
   count = 0;
 
   /** @param {number} value */
@@ -38,7 +38,7 @@ export class Rolling {
   }
 }
 
-/** What is measured of a picture that moves. */
+/** Measurements of a moving picture. */
 export class MotionFigures {
   #frames = new Rolling();
   #work = new Rolling();
@@ -61,7 +61,7 @@ export class MotionFigures {
     for (const figures of [this.#frames, this.#work, this.#late]) figures.clear();
   }
 
-  /** How many frames a second there are, how long each takes, and how old what it shows is. */
+  /** Frame rate, time per frame, and age of the data shown. */
   get all() {
     const middle = this.#frames.quantile(0.5);
     return {
@@ -84,8 +84,8 @@ const JUDGED = { usually: 20, crawling: 4 };
 const PATIENCE = { first: 12, most: 400 };
 
 /**
- * How finely a moving picture is drawn so that it keeps up with the screen. Of several levels, 0 is
- * the finest.
+ * Level of detail of a moving picture, chosen so that it keeps up with the screen. Of several
+ * levels, 0 is the finest.
  */
 export class Fineness {
   #calm = 0;

@@ -8,7 +8,7 @@ import { openPicture } from "./picture.js";
 import { watchSeen, watchSize, watchTheme } from "./watch.js";
 import { armWords, thoughtsOf } from "./words.js";
 
-/** What tests ask: methods of `Questions`. */
+/** Queries for tests: methods of `Questions`. */
 const QUESTIONS = ["stats", "clearStats", "shown", "forward", "spin", "lose", "restore"];
 
 /**
@@ -35,7 +35,7 @@ export async function mountArm(element, { link, store, t }) {
   drawRobot(picture, element, parts, link, t);
 }
 
-/** What the arm does, in words and as a sign. */
+/** The arm's state, in words and as an icon. */
 function sayInWords(element, parts, store, t) {
   const say = () => {
     const words = armWords(store.get("arm"), store.get("scene"), store.get("trajectory"), t);

@@ -2,7 +2,7 @@
 /** Turn of one press of an arrow key, radians. */
 const TURN_RAD = 0.12;
 const ZOOM = 1.12;
-/** What each key does to the camera: a method of the view, and what it is given. */
+/** The action of each key on the camera: a method of the view, and its arguments. */
 const KEYS = {
   ArrowLeft: ["turn", -TURN_RAD, 0],
   ArrowRight: ["turn", TURN_RAD, 0],
@@ -12,7 +12,7 @@ const KEYS = {
   "=": ["zoom", 1 / ZOOM],
   "-": ["zoom", ZOOM],
 };
-/** What the camera's controls read of an event. */
+/** The fields of an event that the camera's controls read. */
 const READ = [
   ..."pointerId pointerType button clientX clientY pageX pageY".split(" "),
   ..."deltaX deltaY deltaMode ctrlKey metaKey shiftKey key".split(" "),
@@ -42,7 +42,7 @@ export function forwardInput(stage, canvas, notify) {
     { passive: false },
   );
   stage.addEventListener("keydown", (event) => pressed(event, notify));
-  // Browsers notify of two fingers on a touchpad as of the wheel with Control, which nobody pressed.
+  // Browsers report a pinch on a touchpad as a wheel event with Control, without a key press.
   for (const type of /** @type {const} */ (["keydown", "keyup"])) {
     const listen = (event) => event.key === "Control" && forward(event);
     document.addEventListener(type, listen, { passive: true, capture: true });

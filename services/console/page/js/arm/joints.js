@@ -22,7 +22,7 @@ const STREAM_MS = 120;
 const JUDGED = 24;
 /** Bounds of how far the picture is behind the server's clock. */
 const DELAY_MS = { least: 20, most: 300, first: 45 };
-/** How fast the delay may change with a message, so that it is invisible. */
+/** Largest change of the delay per message, small enough to be invisible. */
 const SLEW_MS = { up: 6, down: 2 };
 /** A message older than the last by more than this is of another life of the server. */
 const AGAIN_MS = 1_000;
@@ -46,7 +46,7 @@ export class JointBuffer {
   /** @type {{late: number, gap: number}[]} */
   #seen = [];
   #shownMs = Number.NEGATIVE_INFINITY;
-  /** How far the picture is behind the server's clock, milliseconds. */
+  /** Delay of the picture behind the server's clock, milliseconds. */
   delayMs = DELAY_MS.first;
 
   /** The newest state, if any. */
@@ -130,7 +130,7 @@ function same(a, b) {
 }
 
 /**
- * Where a finger's joint is.
+ * Returns the position of a finger's joint.
  * @param {{lower: number, upper: number}} limit metres or radians
  * @param {number} percent opening of the gripper
  * @returns {number} closed nearest to zero, open farthest from it

@@ -1,11 +1,11 @@
 // @ts-check
 import { Vector3 } from "../../vendor/three/build/three.module.js";
 
-/** How far above an object its label's foot is, metres. */
+/** Height of a label's foot above its object, metres. */
 const ABOVE_M = 0.02;
 
 /**
- * Where in the picture the objects' labels belong.
+ * Places of the objects' labels in the picture.
  * @param {import("./things.js").Things} things
  * @param {any} camera
  * @param {{width: number, height: number}} size of the picture, pixels of the page

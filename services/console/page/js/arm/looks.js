@@ -28,7 +28,7 @@ const PLAIN = 0xc7a97f;
 const SEE_THROUGH = ["clear", "transparent", "glass"];
 const SHINY = ["metallic", "silver", "gold", "golden", "metal", "steel", "chrome"];
 
-/** What a thing looks like by what it is called. The first word that is found counts. */
+/** Looks of a thing by its name. The first word that is found counts. */
 const FORMS = {
   bowl: "bowl",
   plate: "plate",
@@ -55,7 +55,7 @@ const FORMS = {
  */
 
 /**
- * What an object looks like.
+ * Returns an object's looks.
  * @param {{name: string, attributes: Record<string, string>, size: number[]}} object
  * @param {string} noun what the scene calls its objects
  * @returns {Look}

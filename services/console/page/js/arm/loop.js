@@ -27,7 +27,7 @@ export class Loop {
     this.#drawSoon();
   }
 
-  /** What is not drawn in a frame of the browser's may never be seen. */
+  /** Schedules drawing for the next animation frame; frames that are not shown are skipped. */
   #drawSoon() {
     if (this.#frame || !this.#does.isShown()) return;
     this.#frame = requestAnimationFrame((at) => {

@@ -12,7 +12,7 @@
 const GAP = 3;
 /** In a picture that is narrower only what matters is labelled. */
 const NARROW = 480;
-/** How far a label may be moved up to find room, in its own heights. */
+/** Largest upward shift of a label to find room, in label heights. */
 const STEPS = [0, 1, 2, -1.9];
 
 /**
@@ -54,7 +54,10 @@ export class Overlay {
   #thoughts = [];
   /** Which object is in the gripper, -1 for none. */
   #held = -1;
-  /** Where in the picture the objects are; null: not seen. @type {({x: number, y: number}|null)[]} */
+  /**
+   * Places of the objects in the picture; null: not visible.
+   * @type {({x: number, y: number}|null)[]}
+   */
   #places = [];
   #frame = { width: 0, height: 0 };
 

@@ -9,8 +9,8 @@ import { Fineness } from "./figures.js";
 import { studio } from "./studio.js";
 
 /**
- * How finely a moving picture is drawn, finest first: how many pixels it has at most, how many its
- * shadows have along a side, and whether the robot mirrors the room.
+ * Levels of detail of a moving picture, finest first: its most pixels, the pixels along a side of
+ * its shadows, and whether the robot mirrors the room.
  */
 const FINENESS = [
   { pixels: 8e6, shadow: 2048, rich: true },
@@ -20,7 +20,7 @@ const FINENESS = [
   { pixels: 2e5, shadow: 512, rich: false },
   { pixels: 9e4, shadow: 256, rich: false },
 ];
-/** Where drawing is done by the processor, it begins with this one. */
+/** First level where the processor draws. */
 const FIRST_IN_SOFTWARE = 3;
 /** Names of renderers that have no graphics card. */
 const SOFTWARE = /swiftshader|llvmpipe|softpipe|basic render|software/i;
@@ -33,7 +33,7 @@ const STUDIO_LIGHT = { light: 0.75, dark: 0.7 };
 export class Painter {
   #fineness;
   #isSoftware;
-  /** What shiny things mirror, once something was drawn. @type {any} */
+  /** Texture that shiny things mirror, once something has been drawn. @type {any} */
   #studio = null;
   #isDark = false;
   #size = { width: 0, height: 0, screen: 1 };
@@ -111,7 +111,7 @@ export class Painter {
   }
 }
 
-/** What draws: a graphics card, or a program in its place. */
+/** Name of the renderer: a graphics card, or software. */
 function rendererName() {
   const canvas = globalThis.document?.createElement("canvas") ?? new OffscreenCanvas(1, 1);
   const gl = /** @type {any} */ (canvas.getContext("webgl2"));

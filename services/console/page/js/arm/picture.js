@@ -15,13 +15,13 @@ export class Picture {
     port.onmessage = ({ data }) => (data.id === undefined ? heard(data) : this.#answered(data));
   }
 
-  /** Has a method of the view be called. @param {string} what @param {any[]} args */
-  tell(what, ...args) {
+  /** Calls a method of the view without a result. @param {string} what @param {any[]} args */
+  call(what, ...args) {
     this.#port.postMessage({ what, args });
   }
 
   /**
-   * The same, and waits for what it returns.
+   * Calls a method of the view and waits for its result.
    * @param {string} what
    * @param {any[]} args
    * @returns {Promise<any>}
@@ -45,7 +45,7 @@ export class Picture {
  * @param {{canvas: HTMLCanvasElement}} parts its canvas is another afterwards where a worker had the
  *   first one and could not draw: a canvas can be given away once
  * @param {(message: any) => void} heard
- * @returns {Promise<Picture|null>} null where there is no WebGL
+ * @returns {Promise<Picture|null>} null without WebGL
  */
 export async function openPicture(parts, heard) {
   for (const begin of [inWorker, onPage]) {

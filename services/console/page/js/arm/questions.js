@@ -2,7 +2,7 @@
 import { Vector3 } from "../../vendor/three/build/three.module.js";
 import { LIMBS } from "./joints.js";
 
-/** What tests ask the picture, and have happen to it. */
+/** Queries and actions on the picture for tests. */
 export class Questions {
   #view;
 
@@ -11,7 +11,7 @@ export class Questions {
     this.#view = view;
   }
 
-  /** What is measured: frames of motion, and how old what they show is. */
+  /** Measurements: frames of motion, and the age of the data that they show. */
   stats() {
     const { figures, joints, painter } = this.#view;
     return { ...figures.all, delay_ms: joints.delayMs, ratio: painter.ratio };
@@ -22,7 +22,7 @@ export class Questions {
     this.#view.figures.clear();
   }
 
-  /** What the picture shows: where things are in it, metres and radians. */
+  /** Contents of the picture: places of things, metres and radians. */
   shown() {
     const { tableau, camera, painter, viewName } = this.#view;
     const { robot, things, course } = tableau;
@@ -45,7 +45,7 @@ export class Questions {
   }
 
   /**
-   * Where a link would be at other joint positions.
+   * Returns a link's pose at other joint positions.
    * @param {Record<string, number>} joints radians, by the description's names
    * @param {string} link
    */

@@ -13,7 +13,7 @@ import { ball, box, capsule, cylinder, merged, poseMatrix } from "./bodies.js";
 import { TreeElement } from "./elements.js";
 import { fingerPosition, JOINT_NAMES, LIMB_JOINTS, LIMBS } from "./joints.js";
 
-/** How a robot is painted whose description gives no colours. */
+/** Paint of a robot whose description gives no colours. */
 const BARE = [0.55, 0.57, 0.6];
 
 /** The robot of a description, at any joint positions. */
@@ -45,7 +45,7 @@ export class RobotModel {
     this.grippers = LIMBS.map((limb) => this.object.links[`${limb}_gripper`] ?? null);
   }
 
-  /** How many bodies are drawn. */
+  /** Number of bodies drawn. */
   get bodies() {
     return this.#meshes.reduce((sum, mesh) => sum + mesh.userData.bodies, 0);
   }
@@ -61,7 +61,10 @@ export class RobotModel {
     }
   }
 
-  /** Whether its surfaces mirror the room: slower to draw. @param {boolean} rich */
+  /**
+   * Switches reflections of the room on the robot's surfaces on or off; on is slower to draw.
+   * @param {boolean} rich
+   */
   setRich(rich) {
     for (const mesh of this.#meshes) mesh.material = rich ? this.#rich : this.#plain;
   }
@@ -81,7 +84,7 @@ export class RobotModel {
     return { low: min.toArray(), high: max.toArray() };
   }
 
-  /** Where a link is, metres in the root's frame. @param {string} link */
+  /** Computes a link's position, metres in the root's frame. @param {string} link */
   placeOf(link) {
     this.object.updateMatrixWorld(true);
     const frame = this.object.links[link];
@@ -143,7 +146,7 @@ function bodiesOf(robot) {
   return found;
 }
 
-/** What is drawn of a link, or where all of that is in files, the room that it takes. */
+/** Meshes of a link, or its bounding box if all of them are in files. */
 function seenOf(link, robot) {
   const bodies = (kind) =>
     children(link.urdfNode, kind).flatMap((node) => bodyOf(node, robot) ?? []);

@@ -8,10 +8,10 @@ import {
 } from "../../vendor/three/build/three.module.js";
 
 /**
- * Pixels along a side of each picture of the studio, for ever rougher surfaces. The last one is for
- * light from all around. `PMREMGenerator` of three makes the same, but of 256 pixels, which takes
- * seconds where there is no graphics card, and bowls do not show them. Whoever renews three looks
- * whether it still keeps them as mipmaps of a cube.
+ * Pixels along a side of each picture of the studio, for increasingly rough surfaces. The last one
+ * is for light from all around. `PMREMGenerator` of three makes the same at 256 pixels, which takes
+ * seconds without a graphics card and looks no better on bowls. After an update of three, check
+ * that it still stores them as mipmaps of a cube.
  */
 const SIZES = [32, 16, 8];
 /** Directions from which light is gathered for each pixel of a rough picture. */
@@ -20,7 +20,7 @@ const GATHERED = 128;
 const FINE = 2;
 
 /**
- * What is in the studio round the robot: boxes far away, seen from the middle, metres.
+ * The studio around the robot: boxes far away, seen from the middle, metres.
  * @typedef {{low: number[], high: number[], light: number[]}} Panel `light`: red, green, blue
  */
 
@@ -74,7 +74,7 @@ export function lightFrom({ walls, panels }, x, y, z) {
 }
 
 /**
- * What shiny things mirror, as their materials read it.
+ * The reflected environment, in the form that the materials read.
  * @param {boolean} dark
  * @returns {any} a texture
  */
@@ -94,7 +94,7 @@ export function studio(dark) {
   return Object.assign(texture, { isPMREMTexture: true });
 }
 
-/** Where a pixel of each side of a cube lies, which is seen from within: x is turned round. */
+/** Direction of a pixel on each side of a cube seen from within: x is mirrored. */
 const SIDES = [
   (s, t) => [-1, -t, -s],
   (s, t) => [1, -t, s],

@@ -22,7 +22,7 @@ const SPECK = {
   ],
 };
 
-/** What is in the picture: a robot, its room, the objects, and what is known of them. */
+/** Contents of the picture: a robot, its room, the objects, and what is known of them. */
 export class Tableau {
   scene = new Scene();
   things = new Things();
@@ -45,7 +45,7 @@ export class Tableau {
     return this.#spec?.objects ?? [];
   }
 
-  /** Whether the arm says that it moves. */
+  /** Returns whether the arm reports that it moves. */
   get isMoving() {
     return Boolean(this.#arm?.moving);
   }
@@ -146,7 +146,7 @@ export class Tableau {
   }
 
   /**
-   * Has a way that nobody sees be in the picture meanwhile.
+   * Draws with an invisible trajectory in the picture.
    * @param {() => void} draw
    */
   withSpeck(draw) {

@@ -14,7 +14,7 @@ import { ball, box, lathe, merged, ring } from "./bodies.js";
 import { halo } from "./glow.js";
 import { lookOf, partsOf } from "./looks.js";
 
-/** How long an object takes to where it was put, milliseconds. */
+/** Duration of an object's move to its new place, milliseconds. */
 const PUT_MS = 450;
 /** Farther than this it does not creep there but was put. */
 const PUT_M = 0.02;
@@ -32,7 +32,7 @@ export class Things {
   /** @type {Thing[]} */
   #things = [];
 
-  /** How many there are. */
+  /** Number of objects. */
   get count() {
     return this.#things.length;
   }
@@ -81,12 +81,12 @@ export class Things {
     return busy;
   }
 
-  /** What the shiny ones mirror. @param {any} texture */
+  /** Sets the texture that the shiny ones mirror. @param {any} texture */
   setMirrored(texture) {
     for (const thing of this.#things) thing.setMirrored(texture);
   }
 
-  /** Where an object is, metres. @param {number} n @param {Vector3} into */
+  /** Computes an object's position, metres. @param {number} n @param {Vector3} into */
   placeOf(n, into) {
     return into.setFromMatrixPosition(this.#things[n].object.matrixWorld);
   }

@@ -38,13 +38,13 @@ export class ArmView {
   /** When the last frame of a motion was, 0 for none; when the arm has moved last. */
   #last = { frame: 0, fresh: Number.NEGATIVE_INFINITY };
   #size = { width: 0, height: 0 };
-  /** What the server's clock is ahead of `performance.timeOrigin + performance.now()`. */
+  /** Offset of the server's clock from `performance.timeOrigin + performance.now()`. */
   #clockMs = 0;
 
   /**
    * @param {HTMLCanvasElement|OffscreenCanvas} canvas
-   * @param {(message: object) => void} say tells the page of a new `picture`: where the labels are,
-   *   which object is held, whether it has a robot and is fine; or that the graphics card is `lost`
+   * @param {(message: object) => void} say notifies the page of a new `picture`: the labels' places,
+   *   the held object, whether it has a robot and is fine; or that the graphics card is `lost`
    */
   constructor(canvas, say) {
     this.#say = say;
@@ -132,7 +132,7 @@ export class ArmView {
     this.request();
   }
 
-  /** Whether anybody can see it. @param {boolean} seen */
+  /** Pauses or resumes drawing with the picture's visibility. @param {boolean} seen */
   setSeen(seen) {
     this.#isSeen = seen;
     this.request();
@@ -163,7 +163,7 @@ export class ArmView {
     this.controls.go(viewOf(name, box, width / height), atOnce, performance.now());
   }
 
-  /** What belongs into the picture is elsewhere; what a person chose to see is left. */
+  /** Frames the camera on a new region, unless a person has moved it. */
   #lookAgain() {
     if (!this.controls.isMoved) this.look(this.viewName, true);
   }
@@ -214,7 +214,7 @@ export class ArmView {
     if (interval !== null) this.painter.learn(interval);
   }
 
-  /** Whether the arm has moved of late, by messages that may come late on a slow machine. */
+  /** Returns whether the arm has moved recently; messages may be late on a slow machine. */
   #isFresh(now) {
     return now - this.#last.fresh < (this.tableau.isMoving ? MOVING_MS : LINGER_MS);
   }

@@ -49,7 +49,9 @@ export function watchTheme(element, changed) {
   say();
 }
 
-/** Whether text on the element is light: then the page is dark, whoever decided it. */
+/**
+ * Returns whether text on the element is light, that is, whether the page is dark for any reason.
+ */
 function isDark(element) {
   const [r, g, b] = (getComputedStyle(element).color.match(/[\d.]+/g) ?? ["0", "0", "0"]).map(
     Number,

@@ -3,7 +3,7 @@
 const OUTCOMES = ["delivered", "unreachable", "interrupted", "cancelled", "missed", "blocked"];
 
 /**
- * What the arm does, in one sentence.
+ * Describes the arm's state in one sentence.
  * @param {any} arm section `arm`
  * @param {any} scene section `scene`
  * @param {any} trajectory section `trajectory`
@@ -53,7 +53,7 @@ export function indexOf(object, scene) {
 }
 
 /**
- * What the robot believes of each object and whether it asks about it.
+ * Describes the robot's belief in each object and whether it asks about it.
  * @param {any} dialogue section `dialogue`
  * @param {any} scene section `scene`
  * @returns {{belief: number|null, best: boolean, asked: boolean}[]} in the scene's order

@@ -5,7 +5,7 @@ const LEAST_MS = 250;
 const MOST_MS = 5_000;
 
 /**
- * How long to wait before connecting again: twice as long each time, and never two pages in step.
+ * Delay before reconnecting: doubles each time, with jitter so that two pages do not stay in step.
  * @param {number} attempt attempts that have failed in a row, from 1
  * @param {number} random in [0, 1)
  * @returns {number} milliseconds

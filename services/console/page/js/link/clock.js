@@ -1,5 +1,5 @@
 // @ts-check
-/** How long a measured round trip counts, milliseconds. */
+/** Lifetime of a measured round trip, milliseconds. */
 const WINDOW_MS = 30_000;
 /** Most round trips kept. */
 const SAMPLES_MAX = 32;

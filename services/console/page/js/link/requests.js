@@ -1,5 +1,5 @@
 // @ts-check
-/** Why something that was asked of the server did not happen. */
+/** Reason why a request to the server failed. */
 export class LinkError extends Error {
   /**
    * @param {"down"|"late"|"lost"|"refused"} code `down`: not sent; `late`: no answer in time;
@@ -13,7 +13,7 @@ export class LinkError extends Error {
   }
 }
 
-/** What was asked of the server and not answered yet. */
+/** Requests to the server that have not been answered yet. */
 export class Requests {
   #next = 1;
   /** @type {Map<number, {settle: (error: LinkError|null, done?: object) => void}>} */
@@ -55,7 +55,7 @@ export class Requests {
     for (const id of [...this.#open.keys()]) this.#settle(id, new LinkError("lost", lost));
   }
 
-  /** How many are open. */
+  /** Number of open requests. */
   get size() {
     return this.#open.size;
   }

@@ -57,7 +57,7 @@ const NEUTRAL = ["#b9bdc2", "#787d84"];
  */
 
 /**
- * How an object is drawn, from the words that describe it. Without such words its size decides.
+ * Chooses an object's drawing from the words that describe it, else from its size.
  * @param {{attributes: Record<string, string>, size?: number[]}} object
  * @param {string} noun the scene's word for any of them
  * @returns {Drawing}

@@ -30,7 +30,7 @@ export function noteOf({ why, says, last_exit }, t) {
 }
 
 /**
- * Whether a state is a good one.
+ * Classifies a state as good, bad or neutral.
  * @param {string} state
  * @returns {"good"|"busy"|"bad"}
  */
@@ -40,7 +40,7 @@ export function tone(state) {
 }
 
 /**
- * How the group is doing, in one line: the gravest first.
+ * Summarises the group's health in one line: the gravest problem first.
  * @param {Service[]|undefined} services
  * @returns {{tone: "good"|"busy"|"bad", key: string, args: Record<string, string|number>}}
  */

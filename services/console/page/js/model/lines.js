@@ -21,7 +21,7 @@ export function mergeLines(known, more) {
   return [...byId.values()].sort((a, b) => a.id - b.id).slice(-LINES_MAX);
 }
 
-/** Whether numbers that were given already are given to other lines. */
+/** Returns whether known line numbers now belong to other lines. */
 function isAnother(known, more) {
   const last = known.at(-1);
   if (!last) return false;

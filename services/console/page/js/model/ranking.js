@@ -53,7 +53,7 @@ export function readable(p) {
 }
 
 /**
- * What marks an object at the moment.
+ * Returns an object's current mark.
  * @param {any} scene
  * @param {{dialogue: any, arm: any, world: any}} now
  * @returns {Map<number, "held"|"picking"|"pointed"|"delivered">}
@@ -79,7 +79,7 @@ const ROOMY_PX = 80;
 const MEDIUM_PX = 66;
 
 /**
- * How closely cards are set.
+ * Returns the density of the cards.
  * @param {number} cards
  * @param {number|null} heightPx the height for all of them; null: as much as they want
  * @returns {"roomy"|"medium"|"dense"} dense: one line each

@@ -6,7 +6,7 @@
  * @property {string} icon
  */
 
-/** What each state of the turn looks like. @type {Record<string, [string, Banner["tone"], string]>} */
+/** Looks of each state of the turn. @type {Record<string, [string, Banner["tone"], string]>} */
 const STATES = {
   idle: ["idle", "person", "ear"],
   listening: ["listening", "person", "ear"],
@@ -20,7 +20,7 @@ const STATES = {
 };
 
 /**
- * Whose turn it is, in one sign. Without a connection nothing else is known.
+ * Summarises whose turn it is in one sign. Without a connection nothing else is known.
  * @param {{state: string}|undefined} link
  * @param {{state: string}|undefined} turn
  * @param {{stopped?: boolean}|undefined} arm a stop outranks whose turn it is
@@ -39,7 +39,7 @@ export function banner(link, turn, arm) {
 }
 
 /**
- * Whether this page may act, and who does.
+ * Returns whether this page may act, and who is the operator.
  * @param {{operator: string|null, name?: string, asked_by?: string|null}|undefined} control
  * @param {{viewer: string}|undefined} welcome
  * @returns {"mine"|"asked"|"free"|"theirs"|"unknown"} `asked`: I asked for it and wait

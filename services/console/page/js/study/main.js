@@ -19,7 +19,7 @@ import { drawScreen } from "./screens.js";
 import { Secret } from "./secret.js";
 import { withdrawDialog } from "./withdraw.js";
 
-/** How soon control is asked for again, milliseconds. */
+/** Delay before control is requested again, milliseconds. */
 const ASK_MS = 5_000;
 /** … and who this page is about, where that was not to be found out. */
 const FIND_MS = 500;
@@ -69,13 +69,13 @@ function renew() {
   draw();
 }
 
-/** Who began on this page before it was loaded again goes on. */
+/** Resumes the session that this page had before it was reloaded. */
 async function find() {
   const welcome = store.get("welcome");
   if (!welcome) return;
   if (welcome.settings?.study) {
     const found = await link.do("study.find", { page: secret.value }).catch(() => null);
-    // Whatever was in the way: it is asked again.
+    // Retries after any failure.
     if (found === null) return void setTimeout(find, FIND_MS);
     me = found.participant ?? me;
   }

@@ -31,7 +31,7 @@ export function participantOf(me, study) {
 }
 
 /**
- * What the progress line says: a key with its arguments, null where it says nothing.
+ * Returns the progress line: a key with its arguments, null if empty.
  * @param {any} person
  * @returns {[string, Record<string, number>]|null}
  */
@@ -72,7 +72,7 @@ export function desiredIn(scene, name) {
 const SPOKEN = ["ask", "say", "pick"];
 
 /**
- * What the robot says now; empty where it says nothing.
+ * Returns the robot's current sentence, empty if none.
  * @param {any} dialogue
  * @param {any} trial the running one
  */

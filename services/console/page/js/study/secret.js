@@ -2,8 +2,8 @@
 const KEY = "whichone.study";
 
 /**
- * The secret by which the server knows the participant's page: 32 hexadecimal digits that a reload
- * keeps, and that nobody else is told.
+ * The secret by which the server knows the participant's page: 32 hexadecimal digits that survive a
+ * reload and are shared with no one else.
  */
 export class Secret {
   /** @param {Storage|null} storage null: not kept */

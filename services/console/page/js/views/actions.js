@@ -6,12 +6,15 @@ import { attempt, notify, reason } from "./attempt.js";
 
 /** A press so soon after the stop is not meant for what the button has become, milliseconds. */
 const LATCH_MS = 800;
-/** How long the button asks whether motion may go on, milliseconds. */
+/** Duration of the button's confirmation before motion is released, milliseconds. */
 const ASK_MS = 6_000;
 
 /** A press of Escape and the end of the full screen within this time are one, milliseconds. */
 const SAME_MS = 80;
-/** What leaves the full screen so soon after another key or a press was that one, milliseconds. */
+/**
+ * Window after a key or a press within which leaving the full screen is attributed to it,
+ * milliseconds.
+ */
 const ASIDE_MS = 600;
 
 /**
@@ -131,7 +134,7 @@ export function mountActions(element, context) {
   draw();
 }
 
-/** Whether a pointer is on an element, whatever lies between. */
+/** Returns whether a pointer is on an element, regardless of anything in between. */
 function isAt(element, { clientX, clientY }) {
   const { left, right, top, bottom } = element.getBoundingClientRect();
   return clientX >= left && clientX <= right && clientY >= top && clientY <= bottom;

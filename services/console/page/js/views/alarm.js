@@ -7,8 +7,8 @@ import { banner } from "../model/turn.js";
 const GRACE_MS = 1_200;
 
 /**
- * What must be noticed at once: no connection, a stop, a stop that was not delivered. And, politely,
- * what the robot says.
+ * Alerts: no connection, a stop, an undelivered stop; and, as polite announcements, the robot's
+ * sentences.
  * @param {HTMLElement} element a region that interrupts
  * @param {HTMLElement} polite a region that waits
  * @param {{link: any, store: any, t: (key: string, args?: object) => string}} context

@@ -1,7 +1,7 @@
 // @ts-check
 import { h } from "../dom.js";
 
-/** How long a message stays, milliseconds. */
+/** Display time of a message, milliseconds. */
 const STAY_MS = 7_000;
 
 /**
@@ -21,7 +21,7 @@ export async function attempt(promise, { t }) {
 }
 
 /**
- * Why something failed, in a sentence.
+ * Explains a failure in a sentence.
  * @param {{code?: string, message: string}} error
  * @param {(key: string) => string} t
  */

@@ -7,7 +7,7 @@ import { makeCard, updateCard } from "./card.js";
 const MOST = 12;
 /** Most cards that are shown at all. */
 const ALL_MOST = 150;
-/** Where the page fills the window and does not scroll. */
+/** Matches pages that fill the window and do not scroll. */
 const FIXED =
   "(min-width: 1101px) and (min-height: 640px), (max-width: 640px) and (min-height: 700px), (min-width: 641px) and (max-width: 1100px)";
 

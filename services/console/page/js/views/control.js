@@ -6,7 +6,7 @@ import { myPages } from "../mypages.js";
 import { attempt } from "./attempt.js";
 
 /**
- * Who is in control, how many watch, and how to take control or give it away.
+ * Shows who is the operator and how many are watching, and takes or gives up control.
  * @param {HTMLElement} element
  * @param {{link: any, store: any, t: any}} context
  */

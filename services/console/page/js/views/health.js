@@ -5,7 +5,9 @@ import { duration } from "./duration.js";
 import { mountLatency } from "./latency.js";
 import { mountServices } from "./services.js";
 
-/** Where there is room, or nothing else beside, all of it is shown from the beginning. */
+/**
+ * Matches pages with enough room, or nothing beside, where everything is shown from the beginning.
+ */
 const ROOMY = "(min-height: 1300px), (max-width: 1100px)";
 
 /**

@@ -6,7 +6,7 @@ import { duration } from "./duration.js";
 const STAGES = ["heard", "understood", "decided", "spoken"];
 
 /**
- * How soon the robot answers, by stage, from the end of speech to the first sound.
+ * Shows the robot's response time by stage, from the end of speech to the first sound.
  * @param {HTMLElement} element
  * @param {{store: any, t: any}} context
  */

@@ -9,7 +9,7 @@ import { attempt } from "./attempt.js";
 const VOICE_MS = 1_500;
 
 /**
- * What the robot asks or says now, in large type; answers and corrections with one press.
+ * Shows the robot's question or sentence in large type, with one-press answers and corrections.
  * @param {HTMLElement} element
  * @param {{link: any, store: any, t: (key: string, args?: object) => string}} context
  */

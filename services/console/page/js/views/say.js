@@ -6,7 +6,7 @@ import { reason } from "./attempt.js";
 
 /** Longest text, characters. */
 const TEXT_MAX = 500;
-/** What was typed waits so long for a connection that has just broken, milliseconds. */
+/** Longest wait of typed text for a connection that has just broken, milliseconds. */
 const OUTAGE_MS = 4_000;
 
 /**

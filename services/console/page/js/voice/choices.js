@@ -2,7 +2,7 @@
 const KEY = "whichone.voice";
 
 /**
- * What a person chose about voice.
+ * A person's voice settings.
  * @typedef {object} Choices
  * @property {"robot"|"browser"} engine who recognises
  * @property {boolean} headset the robot's voice does not reach the microphone
@@ -45,7 +45,7 @@ export function keep(storage, choices) {
 }
 
 /**
- * Whether a person may interrupt the robot by speaking: its voice is not in the microphone.
+ * Returns whether a person may interrupt the robot by speaking: its voice is not in the microphone.
  * @param {Choices} choices
  * @param {MediaTrackSettings} measured what the browser does, not what was wished
  * @param {boolean} muted whether the robot is silent on this page; then it may sound elsewhere

@@ -1,12 +1,14 @@
 // @ts-check
-/** How long a message counts, milliseconds: long enough to meet a quick one, short enough for drift. */
+/**
+ * Lifetime of a message, milliseconds: long enough to include a quick one, short enough for drift.
+ */
 const WINDOW_MS = 3_000;
 /** A stream that is this far off has stood still, milliseconds. */
 const JUMP_MS = 1_000;
 
 /**
- * Page time of what an audio context processes, from when its messages arrive: the least delayed of
- * late ones tells. That forgives a page that is busy, and follows a sound card that drifts.
+ * Maps an audio context's processing time to page time by the arrival of its messages: the least
+ * delayed recent one counts. That tolerates a busy page and follows a drifting sound card.
  */
 export class SampleClock {
   /** @type {{at: number, offset: number}[]} */

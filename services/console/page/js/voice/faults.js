@@ -1,5 +1,5 @@
 // @ts-check
-/** What can be wrong with a microphone, by the error's name. */
+/** Microphone faults, by the error's name. */
 const MICROPHONE = {
   NotAllowedError: "denied",
   SecurityError: "denied",
@@ -9,7 +9,7 @@ const MICROPHONE = {
   AbortError: "busy",
 };
 
-/** What can be wrong with the browser's own recogniser, by the error's code. */
+/** Faults of the browser's own recogniser, by the error's code. */
 const RECOGNITION = {
   "not-allowed": "denied",
   "service-not-allowed": "service",
@@ -33,7 +33,7 @@ export function recognitionFault(code) {
 }
 
 /**
- * Why talking cannot work, known before it is tried.
+ * Returns why talking cannot work, known before it is tried.
  * @param {object} known
  * @param {boolean} known.secure whether the page may have a microphone at all
  * @param {string|undefined} known.state the recogniser's state, of section `hearing`

@@ -1,7 +1,7 @@
 // @ts-check
 import { recall } from "../kept.js";
 
-/** Where the space bar means something else. */
+/** Elements for which the space bar has another meaning. */
 const OWN_SPACE =
   "input, textarea, select, button, a[href], summary, label, [contenteditable], [role], dialog";
 

@@ -50,7 +50,7 @@ export class Microphone {
     this.#stream = stream;
   }
 
-  /** What the browser really does with the sound. @returns {MediaTrackSettings} */
+  /** Settings that the browser really applies to the sound. @returns {MediaTrackSettings} */
   get settings() {
     return this.#stream.getAudioTracks()[0].getSettings();
   }

@@ -49,12 +49,12 @@ class Playback {
     return this.#muted;
   }
 
-  /** Whether the browser keeps it silent until the person does something on the page. */
+  /** Returns whether the browser mutes it until the person interacts with the page. */
   get locked() {
     return !this.#muted && this.#context?.state === "suspended" && this.#wanted() !== null;
   }
 
-  /** Whether the robot is to be heard just now. */
+  /** Returns whether the robot is audible now. */
   get sounds() {
     return this.#playing.source !== null;
   }

@@ -20,7 +20,7 @@ export function talks({ press }) {
 }
 
 /**
- * What holding and clicking a talk button come to.
+ * Interprets presses and holds of a talk button.
  * @param {PressState} state
  * @param {"down"|"up"|"click"|"cancel"} event `click`: one without a press, e.g. of a screen reader
  * @param {number} nowMs

@@ -7,7 +7,7 @@ import { VoiceStream } from "./stream.js";
 
 /** Sound from before the press that belongs to it: people begin to speak as they press. */
 const PRE_ROLL_MS = 400;
-/** How long the microphone stays open for the next press. */
+/** Time for which the microphone stays open for the next press. */
 const WARM_MS = 20_000;
 
 /** A microphone and what of its sound goes to the robot. */
@@ -26,9 +26,9 @@ export class Recording {
 
   /** Loudness, decibels below full scale. */
   levelDb = QUIETEST_DB;
-  /** Whether the person holds a key. */
+  /** True while the person holds a key. */
   held = false;
-  /** Whether the connection was too slow for the stream that is sent. */
+  /** True if the connection was too slow for the stream that is sent. */
   slow = false;
 
   /**
@@ -57,7 +57,7 @@ export class Recording {
     return this.#number;
   }
 
-  /** Whether sound goes to the robot. */
+  /** Returns whether sound is being sent to the robot. */
   get isSending() {
     return this.#stream !== null;
   }

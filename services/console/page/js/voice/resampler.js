@@ -14,7 +14,7 @@ export class Resampler {
   #cutoff;
   /** @type {Float32Array} */
   #kept;
-  /** Where the next sample is taken, in samples from the beginning of what is kept. */
+  /** Position of the next sample, in samples from the beginning of the kept sound. */
   #at;
 
   /**

@@ -15,7 +15,7 @@ export function keyOf(speaking) {
 }
 
 /**
- * What the loudspeaker is to do about what the robot says.
+ * Schedules the loudspeaker for the robot's current sentence.
  * @param {object} now
  * @param {Speaking|null|undefined} now.speaking
  * @param {string} now.playing what sounds, as `keyOf`; empty for nothing
@@ -37,7 +37,7 @@ export function plan({ speaking, playing, lengthS = 0, hushed, muted }) {
 }
 
 /**
- * Where in a sound to begin.
+ * Returns the position in a sound at which to begin.
  * @param {number} beganMs server time at which it began
  * @param {number} nowMs server time
  * @param {number} lengthS

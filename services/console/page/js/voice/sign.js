@@ -12,7 +12,7 @@
  */
 
 /**
- * What the talk button says and looks like; it never contradicts whose turn it is.
+ * The talk button's text and looks, consistent with whose turn it is.
  * @param {Known} known
  * @returns {{key: string, state: "off"|"idle"|"opening"|"talking"|"hearing"|"understanding",
  *   disabled: boolean}} `key` of the words: `voice.talk.KEY`, with `voice.talk.KEY.more` below

@@ -6,7 +6,7 @@ export const RATE = 16_000;
 export const QUIETEST_DB = -100;
 
 /**
- * How loud samples are.
+ * Measures the level of samples.
  * @param {Int16Array} samples
  * @returns {number} decibels below full scale, `QUIETEST_DB` to 0
  */

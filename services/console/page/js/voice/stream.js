@@ -23,7 +23,7 @@ export class VoiceStream {
     this.lost = 0;
   }
 
-  /** Whether its end was sent. */
+  /** Returns whether its end was sent. */
   get isOver() {
     return this.#over;
   }

@@ -26,9 +26,9 @@ export class Talk {
   #tail = 0;
   #latched = 0;
 
-  /** What is wrong, with what helps. @type {Words|null} */
+  /** Current fault, with a hint. @type {Words|null} */
   fault = null;
-  /** What there is to know. @type {Words|null} */
+  /** Current notice. @type {Words|null} */
   note = null;
 
   /**
@@ -75,7 +75,7 @@ export class Talk {
     return this.#recording.isOpening;
   }
 
-  /** Whether a microphone is open. */
+  /** Returns whether a microphone is open. */
   get isOpen() {
     return this.#recording.isOpen || this.#dictation.isOpen;
   }
@@ -92,7 +92,7 @@ export class Talk {
     return this.#choices;
   }
 
-  /** What keeps the person from talking, known before it is tried. @returns {string|null} */
+  /** Obstacle to talking, known before it is tried. @returns {string|null} */
   standing() {
     if (this.#choices.engine === "browser") return null;
     const secure = Boolean(globalThis.navigator?.mediaDevices?.getUserMedia);
@@ -210,7 +210,7 @@ export class Talk {
     }, TAIL_MS);
   }
 
-  /** What the connection, or who is in control, changes. */
+  /** Applies changes of the connection or of control. */
   #follow() {
     const who = whoControls(this.#store.get("control"), this.#store.get("welcome"));
     if (!this.#link.isUp) {

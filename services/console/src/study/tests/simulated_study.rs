@@ -131,7 +131,8 @@ impl SimulatedStudy {
             match request {
                 RobotRequest::Cancel => self.end(Outcome::Cancelled, None),
                 RobotRequest::Switch(planner) => {
-                    let id = self.controller.active().expect("somebody").id().to_owned();
+                    let id =
+                        self.controller.active().expect("an active participant").id().to_owned();
                     self.write(&id, vec![Event::Switched { planner: planner.clone() }]);
                     self.view.planner = planner;
                 }
@@ -180,7 +181,7 @@ impl SimulatedStudy {
         self.controller.of_page(PAGE).map(|person| person.stage)
     }
 
-    /// What must hold after every step.
+    /// Checks the invariants after every step.
     pub(super) fn check(&self) {
         let recovered: Vec<Participant> =
             self.disk.iter().filter_map(|(_, entries)| Participant::fold(entries)).collect();

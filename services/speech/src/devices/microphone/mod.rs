@@ -29,10 +29,10 @@ pub use recorder::default_programs;
 pub struct MicrophoneOptions {
     /// Recording programs with their arguments, the preferred one first.
     pub programs: Vec<Vec<String>>,
-    /// Whether it is always open; otherwise only on request.
+    /// `true` if it is always open, `false` if only on request.
     pub hands_free: bool,
-    /// Whether it does not record the robot's own voice (headset, echo cancellation), so that users may
-    /// interrupt.
+    /// `true` if it does not record the robot's own voice (headset, echo cancellation), so that
+    /// users may interrupt.
     pub barge_in: bool,
     /// Segmentation of the audio.
     pub segmenter: SegmenterOptions,

@@ -46,7 +46,7 @@ pub(super) struct Worker {
 struct Request {
     sound: u64,
     until: Instant,
-    /// Whether any samples arrived for it.
+    /// `true` if any samples arrived for it.
     has_samples: bool,
 }
 

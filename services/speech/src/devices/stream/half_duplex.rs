@@ -10,7 +10,7 @@ use crate::devices::vad::SegmenterOptions;
 /// Samples per decision: 16 ms.
 const BLOCK: usize = 256;
 
-/// Whether a stream may contain the robot's own voice.
+/// Separation of a stream from the robot's own voice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Duplex {
     /// It may: the stream is muted while the robot speaks.

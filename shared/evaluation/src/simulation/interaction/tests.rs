@@ -122,8 +122,8 @@ fn who_waits_for_ever_gets_what_waiting_is_worth() {
     room.problem.costs = Costs::PREDECESSOR;
     let mut manager = room.manager(CachedPlanner::new(registry::planner("never-ask").unwrap()));
     let wanted = ObjectId(0);
-    let mut nobody = SimulatedUser::scripted(wanted, vec![]);
-    let outcome = interact(&room, &mut manager, &mut nobody, &mut Rng::new(1));
+    let mut silent = SimulatedUser::scripted(wanted, vec![]);
+    let outcome = interact(&room, &mut manager, &mut silent, &mut Rng::new(1));
     assert_eq!((outcome.end, outcome.questions), (End::Waited, 0));
     assert_eq!(outcome.value, Costs::PREDECESSOR.wait_value());
     let turns = vec![Turn::SILENT, Turn::words("it's in the dishwasher")];

@@ -4,16 +4,16 @@ use std::fmt;
 
 use dialogue::Attribution;
 
-/// How the robot takes turns.
+/// The robot's turn-taking rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rules {
     /// Which question an answer counts for.
     pub attribution: Attribution,
-    /// Whether a question that got no answer is asked again; else the next best one is.
+    /// `true` if a question that got no answer is asked again; else the next best one is.
     pub same: bool,
-    /// Whether the robot keeps still while the person speaks or a result is pending.
+    /// `true` if the robot stays silent while the user speaks or a result is pending.
     pub hold: bool,
-    /// Whether the microphone is open; else people click, wait a second and speak.
+    /// `true` if the microphone is open; else people click, wait a second and speak.
     pub open: bool,
     /// Seconds after a question in which the robot listens.
     pub window_s: f64,
@@ -24,7 +24,7 @@ pub struct Rules {
 /// A part of a rule set's name that is none.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "\"{part}\" is no rule of turn-taking; combine naive, onset or mixture with same, hold, open, \
+    "\"{part}\" is not a turn-taking rule; combine naive, onset or mixture with same, hold, open, \
      fast and wSECONDS by +, e.g. open+mixture+hold+same+fast+w2.5"
 )]
 pub struct UnknownRule {
@@ -32,7 +32,7 @@ pub struct UnknownRule {
     pub part: String,
 }
 
-/// The paper's listening window and planning time, seconds: what its interaction times tell.
+/// The paper's listening window and planning time, seconds, as its interaction times imply.
 const PAPER: (f64, f64) = (4.85, 2.0);
 /// A planner that answers at once, seconds.
 const FAST_S: f64 = 0.01;
@@ -49,7 +49,7 @@ impl Default for Rules {
 }
 
 impl Rules {
-    /// Rule sets worth comparing: the paper's, each cure alone, and all of them together.
+    /// Rule sets to compare: the paper's, each fix alone, and all of them together.
     pub const ALL: [&'static str; 11] = [
         "naive",
         "naive+same",

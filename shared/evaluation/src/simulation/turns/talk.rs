@@ -12,8 +12,8 @@ use crate::simulation::draw::log_normal;
 use crate::simulation::interaction::{End, Outcome, Room};
 use crate::simulation::users::{Reply, TimedKind, TimedUser, TimedUtterance};
 
-/// How long the robot takes to say a question: median, seconds, and standard deviation of the
-/// logarithm. The web interface's voice and its delay, not the arm's own voice.
+/// Duration of a spoken question: median, seconds, and standard deviation of the logarithm. It is
+/// the web interface's voice and its delay, not the arm's own voice.
 const QUESTION_S: (f64, f64) = (1.9, 0.12);
 /// Presentations that an utterance carries.
 const PRESENTATIONS_MAX: usize = 4;
@@ -55,7 +55,7 @@ pub(super) fn talk(
         discount: 1.0,
     };
     let request = Interpretation { weight: 1.0, ..Interpretation::default() };
-    talk.tell(now_s, now_s, vec![], vec![request]);
+    talk.publish(now_s, now_s, vec![], vec![request]);
     talk.run()
 }
 
@@ -189,7 +189,7 @@ impl Talk<'_> {
         let interpretations = places
             .map(|answers| Interpretation { weight: 1.0, answers, reading: reading.clone() })
             .collect();
-        self.tell(utterance.onset_s, utterance.end_s, presentations, interpretations);
+        self.publish(utterance.onset_s, utterance.end_s, presentations, interpretations);
         self.heard += 1;
         let attributed = &self.state.attributed;
         let best = attributed.questions.iter().max_by(|a, b| a.share.total_cmp(&b.share));
@@ -198,7 +198,7 @@ impl Talk<'_> {
         self.misplaced += u32::from(put.is_none_or(|put| put.question != utterance.question));
     }
 
-    fn tell(
+    fn publish(
         &mut self,
         onset_s: f64,
         end_s: f64,

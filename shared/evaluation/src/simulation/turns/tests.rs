@@ -39,10 +39,10 @@ fn each_cure_helps_alone() {
     let naive = run("naive", &TimedKind::USUAL, 2_000);
     let same = run("naive+same", &TimedKind::USUAL, 2_000);
     assert!(same.success() > naive.success());
-    for cure in ["naive+hold", "onset", "onset+hold+same+fast"] {
-        let cured = run(cure, &TimedKind::USUAL, 2_000);
-        assert!(cured.success() > 0.965, "{cure}: {}", cured.success());
-        assert!(cured.misplaced_share() < 0.01, "{cure}: {}", cured.misplaced_share());
+    for rules in ["naive+hold", "onset", "onset+hold+same+fast"] {
+        let fixed = run(rules, &TimedKind::USUAL, 2_000);
+        assert!(fixed.success() > 0.965, "{rules}: {}", fixed.success());
+        assert!(fixed.misplaced_share() < 0.01, "{rules}: {}", fixed.misplaced_share());
     }
     let fast = run("naive+fast", &TimedKind::USUAL, 2_000);
     assert!(fast.talk_s.mean() + 6.0 < naive.talk_s.mean());

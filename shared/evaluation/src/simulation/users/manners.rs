@@ -23,7 +23,7 @@ pub struct Manners {
     it_is: &'static str,
     /// Probability of naming a value by a synonym, where it has one.
     synonyms: f64,
-    /// How many values the request names: none, one, two, ….
+    /// Probability of each number of values in the request: none, one, two, ….
     request: &'static [f64],
     /// Probability of a wrong answer.
     slip: f64,

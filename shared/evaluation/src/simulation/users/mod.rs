@@ -45,7 +45,7 @@ pub struct Domain<'a> {
     pub model: &'a Model,
 }
 
-/// What a user contributes in one turn.
+/// A user's contribution in one turn.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
     /// Nothing.
@@ -84,7 +84,7 @@ impl From<Answer> for Reply {
 /// A user's turn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Turn {
-    /// What is said.
+    /// Text of the utterance.
     pub reply: Reply,
     /// Delay beyond the usual reaction time, seconds.
     pub late_s: f64,
@@ -148,7 +148,7 @@ impl UserKind {
     }
 }
 
-/// How a user errs, and in what form they reply.
+/// A user's errors and the form of their replies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Policy {
     /// The answer distribution of the observation model.

@@ -102,15 +102,15 @@ fn replies_are_read_in_favour_of_the_wanted_object() {
 fn requests_name_values_of_the_wanted_object() {
     let house = House::new();
     for kind in [UserKind::Noisy, UserKind::Human] {
-        let (mut told, mut against) = (0, 0);
+        let (mut with, mut against) = (0, 0);
         for number in 0..500 {
             let mut user = kind.user(house.domain(), 5, number);
             let turn = user.request(house.domain());
             let Some(p) = believed(&house, Question::None, &user, &turn) else { continue };
-            told += u32::from(p > 1.0 / 6.0 + 1e-9);
+            with += u32::from(p > 1.0 / 6.0 + 1e-9);
             against += u32::from(p < 1.0 / 6.0 - 1e-9);
         }
-        assert!(told > 150 && against < 25, "{}: {told} {against}", kind.name());
+        assert!(with > 150 && against < 25, "{}: {with} {against}", kind.name());
     }
 }
 

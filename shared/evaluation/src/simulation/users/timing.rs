@@ -26,7 +26,7 @@ pub struct Habits {
     pub doubled: f64,
 }
 
-/// How a user keeps time.
+/// A user's timing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
     /// Reaction time, speed of speech, and delay of the recogniser.
@@ -42,7 +42,7 @@ pub struct Timing {
     pub window_s: f64,
     /// Probability that the recogniser loses an utterance.
     pub lost: f64,
-    /// Whether a question is still answered after the robot has asked the next one to its end.
+    /// `true` if a question is still answered after the robot has asked the next one to its end.
     pub persistent: bool,
     /// Turn-taking errors.
     pub habits: Habits,
@@ -111,9 +111,9 @@ pub struct TimedUtterance {
     pub prompt: u64,
     /// The question that it answers.
     pub question: Question,
-    /// What arrives of it; silence where the recogniser loses it.
+    /// Its recognition result; silence if the recogniser loses it.
     pub reply: Reply,
-    /// Whether it repeats an earlier answer.
+    /// `true` if it repeats an earlier answer.
     pub again: bool,
     /// When the user decides to speak, or clicks.
     pub committed_s: f64,
@@ -132,7 +132,7 @@ pub struct TimedUser {
     user: SimulatedUser,
     timing: Timing,
     upcoming: Vec<TimedUtterance>,
-    /// How each prompt is dealt with.
+    /// Treatment of each prompt.
     habits: Vec<(u64, Habit)>,
     /// An answer that is repeated into the next question.
     overlapping: Option<(u64, Question, Turn)>,

@@ -36,7 +36,7 @@ pub(crate) struct Alternating {
     pub(crate) fore: [f64; 2],
     /// The tool in the last frame.
     pub(crate) tool: Frame,
-    /// Whether the tool has the last frame's axes.
+    /// `true` if the tool has the last frame's axes.
     pub(crate) plain_tool: bool,
 }
 

@@ -27,7 +27,7 @@ pub struct LineError {
     pub fraction: f64,
     /// The last posture on it, radians.
     pub q: Joints,
-    /// Whether the next posture was too far rather than out of reach.
+    /// `true` if the next posture was too far rather than out of reach.
     pub jumps: bool,
 }
 

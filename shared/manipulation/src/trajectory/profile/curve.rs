@@ -73,7 +73,7 @@ impl Curve {
         Self { segments, ..*self }
     }
 
-    /// Where it ends.
+    /// Returns the end position.
     pub(super) fn end(&self) -> f64 {
         self.cubic(self.duration_s, self.duration_s)[0]
     }
