@@ -11,6 +11,7 @@ mod confusion;
 mod costs;
 mod durations;
 mod evaluate;
+pub mod export;
 pub mod gesture;
 pub mod ids;
 mod interaction;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use dialogue::export::Pomdp;
 use serde_json::json;
 use service::exit::Exit;
 
@@ -10,31 +11,31 @@ use crate::cli::{ExportArgs, Exported};
 use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
-/// Prints the problem, or writes it to the file that is named.
+/// Prints the problem or writes it to the given file.
 pub(super) fn export(args: &ExportArgs, out: &mut Output<'_>) -> Outcome {
     let Exported::Pomdp = args.what;
     let found = planning::of_scene(&args.scene, &args.problem)?;
-    let exported = pomdp::of_dialogue(&found.scene, &found.decision()).map_err(|error| {
-        CliError::new(Exit::Config, format!("{}: {error}", args.scene.display()))
-    })?;
-    let text = exported.write(&comment(found.scene.name()));
-    let sizes = [&exported.states, &exported.actions, &exported.observations].map(Vec::len);
-    let [states, actions, observations] = sizes;
-    let mut told = json!({ "states": states, "actions": actions, "observations": observations });
+    let comment = comment(found.scene.name());
+    let exported =
+        dialogue::export::pomdp(&found.scene, &found.decision(), &comment).map_err(|error| {
+            CliError::new(Exit::Config, format!("{}: {error}", args.scene.display()))
+        })?;
+    let Pomdp { text, states, actions, observations } = exported;
+    let mut written = json!({ "states": states, "actions": actions, "observations": observations });
     match &args.output {
         Some(path) => {
             write(path, &text)?;
             if out.is_json() {
-                told["file"] = json!(path);
-                out.json(&told)?;
+                written["file"] = json!(path);
+                out.json(&written)?;
             } else {
                 let sizes = format!("{states} states, {actions} actions, {observations}");
                 out.line(format_args!("{}: {sizes} observations", path.display()))?;
             }
         }
         None if out.is_json() => {
-            told["pomdp"] = json!(text);
-            out.json(&told)?;
+            written["pomdp"] = json!(text);
+            out.json(&written)?;
         }
         None => out.text(&text)?,
     }
@@ -52,6 +53,6 @@ fn comment(scene: &str) -> String {
          States: wanted__OBJECT, and end, where a pick leads.\n\
          Actions: wait, is__ATTRIBUTE__VALUE, which__ATTRIBUTE, point__OBJECT, pick__OBJECT.\n\
          Observations: silence, yes, no, says__ATTRIBUTE__VALUE.\n\
-         In a name, _ and two hexadecimal digits stand for a byte that is no letter, digit or -."
+         In a name, _ and two hexadecimal digits stand for a byte that is not a letter, digit or -."
     )
 }

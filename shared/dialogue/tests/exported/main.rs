@@ -3,10 +3,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+mod parser;
+mod problem;
 mod solver;
 
+use dialogue::export;
 use dialogue::{Actions, Belief, Costs, DecisionProblem, Lookahead, Mode, Model, Params, Planner};
-use pomdp::{Pomdp, of_dialogue};
+use parser::parse;
 use scene::Scene;
 use solver::Solver;
 
@@ -19,8 +22,8 @@ fn agree(scene: &str, actions: Actions, costs: Costs, gap: f64) -> (f64, f64) {
     let scene = Scene::from_toml("scene", scene).unwrap();
     let model = Model::new(&scene, Params::default());
     let problem = DecisionProblem::new(&model, costs, actions);
-    let text = of_dialogue(&scene, &problem).unwrap().write("");
-    let (lower, upper) = Solver::new(&Pomdp::parse(&text).unwrap()).solve(gap);
+    let text = export::pomdp(&scene, &problem, "").unwrap().text;
+    let (lower, upper) = Solver::new(&parse(&text)).solve(gap);
     let belief = Belief::uniform(model.objects());
     let decision = Lookahead::default().decide(&problem, &belief, dialogue::Step::default());
     let certified = decision.bounds.unwrap();

@@ -1,7 +1,7 @@
 //! Heuristic search value iteration (Smith and Simmons 2005) over the numbers of a POMDP: lower
 //! bound from linear functions of the belief, upper bound from points, both exact statements.
 
-use pomdp::Pomdp;
+use crate::parser::Parsed;
 
 /// A POMDP as dense tables, and bounds on its value function.
 pub(crate) struct Solver {
@@ -27,15 +27,13 @@ struct Point {
 }
 
 impl Solver {
-    pub(crate) fn new(pomdp: &Pomdp) -> Self {
+    pub(crate) fn new(pomdp: &Parsed) -> Self {
         let actions = 0..pomdp.actions.len();
         let states = 0..pomdp.states.len();
         let steps = |a: usize, o: usize| {
             let from = states.clone().flat_map(move |s| {
-                let ends = pomdp.transition[a].row(s).iter();
-                ends.map(move |&(t, p)| {
-                    (s, t as usize, p * pomdp.observation[a].get(t as usize, o))
-                })
+                let ends = pomdp.transition[a][s].iter().enumerate();
+                ends.map(move |(t, p)| (s, t, p * pomdp.observation[a][t][o]))
             });
             from.filter(|(.., p)| *p > 0.0).collect::<Vec<_>>()
         };
@@ -44,15 +42,12 @@ impl Solver {
             discount: pomdp.discount,
             start: pomdp.start.clone(),
             steps: actions
-                .clone()
                 .map(|a| {
                     let heard = observations.clone().map(|o| steps(a, o));
                     heard.filter(|steps| !steps.is_empty()).collect()
                 })
                 .collect(),
-            reward: actions
-                .map(|a| states.clone().map(|s| pomdp.expected_reward(a, s)).collect())
-                .collect(),
+            reward: pomdp.reward.clone(),
             plans: Vec::new(),
             corners: Vec::new(),
             points: Vec::new(),

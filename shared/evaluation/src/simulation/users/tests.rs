@@ -139,7 +139,8 @@ fn an_absent_object_is_denied_and_never_described() {
     }
 }
 
-/// The times of the answers to two questions, each of two seconds, with a pause of five between.
+/// The times of the answers to two questions, each of two seconds, with a pause of five between: a late
+/// answer begins before the next question does.
 fn answers(habits: Habits, seed: u64) -> Vec<(u64, f64, bool)> {
     let house = House::new();
     let policy = Policy::Truthful { by_value: 0.0 };
@@ -162,7 +163,7 @@ fn answers(habits: Habits, seed: u64) -> Vec<(u64, f64, bool)> {
         };
         let early: Vec<_> = take(&mut user, began_s + 2.0);
         user.question_ended(house.domain(), asked, began_s + 2.0);
-        said.extend([early, take(&mut user, began_s + 6.9)].concat());
+        said.extend([early, take(&mut user, began_s + 7.0)].concat());
     }
     said
 }
