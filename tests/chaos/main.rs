@@ -1,8 +1,9 @@
-//! Random faults on real processes, while a truthful person has one object after the other fetched.
+//! Random faults on real processes, while a simulated user has one object after another fetched.
 //!
 //! Every dialogue must end with the right object picked once, and the journals must fold again to
 //! the same belief. Prints the seed and what was done; exit code 70 on a broken invariant.
 
+use config::Service;
 use dialogue::Rng;
 use rustix::process::Signal;
 use std::io::Write;
@@ -12,7 +13,6 @@ use std::time::{Duration, Instant};
 use whichone_tests::Group;
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
-const SERVICES: [&str; 5] = ["speech", "grounding", "policy", "arm", "console"];
 
 /// When to stop, and the seed.
 struct Plan {
@@ -25,7 +25,7 @@ struct Plan {
 #[derive(Debug, Default)]
 struct Counters {
     dialogues: u64,
-    kills: [u64; 4],
+    kills: [u64; Service::BUILT_IN.len()],
     pauses: u64,
     restarts: u64,
 }
@@ -124,20 +124,21 @@ fn dialogue(group: &Group, bowl: &str, plan: &Plan, rng: &mut Rng, counters: &mu
 
 /// Mostly kills; now and then a pause below the watchdog, or an orderly restart.
 fn fault(group: &Group, rng: &mut Rng, counters: &mut Counters) {
-    let which = rng.below(SERVICES.len());
+    let which = rng.below(Service::BUILT_IN.len());
+    let service = Service::BUILT_IN[which].name();
     match rng.below(10) {
         0 => {
-            group.signal(SERVICES[which], Signal::STOP);
+            group.signal(service, Signal::STOP);
             std::thread::sleep(Duration::from_millis(100));
-            group.signal(SERVICES[which], Signal::CONT);
+            group.signal(service, Signal::CONT);
             counters.pauses += 1;
         }
         1 => {
-            let _ = group.call(&["restart", SERVICES[which]]);
+            let _ = group.call(&["restart", service]);
             counters.restarts += 1;
         }
         _ => {
-            group.signal(SERVICES[which], Signal::KILL);
+            group.signal(service, Signal::KILL);
             counters.kills[which] += 1;
         }
     }

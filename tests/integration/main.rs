@@ -13,6 +13,7 @@ mod dialogues;
 mod export;
 mod hearing;
 mod isolation;
+mod journal_format;
 mod planners;
 mod pointing;
 mod python;

@@ -52,12 +52,22 @@ impl Group {
         group
     }
 
-    /// Starts the group with the profile for tests and waits until it is ready or refused.
+    /// Starts the group with the profile for tests and waits until it is ready or rejected.
     pub fn start(&mut self, settings: &[&str]) -> Ended {
+        let options: Vec<&str> = settings.iter().flat_map(|setting| ["--set", *setting]).collect();
+        self.start_with(&options)
+    }
+
+    /// As [`Group::start`], in a new epoch: journals of earlier runs are kept beside it.
+    pub fn start_fresh(&mut self) -> Ended {
+        self.start_with(&["--fresh"])
+    }
+
+    fn start_with(&mut self, options: &[&str]) -> Ended {
         let config = self.config.display().to_string();
         let mut words = vec!["up", "--detach", "--wait", "ready", "--timeout", "40", "--config"];
         words.extend([config.as_str(), "--profile", "ci"]);
-        settings.iter().for_each(|setting| words.extend(["--set", setting]));
+        words.extend(options);
         let ended = self.call(&words);
         self.is_up = ended.code == Some(0);
         ended

@@ -2,9 +2,9 @@
 
 use crate::state::Record;
 use crate::{ArmNode, Config, In, Out, inspection};
-use config::{Driver, Settings};
+use config::{Driver, Service, Settings};
 use messages::{
-    ArmStatus, JointStates, MotionCommand, RobotAct, Service, TrajectoryView, WorldView, topics,
+    ArmStatus, JointStates, MotionCommand, RobotAct, TrajectoryView, WorldView, topics,
 };
 use preflight::ArmSetup;
 use robot::RobotTopics;

@@ -2,14 +2,14 @@
 
 use crate::robot::side;
 use crate::{BaxterNode, Config, In, Out};
-use config::Settings;
+use config::{Service, Settings};
 use manipulation::Limb;
+use messages::Topic;
 use messages::robot::{
     AssemblyState, Drill, EndEffectorCommand, EndEffectorProperties, EndEffectorState,
     EndpointState, JointCommand, JointState, JointTrajectoryPoint, SpeedRatio,
 };
 use messages::topics::robot;
-use messages::{Service, Topic};
 use preflight::ArmSetup;
 use service::bus::{Bus, BusError, PortError, Reader, WireMessage, Writer};
 use service::exit::{Exit, Failure};

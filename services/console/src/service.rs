@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
-use config::{Recogniser, Settings, Voice};
+use config::{Recogniser, Service, Settings, Voice};
 use service::client::Client;
 use service::clock;
 use service::exit::{Exit, Failure};
@@ -32,7 +32,7 @@ const RESTARTS_MAX: usize = 8;
 /// Runs the service until it is shut down.
 pub fn run() -> ExitCode {
     let about = "serves the page from which a user talks to the robot and sees what it believes";
-    service_loop::program("console", about, serve)
+    service_loop::program(Service::Console.name(), about, serve)
 }
 
 fn serve(arguments: Vec<String>) -> Result<(), Failure> {
@@ -60,7 +60,7 @@ impl Console {
         let failed = |what: &'static str| {
             move |e: std::io::Error| Failure::new(Exit::NotReached, format!("{what}: {e}"))
         };
-        let client = Client::of_service(environment, "console")?;
+        let client = Client::of_service(environment, Service::Console.name())?;
         let (commands, command_inbox) =
             worker_channel::channel::<Command>().map_err(failed("inbox"))?;
         let (motions, motion_inbox) =

@@ -1,9 +1,9 @@
 //! Grounding's topics and configuration.
 
 use crate::{Config, GroundingNode};
-use config::Settings;
+use config::{Service, Settings};
 use language::{Language, Reader as TextReader};
-use messages::{Observation, Service, Utterance, topics};
+use messages::{Observation, Utterance, topics};
 use service::bus::{PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
 use service::lifecycle::Environment;

@@ -1,10 +1,10 @@
 //! The policy's topics and configuration.
 
 use crate::{In, Out, PolicyNode, inspection, policy_cache};
-use config::{ManagerError, Settings};
+use config::{ManagerError, Service, Settings};
 use dialogue::manager::{Manager, Record};
 use messages::{
-    Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, Service, topics,
+    Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, topics,
 };
 use service::bus::{EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};

@@ -7,12 +7,12 @@ use crate::devices::stream::PlaybackMask;
 use crate::record::Record;
 use crate::stream_events::StreamEvent;
 use crate::{Config, In, Out, Recognised, SpeechNode, doctor, inspection};
-use config::Settings;
+use config::{Service, Settings};
 use crossbeam_channel::Receiver;
 use language::{Language, Reader as TextReader};
 use messages::{
     Activity, AppliedMark, ArmStatus, AudioChunk, Hearing, Injection, MotionCommand, Partial,
-    Presented, Receipt, RobotAct, Service, Utterance, topics,
+    Presented, Receipt, RobotAct, Utterance, topics,
 };
 use service::Span;
 use service::bus::{EncodedReader, PortError, Reader, Writer};

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crate::services::{self, Service};
+use crate::services::{self, ServiceConfig};
 use diagnostics::Fields;
 
 /// The process group.
@@ -12,7 +12,7 @@ pub struct Group {
     pub scene: String,
     /// The services, the built-in ones first, then the others in the order of the text. Every
     /// `after` names one of them and they form no cycle.
-    pub services: Vec<Service>,
+    pub services: Vec<ServiceConfig>,
     /// Restart policy.
     pub restart: RestartLimits,
     /// Logs of the services.

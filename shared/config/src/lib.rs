@@ -42,7 +42,7 @@ pub use crate::gesture::Gesture;
 pub use crate::group::{Group, Log, RestartLimits};
 pub use crate::manager::ManagerError;
 pub use crate::resolved::{Origin, Section};
-pub use crate::services::{BUILT_IN, OPTIONAL, Restart, Service};
+pub use crate::services::{Restart, SUPERVISOR, Service, ServiceConfig};
 pub use crate::snapshot::SNAPSHOT_FILE;
 pub use crate::speech::{Microphone, MicrophoneMode, Recogniser, Speech, Voice};
 pub use crate::study::Study;
@@ -129,7 +129,8 @@ impl Settings {
     /// Folder of the sound of the robot's latest sentences, if any: the configured one, else one in the
     /// group's run folder `run` if there is a console that plays them elsewhere.
     pub fn voice_dir(&self, run: &Path) -> Option<PathBuf> {
-        let has_console = self.group.services.iter().any(|service| service.name == "console");
+        let console = Service::Console.name();
+        let has_console = self.group.services.iter().any(|service| service.name == console);
         let own = has_console.then(|| run.join("said"));
         self.speech.voice_dir.clone().or(own)
     }

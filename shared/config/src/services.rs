@@ -8,11 +8,55 @@ use diagnostics::Report;
 use diagnostics::suggestion;
 use diagnostics::{Node, Source, Table};
 
-/// The services of every group, in the order in which they are listed.
-pub const BUILT_IN: [&str; 5] = ["speech", "grounding", "policy", "arm", "console"];
+/// Name of the process that starts the services, reserved for it.
+pub const SUPERVISOR: &str = "supervisor";
 
-/// Optional services whose programs ship with the others: the simulated Baxter.
-pub const OPTIONAL: [&str; 1] = ["baxter"];
+/// A service whose program `whichone-NAME` ships with the others. Groups may have more services, which
+/// need a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Service {
+    /// Recognises and synthesises speech.
+    Speech,
+    /// Interprets utterances.
+    Grounding,
+    /// Tracks the belief and decides.
+    Policy,
+    /// Moves the arm.
+    Arm,
+    /// Serves the web page.
+    Console,
+    /// Simulates a Baxter behind the robot's topics; optional.
+    Robot,
+}
+
+impl Service {
+    /// Services of every group, in the order in which they are listed.
+    pub const BUILT_IN: [Self; 5] =
+        [Self::Speech, Self::Grounding, Self::Policy, Self::Arm, Self::Console];
+
+    /// Services that a dialogue needs.
+    pub const DIALOGUE: [Self; 4] = [Self::Speech, Self::Grounding, Self::Policy, Self::Arm];
+
+    /// Services that keep a journal.
+    pub const JOURNALED: [Self; 3] = [Self::Speech, Self::Policy, Self::Arm];
+
+    /// Its name in configuration, journals and status.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Speech => "speech",
+            Self::Grounding => "grounding",
+            Self::Policy => "policy",
+            Self::Arm => "arm",
+            Self::Console => "console",
+            Self::Robot => "baxter",
+        }
+    }
+
+    /// Returns the service with this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::BUILT_IN.into_iter().chain([Self::Robot]).find(|service| service.name() == name)
+    }
+}
 
 /// Defaults of a service.
 const EACH: &str = r#"
@@ -30,7 +74,7 @@ const NAME_LEN_MAX: usize = 19;
 
 /// One service as configured.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Service {
+pub struct ServiceConfig {
     /// Unique name: 1 to 19 of `a–z 0–9 -`.
     pub name: String,
     /// Program and arguments. `None`, for built-in and optional services only: the program
@@ -77,7 +121,7 @@ pub(crate) fn complete(group: &mut Table, report: &mut Report) {
     }
 }
 
-pub(crate) fn read(f: &mut Fields<'_>) -> Vec<Service> {
+pub(crate) fn read(f: &mut Fields<'_>) -> Vec<ServiceConfig> {
     let services = f.each("services", |name, f| {
         check_name(name, f);
         one(name, f)
@@ -86,15 +130,15 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Vec<Service> {
     services
 }
 
-fn one(name: &str, f: &mut Fields<'_>) -> Service {
+fn one(name: &str, f: &mut Fields<'_>) -> ServiceConfig {
     let command = f.optional_command("command");
-    let knows_its_program = BUILT_IN.contains(&name) || OPTIONAL.contains(&name);
+    let knows_its_program = Service::from_name(name).is_some();
     if command.is_none() && !f.is_wrong("command") && !knows_its_program {
         let help = "write `command = [\"program\", \"argument\"]`";
         f.problem("command", "missing: only built-in services have a default program", help);
     }
     let watchdog = f.seconds("watchdog_s", 0.0..=3600.0);
-    Service {
+    ServiceConfig {
         name: name.to_owned(),
         command,
         after: f.texts("after"),
@@ -121,13 +165,13 @@ fn check_name(name: &str, f: &mut Fields<'_>) {
         let help =
             format!("use 1 to {NAME_LEN_MAX} of a-z, 0-9 and -, beginning with a letter or digit");
         f.problem_at(&[], "not a valid name of a service", help);
-    } else if name == "supervisor" {
+    } else if name == SUPERVISOR {
         f.problem_at(&[], "this name is reserved for the supervisor", "choose another one");
     }
 }
 
 /// Reports an `after` that names no service, and cycles.
-fn check_order(services: &[Service], f: &mut Fields<'_>) {
+fn check_order(services: &[ServiceConfig], f: &mut Fields<'_>) {
     let names: Vec<&str> = services.iter().map(|service| &*service.name).collect();
     for service in services {
         for missing in service.after.iter().filter(|other| !names.contains(&other.as_str())) {
@@ -151,11 +195,11 @@ fn check_order(services: &[Service], f: &mut Fields<'_>) {
 }
 
 /// Returns a cycle along `after`.
-fn cycle(services: &[Service]) -> Option<Vec<&str>> {
+fn cycle(services: &[ServiceConfig]) -> Option<Vec<&str>> {
     let find = |name: &str| services.iter().find(|service| service.name == name);
     let mut done: Vec<&str> = Vec::new();
     for start in services {
-        let mut way: Vec<(&Service, usize)> = vec![(start, 0)];
+        let mut way: Vec<(&ServiceConfig, usize)> = vec![(start, 0)];
         while let Some((service, next)) = way.last_mut() {
             let Some(name) = service.after.get(*next) else {
                 done.push(&service.name);

@@ -23,5 +23,5 @@ pub use fixed::*;
 pub use ids::{Epoch, Incarnation, RequestKey};
 pub use payloads::*;
 pub use text::{FixedText, TextTooLong};
-pub use topics::{Service, Topic};
+pub use topics::Topic;
 pub use wire::{Code, WireCode, WireError, WireField};

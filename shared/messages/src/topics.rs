@@ -4,40 +4,10 @@
 //! the writer until its effect is seen. A reader with a wake-up is notified after each send; clients
 //! poll.
 
+use config::Service;
+
 use crate::schema::{Schema, SchemaKey};
 use crate::*;
-
-/// A service of the standard group.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Service {
-    /// Hears and speaks.
-    Speech,
-    /// Understands.
-    Grounding,
-    /// Believes and decides.
-    Policy,
-    /// Moves.
-    Arm,
-    /// The robot's side of its own topics, where there is one: a bridge to it, or its simulation.
-    Robot,
-}
-
-impl Service {
-    /// Every service, in start order.
-    pub const ALL: [Self; 5] =
-        [Self::Robot, Self::Arm, Self::Policy, Self::Grounding, Self::Speech];
-
-    /// Its name in configuration, journals and status.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Speech => "speech",
-            Self::Grounding => "grounding",
-            Self::Policy => "policy",
-            Self::Arm => "arm",
-            Self::Robot => "baxter",
-        }
-    }
-}
 
 /// One topic: its name, its traffic and its bounds.
 #[derive(Clone, Copy, Debug)]
@@ -277,3 +247,14 @@ pub const ALL: [Topic; 17] = [
     TRAJECTORY,
     MOTION,
 ];
+
+/// Returns the services that are woken by some topic.
+pub fn woken() -> Vec<Service> {
+    let mut services: Vec<Service> = Vec::new();
+    for service in ALL.iter().chain(&robot::ALL).flat_map(|topic| topic.readers) {
+        if !services.contains(service) {
+            services.push(*service);
+        }
+    }
+    services
+}

@@ -206,7 +206,8 @@ fn check_ending<R>(part: &Part<R>) -> Result<(), Failure> {
             Ok(())
         }
         Ending::Corrupt { at, seq, .. } => {
-            let help = "help: start anew with `whichone up --fresh`, which keeps the old file";
+            let help =
+                "help: start a new epoch with `whichone up --fresh`, which keeps the old file";
             Err(part.broken(seq, format_args!("damaged at byte {at}; {help}")))
         }
     }

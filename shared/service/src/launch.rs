@@ -1,5 +1,6 @@
 //! Start of a supervisor from the command line: in the foreground, or detached from the terminal.
 
+use config::SUPERVISOR;
 use std::env;
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -124,7 +125,7 @@ impl Options {
 
 /// The supervisor's program; see [`program_of`].
 pub fn program() -> PathBuf {
-    program_of("supervisor")
+    program_of(SUPERVISOR)
 }
 
 /// The program of a service: beside the running one, else searched for in `PATH`.
@@ -150,7 +151,7 @@ pub fn detached(
     options: &Options,
     paths: &GroupPaths,
 ) -> Result<Launched, LaunchError> {
-    let path = paths.log_file("supervisor");
+    let path = paths.log_file(SUPERVISOR);
     let (log, log_from) = open_log(paths).map_err(|error| LaunchError::Io { path, error })?;
     let process = command(program, options, paths)
         .arg("--detached")
@@ -170,7 +171,7 @@ fn command(program: &Path, options: &Options, paths: &GroupPaths) -> Command {
 
 fn open_log(paths: &GroupPaths) -> io::Result<(File, u64)> {
     fs::create_dir_all(paths.log())?;
-    let path = paths.log_file("supervisor");
+    let path = paths.log_file(SUPERVISOR);
     let limits = Log { level: String::new(), file_bytes_max: LOG_BYTES_MAX, files_kept: 3 };
     let log = log_file::open(&path, &limits)?;
     let from = log_file::size(&path);
@@ -195,11 +196,11 @@ impl Launched {
                 return Ok(());
             }
             if let Ok(Some(status)) = self.process.try_wait() {
-                let log = log_file::tail(&self.paths.log_file("supervisor"), self.log_from);
+                let log = log_file::tail(&self.paths.log_file(SUPERVISOR), self.log_from);
                 return Err(LaunchError::Ended { status, log });
             }
             if Instant::now() > until {
-                let log = self.paths.log_file("supervisor");
+                let log = self.paths.log_file(SUPERVISOR);
                 return Err(LaunchError::Late { after: timeout, log });
             }
             thread::sleep(ASK_EVERY);

@@ -1,5 +1,6 @@
 //! Services that the group has lost or that are back.
 
+use config::Service;
 use service::status::Actual;
 use service::status::{GroupStatus, ServiceStatus};
 
@@ -26,8 +27,8 @@ pub(super) fn transitions<'a>(
 
 /// Returns a service that the dialogue needs and that is not ready.
 pub(crate) fn missing(group: &GroupStatus) -> Option<&ServiceStatus> {
-    const NEEDED: [&str; 4] = ["speech", "grounding", "policy", "arm"];
-    let mut needed = group.services.iter().filter(|service| NEEDED.contains(&&*service.name));
+    let names = Service::DIALOGUE.map(Service::name);
+    let mut needed = group.services.iter().filter(|service| names.contains(&&*service.name));
     needed.find(|service| service.actual != Actual::Ready)
 }
 

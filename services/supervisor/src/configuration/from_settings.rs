@@ -2,7 +2,7 @@
 
 use std::env;
 
-use config::{Section, Service, Settings};
+use config::{Section, Service, ServiceConfig, Settings};
 
 use super::{Configuration, Load};
 use crate::spec::{GroupSpec, ServiceSpec};
@@ -35,7 +35,7 @@ fn configuration(settings: Settings, options: &Options) -> Configuration {
     }
 }
 
-fn service(service: &Service, settings: &Settings) -> ServiceSpec {
+fn service(service: &ServiceConfig, settings: &Settings) -> ServiceSpec {
     ServiceSpec {
         name: service.name.clone(),
         command: service.command.clone().unwrap_or_else(|| vec![beside(&service.name)]),
@@ -58,19 +58,19 @@ fn beside(name: &str) -> String {
     path.unwrap_or(program)
 }
 
-/// Everything that a service reads: its own section, and the scene, which all read. Speech refuses
-/// what the dialogue would not understand, so it reads that section too. One that is not
-/// built in may read all there is. Whoever decides does so by how long the robot takes.
+/// Returns the text of everything that a service reads: its own section, and the scene, which all read.
+/// Speech rejects utterances that the dialogue would not understand, so it reads that section too. A
+/// service that is not built in may read all of them. Decisions depend on the robot's durations.
 fn fingerprint(name: &str, settings: &Settings) -> String {
-    let sections: &[Section] = match name {
-        "speech" => &[Section::Speech, Section::Dialogue],
-        "grounding" | "policy" => &[Section::Dialogue],
-        "arm" => &[Section::Arm],
-        "console" => &Section::ALL[1..],
-        _ => &[Section::Speech, Section::Dialogue, Section::Arm],
+    let (sections, decides): (&[Section], bool) = match Service::from_name(name) {
+        Some(Service::Speech) => (&[Section::Speech, Section::Dialogue], false),
+        Some(Service::Grounding) => (&[Section::Dialogue], false),
+        Some(Service::Policy) => (&[Section::Dialogue], true),
+        Some(Service::Arm) => (&[Section::Arm], false),
+        Some(Service::Console) => (&Section::ALL[1..], false),
+        Some(Service::Robot) | None => (&[Section::Speech, Section::Dialogue, Section::Arm], true),
     };
     let texts = sections.iter().map(|&section| settings.section_text(section));
-    let decides = !matches!(name, "speech" | "grounding" | "arm" | "console");
     let durations = decides.then(|| settings.durations_text());
     texts.chain([settings.scene_file().text.clone()]).chain(durations).collect()
 }

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use clap_complete::Shell;
+use config::Service;
 
 use super::ConfigArgs;
 
@@ -133,7 +134,7 @@ pub struct MotionArgs {
 #[derive(Debug, Args)]
 pub struct JournalArgs {
     /// Name of the service.
-    #[arg(default_value = "policy", value_parser = ["speech", "policy", "arm"])]
+    #[arg(default_value = Service::Policy.name(), value_parser = Service::JOURNALED.map(Service::name))]
     pub service: String,
     /// Verify the journal's invariants; exit code 70 if one is broken.
     ///

@@ -86,7 +86,7 @@ fn summary(settings: &Settings) -> Vec<String> {
     lines
 }
 
-fn service(service: &config::Service) -> Vec<String> {
+fn service(service: &config::ServiceConfig) -> Vec<String> {
     let program = |command: &Vec<String>| command.join(" ");
     let command = service.command.as_ref();
     let seconds = |time: std::time::Duration| format!("{} s", time.as_secs_f64());

@@ -6,7 +6,7 @@ use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-use config::{BUILT_IN, Settings};
+use config::{SUPERVISOR, Service, Settings};
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
 use service::inspection::{Condition, Finding};
@@ -50,7 +50,7 @@ pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>
 /// The devices of the speech service, as its own program finds them.
 fn devices(settings: &Settings) -> Result<Vec<Finding>, CliError> {
     let snapshot = service_program::Settings::write(settings)?;
-    let mut command = service_program::command("speech", "doctor");
+    let mut command = service_program::command(Service::Speech.name(), "doctor");
     command.arg("--settings").arg(snapshot.folder()).stderr(Stdio::inherit());
     let Ok(output) = command.output() else { return Ok(Vec::new()) };
     let lines = output.stdout.split(|&byte| byte == b'\n');
@@ -71,7 +71,8 @@ fn line(finding: &Finding, style: Style) -> String {
 fn programs() -> Finding {
     let folder = env::current_exe().ok().and_then(|own| Some(own.parent()?.to_owned()));
     let folder = folder.unwrap_or_default();
-    let names = BUILT_IN.iter().chain(&["supervisor"]).map(|name| format!("whichone-{name}"));
+    let names = Service::BUILT_IN.map(Service::name).into_iter().chain([SUPERVISOR]);
+    let names = names.map(|name| format!("whichone-{name}"));
     let missing: Vec<String> = names.filter(|name| !folder.join(name).is_file()).collect();
     if missing.is_empty() {
         return Finding::good("programs", folder.display().to_string());
@@ -82,7 +83,7 @@ fn programs() -> Finding {
 
 /// Where the page is, or whether it has its port.
 fn page(paths: &GroupPaths, settings: &Settings) -> Finding {
-    const WHAT: &str = "console";
+    const WHAT: &str = Service::Console.name();
     if let Some(url) = console::url(paths) {
         return Finding::good(WHAT, format!("served at {url}"));
     }

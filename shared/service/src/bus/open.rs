@@ -9,7 +9,7 @@ use iceoryx2::service::builder::publish_subscribe::{
 };
 use iceoryx2::service::port_factory::event::PortFactory;
 use messages::topics::{self, Topic};
-use messages::{Epoch, Incarnation, Service, Stamp, WireError};
+use messages::{Epoch, Incarnation, Stamp, WireError};
 use std::cell::Cell;
 
 /// Opens the topic, creating it where this process is the first. A macro, because iceoryx2's
@@ -76,7 +76,7 @@ impl Topics {
     /// iceoryx2 refuses, or a topic of another schema stands there.
     pub fn create(bus: &Bus) -> Result<Self, BusError> {
         let topics = topics::ALL.iter().map(|topic| keep(bus, topic)).collect::<Result<_, _>>()?;
-        let notifiers = Service::ALL.iter().map(|&s| wake::open(bus, s));
+        let notifiers = topics::woken().into_iter().map(|service| wake::open(bus, service));
         Ok(Self { _topics: topics, _notifiers: notifiers.collect::<Result<_, _>>()? })
     }
 }
