@@ -1,4 +1,4 @@
-# Shared by the scripts beside this file: where things are, and how to install what is missing.
+# Functions of the scripts beside this file: paths, and installation of missing packages.
 # Sourced, not run.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -6,8 +6,8 @@ cd "$root"
 
 say() { printf '%s\n' "$*" >&2; }
 
-# install PACKAGE… : installs the Debian packages that are missing. Prints, one a line, those that
-# could not be installed, and succeeds all the same: what to do without them is the caller's affair.
+# install PACKAGE…: installs missing Debian packages. Prints one per line those that
+# could not be installed, and succeeds nevertheless: the caller decides how to continue without them.
 install() {
     local missing=() package
     for package in "$@"; do

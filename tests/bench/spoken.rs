@@ -116,7 +116,7 @@ fn voice(report: &mut Report) {
         (0..BREAKS).map(|n| time(&mut synthesiser, &format!("Is it number {n}?"))).collect();
     report.add("synthesis of a new sentence", "ms", &new, "not counted as speech");
     report.add("synthesis of a cached sentence", "ms", &known, "");
-    // A player that would go on for ever, as a stuck sound card does.
+    // A player that never ends, like a blocked sound card.
     let script = "case \"$1\" in *silence.wav) ;; *) exec sleep 60 ;; esac";
     let words = ["-c", script, "player"].map(str::to_owned).to_vec();
     let players = vec![Player { program: "sh".to_owned(), arguments: words }];

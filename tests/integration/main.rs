@@ -1,7 +1,7 @@
 //! The real supervisor and processes, driven through the command line. Every test has a group of its
 //! own, so that tests run in parallel.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(clippy::unwrap_used, reason = "a test without a value fails")]
 
 mod absence;
 mod batch;

@@ -1,4 +1,4 @@
-//! Users outside the observation model: the dialogue ends all the same.
+//! Users outside the observation model: the dialogue ends nevertheless.
 
 use whichone_tests::{Group, wait_for};
 

@@ -76,7 +76,7 @@ impl Group {
 /// One request over HTTP: status, headers and body as text. The request has these further lines.
 ///
 /// # Panics
-/// If there is no answer.
+/// If no response arrives.
 pub fn http(
     place: &str,
     method: &str,

@@ -91,7 +91,7 @@ pub struct Measured {
     pub velocity: [Joints; 2],
     /// Joint torques, newton metres.
     pub effort: [Joints; 2],
-    /// Whether an object is between the fingers; `None` if the robot cannot sense it.
+    /// True if an object is between the fingers; `None` if the robot cannot sense it.
     pub holding: [Option<bool>; 2],
     /// Time and source of the measurement.
     pub at: Source,
@@ -198,7 +198,7 @@ pub enum Fault {
         limb: Limb,
         /// The joint without its limb, e.g. `s0`.
         joint: &'static str,
-        /// How far, radians.
+        /// Deviation, radians.
         error_rad: f64,
         /// The bound, radians.
         tolerance_rad: f64,
@@ -213,7 +213,7 @@ pub enum Fault {
         limb: Limb,
         /// The joint without its limb.
         joint: &'static str,
-        /// How far, radians.
+        /// Deviation, radians.
         error_rad: f64,
         /// The bound, radians.
         tolerance_rad: f64,

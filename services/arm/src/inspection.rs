@@ -24,7 +24,7 @@ pub(crate) fn line(record: &Record) -> String {
     format!("{}  {:<12}  {pick}{stopped}", at(record.at), format!("{:?}", record.cause))
 }
 
-/// What an interaction has come to.
+/// Results of one interaction.
 #[derive(Debug, Default)]
 struct Tally {
     lifted: u32,

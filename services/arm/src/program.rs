@@ -54,7 +54,7 @@ const SETTLE_S: f64 = 0.2;
 const HAND_OVER_M: f64 = 0.005;
 /// Largest motion of the gripper with a joint, metres per radian.
 const REACH_M: f64 = 1.2;
-/// Rises of the gripper before it returns to rest, tried if there is no path from lower, metres.
+/// Rises of the gripper before it returns to rest, tried in turn until a path is found, metres.
 const RISES_M: [f64; 2] = [0.05, 0.15];
 /// Distance before and after a waypoint at which a corner is rounded, radians of joint distance.
 const BLEND_RAD: f64 = 0.15;

@@ -181,7 +181,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_joint_of_both_limbs_has_its_entry() {
+    fn joint_states_list_every_joint_of_both_limbs() {
         let sources: Vec<_> = JOINT_STATE_NAMES.into_iter().filter_map(source).collect();
         for limb in Limb::BOTH {
             for joint in 0..JOINTS.len() {

@@ -13,7 +13,7 @@ use service::Time;
 pub struct ArmState {
     /// Key of the scene that the objects below belong to.
     pub scene_key: u64,
-    /// Where both limbs are.
+    /// Joint positions of both limbs.
     pub posture: Posture,
     /// The latest pick.
     pub pick: Option<Pick>,
@@ -25,16 +25,16 @@ pub struct ArmState {
     pub held: Option<Held>,
     /// Objects that a person has taken and not put back, in order.
     pub gone: Vec<ObjectId>,
-    /// Whether the motion stop is latched.
+    /// True if the motion stop is latched.
     pub stopped: bool,
     /// Time at which the latest applied motion order was given.
     pub obeyed: Time,
-    /// Whether the arm waits after an interrupted pick until a person has checked it: until the next
+    /// True if the arm waits after an interrupted pick until a person has checked it: until the next
     /// order, or the release of a motion stop.
     pub waits_for_person: bool,
 }
 
-/// Where both limbs are, left first.
+/// Joint positions of both limbs, left first.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Posture {
     /// Joint positions, radians.
@@ -54,7 +54,7 @@ pub struct Held {
     pub in_gripper: [f64; 7],
 }
 
-/// Why a record was written.
+/// Reason for a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Cause {
     /// The journal starts here; the state is complete.
@@ -85,7 +85,7 @@ pub enum Cause {
 /// A journal record: why the state changed, when, and the state after it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// Why.
+    /// Reason for the record.
     pub cause: Cause,
     /// When.
     pub at: Time,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// `ESTOP_SOURCE_USER`.
 const BY_A_PERSON: u8 = 1;
 
-/// Whether the motors are on, and what keeps them off.
+/// State of the motors, and the cause that keeps them off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Assembly {
     enabled: bool,

@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_and_what_is_too_thin_are_missed() {
+    fn absent_and_thin_objects_are_missed() {
         for object_m in [None, Some(0.001)] {
             let mut fingers = calibrated();
             say(&mut fingers, Command::Go(0.0), 3);

@@ -62,7 +62,7 @@ pub struct Config {
     pub simulated: config::Simulated,
     /// Standard deviation of the objects' offsets across the fingers, metres.
     pub grasp_error_m: f64,
-    /// Whether people put back what they were given once the robot rests.
+    /// True if users put back the objects that they were handed once the robot rests.
     pub restock: bool,
     /// Scene around it.
     pub scene: Scene,

@@ -26,7 +26,7 @@ pub enum Whereabouts {
 /// The objects.
 #[derive(Clone, Debug)]
 pub struct ObjectWorld {
-    /// As they stand at first; none for one that has no place.
+    /// Initial positions; none for an object without one.
     places: Vec<Option<ObjectPose>>,
     /// Locations of the objects.
     pub now: Vec<Whereabouts>,

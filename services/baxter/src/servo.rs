@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ramp_is_followed_late_and_with_feed_forward_in_time() {
+    fn ramp_is_tracked_with_lag_and_without_lag_by_feed_forward() {
         let late = error_on_a_ramp(0.08, false);
         assert!((late - 0.5 * 0.08).abs() < 0.004, "{late} rad");
         assert!(error_on_a_ramp(0.08, true).abs() < 0.01);
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn the_speed_ratio_bounds_the_velocity() {
+    fn speed_ratio_bounds_the_velocity() {
         let (mut servo, mut goal) = resting(0.05);
         goal[0] = 1.5;
         for _ in 0..50 {
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn it_moves_at_a_commanded_velocity_and_stops_at_its_limits() {
+    fn servo_follows_commanded_velocity_and_stops_at_limits() {
         let (mut servo, _) = resting(0.05);
         servo.set_speed_ratio(1.0);
         for _ in 0..400 {

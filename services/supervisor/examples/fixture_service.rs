@@ -70,7 +70,7 @@ fn serve(mut each_pass: impl FnMut(Duration) -> Option<u8>, ending: Ending) -> E
     let since = Instant::now();
     note("ready");
     notify("READY=1\nX_VERSION=fixture\nSTATUS=all well");
-    let mut told_at = None;
+    let mut stop_requested_at = None;
     loop {
         thread::sleep(PASS);
         notify("WATCHDOG=1\nX_INPUT_AGE_MS=7");
@@ -81,10 +81,10 @@ fn serve(mut each_pass: impl FnMut(Duration) -> Option<u8>, ending: Ending) -> E
         if !is_orphan && !requested.load(Ordering::Relaxed) {
             continue;
         }
-        let told_at = *told_at.get_or_insert_with(Instant::now);
+        let stop_requested_at = *stop_requested_at.get_or_insert_with(Instant::now);
         match ending {
             Ending::Never if !is_orphan => continue,
-            Ending::After(time) if told_at.elapsed() < time => continue,
+            Ending::After(time) if stop_requested_at.elapsed() < time => continue,
             Ending::Prompt | Ending::After(_) | Ending::Never => {
                 note(if is_orphan { "orphaned" } else { "ended" });
                 return ExitCode::SUCCESS;

@@ -1,4 +1,4 @@
-//! What a child does between fork and exec. The one place of this crate with unsafe code.
+//! Steps of a child process between fork and exec. The only unsafe code of this crate.
 
 use std::os::fd::{AsRawFd, BorrowedFd, RawFd};
 use std::os::unix::process::CommandExt;

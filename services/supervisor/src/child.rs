@@ -47,7 +47,7 @@ impl Child {
         }
     }
 
-    /// Whether it has ended and can be reaped.
+    /// Returns true if it has ended and can be reaped.
     pub(crate) fn has_ended(&self) -> bool {
         let look = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
         matches!(waitid(WaitId::PidFd(self.pidfd.as_fd()), look), Ok(Some(_)))

@@ -1,8 +1,8 @@
 //! The life of a group's journals.
 //!
-//! Every identifier that is ever written counts within an epoch. Starting afresh puts the old
+//! Every identifier that is ever written counts within an epoch. A fresh start puts the old
 //! journals aside, under the old epoch's number, and begins a new one, so that nothing that was
-//! said before can be mistaken for something that is said now.
+//! published before can be mistaken for a new message.
 
 use std::fs;
 use std::io::{self, ErrorKind};
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_epoch_lasts_until_a_fresh_start_puts_its_journals_aside() {
+    fn epoch_lasts_until_a_fresh_start_moves_its_journals() {
         let home = tempfile::tempdir().unwrap();
         let paths = GroupPaths::in_home(home.path(), &GroupName::new("lab").unwrap()).unwrap();
         fs::create_dir_all(paths.journal()).unwrap();
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_without_a_number_is_refused() {
+    fn epoch_file_without_a_number_is_rejected() {
         let home = tempfile::tempdir().unwrap();
         let paths = GroupPaths::in_home(home.path(), &GroupName::new("lab").unwrap()).unwrap();
         fs::create_dir_all(paths.root()).unwrap();

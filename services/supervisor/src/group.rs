@@ -86,7 +86,7 @@ impl Group {
         })
     }
 
-    /// What the group is doing as a whole.
+    /// Returns the state of the group as a whole.
     pub fn state(&self) -> GroupState {
         match self.phase {
             Phase::Stopping => GroupState::Stopping,
@@ -97,26 +97,26 @@ impl Group {
         }
     }
 
-    /// Whether every service that is wanted up is ready.
+    /// Returns true if every service that is wanted up is ready.
     pub fn is_whole(&self) -> bool {
         self.machines
             .iter()
             .all(|machine| machine.wanted() == Wanted::Down || machine.actual() == Actual::Ready)
     }
 
-    /// Whether some service that is wanted up is held.
+    /// Returns true if some service that is wanted up is held.
     pub fn is_given_up(&self) -> bool {
         self.machines
             .iter()
             .any(|machine| machine.wanted() == Wanted::Up && machine.actual() == Actual::Held)
     }
 
-    /// Whether the group is stopping and no service runs any more.
+    /// Returns true if the group is stopping and no service is running.
     pub fn is_stopped(&self) -> bool {
         self.phase == Phase::Stopping && self.machines.iter().all(|machine| !machine.is_live())
     }
 
-    /// Whether the group is being stopped.
+    /// Returns true if the group is being stopped.
     pub fn is_stopping(&self) -> bool {
         self.phase == Phase::Stopping
     }

@@ -46,7 +46,7 @@ pub(crate) fn open_lock(path: &Path) -> io::Result<File> {
     OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)
 }
 
-/// Whether the lock could be taken exclusively just now; it is released again.
+/// Returns true if no other process holds the lock.
 pub(crate) fn is_free(lock: &File) -> bool {
     flock(lock, FlockOperation::NonBlockingLockExclusive).is_ok()
         && flock(lock, FlockOperation::Unlock).is_ok()
@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_lock_is_held_while_any_copy_of_the_descriptor_is_open() {
+    fn lifeline_is_locked_while_any_copy_of_the_descriptor_is_open() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("alive.lock");
         let later = open_lock(&path).unwrap();

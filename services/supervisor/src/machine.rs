@@ -88,17 +88,17 @@ impl Machine {
         self.wanted
     }
 
-    /// What it does.
+    /// Returns its current state.
     pub fn actual(&self) -> Actual {
         self.state.actual()
     }
 
-    /// Whether a process of it exists.
+    /// Returns true if a process of it exists.
     pub fn is_live(&self) -> bool {
         matches!(self.actual(), Actual::Starting | Actual::Ready | Actual::Stopping)
     }
 
-    /// Why it is held, if it is.
+    /// Returns the reason for holding it, if it is held.
     pub fn held_because(&self) -> Option<HeldBecause> {
         match self.state {
             State::Held(because) => Some(because),
@@ -106,7 +106,7 @@ impl Machine {
         }
     }
 
-    /// What the current or last incarnation was stopped for.
+    /// Returns the failure for which the current or last incarnation was stopped.
     pub fn failure(&self) -> Option<Failure> {
         self.failure
     }

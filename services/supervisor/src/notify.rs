@@ -1,6 +1,6 @@
-//! What services say: datagrams of the `sd_notify` protocol, each of lines `KEY=VALUE`.
+//! Notifications of services: datagrams of the `sd_notify` protocol with lines `KEY=VALUE`.
 //!
-//! Every incarnation has a socket of its own, so there is never a doubt who speaks.
+//! Every incarnation has a socket of its own, so the sender is always known.
 
 use std::fs;
 use std::io;
@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_are_told_apart() {
+    fn notification_lines_are_parsed_separately() {
         let said =
             parse(b"READY=1\nSTATUS=all \x1b[31mwell\nX_VERSION=0.1.0\nMAINPID=7\nWATCHDOG=1");
         assert_eq!(
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flood_is_taken_in_bounded_gulps_and_the_file_goes_with_the_socket() {
+    fn notification_flood_is_read_in_bounded_batches_and_socket_file_is_removed() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("n");
         let socket = NotifySocket::bind(&path).unwrap();

@@ -15,10 +15,10 @@ use thiserror::Error;
 use crate::lifeline::{is_free, open_lock};
 use crate::procfs::{self, Process};
 
-/// How long the kernel may take to end what was killed.
+/// Timeout for the end of killed processes.
 const KILL_PATIENCE: Duration = Duration::from_secs(5);
 
-/// How often it is looked.
+/// Polling interval.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
 /// Failure to take over the group.
@@ -152,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_group_can_be_taken_once() {
+    fn group_lock_is_exclusive() {
         let home = tempfile::tempdir().unwrap();
         let paths = GroupPaths::in_home(home.path(), &GroupName::new("lab").unwrap()).unwrap();
         std::fs::create_dir_all(paths.root()).unwrap();

@@ -17,7 +17,7 @@ pub(crate) struct Process {
     pub(crate) pid: Pid,
     /// Name of the program, at most 15 bytes.
     pub(crate) name: String,
-    /// Whether it has ended and waits to be reaped.
+    /// True if it has ended and waits to be reaped.
     pub(crate) is_zombie: bool,
     /// Its parent's number.
     pub(crate) parent: i32,
@@ -53,7 +53,7 @@ pub(crate) fn environment(pid: Pid) -> Environment {
     Environment(fs::read(format!("/proc/{pid}/environ")).unwrap_or_default())
 }
 
-/// Whether a process has the file at `path` open.
+/// Returns true if a process has the file at `path` open.
 pub(crate) fn has_open(pid: Pid, path: &Path) -> bool {
     let Ok(entries) = fs::read_dir(format!("/proc/{pid}/fd")) else { return false };
     entries.flatten().any(|entry| fs::read_link(entry.path()).is_ok_and(|target| target == path))
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_stat_line_with_an_awkward_name_is_read() {
+    fn procfs_stat_line_with_special_characters_is_parsed() {
         let line = "42 (a (b) c) S 7 9 9 0 -1 4194560 1 0 0 0 150 50 0 0 20 0 1 0 100 0 0";
         let expected = Process {
             pid: Pid::from_raw(42).unwrap(),
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn variables_are_told_apart_by_their_whole_name() {
+    fn environment_variables_are_matched_by_full_name() {
         let environment = Environment(b"AB=1\0A=2\0C=\0".to_vec());
         assert_eq!(environment.get("A"), Some(OsStr::new("2")));
         assert_eq!(environment.get("C"), Some(OsStr::new("")));

@@ -13,7 +13,7 @@ pub(crate) struct RestartLimiter {
     exits: VecDeque<Time>,
     /// Pauses since the last reset: the exponent of the next one.
     pauses: u32,
-    /// Whether the one start without a pause has been used since the last reset.
+    /// True if the one restart without backoff has been used since the last reset.
     spared: bool,
 }
 
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_exit_after_ready_is_answered_at_once_and_only_that() {
+    fn restart_limiter_skips_backoff_only_for_the_first_exit_after_readiness() {
         let mut limiter = RestartLimiter::default();
         let soon = Some(Duration::from_secs(1));
         assert_eq!(limiter.count(&LIMITS, soon, Time::from_secs(1)), Verdict::Again);
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_time_of_being_ready_resets_the_pauses() {
+    fn long_readiness_resets_the_backoff() {
         let mut limiter = RestartLimiter::default();
         for s in 0..4 {
             limiter.count(&LIMITS, None, Time::from_secs(s));
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn the_window_slides() {
+    fn restart_limiter_window_slides() {
         let limits = RestartLimits { exits_max: 3, ..LIMITS };
         let mut limiter = RestartLimiter::default();
         assert_eq!(limiter.count(&limits, None, Time::from_secs(0)), pause(100));

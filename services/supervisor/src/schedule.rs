@@ -1,4 +1,4 @@
-//! Who starts after whom, and so who stops before whom.
+//! Order in which services start; they stop in the reverse order.
 
 use thiserror::Error;
 
@@ -12,7 +12,7 @@ pub struct Schedule {
     order: Vec<usize>,
 }
 
-/// Why services cannot be put in order.
+/// Dependencies that admit no order.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum ScheduleError {
     /// Two services have the same name.
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_ordered_is_named() {
+    fn schedule_reports_cycles_and_unknown_dependencies() {
         assert_eq!(
             schedule(&[("a", &["b"]), ("b", &["a"]), ("c", &[])]),
             Err(ScheduleError::Cycle(vec!["a".into(), "b".into()]))

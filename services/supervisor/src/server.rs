@@ -18,10 +18,10 @@ mod tests;
 /// Connections at a time; one more is turned away.
 const CONNECTIONS_MAX: usize = 64;
 
-/// How long a client may take to send its request or to take its reply.
+/// Timeout of a client for sending its request and for receiving the reply.
 const CLIENT_PATIENCE: Duration = Duration::from_secs(5);
 
-/// How long the last replies may take when the supervisor ends.
+/// Timeout for the last replies when the supervisor shuts down.
 const FAREWELL: Duration = Duration::from_millis(500);
 
 /// Identifies a connection for as long as the supervisor runs.
@@ -130,7 +130,7 @@ impl Server {
         None
     }
 
-    /// Whether the client still waits for its reply.
+    /// Returns true if the client still waits for its reply.
     pub(crate) fn is_waiting(&self, client: Client) -> bool {
         self.connections.get(&client).is_some_and(|c| matches!(c.stage, Stage::Waiting))
     }

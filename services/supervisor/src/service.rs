@@ -25,7 +25,7 @@ pub(crate) struct Service {
     pub(crate) swapped: Option<Command>,
     pub(crate) running: Option<Running>,
     pub(crate) ended: Option<Ended>,
-    /// Where in its log the last incarnation began.
+    /// Offset in its log at which the last incarnation began.
     pub(crate) log_from: u64,
 }
 
@@ -50,7 +50,7 @@ pub(crate) struct Running {
     pub(crate) killed: bool,
 }
 
-/// How the incarnation before ended.
+/// End of the previous incarnation.
 #[derive(Clone, Debug)]
 pub(crate) struct Ended {
     pub(crate) incarnation: u32,
@@ -58,11 +58,11 @@ pub(crate) struct Ended {
     pub(crate) failure: Option<Failure>,
     pub(crate) killed: bool,
     pub(crate) at: Time,
-    /// What the operating system said where it could not be started.
+    /// Error of the operating system if it could not be started.
     pub(crate) error: Option<String>,
 }
 
-/// What all services of a group are started with.
+/// Environment shared by all services of a group.
 #[derive(Debug)]
 pub(crate) struct Surroundings {
     pub(crate) paths: GroupPaths,
@@ -193,7 +193,7 @@ impl Service {
         running.child.signal(effect);
     }
 
-    /// What it has said since the last call, as events; the rest is noted.
+    /// Returns its notifications since the last call as events, and records the others.
     pub(crate) fn listen(&mut self, now: Time) -> Vec<Event> {
         let Some(running) = &mut self.running else { return Vec::new() };
         let mut events = Vec::new();
@@ -218,7 +218,7 @@ impl Service {
         events
     }
 
-    /// Whether a process of it has ended and waits to be reaped.
+    /// Returns true if a process of it has ended and waits to be reaped.
     pub(crate) fn has_ended(&self) -> bool {
         self.running.as_ref().is_some_and(|running| running.child.has_ended())
     }

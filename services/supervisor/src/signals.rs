@@ -34,12 +34,12 @@ impl Signals {
         [self.end.as_fd(), self.child.as_fd()]
     }
 
-    /// Whether this process has been asked to end since the last call.
+    /// Returns true if this process has been asked to end since the last call.
     pub(crate) fn asked_to_end(&mut self) -> bool {
         take(&mut self.end)
     }
 
-    /// Whether some child has ended since the last call.
+    /// Returns true if some child has ended since the last call.
     pub(crate) fn child_ended(&mut self) -> bool {
         take(&mut self.child)
     }

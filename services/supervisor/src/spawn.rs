@@ -17,7 +17,7 @@ use crate::child::Child;
 use crate::lifeline::Lifeline;
 use service::process_exit::ProcessExit;
 
-/// What to start, and with what.
+/// Command and environment of a new process.
 #[derive(Debug)]
 pub(crate) struct Launch<'a> {
     pub(crate) command: &'a [String],
@@ -33,10 +33,10 @@ pub(crate) struct Launch<'a> {
 /// A program could not be started.
 #[derive(Debug, Error)]
 pub(crate) enum SpawnError {
-    /// There is no command.
+    /// Empty command.
     #[error("the command is empty")]
     Empty,
-    /// There is no such program.
+    /// Program not found.
     #[error("{0}: no such program")]
     Missing(String),
     /// The program may not be run.
@@ -93,7 +93,7 @@ pub(crate) fn spawn(launch: Launch<'_>) -> Result<Child, SpawnError> {
     // The handle is dropped without a wait: the child is reaped through its pidfd.
     let pid = Pid::from_child(&started);
     let child = Child::new(pid).map_err(failed)?;
-    tell_niceness(pid, launch.nice);
+    set_niceness(pid, launch.nice);
     Ok(child)
 }
 
@@ -101,7 +101,7 @@ pub(crate) fn spawn(launch: Launch<'_>) -> Result<Child, SpawnError> {
 /// seen from `directory`.
 ///
 /// # Errors
-/// There is no such program, or it cannot be run.
+/// Finds the program of a command, as a shell would.
 pub(crate) fn find_program(command: &[String], directory: &Path) -> Result<PathBuf, SpawnError> {
     let program = command.first().filter(|name| !name.is_empty()).ok_or(SpawnError::Empty)?;
     if program.contains('/') {
@@ -126,8 +126,8 @@ fn is_executable(path: &Path) -> bool {
     access(path, Access::EXEC_OK).is_ok()
 }
 
-/// A niceness below that of the supervisor needs a permission that few have.
-fn tell_niceness(pid: Pid, wanted: i32) {
+/// Sets the niceness. One below that of the supervisor needs a permission that few users have.
+fn set_niceness(pid: Pid, wanted: i32) {
     let found = rustix::process::getpriority_process(Some(pid));
     if wanted != 0 && found.is_ok_and(|found| found != wanted) {
         tracing::warn!(%pid, wanted, "niceness not permitted; it runs without");
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn programs_are_found_as_a_shell_would() {
+    fn program_lookup_follows_shell_rules() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("plain"), "").unwrap();
         let anywhere = Path::new("/");

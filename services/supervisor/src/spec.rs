@@ -10,7 +10,7 @@ pub use config::{Log, Restart, RestartLimits};
 pub struct GroupSpec {
     /// Services in the order of the configuration.
     pub services: Vec<ServiceSpec>,
-    /// How often and how fast a service that ends is started again.
+    /// Limits and backoff of restarts.
     pub restart: RestartLimits,
     /// Logs of the services.
     pub log: Log,
@@ -25,7 +25,7 @@ pub struct ServiceSpec {
     pub command: Vec<String>,
     /// Services that must be ready before this one is started for the first time.
     pub after: Vec<String>,
-    /// Whether the whole group stops in order when this service is given up.
+    /// True if the whole group stops in order when this service is given up.
     pub critical: bool,
     /// Time from start to `READY=1`.
     pub start_deadline: Duration,
@@ -35,7 +35,7 @@ pub struct ServiceSpec {
     pub stop_deadline: Duration,
     /// Scheduling niceness, −20 … 19.
     pub nice: i32,
-    /// Which exits are followed by a new start.
+    /// Exits that are followed by a restart.
     pub restart: Restart,
     /// Everything of the configuration that this service reads, in a form that differs exactly
     /// when it has to be restarted to take notice.

@@ -42,7 +42,7 @@ mod waits;
 /// Polling period of sizes of logs and files of topics, which notify of no change.
 const TICK: Duration = Duration::from_secs(1);
 
-/// How much later than asked for the loop may go round before time is taken to have stood still.
+/// Delay of a pass after which the machine is assumed to have been suspended.
 const STANDSTILL: Duration = Duration::from_millis(500);
 
 /// The supervisor of one group.
@@ -68,11 +68,11 @@ pub struct Supervisor {
     last_renewal: Option<Time>,
     last_pass: Time,
     next_tick: Time,
-    told_ready: bool,
+    reported_ready: bool,
     taken: File,
 }
 
-/// What of the configuration concerns the group as a whole.
+/// Configuration of the group as a whole.
 struct About {
     scene: String,
     profile: Option<String>,
@@ -170,8 +170,8 @@ impl Supervisor {
         }
         self.check_critical(now);
         self.answer_waits(now);
-        if !self.told_ready && self.group.state() == service::status::GroupState::Ready {
-            self.told_ready = true;
+        if !self.reported_ready && self.group.state() == service::status::GroupState::Ready {
+            self.reported_ready = true;
             tracing::info!(ms = now.as_millis(), "every service is ready");
             self.systemd.notify("READY=1");
         }
@@ -210,8 +210,8 @@ impl Supervisor {
         }
     }
 
-    /// Where shared memory has filled up meanwhile, a service that is started again would die of
-    /// it without a word; its share is looked for first.
+    /// Checks the free shared memory before a restart: if it were full, the service would die of
+    /// SIGBUS without a message.
     fn room_for_one(&self) -> Result<(), NoRoom> {
         let services = self.services.len().max(1) as u64;
         check_room(self.about.shared_memory_free_min_mib.div_ceil(services))

@@ -22,7 +22,7 @@ enum Step {
     Restoring,
 }
 
-/// What to do next.
+/// Next step of a swap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Move {
     /// Nothing yet.
@@ -43,7 +43,7 @@ impl Swap {
         Self { step: Step::Trying, earlier: machine.incarnation() }
     }
 
-    /// What the machine's present state means for the replacement.
+    /// Returns the next step for the current state of the machine.
     pub fn next(&mut self, machine: &Machine) -> Move {
         let has_begun = machine.incarnation() > self.earlier;
         match (machine.actual(), self.step) {
@@ -93,7 +93,7 @@ mod tests {
     const REFUSED: Event = Event::Exited(ProcessExit::Code(78));
 
     #[test]
-    fn a_new_command_that_becomes_ready_is_kept() {
+    fn swap_keeps_a_command_that_becomes_ready() {
         let mut machine = running();
         let mut swap = Swap::new(&machine);
         let found = moves(&mut swap, &mut machine, &[Event::Restart, STOPPED, Event::Ready]);
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn a_new_command_that_is_refused_is_taken_back() {
+    fn swap_rolls_back_a_rejected_command() {
         let mut machine = running();
         let mut swap = Swap::new(&machine);
         let found = moves(
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn an_old_command_that_fails_too_is_reported() {
+    fn swap_reports_a_failed_rollback() {
         let mut machine = running();
         let mut swap = Swap::new(&machine);
         let found = moves(
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_service_at_rest_can_be_replaced() {
+    fn swap_replaces_a_stopped_service() {
         let mut machine = running();
         moves(&mut Swap::new(&machine), &mut machine, &[Event::Stop, STOPPED]);
         let mut swap = Swap::new(&machine);

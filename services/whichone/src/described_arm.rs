@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_limb_is_its_mount_and_all_that_hangs_off_it() {
+    fn limb_contains_its_mount_and_all_descendants() {
         let q = [0.3, -0.5, 0.2, 0.8, -0.1, 1.0, 0.4];
         for (arg, limb) in [(LimbArg::Left, Limb::Left), (LimbArg::Right, Limb::Right)] {
             let arm = arm(None, Some(arg), None).unwrap();

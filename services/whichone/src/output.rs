@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::error::CliError;
 
-/// Where a verb prints to.
+/// Output of a verb.
 pub struct Output<'a> {
     sink: Box<dyn Write + 'a>,
     json: bool,
@@ -18,21 +18,21 @@ pub struct Output<'a> {
     style: Style,
 }
 
-/// Whether text may be coloured.
+/// Text style of the output: coloured or plain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
     /// Escape sequences are understood.
     pub colour: bool,
 }
 
-/// How a word is set apart.
+/// Emphasis of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ink {
-    /// What matters most.
+    /// Most important text.
     Bold,
-    /// What matters least.
+    /// Least important text.
     Dim,
-    /// As it should be.
+    /// Good state.
     Green,
     /// On its way.
     Yellow,
@@ -64,17 +64,17 @@ impl<'a> Output<'a> {
         Self { sink: Box::new(sink), json, terminal: false, style: Style::default() }
     }
 
-    /// Whether JSON is asked for.
+    /// Returns true if JSON is asked for.
     pub fn is_json(&self) -> bool {
         self.json
     }
 
-    /// Whether a person looks at it on a screen that can be drawn over.
+    /// Returns true if the output is a terminal that can be redrawn.
     pub fn is_terminal(&self) -> bool {
         self.terminal
     }
 
-    /// How words may be set apart.
+    /// Returns the emphasis that the output supports.
     pub fn style(&self) -> Style {
         self.style
     }
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_one_line_of_json() {
+    fn json_value_is_printed_on_one_line() {
         let mut bytes = Vec::new();
         Output::to(&mut bytes, true).json(&serde_json::json!({"a": "b\nc"})).unwrap();
         assert_eq!(bytes, b"{\"a\":\"b\\nc\"}\n");

@@ -38,7 +38,7 @@ mod words;
 /// Does what the command line asks for.
 ///
 /// # Errors
-/// Why it was not done.
+/// The verb failed.
 pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
     let paths = || paths::group_paths(&cli.group);
     match cli.verb {

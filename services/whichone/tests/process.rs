@@ -70,7 +70,7 @@ fn without_a_group_every_verb_says_how_to_start_one() {
 }
 
 #[test]
-fn a_configuration_is_looked_for_and_checked() {
+fn configuration_is_found_and_checked() {
     let home = Home::new();
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
     let shipped = shipped.display();
@@ -108,7 +108,7 @@ fn batch_tools_read_standard_input_or_a_file() {
 }
 
 #[test]
-fn a_reader_that_has_seen_enough_is_no_failure() {
+fn closed_output_pipe_is_not_a_failure() {
     let home = Home::new();
     let lines = "{\"id\":1,\"q\":[0,0,0,0,0,0,0]}\n".repeat(2_000);
     std::fs::write(home.0.path().join("lines"), lines).unwrap();

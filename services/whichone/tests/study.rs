@@ -65,7 +65,7 @@ const FILES: [&str; 8] = [
 ];
 
 #[test]
-fn every_policy_meets_every_kind_of_people() {
+fn every_policy_is_simulated_with_every_kind_of_user() {
     let words = ["--interactions", "60", "--users", "model,truthful,noisy,human", "--json"];
     let ended = study(&[&BOWLS[..], &words].concat());
     assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
@@ -112,7 +112,7 @@ fn study_prints_durations_that_can_be_the_costs() {
 }
 
 #[test]
-fn the_paper_s_evaluations_are_presets() {
+fn evaluations_of_the_publication_are_presets() {
     let present = study(&["--preset", "paper-present", "--json"]);
     let json: Value = serde_json::from_slice(&present.stdout).unwrap();
     assert_eq!((&json["interactions"], &json["request"]), (&3.into(), &false.into()));
@@ -126,7 +126,7 @@ fn the_paper_s_evaluations_are_presets() {
 }
 
 #[test]
-fn bad_input_is_named_with_its_cure() {
+fn invalid_input_is_reported_with_help() {
     let cases: [(&[&str], i32, &str); 8] = [
         (&[], 64, "--scene"),
         (&["--scene", "/nowhere.toml"], 74, "/nowhere.toml"),
@@ -141,22 +141,22 @@ fn bad_input_is_named_with_its_cure() {
         let named = words.first().is_none_or(|word| *word == "--scene");
         let scene = if named { &[][..] } else { &BOWLS[..] };
         let ended = study(&[scene, words].concat());
-        let told = String::from_utf8_lossy(&ended.stderr).into_owned();
-        assert_eq!(ended.status.code(), Some(code), "{words:?}: {told}");
-        assert!(told.contains(part), "{words:?}: {told}");
+        let stderr = String::from_utf8_lossy(&ended.stderr).into_owned();
+        assert_eq!(ended.status.code(), Some(code), "{words:?}: {stderr}");
+        assert!(stderr.contains(part), "{words:?}: {stderr}");
         assert!(ended.stdout.is_empty());
     }
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_is_named() {
+fn unwritable_folder_is_reported() {
     let words = ["--interactions", "1", "--out", "/dev/null/study"];
     let ended = study(&[&BOWLS[..], &words].concat());
     assert_eq!(ended.status.code(), Some(74));
     assert!(String::from_utf8_lossy(&ended.stderr).contains("/dev/null/study"));
 }
 
-/// The journal of somebody who has done one interaction with each of two policies: the first was
+/// Journal of a participant with one interaction under each of two policies: the first was
 /// right after ten seconds, the second wrong after six.
 fn journal(id: &str) -> String {
     let drawn = |step: u32| {
@@ -192,7 +192,7 @@ fn journal(id: &str) -> String {
 }
 
 #[test]
-fn a_study_with_people_is_reported_from_its_files() {
+fn user_study_is_reported_from_its_files() {
     let folder = tempfile::tempdir().unwrap();
     for id in ["AAAAAA", "CCCCCC"] {
         std::fs::write(folder.path().join(format!("{id}.jsonl")), journal(id)).unwrap();
@@ -225,7 +225,7 @@ fn data_that_is_missing_or_damaged_is_named() {
     let damaged = journal("AAAAAA").replacen("started", "stared", 1);
     std::fs::write(folder.path().join("AAAAAA.jsonl"), damaged).unwrap();
     let ended = study(&["report", data]);
-    let told = String::from_utf8_lossy(&ended.stderr).into_owned();
-    assert_eq!(ended.status.code(), Some(74), "{told}");
-    assert!(told.contains("AAAAAA.jsonl: line 3") && told.contains("restore"), "{told}");
+    let stderr = String::from_utf8_lossy(&ended.stderr).into_owned();
+    assert_eq!(ended.status.code(), Some(74), "{stderr}");
+    assert!(stderr.contains("AAAAAA.jsonl: line 3") && stderr.contains("restore"), "{stderr}");
 }

@@ -20,7 +20,7 @@ fn surface() -> String {
 }
 
 #[test]
-fn the_command_surface_is_as_agreed() {
+fn command_surface_matches_the_golden_file() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/surface.txt");
     let found = surface();
     if std::env::var_os("WHICHONE_BLESS").is_some() {
@@ -52,6 +52,6 @@ fn every_verb_and_every_argument_has_help() {
 }
 
 #[test]
-fn the_definition_holds_together() {
+fn clap_definition_is_consistent() {
     Cli::command().debug_assert();
 }

@@ -107,7 +107,7 @@ impl AudioStream {
         Ok(receipts)
     }
 
-    /// Whether the service has confirmed the end of the stream.
+    /// Returns true if the service has confirmed the end of the stream.
     pub fn is_over(&self) -> bool {
         self.is_over
     }

@@ -28,7 +28,7 @@ pub struct Bus {
     identity: Identity,
 }
 
-/// Who a process is in its group.
+/// Identity of a process in its group.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Identity {
     /// Epoch of the group.
@@ -58,7 +58,7 @@ pub enum BusError {
     /// Anything else that iceoryx2 says.
     #[error("shared memory, {what}: {cause}")]
     Ipc {
-        /// What was tried.
+        /// Operation that failed.
         what: String,
         /// iceoryx2's word for it.
         cause: String,
@@ -120,7 +120,7 @@ impl Bus {
         Ok(Self { node, identity })
     }
 
-    /// Who this process is.
+    /// Returns the identity of this process.
     pub fn identity(&self) -> Identity {
         self.identity
     }
@@ -178,7 +178,7 @@ impl Bus {
     }
 }
 
-/// What a fixed-layout message must be.
+/// A message of fixed layout.
 pub trait WireMessage:
     Schema + WireField + ZeroCopySend + Copy + std::fmt::Debug + 'static
 {

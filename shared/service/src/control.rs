@@ -28,45 +28,45 @@ pub enum Request {
     Status,
     /// Waits until every service that is wanted up is ready.
     WaitReady {
-        /// How long.
+        /// Timeout, milliseconds.
         wait_ms: u64,
     },
     /// Wants a service up; lifts a hold.
     Start {
         /// Its name.
         service: String,
-        /// How long to wait for it to be ready.
+        /// Timeout for its readiness, milliseconds.
         wait_ms: u64,
     },
     /// Wants a service down.
     Stop {
         /// Its name.
         service: String,
-        /// How long to wait for its end.
+        /// Timeout for its end, milliseconds.
         wait_ms: u64,
     },
     /// Stops a service, if it runs, and starts it.
     Restart {
         /// Its name.
         service: String,
-        /// Whether a swapped service gets its configured command back.
+        /// True to restore the configured command of a swapped service.
         #[serde(default)]
         original: bool,
-        /// How long to wait for the new incarnation to be ready.
+        /// Timeout for the readiness of the new incarnation, milliseconds.
         wait_ms: u64,
     },
     /// Stops a service and keeps it from running until it is released.
     Hold {
         /// Its name.
         service: String,
-        /// How long to wait for its end.
+        /// Timeout for its end, milliseconds.
         wait_ms: u64,
     },
     /// Lifts a hold, an operator's or the supervisor's own.
     Release {
         /// Its name.
         service: String,
-        /// How long to wait for it to be ready, if it is wanted up.
+        /// Timeout for its readiness if it is wanted up, milliseconds.
         wait_ms: u64,
     },
     /// Replaces a service's program; the old one is put back if the new one does not become ready
@@ -82,7 +82,7 @@ pub enum Request {
     /// Reloads the configuration and restarts the affected services. Answered by
     /// [`Reply::Reloaded`].
     Reload {
-        /// How long to wait for them to be ready.
+        /// Timeout for their readiness, milliseconds.
         wait_ms: u64,
     },
     /// Stops the group in order. Answered by [`Reply::Down`] when nothing of it is left.
@@ -111,7 +111,7 @@ pub enum Reply {
     Refused(Refusal),
 }
 
-/// How a group ended.
+/// Report on the end of a group.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DownReport {
     /// Services that did not end when asked and were killed.

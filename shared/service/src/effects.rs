@@ -1,4 +1,4 @@
-//! What a node wants done.
+//! Effects: outputs and records that a node requests.
 
 /// Effects of one or more events, in the order in which they were stated.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +30,7 @@ impl<Out, Record> Effects<Out, Record> {
         self.exit = true;
     }
 
-    /// Whether the service is to end.
+    /// Returns true if the service is to end.
     pub fn exits(&self) -> bool {
         self.exit
     }

@@ -2,20 +2,20 @@
 
 use std::process::ExitCode;
 
-/// How a program of the group ends.
+/// Exit code of a program of the group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// As it should.
+    /// Success.
     Ok = 0,
-    /// What was asked for was not reached; asking again may help.
+    /// The requested condition was not reached; a retry may succeed.
     NotReached = 1,
-    /// Called wrongly.
+    /// Invalid usage.
     Usage = 64,
     /// An invariant is broken: a defect of the program.
     Invariant = 70,
     /// The journal or another file cannot be written.
     Storage = 74,
-    /// Configuration, scene or message schema do not fit. Starting again does not help.
+    /// Configuration, scene or message schema do not fit. A restart does not help.
     Config = 78,
 }
 
@@ -32,7 +32,7 @@ impl Exit {
         }
     }
 
-    /// As a process ends with it.
+    /// Converts to the exit code of a process.
     pub fn code(self) -> ExitCode {
         ExitCode::from(self as u8)
     }

@@ -1,4 +1,4 @@
-//! Where a group lives: its name, its folders, its identity among the processes of the machine.
+//! Name and folders of a group, and its identity among the processes of the machine.
 
 use std::path::{Path, PathBuf};
 
@@ -210,7 +210,7 @@ impl GroupPaths {
         self.run().join("console.url")
     }
 
-    /// Where one incarnation of a service sends its notifications.
+    /// Returns the socket for notifications of one incarnation of a service.
     pub fn notify_socket(&self, service: &str, incarnation: u32) -> PathBuf {
         self.run().join(format!("n-{service}-{incarnation}"))
     }
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn a_home_too_deep_for_sockets_is_refused() {
+    fn home_path_too_long_for_sockets_is_rejected() {
         let deep = PathBuf::from(format!("/{}", "x".repeat(90)));
         let error = GroupPaths::in_home(&deep, &GroupName::new("lab").unwrap()).unwrap_err();
         assert!(error.to_string().contains(ENV_HOME));

@@ -19,10 +19,10 @@ use thiserror::Error;
 use crate::control::{CallError, Refusal, Reply, Request, call};
 use crate::log_file;
 
-/// How often a supervisor that is just starting is asked whether it listens.
+/// Interval at which a starting supervisor is polled.
 const ASK_EVERY: Duration = Duration::from_millis(5);
 
-/// How long a supervisor that listens may take for an answer.
+/// Timeout for the answer of a listening supervisor.
 const ANSWER_PATIENCE: Duration = Duration::from_secs(2);
 
 /// Rotation of the supervisor's own log, before it has read any configuration.
@@ -39,7 +39,7 @@ pub struct Options {
     pub profile: Option<String>,
     /// Overrides of configuration values: dotted key and TOML value.
     pub set: Vec<(String, String)>,
-    /// Whether to keep the old journals apart and start a new epoch.
+    /// True to start a new epoch and keep the old journals beside it.
     pub fresh: bool,
 }
 
@@ -57,9 +57,9 @@ pub enum LaunchError {
     /// It ended before it listened.
     #[error("the supervisor ended with {status}{}", indented(.log))]
     Ended {
-        /// How it ended.
+        /// Its exit status.
         status: ExitStatus,
-        /// What it had to say.
+        /// The end of its log.
         log: Vec<String>,
     },
     /// It does not listen in time.

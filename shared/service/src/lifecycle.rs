@@ -1,7 +1,7 @@
-//! A service's life under its supervisor: signals, lifeline, readiness and beats.
+//! Lifecycle of a service under its supervisor: signals, lifeline, readiness and heartbeats.
 //!
 //! The protocol is that of `sd_notify`: datagrams to `$NOTIFY_SOCKET`. The lifeline is a pipe that
-//! only the supervisor could write to: its end of file says that the supervisor is gone. The
+//! only the supervisor could write to: its end of file means that the supervisor has died. The
 //! service then shuts down, and if it cannot, a guard thread kills its whole process group.
 
 use crate::exit::{Exit, Failure};
@@ -17,9 +17,9 @@ use std::os::fd::{AsFd, BorrowedFd, FromRawFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
 
-/// How long a service may take to end after its supervisor is gone, before it is killed.
+/// Timeout for the shutdown of a service whose supervisor has died, before it is killed.
 const ORPHAN_GRACE: Duration = Duration::from_secs(15);
-/// Longest time between two beats.
+/// Maximum time between two heartbeats.
 const BEAT_MAX: Span = Span::from_ms(500);
 
 /// The environment that the supervisor has set for this process.
@@ -31,13 +31,13 @@ pub struct Environment {
     pub epoch: Epoch,
     /// Number of this start.
     pub incarnation: Incarnation,
-    /// What follows the program on its command line; a swapped service may have some.
+    /// Arguments of the program; a swapped service may have some.
     pub arguments: Vec<String>,
 }
 
 impl Environment {
-    /// For a node without a group around it, in simulations and reports: a home in which nothing
-    /// can be kept.
+    /// Environment of a node without a group, in simulations and reports: its home is not
+    /// writable.
     pub fn nowhere() -> Self {
         Self {
             paths: GroupPaths::nowhere(),
@@ -76,7 +76,7 @@ fn number<T: std::str::FromStr>(key: &str) -> Result<T, Failure> {
     value.parse().map_err(|_| Failure::new(Exit::Usage, format!("{key}={value} is not a number")))
 }
 
-/// The service's side of the bond with its supervisor.
+/// The service's connection to its supervisor.
 #[derive(Debug)]
 pub struct Lifecycle {
     signals: UnixStream,
@@ -122,7 +122,7 @@ impl Lifecycle {
         std::iter::once(self.signals.as_fd()).chain(self.lifeline.as_ref().map(AsFd::as_fd))
     }
 
-    /// Sleeps until one of `also` can be read, a signal or the supervisor's end comes, or `longest`
+    /// Sleeps until one of `also` is readable, a signal arrives, the supervisor ends, or `longest`
     /// has passed.
     pub fn wait(&self, also: &[BorrowedFd<'_>], longest: Span) {
         let timeout = rustix::time::Timespec {
@@ -136,26 +136,26 @@ impl Lifecycle {
         let _ = poll(&mut polled, Some(&timeout));
     }
 
-    /// Whether the service has been asked to shut down.
+    /// Returns true if the service has been asked to shut down.
     pub fn shutdown_requested(&mut self) -> bool {
         let mut byte = [0_u8; 16];
         let signalled = std::io::Read::read(&mut self.signals, &mut byte).is_ok_and(|n| n > 0);
         signalled || self.lifeline.as_ref().is_some_and(orphaned)
     }
 
-    /// Tells the supervisor that the service does its work.
+    /// Notifies the supervisor that the service is ready.
     pub fn ready(&mut self) {
         let version = concat!("X_VERSION=", env!("CARGO_PKG_VERSION"));
         self.notifier.say(&[NotifyState::Custom(version), NotifyState::Ready]);
     }
 
-    /// Tells the supervisor that the service has begun to end.
+    /// Notifies the supervisor that the service is shutting down.
     pub fn stopping(&mut self) {
         self.notifier.say(&[NotifyState::Stopping]);
     }
 
-    /// Sends a beat if one is due. Called only by the main loop after a full pass, so
-    /// that a beat means that work is being done.
+    /// Sends a heartbeat if one is due. Called only by the main loop after a full pass, so that a
+    /// heartbeat proves progress.
     pub fn beat(&mut self, now: Time, pending_since: Option<Time>) {
         if self.last_beat.is_some_and(|last| now < last + self.beat_every) {
             return;
@@ -166,7 +166,7 @@ impl Lifecycle {
         self.notifier.beat(&[NotifyState::Watchdog, NotifyState::Custom(&age)]);
     }
 
-    /// When the next beat is due.
+    /// Time of the next heartbeat.
     pub fn next_beat(&self, now: Time) -> Time {
         self.last_beat.map_or(now, |last| last + self.beat_every)
     }
@@ -202,8 +202,8 @@ fn orphaned(lifeline: &OwnedFd) -> bool {
     poll(&mut fds, Some(&now)).is_ok_and(|n| n > 0)
 }
 
-/// Waits for the supervisor's end, and then for this process's own; kills the group where that does
-/// not come.
+/// Waits for the end of the supervisor and then of this process; kills the process group if that
+/// times out.
 fn guard(lifeline: OwnedFd) {
     let watch = move || {
         while poll(&mut [PollFd::new(&lifeline, PollFlags::IN)], None).is_err() {}

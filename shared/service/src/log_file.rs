@@ -32,7 +32,7 @@ pub fn open(path: &Path, limits: &Log) -> io::Result<File> {
 /// what it had to say.
 ///
 /// # Errors
-/// The copy cannot be made; the log is emptied all the same.
+/// The copy cannot be made; the log is truncated nevertheless.
 pub fn bound(path: &Path, limits: &Log) -> io::Result<bool> {
     let bytes = size(path);
     if bytes <= limits.file_bytes_max {
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_log_is_put_aside_at_the_next_start() {
+    fn large_log_is_rotated_at_the_next_start() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("arm.log");
         for round in 0..5 {
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn a_log_that_grows_while_it_is_written_is_bounded() {
+    fn growing_log_is_bounded() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("arm.log");
         let mut log = open(&path, &limits(2)).unwrap();
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tail_holds_the_last_lines_of_the_last_incarnation() {
+    fn log_tail_holds_the_last_lines_of_the_last_incarnation() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("arm.log");
         fs::write(&path, "before\nafter\n\x1b[1mlast\n").unwrap();

@@ -42,7 +42,7 @@ impl Notifier {
         self.send("");
     }
 
-    /// Says what is soon said again; it is dropped where there is no room.
+    /// Sends states that are repeated soon; they are dropped if the socket's buffer is full.
     pub(crate) fn beat(&mut self, states: &[NotifyState<'_>]) {
         self.send(&lines(states));
     }
@@ -82,7 +82,7 @@ mod tests {
     const MANY: usize = 5_000;
 
     #[test]
-    fn a_full_queue_holds_nobody_up() {
+    fn full_notification_queue_does_not_block() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("notify");
         let receiver = UnixDatagram::bind(&path).unwrap();
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn a_receiver_that_is_gone_or_was_never_there_is_no_trouble() {
+    fn missing_notification_receiver_is_not_an_error() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("notify");
         let mut notifier = Notifier::to(path.clone()).unwrap();

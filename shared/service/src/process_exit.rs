@@ -1,4 +1,4 @@
-//! How a service ended.
+//! Exits of services.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ pub const EXIT_CONFIG: i32 = 78;
 /// ProcessExit code of a service that does not understand its command line (`EX_USAGE`).
 pub const EXIT_USAGE: i32 = 64;
 
-/// How one incarnation ended.
+/// Exit of one incarnation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ProcessExit {
@@ -25,12 +25,12 @@ pub enum ProcessExit {
 }
 
 impl ProcessExit {
-    /// Whether starting the same thing again cannot help.
+    /// Returns true if a restart of the same command cannot help.
     pub fn is_permanent(self) -> bool {
         matches!(self, Self::Code(EXIT_CONFIG | EXIT_USAGE) | Self::NotStartable)
     }
 
-    /// Whether it ended as a finished program does.
+    /// Returns true if it ended with exit code 0.
     pub fn is_clean(self) -> bool {
         self == Self::Code(0)
     }
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_cannot_get_better_is_permanent() {
+    fn only_permanent_exits_prevent_a_restart() {
         for exit in [ProcessExit::Code(64), ProcessExit::Code(78), ProcessExit::NotStartable] {
             assert!(exit.is_permanent(), "{exit}");
         }
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_are_told_in_words() {
+    fn exits_are_displayed_with_signal_names() {
         assert_eq!(ProcessExit::Signal(9).to_string(), "signal KILL");
         assert_eq!(ProcessExit::Signal(40).to_string(), "signal 40");
         assert_eq!(ProcessExit::Code(3).to_string(), "exit 3");

@@ -1,4 +1,4 @@
-//! What a service is: a deterministic reducer from events to effects.
+//! The core of a service: a deterministic reducer from events to effects.
 //!
 //! A node does no IO, reads no clock and starts no threads; everything that it wants done it states
 //! as [`Effects`], and the runtime carries them out in one fixed order: append all records, sync
@@ -7,7 +7,7 @@
 
 use crate::{Effects, Time};
 
-/// What happens to a node.
+/// Input of a node.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event<In> {
     /// The node has been recovered and its topics are open.
@@ -22,16 +22,16 @@ pub enum Event<In> {
 
 /// A service as a reducer.
 pub trait Node: Sized {
-    /// What it is configured with.
+    /// Its configuration.
     type Config;
-    /// What arrives.
+    /// Messages and device results that it receives.
     type In;
-    /// What it publishes or asks of its devices.
+    /// Messages that it publishes, and requests to its devices.
     type Out;
-    /// What it must not forget. A stateless node uses [`Never`].
+    /// Records of its journal. A stateless node uses [`Never`].
     type Record;
 
-    /// The node as its journal left it; an empty journal is the first start. There is no other way
+    /// Restores the node from its journal; empty at the first start. There is no other way
     /// to make one, so that first start and restart share one path.
     ///
     /// # Errors
@@ -64,8 +64,8 @@ pub enum Never {}
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{what} (help: {help})")]
 pub struct NodeError {
-    /// What is wrong.
+    /// Description of the error.
     pub what: String,
-    /// What the operator can do.
+    /// Advice to the operator.
     pub help: String,
 }

@@ -1,8 +1,8 @@
 //! The main loop of every service, the same for first start and restart:
 //! recover → open topics → ready → (wait, drain everything, decide, commit, beat)*.
 //!
-//! Commit is where the promises are kept: all records of a pass are appended and synced once, and
-//! only then does anything of it become visible to others.
+//! Durability comes before visibility: all records of a pass are appended and synced once, and only
+//! then are its outputs published.
 
 use crate::bus::{Bus, Identity, PortError, WakeListener};
 use crate::clock;
@@ -19,20 +19,21 @@ use std::ops::ControlFlow;
 use std::os::fd::BorrowedFd;
 use std::process::ExitCode;
 
-/// Events of one pass; what is left waits for the next, so that beats and signals are not held up.
+/// Maximum events per pass; the others wait for the next pass, so that heartbeats and signals are not
+/// delayed.
 const PASS_EVENTS_MAX: usize = 256;
-/// Longest sleep: inputs are looked at this often even if a wake-up was lost.
+/// Maximum sleep: inputs are polled this often even if a wake-up was lost.
 const LOOK_EVERY: Span = Span::from_ms(500);
-/// Journals are cut short beyond this, where the node offers a snapshot.
+/// Size at which journals are compacted, if the node offers a snapshot.
 const JOURNAL_BYTES: u64 = 1 << 20;
-/// How long to wait for the previous incarnation to release its journal.
+/// Timeout for the previous incarnation to release its journal.
 const LOCK_PATIENCE: Span = Span::from_ms(3_000);
 
 /// A service: a node and the shell around it.
 pub trait Program: Sized {
-    /// Which service it is.
+    /// The service.
     const SERVICE: Service;
-    /// Kind of record in its journal; none for a node that remembers nothing. A changed record
+    /// Kind of record in its journal; none for a stateless node. A changed record
     /// type needs a changed name.
     const RECORD: Option<&'static str>;
     /// One paragraph for `--help`.
@@ -92,7 +93,7 @@ pub trait Shell<N: Node>: Sized {
     fn publish(&mut self, output: N::Out) -> Result<(), PortError>;
 }
 
-/// What a shell may use.
+/// Resources of a shell.
 #[derive(Debug)]
 pub struct Context<'a, In> {
     /// The group's shared memory.
@@ -101,7 +102,7 @@ pub struct Context<'a, In> {
     pub settings: &'a Settings,
     /// For device threads.
     pub devices: DeviceSender<In>,
-    /// Where the group lives.
+    /// Environment of the process: group, epoch and incarnation.
     pub environment: &'a Environment,
 }
 
@@ -114,8 +115,8 @@ pub fn run<P: Program>() -> ExitCode {
     program(P::SERVICE.name(), P::ABOUT, serve::<P>)
 }
 
-/// The outside of every service's program: `--help` with its name and what it is `about`, logs, and the
-/// exit code of how `serve`, which gets the arguments, has ended.
+/// Runs a service's program: prints `--help` with its name and `about`, or initialises logging, calls
+/// `serve` with the arguments and returns its exit code.
 pub fn program(
     name: &str,
     about: &str,
@@ -172,7 +173,7 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
 pub type Record<P> = <<P as Program>::Node as Node>::Record;
 type In<P> = <<P as Program>::Node as Node>::In;
 type Out<P> = <<P as Program>::Node as Node>::Out;
-/// A journal, where the service has one, and what it held.
+/// The journal of a service, if it has one, and its records.
 type Recovered<P> = (Option<Journal<Record<P>>>, Vec<Record<P>>);
 
 fn open_journal<P: Program>(environment: &Environment) -> Result<Recovered<P>, Failure> {
@@ -207,30 +208,30 @@ fn open_journal<P: Program>(environment: &Environment) -> Result<Recovered<P>, F
     }
 }
 
-/// What the main loop drives: one pass after the other until the service has shut down.
+/// A service as the main loop drives it: one pass after another until it has shut down.
 pub trait Cycle {
     /// Returns the descriptors that end the sleep, and when it ends at the latest.
     fn wake(&self, now: Time) -> (Vec<BorrowedFd<'_>>, Time);
 
-    /// Begins to shut down; further passes follow until one breaks the loop.
+    /// Starts the shutdown; further passes follow until one breaks the loop.
     fn shut_down(&mut self);
 
-    /// Takes what has arrived, decides and publishes; breaks once the service has shut down.
+    /// Processes pending inputs, decides and publishes; breaks once the service has shut down.
     ///
     /// # Errors
-    /// What the service cannot go on without is lost.
+    /// A resource that the service requires is lost.
     fn pass(&mut self) -> Result<ControlFlow<()>, Failure>;
 
-    /// Returns whether the service does its work: without a beat the supervisor restarts it.
+    /// Returns the health of the service: without heartbeats the supervisor restarts it.
     fn health(&mut self, now: Time) -> Health;
 }
 
-/// Whether a service does its work.
+/// Health of a service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Health {
-    /// It does; its oldest unprocessed input arrived then.
+    /// Working; the arrival of its oldest unprocessed input.
     Working(Option<Time>),
-    /// A part of it hangs.
+    /// A part of it is unresponsive.
     Stuck,
 }
 

@@ -1,5 +1,5 @@
-//! What the supervisor does to the group's shared memory: makes it, looks after it, cleans up after
-//! the dead, and removes it.
+//! Shared memory of a group, as managed by the supervisor: creation, checks, cleanup after
+//! dead processes, and removal.
 
 use crate::bus::{Bus, BusError, Identity, Topics, config};
 use crate::group::GroupPaths;
@@ -7,10 +7,10 @@ use messages::Epoch;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// How long to wait for another process that is just cleaning up after a dead one.
+/// Timeout for another process that is cleaning up.
 const CLEANUP_PATIENCE: Duration = Duration::from_millis(200);
 
-/// The supervisor's hold on the group's shared memory.
+/// The supervisor's handle to the group's shared memory.
 #[derive(Debug)]
 pub struct Admin {
     bus: Bus,
@@ -18,7 +18,7 @@ pub struct Admin {
     root: PathBuf,
 }
 
-/// There is no room for the group.
+/// Too little free shared memory for the group.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{path}: {free_mib} MiB of shared memory are free, {needed_mib} MiB are needed; free some, or \
@@ -30,8 +30,8 @@ pub struct NoRoom {
     needed_mib: u64,
 }
 
-/// Refuses to start where shared memory is short: a full one is no error later on but the death
-/// (SIGBUS) of the process that touches it.
+/// Checks for free shared memory before a start: running out of it later is not an error but kills the
+/// process that touches it (SIGBUS).
 ///
 /// # Errors
 /// Less than `needed_mib` free.
@@ -65,11 +65,11 @@ impl Admin {
     /// started.
     pub fn clean_dead(&self) {
         let state = self.bus.node().blocking_cleanup_dead_nodes(CLEANUP_PATIENCE);
-        tracing::debug!(?state, "cleaned up after the dead");
+        tracing::debug!(?state, "cleaned up after dead processes");
     }
 
-    /// Whether the group's files are still there. Where an operator has removed them by hand, every
-    /// newcomer would silently make a second group of the same name.
+    /// Returns true if the group's files are still there. If they were removed by
+    /// hand, every new process would silently create a second group of the same name.
     pub fn intact(&self) -> bool {
         self.root.is_dir()
             && std::fs::read_dir(&self.root).is_ok_and(|mut entries| entries.next().is_some())

@@ -96,15 +96,15 @@ impl ServiceStatus {
 /// The end of an incarnation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LastExit {
-    /// Which one.
+    /// Number of the incarnation.
     pub incarnation: u32,
-    /// How it ended.
+    /// Its exit.
     pub exit: ProcessExit,
     /// The missed deadline for which it was stopped, if any.
     pub failure: Option<Failure>,
-    /// Whether it had to be killed.
+    /// True if it had to be killed.
     pub killed: bool,
-    /// How long ago, seconds.
+    /// Time since then, seconds.
     pub age_s: f64,
     /// Summary.
     pub text: String,

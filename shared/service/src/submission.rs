@@ -59,7 +59,7 @@ impl Submission {
         (self.receipts.len() >= first.segments as usize).then_some(&self.receipts)
     }
 
-    /// Whether the patience has run out without all receipts.
+    /// Returns true if the patience has run out without all receipts.
     pub fn is_expired(&self, now: Time) -> bool {
         now >= self.expires && self.receipts().is_none()
     }

@@ -23,13 +23,13 @@ use crate::Time;
 /// A group at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct View<'a, Group> {
-    /// What the policy believes and decides; none before it has published anything.
+    /// Belief and decision of the policy; none before its first publication.
     pub dialogue: Option<DialogueView<'a>>,
     /// The latest lines of the dialogue, oldest first.
     pub said: Vec<SaidView<'a>>,
-    /// How well the robot hears.
+    /// Quality of the microphone signal.
     pub hearing: Option<HearingView<'a>>,
-    /// What the arm does.
+    /// State of the arm.
     pub arm: Option<ArmView<'a>>,
     /// The supervisor's status of the group.
     pub group: Option<&'a Group>,
@@ -38,13 +38,13 @@ pub struct View<'a, Group> {
 /// A line of the dialogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct SaidView<'a> {
-    /// Who said it.
+    /// Its speaker.
     pub who: Speaker,
     /// The words.
     pub text: &'a str,
 }
 
-/// Who said a line of the dialogue.
+/// Speaker of a line of the dialogue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Speaker {

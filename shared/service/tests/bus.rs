@@ -1,4 +1,4 @@
-//! Topics on real shared memory: what is refused, what is dropped, what a late reader still gets.
+//! Topics on real shared memory: schema checks, overflow, and history for late readers.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 
@@ -59,7 +59,7 @@ impl Schema for OtherMark {
 }
 
 #[test]
-fn a_struct_of_the_same_size_with_other_fields_is_refused() {
+fn topic_rejects_a_struct_of_equal_size_with_other_fields() {
     let shm = Shm::new();
     let bus = shm.join(1, 1);
     let _writer = bus.writer::<AppliedMark>(&topics::MARK).unwrap();
@@ -71,7 +71,7 @@ fn a_struct_of_the_same_size_with_other_fields_is_refused() {
 }
 
 #[test]
-fn the_newest_state_reaches_a_late_reader_and_the_oldest_gives_way() {
+fn late_reader_receives_the_newest_messages() {
     let shm = Shm::new();
     let bus = shm.join(1, 1);
     let writer = bus.writer::<AppliedMark>(&topics::MARK).unwrap();
@@ -96,7 +96,7 @@ fn another_epoch_is_not_heard() {
 }
 
 #[test]
-fn an_earlier_incarnation_is_not_heard_after_a_later_one() {
+fn messages_of_an_earlier_incarnation_are_dropped() {
     let shm = Shm::new();
     // The topic admits one writer at a time, as in a group: the later takes the earlier's place.
     let reading = shm.join(1, 0);

@@ -63,7 +63,7 @@ pub(crate) fn thread_s() -> f64 {
     time.tv_sec as f64 + time.tv_nsec as f64 * 1e-9
 }
 
-/// What a call gives, and the microseconds of processor that it takes, less those of looking at
+/// Returns the result of a call and its processor time in microseconds, less the time of reading
 /// the clock.
 fn timed<T>(call: impl FnOnce() -> T) -> (T, f64) {
     static CLOCK_S: LazyLock<f64> = LazyLock::new(|| {

@@ -28,7 +28,7 @@ pub(super) struct Measured {
 #[derive(Debug, Deserialize)]
 struct Run {
     name: String,
-    /// Whether it looked for the posture nearest to the seed.
+    /// True if it looked for the posture nearest to the seed.
     nearest: bool,
     random_seed: bool,
     answers: Vec<Option<Joints>>,

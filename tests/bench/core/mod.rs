@@ -24,7 +24,7 @@ pub(crate) struct Effort {
     pub(crate) budget_s: f64,
     /// Dialogues less probable than this are cut short in exact evaluations.
     pub(crate) cut: f64,
-    /// Whether series leave out small steps.
+    /// True if series leave out small steps.
     pub(crate) quick: bool,
 }
 

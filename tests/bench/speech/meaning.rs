@@ -45,7 +45,7 @@ impl Meaning {
         *self != Self::default()
     }
 
-    /// Whether values and answer are the same, however the values are connected: word spotting's
+    /// Returns true if values and answer are the same, however the values are connected: word spotting's
     /// measure.
     pub(super) fn values(&self) -> (BTreeSet<WordId>, u8) {
         let excluded = self.excluded.iter().flatten();
@@ -112,7 +112,7 @@ pub(super) fn edits(said: &[WordId], heard: &[WordId]) -> usize {
     row[heard.len()]
 }
 
-/// Which words of `heard` were said there: those of the longest sequence of words that both texts
+/// Marks the words of `heard` that were said: those of the longest sequence of words that both texts
 /// have in common.
 pub(super) fn said_too(heard: &[&str], said: &[&str]) -> Vec<bool> {
     let width = said.len() + 1;

@@ -24,19 +24,19 @@ pub(super) struct Score {
     /// Scene words that were said, and the edits from them to those of the best hypothesis.
     pub(super) words: usize,
     pub(super) word_errors: usize,
-    /// Whether the meaning is right: of the best hypothesis, of the weightiest meaning of all, of
+    /// True if the meaning is right: of the best hypothesis, of the weightiest meaning of all, of
     /// any of them; each with the gate open.
     pub(super) best: bool,
     pub(super) weighed: bool,
     pub(super) oracle: bool,
-    /// Whether values and answer of the weightiest meaning are right by word spotting.
+    /// True if values and answer of the weightiest meaning are right by word spotting.
     pub(super) spotted: bool,
-    /// Whether the gate let all of it pass and the weightiest meaning is right.
+    /// True if the gate let all of it pass and the weightiest meaning is right.
     pub(super) passed: bool,
-    /// Whether the robot acts on something else than what was said.
+    /// True if the robot acts on a misrecognised utterance.
     pub(super) wrong_action: bool,
     pub(super) acted_on: bool,
-    /// Whether the likeliest objects are those after the true text.
+    /// True if the likeliest objects are those after the true text.
     pub(super) objects: bool,
     /// Seconds from the voice's end to the hypotheses without the closing pause, and of processor
     /// to decode.
@@ -151,7 +151,7 @@ fn together<'h>(heard: impl Iterator<Item = &'h Heard>) -> Vec<Hypothesis> {
     all
 }
 
-/// How late the detector and the hypotheses are, seconds; not a number where nothing was heard.
+/// Latencies of the detector and the hypotheses, seconds; NaN if nothing was recognised.
 struct Timing {
     onset_s: f64,
     release_s: f64,

@@ -5,7 +5,7 @@ use super::corpus::Corpus;
 use super::score::Score;
 use crate::report::{Report, Table, percentile};
 
-/// Which trials a row is about.
+/// Title of a row and filter of its trials.
 type Of<'a> = (String, Box<dyn Fn(&Trial) -> bool + 'a>);
 
 pub(super) fn add(report: &mut Report, corpus: &Corpus, levels: &[f64], trials: &[Trial]) {

@@ -9,6 +9,6 @@ import { expect } from "./test.mjs";
  */
 export async function expectAccessible(page) {
   const { violations } = await new AxeBuilder({ page }).analyze();
-  const told = violations.map(({ id, nodes }) => ({ id, where: nodes.map((node) => node.html) }));
-  expect(told, "violations found by axe-core").toEqual([]);
+  const found = violations.map(({ id, nodes }) => ({ id, where: nodes.map((node) => node.html) }));
+  expect(found, "violations found by axe-core").toEqual([]);
 }

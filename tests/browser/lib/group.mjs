@@ -33,7 +33,7 @@ export class Group {
     return group;
   }
 
-  /** The console's address, as the group's own file tells it; nothing while there is none. */
+  /** The console's address from the group's file; nothing while there is none. */
   async address() {
     const files = await readdir(this.home, { recursive: true });
     const file = files.find((path) => path.endsWith("console.url"));

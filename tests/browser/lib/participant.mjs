@@ -12,7 +12,7 @@ export const screen = (page, name) =>
   expect(page.locator("body")).toHaveAttribute("data-screen", name);
 
 /**
- * Presses a button as somebody without a mouse does.
+ * Presses a button by keyboard.
  * @param {import("@playwright/test").Page} page
  * @param {string} key of its words
  */

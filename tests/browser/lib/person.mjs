@@ -1,4 +1,4 @@
-// A person who knows which object is wanted and tells the truth about it.
+// A truthful user who knows the desired object.
 
 /**
  * The true answer to a question about the wanted object.

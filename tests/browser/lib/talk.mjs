@@ -58,7 +58,7 @@ export async function answerUntilPicked(page, group, name) {
 }
 
 /**
- * Waits until the page tells that an object was handed over.
+ * Waits until the page shows that an object was handed over.
  * @param {import("@playwright/test").Page} page
  * @param {import("./group.mjs").Group} group
  * @param {string} name of the wanted object

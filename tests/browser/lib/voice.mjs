@@ -10,7 +10,7 @@ import { until } from "./until.mjs";
 const run = promisify(execFile);
 const HEADER = 44;
 
-/** Settings: every sentence takes as long as it sounds; nobody hears it on this machine. */
+/** Settings: every sentence takes as long as its audio, without playing it on this machine. */
 export const ALOUD = ["speech.voice=espeak-ng", 'speech.player=["none"]'];
 
 /**

@@ -97,11 +97,11 @@ test("a robot with joints of other names and mesh files is drawn by what can be 
   expect(files, "mesh files that were asked for").toEqual([]);
 });
 
-test.describe("a description that is no XML", () => {
+test.describe("an invalid robot description", () => {
   // Browsers say what is wrong in an element with a style of its own, which the page forbids.
   test.use({ provoked: ["inline style"] });
 
-  test("is told, and tried again", async ({ page, group, watched }) => {
+  test("is reported and retried", async ({ page, group, watched }) => {
     void watched;
     await page.route("**/robot.urdf", (route) => route.fulfill({ body: "<robot><link></robot>" }), {
       times: 2,
@@ -188,7 +188,7 @@ test.describe("a pick", () => {
     await expect(page.locator(".arm-caption")).toHaveText(t("arm.stopped"));
     await expect.poll(async () => (await shown(page)).trajectory).toBe(false);
     await expect.poll(async () => (await group.state()).arm.moving).toBe(false);
-    // The world is told once a second while the arm stands.
+    // The world is published once a second while the arm is at rest.
     const apart = async (n) => {
       const { world } = await group.state();
       return distance((await shown(page)).grippers[n], world.grippers[n].slice(0, 3));

@@ -1,4 +1,4 @@
-// A browser without WebGL: nobody draws the arm's picture, words stand in for it.
+// A browser without WebGL: text replaces the drawing of the arm.
 
 import { arm, BROWSERS_BY_THREAD } from "../lib/arm.mjs";
 import { CHROMIUM, CHROMIUM_FLAGS } from "../lib/chromium.mjs";

@@ -14,7 +14,7 @@ import { expect, test } from "../lib/test.mjs";
 // The browser itself reports a socket that cannot be opened.
 const LINK_LOST = ["WebSocket connection", "ERR_CONNECTION_REFUSED"];
 
-test("a reload in the middle goes on where it was", async ({ console: page, group }) => {
+test("a reload in the middle of a dialogue keeps its state", async ({ console: page, group }) => {
   await type(page, "get me the bowl");
   const { text } = await nextDecision(group, 0);
   await page.reload();

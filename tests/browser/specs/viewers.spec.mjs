@@ -29,7 +29,7 @@ test("one talks, the other watches, and control is handed over", async ({
   await context.close();
 });
 
-test("whoever only watches can stop the robot", async ({ console: first, group, browser }) => {
+test("a viewer without control can stop the robot", async ({ console: first, group, browser }) => {
   await expect(first.getByText(t("control.mine"))).toBeVisible();
   const context = await browser.newContext();
   const second = await context.newPage();

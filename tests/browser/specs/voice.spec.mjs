@@ -8,7 +8,7 @@ import { ALOUD, giveMicrophone, hears, holdAndSpeak, saidLast, speak } from "../
 
 test.use({ settings: ALOUD });
 
-/** The robot's next move that is no more the one of before. */
+/** The robot's next act that differs from the previous one. */
 const next = (group, before) =>
   until("the robot's move", async () => {
     const state = await group.state();
@@ -75,7 +75,7 @@ test.describe("while the robot speaks at length", () => {
   });
 });
 
-test("the space bar talks, but not while somebody writes", async ({ page, group, watched }) => {
+test("the space bar opens the microphone except while typing", async ({ page, group, watched }) => {
   void watched;
   await giveMicrophone(page);
   await page.goto(group.url);
@@ -93,7 +93,7 @@ test("the space bar talks, but not while somebody writes", async ({ page, group,
   await expect(page.locator("#transcript")).toContainText(/small|white|bowl/);
 });
 
-test("what cannot be is told in words with the cure", async ({ page, group, watched }) => {
+test("an unavailable microphone is reported with help", async ({ page, group, watched }) => {
   void watched;
   await page.addInitScript(() => {
     navigator.mediaDevices.getUserMedia = () =>

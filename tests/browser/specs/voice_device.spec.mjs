@@ -12,7 +12,7 @@ test.use({ settings: ALOUD });
 const args = [...CHROMIUM_FLAGS, ...microphoneOf(wav)];
 test.use({ launchOptions: { executablePath: CHROMIUM, args } });
 
-test("is heard hands-free, word for word while somebody speaks", async ({ page, group }) => {
+test("hands-free speech is recognised with interim results", async ({ page, group }) => {
   const request = await say("get me the small white bowl");
   await writeWav(wav, Buffer.concat([quiet(1), request, quiet(3)]));
   await page.goto(group.url);

@@ -1,4 +1,4 @@
-// The page is light, speaks the person's language, and asks nobody but the robot.
+// The page is small, in the user's language, and sends requests only to the robot.
 
 import { t } from "../lib/strings.mjs";
 import { expect, test } from "../lib/test.mjs";

@@ -52,23 +52,23 @@ describe("an element of the robot's description", () => {
 });
 
 describe("the picture's messages", () => {
-  it("tell, ask, and carry what the picture says by itself", async () => {
+  it("send messages, requests and events of the drawing", async () => {
     const { port1, port2 } = new MessageChannel();
     const heard = [];
     const picture = new Picture(port1, (message) => heard.push(message));
     port2.onmessage = ({ data: { id, what, args } }) => {
-      if (id === undefined) port2.postMessage({ told: what });
+      if (id === undefined) port2.postMessage({ sent: what });
       else if (what === "fail") port2.postMessage({ id, error: "no" });
       else port2.postMessage({ id, value: [what, ...args] });
     };
     picture.call("look", "above");
     assert.deepEqual(await picture.ask("forward", 1, 2), ["forward", 1, 2]);
     await assert.rejects(picture.ask("fail"), /^Error: no$/);
-    assert.deepEqual(heard, [{ told: "look" }]);
+    assert.deepEqual(heard, [{ sent: "look" }]);
     port1.close();
   });
 
-  it("have events happen where there is no element", () => {
+  it("dispatch events without an element", () => {
     const pointed = new Pointed();
     const seen = [];
     pointed.ownerDocument.addEventListener("wheel", ({ type, deltaY }) => seen.push(type, deltaY));

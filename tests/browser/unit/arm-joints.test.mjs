@@ -87,7 +87,7 @@ describe("the joint buffer", () => {
     assert.ok(Math.abs(before.q[0]) < 1e-9);
   });
 
-  it("says whether a message is new, ignores old ones, and begins anew with another server", () => {
+  it("accepts new messages, ignores old ones, and resets with another server", () => {
     const buffer = new JointBuffer();
     assert.equal(buffer.add(message(5000, 1), 5002), true);
     assert.equal(buffer.add(message(5033, 1), 5035), false, "the arm stands");

@@ -188,7 +188,7 @@ describe("the link", () => {
     assert.equal(Socket.made.length, 2);
   });
 
-  it("ignores what an old connection still says, and what is no message", () => {
+  it("ignores messages of an old connection and invalid messages", () => {
     const link = open();
     const [old] = Socket.made;
     welcome(old);

@@ -37,7 +37,7 @@ describe("the transcript", () => {
 });
 
 describe("the store", () => {
-  it("tells subscribers at once and at each change, until they leave", () => {
+  it("notifies subscribers at once and on each change, until they unsubscribe", () => {
     const store = new Store();
     store.set("turn", 1);
     const heard = [];
@@ -55,7 +55,7 @@ describe("the store", () => {
     assert.equal(store.get("nothing"), undefined);
   });
 
-  it("shows nobody half of a frame", () => {
+  it("publishes only complete frames", () => {
     const store = new Store();
     store.apply({ scene: "old", dialogue: "old" });
     const seen = [];
@@ -64,18 +64,18 @@ describe("the store", () => {
     assert.deepEqual(seen.at(-1), ["new", "new"]);
   });
 
-  it("has the last lines told once more after a lost connection", () => {
+  it("repeats the last lines after a lost connection", () => {
     const store = new Store();
     assert.equal(store.resumeAfter, 0);
     store.addLines(Array.from({ length: 40 }, (_, i) => ({ id: i + 1 })));
     assert.equal(store.resumeAfter, 30);
   });
 
-  it("begins the transcript anew with a server that has another one", () => {
+  it("resets the transcript with a server that has another one", () => {
     const store = new Store();
     store.addLines(lines(1, 2, 3));
     store.resume(1);
-    assert.equal(store.lastLine, 3, "the same one goes on");
+    assert.equal(store.lastLine, 3, "the same transcript continues");
     store.resume(undefined);
     assert.equal(store.lastLine, 3);
     store.resume(0);

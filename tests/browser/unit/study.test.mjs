@@ -50,7 +50,7 @@ test("progress counts what counts", () => {
   assert.equal(progressOf(null), null);
 });
 
-test("the desired object is told with all its attributes in the scene's words", () => {
+test("the desired object is described with all its attributes in the scene's words", () => {
   const values = [{ name: "counter", spoken: "on the counter" }];
   const scene = {
     attributes: [

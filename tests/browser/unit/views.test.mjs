@@ -101,7 +101,7 @@ describe("a probability", () => {
 describe("marks on objects", () => {
   const of = (now) => [...marks(SCENE, { dialogue: null, arm: null, world: null, ...now })];
 
-  it("tell what is pointed at, fetched, held and handed over", () => {
+  it("mark the objects pointed at, fetched, held and handed over", () => {
     const dialogue = { question: { type: "point", object: "metal" } };
     assert.deepEqual(of({ dialogue }), [[2, "pointed"]]);
     assert.deepEqual(of({ arm: { object: "clear", phase: "moving" } }), [[1, "picking"]]);
@@ -218,7 +218,7 @@ describe("the sign of the turn", () => {
     assert.equal(banner(up, { state: "unheard of" }, {}).key, "idle");
   });
 
-  it("tells who is in control", () => {
+  it("shows the operator", () => {
     const me = { viewer: "v1" };
     assert.equal(whoControls(undefined, me), "unknown");
     assert.equal(whoControls({ operator: "v1" }, me), "mine");
@@ -333,7 +333,7 @@ describe("stop", () => {
     assert.equal(state(), "idle");
   });
 
-  it("tells a refusal, and does not repeat it", async () => {
+  it("shows a rejection once", async () => {
     const { link, press, refusals, state } = play(true);
     const pressed = press();
     link.sent[0].fail("refused");

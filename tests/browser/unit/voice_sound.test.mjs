@@ -55,7 +55,7 @@ test("what the lower rate cannot hold does not come back as something else", () 
   assert.ok(loudest < 0.01, `${loudest}`);
 });
 
-test("the least delayed message tells the time, and a jump begins anew", () => {
+test("the least delayed message sets the clock, and a jump resets it", () => {
   const clock = new SampleClock();
   for (const [contextS, nowMs] of [
     [1, 6_300],

@@ -27,8 +27,8 @@ test("holding talks until it is released", () => {
 });
 
 test("a click talks until the next one: click, speak, click", () => {
-  const told = play(["down", 0], ["up", 100], ["down", 2_000], ["up", 2_100], ["down", 3_000]);
-  assert.deepEqual(told, [true, true, false, false, true]);
+  const results = play(["down", 0], ["up", 100], ["down", 2_000], ["up", 2_100], ["down", 3_000]);
+  assert.deepEqual(results, [true, true, false, false, true]);
 });
 
 test("a screen reader's click does the same, and leaving the page ends it", () => {
@@ -44,7 +44,7 @@ test("the button agrees with whose turn it is", () => {
   assert.equal(of({ talks: true }).key, "talking");
   assert.equal(of({ talks: true, latched: true }).key, "latched");
   assert.equal(of({ talks: true, turn: "hearing" }).state, "hearing");
-  assert.equal(of({ turn: "hearing" }).key, "idle", "somebody else is heard");
+  assert.equal(of({ turn: "hearing" }).key, "idle", "another user is speaking");
   assert.equal(of({ turn: "understanding" }).key, "understanding");
   assert.equal(of({ handsFree: true, isOpen: true }).key, "open");
   assert.equal(of({ isOpening: true }).key, "opening");
@@ -87,7 +87,7 @@ test("who comes late hears the rest, and who is hardly late all of it", () => {
   assert.equal(offsetS(1_000, 3_100, 2), null);
 });
 
-test("every fault has words with a cure in every language", async () => {
+test("every fault has a text with help in every language", async () => {
   const devices = ["NotAllowedError", "NotFoundError", "NotReadableError", "TypeError"];
   const codes = ["network", "not-allowed", "service-not-allowed", "audio-capture", "whatever"];
   const faults = [
@@ -104,7 +104,7 @@ test("every fault has words with a cure in every language", async () => {
   }
 });
 
-test("what was chosen is kept, and what is no choice is not taken", () => {
+test("choices are kept, and invalid ones are ignored", () => {
   const items = new Map();
   const storage = { getItem: (key) => items.get(key) ?? null, setItem: (k, v) => items.set(k, v) };
   assert.deepEqual(kept(storage), DEFAULTS);
@@ -125,13 +125,13 @@ test("the robot may be interrupted where the browser really takes its voice out"
 });
 
 test("a browser's words come with what else they may have been", () => {
-  const told = [
+  const results = [
     { transcript: " the white one ", confidence: 0.8 },
     { transcript: "the wide one", confidence: 0 },
     { transcript: "the white one", confidence: 0.1 },
     { transcript: " ", confidence: 0.1 },
   ];
-  const said = utterance(told);
+  const said = utterance(results);
   assert.equal(said.text, "the white one");
   assert.equal(said.alternatives.length, 1);
   assert.ok(Math.abs(said.alternatives[0].weight - 0.2) < 1e-9);

@@ -26,7 +26,7 @@ const WINDOW: &str = "2.5";
 pub struct Count {
     /// Name of the rule.
     pub rule: String,
-    /// Whether words reached the robot live; else afterwards.
+    /// True if words reached the robot live; else afterwards.
     pub live: bool,
     /// Dialogues.
     pub dialogues: u64,

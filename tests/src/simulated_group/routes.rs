@@ -1,4 +1,4 @@
-//! Who receives what of the services' messages, as often as the faults let it arrive.
+//! Routing of messages between simulated services, with injected loss and duplication.
 
 use std::iter::repeat_n;
 

@@ -41,9 +41,9 @@ const BY_VALUE: f64 = 0.1;
 pub(super) struct Begun {
     pub(super) utterance: TimedUtterance,
     pub(super) text: String,
-    /// Whether the robot has been sent its onset.
+    /// True if the robot has been sent its onset.
     pub(super) onset_sent: bool,
-    /// Whether the robot has been sent its end, or the words.
+    /// True if the robot has been sent its end, or the words.
     pub(super) end_sent: bool,
 }
 

@@ -29,7 +29,7 @@ use crate::{Group, wait_for};
 pub struct Conditions {
     /// Signal to noise ratio, decibels.
     pub snr_db: f64,
-    /// Whether the user may interrupt the robot, whose voice the microphone does not hear.
+    /// True if the user may interrupt the robot, whose voice the microphone does not hear.
     pub barge_in: bool,
     /// Number of the dialogue: determines the object, the voice, the words and the times.
     pub number: u64,

@@ -13,7 +13,7 @@ pub const SPEECH_RMS: f64 = 2_000.0;
 pub struct Speaker {
     /// Its name in reports.
     pub name: &'static str,
-    /// Whether flite speaks; else espeak-ng.
+    /// True if flite speaks; else espeak-ng.
     flite: bool,
     voice: &'static str,
     words_per_minute: u16,

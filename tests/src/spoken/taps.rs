@@ -21,7 +21,7 @@ pub(super) struct Taps {
     views: EncodedReader<PolicyView>,
     /// Questions that were decided: their words.
     pub(super) questions: BTreeMap<Said, String>,
-    /// Whether a pick was ordered.
+    /// True if a pick was ordered.
     pub(super) picks: bool,
     pub(super) view: PolicyView,
     pub(super) ear: Option<EarState>,

@@ -65,7 +65,7 @@ struct Set {
     q: Option<Joints>,
     /// The command of this pass.
     command: Option<Command>,
-    /// Whether it was moving in the pass before.
+    /// True if it was moving in the previous pass.
     moved: bool,
     sent: Option<Time>,
     /// The goal at which it has arrived.

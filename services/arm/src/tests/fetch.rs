@@ -5,7 +5,7 @@ use manipulation::{Limb, Robot as Description};
 use messages::JOINT_STATE_LEN;
 
 #[test]
-fn every_bowl_is_brought_and_put_back() {
+fn every_bowl_is_handed_over_and_restocked() {
     for object in 0..OBJECTS {
         let mut machine = Machine::new(config());
         machine.act(pick(1, object));
@@ -67,7 +67,7 @@ fn published_velocities_are_the_slope_of_the_positions() {
 }
 
 #[test]
-fn the_object_moves_with_the_gripper() {
+fn grasped_object_moves_with_the_gripper() {
     let mut machine = Machine::new(config_at(5.0));
     machine.act(pick(1, 4));
     machine.run_until("held", |m| m.phase() == PickPhase::Holding);
@@ -97,7 +97,7 @@ fn fast_time_brings_the_same_sooner() {
 }
 
 #[test]
-fn the_seconds_that_remain_are_counted_down() {
+fn remaining_seconds_count_down() {
     let mut machine = Machine::new(config_at(2.0));
     machine.act(pick(1, 1));
     machine.run_until("moving", |m| m.phase() == PickPhase::Moving);

@@ -116,7 +116,7 @@ fn fingers_that_close_on_nothing_are_no_grasp() {
     assert_eq!(machine.outcome(), PickOutcome::Missed);
     assert_eq!(machine.node.state().misses, machine.config.arm.grasp.attempts);
     assert_eq!((machine.node.state().held, machine.robot.grasps()), (None, 0));
-    machine.run_until("it goes to rest by itself, with nothing to lose", Machine::rests);
+    machine.run_until("it returns to rest with an empty gripper", Machine::rests);
     machine.robot.miss(0);
     machine.act(pick(2, 3));
     machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);

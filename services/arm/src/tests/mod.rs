@@ -78,7 +78,7 @@ fn say(act: u64) -> RobotAct {
     RobotAct { act, kind: ActKind::Say.code(), ..RobotAct::default() }
 }
 
-/// How a process dies in a pass.
+/// Point of a pass at which the process is killed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Death {
     /// Before the sync: nothing is durable and nothing was seen.
@@ -244,7 +244,7 @@ impl Machine {
         *self.statuses.last().unwrap()
     }
 
-    /// How often a pick entered a phase, in the journal.
+    /// Returns the number of times that a pick entered a phase, by the journal.
     fn entered(&self, id: PickId, phase: PickPhase) -> usize {
         let mut last = PickPhase::Idle;
         let mut count = 0;

@@ -1,9 +1,9 @@
-//! Orders: taken once, given up in time, refused where nothing can be done.
+//! Orders: accepted once, abandoned in time, rejected if infeasible.
 
 use super::*;
 
 #[test]
-fn a_repeated_order_is_known_and_an_old_one_obsolete() {
+fn repeated_order_is_recognised_and_old_one_obsolete() {
     let mut machine = Machine::new(config_at(20.0));
     machine.act(pick(3, 1));
     machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
@@ -19,7 +19,7 @@ fn a_repeated_order_is_known_and_an_old_one_obsolete() {
 }
 
 #[test]
-fn an_act_older_than_the_standing_one_is_ignored() {
+fn act_older_than_the_current_one_is_ignored() {
     let mut machine = Machine::new(config_at(20.0));
     machine.act(say(50));
     machine.run(0.05);
@@ -131,7 +131,7 @@ fn taken_object_stays_gone_after_a_restart() {
 
 /// The policy may be restarted with a changed scene before the arm is.
 #[test]
-fn an_act_about_another_scene_waits_until_the_arm_knows_that_scene() {
+fn act_of_another_scene_waits_until_the_arm_reloads() {
     let mut machine = Machine::new(config());
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
     let markers = [("group.scene".to_owned(), "markers".to_owned())];

@@ -36,7 +36,7 @@ fn each_question_is_aimed_at_and_then_the_arm_rests() {
 }
 
 #[test]
-fn the_question_asked_again_needs_no_motion() {
+fn repeated_pointing_question_needs_no_motion() {
     let mut machine = Machine::new(config_at(10.0));
     machine.act(point(1, 2));
     machine.run_until("aimed", |m| m.status().aimed_at() == Some(ActId(1)));
@@ -48,7 +48,7 @@ fn the_question_asked_again_needs_no_motion() {
 }
 
 #[test]
-fn a_pick_follows_from_where_the_arm_points() {
+fn pick_starts_from_the_pointing_posture() {
     for (pointed, picked) in [(3, 3), (3, 0), (0, 2)] {
         let mut machine = Machine::new(config_at(10.0));
         machine.act(point(1, pointed));

@@ -1,4 +1,4 @@
-//! What is published, how often, and what is remembered.
+//! Publication: contents, rate, and order relative to the journal.
 
 use super::*;
 use crate::state::Cause;
@@ -59,10 +59,10 @@ fn phases_are_durable_in_order_before_they_are_seen() {
     while !machine.rests() || machine.outcome() != PickOutcome::Delivered {
         machine.go(None);
         let durable = machine.journal.last().unwrap().state.pick.unwrap().phase;
-        let told = machine.status().phase.get();
-        assert!(told <= durable);
-        if seen.last() != Some(&told) {
-            seen.push(told);
+        let published = machine.status().phase.get();
+        assert!(published <= durable);
+        if seen.last() != Some(&published) {
+            seen.push(published);
         }
     }
     assert_eq!(seen.last(), Some(&PickPhase::Done));
@@ -78,7 +78,7 @@ fn phases_are_durable_in_order_before_they_are_seen() {
 }
 
 #[test]
-fn a_journal_can_be_cut_short_only_at_rest() {
+fn journal_is_compacted_only_at_rest() {
     let mut machine = Machine::new(config_at(20.0));
     machine.act(pick(1, 5));
     machine.run_until("held", |m| m.phase() == PickPhase::Holding);

@@ -20,15 +20,15 @@ struct Body {
     velocity_is_zero: bool,
     /// The objects in their places.
     objects: Vec<Cuboid>,
-    /// What the journal says about the latest pick.
+    /// Latest pick in the journal.
     durable: Option<Pick>,
-    /// Whether nothing moves but for a pick.
+    /// True if nothing moves but for a pick.
     only_picks: bool,
-    /// Whether the gripper can feel.
+    /// True if the gripper can feel.
     feels: bool,
-    /// How often the fingers will find nothing to close on.
+    /// Number of coming grasps that fail.
     misses: u32,
-    /// Whether the fingers were commanded to close.
+    /// True if the fingers were commanded to close.
     closing: bool,
     grasps: u32,
     wrongs: Vec<String>,
@@ -80,7 +80,7 @@ impl Robot {
         self.0.borrow().arm.measured().posture
     }
 
-    /// How often the fingers came to hold something.
+    /// Returns the number of successful grasps.
     pub(super) fn grasps(&self) -> u32 {
         self.0.borrow().grasps
     }
@@ -176,6 +176,6 @@ impl Body {
     }
 }
 
-/// How far the capsules round the arm may enter the box round an object, metres: motions are
+/// Tolerated penetration of an object's box by the arm's capsules, metres: motions are
 /// checked at intervals.
 const TOUCH_M: f64 = 0.003;

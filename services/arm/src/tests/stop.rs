@@ -51,7 +51,7 @@ fn from_beside_an_object_the_gripper_goes_straight_up_first() {
 }
 
 #[test]
-fn a_stop_while_idle_is_latched_and_outlives_the_process() {
+fn motion_stop_while_idle_is_latched_and_survives_a_restart() {
     let mut machine = Machine::new(config_at(10.0));
     machine.motion(MotionOrder::Stop);
     machine.run(0.05);
@@ -91,7 +91,7 @@ fn arm_applies_newer_motion_orders_only() {
 }
 
 #[test]
-fn a_stop_from_the_future_stops_and_can_be_released() {
+fn motion_stop_from_the_future_is_obeyed_and_can_be_released() {
     let mut machine = Machine::new(config());
     let stop = MotionCommand { given_ns: u64::MAX, ..Default::default() };
     machine.waiting.push(In::Motion(stop));

@@ -86,7 +86,7 @@ fn services_start_when_those_before_them_are_ready() {
 }
 
 #[test]
-fn a_restart_leaves_the_services_behind_alone() {
+fn restart_does_not_affect_dependent_services() {
     let mut group = group(CHAIN);
     up(&mut group);
     assert_eq!(group.on(1, CRASH, NOW), Some(Effect::Spawn));
@@ -111,7 +111,7 @@ fn services_stop_when_those_behind_them_are_at_rest() {
 }
 
 #[test]
-fn a_service_that_crashes_during_the_stop_is_not_started_again() {
+fn service_that_crashes_while_stopping_is_not_restarted() {
     let mut group = group(CHAIN);
     up(&mut group);
     group.stop(NOW);

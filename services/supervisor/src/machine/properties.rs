@@ -20,7 +20,7 @@ fn machine() -> Machine {
     Machine::new(Limits::of(&service("any", &[]), RESTART_LIMITS))
 }
 
-/// What the outside world may do: an operator's wishes and a process's deeds.
+/// Any external event: requests of an operator, and notifications and exits of a process.
 fn any_event() -> impl Strategy<Value = Event> {
     prop_oneof![
         Just(Event::Start),

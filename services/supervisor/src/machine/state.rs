@@ -1,4 +1,4 @@
-//! What a machine remembers of where it stands.
+//! State of one service's machine.
 
 use std::time::Duration;
 
@@ -23,7 +23,7 @@ pub(super) enum Step {
     Killing,
 }
 
-/// Why it is being stopped, which decides what its exit means.
+/// Reason for stopping; determines the interpretation of the exit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Why {
     Asked,
@@ -43,7 +43,7 @@ impl State {
         }
     }
 
-    /// How long it has been ready, if it is.
+    /// Returns the time for which it has been ready, if it is.
     pub(super) fn ready_for(self, now: Time) -> Option<Duration> {
         match self {
             Self::Ready { since } => Some(now.saturating_sub(since)),

@@ -49,7 +49,7 @@ impl Bench {
 }
 
 #[test]
-fn it_starts_becomes_ready_and_stops() {
+fn machine_starts_becomes_ready_and_stops() {
     let mut bench = Bench::ready();
     bench.is(Wanted::Up, Actual::Ready);
     assert_eq!(bench.on(Event::Stop), Some(Effect::Terminate));
@@ -61,7 +61,7 @@ fn it_starts_becomes_ready_and_stops() {
 }
 
 #[test]
-fn it_waits_to_be_admitted() {
+fn machine_waits_for_admission() {
     let mut bench = Bench::new();
     assert_eq!(bench.on(Event::Admit), None, "not wanted yet");
     assert_eq!(bench.on(Event::Start), None);
@@ -71,7 +71,7 @@ fn it_waits_to_be_admitted() {
 }
 
 #[test]
-fn a_stop_that_is_ignored_ends_in_kills() {
+fn ignored_stop_request_escalates_to_kill() {
     let mut bench = Bench::ready();
     bench.on(Event::Stop);
     assert_eq!(bench.after_ms(4_999), None);
@@ -82,7 +82,7 @@ fn a_stop_that_is_ignored_ends_in_kills() {
 }
 
 #[test]
-fn a_start_that_is_never_ready_is_stopped_and_waits() {
+fn start_without_readiness_is_stopped_and_backs_off() {
     let mut bench = Bench::starting();
     assert_eq!(bench.after_ms(10_000), Some(Effect::Terminate));
     assert_eq!(bench.machine.failure(), Some(Failure::NotReady));
@@ -107,7 +107,7 @@ fn silence_is_answered_with_abort_then_kill() {
 }
 
 #[test]
-fn a_killed_service_is_back_at_once_the_first_time() {
+fn first_restart_after_a_kill_has_no_backoff() {
     let mut bench = Bench::ready();
     assert_eq!(bench.on(CRASH), Some(Effect::Spawn));
     bench.on(Event::Ready);
@@ -134,7 +134,7 @@ fn too_many_exits_hold_it_until_released() {
 }
 
 #[test]
-fn a_permanent_exit_holds_it_at_once() {
+fn permanent_exit_holds_the_service() {
     for exit in [ProcessExit::Code(78), ProcessExit::Code(64), ProcessExit::NotStartable] {
         let mut bench = Bench::starting();
         assert_eq!(bench.on(Event::Exited(exit)), None);
@@ -160,7 +160,7 @@ fn restart_policies_differ_in_what_follows_an_exit() {
 }
 
 #[test]
-fn a_restart_asked_for_is_not_held_against_it() {
+fn requested_restart_does_not_count_as_a_failure() {
     let mut bench = Bench::ready();
     for _ in 0..20 {
         assert_eq!(bench.on(Event::Restart), Some(Effect::Terminate));
@@ -172,7 +172,7 @@ fn a_restart_asked_for_is_not_held_against_it() {
 }
 
 #[test]
-fn a_hold_stops_it_and_lasts() {
+fn hold_stops_the_service_and_persists() {
     let mut bench = Bench::ready();
     assert_eq!(bench.on(Event::Hold), Some(Effect::Terminate));
     assert_eq!(bench.on(STOPPED), None);
@@ -184,7 +184,7 @@ fn a_hold_stops_it_and_lasts() {
 }
 
 #[test]
-fn a_hold_can_be_lifted_while_it_still_stops() {
+fn hold_can_be_lifted_while_the_service_stops() {
     let mut bench = Bench::ready();
     bench.on(Event::Hold);
     bench.on(Event::Release);
@@ -192,7 +192,7 @@ fn a_hold_can_be_lifted_while_it_still_stops() {
 }
 
 #[test]
-fn a_change_of_mind_during_a_stop_counts_at_its_end() {
+fn new_request_during_a_stop_applies_at_its_end() {
     let mut bench = Bench::ready();
     bench.on(Event::Stop);
     bench.on(Event::Start);
@@ -204,7 +204,7 @@ fn a_change_of_mind_during_a_stop_counts_at_its_end() {
 }
 
 #[test]
-fn a_refusal_while_it_stops_is_no_reason_to_hold_it() {
+fn permanent_exit_while_stopping_does_not_hold_the_service() {
     let mut bench = Bench::ready();
     bench.on(Event::Restart);
     assert_eq!(bench.on(REFUSED), Some(Effect::Spawn));
@@ -235,7 +235,7 @@ fn time_can_be_asked_for_but_not_for_ever() {
 }
 
 #[test]
-fn time_in_which_nobody_listened_does_not_count() {
+fn suspension_of_the_supervisor_does_not_count_as_a_missed_deadline() {
     let mut bench = Bench::ready();
     bench.now += Duration::from_secs(10);
     bench.machine.postpone(Duration::from_secs(10));

@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::spec::{Restart, RestartLimits, ServiceSpec};
 use service::process_exit::ProcessExit;
 
-/// What happened.
+/// Input of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// It is wanted up, once the services that it comes after are ready.
@@ -35,7 +35,7 @@ pub enum Event {
     Clock,
 }
 
-/// What to do about it.
+/// Output of the machine, to be carried out by the supervisor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Start a new incarnation.
@@ -48,7 +48,7 @@ pub enum Effect {
     Kill,
 }
 
-/// Why a service is held.
+/// Reason for holding a service.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HeldBecause {
     /// An operator wants it so.
@@ -81,9 +81,9 @@ pub struct Limits {
     pub watchdog: Option<Duration>,
     /// Time from the request to stop to the kill.
     pub stop: Duration,
-    /// Which exits are followed by a new start.
+    /// Exits that are followed by a restart.
     pub restart: Restart,
-    /// How often and how soon.
+    /// Limits and backoff of restarts.
     pub restart_limits: RestartLimits,
 }
 

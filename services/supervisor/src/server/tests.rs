@@ -39,7 +39,7 @@ fn line(stream: &UnixStream) -> String {
 }
 
 #[test]
-fn a_request_that_comes_in_pieces_is_answered() {
+fn server_answers_a_fragmented_request() {
     let mut bench = Bench::new();
     let mut stream = bench.connect();
     stream.write_all(b"{\"verb\":").unwrap();
@@ -63,7 +63,7 @@ fn nonsense_is_answered_with_the_reason() {
 }
 
 #[test]
-fn a_client_that_sends_too_much_is_dropped() {
+fn server_drops_a_client_that_sends_too_much() {
     let mut bench = Bench::new();
     let mut stream = bench.connect();
     stream.set_nonblocking(true).unwrap();
@@ -87,7 +87,7 @@ fn slow_clients_are_dropped_and_waiting_ones_are_not() {
 }
 
 #[test]
-fn one_connection_too_many_is_turned_away() {
+fn server_rejects_connections_beyond_the_limit() {
     let mut bench = Bench::new();
     let _others: Vec<_> = (0..CONNECTIONS_MAX).map(|_| bench.connect()).collect();
     let stream = bench.connect();
@@ -96,7 +96,7 @@ fn one_connection_too_many_is_turned_away() {
 }
 
 #[test]
-fn a_reader_that_never_reads_does_not_make_the_server_wait() {
+fn server_is_not_blocked_by_a_client_that_never_reads() {
     let mut bench = Bench::new();
     let mut stream = bench.connect();
     stream.write_all(b"{\"verb\":\"status\"}\n").unwrap();

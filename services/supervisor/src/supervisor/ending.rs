@@ -1,4 +1,4 @@
-//! The end of a group, and its renewal when its shared memory is gone.
+//! Shutdown of a group, and its restart when its shared memory was removed.
 
 use std::fs;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use crate::machine::HeldBecause;
 use crate::server::Server;
 use service::control::{DownReport, Refusal, RefusalKind, Reply};
 
-/// A second loss of the topics' files within this time is no accident; the group is given up.
+/// A second loss of the topics' files within this time stops the group for good.
 const RENEWAL_INTERVAL: Duration = Duration::from_secs(60);
 
 /// A group that is being stopped.
@@ -25,10 +25,10 @@ pub(super) struct Ending {
     since: Time,
 }
 
-/// Why it is being stopped.
+/// Reason for stopping the group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Cause {
-    /// The operator wants it so.
+    /// Requested by the operator.
     Asked,
     /// The process was asked to shut down.
     Signal,
@@ -41,7 +41,7 @@ pub(super) enum Cause {
 }
 
 impl Supervisor {
-    /// Begins to stop the group, in order. A wish to end counts more than a renewal.
+    /// Starts to stop the group, in order. A request to shut down has priority over a restart.
     pub(super) fn end(&mut self, cause: Cause, now: Time) {
         match &mut self.ending {
             Some(ending) if ending.cause == Cause::FilesGone => ending.cause = cause,
@@ -55,7 +55,7 @@ impl Supervisor {
         }
     }
 
-    /// The end, once it has come.
+    /// Returns the exit code once the group has stopped.
     pub(super) fn ended(&mut self) -> Option<Ending> {
         let ending = self.ending.filter(|_| self.group.is_stopped())?;
         if ending.cause != Cause::FilesGone {
@@ -100,7 +100,7 @@ impl Supervisor {
         }
     }
 
-    /// Stops the group when a service that it cannot do without has been given up.
+    /// Stops the group when a critical service is held.
     pub(super) fn check_critical(&mut self, now: Time) {
         if self.ending.is_some() {
             return;
@@ -114,8 +114,8 @@ impl Supervisor {
         }
     }
 
-    /// Looks after the files that newcomers find the group by. Where they are gone, every newcomer
-    /// would silently begin a group of its own; only a new start of all cures that.
+    /// Checks the files by which new processes find the group. Without them every new process would
+    /// silently create a group of its own; only restarting all services repairs that.
     pub(super) fn check_topics(&mut self, now: Time) {
         let is_intact = self.admin.as_ref().is_some_and(Admin::intact)
             && self.around.paths.control_socket().exists();
@@ -143,7 +143,7 @@ impl Supervisor {
         }
         let now = self.now();
         self.last_renewal = Some(now);
-        self.told_ready = false;
+        self.reported_ready = false;
         self.group.start(now);
         Ok(())
     }

@@ -11,7 +11,7 @@ use service::group::{ENV_INCARNATION, ENV_SERVICE};
 use super::Supervisor;
 use crate::procfs::{self, Process};
 
-/// How long the kernel may take to end the last processes that were killed.
+/// Timeout for the end of the last killed processes.
 const END_PATIENCE: Duration = Duration::from_secs(2);
 
 /// Number of orphans reported by name when the group is down.
@@ -89,7 +89,7 @@ impl Supervisor {
         all.filter(|process| process.parent == me && !leaders.contains(&process.pid)).collect()
     }
 
-    /// Whether the process says that an incarnation which runs now has started it: some programs
+    /// Returns true if a running incarnation started the process: some programs
     /// put helpers into the background on purpose.
     fn belongs_to_running(&self, pid: Pid) -> bool {
         let environment = procfs::environment(pid);

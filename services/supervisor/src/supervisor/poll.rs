@@ -8,12 +8,12 @@ use super::Supervisor;
 use crate::Time;
 use crate::server::Client;
 
-/// What has happened. Signals and notifications are not listed: they are looked at in any case.
+/// Result of one poll. Signals and notifications are not listed: every pass checks them.
 #[derive(Debug, Default)]
 pub(super) struct Ready {
     /// Services whose process has ended.
     pub(super) ended: Vec<usize>,
-    /// Whether a client connects.
+    /// True if a client connects.
     pub(super) listener: bool,
     /// Connections with new data.
     pub(super) clients: Vec<(Client, PollFlags)>,

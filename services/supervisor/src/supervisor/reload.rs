@@ -23,7 +23,7 @@ impl Supervisor {
             return Err(Refusal::new(RefusalKind::NotReached, why));
         }
         let wrong = |details: Vec<String>| {
-            let message = "the configuration is wrong; nothing was changed".to_owned();
+            let message = "invalid configuration; nothing was changed".to_owned();
             Refusal { kind: RefusalKind::Config, message, details }
         };
         let configuration = (self.load.0)().map_err(wrong)?;

@@ -17,9 +17,9 @@ use service::control::{Refusal, RefusalKind, Reply};
 pub(super) struct Replacement {
     swap: Swap,
     client: Client,
-    /// What the service ran before.
+    /// Previous command of the service.
     previous: Option<Command>,
-    /// Why the new command was taken back, once it was.
+    /// Reason for the rollback, after one.
     refused: Option<Refusal>,
 }
 
@@ -68,7 +68,7 @@ impl Supervisor {
                 }
                 Move::Kept => done(format!("{} runs the new command", self.name(service))),
                 Move::Restored => taken_back(replacement, "the earlier command runs again"),
-                Move::Lost => taken_back(replacement, "the earlier command did not start again"),
+                Move::Lost => taken_back(replacement, "the previous command failed to restart"),
             };
             tracing::info!(service = self.name(service), ?reply, "swap decided");
             self.server.reply(client, &reply, now);

@@ -62,7 +62,7 @@ impl Supervisor {
         }
     }
 
-    /// Why a service does not do what is wanted.
+    /// Returns the reason why a service is not in its wanted state.
     fn why(&self, service: usize) -> Option<String> {
         if let Some(because) = self.group.machine(service).held_because() {
             return Some(because.to_string());

@@ -1,4 +1,4 @@
-//! What an operator asks for.
+//! Requests of an operator.
 
 use super::Supervisor;
 use super::ending::Cause;
@@ -113,7 +113,7 @@ impl Supervisor {
     fn find(&self, name: &str) -> Result<usize, Refusal> {
         let Some(service) = self.position(name) else {
             let names: Vec<&str> = (0..self.services.len()).map(|s| self.name(s)).collect();
-            let why = format!("there is no service {name}; there are {}", names.join(", "));
+            let why = format!("unknown service {name}; help: use one of {}", names.join(", "));
             return Err(Refusal::new(RefusalKind::Usage, why));
         };
         if self.replacements.contains_key(&service) {

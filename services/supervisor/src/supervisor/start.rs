@@ -1,4 +1,4 @@
-//! From nothing to a group whose services are wanted.
+//! Startup of a group.
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -36,19 +36,19 @@ pub enum StartError {
     /// The services cannot be put in order.
     #[error(transparent)]
     Order(#[from] ScheduleError),
-    /// An earlier supervisor, or what it had started, is still there.
+    /// A previous supervisor, or a process that it started, is still running.
     #[error(transparent)]
     PreviousRun(#[from] PreviousRunError),
     /// Too little shared memory.
     #[error(transparent)]
     Room(#[from] NoRoom),
-    /// The group's shared memory cannot be made.
+    /// The group's shared memory cannot be created.
     #[error("shared memory: {0}")]
     SharedMemory(#[from] BusError),
     /// A folder, file, socket or setting is refused by the operating system.
     #[error("{what}: {error}")]
     Io {
-        /// What was to be done.
+        /// Operation that failed.
         what: &'static str,
         /// Cause.
         error: io::Error,
@@ -56,7 +56,7 @@ pub enum StartError {
 }
 
 impl StartError {
-    /// How a process ends for it.
+    /// Returns the exit code for this error.
     pub fn exit(&self) -> Exit {
         match self {
             Self::Config(_) | Self::Order(_) => Exit::Config,
@@ -107,14 +107,14 @@ pub(super) fn start(
         last_renewal: None,
         last_pass: now,
         next_tick: now + TICK,
-        told_ready: false,
+        reported_ready: false,
         taken,
     };
     supervisor.group.start(now);
     Ok(supervisor)
 }
 
-/// What has to be there before the first service.
+/// Resources that exist before the first service starts.
 struct Raised {
     admin: Admin,
     signals: Signals,
@@ -146,8 +146,8 @@ fn raise(
     Ok(Raised { admin, signals, server, around })
 }
 
-/// Services of a supervisor that was killed end by themselves (an arm comes to rest first) and get
-/// as long for it as on request.
+/// Services of a killed supervisor shut down on their own (an arm comes to rest first) within the
+/// same deadline as on request.
 fn longest_stop(spec: &GroupSpec) -> Duration {
     let deadlines = spec.services.iter().map(|service| service.stop_deadline);
     deadlines.max().unwrap_or_default()
@@ -159,7 +159,7 @@ pub(super) enum Folder {
     Others,
 }
 
-/// Makes folders that only their owner can look into.
+/// Creates folders that only their owner can read.
 pub(super) fn make_folder(paths: &GroupPaths, which: Folder) -> Result<(), StartError> {
     let folders = match which {
         Folder::Root => vec![paths.root().to_owned()],
@@ -170,7 +170,7 @@ pub(super) fn make_folder(paths: &GroupPaths, which: Folder) -> Result<(), Start
     folders.iter().try_for_each(|folder| builder.create(folder)).map_err(failed("folders"))
 }
 
-/// What services start and leave behind becomes this process's own to reap. Nothing in the tree
+/// Makes this process the reaper of orphans of its services. No process below it
 /// dumps core: a backtrace is in the log, and a core of a process with shared memory is large.
 fn adopt_orphans() -> io::Result<()> {
     set_child_subreaper(Some(getpid()))?;

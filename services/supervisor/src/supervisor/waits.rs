@@ -17,7 +17,7 @@ pub(super) struct Wait {
     pub(super) then: Reply,
 }
 
-/// What is waited for.
+/// Condition that a client waits for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Goal {
     /// Every service that is wanted up is ready.
@@ -30,7 +30,7 @@ pub(super) enum Goal {
     Down,
 }
 
-/// How it stands.
+/// Progress of a wait.
 enum Standing {
     Reached,
     Open,
@@ -103,7 +103,7 @@ impl Supervisor {
         standing
     }
 
-    /// Why a service is not ready, with the end of its log.
+    /// Returns the reason why a service is not ready, with the end of its log.
     fn why_not_ready(&self, service: usize) -> Refusal {
         let name = self.name(service);
         let why = match self.group.machine(service).held_because() {

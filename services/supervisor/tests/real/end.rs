@@ -29,7 +29,7 @@ fn services_end_in_the_reverse_order() {
 }
 
 #[test]
-fn a_service_that_ignores_the_request_is_killed_and_named() {
+fn service_that_ignores_the_stop_request_is_killed_and_reported() {
     let mut group = Group::ready(vec![
         with(service("arm", &["ignores-term"]), "stop_ms", json!(200)),
         service("policy", &[]),
@@ -38,7 +38,7 @@ fn a_service_that_ignores_the_request_is_killed_and_named() {
 }
 
 #[test]
-fn a_stopped_process_still_ends_in_order() {
+fn suspended_process_still_shuts_down() {
     let mut group = Group::ready(vec![service("arm", &[])]);
     send(group.pid("arm"), Signal::STOP);
     let begun = Instant::now();
@@ -49,7 +49,7 @@ fn a_stopped_process_still_ends_in_order() {
 }
 
 #[test]
-fn a_signal_to_the_supervisor_is_a_wish_to_go_down() {
+fn signal_to_the_supervisor_shuts_the_group_down() {
     for signal in [Signal::TERM, Signal::INT, Signal::HUP] {
         let mut group = Group::ready(vec![service("arm", &[])]);
         send(group.supervisor_pid(), signal);
@@ -60,7 +60,7 @@ fn a_signal_to_the_supervisor_is_a_wish_to_go_down() {
 }
 
 #[test]
-fn what_a_service_left_in_its_group_is_killed_and_reported() {
+fn orphans_in_the_process_group_are_killed_and_reported() {
     let mut group = Group::ready(vec![service("arm", &["leaves", "child"])]);
     let left = group.left_behind();
     assert!(crate::harness::is_alive(left));
@@ -69,7 +69,7 @@ fn what_a_service_left_in_its_group_is_killed_and_reported() {
 }
 
 #[test]
-fn what_left_the_group_is_killed_as_well_and_only_when_its_service_ends() {
+fn orphans_outside_the_process_group_are_killed_when_their_service_ends() {
     let group = Group::ready(vec![service("arm", &["leaves", "daemon"]), service("policy", &[])]);
     let left = group.left_behind();
     send(group.pid("policy"), Signal::KILL);
@@ -81,7 +81,7 @@ fn what_left_the_group_is_killed_as_well_and_only_when_its_service_ends() {
 }
 
 #[test]
-fn a_group_that_is_going_down_takes_no_other_orders() {
+fn group_that_is_stopping_rejects_requests() {
     let mut group = Group::ready(vec![service("arm", &["ends-slowly", "1000"])]);
     send(group.supervisor_pid(), Signal::TERM);
     group.until("arm", Actual::Stopping);
@@ -91,7 +91,7 @@ fn a_group_that_is_going_down_takes_no_other_orders() {
 }
 
 #[test]
-fn a_group_can_be_started_again_as_soon_as_it_is_down() {
+fn group_can_be_restarted_once_down() {
     let mut group = Group::ready(vec![service("arm", &[])]);
     for _ in 0..3 {
         group.ask(&Request::Down);

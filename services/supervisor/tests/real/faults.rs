@@ -10,7 +10,7 @@ use supervisor::machine::{Actual, Failure};
 use crate::harness::{Group, WAIT_MS, send, service, wait_for, with};
 
 #[test]
-fn a_killed_service_is_back_and_the_others_never_notice() {
+fn killed_service_is_restarted_without_affecting_others() {
     let group = Group::ready(vec![
         service("arm", &[]),
         with(service("policy", &[]), "after", json!(["arm"])),
@@ -26,7 +26,7 @@ fn a_killed_service_is_back_and_the_others_never_notice() {
 }
 
 #[test]
-fn a_service_that_refuses_its_configuration_is_held_at_once() {
+fn service_that_rejects_its_configuration_is_held() {
     let group = Group::start(vec![service("arm", &["exits", "78"]), service("policy", &[])]);
     let held = group.until("arm", Actual::Held);
     assert_eq!(held.incarnation, 1);
@@ -39,7 +39,7 @@ fn a_service_that_refuses_its_configuration_is_held_at_once() {
 }
 
 #[test]
-fn a_crash_loop_is_slowed_down_and_then_held_with_the_log() {
+fn crash_loop_backs_off_and_is_held_with_the_log() {
     let begun = Instant::now();
     let shell = json!({ "name": "arm", "command": ["sh", "-c", "echo so it goes >&2; exit 3"] });
     let group = Group::start(vec![shell, service("policy", &[])]);
@@ -56,7 +56,7 @@ fn a_crash_loop_is_slowed_down_and_then_held_with_the_log() {
 }
 
 #[test]
-fn a_service_that_no_longer_beats_is_aborted_and_replaced() {
+fn service_without_heartbeats_is_aborted_and_restarted() {
     let group = Group::start(vec![with(service("arm", &["hangs"]), "watchdog_ms", json!(400))]);
     let again =
         wait_for("a second start", || Some(group.service("arm")).filter(|s| s.incarnation > 1));
@@ -66,7 +66,7 @@ fn a_service_that_no_longer_beats_is_aborted_and_replaced() {
 }
 
 #[test]
-fn a_stopped_process_is_noticed_and_killed() {
+fn suspended_process_is_detected_and_killed() {
     let group = Group::ready(vec![with(service("arm", &[]), "watchdog_ms", json!(400))]);
     send(group.pid("arm"), Signal::STOP);
     let again = group.until_ready("arm", 2);
@@ -74,7 +74,7 @@ fn a_stopped_process_is_noticed_and_killed() {
 }
 
 #[test]
-fn a_critical_service_that_is_given_up_takes_the_group_down() {
+fn held_critical_service_stops_the_group() {
     let mut group = Group::start(vec![
         with(service("arm", &["exits", "78"]), "critical", json!(true)),
         service("policy", &[]),
@@ -84,7 +84,7 @@ fn a_critical_service_that_is_given_up_takes_the_group_down() {
 }
 
 #[test]
-fn a_program_that_does_not_exist_is_held_with_the_reason() {
+fn missing_program_is_held_with_the_reason() {
     let missing = json!({ "name": "arm", "command": ["/no/such/arm"] });
     let group = Group::start(vec![missing, service("policy", &[])]);
     let held = group.until("arm", Actual::Held);
@@ -93,7 +93,7 @@ fn a_program_that_does_not_exist_is_held_with_the_reason() {
 }
 
 #[test]
-fn a_log_that_floods_is_bounded_and_blocks_nobody() {
+fn flooded_log_is_bounded_and_blocks_no_service() {
     let bytes_max = 1 << 20;
     let group = Group::start_with(json!({
         "services": [service("arm", &["floods"]), service("policy", &[])],
@@ -108,7 +108,7 @@ fn a_log_that_floods_is_bounded_and_blocks_nobody() {
 }
 
 #[test]
-fn time_in_which_everything_stood_still_is_held_against_nobody() {
+fn suspension_of_the_machine_counts_against_no_service() {
     let watched = |name| with(service(name, &[]), "watchdog_ms", json!(2000));
     let group = Group::ready(vec![watched("arm"), watched("policy")]);
     let (arm, supervisor) = (group.pid("arm"), group.supervisor_pid());

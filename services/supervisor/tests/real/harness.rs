@@ -63,7 +63,7 @@ pub(crate) fn wait_for<T>(what: &str, mut get: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// Whether a process with this number exists and has not ended.
+/// Returns true if a process with this number exists and has not ended.
 pub(crate) fn is_alive(pid: u32) -> bool {
     let Ok(stat) = fs::read_to_string(format!("/proc/{pid}/stat")) else { return false };
     let state = stat.rsplit_once(") ").map(|(_, rest)| rest.chars().next());
@@ -197,7 +197,7 @@ impl Group {
         })
     }
 
-    /// What the services noted, one line each.
+    /// Returns the lines that the services recorded.
     pub(crate) fn events(&self) -> Vec<String> {
         let text = fs::read_to_string(self.paths.root().join("events")).unwrap_or_default();
         text.lines().map(str::to_owned).collect()
@@ -219,7 +219,7 @@ impl Group {
         wait_for("the supervisor to end", || supervisor.try_wait().unwrap())
     }
 
-    /// What a group that is down must not have left anywhere.
+    /// Checks that a group that is down leaves no processes, files or shared memory.
     #[track_caller]
     pub(crate) fn check_nothing_left(&self) {
         assert!(!self.paths.run().exists(), "run folder");

@@ -82,7 +82,7 @@ fn session_of(pid: u32) -> u32 {
 }
 
 #[test]
-fn a_detached_group_comes_up_and_goes_down() {
+fn detached_group_starts_and_stops() {
     let home = Home::new();
     home.up();
     let Reply::Status(status) = home.ask(&Request::Status) else { panic!("no status") };
@@ -102,7 +102,7 @@ fn a_detached_group_comes_up_and_goes_down() {
 }
 
 #[test]
-fn a_wrong_configuration_is_told_in_full() {
+fn invalid_configuration_is_reported_in_full() {
     let home = Home::new();
     home.write("arm.toml", "speed = \"fast\"\n");
     home.write("dialogue.toml", "epsilon = 2.0\n");
@@ -114,7 +114,7 @@ fn a_wrong_configuration_is_told_in_full() {
 }
 
 #[test]
-fn a_reload_restarts_the_services_that_read_what_has_changed() {
+fn reload_restarts_services_that_read_changed_settings() {
     let home = Home::new();
     home.up();
     let reload = || home.ask(&Request::Reload { wait_ms: WAIT_MS });

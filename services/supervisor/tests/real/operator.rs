@@ -32,7 +32,7 @@ fn services_are_stopped_started_and_restarted_one_by_one() {
 }
 
 #[test]
-fn a_held_service_stays_down_until_it_is_released() {
+fn held_service_stays_down_until_released() {
     let group = Group::ready(vec![service("arm", &[])]);
     let hold = Request::Hold { service: "arm".into(), wait_ms: WAIT_MS };
     assert_eq!(group.done(&hold), "arm is held");
@@ -44,15 +44,15 @@ fn a_held_service_stays_down_until_it_is_released() {
 }
 
 #[test]
-fn mistakes_are_told() {
+fn operator_mistakes_are_reported() {
     let group = Group::ready(vec![service("arm", &[])]);
     let refusal = group.refused(&stop("leg"));
     assert_eq!(refusal.kind, RefusalKind::Usage);
-    assert_eq!(refusal.message, "there is no service leg; there are arm");
+    assert_eq!(refusal.message, "unknown service leg; help: use one of arm");
 }
 
 #[test]
-fn a_reload_restarts_what_it_concerns_and_nothing_else() {
+fn reload_restarts_only_affected_services() {
     let description = |fingerprint: &str, stop_ms: u64| {
         let policy = with(service("policy", &[]), "fingerprint", json!(fingerprint));
         json!({ "services": [with(service("arm", &[]), "stop_ms", json!(stop_ms)), policy] })
@@ -69,7 +69,7 @@ fn a_reload_restarts_what_it_concerns_and_nothing_else() {
 }
 
 #[test]
-fn a_reload_of_nonsense_changes_nothing() {
+fn reload_of_invalid_configuration_changes_nothing() {
     let group = Group::ready(vec![service("arm", &[])]);
     let reload = Request::Reload { wait_ms: WAIT_MS };
     group.describe(&json!({ "services": "none" }));
@@ -82,7 +82,7 @@ fn a_reload_of_nonsense_changes_nothing() {
 }
 
 #[test]
-fn a_reload_is_the_cure_for_a_service_that_refused_its_configuration() {
+fn reload_releases_a_service_that_rejected_its_configuration() {
     let description = |words: &[&str]| json!({ "services": [service("arm", words)] });
     let group = Group::start_with(description(&["exits", "78"]));
     group.until("arm", Actual::Held);

@@ -26,7 +26,7 @@ fn services_end_by_themselves_when_the_supervisor_is_killed() {
 }
 
 #[test]
-fn a_program_that_knows_nothing_of_supervisors_ends_with_its_own() {
+fn program_without_a_lifeline_ends_with_its_supervisor() {
     let sleep = json!({ "name": "arm", "command": ["sleep", "1000"] });
     let mut group = Group::start(vec![sleep]);
     let arm = wait_for("a process", || group.service("arm").pid);
@@ -35,7 +35,7 @@ fn a_program_that_knows_nothing_of_supervisors_ends_with_its_own() {
 }
 
 #[test]
-fn a_new_supervisor_waits_for_services_that_still_end() {
+fn new_supervisor_waits_for_services_of_the_previous_run() {
     let mut group = Group::ready(vec![service("arm", &["ends-slowly", "1500"])]);
     let arm = group.pid("arm");
     kill_supervisor(&mut group);
@@ -47,7 +47,7 @@ fn a_new_supervisor_waits_for_services_that_still_end() {
 }
 
 #[test]
-fn a_service_that_outlives_its_supervisor_for_good_is_killed_by_the_next() {
+fn orphaned_service_is_killed_by_the_next_supervisor() {
     let shell = "trap '' TERM; echo deaf > $WHICHONE_HOME/lab/events; while :; do sleep 1; done";
     let stubborn = json!({ "name": "arm", "command": ["sh", "-c", shell], "stop_ms": 500 });
     let mut group = Group::start(vec![stubborn]);

@@ -7,7 +7,7 @@ use service::status::{Actual, Wanted};
 use crate::harness::{Group, WAIT_MS, fixture, service, wait_for, with};
 
 #[test]
-fn services_start_in_order_and_status_tells_of_them() {
+fn services_start_in_order_and_status_lists_them() {
     let group = Group::ready(vec![
         with(service("speech", &[]), "after", json!(["policy"])),
         with(service("policy", &[]), "after", json!(["arm"])),
@@ -29,7 +29,7 @@ fn services_start_in_order_and_status_tells_of_them() {
 }
 
 #[test]
-fn services_are_told_who_they_are_and_have_a_process_group_of_their_own() {
+fn services_receive_their_identity_and_have_their_own_process_group() {
     let group = Group::ready(vec![with(service("arm", &[]), "watchdog_ms", json!(5000))]);
     let pid = group.pid("arm");
     let environment = std::fs::read(format!("/proc/{pid}/environ")).unwrap();
@@ -52,7 +52,7 @@ fn services_are_told_who_they_are_and_have_a_process_group_of_their_own() {
 }
 
 #[test]
-fn a_service_that_never_becomes_ready_keeps_those_behind_it_waiting_and_is_started_again() {
+fn service_that_is_never_ready_delays_dependents_and_is_restarted() {
     let group = Group::start(vec![
         with(service("arm", &["never-ready"]), "start_ms", json!(200)),
         with(service("policy", &[]), "after", json!(["arm"])),
@@ -69,7 +69,7 @@ fn a_service_that_never_becomes_ready_keeps_those_behind_it_waiting_and_is_start
 }
 
 #[test]
-fn a_second_supervisor_is_refused_with_the_first_ones_number() {
+fn second_supervisor_is_rejected_with_the_pid_of_the_first() {
     let group = Group::ready(vec![service("arm", &[])]);
     let mut second = group.command();
     let log = tempfile::NamedTempFile::new().unwrap();
@@ -92,7 +92,7 @@ fn groups_of_different_homes_do_not_meet() {
 }
 
 #[test]
-fn a_wrong_configuration_ends_the_supervisor_before_anything_starts() {
+fn invalid_configuration_ends_the_supervisor_before_any_start() {
     let mut group = Group::ready(vec![service("arm", &[])]);
     group.ask(&Request::Down);
     group.wait_end();
@@ -141,7 +141,7 @@ fn services_inherit_what_ties_them_to_the_supervisor_and_nothing_else() {
 }
 
 #[test]
-fn a_fresh_start_begins_a_new_epoch() {
+fn fresh_start_begins_a_new_epoch() {
     let mut group = Group::ready(vec![service("arm", &[])]);
     let first = group.status().epoch;
     group.ask(&Request::Down);
@@ -164,7 +164,7 @@ fn a_fresh_start_begins_a_new_epoch() {
 }
 
 #[test]
-fn a_supervisor_is_a_service_of_an_init_system() {
+fn supervisor_notifies_an_init_system() {
     let home = tempfile::tempdir().unwrap();
     let socket = std::os::unix::net::UnixDatagram::bind(home.path().join("n")).unwrap();
     socket.set_read_timeout(Some(crate::harness::PATIENCE)).unwrap();
@@ -185,7 +185,7 @@ fn a_supervisor_is_a_service_of_an_init_system() {
 }
 
 #[test]
-fn the_real_program_explains_itself() {
+fn supervisor_program_prints_help() {
     let program = env!("CARGO_BIN_EXE_whichone-supervisor");
     let run = |words: &[&str]| std::process::Command::new(program).args(words).output().unwrap();
     let help = run(&["--help"]);

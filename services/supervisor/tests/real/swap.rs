@@ -11,7 +11,7 @@ fn swap(words: &[&str]) -> Request {
 }
 
 #[test]
-fn a_new_command_takes_over_and_stays_through_restarts() {
+fn swapped_command_survives_restarts() {
     let group = Group::ready(vec![service("arm", &[]), service("policy", &[])]);
     let policy = group.pid("policy");
     assert_eq!(group.done(&swap(&["ends-slowly", "0"])), "arm runs the new command");
@@ -27,7 +27,7 @@ fn a_new_command_takes_over_and_stays_through_restarts() {
 }
 
 #[test]
-fn a_command_that_refuses_is_taken_back_with_the_reason() {
+fn swap_to_a_rejecting_command_is_rolled_back_with_the_reason() {
     let group = Group::ready(vec![with(service("arm", &[]), "critical", json!(true))]);
     let command = ["sh", "-c", "echo wrong schema >&2; exit 78"].map(str::to_owned).to_vec();
     let request = Request::Swap { service: "arm".into(), command, directory: "/".into() };
@@ -44,7 +44,7 @@ fn a_command_that_refuses_is_taken_back_with_the_reason() {
 }
 
 #[test]
-fn a_command_that_is_never_ready_is_taken_back_after_the_deadline() {
+fn swap_to_a_command_that_is_never_ready_is_rolled_back_at_the_deadline() {
     let group = Group::ready(vec![with(service("arm", &[]), "start_ms", json!(1500))]);
     let refusal = group.refused(&swap(&["never-ready"]));
     assert!(refusal.message.contains("was not ready in time"), "{}", refusal.message);
@@ -52,7 +52,7 @@ fn a_command_that_is_never_ready_is_taken_back_after_the_deadline() {
 }
 
 #[test]
-fn a_command_that_does_not_exist_stops_nothing() {
+fn swap_to_a_missing_command_keeps_the_service_running() {
     let group = Group::ready(vec![service("arm", &[])]);
     let command = vec!["./no-such-arm".to_owned()];
     let request = Request::Swap { service: "arm".into(), command, directory: "/".into() };
@@ -61,7 +61,7 @@ fn a_command_that_does_not_exist_stops_nothing() {
 }
 
 #[test]
-fn a_service_can_be_swapped_again_and_again() {
+fn service_can_be_swapped_repeatedly() {
     let group = Group::ready(vec![service("arm", &[])]);
     for round in 0..5 {
         let words: &[&str] = if round % 2 == 0 { &["ready"] } else { &["exits", "1"] };

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 
 use super::talk::seconds;
 
-/// Which configuration.
+/// Selection of the configuration.
 #[derive(Clone, Debug, Default, Args)]
 pub struct ConfigArgs {
     /// Folder of the configuration [default: ./config, else `config` beside the program].
@@ -41,7 +41,7 @@ pub struct UpArgs {
     pub fresh: bool,
 }
 
-/// What a start can be waited for.
+/// Condition that `up` can wait for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum WaitFor {
     /// Every service is ready.

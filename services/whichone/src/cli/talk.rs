@@ -115,7 +115,7 @@ pub struct AwaitArgs {
     pub answer_as: Option<String>,
 }
 
-/// What can be waited for.
+/// Condition to wait for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Awaited {
     /// The end of an interaction; printed at once if no earlier `await` has printed it.

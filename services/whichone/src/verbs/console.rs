@@ -1,4 +1,4 @@
-//! Where the group's page is.
+//! `whichone console`: address of the group's page.
 
 use service::group::GroupPaths;
 

@@ -25,11 +25,11 @@ use crate::error::CliError;
 #[cfg(test)]
 pub(super) mod example;
 
-/// How often a client looks at the dialogue.
+/// Interval at which a client polls the dialogue.
 pub(super) const LOOK_EVERY: Duration = Duration::from_millis(5);
-/// How long the policy may be silent before it is taken to be down.
+/// Silence of the policy after which it is assumed to be down.
 const FIRST_PATIENCE: Duration = Duration::from_secs(1);
-/// How often it is checked that the group is still the same one.
+/// Interval at which the identity of the group is checked.
 const CHECK_EVERY: Duration = Duration::from_secs(1);
 
 /// A client of one group.
@@ -83,7 +83,7 @@ impl Conversation {
         &self.scene
     }
 
-    /// Whether the robot considers that the wanted object is not here.
+    /// Returns true if the robot considers that the wanted object is not here.
     pub(super) fn may_be_absent(&self) -> bool {
         self.may_be_absent
     }
@@ -110,8 +110,8 @@ impl Conversation {
         Ok(())
     }
 
-    /// Looks until the policy has been heard of, but not for long: whoever speaks first wants to
-    /// know what was before.
+    /// Polls until the policy has published or a timeout has passed: the first utterance needs
+    /// the state before it.
     ///
     /// # Errors
     /// The group has ended.
@@ -124,12 +124,12 @@ impl Conversation {
         Ok(())
     }
 
-    /// Whether the receipt is for something said here.
+    /// Returns true if the receipt is for something said here.
     pub(super) fn is_own(&self, receipt: &Receipt) -> bool {
         self.own.contains(&receipt.request())
     }
 
-    /// Whether everything said here has been answered by a receipt.
+    /// Returns true if everything said here has been answered by a receipt.
     pub(super) fn is_heard(&self) -> bool {
         self.saying.is_empty()
     }
@@ -143,7 +143,7 @@ impl Conversation {
     }
 
     /// Takes in everything that has happened since the last look. Returns the receipts among it,
-    /// of whoever's words.
+    /// of any user's utterance.
     ///
     /// # Errors
     /// The group has ended.

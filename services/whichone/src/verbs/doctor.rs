@@ -81,7 +81,7 @@ fn programs() -> Finding {
     Finding::bad("programs", format!("{} lacks {}; {help}", folder.display(), missing.join(", ")))
 }
 
-/// Where the page is, or whether it has its port.
+/// Checks the page: its address, or else its port.
 fn page(paths: &GroupPaths, settings: &Settings) -> Finding {
     const WHAT: &str = Service::Console.name();
     if let Some(url) = console::url(paths) {
@@ -97,7 +97,7 @@ fn page(paths: &GroupPaths, settings: &Settings) -> Finding {
     }
 }
 
-/// Whether the groups' folder can be written.
+/// Checks that the groups' folder is writable.
 fn folder(paths: &GroupPaths) -> Finding {
     const WHAT: &str = "groups' folder";
     let home = paths.home();

@@ -26,7 +26,7 @@ impl Interrupt {
         Ok(Self(requested))
     }
 
-    /// Whether an interruption was requested.
+    /// Returns true if an interruption was requested.
     pub(super) fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }

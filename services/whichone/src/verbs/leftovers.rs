@@ -12,7 +12,7 @@ use service::shm_cleanup;
 
 use crate::error::CliError;
 
-/// How often it is looked whether the last service has ended.
+/// Interval at which the end of the last service is polled.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 /// Removes what is left of a group that has no supervisor, once its last service has ended; they
@@ -41,7 +41,7 @@ pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBu
     Ok(removed)
 }
 
-/// Whether a service of the group still runs: each holds a shared lock for its life.
+/// Returns true if a service of the group still runs: each holds a shared lock for its life.
 pub(super) fn some_service_lives(paths: &GroupPaths) -> bool {
     let Ok(file) = File::open(paths.alive_lock()) else { return false };
     matches!(file.try_lock(), Err(TryLockError::WouldBlock))
@@ -59,7 +59,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dead_groups_run_folder_goes_and_its_journals_stay() {
+    fn run_folder_of_a_dead_group_is_removed_and_journals_kept() {
         let (_home, paths) = paths();
         std::fs::create_dir_all(paths.journal()).unwrap();
         assert_eq!(remove(&paths, Duration::ZERO).unwrap(), [paths.run()]);
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_touched_while_a_service_lives() {
+    fn run_folder_is_kept_while_a_service_lives() {
         let (_home, paths) = paths();
         let service = File::create(paths.alive_lock()).unwrap();
         service.lock_shared().unwrap();

@@ -18,7 +18,7 @@ use file::LogFile;
 
 mod file;
 
-/// How often it is looked for new lines.
+/// Interval at which logs are polled for new lines.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
 
 /// Shows the last lines of the logs, and then what comes on.

@@ -17,7 +17,7 @@ use crate::cli::{RestartArgs, ServiceArgs, SwapArgs};
 use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
-/// How long the supervisor may take for an answer, beyond what it is asked to wait for.
+/// Timeout of the supervisor's answer, beyond the requested wait.
 const ANSWER_PATIENCE: Duration = Duration::from_secs(5);
 
 /// Reason for which a request is not fulfilled.
@@ -52,7 +52,7 @@ pub(super) fn ask(
     }
 }
 
-/// What the group does.
+/// Returns the status of the group.
 pub(super) fn status_of(paths: &GroupPaths) -> Result<GroupStatus, Unanswered> {
     match ask(paths, &Request::Status, Duration::ZERO)? {
         Reply::Status(status) => Ok(*status),
@@ -118,7 +118,7 @@ pub(super) fn down(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) 
     if out.is_json() {
         out.json(&report)?;
     } else {
-        tell_down(paths, &report, out)?;
+        print_down_report(paths, &report, out)?;
     }
     Ok(Exit::Ok)
 }
@@ -137,7 +137,7 @@ fn await_end(process: &OwnedFd) {
     let _ = poll(&mut [PollFd::new(process, PollFlags::IN)], Some(&patience));
 }
 
-fn tell_down(
+fn print_down_report(
     paths: &GroupPaths,
     report: &DownReport,
     out: &mut Output<'_>,

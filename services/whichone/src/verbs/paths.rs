@@ -16,7 +16,7 @@ const MARK: &str = "group.toml";
 /// The folders of the group.
 ///
 /// # Errors
-/// There is no place for groups.
+/// The folder of groups is unknown or its path is too long.
 pub(super) fn group_paths(group: &GroupName) -> Result<GroupPaths, CliError> {
     Ok(GroupPaths::resolve(group)?)
 }
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn the_nearest_configuration_is_found() {
+    fn nearest_configuration_folder_is_found() {
         let root = tempfile::tempdir().unwrap();
         let here = root.path().join("work");
         let program = root.path().join("checkout/target/release/whichone");

@@ -14,7 +14,7 @@ use crate::cli::{ConfigArgs, PlanArgs, ProblemArgs};
 use crate::error::CliError;
 use crate::scene_file;
 
-/// What decides where neither the command line nor a configuration says.
+/// Default planner without an option and a configuration.
 const PLANNER: &str = "lookahead";
 
 /// A scene's decision problem, with what it borrows.
@@ -22,7 +22,7 @@ pub(super) struct Problem {
     pub(super) scene: Scene,
     pub(super) model: Model,
     pub(super) costs: Costs,
-    /// What each question costs, where the robot's own seconds are to be taken.
+    /// Costs of the questions by the robot's durations, if these are used.
     pub(super) durations: Option<Durations>,
     pub(super) actions: Actions,
     /// The configuration, if there is one.
@@ -30,7 +30,7 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    /// What planners are asked about.
+    /// Returns the decision problem for planners.
     pub(super) fn decision(&self) -> DecisionProblem<'_> {
         let Self { model, costs, durations, actions, .. } = self;
         let durations = durations.as_ref();
@@ -64,8 +64,8 @@ pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, CliE
     problem(scene_file::load(&scene_path(scene, &args.config)?)?, args)
 }
 
-/// What the command line says, else the configuration, else, where none is named and none is
-/// found, what is built in.
+/// Builds the problem from the command line, else the configuration, else, if none is named or
+/// found, the defaults.
 fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, CliError> {
     let config = &args.config;
     let named = config.config.is_some() || config.profile.is_some() || !config.set.is_empty();
@@ -94,7 +94,7 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, CliError> {
     Ok(Problem { scene, model, costs, durations, actions, settings })
 }
 
-/// A word that is no file's name is one of the configuration's scenes.
+/// Resolves a scene: a name without folder and extension is looked up in the configuration.
 pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, CliError> {
     let is_word = named.extension().is_none() && named.components().count() == 1;
     if named.is_file() || !is_word {
@@ -106,7 +106,7 @@ pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Cli
         return Ok(path);
     }
     let (name, folder) = (named.display(), scenes.display());
-    let what = format!("{name}: there is no file of that name, nor a scene in {folder}");
-    let cure = "name a scene file, or a scene without its folder and ending, e.g. bowls";
-    Err(CliError::new(Exit::Config, format!("{what} ({cure})")))
+    let what = format!("{name}: expected a scene file or the name of a scene in {folder}");
+    let help = "name a scene file, or a scene without its folder and extension, e.g. bowls";
+    Err(CliError::new(Exit::Config, format!("{what}; help: {help}")))
 }

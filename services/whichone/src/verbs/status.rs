@@ -150,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_service_in_trouble_says_why() {
+    fn status_shows_the_reason_for_a_held_service() {
         let service = json!({
             "name": "policy", "wanted": "up", "actual": "held", "why": "5 exits in a short time",
             "incarnation": 5, "restarts": 4, "log_tail": ["it broke"],

@@ -58,7 +58,7 @@ pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<(), Cl
     start(paths, &options, Some(Duration::from_secs(30))).map(drop)
 }
 
-/// Whether a supervisor answers for the group.
+/// Returns true if a supervisor answers for the group.
 pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, CliError> {
     match operate::ask(paths, &Request::Ping, Duration::ZERO) {
         Ok(_) => Ok(true),
@@ -77,7 +77,7 @@ fn refuse_twice(paths: &GroupPaths) -> Result<(), CliError> {
     Err(CliError::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
 }
 
-/// What the supervisor is started with. It checks the configuration itself; here it is checked
+/// Returns the supervisor's options. It checks the configuration itself; here it is checked
 /// first so that problems are printed without its log around them.
 fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Options, CliError> {
     paths::settings(config)?;
@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_running_where_nothing_was_started() {
+    fn group_that_was_never_started_is_not_running() {
         let home = tempfile::tempdir().unwrap();
         let name = "lab".parse().unwrap();
         let paths = GroupPaths::in_home(home.path(), &name).unwrap();

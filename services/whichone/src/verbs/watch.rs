@@ -18,13 +18,13 @@ mod model;
 
 use model::WatchModel;
 
-/// How often the screen is redrawn.
+/// Interval between redraws.
 const FRAME_EVERY: Duration = Duration::from_millis(200);
-/// How often the supervisor is asked.
+/// Interval between status requests.
 const STATUS_EVERY: Duration = Duration::from_secs(1);
-/// How long the supervisor may take; the latest answer is shown until the next.
+/// Timeout of a status request; the latest status is shown meanwhile.
 const STATUS_PATIENCE: Duration = Duration::from_millis(500);
-/// How long `--once` waits for the services' first messages.
+/// Timeout of `--once` for the first messages of the services.
 const FIRST_PATIENCE: Duration = Duration::from_secs(1);
 
 /// Shows the group, once or until interrupted.

@@ -21,7 +21,7 @@ pub(super) fn memory(kib: u64) -> String {
     if mib < 1024.0 { format!("{mib:.1} MiB") } else { format!("{:.1} GiB", mib / 1024.0) }
 }
 
-/// What keeps the robot from moving, where something does.
+/// Returns the condition that inhibits motion, if any.
 pub(super) fn hindrance(hindrance: MotionInhibit) -> Option<&'static str> {
     match hindrance {
         MotionInhibit::None => None,
@@ -40,7 +40,7 @@ pub(super) fn count(number: u64, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
-/// What a decision is worth, and between which bounds the best one is, e.g. `value 33.97, best
+/// Renders the value of a decision and the bounds of the best one, e.g. `value 33.97, best
 /// 33.97 to 33.98`.
 pub(super) fn value(value: f64, bounds: Option<(f64, f64)>) -> String {
     let bounds = bounds.map(|(low, high)| format!(", best {low:.2} to {high:.2}"));
@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn times_are_as_precise_as_they_need_to_be() {
-        let told = [
+        let rendered = [
             (-1.0, "0 ms"),
             (0.34, "340 ms"),
             (0.9996, "1.0 s"),
@@ -63,13 +63,13 @@ mod tests {
             (3_660.0, "1 h 1 min"),
             (200_000.0, "2 d 7 h"),
         ];
-        for (seconds, words) in told {
+        for (seconds, words) in rendered {
             assert_eq!(time(seconds), words);
         }
     }
 
     #[test]
-    fn values_are_told_with_their_bounds() {
+    fn values_are_rendered_with_bounds() {
         assert_eq!(value(12.5, None), "value 12.50");
         assert_eq!(value(-1.0, Some((-1.0, 2.255))), "value -1.00, best -1.00 to 2.25");
     }

@@ -119,7 +119,7 @@ mod tests {
         (home, run.join("control.sock"))
     }
 
-    /// What `call` says when the supervisor answers with these bytes and closes.
+    /// Returns the result of `call` if the supervisor answers with these bytes and closes.
     fn answered_with(answer: &'static str) -> Result<Reply, CallError> {
         let (_home, path) = socket("lab");
         let listener = UnixListener::bind(&path).unwrap();

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::rounded;
 
-/// What the arm does.
+/// State of the arm.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ArmView<'a> {
     /// The interaction that its pick belongs to, 0 for none.
@@ -17,15 +17,15 @@ pub struct ArmView<'a> {
     pub phase: PickPhase,
     /// Outcome of the latest pick.
     pub outcome: PickOutcome,
-    /// Whether a joint moves.
+    /// True if a joint moves.
     pub moving: bool,
-    /// Whether the motion stop is latched.
+    /// True if the motion stop is latched.
     pub stopped: bool,
-    /// What keeps the robot from moving.
+    /// Condition that inhibits motion.
     pub hindrance: MotionInhibit,
     /// Time left until the pick is done, seconds.
     pub remaining_s: f64,
-    /// Whether it points at an object.
+    /// True if it points at an object.
     pub aimed: bool,
 }
 

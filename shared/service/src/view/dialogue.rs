@@ -4,7 +4,7 @@ use messages::{ActKind, Outcome, PolicyView};
 use scene::{Question, Scene};
 use serde::ser::{Serialize, Serializer};
 
-/// What the policy believes and decides.
+/// Belief and decision of the policy.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct DialogueView<'a> {
     /// The open interaction, 0 for none.
@@ -16,7 +16,7 @@ pub struct DialogueView<'a> {
     pub belief: Vec<(&'a str, f64)>,
     /// Probability that the wanted object is not here.
     pub absent: f64,
-    /// What the robot has learnt about its user.
+    /// User model learnt by the robot.
     pub person: Option<UserView>,
     /// Kind of the decision in force.
     pub decision: ActKind,
@@ -44,7 +44,7 @@ pub struct DialogueView<'a> {
     pub last: Option<EndedView<'a>>,
 }
 
-/// What the robot has learnt about its user.
+/// User model learnt by the robot.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct UserView {
     /// Probability that a question is answered.
@@ -112,7 +112,7 @@ pub struct AttributionView {
 pub struct ShareView {
     /// The prompt.
     pub prompt: u64,
-    /// Which presentation of it.
+    /// Number of its presentation.
     pub presentation: u32,
     /// Probability that the utterance answers it.
     pub share: f64,
@@ -130,11 +130,11 @@ pub struct AlternativeView<'a> {
 /// The end of an interaction.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct EndedView<'a> {
-    /// Which one.
+    /// Number of the interaction.
     pub interaction: u64,
     /// Name of the object that was picked or tried.
     pub object: Option<&'a str>,
-    /// How it ended.
+    /// Its outcome.
     pub outcome: Outcome,
     /// Questions that were asked.
     pub questions: u32,

@@ -1,7 +1,7 @@
 use messages::{EarState, Hearing, MicrophoneState};
 use serde::Serialize;
 
-/// How well the robot hears.
+/// Quality of the microphone signal.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HearingView<'a> {
     /// State of the microphone.
@@ -10,7 +10,7 @@ pub struct HearingView<'a> {
     pub recogniser: EarState,
     /// Loudness, dB of full scale.
     pub level_db: f32,
-    /// How far the latest utterance stood above the noise, dB; none before one was measured.
+    /// Signal-to-noise ratio of the latest utterance, dB; none before the first measurement.
     pub snr_db: Option<f32>,
     /// Sounds that wait for recognition.
     pub pending: u32,

@@ -9,7 +9,7 @@ use crate::bus::{Bus, BusError, EncodedReader, PortError, Reader, WireMessage};
 /// A prompt and which presentation of it.
 pub type PromptId = (u64, u32);
 
-/// Readers of the topics that tell how the dialogue stands.
+/// Readers of the topics that publish the state of the dialogue.
 #[derive(Debug)]
 pub struct LatestTopics {
     views: EncodedReader<PolicyView>,
@@ -20,35 +20,35 @@ pub struct LatestTopics {
     statuses: Reader<ArmStatus>,
 }
 
-/// What has arrived since the last look.
+/// Messages that have arrived since the last poll.
 #[derive(Clone, Debug, Default)]
 pub struct Arrived {
     /// Receipts of every client's utterances.
     pub receipts: Vec<Receipt>,
     /// Statuses of the arm, with when they were sent.
     pub statuses: Vec<(ArmStatus, Time)>,
-    /// How far the newest utterance has come.
+    /// Progress of the newest utterance.
     pub activity: Option<Activity>,
     /// The presentation of the robot's latest line.
     pub presented: Option<Presented>,
-    /// How well the robot hears.
+    /// Quality of the microphone signal.
     pub hearing: Option<Hearing>,
-    /// What the policy believes and decides.
+    /// Belief and decision of the policy.
     pub view: Option<PolicyView>,
 }
 
 /// The latest message of every topic.
 #[derive(Clone, Debug, Default)]
 pub struct Latest {
-    /// What the policy believes and decides.
+    /// Belief and decision of the policy.
     pub view: Option<PolicyView>,
     /// The presentation of the robot's latest line.
     pub presented: Presented,
-    /// What is still to be applied.
+    /// Utterances that are still to be applied.
     pub activity: Option<Activity>,
-    /// How well the robot hears.
+    /// Quality of the microphone signal.
     pub hearing: Option<Hearing>,
-    /// What the arm does.
+    /// State of the arm.
     pub arm: Option<ArmStatus>,
     /// Highest utterance that was accepted.
     pub accepted: u64,

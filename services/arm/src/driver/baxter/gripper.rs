@@ -8,7 +8,7 @@ use messages::robot::{
 };
 use service::{Span, Time};
 
-/// How often a command is sent again that the gripper has not confirmed.
+/// Interval at which an unconfirmed command is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);
 /// Timeout of a calibration, after which it is requested again.
 const CALIBRATION_MAX: Span = Span::from_ms(10_000);
@@ -18,7 +18,7 @@ const STALE: Span = Span::from_ms(1_000);
 const SETTLED_AFTER: Span = Span::from_ms(500);
 /// Fingers this near to their goal are there, percent: the SDK's dead zone.
 const DEAD_ZONE_PERCENT: f64 = 100.0 * gripper::DEAD_ZONE;
-/// Who the commands come from.
+/// Sender named in the commands.
 const SENDER: &str = "whichone";
 
 /// One gripper.

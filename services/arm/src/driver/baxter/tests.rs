@@ -121,7 +121,7 @@ fn joints_are_found_by_name_and_fingers_disturb_nothing() {
 }
 
 #[test]
-fn a_standing_limb_is_held_and_one_that_is_taken_elsewhere_stays_there() {
+fn stationary_limb_is_held_and_displaced_limb_keeps_its_position() {
     let mut bench = Bench::new();
     let held = bench.joints[0].to_vec();
     assert_eq!(commanded(&bench.pass(None), Limb::Left), Some(held.clone()));
@@ -283,7 +283,7 @@ fn gripper_judges_a_grasp_by_sensor_and_position() {
 }
 
 #[test]
-fn an_uncalibrated_gripper_is_calibrated_unless_it_may_hold_something() {
+fn uncalibrated_gripper_is_calibrated_unless_it_may_hold_an_object() {
     let mut bench = Bench::new();
     bench.grippers[0].calibrated = Tristate::False.code();
     let message = word(&bench.pass(None)).unwrap();

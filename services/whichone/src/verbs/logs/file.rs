@@ -15,7 +15,7 @@ const NEW_BYTES_MAX: u64 = 4 << 20;
 pub(super) struct LogFile {
     service: String,
     path: PathBuf,
-    /// Which file it was that has been read; another one of that name begins anew.
+    /// Inode of the file that has been read; another file of that name is read from its beginning.
     inode: u64,
     at: u64,
     /// The beginning of a line whose end is not there yet.
@@ -35,14 +35,14 @@ impl LogFile {
         &self.path
     }
 
-    /// The last lines, `count` at most; [`LogFile::new_lines`] goes on after them.
+    /// The last lines, `count` at most; [`LogFile::new_lines`] continues after them.
     pub(super) fn last_lines(&mut self, count: usize) -> io::Result<Vec<String>> {
         let Some(mut file) = open(&self.path)? else { return Ok(Vec::new()) };
         let metadata = file.metadata()?;
         let from = metadata.len().saturating_sub(TAIL_BYTES_MAX);
         (self.inode, self.at) = (metadata.ino(), from);
         let mut lines = self.read(&mut file, TAIL_BYTES_MAX)?;
-        // What was cut at its beginning is no whole line.
+        // The first line may be incomplete.
         lines.drain(..usize::from(from > 0 && !lines.is_empty()));
         Ok(lines.split_off(lines.len().saturating_sub(count)))
     }

@@ -37,7 +37,7 @@ fn lines_of_all_services_come_in_order_of_time() {
 }
 
 #[test]
-fn an_unknown_service_is_told_with_those_that_have_a_log() {
+fn logs_of_an_unknown_service_list_the_known_ones() {
     let (_home, paths) = group();
     append(&paths, "arm", "line\n");
     let args = LogsArgs { service: Some("leg".into()), follow: false, tail: 1 };
@@ -46,14 +46,14 @@ fn an_unknown_service_is_told_with_those_that_have_a_log() {
 }
 
 #[test]
-fn what_a_log_says_cannot_act_upon_the_terminal() {
+fn log_lines_are_sanitised_for_the_terminal() {
     let (_home, paths) = group();
     append(&paths, "arm", "\x1b[2Jgone\r\n");
     assert_eq!(printed(&paths, Some("arm"), 5), ["[2Jgone"]);
 }
 
 #[test]
-fn a_log_is_followed_through_half_lines_and_rotation() {
+fn log_is_followed_through_partial_lines_and_rotation() {
     let (_home, paths) = group();
     append(&paths, "arm", "one\ntwo\nthr");
     let mut file = LogFile::new("arm", paths.log_file("arm"));

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::*;
 
-/// What is asked, printed, and how it ends, when the supervisor answers with `reply`.
+/// Returns the request, the output and the outcome if the supervisor answers with `reply`.
 fn run(
     reply: Json,
     json: bool,
@@ -45,7 +45,7 @@ fn arm() -> ServiceArgs {
 }
 
 #[test]
-fn what_is_asked_is_what_the_verb_says() {
+fn verbs_send_their_requests() {
     let done = || json!({"reply": "done", "message": "arm is so"});
     let (asked, printed, ended) = run(done(), false, |paths, out| hold(paths, arm(), out));
     assert_eq!(asked, json!({"verb": "hold", "service": "arm", "wait_ms": 1500}));
@@ -62,7 +62,7 @@ fn what_is_asked_is_what_the_verb_says() {
 }
 
 #[test]
-fn a_refusal_is_told_with_its_details_and_its_kind() {
+fn refusal_is_printed_with_details_and_kind() {
     let kinds =
         [("usage", Exit::Usage), ("config", Exit::Config), ("not-reached", Exit::NotReached)];
     for (kind, exit) in kinds {
@@ -74,7 +74,7 @@ fn a_refusal_is_told_with_its_details_and_its_kind() {
 }
 
 #[test]
-fn a_reload_names_what_it_restarted() {
+fn reload_lists_the_restarted_services() {
     let reloaded = |names: Json| {
         let reply = json!({"reply": "reloaded", "restarted": names});
         run(reply, false, |paths, out| reload(paths, Duration::ZERO, out)).1

@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn every_policy_meets_every_kind_of_people() {
+    fn every_policy_is_simulated_with_every_kind_of_user() {
         let all = rows(&args(&[]), "lookahead").unwrap();
         assert_eq!(all.len(), registry::names().len() * 3);
         let twice = args(&["--policies", "entropy,all,entropy", "--users", "human,human"]);

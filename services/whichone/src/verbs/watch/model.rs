@@ -1,4 +1,4 @@
-//! What `watch` shows: the latest messages, the lines of the dialogue, and the group's status.
+//! Model behind `watch`: the latest messages, the lines of the dialogue, and the group's status.
 
 use std::collections::VecDeque;
 

@@ -32,7 +32,7 @@ fn of_many_objects_the_most_probable_are_shown_in_order() {
 }
 
 #[test]
-fn the_dialogue_is_told_with_its_reasons() {
+fn watch_frame_shows_the_dialogue_with_reasons() {
     let view = PolicyView {
         interaction: 4,
         belief: vec![0.5, 0.5],
@@ -53,7 +53,7 @@ fn the_dialogue_is_told_with_its_reasons() {
 }
 
 #[test]
-fn an_arm_that_is_stopped_says_so_whatever_it_does() {
+fn watch_frame_shows_a_stopped_arm_in_every_phase() {
     let moving = ArmStatus {
         phase: PickPhase::Moving.code(),
         moving: 1,
@@ -61,8 +61,8 @@ fn an_arm_that_is_stopped_says_so_whatever_it_does() {
         remaining_s: 3.25,
         ..ArmStatus::default()
     };
-    let told = arm_line(&scene(2), &moving, Style::default());
-    assert_eq!(told, "arm moves to o1, 3.2 s to go, moving");
+    let moving_line = arm_line(&scene(2), &moving, Style::default());
+    assert_eq!(moving_line, "arm moves to o1, 3.2 s to go, moving");
     let stopped = arm_line(&scene(2), &ArmStatus { stopped: 1, ..moving }, Style::default());
     assert!(stopped.contains("STOPPED"), "{stopped}");
     let unknown = ArmStatus { object: 9, ..ArmStatus::default() };
@@ -70,7 +70,7 @@ fn an_arm_that_is_stopped_says_so_whatever_it_does() {
 }
 
 #[test]
-fn no_line_is_wider_than_the_screen_and_none_acts_upon_it() {
+fn watch_frame_lines_fit_the_screen_and_are_sanitised() {
     assert_eq!(cut("abcdef", 4), "abc…");
     assert_eq!(cut("ab\x1b[2J", 10), "ab [2J");
     assert_eq!(redraw(&["a".into()]), "\x1b[Ha\x1b[K\r\n\x1b[J");
