@@ -101,7 +101,7 @@ pub(crate) fn spawn(launch: Launch<'_>) -> Result<Child, SpawnError> {
 /// seen from `directory`.
 ///
 /// # Errors
-/// Finds the program of a command, as a shell would.
+/// Program not found or not executable.
 pub(crate) fn find_program(command: &[String], directory: &Path) -> Result<PathBuf, SpawnError> {
     let program = command.first().filter(|name| !name.is_empty()).ok_or(SpawnError::Empty)?;
     if program.contains('/') {
