@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn hypotheses_of_one_meaning_are_one_reading() {
+    fn grounding_merges_hypotheses_with_one_meaning() {
         let scene = Scene::from_toml("bowls", BOWLS).unwrap();
         let reader = Reader::new(&scene, Language::Careful);
         let config = Config { scene, reader };
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hedged_answer_is_doubted() {
+    fn grounding_doubts_a_hedged_answer() {
         let scene = Scene::from_toml("bowls", BOWLS).unwrap();
         let asked = Question::Point(scene::ObjectId(0));
         let reader = Reader::new(&scene, Language::Careful);

@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_appended_is_there_again_and_a_torn_line_is_not() {
+    fn line_log_returns_appended_lines_without_a_torn_one() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("deep/A.jsonl");
         let mut lines = Lines::create(&path).unwrap();
@@ -113,12 +113,12 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_that_is_not_there_has_no_files() {
+    fn line_log_of_a_missing_folder_is_empty() {
         assert!(read_folder(Path::new("/no/such/folder"), "jsonl").unwrap().is_empty());
     }
 
     #[test]
-    fn a_file_that_is_no_text_is_requested() {
+    fn line_log_reports_a_file_that_is_not_text() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("A.jsonl");
         fs::write(&path, b"\xff\n").unwrap();

@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_distributions_over_the_other_words() {
+    fn confusion_rows_are_distributions_over_the_other_words() {
         for (name, text) in [("bowls", BOWLS), ("tools", TOOLS)] {
             let scene = Scene::from_toml(name, text).expect("a scene");
             let rows = confusion(&scene);
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_sounds_alike_is_nearest() {
+    fn confusion_is_largest_between_similar_sounds() {
         let bowls = Scene::from_toml("bowls", BOWLS).expect("a scene");
         let tools = Scene::from_toml("tools", TOOLS).expect("a scene");
         for (scene, heard, said) in
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_alone_has_an_empty_row() {
+    fn confusion_row_of_a_single_word_is_empty() {
         let json = serde_json::json!({"objects": [{"name": "a", "attributes": {"k": "7"}}],
             "values": {"k": ["7"]}});
         let scene = Scene::from_json("one", &json).expect("a scene");

@@ -1,17 +1,17 @@
 //! The speaker's confidence as expressed by hedges such as "I think so" or "probably".
 //!
-//! | words | sure | from |
+//! | words | confidence | source |
 //! |---|---|---|
 //! | `almost`, `nearly`, `pretty`, `fairly`, `quite`, `very`, `highly`, `most`, `certain` | 0.9 | half the way from `likely` to certain, as "very" is: Mosteller and Youtz 1990 |
 //! | `think`, `believe`, `say`, `imagine`, `expect`, what is remembered or looks so | 0.8 | judged: people say it of what they want or saw |
 //! | `probably`, `likely`, `should`, `must`, `supposedly` | 0.75 | about 0.7 in Mosteller and Youtz 1990, of events; judged a little higher of one's own things |
 //! | `guess`, `suppose`, `reckon`, `assume`, `sort of` | 0.7 | judged |
-//! | `maybe`, `perhaps`, `possibly`, `might`, `could` | 0.6 | judged: "possible" means something else to everybody, and people say it to be polite |
+//! | `maybe`, `perhaps`, `possibly`, `might`, `could` | 0.6 | judged: the meaning of "possible" varies between people, and people say it to be polite |
 //! | any other way of not knowing | 0.55 | judged: it says little, not nothing |
 //!
-//! "Sure" is how often what is said with these words holds. A scene word is doubted by `1 − sure`;
-//! an answer or a scope by `2 (1 − sure)`, because half of an answer that was not given is right
-//! by chance ([`scene::Doubt`]).
+//! The confidence is the share of statements with these words that are true. A scene word is doubted
+//! by `1 − sure`; an answer or a scope by `2 (1 − sure)`, because half of the answers that were not
+//! given are right by chance ([`scene::Doubt`]).
 //!
 //! F. Mosteller and C. Youtz, "Quantifying probabilistic expressions", Statistical Science 5(1),
 //! 1990.
@@ -22,74 +22,29 @@ use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 
-/// Words and how sure who uses them is; the first row that has a word of a phrase counts.
-const SURENESS: &[(f64, &[&str])] = &[
-    (0.9, &["almost", "nearly", "pretty", "fairly", "quite", "very", "highly", "most", "certain"]),
+/// Confidences and the words that express them; the first row that has a word of a phrase counts.
+const SURENESS: &[(f64, &str)] = &[
+    (0.9, "almost nearly pretty fairly quite very highly most certain"),
     (
         0.8,
-        &[
-            "think", "believe", "say", "imagine", "expect", "suspect", "bet", "seems", "seem",
-            "looks", "feels", "sounds", "smells", "appears", "memory", "recall", "remember",
-            "checked", "looked", "saw", "heard", "mistaken", "positive", "doubt", "doubtful",
-            "unlikely", "hardly",
-        ],
+        "think believe say imagine expect suspect bet seems seem looks feels sounds \
+         smells appears memory recall remember checked looked saw heard mistaken positive \
+         doubt doubtful unlikely hardly",
     ),
     (
         0.75,
-        &[
-            "probably",
-            "probability",
-            "likely",
-            "likelihood",
-            "should",
-            "must",
-            "ought",
-            "presumably",
-            "apparently",
-            "supposedly",
-            "inclined",
-            "leaning",
-            "chances",
-            "odds",
-        ],
+        "probably probability likely likelihood should must ought presumably apparently \
+         supposedly inclined leaning chances odds",
     ),
     (
         0.7,
-        &[
-            "guess",
-            "guessing",
-            "suppose",
-            "reckon",
-            "assume",
-            "presume",
-            "gather",
-            "fancy",
-            "kind",
-            "sort",
-            "kinda",
-            "sorta",
-            "more",
-            "basically",
-            "mostly",
-            "know",
-            "knowledge",
-        ],
+        "guess guessing suppose reckon assume presume gather fancy kind sort kinda sorta \
+         more basically mostly know knowledge",
     ),
     (
         0.6,
-        &[
-            "maybe",
-            "perhaps",
-            "possibly",
-            "might",
-            "may",
-            "could",
-            "conceivably",
-            "perchance",
-            "potentially",
-            "feasibly",
-            "plausibly",
-        ],
+        "maybe perhaps possibly might may could conceivably perchance potentially \
+         feasibly plausibly",
     ),
 ];
 /// Of a phrase without any of these words.
@@ -99,19 +54,19 @@ pub(crate) const MAYBE: f64 = 0.6;
 
 /// Returns the confidence that a phrase expresses, 1 for a phrase that is not a hedge.
 pub(crate) fn sureness(class: Class, phrase: &str) -> f64 {
-    let of = |rows: &[(f64, &[&str])]| {
-        let said = |words: &[&str]| phrase.split(' ').any(|word| words.contains(&word));
-        rows.iter().find(|(_, words)| said(words)).map(|(sure, _)| *sure)
+    let listed = || {
+        let said = |words: &str| words.split(' ').any(|word| phrase.split(' ').any(|w| w == word));
+        SURENESS.iter().find(|(_, words)| said(words)).map(|(sure, _)| *sure)
     };
     match class {
-        Class::Hedge | Class::Likely | Class::Unsure => of(SURENESS).unwrap_or(SURE_LEAST),
+        Class::Hedge | Class::Likely | Class::Unsure => listed().unwrap_or(SURE_LEAST),
         // "I think so", "I doubt it", but not "good guess" and "no doubt"
-        Class::Yes if phrase.ends_with(" so") => of(SURENESS).unwrap_or(1.0),
-        Class::No if phrase.contains("doubt") || phrase.ends_with("likely") => {
-            of(SURENESS).unwrap_or(1.0)
-        }
-        Class::No if phrase.ends_with(" so") || phrase.contains("not that i") => {
-            of(SURENESS).unwrap_or(1.0)
+        Class::Yes if phrase.ends_with(" so") => listed().unwrap_or(1.0),
+        Class::No
+            if ["doubt", "not that i"].iter().any(|part| phrase.contains(part))
+                || ["likely", " so"].iter().any(|end| phrase.ends_with(end)) =>
+        {
+            listed().unwrap_or(1.0)
         }
         _ => 1.0,
     }
@@ -128,21 +83,21 @@ fn sureness_of(tag: &Tag<'_>) -> f64 {
     }
 }
 
-/// Lets each hedge weaken what is said in its clause; one that stands alone, what was said before
-/// it in the same sentence, or else what follows: "the white one, I think".
+/// Applies each hedge to the content of its clause; one that stands alone, to what was said before
+/// it in the same sentence, or else to what follows: "the white one, I think".
 pub(crate) fn hedge(tags: &mut [Tag<'_>], clauses: &[Clause]) {
     for (n, clause) in clauses.iter().enumerate().filter(|(_, clause)| clause.topic == Topic::On) {
         let sure = tags[clause.span.clone()].iter().map(sureness_of).fold(1.0, f64::min);
         if sure == 1.0 {
             continue;
         }
-        let goes_on = |clause: &Clause| tags[clause.span.start].gap < Gap::Stop;
+        let continues = |clause: &Clause| tags[clause.span.start].gap < Gap::Stop;
         let beside = match says_more(&tags[clause.span.clone()]) {
             true => None,
             false => n
                 .checked_sub(1)
-                .filter(|_| goes_on(clause))
-                .or((n + 1 < clauses.len() && goes_on(&clauses[n + 1])).then_some(n + 1)),
+                .filter(|_| continues(clause))
+                .or((n + 1 < clauses.len() && continues(&clauses[n + 1])).then_some(n + 1)),
         };
         let beside = beside.map_or(0..0, |n| clauses[n].span.clone());
         for at in clause.span.clone().chain(beside) {
@@ -163,7 +118,7 @@ mod tests {
     use super::{Class, sureness};
 
     #[test]
-    fn the_surer_the_words_the_less_the_doubt() {
+    fn hedge_confidences_are_ordered() {
         let order = [
             (Class::Likely, "most likely"),
             (Class::Yes, "i think so"),
@@ -178,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plain_answer_is_sure() {
+    fn hedge_confidence_of_a_plain_answer_is_1() {
         for (class, phrase) in [
             (Class::Yes, "yes"),
             (Class::Yes, "no doubt"),

@@ -62,7 +62,7 @@ mod tests {
     use super::inflected;
 
     #[test]
-    fn forms_are_english() {
+    fn morphology_forms_are_english() {
         for (word, forms) in [
             ("big", "bigs bigger biggest biggish"),
             ("white", "whites whiter whitest whitish"),

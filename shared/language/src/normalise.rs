@@ -50,7 +50,7 @@ mod tests {
     use super::{TEXT_CHARS_MAX, normalise};
 
     #[test]
-    fn dress_is_taken_off() {
+    fn normalise_removes_typography() {
         for (text, plain) in [
             ("The BIG bowl", "the big bowl"),
             ("isn\u{2019}t", "isn't"),
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn length_is_bounded() {
+    fn normalise_bounds_the_length() {
         assert_eq!(normalise(&"a".repeat(1 << 20)).len(), TEXT_CHARS_MAX);
         // One character that decomposes into eighteen.
         let long = normalise(&"\u{fdfa}".repeat(1 << 20)).chars().count();

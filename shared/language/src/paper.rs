@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn words_are_spotted() {
+    fn paper_reader_spots_words() {
         check("Blue, BLUE!", &["blue", "blue"], Response::None);
         check("the light blue x-aligned one", &["light blue", "x-aligned"], Response::None);
         check("x aligned", &[], Response::None);

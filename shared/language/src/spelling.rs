@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn one_slip_is_corrected() {
+    fn spelling_corrects_one_slip() {
         let index = index();
         for (word, sense) in [
             ("whte", Some(0)),
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn long_words_are_shortened() {
+    fn spelling_shortens_lengthened_words() {
         assert_eq!(shortened("biiiig"), Some(["biig".into(), "big".into()]));
         assert_eq!(shortened("smalllll"), Some(["small".into(), "smal".into()]));
         assert_eq!(shortened("big"), None);

@@ -1,6 +1,8 @@
 //! Normalised text to words: contractions opened ("isn't" is "is not"), compounds taken apart at
 //! their hyphens, punctuation kept as the pause that it stands for.
 
+use crate::vocabulary;
+
 /// The pause before a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Gap {
@@ -76,8 +78,8 @@ impl<'a> Tokens<'a> {
                 gap = Gap::None;
             }
         };
-        if let Some(opened) = opened(word) {
-            opened.split(' ').for_each(push);
+        if let Some(expanded) = vocabulary::expansion(word) {
+            expanded.split(' ').for_each(push);
             return;
         }
         let Some(quote) = word.rfind('\'') else { return push(word) };
@@ -99,65 +101,11 @@ impl<'a> Tokens<'a> {
     }
 }
 
-/// Words whose contraction is not spelled out by its ending, and contractions typed without their
-/// apostrophe.
-fn opened(word: &str) -> Option<&'static str> {
-    Some(match word {
-        "can't" | "cannot" | "cant" => "can not",
-        "won't" | "wont" => "will not",
-        "shan't" => "shall not",
-        "ain't" | "aint" => "is not",
-        "let's" | "lets" => "let us",
-        "dont" => "do not",
-        "doesnt" | "doesent" => "does not",
-        "didnt" => "did not",
-        "isnt" => "is not",
-        "arent" => "are not",
-        "wasnt" => "was not",
-        "wouldnt" => "would not",
-        "couldnt" => "could not",
-        "havent" => "have not",
-        "hasnt" => "has not",
-        "its" => "it is",
-        "thats" => "that is",
-        "whats" => "what is",
-        "wheres" => "where is",
-        "theres" => "there is",
-        "im" => "i am",
-        "ive" => "i have",
-        "youre" => "you are",
-        "theyre" => "they are",
-        "gonna" => "going to",
-        "wanna" => "want to",
-        "gotta" => "got to",
-        "gimme" | "gimmie" => "give me",
-        "lemme" => "let me",
-        "dunno" => "do not know",
-        "y'all" | "yall" => "you",
-        "o'clock" => "oclock",
-        _ => return None,
-    })
-}
-
 /// Returns whether "…'s" is "… is" and not a possessive.
 fn takes_is(stem: &str) -> bool {
-    matches!(
-        stem,
-        "it" | "that"
-            | "this"
-            | "there"
-            | "here"
-            | "what"
-            | "where"
-            | "who"
-            | "which"
-            | "how"
-            | "he"
-            | "she"
-            | "one"
-            | "everything"
-            | "nothing"
-    )
+    const STEMS: &str =
+        "it that this there here what where who which how he she one everything nothing";
+    STEMS.split(' ').any(|listed| listed == stem)
 }
 
 /// End of the word that starts `text`: letters and digits, and apostrophes between letters.
@@ -219,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn contractions_are_opened() {
+    fn tokens_expand_contractions() {
         for (text, opened) in [
             ("isn't it", "is not it"),
             ("can't i won't", "can not i will not"),
@@ -234,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn confidences_follow_the_blanks() {
+    fn token_confidences_follow_the_blanks() {
         let confidence = [0.9, 0.5, 0.8];
         let sure = |text| -> Vec<f32> {
             Tokens::heard(text, &confidence).words.iter().map(|token| token.confidence).collect()
@@ -246,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn punctuation_is_a_pause() {
+    fn tokens_keep_punctuation_as_pauses() {
         let tokens = Tokens::of("red, no... blue-ish. yes");
         let gaps: Vec<Gap> = tokens.words.iter().map(|token| token.gap).collect();
         assert_eq!(gaps, [Gap::Stop, Gap::Pause, Gap::Pause, Gap::Glued, Gap::Stop]);
@@ -254,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn code_is_recognised_and_hearts_are_not_code() {
+    fn tokens_recognise_code_but_not_emoticons() {
         assert!(Tokens::of("{\"base\":[]}").code);
         assert!(Tokens::of("<script>").code);
         assert!(!Tokens::of("the white one <3 thanks").code);

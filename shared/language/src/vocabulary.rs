@@ -1,4 +1,7 @@
-//! English words and phrases of a dialogue about things to fetch, from `vocabulary/phrases.txt`.
+//! English words and phrases of a dialogue about things to fetch, from the folder `vocabulary`.
+
+use std::collections::HashMap;
+use std::sync::LazyLock;
 
 use crate::token_class::Class;
 
@@ -18,6 +21,17 @@ pub(crate) fn phrases() -> impl Iterator<Item = (Class, &'static str)> {
 /// Everyday words that a misspelt value could be taken for; they are never corrected.
 pub(crate) fn common_words() -> impl Iterator<Item = &'static str> {
     include_str!("vocabulary/common_words.txt").split_ascii_whitespace()
+}
+
+/// Returns the words of a contraction that its ending does not spell out.
+pub(crate) fn expansion(word: &str) -> Option<&'static str> {
+    static EXPANSIONS: LazyLock<HashMap<&str, &str>> = LazyLock::new(|| {
+        let lines = include_str!("vocabulary/contractions.txt").lines();
+        let rows = lines.filter_map(|line| line.split_once(" = "));
+        rows.flat_map(|(words, expansion)| words.split(", ").map(move |word| (word, expansion)))
+            .collect()
+    });
+    EXPANSIONS.get(word).copied()
 }
 
 #[cfg(test)]

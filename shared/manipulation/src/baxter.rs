@@ -28,7 +28,7 @@ mod tests {
     use crate::samples::fixture;
 
     #[test]
-    fn numbers_are_the_facts() {
+    fn baxter_numbers_match_the_data_sheet() {
         let facts: toml::Table = fixture("baxter_facts.toml").parse().unwrap();
         let of = |table: &str, key: &str| facts[table][key].as_float().unwrap();
         let tool = |key: &str| of("tool_frames", key);

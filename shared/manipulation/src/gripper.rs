@@ -58,7 +58,7 @@ mod tests {
     use nalgebra::Vector3;
 
     #[test]
-    fn percent_and_width_are_inverse() {
+    fn gripper_percent_and_width_are_inverse() {
         for percent_open in [0.0, 12.5, 50.0, 100.0] {
             assert!((percent(width_m(percent_open)) - percent_open).abs() < 1e-12);
         }
@@ -67,20 +67,20 @@ mod tests {
     }
 
     #[test]
-    fn closing_takes_its_share_of_a_second() {
+    fn gripper_closing_time_is_proportional() {
         assert_eq!(seconds_between(STROKE_M, 0.0), 1.0);
         assert_eq!(seconds_between(0.0, 0.5 * STROKE_M), 0.5);
         assert_eq!(seconds_between(0.01, 0.01), 0.0);
     }
 
     #[test]
-    fn closed_fingers_tell_something_from_nothing() {
+    fn gripper_position_distinguishes_a_held_object_from_none() {
         assert!(holds(closed_on(0.004)) && holds(closed_on(0.1)));
         assert!(!holds(closed_on(0.0)) && !holds(closed_on(0.001)));
     }
 
     #[test]
-    fn a_held_object_moves_with_the_gripper() {
+    fn gripper_moves_the_held_object() {
         let offset = Isometry3::translation(0.0, 0.0, 0.02);
         let gripper = Isometry3::new(Vector3::new(0.5, 0.1, 0.2), Vector3::x() * 3.0);
         let moved = Isometry3::translation(0.1, 0.0, 0.0) * gripper;

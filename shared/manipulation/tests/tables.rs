@@ -56,7 +56,7 @@ fn plans_on_random_tables_touch_nothing() {
 
 /// A plan that is bent out of shape is found out.
 #[test]
-fn the_checker_sees_what_touches() {
+fn collision_checker_detects_contact() {
     let robot = Robot::baxter();
     let checker = Checker::new(robot);
     let (_, poses): (Vec<String>, Vec<ObjectPose>) = scenes::read("bowls").into_iter().unzip();

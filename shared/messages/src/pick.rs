@@ -59,14 +59,14 @@ mod tests {
     }
 
     #[test]
-    fn a_repeated_order_never_starts_again() {
+    fn pick_order_repeated_never_starts_again() {
         for phase in [PickPhase::Accepted, PickPhase::Closing, PickPhase::Done] {
             assert_eq!(judge(Some(&latest(phase)), id(5, 1), ObjectId(2)), Order::Known);
         }
     }
 
     #[test]
-    fn another_pick_waits_until_this_one_is_done() {
+    fn pick_order_waits_for_the_current_pick() {
         let order = |phase| judge(Some(&latest(phase)), id(6, 1), ObjectId(0));
         assert_eq!(order(PickPhase::Holding), Order::Busy);
         assert_eq!(order(PickPhase::Done), Order::Accept);
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn old_and_contradicting_orders_are_told_apart() {
+    fn pick_orders_that_are_old_or_contradictory_are_distinguished() {
         let pick = latest(PickPhase::Done);
         assert_eq!(judge(Some(&pick), id(4, 1), ObjectId(2)), Order::Obsolete);
         assert_eq!(judge(Some(&pick), id(5, 1), ObjectId(3)), Order::Conflict);

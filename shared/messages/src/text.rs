@@ -82,19 +82,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keeps_what_fits_and_refuses_what_does_not() {
+    fn fixed_text_rejects_oversized_text() {
         assert_eq!(FixedText::<4>::new("abcd").unwrap().as_str(), Ok("abcd"));
         assert_eq!(FixedText::<4>::new("abcde").unwrap_err(), TextTooLong { bytes: 5, max: 4 });
     }
 
     #[test]
-    fn cuts_between_characters() {
+    fn fixed_text_truncates_between_characters() {
         assert_eq!(FixedText::<4>::truncated("aßßß").as_str(), Ok("aß"));
         assert_eq!(FixedText::<1>::truncated("ß").as_str(), Ok(""));
     }
 
     #[test]
-    fn a_length_beyond_the_bound_is_an_error() {
+    fn fixed_text_rejects_an_invalid_length() {
         let mut text = FixedText::<4>::truncated("ab");
         text.len = 9;
         assert!(text.as_str().is_err());

@@ -132,7 +132,7 @@ fn certainly(reading: Reading) -> Interpretation {
 }
 
 #[test]
-fn what_does_not_fit_is_cut_and_told() {
+fn conversion_truncates_and_reports_oversized_content() {
     let reading = Reading { base: vec![WordId(1); BASE_WORDS_MAX + 1], ..Reading::default() };
     let (wire, fits) = WireReading::new(&certainly(reading));
     assert_eq!(fits, Fits::Cut);
@@ -140,12 +140,12 @@ fn what_does_not_fit_is_cut_and_told() {
 }
 
 #[test]
-fn an_observation_without_readings_is_refused() {
+fn observation_without_readings_is_rejected() {
     assert!(Observation::default().interpretations(WORDS).is_err());
 }
 
 #[test]
-fn weights_and_doubts_that_are_no_probabilities_are_refused() {
+fn observation_with_invalid_probabilities_is_rejected() {
     for wrong in [f64::NAN, -0.1, 1.5, f64::INFINITY] {
         let mut heavy = certainly(Reading::default());
         heavy.weight = wrong;

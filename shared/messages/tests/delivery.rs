@@ -104,7 +104,7 @@ proptest! {
 }
 
 #[test]
-fn a_full_outbox_says_so_and_takes_nothing() {
+fn outbox_rejects_messages_when_full() {
     let mut outbox = Outbox::new(UtteranceSeq(7), 2, 2);
     for message in 0..2 {
         let seq = outbox.next().unwrap();
@@ -116,7 +116,7 @@ fn a_full_outbox_says_so_and_takes_nothing() {
 }
 
 #[test]
-fn a_mark_beyond_the_own_journal_moves_the_numbering_on() {
+fn outbox_numbering_skips_to_a_later_mark() {
     let mut outbox: Outbox<u32> = Outbox::new(UtteranceSeq(0), 4, 8);
     outbox.acknowledge(UtteranceSeq(41));
     assert_eq!(outbox.next(), Ok(UtteranceSeq(42)));

@@ -108,7 +108,7 @@ mod tests {
     ];
 
     #[test]
-    fn the_voice_takes_about_what_it_takes() {
+    fn speech_duration_is_near_the_measured_one() {
         let voice = Voice::default();
         for (text, seconds) in MEASURED {
             let found = voice.seconds(text);

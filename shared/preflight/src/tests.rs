@@ -98,7 +98,7 @@ fn bowl_with(key: &str, line: &str) -> String {
 }
 
 #[test]
-fn an_object_that_the_arm_cannot_fetch() {
+fn preflight_reports_an_object_out_of_reach() {
     let complaints = |scene: &str, overrides: &[(&str, &str)]| {
         let found = complaints(&[("scenes/bowls.toml", scene)], overrides);
         assert_eq!(found.len(), 1, "{found:?}");
@@ -121,7 +121,7 @@ fn an_object_that_the_arm_cannot_fetch() {
 }
 
 #[test]
-fn a_hand_over_that_is_out_of_reach_is_blamed_itself() {
+fn preflight_reports_a_hand_over_out_of_reach() {
     let second = ONE_BOWL.split("[[objects]]").nth(1).unwrap();
     let second = second.replace("red_one", "other").replace("0.2,", "-0.2,");
     let two = format!("{ONE_BOWL}\n[[objects]]{second}");
@@ -133,7 +133,7 @@ fn a_hand_over_that_is_out_of_reach_is_blamed_itself() {
 }
 
 #[test]
-fn a_scene_without_places_cannot_be_worked_in() {
+fn preflight_rejects_a_scene_without_poses() {
     let text = "name = 's'\nnoun = 'cup'\n[[attributes]]\nname = 'color'\nvalues = ['red']\n\
                 [[objects]]\nname = 'one'\nattributes = { color = 'red' }\n";
     let complaints = complaints(&[("scenes/bowls.toml", text)], &[]);
@@ -153,7 +153,7 @@ fn slower() -> String {
 }
 
 #[test]
-fn a_description_in_the_folder_is_the_robot() {
+fn preflight_uses_the_configured_robot_description() {
     let folder = folder(&[
         ("robots/slow.urdf", &slower()),
         ("robots/slow.srdf", BAXTER_SRDF),
@@ -164,7 +164,7 @@ fn a_description_in_the_folder_is_the_robot() {
 }
 
 #[test]
-fn faults_of_a_description_are_located() {
+fn preflight_locates_errors_of_a_description() {
     let broken = BAXTER_URDF.replacen("velocity=\"1.5\"", "velocity=\"fast\"", 1);
     let found =
         complaints(&[("robots/baxter.urdf", &broken), ("robots/baxter.srdf", BAXTER_SRDF)], &[]);
@@ -174,7 +174,7 @@ fn faults_of_a_description_are_located() {
 }
 
 #[test]
-fn a_description_without_a_resting_posture_is_refused() {
+fn preflight_rejects_a_description_without_a_rest_posture() {
     let files = [("robots/bare.urdf", BAXTER_URDF), ("arm.toml", "robot = 'bare'")];
     let found = complaints(&files, &[]);
     assert_eq!(found.len(), 1, "{found:?}");

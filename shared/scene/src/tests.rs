@@ -66,7 +66,7 @@ fn questions_are_worded_by_the_scene() {
 }
 
 #[test]
-fn wordings_take_turns_and_repetitions_are_reworded() {
+fn wordings_alternate_and_repetitions_are_reworded() {
     let bowls = shipped(BOWLS);
     for question in all_questions(&bowls) {
         assert_eq!(bowls.phrase_variant(question, 0, 1), bowls.phrase(question));
@@ -109,7 +109,7 @@ fn all_questions(scene: &Scene) -> Vec<Question> {
 }
 
 #[test]
-fn objects_are_described_by_what_tells_them_apart() {
+fn objects_are_described_by_distinguishing_values() {
     let (bowls, tools) = (shipped(BOWLS), shipped(TOOLS));
     let describe = |scene: &Scene, name| scene.describe(scene.object_named(name).expect("there"));
     assert_eq!(describe(&bowls, "white"), "bowl in the dishwasher");
@@ -150,7 +150,7 @@ fn invalid_scenes_get_every_diagnostic_with_line_and_help() {
 }
 
 #[test]
-fn more_than_an_index_can_name_is_refused() {
+fn scene_beyond_the_index_range_is_rejected() {
     let objects: Vec<_> =
         (0..65_536).map(|n| json!({"name": format!("o{n}"), "attributes": {"k": "v"}})).collect();
     let problems = Scene::from_json("s", &json!({"objects": objects})).expect_err("too many");
@@ -170,7 +170,7 @@ fn json_without_values_takes_them_from_the_objects() {
 }
 
 #[test]
-fn a_word_of_two_attributes_counts_once() {
+fn scene_word_of_two_attributes_counts_once() {
     let json = json!({"objects": [
         {"name": "a", "attributes": {"skin": "orange", "pulp": "orange"}},
         {"name": "b", "attributes": {"skin": "green", "pulp": "orange"}},
@@ -183,7 +183,7 @@ fn a_word_of_two_attributes_counts_once() {
 }
 
 #[test]
-fn the_key_sees_the_problem_and_not_its_dress() {
+fn scene_key_depends_on_the_problem_only() {
     let key = |text: &str| shipped(text).key();
     let original = key(MARKERS);
     for (from, to, same) in [
@@ -211,7 +211,7 @@ fn ten_thousand_objects_with_twenty_attributes_are_read_at_once() {
 }
 
 #[test]
-fn questions_refuse_what_the_scene_lacks() {
+fn question_json_rejects_unknown_names() {
     let bowls = shipped(BOWLS);
     let refuse = |json| question_from_json(&bowls, &json).expect_err("not a question");
     assert_eq!(refuse(json!("attr")), QuestionError::Shape);
@@ -228,7 +228,7 @@ fn questions_refuse_what_the_scene_lacks() {
 }
 
 #[test]
-fn readings_are_written_with_the_scenes_words() {
+fn reading_json_uses_the_scene_words() {
     let bowls = shipped(BOWLS);
     let word = |name| bowls.word_named(name).expect("a word");
     let reading = Reading {

@@ -44,7 +44,7 @@ fn take_part(study: &mut SimulatedStudy) {
 }
 
 #[test]
-fn somebody_takes_part_from_the_consent_to_the_thanks() {
+fn study_runs_from_the_consent_to_the_thanks() {
     let mut study = SimulatedStudy::new(protocol());
     take_part(&mut study);
     let person = study.controller.of_page(PAGE).unwrap();
@@ -60,7 +60,7 @@ fn somebody_takes_part_from_the_consent_to_the_thanks() {
 }
 
 #[test]
-fn the_second_participant_waits_and_the_first_one_resumes() {
+fn study_resumes_the_active_participant_and_queues_the_next() {
     let mut study = SimulatedStudy::new(protocol());
     let code = study.ask(&Command::Begin).unwrap();
     assert_eq!(study.ask(&Command::Begin), Ok(code.clone()), "a reload changes nothing");
@@ -77,7 +77,7 @@ fn the_second_participant_waits_and_the_first_one_resumes() {
 }
 
 #[test]
-fn nothing_begins_before_the_robot_is_ready_and_what_stands_is_called_off() {
+fn study_waits_for_a_ready_robot_and_cancels_open_goals() {
     let mut study = SimulatedStudy::new(protocol());
     study.ask(&Command::Begin).unwrap();
     study.ask(&Command::Consent).unwrap();
@@ -103,7 +103,7 @@ fn nothing_begins_before_the_robot_is_ready_and_what_stands_is_called_off() {
 
 /// The policy of the one before is given back first: else it would go in the middle of an interaction.
 #[test]
-fn the_next_participant_waits_until_the_policy_is_given_back() {
+fn study_restores_the_policy_before_the_next_participant() {
     let mut study = SimulatedStudy::new(Protocol { warmup: 0, ..protocol() });
     let id = study.ask(&Command::Begin).unwrap();
     study.write(&id, vec![Event::Switched { planner: "lookahead".to_owned() }]);
@@ -137,7 +137,7 @@ fn outcome_of(study: &SimulatedStudy) -> String {
 }
 
 #[test]
-fn each_end_of_an_interaction_is_told_from_the_others() {
+fn study_distinguishes_the_ends_of_an_interaction() {
     let ends = [
         (Outcome::Failed, "failed"),
         (Outcome::Cancelled, "cancelled"),
@@ -160,7 +160,7 @@ fn each_end_of_an_interaction_is_told_from_the_others() {
 }
 
 #[test]
-fn what_lasts_too_long_is_ended_and_called_off() {
+fn study_ends_and_cancels_an_interaction_at_its_time_limit() {
     for says in [true, false] {
         let mut study = running(60.0);
         if says {
@@ -177,7 +177,7 @@ fn what_lasts_too_long_is_ended_and_called_off() {
 }
 
 #[test]
-fn technical_faults_spoil_an_interaction_and_it_is_repeated() {
+fn study_repeats_an_interaction_after_a_technical_fault() {
     let faults: [fn(&mut SimulatedStudy); 5] = [
         |study| {
             study.missing = Some("grounding");
@@ -220,7 +220,7 @@ fn technical_faults_spoil_an_interaction_and_it_is_repeated() {
 }
 
 #[test]
-fn somebody_withdraws_and_may_have_the_data_deleted() {
+fn study_participant_may_withdraw_and_have_the_data_deleted() {
     let mut study = running(60.0);
     study.view.planner = "lookahead".to_owned();
     let id = study.controller.active().unwrap().id().to_owned();
@@ -239,7 +239,7 @@ fn somebody_withdraws_and_may_have_the_data_deleted() {
 }
 
 #[test]
-fn what_somebody_left_standing_is_called_off() {
+fn study_cancels_the_goal_of_a_participant_who_left() {
     let mut study = running(60.0);
     study.say(1);
     let id = study.controller.active().unwrap().id().to_owned();
@@ -252,7 +252,7 @@ fn what_somebody_left_standing_is_called_off() {
 /// Any verbs in any order, with a robot and services that do as they please, and a console that is
 /// killed at any time.
 #[test]
-fn whatever_is_asked_and_happens_the_data_only_grows_and_folds_again() {
+fn study_data_only_grows_and_refolds_after_any_events() {
     let mut ends = [0_u32; 2];
     for seed in 0..300 {
         let mut rng = Rng::new(seed);

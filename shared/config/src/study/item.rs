@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn each_kind_takes_its_own_answers_alone() {
+    fn study_item_accepts_only_answers_of_its_kind() {
         let cases = [
             (Kind::Likert, json!(7), json!(8)),
             (Kind::Likert, json!(1), json!(1.5)),
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_required_may_stay_open() {
+    fn study_item_may_be_left_open_if_optional() {
         for nothing in [Json::Null, json!("  ")] {
             for kind in [Kind::Likert, Kind::Choice, Kind::Number, Kind::Text] {
                 assert_eq!(item(kind, false).check(&nothing), Ok(None));

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::Folder;
 
 #[test]
-fn the_default_serves_this_machine_only() {
+fn console_default_serves_this_machine_only() {
     let settings = Folder::new(&[]).load(None, &[]).unwrap();
     let console = &settings.console;
     assert!(console.listen.ip().is_loopback() && console.token.is_none());
@@ -15,7 +15,7 @@ fn the_default_serves_this_machine_only() {
 }
 
 #[test]
-fn other_machines_need_a_token() {
+fn console_requires_a_token_for_other_machines() {
     let open = "listen = '0.0.0.0:80'";
     let guarded = format!("{open}\ntoken = 'correct-horse'");
     let settings = Folder::new(&[("console.toml", &guarded)]).load(None, &[]).unwrap();
@@ -23,7 +23,7 @@ fn other_machines_need_a_token() {
 }
 
 #[test]
-fn sentences_are_kept_in_the_configured_folder_or_the_run_folder() {
+fn console_stores_sentences_in_the_configured_folder_or_the_run_folder() {
     let run = Path::new("/run/lab");
     let settings = Folder::new(&[]).load(None, &[]).unwrap();
     assert_eq!(settings.voice_dir(run).as_deref(), Some(Path::new("/run/lab/said")));

@@ -33,7 +33,7 @@ fn the_shipped_folder_loads_with_every_profile_and_scene() {
 }
 
 #[test]
-fn an_almost_empty_folder_gives_the_shipped_values() {
+fn config_of_a_nearly_empty_folder_equals_the_shipped_values() {
     let folder = Folder::new(&[]);
     let bare = folder.load(None, &[]).unwrap();
     let full = Settings::load(&shipped(), None, &[]).unwrap();

@@ -5,7 +5,7 @@ use crate::Settings;
 use crate::study::{Design, Kind, Objects};
 
 #[test]
-fn the_default_is_the_published_protocol_with_a_questionnaire() {
+fn study_default_is_the_published_protocol_with_a_questionnaire() {
     let settings = Folder::new(&[]).load(None, &[]).unwrap();
     let study = &settings.study;
     assert!(!study.enabled, "a study starts on request only");
@@ -39,7 +39,7 @@ questionnaire = [
 }
 
 #[test]
-fn no_questionnaire_at_all() {
+fn study_may_have_no_questionnaire() {
     let settings = Folder::new(&[("study.toml", "questionnaire = []")]).load(None, &[]).unwrap();
     assert!(settings.study.protocol.questionnaire.is_empty());
 }

@@ -51,7 +51,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_drawn_from_nothing() {
+    fn draw_from_an_empty_slice_is_none() {
         let mut rng = Rng::new(3);
         assert_eq!(one_of::<u8>(&mut rng, &[]), None);
         assert_eq!(one_of(&mut rng, &[5]), Some(&5));

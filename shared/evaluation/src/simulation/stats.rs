@@ -119,7 +119,7 @@ mod tests {
 
     /// Newcombe (1998), table I, method 3.
     #[test]
-    fn wilson_s_interval_of_published_examples() {
+    fn wilson_interval_matches_published_examples() {
         let cases = [
             ((81, 263), (0.2553, 0.3662)),
             ((15, 148), (0.0624, 0.1605)),
@@ -134,14 +134,14 @@ mod tests {
     }
 
     #[test]
-    fn wilson_s_interval_at_the_ends() {
+    fn wilson_interval_is_right_at_0_and_1() {
         assert_eq!(wilson(0, 0), Interval { low: 0.0, high: 1.0 });
         assert_eq!(wilson(7, 7).high, 1.0);
         near(wilson(7, 7).low, 1.0 - wilson(0, 7).high);
     }
 
     #[test]
-    fn mean_deviation_and_error_by_hand() {
+    fn mean_deviation_and_error_match_hand_calculations() {
         let mut mean = Mean::default();
         [2.0, 4.0, 4.0, 4.0, 5.0, 5.0, 7.0, 9.0].into_iter().for_each(|x| mean.add(x));
         assert_eq!((mean.count(), mean.mean()), (8, 5.0));
@@ -152,7 +152,7 @@ mod tests {
 
     /// Published tables of the distribution.
     #[test]
-    fn student_s_quantiles() {
+    fn student_quantiles_match_the_tables() {
         let table =
             [(1, 12.7062), (4, 2.7764), (5, 2.5706), (9, 2.2622), (14, 2.1448), (44, 2.0154)];
         for (freedom, quantile) in table {
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn merging_is_adding() {
+    fn merged_means_equal_the_mean_of_all_values() {
         let numbers: Vec<f64> = (0..1_000).map(|k| 1e6 + f64::from(k % 17)).collect();
         let of = |numbers: &[f64]| {
             let mut mean = Mean::default();

@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn interactions_are_counted_by_their_end() {
+    fn tally_counts_interactions_by_their_end() {
         let mut tally = Tally::default();
         for (end, questions) in
             [(End::Right, 1), (End::Right, 3), (End::Wrong, 0), (End::Abandoned, 99)]

@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn ids_have_no_letters_that_look_alike() {
+    fn participant_ids_omit_ambiguous_letters() {
         let ids: BTreeSet<String> = (0..500).map(new_id).collect();
         assert_eq!(ids.len(), 500);
         for id in &ids {
@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn between_participants_the_conditions_stay_balanced() {
+    fn plan_between_participants_is_balanced() {
         let protocol = comparing(Design::Between, Order::Random, &["a", "b", "c"]);
         let mut counts = Counts::default();
         for n in 1..=30 {
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn within_a_participant_every_policy_gets_its_interactions_and_practice_comes_first() {
+    fn plan_within_a_participant_has_every_policy_after_practice() {
         for order in [Order::Random, Order::Latin] {
             let protocol = Protocol { warmup: 2, ..comparing(Design::Within, order, &["a", "b"]) };
             for begun in 0..8 {
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn a_square_has_everything_everywhere_and_after_everything_alike() {
+    fn latin_square_balances_positions_and_successions() {
         for size in 1..=7 {
             let rows = if size % 2 == 1 && size > 1 { 2 * size } else { size };
             let square: Vec<Vec<usize>> = (0..rows).map(|row| square_row(size, row)).collect();
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn objects_are_drawn_alike_and_balanced_ones_in_turn() {
+    fn plan_draws_objects_uniformly_or_in_balanced_turns() {
         let mut seen = [0_u32; 6];
         for seed in 0..6000 {
             seen[draw(Objects::Uniform, &[0; 6], &[0; 6], seed, 1)] += 1;

@@ -28,7 +28,7 @@ mod tests {
     use super::utc;
 
     #[test]
-    fn moments_of_known_dates() {
+    fn utc_stamps_of_known_dates() {
         assert_eq!(utc(0), "1970-01-01T00:00:00.000Z");
         assert_eq!(utc(951_782_400_000), "2000-02-29T00:00:00.000Z");
         assert_eq!(utc(1_709_251_199_999), "2024-02-29T23:59:59.999Z");

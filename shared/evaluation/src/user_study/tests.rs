@@ -14,7 +14,7 @@ fn text(entries: &[Entry]) -> String {
 }
 
 #[test]
-fn a_journal_is_read_back_as_it_was_written_and_a_torn_end_is_left_out() {
+fn study_journal_round_trips_and_ignores_a_torn_end() {
     let entries = journal("A", &protocol(), 3);
     let whole = text(&entries);
     assert_eq!(parse(&whole).unwrap(), entries);
@@ -31,7 +31,7 @@ fn a_journal_is_read_back_as_it_was_written_and_a_torn_end_is_left_out() {
 }
 
 #[test]
-fn folding_any_prefix_and_then_the_rest_is_folding_the_whole() {
+fn participant_fold_is_incremental() {
     let entries = journal("A", &protocol(), 2);
     let whole = Participant::fold(&entries).unwrap();
     for cut in 1..entries.len() {
@@ -44,7 +44,7 @@ fn folding_any_prefix_and_then_the_rest_is_folding_the_whole() {
 }
 
 #[test]
-fn seconds_count_from_the_first_sound_to_the_end() {
+fn trial_seconds_count_from_the_first_sound_to_the_end() {
     let person = finished("A", &protocol(), 3);
     let trial = &person.trials[1];
     assert_eq!((trial.seconds(), trial.talk_seconds()), (Some(11.0), Some(5.0)));
@@ -62,7 +62,7 @@ fn seconds_count_from_the_first_sound_to_the_end() {
 }
 
 #[test]
-fn a_spoilt_interaction_is_repeated_and_does_not_count() {
+fn trial_with_a_fault_is_repeated_and_does_not_count() {
     let mut entries = journal("A", &protocol(), 3);
     let at = entries.iter().position(|e| matches!(e.event, Event::Ended { .. })).unwrap();
     let fault = Event::Faulted { fault: Fault::Service, why: "arm, gone".to_owned() };
@@ -82,7 +82,7 @@ fn a_spoilt_interaction_is_repeated_and_does_not_count() {
 }
 
 #[test]
-fn every_row_has_every_column_and_the_dictionary_knows_them() {
+fn study_tables_have_every_column_of_the_dictionary() {
     let people = [finished("A", &protocol(), 3), finished("B", &protocol(), 0)];
     let tables = tables(&people);
     let heads: Vec<&str> = tables.interactions.lines().next().unwrap().split(',').collect();
@@ -104,7 +104,7 @@ fn every_row_has_every_column_and_the_dictionary_knows_them() {
 }
 
 #[test]
-fn withdrawn_data_does_not_count_and_data_of_those_who_left_does() {
+fn report_omits_withdrawn_participants_but_counts_those_who_left() {
     let with_last = |id: &str, event| {
         let mut entries = journal(id, &protocol(), 3);
         entries.truncate(entries.len() - 1);
@@ -122,7 +122,7 @@ fn withdrawn_data_does_not_count_and_data_of_those_who_left_does() {
 }
 
 #[test]
-fn the_paper_s_figures_come_out_of_the_paper_s_counts() {
+fn report_reproduces_the_paper_figures_from_its_counts() {
     // 15 participants, 45 interactions, 36 of them right.
     let rights = [3, 3, 2, 2, 2, 3, 3, 2, 2, 2, 3, 3, 2, 2, 2];
     let people: Vec<Participant> =
@@ -142,7 +142,7 @@ fn the_paper_s_figures_come_out_of_the_paper_s_counts() {
 }
 
 #[test]
-fn people_who_met_two_policies_are_compared_with_themselves() {
+fn report_compares_policies_within_participants() {
     let policies = vec!["lookahead".to_owned(), "entropy".to_owned()];
     let protocol = Protocol { policies, interactions: 2, ..protocol() };
     // The first two interactions are right, and the later ones take longer by two seconds.
@@ -159,7 +159,7 @@ fn people_who_met_two_policies_are_compared_with_themselves() {
 }
 
 #[test]
-fn what_is_drawn_beyond_the_plan_changes_nothing() {
+fn participant_ignores_trials_beyond_the_plan() {
     let mut person = finished("A", &protocol(), 3);
     let before = person.trials.len();
     let Event::Drawn(drawn) = &interaction(0, Verdict::Right)[0] else { unreachable!() };

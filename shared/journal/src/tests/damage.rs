@@ -6,7 +6,7 @@ use super::{Entry, TestJournal, entry, header};
 use crate::{Ending, Journal, JournalOpenError, read};
 
 #[test]
-fn a_cut_at_every_byte_of_the_last_batch_loses_that_batch_only() {
+fn journal_cut_at_any_byte_of_the_last_batch_loses_only_that_batch() {
     let test = TestJournal::new();
     let lens = test.write(&[&[entry(1)], &[entry(2)], &[entry(3), entry(4)]]);
     let whole = test.bytes();
@@ -20,7 +20,7 @@ fn a_cut_at_every_byte_of_the_last_batch_loses_that_batch_only() {
 }
 
 #[test]
-fn after_a_torn_tail_the_journal_goes_on() {
+fn journal_continues_after_a_torn_tail() {
     let test = TestJournal::new();
     test.write(&[&[entry(1)], &[entry(2)]]);
     let whole = test.bytes();
@@ -31,7 +31,7 @@ fn after_a_torn_tail_the_journal_goes_on() {
 }
 
 #[test]
-fn a_flip_at_every_byte_is_a_torn_tail_or_a_refusal_and_never_a_wrong_record() {
+fn journal_with_any_flipped_byte_never_returns_a_wrong_record() {
     let test = TestJournal::new();
     let lens = test.write(&[&[entry(1)], &[entry(2), entry(3)], &[entry(6)]]);
     let whole = test.bytes();
@@ -56,7 +56,7 @@ fn a_flip_at_every_byte_is_a_torn_tail_or_a_refusal_and_never_a_wrong_record() {
 }
 
 #[test]
-fn damage_in_the_middle_can_still_be_read_up_to_it() {
+fn journal_can_be_read_up_to_damage_in_the_middle() {
     let test = TestJournal::new();
     let lens = test.write(&[&[entry(1)], &[entry(2)], &[entry(3)]]);
     let mut bytes = test.bytes();
@@ -68,7 +68,7 @@ fn damage_in_the_middle_can_still_be_read_up_to_it() {
 }
 
 #[test]
-fn a_frame_in_another_place_is_corruption() {
+fn journal_rejects_a_moved_frame() {
     let test = TestJournal::new();
     let lens = test.write(&[&[entry(1)], &[entry(2)], &[entry(3)]]);
     let whole = test.bytes();
@@ -83,7 +83,7 @@ fn a_frame_in_another_place_is_corruption() {
 }
 
 #[test]
-fn a_frame_of_another_journal_is_not_taken_over() {
+fn journal_rejects_a_frame_of_another_journal() {
     let (test, other) = (TestJournal::new(), TestJournal::new());
     let lens = test.write(&[&[entry(1)]]);
     other.write(&[&[entry(2)]]);
@@ -99,7 +99,7 @@ fn a_frame_of_another_journal_is_not_taken_over() {
 }
 
 #[test]
-fn a_tail_of_zeros_is_cut_off() {
+fn journal_truncates_a_tail_of_zeros() {
     let test = TestJournal::new();
     test.write(&[&[entry(1)]]);
     let whole = test.bytes();
@@ -109,7 +109,7 @@ fn a_tail_of_zeros_is_cut_off() {
 }
 
 #[test]
-fn a_hole_in_an_unacknowledged_batch_is_a_torn_tail() {
+fn journal_treats_a_hole_in_an_unacknowledged_batch_as_a_torn_tail() {
     let test = TestJournal::new();
     let long = Entry { text: "a".repeat(5000), ..entry(2) };
     let lens = test.write(&[&[entry(1)], &[long, entry(3), entry(4)]]);

@@ -70,7 +70,7 @@ fn put(tail: &mut Tail<&mut Disk>, record: &Entry) -> Result<(), SyncError> {
 }
 
 #[test]
-fn one_sync_writes_once_whatever_it_holds() {
+fn journal_sync_writes_once() {
     let mut disk = Disk::new();
     let mut tail = disk.tail();
     (1..=9).for_each(|n| tail.append(&entry(n)).unwrap());
@@ -80,7 +80,7 @@ fn one_sync_writes_once_whatever_it_holds() {
 }
 
 #[test]
-fn a_full_disk_leaves_a_valid_file_and_the_records_wait() {
+fn journal_on_a_full_disk_stays_valid_and_keeps_its_records() {
     for written in 0..60 {
         let mut disk = Disk::new();
         put(&mut disk.tail(), &entry(1)).unwrap();
@@ -94,7 +94,7 @@ fn a_full_disk_leaves_a_valid_file_and_the_records_wait() {
 }
 
 #[test]
-fn a_failed_write_is_cut_back() {
+fn journal_truncates_a_failed_write() {
     let mut disk = Disk::new();
     put(&mut disk.tail(), &entry(1)).unwrap();
     disk.write_fault = Some((11, ErrorKind::Other));
@@ -103,7 +103,7 @@ fn a_failed_write_is_cut_back() {
 }
 
 #[test]
-fn after_a_failed_sync_nothing_is_believed_any_more() {
+fn journal_is_poisoned_after_a_failed_sync() {
     let mut disk = Disk::new();
     put(&mut disk.tail(), &entry(1)).unwrap();
     disk.sync_fault = true;
@@ -115,7 +115,7 @@ fn after_a_failed_sync_nothing_is_believed_any_more() {
 }
 
 #[test]
-fn a_partial_write_that_cannot_be_cut_back_poisons_and_is_a_torn_tail_later() {
+fn journal_is_poisoned_by_a_partial_write_that_cannot_be_truncated() {
     let mut disk = Disk::new();
     put(&mut disk.tail(), &entry(1)).unwrap();
     disk.write_fault = Some((30, ErrorKind::StorageFull));
@@ -129,7 +129,7 @@ fn a_partial_write_that_cannot_be_cut_back_poisons_and_is_a_torn_tail_later() {
 }
 
 #[test]
-fn nothing_is_believed_before_what_was_found_is_synced() {
+fn journal_syncs_found_records_before_returning_them() {
     let mut disk = Disk::new();
     put(&mut disk.tail(), &entry(1)).unwrap();
     let Position { end, .. } = disk.scan().position;

@@ -6,7 +6,7 @@ use super::{Entry, TestJournal, entry, header};
 use crate::{AppendError, BODY_BYTES_MAX, Ending, FORMAT, Header, Journal, JournalOpenError, read};
 
 #[test]
-fn a_new_or_empty_file_is_a_fresh_start() {
+fn journal_starts_fresh_with_a_new_or_empty_file() {
     let test = TestJournal::new();
     assert_eq!(test.recover().records, []);
     test.overwrite(b"");
@@ -17,7 +17,7 @@ fn a_new_or_empty_file_is_a_fresh_start() {
 }
 
 #[test]
-fn records_come_back_in_order_over_several_openings() {
+fn journal_returns_records_in_order_over_several_openings() {
     let test = TestJournal::new();
     test.write(&[&[entry(1), entry(2)], &[entry(3)]]);
     let (mut journal, recovered) = test.open();
@@ -30,7 +30,7 @@ fn records_come_back_in_order_over_several_openings() {
 }
 
 #[test]
-fn only_synced_records_are_there() {
+fn journal_returns_synced_records_only() {
     let test = TestJournal::new();
     let (mut journal, _) = test.open();
     journal.append(&entry(1)).unwrap();
@@ -40,7 +40,7 @@ fn only_synced_records_are_there() {
 }
 
 #[test]
-fn a_sync_without_records_writes_nothing() {
+fn journal_sync_without_records_writes_nothing() {
     let test = TestJournal::new();
     let (mut journal, _) = test.open();
     let before = test.bytes();
@@ -49,7 +49,7 @@ fn a_sync_without_records_writes_nothing() {
 }
 
 #[test]
-fn a_batch_above_the_bound_is_refused_and_the_rest_kept() {
+fn journal_rejects_a_batch_above_the_bound_and_keeps_the_rest() {
     let test = TestJournal::new();
     let (mut journal, _) = test.open();
     journal.append(&entry(1)).unwrap();
@@ -61,7 +61,7 @@ fn a_batch_above_the_bound_is_refused_and_the_rest_kept() {
 }
 
 #[test]
-fn a_second_writer_is_rejected_with_the_pid_of_the_first() {
+fn journal_rejects_a_second_writer_with_the_pid_of_the_first() {
     let test = TestJournal::new();
     let pid = Some(std::process::id());
     let (journal, _) = test.open();
@@ -72,7 +72,7 @@ fn a_second_writer_is_rejected_with_the_pid_of_the_first() {
 }
 
 #[test]
-fn reading_needs_no_lock_and_changes_nothing() {
+fn journal_reading_needs_no_lock_and_changes_nothing() {
     let test = TestJournal::new();
     let (mut journal, _) = test.open();
     journal.append(&entry(1)).unwrap();
@@ -95,7 +95,7 @@ fn refusal(found: &Header) -> JournalOpenError {
 }
 
 #[test]
-fn a_journal_of_another_owner_or_kind_is_rejected() {
+fn journal_of_another_owner_or_kind_is_rejected() {
     let group = refusal(&Header { group: "lab".into(), ..header() });
     let message = group.to_string();
     assert!(message.contains("`lab`") && message.contains("`kitchen`"), "{message}");
@@ -126,7 +126,7 @@ fn journals_of_format_1_are_rejected_with_a_way_out_and_left_unchanged() {
 }
 
 #[test]
-fn another_format_is_refused_by_its_number() {
+fn journal_of_another_format_is_rejected_by_its_number() {
     let test = TestJournal::new();
     test.write(&[&[entry(1)]]);
     let mut bytes = test.bytes();
@@ -138,7 +138,7 @@ fn another_format_is_refused_by_its_number() {
 }
 
 #[test]
-fn a_file_that_is_not_a_journal_is_left_unchanged() {
+fn journal_open_leaves_other_files_unchanged() {
     let test = TestJournal::new();
     test.overwrite(b"dear diary");
     let error = Journal::<Entry>::open(&test.path, &header()).unwrap_err();
@@ -147,7 +147,7 @@ fn a_file_that_is_not_a_journal_is_left_unchanged() {
 }
 
 #[test]
-fn whole_frames_of_another_layout_are_not_taken_for_damage() {
+fn journal_distinguishes_another_record_layout_from_damage() {
     let test = TestJournal::new();
     test.write(&[&[entry(1)]]);
     let error = Journal::<(u8, String, bool)>::open(&test.path, &header()).unwrap_err();

@@ -7,7 +7,7 @@ use crate::rotate::Step;
 use crate::{Journal, KEPT, RotateError, SyncError, read};
 
 #[test]
-fn a_rotated_journal_starts_with_its_snapshot_and_numbers_go_on() {
+fn journal_rotation_starts_with_the_snapshot_and_continues_numbering() {
     let test = TestJournal::new();
     test.write(&[&[entry(1), entry(2)], &[entry(3)]]);
     let (mut journal, _) = test.open();
@@ -25,7 +25,7 @@ fn a_rotated_journal_starts_with_its_snapshot_and_numbers_go_on() {
 }
 
 #[test]
-fn the_last_old_journals_are_kept() {
+fn journal_rotation_keeps_the_latest_old_journals() {
     let test = TestJournal::new();
     let (mut journal, _) = test.open();
     let rotations = KEPT as u32 + 3;
@@ -50,7 +50,7 @@ fn stopped_before(step: Step) -> (TestJournal, Journal<Entry>, RotateError) {
 }
 
 #[test]
-fn a_crash_before_each_step_leaves_the_old_or_the_new() {
+fn journal_rotation_crash_leaves_the_old_or_the_new_journal() {
     for step in Step::ALL {
         let (test, journal, _) = stopped_before(step);
         drop(journal);
@@ -69,7 +69,7 @@ fn a_crash_before_each_step_leaves_the_old_or_the_new() {
 }
 
 #[test]
-fn a_rotation_that_fails_before_the_replacement_lets_the_old_journal_go_on() {
+fn journal_rotation_failure_before_the_replacement_keeps_the_old_journal() {
     for step in [Step::WriteNew, Step::ShiftOld, Step::LinkOld, Step::Replace] {
         let (test, mut journal, error) = stopped_before(step);
         assert!(matches!(error, RotateError::Io { .. }), "{error}");
@@ -81,7 +81,7 @@ fn a_rotation_that_fails_before_the_replacement_lets_the_old_journal_go_on() {
 }
 
 #[test]
-fn a_rotation_whose_folder_was_not_synced_poisons() {
+fn journal_rotation_without_a_synced_folder_poisons() {
     let (_place, mut journal, error) = stopped_before(Step::SyncFolder);
     assert!(matches!(error, RotateError::Sync(SyncError::Unknown(_))), "{error}");
     journal.append(&entry(2)).unwrap();
@@ -90,7 +90,7 @@ fn a_rotation_whose_folder_was_not_synced_poisons() {
 }
 
 #[test]
-fn half_a_new_file_is_forgotten() {
+fn journal_open_removes_a_partial_new_file() {
     let test = TestJournal::new();
     test.write(&[&[entry(1)]]);
     std::fs::write(test.folder.path().join("policy.journal.new"), b"WHICHJ").unwrap();

@@ -20,7 +20,7 @@ fn sentences(table: &'static str) -> impl Iterator<Item = &'static str> {
 type Dress<'a> = (&'a str, &'a dyn Fn(&str) -> String);
 
 #[test]
-fn dress_changes_no_meaning() {
+fn reader_ignores_typography() {
     let scene = scene("bowls");
     let reader = Reader::new(&scene, Language::Careful);
     let asked = Question::Attribute(scene::AttributeId(0), scene::ValueId(0));
@@ -50,7 +50,7 @@ fn dress_changes_no_meaning() {
 }
 
 #[test]
-fn commands_to_a_machine_are_no_requests() {
+fn reader_ignores_commands_to_a_machine() {
     let scene = scene("bowls");
     let reader = Reader::new(&scene, Language::Careful);
     let asked = Question::Attribute(scene::AttributeId(0), scene::ValueId(0));
@@ -77,7 +77,7 @@ fn commands_to_a_machine_are_no_requests() {
 proptest! {
     /// Whatever is written in letters that no scene word has says nothing.
     #[test]
-    fn other_scripts_say_nothing(
+    fn reader_finds_no_content_in_other_scripts(
         text in "[\\p{Han}\\p{Hiragana}\\p{Hangul}\\p{Arabic}\\p{Cyrillic}\\p{Devanagari} ]{0,40}",
     ) {
         let (_, [_, reader]) = &*TOOLS_READERS;

@@ -1,9 +1,10 @@
 //! Readings with weights and doubts.
 
 use proptest::prelude::*;
-use scene::{AttributeId, Doubt, ObjectId, Question, Reading, Response, ValueId};
+use proptest::sample::select;
+use scene::{AttributeId, Doubt, Question, Reading, Response, ValueId};
 
-use super::{TOOLS_READERS, scene};
+use super::{QUESTIONS, TOOLS_READERS, scene};
 use crate::{Language, READINGS_MAX, Reader};
 
 const ASKED: Question = Question::Attribute(AttributeId(0), ValueId(0));
@@ -22,7 +23,7 @@ fn best(text: &str, confidence: &[f32]) -> Reading {
 }
 
 #[test]
-fn clear_typed_words_are_not_doubted() {
+fn reader_does_not_doubt_clear_typed_words() {
     for text in [
         "the small white bowl",
         "yes",
@@ -37,7 +38,7 @@ fn clear_typed_words_are_not_doubted() {
 }
 
 #[test]
-fn confidence_becomes_the_doubt_of_what_was_read() {
+fn reader_turns_word_confidences_into_doubts() {
     let close = |a: f64, b: f64| (a - b).abs() < 1e-6;
     let doubt = best("the white bowl", &[1.0, 0.7, 1.0]).doubt;
     assert!(doubt.base.len() == 1 && close(doubt.base[0], 0.3), "{doubt:?}");
@@ -53,7 +54,7 @@ fn confidence_becomes_the_doubt_of_what_was_read() {
 }
 
 #[test]
-fn a_hedge_weakens_what_it_hedges() {
+fn reader_doubts_hedged_content() {
     let response = |text: &str| {
         let reading = best(text, &[]);
         assert_ne!(reading.response, Response::None, "{text}");
@@ -84,7 +85,7 @@ fn a_hedge_weakens_what_it_hedges() {
 }
 
 #[test]
-fn a_guess_at_a_word_is_doubted() {
+fn reader_doubts_a_corrected_word() {
     let word = |text: &str| best(text, &[]).doubt.of_word(0);
     assert!(word("the whtie bowl") > 0.0);
     assert!(word("the wide bowl") > word("the whtie bowl"));
@@ -92,7 +93,7 @@ fn a_guess_at_a_word_is_doubted() {
 }
 
 #[test]
-fn alternatives_are_readings_of_their_own() {
+fn reader_returns_one_reading_per_alternative() {
     let (scene, reader) = bowls();
     let words = |text: &str| -> Vec<Vec<String>> {
         let readings = reader.readings(text, &[], Question::None);
@@ -113,7 +114,7 @@ fn alternatives_are_readings_of_their_own() {
 }
 
 #[test]
-fn a_maybe_leans_to_yes() {
+fn reader_weighs_a_maybe_towards_yes() {
     let (_, reader) = bowls();
     for text in ["maybe", "perhaps", "it could be"] {
         let readings = reader.readings(text, &[], ASKED);
@@ -128,42 +129,38 @@ fn a_maybe_leans_to_yes() {
 }
 
 #[test]
-fn the_papers_language_has_no_doubt() {
+fn paper_reader_has_no_doubts() {
     let scene = scene("bowls");
     let reader = Reader::new(&scene, Language::Paper);
     let readings = reader.readings("maybe the white or clear one", &[0.1; 6], ASKED);
     assert_eq!(readings, [(1.0, reader.read("maybe the white or clear one", ASKED))]);
 }
 
+/// Words of the dialogue, separated by bars.
+const WORDS: &str = "the|not|no|yes|red|blue|marker|one|and|or|but|,|.|on|table|sorry|i|do|want|get|me|is|it|\
+    that|what|other|than|anything|foo|uh|sure|if|next to|short|never mind|start over|stop|\
+    isn't|you|my|was|clear|pen|any|except|maybe|think|so|wait|right|of|in|dish|-|'|?|le|\
+    drop table|put|non|probably|markre|screw|driver|green|perhaps";
+
 proptest! {
-    /// Of any words with any confidence: few readings, weights that sum to 1, shares for doubts,
-    /// and the best one is what is read.
+    /// For any words with any confidence: few readings of known words, weights that sum to 1, doubts
+    /// that are probabilities, no answer without a question, and the best one equals `read`.
     #[test]
     fn readings_are_a_distribution(
-        words in proptest::collection::vec(0..40_usize, 0..24),
-        confidence in proptest::collection::vec(-0.5..1.5_f32, 0..24),
-        n in 0..4_usize,
+        words in proptest::collection::vec(select(WORDS.split('|').collect::<Vec<_>>()), 0..30),
+        confidence in proptest::collection::vec(-0.5..1.5_f32, 0..30),
+        n in 0..QUESTIONS.len(),
     ) {
-        const WORDS: &[&str] = &[
-            "the", "not", "no", "yes", "red", "blue", "marker", "one", "and", "or", "but", ",",
-            ".", "on", "table", "sorry", "i", "do", "want", "get", "is", "it", "think", "so",
-            "maybe", "probably", "markre", "screw", "driver", "pen", "uh", "or", "green", "foo",
-            "isn't", "than", "anything", "other", "perhaps", "never mind",
-        ];
-        let text: Vec<&str> = words.iter().map(|&word| WORDS[word]).collect();
-        let text = text.join(" ");
-        let question = [
-            Question::None,
-            Question::Point(ObjectId(3)),
-            Question::Attribute(AttributeId(1), ValueId(2)),
-            Question::Which(AttributeId(0)),
-        ][n];
-        let (_, [_, reader]) = &*TOOLS_READERS;
+        let (text, question) = (words.join(" "), QUESTIONS[n]);
+        let (scene, [_, reader]) = &*TOOLS_READERS;
         let readings = reader.readings(&text, &confidence, question);
         prop_assert!((1..=READINGS_MAX).contains(&readings.len()));
         prop_assert!((readings.iter().map(|(weight, _)| weight).sum::<f64>() - 1.0).abs() < 1e-12);
         prop_assert!(readings.iter().all(|(weight, _)| *weight <= readings[0].0));
-        for (_, Reading { doubt, base, excluded, .. }) in &readings {
+        for (_, Reading { doubt, base, excluded, response, .. }) in &readings {
+            prop_assert!(question != Question::None || *response == Response::None);
+            prop_assert!(base.iter().all(|word| word.index() < scene.words().len()));
+            prop_assert!(excluded.iter().all(|group| !group.is_empty()));
             let doubts = doubt.base.iter().chain(&doubt.excluded).chain([&doubt.response]);
             prop_assert!(doubts.into_iter().all(|doubt| (0.0..=1.0).contains(doubt)), "{doubt:?}");
             prop_assert!(doubt.base.len() <= base.len() && doubt.excluded.len() <= excluded.len());

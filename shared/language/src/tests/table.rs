@@ -104,16 +104,16 @@ fn check(table: &str) {
 }
 
 #[test]
-fn the_cases_are_understood() {
+fn reader_understands_the_development_cases() {
     check(include_str!("cases.txt"));
 }
 
 #[test]
-fn the_first_fresh_set_is_understood() {
+fn reader_understands_the_first_fresh_set() {
     check(fixture!("fresh_1.txt"));
 }
 
 #[test]
-fn the_second_fresh_set_is_understood() {
+fn reader_understands_the_second_fresh_set() {
     check(fixture!("fresh_2.txt"));
 }

@@ -30,7 +30,7 @@ fn clearances_equal_the_reference() {
 }
 
 #[test]
-fn only_what_overlaps_by_construction_is_left_out() {
+fn collision_pairs_omit_only_permanent_overlaps() {
     let arm = arm(Limb::Left);
     let count = arm.enclosures.len();
     let left_out: Vec<(usize, usize)> = (0..count)
@@ -42,7 +42,7 @@ fn only_what_overlaps_by_construction_is_left_out() {
 }
 
 #[test]
-fn a_bound_changes_nothing_below_it_and_hides_what_is_above() {
+fn clearance_bound_is_exact_below_and_truncates_above() {
     let mut random = Random::seeded(41);
     for _ in 0..300 {
         let limb = random.limb();

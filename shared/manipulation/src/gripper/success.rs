@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn an_object_fits_until_a_finger_comes_down_on_it() {
+    fn grasp_fits_until_a_finger_hits_the_object() {
         assert!(catches(0.04, 0.02, 0.0) && catches(0.04, 0.02, -0.01));
         assert!(!catches(0.04, 0.02, 0.0101) && !catches(0.04, 0.041, 0.0));
         assert!(catches(0.04, 0.04, 0.0), "it just fits");
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn certainty_and_impossibility_are_exact() {
+    fn grasp_probability_is_exact_at_0_and_1() {
         assert_eq!(success_probability(0.04, 0.004, 0.0), 1.0);
         assert_eq!(success_probability(0.04, 0.041, 0.0), 0.0);
         assert_eq!(success_probability(0.04, 0.041, 0.01), 0.0);
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn drawn_errors_succeed_as_often_as_the_probability_says() {
+    fn grasp_probability_agrees_with_sampling() {
         let (opening_m, object_m, error_m, side) = (0.04, 0.012, 0.012, 400);
         let grid = |i: i32| (f64::from(i) + 0.5) / f64::from(side);
         let mut caught = 0;

@@ -378,7 +378,7 @@ fn a_plan_is_halted_on_its_path() {
 }
 
 #[test]
-fn random_tables_are_served_or_refused_but_never_touched() {
+fn plans_for_random_tables_never_touch_anything() {
     let seed = 72;
     let mut random = Random::seeded(seed);
     let mut fetched = 0;

@@ -19,7 +19,7 @@ fn others() -> [Chain; 2] {
 }
 
 #[test]
-fn limits_and_postures_are_the_facts() {
+fn robot_limits_and_postures_match_the_data_sheet() {
     let facts: toml::Table = fixture("baxter_facts.toml").parse().unwrap();
     let joints = facts["joint"].as_array().unwrap();
     for limb in Limb::BOTH {
@@ -39,7 +39,7 @@ fn limits_and_postures_are_the_facts() {
 }
 
 #[test]
-fn the_chain_is_where_its_description_says() {
+fn chain_agrees_with_its_description() {
     let mut random = Random::seeded(51);
     for limb in Limb::BOTH {
         let arm = robot().arm(limb);
@@ -56,7 +56,7 @@ fn the_chain_is_where_its_description_says() {
 }
 
 #[test]
-fn a_limb_of_the_family_is_recognised_and_another_is_not() {
+fn limb_family_is_recognised() {
     let [family, askew] = others();
     assert!(family.is_closed_form() && !askew.is_closed_form());
 }
@@ -135,7 +135,7 @@ fn robot_names_what_a_description_lacks() {
 }
 
 #[test]
-fn other_shapes_are_enclosed() {
+fn robot_encloses_unsupported_shapes() {
     let boxed = robot_model::BAXTER_URDF.replace(
         r#"<capsule radius="0.1466" length="0.175646263837"/>"#,
         r#"<box size="0.06 0.08 0.3"/>"#,

@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_gesture_survives_the_wire_and_nonsense_does_not() {
+    fn gesture_round_trips_and_invalid_targets_are_rejected() {
         for target in [None, Some([0.5, -0.25, 0.0]), Some([100.0, 0.0, -100.0])] {
             assert_eq!(WireGesture::from(target).target_m(), Ok(target));
         }

@@ -209,7 +209,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn commands_come_back_as_they_were_said() {
+    fn gripper_commands_round_trip() {
         use Command::{Calibrate, Go, Grip, Release, Stop};
         for command in [Calibrate, Go(12.5), Go(100.0), Grip, Release, Stop] {
             let message = EndEffectorCommand::new(3, command, "whichone", 7);
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn positions_are_read_as_other_programs_write_them() {
+    fn gripper_positions_of_other_programs_are_accepted() {
         let say = |args: &str| {
             let args = FixedText::truncated(args);
             let go = EndEffectorCommand::new(0, Command::Go(0.0), "", 0);
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_is_handled_once_its_sender_and_number_are_told() {
+    fn gripper_state_confirms_a_command_by_sender_and_number() {
         let command = EndEffectorCommand::new(3, Command::Grip, "whichone", 7);
         let state = EndEffectorState {
             command_sender: command.sender,

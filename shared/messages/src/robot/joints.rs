@@ -192,7 +192,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn joints_come_back_by_name() {
+    fn joint_states_round_trip_by_name() {
         let joints = [("left_s0", 0.5), ("left_w2", -1.0)];
         let command = JointCommand::new(JointMode::Position, &joints).unwrap();
         assert_eq!((command.mode, command.joints().unwrap()), (1, joints.to_vec()));
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_robot_sends_is_refused() {
+    fn joint_states_with_invalid_content_are_rejected() {
         let long = ["a"; 8].map(|name| (name, 0.0));
         assert!(JointCommand::new(JointMode::Position, &long).is_err());
         let name = "a".repeat(29);

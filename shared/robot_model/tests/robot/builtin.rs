@@ -6,7 +6,7 @@ use robot_model::{Body, JointKind, Robot, Shape};
 use crate::samples::{Random, difference, facts, fixture, numbers};
 
 #[test]
-fn frames_are_those_of_the_other_description() {
+fn built_in_frames_match_the_reference_description() {
     let ours = Robot::baxter();
     let other = Robot::parse(&fixture("baxter/baxter.urdf"), None).unwrap();
     assert_eq!(ours.links().len(), other.links().len());
@@ -30,7 +30,7 @@ fn frames_are_those_of_the_other_description() {
 }
 
 #[test]
-fn arm_capsules_are_the_facts() {
+fn built_in_arm_capsules_match_the_data_sheet() {
     let robot = Robot::baxter();
     let facts = facts();
     let mut seen = 0;
@@ -59,7 +59,7 @@ fn arm_capsules_are_the_facts() {
 }
 
 #[test]
-fn trunk_and_head_shapes_are_the_facts() {
+fn built_in_trunk_and_head_shapes_match_the_data_sheet() {
     let robot = Robot::baxter();
     let facts = facts();
     let links = facts["link"].as_array().unwrap();
@@ -118,7 +118,7 @@ fn permitted_contacts_are_those_without_a_reference_pair() {
 }
 
 #[test]
-fn postures_are_the_facts() {
+fn built_in_postures_match_the_data_sheet() {
     let robot = Robot::baxter();
     let facts = facts();
     for limb in ["left", "right"] {

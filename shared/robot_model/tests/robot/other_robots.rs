@@ -108,7 +108,7 @@ fn meshes_are_kept_by_name_and_newer_limits_are_read() {
 }
 
 #[test]
-fn a_wheel_turns_without_end_and_a_follower_of_a_follower_follows() {
+fn continuous_and_chained_mimic_joints_are_supported() {
     let text = r#"<robot name="cart">
         <joint name="last" type="prismatic"><parent link="b"/><child link="c"/><axis xyz="0 0 2"/>
           <limit upper="1" velocity="1" effort="0"/><mimic joint="middle" multiplier="2" offset="1"/></joint>

@@ -5,7 +5,7 @@ use robot_model::Robot;
 use crate::samples::{difference, facts, fixture, numbers, pose};
 
 #[test]
-fn frames_are_the_reference() {
+fn frames_match_the_reference() {
     let robot = Robot::baxter();
     for limb in ["left", "right"] {
         let text = fixture(&format!("baxter/fk_reference_{limb}.csv"));
@@ -38,7 +38,7 @@ fn frames_are_the_reference() {
 }
 
 #[test]
-fn jacobians_are_the_reference() {
+fn jacobians_match_the_reference() {
     let reference: serde_json::Value =
         serde_json::from_str(&fixture("baxter/jacobian_reference.json")).unwrap();
     let samples = reference["samples"].as_array().unwrap();
@@ -60,7 +60,7 @@ fn jacobians_are_the_reference() {
 }
 
 #[test]
-fn limits_are_the_facts() {
+fn limits_match_the_reference() {
     let facts = facts();
     let robot = Robot::baxter();
     let mut arm_joints = 0;

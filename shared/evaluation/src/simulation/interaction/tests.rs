@@ -47,7 +47,7 @@ fn play(house: &House, planner: &str, wanted: &str, turns: Vec<Turn>) -> Outcome
 /// The study of people as the model has them against the exact evaluation, for every policy that
 /// decides by the belief over objects alone, as the evaluation does.
 #[test]
-fn the_model_s_people_average_out_to_the_evaluation() {
+fn simulation_average_matches_the_exact_evaluation() {
     let (seed, n) = (20_261, 20_000);
     let house = House::new();
     let mut rooms = vec![house.room(), house.room()];
@@ -75,7 +75,7 @@ fn the_model_s_people_average_out_to_the_evaluation() {
 }
 
 #[test]
-fn a_request_that_says_enough_is_fetched_at_once() {
+fn interaction_fetches_at_once_after_an_unambiguous_request() {
     let house = House::new();
     let words = Turn::words("get me the small metal bowl in the cabinet, the silver one");
     let outcome = play(&house, "never-ask", "metal", vec![words]);
@@ -85,7 +85,7 @@ fn a_request_that_says_enough_is_fetched_at_once() {
 }
 
 #[test]
-fn silence_is_asked_into_again_and_then_given_up() {
+fn interaction_repeats_a_question_into_silence_and_then_gives_up() {
     let house = House::new();
     let outcome = play(&house, "lookahead", "metal", vec![]);
     let patience = TurnTaking::default();
@@ -98,7 +98,7 @@ fn silence_is_asked_into_again_and_then_given_up() {
 }
 
 #[test]
-fn what_is_not_an_answer_is_dealt_with_as_the_policy_does() {
+fn interaction_treats_non_answers_like_the_policy() {
     let house = House::new();
     let yes = |n: usize| vec![Turn::words("yes"); n];
     let repeated = [vec![Turn::SILENT, Turn::words("can you repeat that?")], yes(9)].concat();
@@ -116,7 +116,7 @@ fn what_is_not_an_answer_is_dealt_with_as_the_policy_does() {
 }
 
 #[test]
-fn who_waits_for_ever_gets_what_waiting_is_worth() {
+fn interaction_without_an_end_has_the_value_of_waiting() {
     let house = House::new();
     let mut room = house.room();
     room.problem.costs = Costs::PREDECESSOR;

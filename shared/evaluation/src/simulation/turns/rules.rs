@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_read_and_written() {
+    fn turn_taking_rules_round_trip_through_their_names() {
         for name in Rules::ALL {
             assert_eq!(Rules::parse(name).unwrap().to_string(), name);
         }
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_rule_is_named_with_a_cure() {
+    fn turn_taking_rules_reject_unknown_names_with_help() {
         for wrong in ["", "naive+", "polite", "w", "w0", "w-1", "wNaN", "winf", "onset+w9999"] {
             let error = Rules::parse(wrong).unwrap_err().to_string();
             assert!(error.contains("open+mixture"), "{wrong}: {error}");

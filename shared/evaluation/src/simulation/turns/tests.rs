@@ -35,7 +35,7 @@ fn naive_turn_taking_loses_about_every_fifth_dialogue() {
 }
 
 #[test]
-fn each_cure_helps_alone() {
+fn each_turn_taking_fix_helps_alone() {
     let naive = run("naive", &TimedKind::USUAL, 2_000);
     let same = run("naive+same", &TimedKind::USUAL, 2_000);
     assert!(same.success() > naive.success());
@@ -58,7 +58,7 @@ fn an_open_microphone_halves_the_time() {
 
 /// With too short a window, answers come into the next question all the time.
 #[test]
-fn the_mixture_sorts_out_answers_that_come_late() {
+fn mixture_attribution_handles_late_answers() {
     let naive = run("open+naive+same+fast+w1", &TimedKind::USUAL, 2_000);
     let mixture = run("open+mixture+same+fast+w1", &TimedKind::USUAL, 2_000);
     assert!(naive.success() < 0.6, "{}", naive.success());
@@ -66,7 +66,7 @@ fn the_mixture_sorts_out_answers_that_come_late() {
 }
 
 #[test]
-fn chunks_add_up_to_the_whole() {
+fn turn_simulation_chunks_add_up_to_the_whole() {
     let whole = run("naive", &TimedKind::USUAL, 300);
     let again = run("naive", &TimedKind::USUAL, 300);
     assert_eq!(whole, again);

@@ -115,7 +115,7 @@ fn requests_name_values_of_the_wanted_object() {
 }
 
 #[test]
-fn a_slip_gives_another_answer_where_there_is_one() {
+fn user_slip_gives_another_answer_if_one_exists() {
     let house = House::new();
     let mut rng = Rng::new(1);
     let shape = house.scene.attribute_named("shape").unwrap();
@@ -129,7 +129,7 @@ fn a_slip_gives_another_answer_where_there_is_one() {
 }
 
 #[test]
-fn an_absent_object_is_denied_and_never_described() {
+fn user_denies_an_absent_object_and_never_describes_it() {
     let house = House::new();
     let mut user = SimulatedUser::truthful(None);
     for question in house.questions() {

@@ -38,7 +38,7 @@ fn outside(cuboid: &Cuboid, p: &Vector3<f64>) -> f64 {
 }
 
 #[test]
-fn boxes_overlap_where_points_of_them_do() {
+fn box_overlap_agrees_with_sampled_points() {
     let seed = 41;
     let mut random = Random::seeded(seed);
     let (mut apart, mut overlapping) = (0, 0);
@@ -67,7 +67,7 @@ fn boxes_overlap_where_points_of_them_do() {
 }
 
 #[test]
-fn faces_are_as_far_apart_as_they_are() {
+fn box_distance_of_parallel_faces_is_exact() {
     let block = Block {
         pose: Isometry3::translation(0.0, 0.0, 0.10),
         half: Vector3::new(0.05, 0.04, 0.03),
@@ -83,7 +83,7 @@ fn faces_are_as_far_apart_as_they_are() {
 }
 
 #[test]
-fn a_capsule_is_as_far_as_its_nearest_point() {
+fn capsule_distance_is_that_of_its_nearest_point() {
     let seed = 42;
     let mut random = Random::seeded(seed);
     for round in 0..500 {
@@ -103,7 +103,7 @@ fn a_capsule_is_as_far_as_its_nearest_point() {
 }
 
 #[test]
-fn corners_are_the_extremes() {
+fn box_corners_are_the_extremes() {
     let block = random_block(&mut Random::seeded(43));
     let corners = block.corners();
     let mean = corners.iter().sum::<Vector3<f64>>() / 8.0;

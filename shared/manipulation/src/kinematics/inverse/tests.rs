@@ -260,7 +260,7 @@ fn other_tool_lengths_are_solved_as_well() {
 }
 
 #[test]
-fn answers_do_not_depend_on_what_was_asked_before() {
+fn inverse_kinematics_is_independent_of_earlier_calls() {
     let target = arm(Limb::Left).chain.forward(&[0.3, -0.4, 0.2, 1.0, -0.5, 0.8, 0.1]);
     let first = arm(Limb::Left).chain.inverse(&target, None).unwrap();
     let far = Isometry3::translation(9.0, 0.0, 0.0);
@@ -300,7 +300,7 @@ fn inverse_kinematics_rejects_an_invalid_pose() {
 }
 
 #[test]
-fn nearest_is_no_further_than_any_branch_at_any_sample() {
+fn nearest_solution_is_nearest_of_all_sampled_branches() {
     let seed = 13;
     let mut random = Random::seeded(seed);
     for _ in 0..60 {

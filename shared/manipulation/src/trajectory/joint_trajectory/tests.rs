@@ -46,7 +46,7 @@ fn assert_rests(trajectory: &Trajectory, what: &str) {
 }
 
 #[test]
-fn random_ways_keep_every_limit_and_pass_no_corner_at_rest() {
+fn random_trajectories_keep_every_limit_and_stop_at_no_corner() {
     let seed = 31;
     let mut random = Random::seeded(seed);
     for round in 0..25 {
@@ -206,7 +206,7 @@ fn moves_between_random_states_keep_every_limit() {
 }
 
 #[test]
-fn states_outside_the_limits_are_refused() {
+fn trajectory_rejects_states_outside_the_limits() {
     let rest = State::at_rest(&neutral());
     let fast = State { qd: [0.0, 0.0, 1.6, 0.0, 0.0, 0.0, 0.0], ..rest };
     let error = Trajectory::between(&fast, &rest, &full()).unwrap_err();
@@ -227,7 +227,7 @@ fn states_outside_the_limits_are_refused() {
 }
 
 #[test]
-fn waypoints_outside_the_limits_are_refused() {
+fn trajectory_rejects_waypoints_outside_the_limits() {
     let mut q = [0.0; 7];
     q[3] = 2.7;
     let error = Trajectory::through(&[[0.0; 7], q], 0.1, &full()).unwrap_err();
@@ -236,7 +236,7 @@ fn waypoints_outside_the_limits_are_refused() {
 }
 
 #[test]
-fn going_nowhere_takes_no_time() {
+fn trajectory_without_motion_takes_no_time() {
     let q = neutral();
     let still = Trajectory::through(&[q, q], 0.1, &full()).unwrap();
     assert_eq!((still.duration_s(), still.sample(1.0)), (0.0, (q, [0.0; 7])));
@@ -245,7 +245,7 @@ fn going_nowhere_takes_no_time() {
 }
 
 #[test]
-fn sampling_beyond_the_ends_gives_the_ends() {
+fn trajectory_sampling_is_clamped_to_the_ends() {
     let waypoints = [[0.0; 7], neutral()];
     let trajectory = Trajectory::through(&waypoints, 0.1, &full()).unwrap();
     assert_eq!(trajectory.sample(-1.0), trajectory.sample(0.0));
