@@ -137,7 +137,8 @@ fn paper_reader_has_no_doubts() {
 }
 
 /// Words of the dialogue, separated by bars.
-const WORDS: &str = "the|not|no|yes|red|blue|marker|one|and|or|but|,|.|on|table|sorry|i|do|want|get|me|is|it|\
+const WORDS: &str = "\
+    the|not|no|yes|red|blue|marker|one|and|or|but|,|.|on|table|sorry|i|do|want|get|me|is|it|\
     that|what|other|than|anything|foo|uh|sure|if|next to|short|never mind|start over|stop|\
     isn't|you|my|was|clear|pen|any|except|maybe|think|so|wait|right|of|in|dish|-|'|?|le|\
     drop table|put|non|probably|markre|screw|driver|green|perhaps";
