@@ -35,7 +35,7 @@ pub(crate) enum Refusal {
     /// The scene has no place for the object.
     #[error("it has no place in the scene")]
     NoPlace,
-    /// A person took it.
+    /// A user took it.
     #[error("it was handed over and has not been put back (arm.restock is off)")]
     Gone,
     /// The other limb is away from rest and must return first.
@@ -48,7 +48,7 @@ pub(crate) enum Refusal {
 
 /// Last seconds of an approach, in which the fingers must already be open.
 const DESCENT_S: f64 = 1.0;
-/// Seconds that the fingers rest after they opened.
+/// Pause after opening the fingers, seconds.
 const SETTLE_S: f64 = 0.2;
 /// Largest distance from the handover position that counts as at it, metres.
 const HAND_OVER_M: f64 = 0.005;
@@ -82,7 +82,7 @@ impl Planner<'_> {
         Ok(Program { purpose: Purpose::Pick(pick.id), limb: plan.limb(), steps })
     }
 
-    /// Brings what is held to the person: lift, hand over, release, return.
+    /// Delivers the held object: lift, hand over, release, return.
     pub(crate) fn deliver(&self, pick: PickId, held: &Held) -> Result<Program, Refusal> {
         let object = self.world.place(held.object).ok_or(Refusal::NoPlace)?;
         let in_gripper = from_array(&held.in_gripper);

@@ -61,8 +61,8 @@ pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, Node
     }
 }
 
-/// Returns the state for a scene with other objects, if the journal's is of another scene. What stood, was
-/// held or was ordered there means nothing here.
+/// Returns the state for a scene with other objects, if the journal's is of another scene. Its objects
+/// and orders do not apply.
 pub fn other_scene(state: &ArmState, scene: &Scene) -> Option<ArmState> {
     if state.scene_key == scene.key() {
         return None;

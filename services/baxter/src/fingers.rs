@@ -12,7 +12,7 @@ const HOLDING_FORCE: f32 = 30.0;
 pub struct Fingers {
     /// Width between the fingers, metres.
     pub width_m: f64,
-    /// Widths to go to, the next one first; none where nothing moves.
+    /// Target widths, the next one first; none at rest.
     goals: Vec<f64>,
     calibrated: bool,
     calibrating: bool,
@@ -27,7 +27,7 @@ pub struct Fingers {
 /// Event of the fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// They begin to close: what is between them is to be found out.
+    /// They start to close; the object between them is to be determined.
     Closes,
     /// They have stopped at what is between them.
     Holds,
@@ -50,7 +50,7 @@ impl Fingers {
         }
     }
 
-    /// Takes a command. One that comes again, or that a gripper without calibration cannot obey,
+    /// Handles a command. A repeated one, or one that needs calibration that is missing,
     /// changes nothing.
     pub fn command(&mut self, message: &EndEffectorCommand) -> Option<Event> {
         let command = match message.read() {
@@ -92,7 +92,7 @@ impl Fingers {
         self.object_m = object_m;
     }
 
-    /// Lets time pass.
+    /// Advances the time.
     pub fn advance(&mut self, seconds: f64) -> Option<Event> {
         let goal_m = *self.goals.first()?;
         let travel_m = STROKE_M / STROKE_S * seconds;

@@ -1,4 +1,4 @@
-//! The simulated Baxter: as a service of a group, or, with the name of a drill, what happens to one
+//! The simulated Baxter: a service of a group, or, with the name of a drill, fault injection into one
 //! that runs.
 
 use std::process::ExitCode;

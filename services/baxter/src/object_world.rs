@@ -1,4 +1,4 @@
-//! The objects round the robot: where they stand, and what the fingers find.
+//! The objects around the robot: their locations, and grasps.
 
 use manipulation::gripper;
 use manipulation::{Limb, ObjectPose};
@@ -92,7 +92,7 @@ impl ObjectWorld {
         }
     }
 
-    /// People put back what they were given.
+    /// Users put back the objects that they were handed.
     pub fn restock(&mut self) {
         for (now, place) in self.now.iter_mut().zip(&self.places) {
             if let (Whereabouts::Gone, Some(place)) = (*now, place) {

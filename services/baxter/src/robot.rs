@@ -1,4 +1,4 @@
-//! The robot as it behaves on its topics: pure, so that an arm can be tried on it without processes.
+//! Behaviour of the robot on its topics: pure, so that the arm can be tested without processes.
 
 use crate::assembly::Assembly;
 use crate::fingers::{Event, Fingers};
@@ -12,9 +12,9 @@ use serde::{Deserialize, Serialize};
 use service::{Span, Time};
 use std::collections::VecDeque;
 
-/// Longest stretch of time that is made up for at once.
+/// Maximum time step.
 const STRETCH_MAX: Span = Span::from_ms(100);
-/// Drills that are remembered, so that one that comes twice happens once.
+/// Number of recent drills kept, so that a repeated one takes effect once.
 const DRILLS_MAX: usize = 32;
 /// Joint distance from the neutral posture within which people put back what they took, radians.
 const AT_REST_RAD: f64 = 0.05;
@@ -36,7 +36,7 @@ pub struct Body {
     pub closings: u64,
 }
 
-/// The robot and what stands round it.
+/// The robot and the objects around it.
 #[derive(Clone, Debug)]
 pub struct Robot {
     pub(crate) config: Config,
@@ -48,7 +48,7 @@ pub struct Robot {
     pub(crate) silent_until: Time,
     objects: ObjectWorld,
     closings: u64,
-    /// Closings that will find nothing.
+    /// Number of coming grasps that fail.
     misses: u64,
     obstructed_until: Time,
     drilled: VecDeque<u64>,
@@ -107,7 +107,7 @@ impl Robot {
         &self.objects
     }
 
-    /// Takes a message.
+    /// Handles a message.
     pub fn on_message(&mut self, message: &In, now: Time) {
         self.advance(now);
         match message {
@@ -124,7 +124,7 @@ impl Robot {
         }
     }
 
-    /// Lets time pass until `now`.
+    /// Advances the time to `now`.
     pub fn advance(&mut self, now: Time) {
         let before = self.now.replace(now).unwrap_or(now);
         let seconds = now.since(before).min(STRETCH_MAX).s();

@@ -7,7 +7,7 @@ use manipulation::{Joints, MotionLimits};
 pub const COMMAND_TIMEOUT_S: f64 = 0.2;
 /// Initial share of its velocity that a limb may use.
 pub const SPEED_RATIO: f64 = 0.3;
-/// Greatest acceleration of a joint, rad/s²: what its motor can do, not what is asked of it.
+/// Maximum acceleration of a joint by its motor, rad/s².
 const ACCELERATION_RAD_S2: f64 = 40.0;
 /// Time step of the integration, seconds: the controller's own.
 const STEP_S: f64 = 1e-3;
@@ -59,7 +59,7 @@ impl Servo {
         }
     }
 
-    /// Takes a command.
+    /// Handles a command.
     pub fn command(&mut self, target: Target) {
         (self.target, self.silent_s) = (Some(target), 0.0);
     }
@@ -82,7 +82,7 @@ impl Servo {
         self.feed_forward = [0.0; 7];
     }
 
-    /// Lets time pass.
+    /// Advances the time.
     pub fn advance(&mut self, seconds: f64) {
         let steps = (seconds / STEP_S).ceil().max(1.0);
         for _ in 0..steps as u32 {

@@ -1,4 +1,4 @@
-//! A process of one service: how it is signalled, killed and reaped.
+//! A process of one service: signals, kill and reaping.
 //!
 //! Signals go through a descriptor of the process (pidfd) that is opened before it can have been
 //! reaped, so they never reach another process that was given the same number later.
@@ -32,7 +32,7 @@ impl Child {
         self.pid
     }
 
-    /// Carries out the machine's wish. A process that has ended meanwhile does not mind.
+    /// Applies an effect of the machine. A process that has already ended is not an error.
     pub(crate) fn signal(&self, effect: Effect) {
         let sent = match effect {
             Effect::Terminate => self.send(Signal::TERM).and_then(|()| self.wake()),

@@ -14,12 +14,12 @@ mod from_settings;
 /// every problem, one line each.
 pub type Load = Box<dyn FnMut() -> Result<Configuration, Vec<String>>>;
 
-/// Writes what the services are to read into the group's run folder.
+/// Writes the settings for the services into the group's run folder.
 pub type Publish = Box<dyn Fn(&Path) -> io::Result<()>>;
 
-/// A configuration that has been found to be right.
+/// A valid configuration.
 pub struct Configuration {
-    /// The services and how they are kept up.
+    /// The services and their restart policy.
     pub spec: GroupSpec,
     /// The scene's name.
     pub scene: String,
@@ -29,7 +29,7 @@ pub struct Configuration {
     pub directory: PathBuf,
     /// Shared memory that must be free for the group to start, MiB.
     pub shared_memory_free_min_mib: u64,
-    /// Puts it into force for the services.
+    /// Publishes it to the services.
     pub publish: Publish,
 }
 

@@ -1,4 +1,4 @@
-//! The life of a group's journals.
+//! Epochs of a group's journals.
 //!
 //! Every identifier that is ever written counts within an epoch. A fresh start puts the old
 //! journals aside, under the old epoch's number, and begins a new one, so that nothing that was
@@ -10,7 +10,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use service::group::GroupPaths;
 
-/// The epoch in force; a new one if there is none, or if `fresh` asks for it.
+/// Returns the current epoch; a new one if there is none or `fresh` is set.
 ///
 /// # Errors
 /// The file cannot be read or written, or holds no number.

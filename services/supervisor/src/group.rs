@@ -14,7 +14,7 @@ use crate::spec::GroupSpec;
 #[cfg(test)]
 pub(crate) mod tests;
 
-/// All services of a group and what it is doing as a whole.
+/// All services of a group, and its state as a whole.
 #[derive(Clone, Debug)]
 pub struct Group {
     machines: Vec<Machine>,
@@ -45,7 +45,7 @@ impl Group {
         })
     }
 
-    /// Wants every service up.
+    /// Requests every service up.
     pub fn start(&mut self, now: Time) {
         self.phase = Phase::Starting;
         for machine in &mut self.machines {
@@ -53,7 +53,7 @@ impl Group {
         }
     }
 
-    /// Wants every service down, in order.
+    /// Requests every service down, in order.
     pub fn stop(&mut self, now: Time) {
         self.phase = Phase::Stopping;
         for machine in &mut self.machines {

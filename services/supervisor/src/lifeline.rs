@@ -23,7 +23,7 @@ pub(crate) struct Lifeline {
 }
 
 impl Lifeline {
-    /// A new lifeline, and a shared lock on `alive`.
+    /// Creates a lifeline, and a shared lock on `alive`.
     pub(crate) fn new(alive: File) -> io::Result<Self> {
         let (read_end, write_end) = pipe_with(PipeFlags::CLOEXEC)?;
         flock(&alive, FlockOperation::NonBlockingLockShared)?;
@@ -41,7 +41,7 @@ impl Lifeline {
     }
 }
 
-/// Opens (and makes) a lock file.
+/// Opens (or creates) a lock file.
 pub(crate) fn open_lock(path: &Path) -> io::Result<File> {
     OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)
 }

@@ -1,5 +1,5 @@
-//! The state machine of one service: what is wanted of it, what it actually does, and the one thing
-//! to do next.
+//! The state machine of one service: its desired and actual state, and the single action
+//! to take next.
 //!
 //! Pure: an event and the time go in, at most one [`Effect`] comes out. [`Effect::Spawn`] is only
 //! ever given when no incarnation lives, every state in which an incarnation owes something has a
@@ -39,7 +39,7 @@ const EXTENSIONS_MAX: u32 = 4;
 /// One service's state.
 #[derive(Clone, Debug)]
 pub struct Machine {
-    /// The limits that it keeps; a change counts from the next event on.
+    /// Its limits; a change applies from the next event on.
     pub limits: Limits,
     wanted: Wanted,
     state: State,
@@ -63,7 +63,7 @@ impl Machine {
         }
     }
 
-    /// Takes one event at time `now` and says what to do about it.
+    /// Handles one event at time `now` and returns the effect.
     ///
     /// The effect has to be carried out before the next event is given.
     pub fn on(&mut self, event: Event, now: Time) -> Option<Effect> {
@@ -116,7 +116,7 @@ impl Machine {
         self.incarnation
     }
 
-    /// When [`Event::Clock`] is due.
+    /// Returns the time of the next [`Event::Clock`].
     pub fn deadline(&self) -> Option<Time> {
         self.deadline
     }
@@ -272,7 +272,7 @@ impl Machine {
         }
     }
 
-    /// Stops a live incarnation for what it failed to do.
+    /// Stops a live incarnation because of a missed deadline.
     fn fail(&mut self, failure: Failure, now: Time) -> Option<Effect> {
         self.failure = Some(failure);
         let (step, effect) = match failure {
@@ -309,7 +309,7 @@ impl Machine {
         Effect::Spawn
     }
 
-    /// Down, with nothing remembered against it.
+    /// Resets it to down without a failure.
     fn rest(&mut self) {
         self.restart_limiter.forget();
         self.state = State::Down;

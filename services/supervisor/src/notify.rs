@@ -9,26 +9,26 @@ use std::os::unix::net::UnixDatagram;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Longest datagram that is looked at, bytes; systemd's own limit is of the same size.
+/// Maximum size of a datagram, bytes; systemd's own limit is of the same size.
 const DATAGRAM_BYTES_MAX: usize = 4096;
 
-/// Datagrams taken in one go, so that a service that floods its socket cannot keep the supervisor
+/// Maximum datagrams per pass, so that a service that floods its socket cannot keep the supervisor
 /// from the others.
 const DATAGRAMS_MAX: usize = 64;
 
 /// Longest text that is kept, characters.
 const TEXT_CHARS_MAX: usize = 160;
 
-/// One thing that a service says.
+/// One notification of a service.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Notification {
     /// `READY=1`
     Ready,
-    /// `WATCHDOG=1`: its main loop went round.
+    /// `WATCHDOG=1`: heartbeat of its main loop.
     Beat,
     /// `EXTEND_TIMEOUT_USEC=n`: it needs this much more time.
     Extend(Duration),
-    /// `STATUS=text`: what it does.
+    /// `STATUS=text`: its activity.
     Status(String),
     /// `X_VERSION=text`
     Version(String),
@@ -44,10 +44,10 @@ pub(crate) struct NotifySocket {
 }
 
 impl NotifySocket {
-    /// A new socket at `path`; a file that was left there is removed.
+    /// Creates a socket at `path`; a stale file there is removed.
     ///
     /// # Errors
-    /// The socket cannot be made.
+    /// The socket cannot be created.
     pub(crate) fn bind(path: &Path) -> io::Result<Self> {
         match fs::remove_file(path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
@@ -58,7 +58,7 @@ impl NotifySocket {
         Ok(Self { socket, path: path.to_owned() })
     }
 
-    /// Everything that has been said since the last call, up to a bound.
+    /// Returns the notifications since the last call, up to a bound.
     pub(crate) fn drain(&self) -> Vec<Notification> {
         let mut buffer = [0; DATAGRAM_BYTES_MAX];
         let mut said = Vec::new();
@@ -86,7 +86,7 @@ impl Drop for NotifySocket {
     }
 }
 
-/// The lines of a datagram that mean something here; all others are foreign extensions.
+/// Parses the known lines of a datagram; all others are extensions of other programs.
 fn parse(datagram: &[u8]) -> Vec<Notification> {
     String::from_utf8_lossy(datagram).lines().filter_map(line).collect()
 }

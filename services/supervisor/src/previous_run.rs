@@ -1,4 +1,4 @@
-//! Check that a previous supervisor of the group, and everything that it had started, is gone.
+//! Check that a previous supervisor of the group and all its processes have ended.
 
 use std::fs::File;
 use std::io::{self, Read, Seek, Write};
@@ -49,7 +49,7 @@ fn with_pid(pid: &Option<u32>) -> String {
     pid.map(|pid| format!(" (supervisor {pid})")).unwrap_or_default()
 }
 
-/// Takes the group for this process, for as long as the file is kept open.
+/// Locks the group for this process, for as long as the file is kept open.
 ///
 /// # Errors
 /// Another supervisor has it.

@@ -33,9 +33,9 @@ pub(crate) enum Verdict {
 
 impl RestartLimiter {
     /// Counts an exit at `now` of an incarnation that had been ready for `ready_for` (`None`: it
-    /// never was) and says what follows.
+    /// never was) and returns the consequence.
     ///
-    /// The first exit of a service that had been ready is answered at once, since a service that
+    /// The first exit of a service that had been ready is followed by a restart at once, since a service that
     /// works and is killed from outside should be back soon; one that never became ready always
     /// waits, so that a broken one cannot spin.
     pub(crate) fn count(
@@ -65,7 +65,7 @@ impl RestartLimiter {
         Verdict::After(pause.min(limits.backoff_max))
     }
 
-    /// Forgets everything: an operator has taken the matter in hand.
+    /// Resets everything on a request of the operator.
     pub(crate) fn forget(&mut self) {
         *self = Self::default();
     }

@@ -1,4 +1,4 @@
-//! The control socket's side of the supervisor: connections that never make it wait.
+//! Server of the control socket: connections never block the supervisor.
 
 use std::collections::BTreeMap;
 use std::io::{self, ErrorKind, Read, Write};
@@ -15,7 +15,7 @@ use service::control::{REQUEST_BYTES_MAX, Refusal, RefusalKind, Reply, Request};
 #[cfg(test)]
 mod tests;
 
-/// Connections at a time; one more is turned away.
+/// Maximum number of connections; further ones are rejected.
 const CONNECTIONS_MAX: usize = 64;
 
 /// Timeout of a client for sending its request and for receiving the reply.
@@ -48,7 +48,7 @@ struct Connection {
 enum Stage {
     /// The request is being read.
     Asking(Vec<u8>),
-    /// The reply is being made.
+    /// The reply is pending.
     Waiting,
     /// The reply is being written from this byte on.
     Answering(Vec<u8>, usize),
@@ -77,7 +77,7 @@ impl Server {
         self.listener.as_fd()
     }
 
-    /// Connections and what is awaited of each; that it hangs up always is.
+    /// Connections with the events to poll for; a hang-up is always reported.
     pub(crate) fn awaited(&self) -> impl Iterator<Item = (Client, BorrowedFd<'_>, PollFlags)> {
         self.connections.iter().map(|(&client, connection)| {
             let flags = match connection.stage {
@@ -89,7 +89,7 @@ impl Server {
         })
     }
 
-    /// Takes new connections.
+    /// Accepts new connections.
     pub(crate) fn accept(&mut self, now: Time) {
         while let Ok((stream, _)) = self.listener.accept() {
             if stream.set_nonblocking(true).is_err() {
@@ -105,7 +105,7 @@ impl Server {
         }
     }
 
-    /// Goes on with a connection that is ready for it; a request, once it is complete.
+    /// Continues with a connection that is ready. Returns its request once it is complete.
     pub(crate) fn advance(
         &mut self,
         client: Client,
@@ -154,7 +154,7 @@ impl Server {
         });
     }
 
-    /// Gives clients a last moment to take their replies.
+    /// Waits briefly for clients to receive their replies.
     pub(crate) fn finish(mut self) {
         let answering = |c: &Connection| matches!(c.stage, Stage::Answering(..));
         let left: Vec<Client> =

@@ -1,4 +1,4 @@
-//! One service as the supervisor runs it: its processes one after the other, and what they say.
+//! One service under the supervisor: its successive processes and their notifications.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ use service::process_exit::ProcessExit;
 #[derive(Debug)]
 pub(crate) struct Service {
     pub(crate) spec: ServiceSpec,
-    /// A command that has taken the place of the configured one.
+    /// A command that replaces the configured one.
     pub(crate) swapped: Option<Command>,
     pub(crate) running: Option<Running>,
     pub(crate) ended: Option<Ended>,
@@ -29,7 +29,7 @@ pub(crate) struct Service {
     pub(crate) log_from: u64,
 }
 
-/// A command and the folder in which it is meant.
+/// A command and its working folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Command {
     pub(crate) words: Vec<String>,
@@ -69,7 +69,7 @@ pub(crate) struct Surroundings {
     pub(crate) lifeline: Lifeline,
     pub(crate) epoch: u64,
     pub(crate) log: Log,
-    /// The folder in which configured commands are meant.
+    /// The working folder of configured commands.
     pub(crate) directory: PathBuf,
 }
 
@@ -81,7 +81,7 @@ impl Service {
     /// Starts incarnation `incarnation`, if there is room for it.
     ///
     /// # Errors
-    /// It could not be started; this is noted as its end.
+    /// It could not be started; this is recorded as its exit.
     pub(crate) fn spawn(
         &mut self,
         incarnation: u32,
@@ -238,14 +238,14 @@ impl Service {
         log_file::tail(&paths.log_file(&self.spec.name), self.log_from)
     }
 
-    /// Puts a command in the place of the current one; `None` is the configured one.
+    /// Replaces the current command; `None` restores the configured one.
     pub(crate) fn replace_command(&mut self, command: Option<Command>) -> Option<Command> {
         std::mem::replace(&mut self.swapped, command)
     }
 }
 
 impl Running {
-    /// Age of its oldest input that it has not dealt with: what it said, and the time since.
+    /// Age of its oldest pending input: the reported age plus the time since.
     pub(crate) fn input_age(&self, now: Time) -> Option<Duration> {
         let (age, said) = self.input?;
         // Nothing waited, so nothing has aged.
@@ -254,7 +254,7 @@ impl Running {
 }
 
 impl Ended {
-    /// The end in a few words.
+    /// Summary of the exit.
     pub(crate) fn text(&self) -> String {
         let mut text = match &self.error {
             Some(error) => error.clone(),

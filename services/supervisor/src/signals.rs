@@ -1,4 +1,4 @@
-//! Signals to the supervisor, as things to be polled.
+//! Signals to the supervisor, as descriptors to poll.
 
 use std::io::{self, Read};
 use std::os::fd::{AsFd, BorrowedFd};
@@ -7,7 +7,7 @@ use std::os::unix::net::UnixStream;
 use signal_hook::consts::{SIGCHLD, SIGHUP, SIGINT, SIGTERM};
 use signal_hook::low_level::pipe;
 
-/// One pipe for the wish to end, one for the end of some child.
+/// One pipe for shutdown requests, one for exits of children.
 #[derive(Debug)]
 pub(crate) struct Signals {
     end: UnixStream,

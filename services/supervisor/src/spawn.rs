@@ -21,10 +21,10 @@ use service::process_exit::ProcessExit;
 #[derive(Debug)]
 pub(crate) struct Launch<'a> {
     pub(crate) command: &'a [String],
-    /// The folder that the command is meant in and runs in.
+    /// The working folder of the command.
     pub(crate) directory: &'a Path,
     pub(crate) environment: Vec<(&'static str, OsString)>,
-    /// Takes the process's standard output and error.
+    /// Receives the process's standard output and error.
     pub(crate) log: File,
     pub(crate) nice: i32,
     pub(crate) lifeline: &'a Lifeline,
@@ -45,7 +45,7 @@ pub(crate) enum SpawnError {
     /// Shared memory is short.
     #[error(transparent)]
     Room(#[from] NoRoom),
-    /// The operating system refuses.
+    /// Error of the operating system.
     #[error("{program}: {error}")]
     Io {
         /// The program's path.
@@ -56,7 +56,7 @@ pub(crate) enum SpawnError {
 }
 
 impl SpawnError {
-    /// The error as an end of the service: whether trying again may help.
+    /// Converts the error to an exit of the service, which determines if a retry may succeed.
     pub(crate) fn as_exit(&self) -> ProcessExit {
         match self {
             Self::Io { error, .. } => match error.kind() {

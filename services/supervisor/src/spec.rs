@@ -29,7 +29,7 @@ pub struct ServiceSpec {
     pub critical: bool,
     /// Time from start to `READY=1`.
     pub start_deadline: Duration,
-    /// Longest silence between two beats once ready; `None` switches the watchdog off.
+    /// Maximum time between two heartbeats once ready; `None` disables the watchdog.
     pub watchdog: Option<Duration>,
     /// Time from the request to stop to the kill.
     pub stop_deadline: Duration,

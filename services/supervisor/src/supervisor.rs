@@ -1,4 +1,4 @@
-//! The running supervisor: one thread that waits for anything to happen and acts upon it.
+//! The running supervisor: one thread that waits for events and handles them.
 //!
 //! It never waits for a service or a client. What takes time is bounded file work: the cleanup of
 //! shared memory after a process has ended, and a look through `/proc` for what it left behind.
@@ -84,7 +84,7 @@ struct About {
 struct LoadBox(Load);
 
 impl Supervisor {
-    /// Takes the group, makes its folders and its shared memory, and wants its services up.
+    /// Locks the group, creates its folders and shared memory, and requests its services up.
     ///
     /// To be called on the process's main thread, which must also be the one that runs it:
     /// services are asked to shut down when the thread that started them does. Waits for the services of
@@ -96,7 +96,7 @@ impl Supervisor {
         start::start(paths, load, fresh)
     }
 
-    /// Runs the group until it has ended, and says how the process should.
+    /// Runs the group until it has ended. Returns the exit code.
     pub fn run(mut self) -> Exit {
         self.settle(self.last_pass);
         loop {
@@ -130,8 +130,8 @@ impl Supervisor {
         }
     }
 
-    /// Acts upon what has happened: first what services say, so that none is judged by a silence
-    /// that it has already broken.
+    /// Handles events: notifications first, so that no service is stopped for a missed heartbeat
+    /// that has already arrived.
     fn take(&mut self, ready: Ready, now: Time) {
         if self.signals.asked_to_end() {
             self.end(ending::Cause::Signal, now);
@@ -190,7 +190,7 @@ impl Supervisor {
         }
     }
 
-    /// Gives an event to a service and carries out what follows.
+    /// Passes an event to a service and carries out the effects.
     fn give(&mut self, service: usize, event: Event, now: Time) {
         if let Some(effect) = self.group.on(service, event, now) {
             self.carry_out(service, effect, now);

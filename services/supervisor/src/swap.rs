@@ -1,7 +1,7 @@
 //! Replacement of a service's program while the group runs, and rollback when the new
 //! one does not become ready.
 //!
-//! Pure: it looks at the service's machine after each of its events and says what to do next.
+//! Pure: it inspects the service's machine after each event and returns the next step.
 
 use crate::machine::{Actual, Machine};
 

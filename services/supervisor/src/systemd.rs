@@ -1,5 +1,5 @@
 //! Notifications to the init system that started the supervisor, if any: that the group is ready,
-//! that it stops, and that the main loop goes round.
+//! that it stops, and heartbeats of the main loop.
 
 use std::env;
 use std::os::linux::net::SocketAddrExt;

@@ -90,7 +90,7 @@ impl DescribedArm {
     }
 }
 
-/// Returns the link and all that hangs off it, parents first.
+/// Returns the link and its descendants, parents first.
 fn subtree(robot: &Robot, first: usize) -> Vec<usize> {
     let mut links = vec![first];
     for joint in robot.joints() {

@@ -1,4 +1,4 @@
-//! The command line: what people and scripts do with a robot, and the batch tools.
+//! The command line of users and scripts, and the batch tools.
 //!
 //! A verb that talks to a group holds no state of its own: it asks the supervisor over its control
 //! socket, or is one more client of the group's topics, and can be killed at any moment without

@@ -1,4 +1,4 @@
-//! `whichone`: the program that people and scripts use.
+//! `whichone`: the command line program.
 
 use std::process::ExitCode;
 

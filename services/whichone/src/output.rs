@@ -34,9 +34,9 @@ pub enum Ink {
     Dim,
     /// Good state.
     Green,
-    /// On its way.
+    /// In progress.
     Yellow,
-    /// Not as it should be.
+    /// Bad state.
     Red,
     /// The robot's words.
     Cyan,
@@ -123,7 +123,7 @@ impl<'a> Output<'a> {
         self.flush()
     }
 
-    /// Makes everything printed so far appear.
+    /// Flushes the output.
     ///
     /// # Errors
     /// The output is closed or full.
@@ -170,7 +170,7 @@ fn colour_is_welcome() -> bool {
     std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
 
-/// Rows below their heads, each column as wide as its widest cell.
+/// Renders rows below their headings, each column as wide as its widest cell.
 pub fn table(heads: &[&str], rows: &[Vec<String>]) -> Vec<String> {
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column));

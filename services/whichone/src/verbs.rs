@@ -35,7 +35,7 @@ mod up;
 mod watch;
 mod words;
 
-/// Does what the command line asks for.
+/// Executes the verb of the command line.
 ///
 /// # Errors
 /// The verb failed.

@@ -44,12 +44,12 @@ impl AudioStream {
         self.key
     }
 
-    /// Leaves out samples that were lost before they came here: the robot hears silence.
+    /// Skips samples that were lost before they arrived: the robot receives silence.
     pub fn skip(&mut self, samples: u64) {
         self.samples = self.samples.saturating_add(samples);
     }
 
-    /// Sets the flags of what is sent from now on, e.g. when a key is pressed or released.
+    /// Sets the flags of subsequent chunks, e.g. when a key is pressed or released.
     pub fn set_flags(&mut self, flags: u8) {
         self.flags = flags & !AudioChunk::END;
     }

@@ -40,7 +40,7 @@ pub struct Identity {
 /// A topic cannot be opened.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BusError {
-    /// The other side was built with other messages.
+    /// Schema mismatch: the topic was created with another build.
     #[error(
         "topic {topic}: this program's {payload} has schema {ours}, the group's topic has another \
          one ({cause}); use programs of one build in a group"
@@ -55,7 +55,7 @@ pub enum BusError {
         /// iceoryx2's word for it.
         cause: String,
     },
-    /// Anything else that iceoryx2 says.
+    /// Any other error of iceoryx2.
     #[error("shared memory, {what}: {cause}")]
     Ipc {
         /// Operation that failed.
@@ -71,7 +71,7 @@ impl BusError {
     }
 }
 
-/// A message could not be sent or taken.
+/// Failure to send or receive a message.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("topic {topic}: {cause}")]
 pub struct PortError {
@@ -106,7 +106,7 @@ impl Bus {
     /// Opens the group's shared memory as process `name`.
     ///
     /// # Errors
-    /// iceoryx2 refuses: no memory, no permission, no such folder.
+    /// iceoryx2 fails: no memory, no permission, no such folder.
     pub fn open(paths: &GroupPaths, name: &str, identity: Identity) -> Result<Self, BusError> {
         let config = config(paths)?;
         let node_name =
@@ -128,7 +128,7 @@ impl Bus {
     /// Writes a fixed-layout topic.
     ///
     /// # Errors
-    /// Another schema, too many writers, or iceoryx2 refuses.
+    /// Another schema, too many writers, or an error of iceoryx2.
     pub fn writer<T: WireMessage>(&self, topic: &Topic) -> Result<Writer<T>, BusError> {
         Writer::open(self, topic)
     }
@@ -160,10 +160,10 @@ impl Bus {
         EncodedReader::open(self, topic)
     }
 
-    /// The wake-up of `service`, for that service itself.
+    /// Returns the wake-up listener of `service`, for that service itself.
     ///
     /// # Errors
-    /// iceoryx2 refuses.
+    /// iceoryx2 fails.
     pub fn wake_listener(&self, service: Service) -> Result<WakeListener, BusError> {
         WakeListener::open(self, service)
     }

@@ -18,7 +18,7 @@ use std::time::Duration;
 
 /// Time between two transmissions of an unconfirmed motion order.
 const RESEND_EVERY: Span = Span::from_ms(250);
-/// Time between two looks at the topics.
+/// Polling interval of the topics.
 const POLL_EVERY: Duration = Duration::from_millis(2);
 
 /// A client's access to the group.
@@ -30,7 +30,7 @@ pub struct Client {
 /// Failure of a client's request.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ClientError {
-    /// No such group is running.
+    /// The group is not running.
     #[error("group {0} is not running; help: start it with `whichone up --group {0}`")]
     NoGroup(String),
     /// Its shared memory cannot be opened.
@@ -39,7 +39,7 @@ pub enum ClientError {
     /// A topic failed.
     #[error(transparent)]
     Port(#[from] PortError),
-    /// No answer in time.
+    /// Timeout.
     #[error("{what}: no answer within {seconds} s; help: see `whichone status`")]
     Timeout {
         /// The service.

@@ -1,8 +1,8 @@
 //! The control protocol between operators and the supervisor.
 //!
 //! One connection to the group's control socket carries one request and one reply, each a JSON
-//! object on a line of its own. A request that waits is answered once: when its condition
-//! holds, cannot hold any more, or its time is up.
+//! object on a line of its own. A request that waits is answered once: as soon as its condition
+//! holds, can no longer hold, or its timeout has passed.
 
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ pub use client::{CallError, call};
 
 mod client;
 
-/// Longest request, bytes; a command line of a swap is the longest part of any.
+/// Maximum size of a request, bytes; the longest part is the command line of a swap.
 pub const REQUEST_BYTES_MAX: usize = 64 << 10;
 
 /// A request of an operator. With `wait_ms` of 0 it is answered at once.
@@ -76,7 +76,7 @@ pub enum Request {
         service: String,
         /// Program and arguments.
         command: Vec<String>,
-        /// The folder in which the command is meant: the caller's own.
+        /// Working folder of the command: the caller's own.
         directory: PathBuf,
     },
     /// Reloads the configuration and restarts the affected services. Answered by
@@ -107,7 +107,7 @@ pub enum Reply {
     },
     /// The group is down.
     Down(DownReport),
-    /// The request is refused.
+    /// The request is rejected.
     Refused(Refusal),
 }
 

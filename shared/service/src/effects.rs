@@ -15,7 +15,7 @@ impl<Out, Record> Default for Effects<Out, Record> {
 }
 
 impl<Out, Record> Effects<Out, Record> {
-    /// Remembers `record` before anything of this batch becomes visible.
+    /// Appends `record` to the journal before anything of this batch is published.
     pub fn append(&mut self, record: Record) {
         self.records.push(record);
     }

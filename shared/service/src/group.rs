@@ -25,7 +25,7 @@ const SOCKET_PATH_MAX: usize = 107;
 #[serde(try_from = "String", into = "String")]
 pub struct GroupName(String);
 
-/// Not a group's name, or no place for it.
+/// Invalid name of a group, or no folder for it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GroupError {
     /// The name is not allowed.
@@ -46,7 +46,7 @@ impl GroupName {
     /// Checks a name.
     ///
     /// # Errors
-    /// A name that is not allowed.
+    /// The name is invalid.
     pub fn new(name: &str) -> Result<Self, GroupError> {
         let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
         let fits = (1..=32).contains(&name.len()) && !name.starts_with('-');
@@ -127,7 +127,7 @@ impl GroupPaths {
         }
     }
 
-    /// Paths below a place that can hold no folder.
+    /// Paths below a path that cannot be a folder.
     pub(crate) fn nowhere() -> Self {
         Self {
             root: PathBuf::from("/dev/null/whichone"),
@@ -185,7 +185,7 @@ impl GroupPaths {
         self.log().join(format!("{service}.log"))
     }
 
-    /// The number of the journals' life.
+    /// The file that holds the epoch of the journals.
     pub fn epoch_file(&self) -> PathBuf {
         self.root.join("epoch")
     }
@@ -220,7 +220,7 @@ impl GroupPaths {
         self.run().join("ipc")
     }
 
-    /// Prefix of everything that iceoryx2 makes in shared memory for this group: two groups differ
+    /// Prefix of everything that iceoryx2 creates in shared memory for this group: two groups differ
     /// even where they share a name in different homes.
     pub fn ipc_prefix(&self) -> String {
         let mut hash = scene::StableHash::default();

@@ -76,7 +76,7 @@ impl<R> Part<R> {
         self.reading.first_seq
     }
 
-    /// The failure of record `seq` to keep an invariant.
+    /// Reports record `seq`, which breaks an invariant.
     pub fn broken(&self, seq: u64, what: impl std::fmt::Display) -> Failure {
         let file = self.file.display();
         Failure::new(Exit::Invariant, format!("{file}: record {seq}: {what}"))
@@ -197,7 +197,7 @@ fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fail
     check_ending(&part)
 }
 
-/// A write that a kill has cut short was never acknowledged; any other damage is an error.
+/// Checks the end of a journal: an interrupted write was never acknowledged; other damage is an error.
 fn check_ending<R>(part: &Part<R>) -> Result<(), Failure> {
     match part.reading.ending {
         Ending::Whole => Ok(()),

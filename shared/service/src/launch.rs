@@ -46,7 +46,7 @@ pub struct Options {
 /// Failure to start a supervisor.
 #[derive(Debug, Error)]
 pub enum LaunchError {
-    /// It could not be started, or its log could not be made.
+    /// The supervisor could not be started, or its log could not be created.
     #[error("{}: {error}", .path.display())]
     Io {
         /// The program or file.
@@ -62,7 +62,7 @@ pub enum LaunchError {
         /// The end of its log.
         log: Vec<String>,
     },
-    /// It does not listen in time.
+    /// It did not listen in time.
     #[error("the supervisor is not up after {} s; see {}", .after.as_secs_f64(), .log.display())]
     Late {
         /// The timeout.
@@ -70,7 +70,7 @@ pub enum LaunchError {
         /// Its log.
         log: PathBuf,
     },
-    /// It cannot be asked.
+    /// The status request failed.
     #[error(transparent)]
     Call(#[from] CallError),
     /// The group did not become ready.
@@ -93,7 +93,7 @@ impl LaunchError {
     }
 }
 
-/// A supervisor that has been started and not yet been heard of.
+/// A supervisor that has been started and does not listen yet.
 #[derive(Debug)]
 pub struct Launched {
     process: Child,
@@ -102,7 +102,7 @@ pub struct Launched {
 }
 
 impl Options {
-    /// The command line that a supervisor is started with.
+    /// Returns the supervisor's command line.
     pub fn arguments(&self) -> Vec<OsString> {
         let mut arguments: Vec<OsString> = vec![
             "--group".into(),
@@ -128,7 +128,7 @@ pub fn program() -> PathBuf {
     program_of(SUPERVISOR)
 }
 
-/// The program of a service: beside the running one, else searched for in `PATH`.
+/// Returns the program of a service: beside the running one, else from `PATH`.
 pub fn program_of(service: &str) -> PathBuf {
     let name = format!("whichone-{service}");
     let beside = env::current_exe().ok().and_then(|own| Some(own.parent()?.join(&name)));
@@ -142,7 +142,7 @@ pub fn foreground(program: &Path, options: &Options, paths: &GroupPaths) -> Laun
     LaunchError::Io { path: program.to_owned(), error }
 }
 
-/// Starts a supervisor in a session of its own, that logs to `log/supervisor.log`.
+/// Starts a supervisor in its own session, with its log in `log/supervisor.log`.
 ///
 /// # Errors
 /// It cannot be started.
@@ -179,7 +179,7 @@ fn open_log(paths: &GroupPaths) -> io::Result<(File, u64)> {
 }
 
 impl Launched {
-    /// Waits until the supervisor listens. It first waits itself for the services of an earlier one
+    /// Waits until the supervisor listens. It first waits for services of a previous supervisor
     /// that was killed, for as long as the longest stop deadline and 5 s more.
     ///
     /// # Errors
@@ -208,7 +208,7 @@ impl Launched {
     }
 }
 
-/// Waits until every service of a running group is ready; what the supervisor says then.
+/// Waits until every service of a running group is ready. Returns the supervisor's message.
 ///
 /// # Errors
 /// No group runs, or some service is given up or not ready in time.

@@ -11,7 +11,7 @@ use config::Log;
 const TAIL_LINES_MAX: usize = 12;
 const TAIL_BYTES_MAX: u64 = 4096;
 
-/// Opens a log to append to, after putting a large one aside.
+/// Opens a log for appending, after rotating a large one.
 ///
 /// # Errors
 /// The file cannot be opened.
@@ -28,8 +28,8 @@ pub fn open(path: &Path, limits: &Log) -> io::Result<File> {
 }
 
 /// Puts the newest part of an overgrown log aside and empties it, under the feet of the service
-/// that appends to it. Lines written during the copy are lost: a log that grows this fast has said
-/// what it had to say.
+/// that appends to it. Lines written during the copy are lost: a log that grows this fast has
+/// already reported its cause.
 ///
 /// # Errors
 /// The copy cannot be made; the log is truncated nevertheless.
@@ -47,7 +47,7 @@ pub fn bound(path: &Path, limits: &Log) -> io::Result<bool> {
     kept.map(|()| true)
 }
 
-/// The last lines of a log from byte `from` on: what the last incarnation has said.
+/// Returns the last lines of a log from byte `from` on: those of the last incarnation.
 pub fn tail(path: &Path, from: u64) -> Vec<String> {
     let read = || -> io::Result<String> {
         let mut file = File::open(path)?;
@@ -64,12 +64,12 @@ pub fn tail(path: &Path, from: u64) -> Vec<String> {
     lines[lines.len().saturating_sub(TAIL_LINES_MAX)..].iter().map(|line| plain(line)).collect()
 }
 
-/// Size of a log, bytes; 0 where there is none.
+/// Returns the size of a log, bytes; 0 if it does not exist.
 pub fn size(path: &Path) -> u64 {
     path.metadata().map_or(0, |meta| meta.len())
 }
 
-/// A line without what would act upon an operator's terminal.
+/// Returns a line without control characters.
 fn plain(line: &str) -> String {
     line.chars().filter(|&c| !c.is_control() || c == '\t').collect()
 }

@@ -1,4 +1,4 @@
-//! Notifications to the supervisor: `sd_notify` datagrams, sent without ever waiting.
+//! Notifications to the supervisor: `sd_notify` datagrams, sent without blocking.
 //!
 //! A receiver that has stopped reading has a full queue. Its service keeps working: a beat
 //! that finds no room is dropped, and the next one follows. What is said only once (that the
@@ -10,11 +10,11 @@ use std::io;
 use std::os::unix::net::UnixDatagram;
 use std::path::PathBuf;
 
-/// The way to the supervisor.
+/// The sender.
 #[derive(Debug)]
 pub(crate) struct Notifier {
     to: Option<(UnixDatagram, PathBuf)>,
-    /// Said once and not yet delivered.
+    /// States that are sent once and not delivered yet.
     owed: String,
 }
 
@@ -36,7 +36,7 @@ impl Notifier {
         Ok(Self { to: Some((socket, path)), owed: String::new() })
     }
 
-    /// Says what matters once; it is kept until it is delivered.
+    /// Sends states that are reported once; they are kept until delivered.
     pub(crate) fn say(&mut self, states: &[NotifyState<'_>]) {
         self.owed += &lines(states);
         self.send("");

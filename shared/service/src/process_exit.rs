@@ -4,10 +4,10 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// ProcessExit code of a service that will never work as configured (`EX_CONFIG`).
+/// Exit code of a service with an invalid configuration (`EX_CONFIG`).
 pub const EXIT_CONFIG: i32 = 78;
 
-/// ProcessExit code of a service that does not understand its command line (`EX_USAGE`).
+/// Exit code of a service with an invalid command line (`EX_USAGE`).
 pub const EXIT_USAGE: i32 = 64;
 
 /// Exit of one incarnation.
@@ -18,9 +18,9 @@ pub enum ProcessExit {
     Code(i32),
     /// This signal ended it.
     Signal(i32),
-    /// It could not be started, and trying again may help (no process slot, say).
+    /// It could not be started; a retry may succeed (e.g. no process slot).
     NotStarted,
-    /// It could not be started, and trying again will not help (no such program, say).
+    /// It could not be started; a retry cannot succeed (e.g. no such program).
     NotStartable,
 }
 

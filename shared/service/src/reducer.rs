@@ -1,6 +1,6 @@
 //! The core of a service: a deterministic reducer from events to effects.
 //!
-//! A node does no IO, reads no clock and starts no threads; everything that it wants done it states
+//! A node does no IO, reads no clock and starts no threads; it states its outputs and records
 //! as [`Effects`], and the runtime carries them out in one fixed order: append all records, sync
 //! once, and only then publish. So a node can be killed at any point, and a simulation can run all
 //! of them in one thread.
@@ -35,28 +35,28 @@ pub trait Node: Sized {
     /// to make one, so that first start and restart share one path.
     ///
     /// # Errors
-    /// The journal contradicts the configuration in a way that the node cannot mend.
+    /// The journal contradicts the configuration in a way that the node cannot repair.
     fn recover(config: Self::Config, records: Vec<Self::Record>) -> Result<Self, NodeError>;
 
-    /// One event. Must be deterministic in `(self, event, now)`.
+    /// Handles one event. Must be deterministic in `(self, event, now)`.
     fn on(&mut self, event: Event<Self::In>, now: Time, fx: &mut Effects<Self::Out, Self::Record>);
 
-    /// When the next [`Event::Tick`] is wanted.
+    /// Returns the time of the next [`Event::Tick`].
     fn deadline(&self) -> Option<Time>;
 
-    /// Since when the oldest input waits unhandled, for the operator's status.
+    /// Returns the arrival of the oldest pending input, for the operator's status.
     fn pending_since(&self) -> Option<Time> {
         None
     }
 
-    /// Records that stand for the whole journal so far. Offered where nothing is in progress, so
-    /// that the journal can be cut short there.
+    /// Returns records that replace the whole journal so far, if nothing is in progress, so
+    /// that the journal can be compacted.
     fn snapshot(&self) -> Option<Vec<Self::Record>> {
         None
     }
 }
 
-/// The record of a node that has nothing to remember.
+/// The record type of a stateless node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Never {}
 

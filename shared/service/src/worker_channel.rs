@@ -6,10 +6,10 @@ use rustix::event::{EventfdFlags, eventfd};
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::sync::Arc;
 
-/// Messages that wait for the main loop at a time; a source that is faster waits.
+/// Capacity of the channel; a faster source blocks.
 const CHANNEL_LEN: usize = 256;
 
-/// Hands messages to the main loop. Cheap to clone; usable from any thread.
+/// Sends messages to the main loop. Cheap to clone; usable from any thread.
 #[derive(Debug)]
 pub struct DeviceSender<T> {
     sender: Sender<T>,
@@ -23,7 +23,7 @@ impl<T> Clone for DeviceSender<T> {
 }
 
 impl<T> DeviceSender<T> {
-    /// Hands over `message`, waiting while the channel is full. `false` once the loop has ended.
+    /// Sends `message`, blocking while the channel is full. Returns `false` once the loop has ended.
     pub fn send(&self, message: T) -> bool {
         let sent = self.sender.send(message).is_ok();
         // The counter only fails to grow when it is full, and then the loop is awake anyway.
@@ -31,7 +31,7 @@ impl<T> DeviceSender<T> {
         sent
     }
 
-    /// Hands over `message` if there is room.
+    /// Sends `message` if the channel is not full.
     ///
     /// # Errors
     /// The message, where the channel is full. Once the loop has ended, nothing is ever full.
@@ -47,7 +47,7 @@ impl<T> DeviceSender<T> {
     }
 }
 
-/// The main loop's end.
+/// The main loop's receiver.
 #[derive(Debug)]
 pub struct DeviceReceiver<T> {
     receiver: Receiver<T>,
@@ -55,23 +55,23 @@ pub struct DeviceReceiver<T> {
 }
 
 impl<T> DeviceReceiver<T> {
-    /// Readable while something waits.
+    /// Descriptor that is readable while messages are pending.
     pub fn fd(&self) -> BorrowedFd<'_> {
         self.wake.as_fd()
     }
 
-    /// Resets the wake-up; call before taking, so that nothing is slept over.
+    /// Resets the wake-up; to be called before receiving, so that no message is missed.
     pub fn clear(&self) {
         let _ = rustix::io::read(&self.wake, &mut [0_u8; 8]);
     }
 
-    /// The next message that waits.
+    /// Returns the next pending message.
     pub fn take(&self) -> Option<T> {
         self.receiver.try_recv().ok()
     }
 }
 
-/// A channel from device threads to the main loop.
+/// Creates a channel from device threads to the main loop.
 ///
 /// # Errors
 /// The operating system has no descriptor left.

@@ -1,4 +1,4 @@
-//! Processes that services leave behind. As the nearest subreaper the supervisor inherits them.
+//! Orphaned processes of services. As the nearest subreaper the supervisor inherits them.
 
 use std::thread;
 use std::time::{Duration, Instant};
@@ -18,7 +18,7 @@ const END_PATIENCE: Duration = Duration::from_secs(2);
 const ORPHANS_REPORTED_MAX: usize = 100;
 
 impl Supervisor {
-    /// Notes what else lives in the process group of a service that has ended; it is killed when
+    /// Records the other processes in the process group of a service that has ended; they are killed when
     /// the service is reaped.
     pub(super) fn note_left_behind(&mut self, service: usize) {
         let Some(running) = &self.services[service].running else { return };

@@ -1,4 +1,4 @@
-//! Waiting for anything to happen.
+//! Waiting for events.
 
 use std::os::fd::{AsFd, BorrowedFd};
 
@@ -29,7 +29,7 @@ enum Source {
 }
 
 impl Supervisor {
-    /// Sleeps until something happens or the next deadline is due.
+    /// Sleeps until an event arrives or the next deadline is due.
     pub(super) fn wait(&self) -> Ready {
         let mut sources = Vec::new();
         let mut fds: Vec<PollFd<'_>> = Vec::new();

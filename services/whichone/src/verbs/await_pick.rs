@@ -20,7 +20,7 @@ use waiting::Waiting;
 mod user;
 mod waiting;
 
-/// Waits for the outcome that the words said so far lead to, and prints it.
+/// Waits for the outcome of the utterances so far, and prints it.
 pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<'_>) -> Outcome {
     let started = Instant::now();
     let mut conversation = Conversation::join(paths)?;

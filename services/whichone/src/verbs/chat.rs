@@ -19,10 +19,10 @@ use crate::output::{Ink, Output, note};
 
 /// Time that the end of a chat waits for the last interaction to end.
 const LAST_WORDS: Duration = Duration::from_secs(120);
-/// Time that a started group may take to stop.
+/// Timeout for stopping a group that was started here.
 const STOP: Duration = Duration::from_secs(60);
 
-/// Talks until `quit` or the end of the input.
+/// Runs a dialogue until `quit` or the end of the input.
 pub(super) fn chat(paths: &GroupPaths, args: &ChatArgs, out: &mut Output<'_>) -> Outcome {
     let started = !up::is_running(paths)?;
     let interrupt = Interrupt::listen()?;
@@ -78,7 +78,7 @@ fn typed_lines() -> Receiver<String> {
 struct Chat<'a, 'b> {
     conversation: Conversation,
     out: &'a mut Output<'b>,
-    /// The words of the robot's that were printed last.
+    /// The robot's line that was printed last.
     printed: Option<(u64, u32)>,
     /// The last interaction whose end is known.
     ended: Option<u64>,
@@ -102,7 +102,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         Ok(())
     }
 
-    /// Prints what has happened.
+    /// Prints new events.
     fn look(&mut self) -> Result<(), CliError> {
         for receipt in self.conversation.look()? {
             if self.conversation.is_own(&receipt) {
@@ -134,7 +134,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         self.out.line(format_args!("{robot} {text}"))
     }
 
-    /// Prints why words were refused; accepted ones are in the terminal already.
+    /// Prints the reason of a rejected utterance; accepted ones are in the terminal already.
     fn refused(&mut self, receipt: &Receipt) -> Result<(), CliError> {
         if receipt.status == ReceiptStatus::Accepted {
             return Ok(());

@@ -1,4 +1,4 @@
-//! `check`: whether a configuration is right, and what would run.
+//! `check`: validation of a configuration, and the services that would run.
 
 use config::Settings;
 use diagnostics::Diagnostics;
@@ -10,7 +10,7 @@ use crate::cli::CheckArgs;
 use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, note, table};
 
-/// Tells every problem at once, or what would run.
+/// Reports every problem at once, or the services that would run.
 pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
     let folder = paths::config_folder(&args.config)?;
     let loaded = preflight::load(&folder, args.config.profile.as_deref(), &args.config.set);

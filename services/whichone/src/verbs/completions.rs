@@ -1,4 +1,4 @@
-//! `completions`: what a shell needs to complete command lines.
+//! `completions`: scripts that complete command lines in a shell.
 
 use clap::CommandFactory;
 use clap_complete::{Shell, generate};

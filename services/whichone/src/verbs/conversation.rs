@@ -36,9 +36,9 @@ const CHECK_EVERY: Duration = Duration::from_secs(1);
 pub(super) struct Conversation {
     topics: LatestTopics,
     injections: Option<EncodedWriter<Injection>>,
-    /// Words on their way to the robot, first to last; only the first has been sent.
+    /// Utterances to submit, first to last; only the first has been sent.
     saying: VecDeque<Submission>,
-    /// Keys of everything said here.
+    /// Keys of all utterances of this client.
     own: HashSet<RequestKey>,
     latest: Latest,
     scene: Scene,
@@ -93,8 +93,8 @@ impl Conversation {
         &self.paths
     }
 
-    /// Says something, after what is already being said. It is sent under one key until it is
-    /// answered, so that no restart in between loses or doubles it.
+    /// Submits an utterance after those that are pending. It is resent under one key until it is
+    /// answered, so that a restart neither loses nor duplicates it.
     ///
     /// # Errors
     /// The topic cannot be opened.
@@ -124,12 +124,12 @@ impl Conversation {
         Ok(())
     }
 
-    /// Returns true if the receipt is for something said here.
+    /// Returns true if the receipt is for an utterance of this client.
     pub(super) fn is_own(&self, receipt: &Receipt) -> bool {
         self.own.contains(&receipt.request())
     }
 
-    /// Returns true if everything said here has been answered by a receipt.
+    /// Returns true if every utterance of this client has a receipt.
     pub(super) fn is_heard(&self) -> bool {
         self.saying.is_empty()
     }
@@ -142,7 +142,7 @@ impl Conversation {
         Ok(self.client.motion(order, Span::from_ms(5_000))?)
     }
 
-    /// Takes in everything that has happened since the last look. Returns the receipts among it,
+    /// Processes all messages since the last poll. Returns the receipts among them,
     /// of any user's utterance.
     ///
     /// # Errors
@@ -178,7 +178,7 @@ impl Conversation {
         }
     }
 
-    /// Notices the group's end.
+    /// Detects the end of the group.
     fn check(&mut self) -> Result<(), CliError> {
         self.checked = Instant::now();
         if folder(&self.paths) != Some(self.folder) {
@@ -187,8 +187,8 @@ impl Conversation {
         Ok(())
     }
 
-    /// Notices a scene that was changed under way. The snapshot is of the new scene before the
-    /// policy is, so that one look at it for each new key is enough.
+    /// Detects a change of the scene. The snapshot is of the new scene before the
+    /// policy is, so it is read once for each new key.
     fn follow_scene(&mut self, view: &PolicyView) {
         let before = self.latest.view.as_ref().map_or(self.scene.key(), |view| view.scene_key);
         let is_news = view.scene_key != before && view.scene_key != self.scene.key();

@@ -47,7 +47,7 @@ pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>
     Ok(if ill { Exit::NotReached } else { Exit::Ok })
 }
 
-/// The devices of the speech service, as its own program finds them.
+/// Checks the devices of the speech service by its own program.
 fn devices(settings: &Settings) -> Result<Vec<Finding>, CliError> {
     let snapshot = service_program::Settings::write(settings)?;
     let mut command = service_program::command(Service::Speech.name(), "doctor");
@@ -67,7 +67,7 @@ fn line(finding: &Finding, style: Style) -> String {
     format!("{mark}  {:<16} {note}", finding.what)
 }
 
-/// The programs of the group, beside this one.
+/// Checks the programs of the group, beside this one.
 fn programs() -> Finding {
     let folder = env::current_exe().ok().and_then(|own| Some(own.parent()?.to_owned()));
     let folder = folder.unwrap_or_default();
@@ -127,7 +127,7 @@ fn shared_memory(settings: Option<&Settings>) -> Finding {
     }
 }
 
-/// Groups that were killed, and what they left.
+/// Checks for leftovers of killed groups.
 fn left_behind(paths: &GroupPaths) -> Finding {
     const WHAT: &str = "leftovers";
     let groups = groups(paths.home());

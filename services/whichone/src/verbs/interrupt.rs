@@ -13,10 +13,10 @@ use crate::error::CliError;
 pub(super) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Takes over INT and TERM.
+    /// Handles INT and TERM.
     ///
     /// # Errors
-    /// The operating system refuses.
+    /// A signal handler cannot be installed.
     pub(super) fn listen() -> Result<Self, CliError> {
         let requested = Arc::new(AtomicBool::new(false));
         for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {

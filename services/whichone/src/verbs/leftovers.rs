@@ -16,10 +16,10 @@ use crate::error::CliError;
 const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 /// Removes what is left of a group that has no supervisor, once its last service has ended; they
-/// notice that they are alone and end by themselves. What was removed.
+/// shut down when their supervisor is gone. Returns the removed paths.
 ///
 /// # Errors
-/// Some service still runs when the time is up.
+/// A service still runs at the timeout.
 pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBuf>, CliError> {
     let until = Instant::now() + timeout;
     while some_service_lives(paths) {

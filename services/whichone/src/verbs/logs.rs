@@ -1,4 +1,4 @@
-//! `logs`: what the services say about their work.
+//! `logs`: the logs of the services.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -21,7 +21,7 @@ mod file;
 /// Interval at which logs are polled for new lines.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
 
-/// Shows the last lines of the logs, and then what comes on.
+/// Shows the last lines of the logs and follows them.
 pub(super) fn logs(paths: &GroupPaths, args: &LogsArgs, out: &mut Output<'_>) -> Outcome {
     let mut files = files(paths, args.service.as_deref())?;
     let mut lines = Vec::new();

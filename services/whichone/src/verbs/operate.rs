@@ -1,4 +1,4 @@
-//! The verbs that the supervisor fulfils: start, stop, restart, hold, release, reload, swap, down.
+//! Verbs that send requests to the supervisor: start, stop, restart, hold, release, reload, swap, down.
 
 use std::os::fd::OwnedFd;
 use std::time::Duration;
@@ -26,7 +26,7 @@ pub(super) enum Unanswered {
     /// There was no reply.
     #[error(transparent)]
     Call(#[from] CallError),
-    /// The reply was no.
+    /// The request was rejected.
     #[error("{}", .0.message)]
     Refused(Refusal),
 }
@@ -40,7 +40,7 @@ impl From<Unanswered> for CliError {
     }
 }
 
-/// Asks the group's supervisor; `wait` is how long the request itself may wait.
+/// Sends a request to the group's supervisor; `wait` is the timeout of the request itself.
 pub(super) fn ask(
     paths: &GroupPaths,
     request: &Request,

@@ -10,10 +10,10 @@ use service::group::{GroupName, GroupPaths};
 use crate::cli::ConfigArgs;
 use crate::error::CliError;
 
-/// A file that every configuration folder holds.
+/// A file that marks a configuration folder.
 const MARK: &str = "group.toml";
 
-/// The folders of the group.
+/// Returns the folders of the group.
 ///
 /// # Errors
 /// The folder of groups is unknown or its path is too long.
@@ -21,16 +21,16 @@ pub(super) fn group_paths(group: &GroupName) -> Result<GroupPaths, CliError> {
     Ok(GroupPaths::resolve(group)?)
 }
 
-/// The settings that the command line names.
+/// Loads the settings that the command line names.
 ///
 /// # Errors
-/// No configuration is found, or everything that is wrong with it.
+/// No configuration is found, or every problem of it.
 pub(super) fn settings(args: &ConfigArgs) -> Result<Settings, CliError> {
     let folder = config_folder(args)?;
     Ok(preflight::load(&folder, args.profile.as_deref(), &args.set)?)
 }
 
-/// The settings of a running group, else those that the command line names.
+/// Loads the settings of a running group, else those that the command line names.
 ///
 /// # Errors
 /// As [`settings`].
@@ -45,11 +45,11 @@ pub(super) fn settings_in_force(
     settings(args)
 }
 
-/// The configuration's folder, absolute: the one that is named, else `./config`, else `config`
+/// Returns the absolute folder of the configuration: the named one, else `./config`, else `config`
 /// beside the program or one of the folders above it.
 ///
 /// # Errors
-/// None of them is there.
+/// None of them exists.
 pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, CliError> {
     if let Some(named) = args.config.as_ref().filter(|path| !path.as_os_str().is_empty()) {
         return Ok(absolute(named));

@@ -1,4 +1,4 @@
-//! The decision problem that `plan`, `export` and `study` are about.
+//! The decision problem of `plan`, `export` and `study`.
 
 use std::path::{Path, PathBuf};
 
@@ -46,7 +46,7 @@ impl Problem {
 /// The planner and its problem.
 ///
 /// # Errors
-/// A scene or a configuration that is wrong.
+/// An invalid scene or configuration.
 pub(super) fn decider(args: &PlanArgs) -> Result<Decider, CliError> {
     let scene = scene_file::load(&args.scene)?;
     let problem = problem(scene, &args.problem)?;
@@ -59,7 +59,7 @@ pub(super) fn decider(args: &PlanArgs) -> Result<Decider, CliError> {
 /// The problem of a scene given by its file or by its name in the configuration.
 ///
 /// # Errors
-/// A scene or a configuration that is wrong.
+/// An invalid scene or configuration.
 pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, CliError> {
     problem(scene_file::load(&scene_path(scene, &args.config)?)?, args)
 }

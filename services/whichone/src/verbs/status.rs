@@ -1,4 +1,4 @@
-//! `status`: what an operator needs to see.
+//! `status`: the state of a group for operators.
 
 use serde::Serialize;
 use service::control::CallError;
@@ -14,7 +14,7 @@ use super::{console, hearing, words};
 use crate::error::Outcome;
 use crate::output::{Ink, Output, Style, table};
 
-/// Shows the group. The exit code says whether everything that is wanted is ready.
+/// Shows the group. The exit code is 0 if every service that is wanted up is ready.
 pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     let status = match status_of(paths) {
         Ok(status) => status,
@@ -132,7 +132,7 @@ fn remarks(service: &ServiceStatus) -> String {
     remarks.into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
-/// A service that is as it is wanted goes without colour, so that the others stand out.
+/// Only services that are not in their wanted state are coloured.
 fn coloured(service: &ServiceStatus, line: String, style: Style) -> String {
     let ink = match (service.actual, service.wanted) {
         (Actual::Ready, Wanted::Up) => return line,

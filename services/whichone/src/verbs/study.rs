@@ -1,4 +1,4 @@
-//! `whichone study`: simulated people over policies, in threads, with tables, files and plots.
+//! `whichone study`: simulated users for every policy, in threads, with tables, files and plots.
 
 use std::num::NonZeroUsize;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub(super) use people::report;
 use design::Row;
 use house::House;
 
-/// Conducts the study with simulated people that is asked for.
+/// Runs a study with simulated users.
 ///
 /// # Errors
 /// Invalid arguments, or a file cannot be written.

@@ -1,4 +1,4 @@
-//! `up`: starting a group.
+//! `up`: start of a group.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use crate::cli::{ConfigArgs, UpArgs, WaitFor};
 use crate::error::{CliError, Outcome};
 use crate::output::{Output, note};
 
-/// A new supervisor first waits this long for services of one that was killed.
+/// Time for which a new supervisor waits for services of a killed one.
 const EARLIER_SERVICES: Duration = Duration::from_secs(25);
 
 /// A started group with `--json`.
@@ -91,7 +91,7 @@ fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Optio
 }
 
 /// Starts a detached supervisor and waits until it listens, and until every service is ready
-/// where that is asked for. What it says then.
+/// if requested. Returns the supervisor's message.
 fn start(
     paths: &GroupPaths,
     options: &Options,

@@ -1,4 +1,4 @@
-//! Amounts and conditions in words.
+//! Rendering of amounts and conditions.
 
 use messages::MotionInhibit;
 

@@ -47,7 +47,7 @@ impl<T: Schema> EncodedWriter<T> {
     /// Encodes and sends the payload.
     ///
     /// # Errors
-    /// It does not encode, is too large, or iceoryx2 has no memory left for it.
+    /// The payload cannot be encoded or is too large, or iceoryx2 is out of memory.
     pub fn send(&self, payload: &T) -> Result<(), PortError>
     where
         T: Serialize,
@@ -89,7 +89,7 @@ impl<T: Schema + DeserializeOwned> EncodedReader<T> {
         Ok(Self { topic: topic.name, subscriber, gate, _service: service, _payload: PhantomData })
     }
 
-    /// The next payload; one that does not decode is logged and passed over, for a client's bad
+    /// Returns the next payload; an invalid one is logged and skipped, because a client's invalid
     /// bytes must not stop a service.
     ///
     /// # Errors
@@ -109,7 +109,7 @@ impl<T: Schema + DeserializeOwned> EncodedReader<T> {
         }
     }
 
-    /// The newest payload of those that wait.
+    /// Returns the newest pending payload.
     ///
     /// # Errors
     /// As [`EncodedReader::take`].

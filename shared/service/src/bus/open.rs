@@ -73,7 +73,7 @@ impl Topics {
     /// Opens (or, where this process is the first, creates) every topic and wake-up.
     ///
     /// # Errors
-    /// iceoryx2 refuses, or a topic of another schema stands there.
+    /// iceoryx2 fails, or a topic with another schema exists.
     pub fn create(bus: &Bus) -> Result<Self, BusError> {
         let topics = topics::ALL.iter().map(|topic| keep(bus, topic)).collect::<Result<_, _>>()?;
         let notifiers = topics::woken().into_iter().map(|service| wake::open(bus, service));
@@ -115,7 +115,7 @@ pub(super) fn notifiers(bus: &Bus, topic: &Topic) -> Result<Vec<WakeNotifier>, B
     topic.readers.iter().map(|&service| WakeNotifier::open(bus, service)).collect()
 }
 
-/// Turns away messages of another epoch and of an earlier incarnation of the writer than has
+/// Drops messages of another epoch and of an earlier incarnation of the writer than has
 /// already been heard.
 #[derive(Debug)]
 pub(super) struct Gate {

@@ -39,7 +39,7 @@ impl<T: WireMessage> Writer<T> {
     /// received.
     ///
     /// # Errors
-    /// iceoryx2 has no memory left for it.
+    /// iceoryx2 is out of memory.
     pub fn send(&self, message: &T) -> Result<(), PortError> {
         let loan = self.publisher.loan_uninit();
         let mut sample = loan.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
@@ -73,7 +73,7 @@ impl<T: WireMessage> Reader<T> {
         Ok(Self { topic: topic.name, subscriber, gate, _service: service })
     }
 
-    /// The next message, read where the writer left it; none where nothing waits.
+    /// Returns the next message without copying it, if one is pending.
     ///
     /// # Errors
     /// iceoryx2 lost its connection to a writer.
@@ -97,7 +97,7 @@ impl<T: WireMessage> Reader<T> {
         }
     }
 
-    /// Every message that waits, in order.
+    /// Returns every pending message, in order.
     ///
     /// # Errors
     /// As [`Reader::take`].
@@ -115,7 +115,7 @@ impl<T: WireMessage> Reader<T> {
         Ok(())
     }
 
-    /// The newest message of those that wait.
+    /// Returns the newest pending message.
     ///
     /// # Errors
     /// As [`Reader::take`].

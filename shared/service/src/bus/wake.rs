@@ -57,7 +57,7 @@ impl WakeListener {
         }
     }
 
-    /// Takes all wake-ups that wait.
+    /// Discards all pending wake-ups.
     pub fn clear(&self) {
         let mut woken = 0_u32;
         if let Err(error) = self.listener.try_wait(|_| woken += 1) {

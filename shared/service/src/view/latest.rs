@@ -70,7 +70,7 @@ impl LatestTopics {
         })
     }
 
-    /// Takes what has arrived. What is pending is read before the view, which is the newer of both.
+    /// Receives new messages. Pending utterances are read before the view, which is the newer of both.
     pub fn take(&self) -> Arrived {
         let mut statuses = Vec::new();
         let receipts = drain(&self.receipts);
@@ -87,7 +87,7 @@ impl LatestTopics {
 }
 
 impl Latest {
-    /// Takes in what has arrived.
+    /// Applies new messages.
     pub fn update(&mut self, arrived: &Arrived) {
         arrived.receipts.iter().for_each(|receipt| self.on_receipt(receipt));
         self.activity = arrived.activity.or(self.activity);
@@ -99,7 +99,7 @@ impl Latest {
         }
     }
 
-    /// Takes in the receipt of an utterance.
+    /// Applies the receipt of an utterance.
     pub fn on_receipt(&mut self, receipt: &Receipt) {
         if receipt.status == ReceiptStatus::Accepted {
             self.accepted = self.accepted.max(receipt.seq);
@@ -135,7 +135,7 @@ impl Latest {
     }
 }
 
-/// Takes every message that waits on a topic.
+/// Receives every pending message of a topic.
 pub fn drain<T: WireMessage + Copy>(reader: &Reader<T>) -> Vec<T> {
     let mut all = Vec::new();
     quiet(reader.drain(|message| all.push(*message)).map(Some));
@@ -143,7 +143,7 @@ pub fn drain<T: WireMessage + Copy>(reader: &Reader<T>) -> Vec<T> {
 }
 
 /// Ignores a broken connection: the service's next incarnation opens another, and until then there is
-/// nothing to take.
+/// nothing to receive.
 pub fn quiet<T>(result: Result<Option<T>, PortError>) -> Option<T> {
     result.ok().flatten()
 }

@@ -1,4 +1,4 @@
-//! The truthful simulated user of `--answer-as`, at the group's topics.
+//! The truthful simulated user of `--answer-as`, a client of the group.
 
 use std::collections::HashSet;
 
@@ -9,7 +9,7 @@ use scene::Scene;
 
 use service::view::Latest;
 
-/// A user who wants one object and answers every question once it was asked to its end.
+/// A user who wants one object and answers every question once it has been presented.
 pub(super) struct TruthfulUser {
     scene: Scene,
     model: Model,

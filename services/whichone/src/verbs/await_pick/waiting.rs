@@ -4,7 +4,7 @@ use messages::Ended;
 
 use service::view::Latest;
 
-/// Consecutive looks that must find everything applied before an old outcome is reported. The
+/// Consecutive polls that must find everything applied before an old outcome is reported. The
 /// services publish their parts of one step within microseconds, but not at once.
 const LOOKS: u32 = 3;
 
@@ -23,7 +23,7 @@ impl Waiting {
         Self { reported, goal: None, settled: 0 }
     }
 
-    /// Returns the end that was waited for, if it has come.
+    /// Returns the awaited outcome, if the interaction has ended.
     pub(super) fn look(&mut self, seen: &Latest) -> Option<Ended> {
         let view = seen.view.as_ref()?;
         if let Some(goal) = self.goal {
@@ -50,7 +50,7 @@ mod tests {
     use super::super::super::conversation::example::{asked, ended, listening, unapplied};
     use super::*;
 
-    /// The interaction whose end is reported after these looks, and at which of them.
+    /// Returns the interaction whose end is reported after these polls, and the poll that reports it.
     fn reported(before: u64, looks: &[Latest]) -> Option<(usize, u64)> {
         let mut waiting = Waiting::new(before);
         let ends = looks.iter().map(|seen| waiting.look(seen)).enumerate();

@@ -12,17 +12,17 @@ use super::model::{WatchModel, object_name};
 use crate::output::{Ink, Style};
 use crate::verbs::{await_pick, hearing, words};
 
-/// Begins drawing: an empty screen beside the one that was there, without a cursor.
+/// Starts drawing on an alternate screen without a cursor.
 pub(super) const BEGIN: &str = "\x1b[?1049h\x1b[?25l";
-/// Ends drawing and brings the former screen back.
+/// Ends drawing and restores the previous screen.
 pub(super) const END: &str = "\x1b[?25h\x1b[?1049l";
 
-/// Objects that are shown, the most probable ones.
+/// Maximum number of objects shown, the most probable ones.
 const OBJECTS_MAX: usize = 12;
 /// Longest bar, characters.
 const BAR_MAX: usize = 40;
 
-/// Draws `lines` over what stands on the screen.
+/// Draws `lines` over the current screen.
 pub(super) fn redraw(lines: &[String]) -> String {
     let lines: String = lines.iter().map(|line| format!("{line}\x1b[K\r\n")).collect();
     format!("\x1b[H{lines}\x1b[J")
