@@ -1,4 +1,4 @@
-//! Running the built programs with a deadline.
+//! Execution of the built programs with a timeout.
 
 use std::io::{Read, Write};
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ pub struct Ended {
 }
 
 impl Ended {
-    /// Its output as one JSON value.
+    /// Parses its output as one JSON value.
     ///
     /// # Panics
     /// If it is not valid JSON.
@@ -26,7 +26,7 @@ impl Ended {
     }
 }
 
-/// A program of the group, as this build made it.
+/// Returns the path of a program of the group in this build.
 ///
 /// # Panics
 /// If it is not built: `cargo build --workspace` does that, and `scripts/test` does it first.

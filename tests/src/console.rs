@@ -13,7 +13,7 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::http::HeaderValue;
 use tungstenite::{Message, WebSocket, client};
 
-/// Timeout of one look at the socket.
+/// Timeout of one read of the socket.
 const LOOK: Duration = Duration::from_millis(20);
 /// Timeout of a wait.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -107,7 +107,7 @@ impl Page {
     /// Opens a page at `127.0.0.1:PORT` and waits for its welcome.
     ///
     /// # Errors
-    /// The console refuses, or does not answer.
+    /// The console rejects the page, or does not answer.
     pub fn open(place: &str, visitor: &Visitor<'_>) -> Result<Self, String> {
         let mut page = Self::connect(place, visitor)?;
         let Visitor { session, role, last_line, .. } = visitor;
@@ -129,7 +129,7 @@ impl Page {
     /// Opens a socket without a greeting.
     ///
     /// # Errors
-    /// The console refuses.
+    /// The console rejects the connection.
     pub fn connect(place: &str, visitor: &Visitor<'_>) -> Result<Self, String> {
         let text = |error: &dyn std::fmt::Display| error.to_string();
         let stream = TcpStream::connect(place).map_err(|e| text(&e))?;
@@ -168,7 +168,7 @@ impl Page {
         }
     }
 
-    /// Receives one message, if there is one soon.
+    /// Receives one message, if one arrives within a short timeout.
     pub fn look(&mut self) {
         match self.socket.read() {
             Ok(Message::Text(text)) => {

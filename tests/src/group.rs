@@ -29,12 +29,12 @@ fn shipped_config() -> PathBuf {
 }
 
 impl Group {
-    /// A group that is not started yet, on the shipped configuration.
+    /// Creates a group on the shipped configuration, without starting it.
     pub fn new() -> Self {
         Self::with_config(shipped_config())
     }
 
-    /// A group that is not started yet, on a configuration of its own.
+    /// Creates a group on its own configuration, without starting it.
     pub fn with_config(config: PathBuf) -> Self {
         let home = tempfile::Builder::new().prefix("wo").tempdir().expect("a temporary folder");
         let number = NUMBER.fetch_add(1, Ordering::Relaxed);
@@ -44,7 +44,7 @@ impl Group {
         Self { home, paths, config, is_up: false }
     }
 
-    /// A ready group with the profile for tests and these settings over it (`key=value`).
+    /// Starts a group with the profile for tests and these overrides (`key=value`) until it is ready.
     pub fn up(settings: &[&str]) -> Self {
         let mut group = Self::new();
         let ended = group.start(settings);
@@ -98,7 +98,7 @@ impl Group {
         ended
     }
 
-    /// Types an utterance.
+    /// Submits a typed utterance.
     pub fn say(&self, text: &str) {
         self.must(&["say", text]);
     }
@@ -192,7 +192,7 @@ impl Group {
         self.must(&["journal", "--verify"]);
     }
 
-    /// The logs' ends, for a test that failed.
+    /// Returns the ends of the logs, for a failed test.
     pub fn logs(&self) -> String {
         let Ok(entries) = std::fs::read_dir(self.paths.log()) else { return String::new() };
         let files = entries.filter_map(Result::ok).map(|entry| entry.path());

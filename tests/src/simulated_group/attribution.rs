@@ -21,12 +21,12 @@ const HABITS: Habits = Habits { late: 0.15, early: 0.12, overlapping: 0.12, doub
 /// robot says next.
 const WINDOW: &str = "2.5";
 
-/// Results of many dialogues under one rule, with one way for words to reach the robot.
+/// Results of many dialogues under one rule and one input channel.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Count {
     /// Name of the rule.
     pub rule: String,
-    /// True if words reached the robot live; else afterwards.
+    /// True if the robot heard utterances live; else after their end.
     pub live: bool,
     /// Dialogues.
     pub dialogues: u64,
@@ -44,7 +44,7 @@ pub struct Count {
     pub questions: u64,
     /// Seconds to the decision, in all.
     pub seconds: f64,
-    /// Stories of the dialogues that timing turned wrong.
+    /// Logs of the dialogues that failed because of timing.
     pub stories: Vec<String>,
 }
 

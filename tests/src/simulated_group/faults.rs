@@ -6,7 +6,7 @@ use service::{Span, Time};
 
 use super::Crash;
 
-/// Probabilities of the faults: per pass for kills, per message for losses and doubles.
+/// Probabilities of the faults: per pass for kills, per message for losses and duplicates.
 #[derive(Clone, Debug)]
 pub struct Faults {
     rng: Rng,
@@ -29,12 +29,12 @@ impl Faults {
         Self { rng: Rng::new(seed), kill: 0.01, ..Self::none() }
     }
 
-    /// Messages are lost and doubled.
+    /// Messages are lost and duplicated.
     pub fn losses(seed: u64) -> Self {
         Self { rng: Rng::new(seed), loss: 0.3, double: 0.1, ..Self::none() }
     }
 
-    /// Processes are killed, and messages are lost and doubled.
+    /// Processes are killed, and messages are lost and duplicated.
     pub fn everything(seed: u64) -> Self {
         Self { rng: Rng::new(seed), kill: 0.008, loss: 0.15, double: 0.1 }
     }

@@ -4,9 +4,9 @@
 //! | file | holds |
 //! |---|---|
 //! | `host.rs` | one reducer in a simulated process, with its journal |
-//! | `faults.rs` | faults drawn from a seed: kills, lost and doubled messages |
-//! | `user.rs` | the user, and how words reach the robot |
-//! | `routes.rs` | who receives what of the services' messages |
+//! | `faults.rs` | faults drawn from a seed: kills, lost and duplicated messages |
+//! | `user.rs` | the user and the input channels |
+//! | `routes.rs` | routing of the services' messages |
 //! | `attribution.rs` | a study of turn-taking: to which question each answer is credited |
 
 mod attribution;

@@ -16,7 +16,7 @@ use super::{Decoding, SimulatedGroup};
 const DETECTION: Span = Span::from_ms(100);
 
 impl SimulatedGroup {
-    /// Sends what the user begins and ends to say, by the user's channel.
+    /// Sends onsets and ends of the user's utterances by the user's channel.
     pub(super) fn user_speaks(&mut self) {
         let now = self.now;
         let story = self.user.begins(now, &self.settings.scene);
@@ -50,7 +50,7 @@ impl SimulatedGroup {
         }
     }
 
-    /// Hands over what the recognisers have decoded.
+    /// Delivers the results of the recognisers.
     pub(super) fn finish_decoding(&mut self) {
         let now = self.now;
         let done: Vec<Decoding> = self.decoding.extract_if(.., |one| one.done <= now).collect();

@@ -1,4 +1,4 @@
-//! The user of a simulated group: how words reach the robot, and what the user hears of it.
+//! The user of a simulated group: input channel, timing and answers.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -11,7 +11,7 @@ use messages::{Hypothesis, Injection, Receipt, RequestKey, Sound};
 use scene::{ObjectId, Question, Scene};
 use service::{Span, Time};
 
-/// The way of a user's words to the robot.
+/// Input channel of a user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
     /// Typed: sent when the user begins.

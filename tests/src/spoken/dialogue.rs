@@ -56,7 +56,7 @@ pub struct Held {
     pub said: u32,
     /// Those that were rejected or not heard.
     pub rejected: u32,
-    /// Those whose meaning was mistaken.
+    /// Those that were misunderstood.
     pub misunderstood: u32,
     /// Log of the dialogue.
     pub story: Vec<String>,
@@ -77,12 +77,12 @@ const SECOND_THOUGHT_S: (f64, f64) = (0.9, 2.5);
 const LONGEST: Duration = Duration::from_secs(150);
 /// Time without a reaction after which a request is repeated, seconds.
 const PATIENCE_S: f64 = 6.0;
-/// Time between two looks at the robot's topics.
+/// Polling interval of the robot's topics.
 const LOOK: Duration = Duration::from_millis(4);
 /// Tolerance of the detected onset and end, seconds.
 const EDGE_S: f64 = 0.6;
 
-/// Holds a dialogue with a group of its own.
+/// Runs a dialogue with its own group.
 ///
 /// # Panics
 /// If the group does not start, or a topic breaks.
@@ -283,7 +283,7 @@ impl Talk {
         ended
     }
 
-    /// The robot has heard something.
+    /// Handles a receipt of the robot.
     fn heard(&mut self, onset: Time, note: &str, accepted: bool, snr_db: f32) {
         let edge = Span::from_s(EDGE_S);
         let is_it = |sentence: &&mut Sentence| {

@@ -3,7 +3,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `words.rs` | what users take the robot's words to ask |
+//! | `words.rs` | users' understanding of the robot's questions |
 //! | `sound.rs` | voices and noise |
 //! | `room.rs` | the microphone: a pipe with sound in real time |
 //! | `taps.rs` | the robot's topics |

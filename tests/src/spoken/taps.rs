@@ -1,4 +1,4 @@
-//! The robot's topics: what its user hears, and what an observer may know beyond that.
+//! The robot's topics, as heard by its user and as seen by an observer.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ pub(super) struct Taps {
     pub(super) ear: Option<EarState>,
 }
 
-/// Messages that arrived since the last look.
+/// Messages that arrived since the last poll.
 #[derive(Default)]
 pub(super) struct News {
     /// Questions that have begun to sound, and when.
@@ -56,7 +56,7 @@ impl Taps {
         }
     }
 
-    /// Reads everything that has happened.
+    /// Reads all new messages.
     ///
     /// # Panics
     /// If a topic breaks.
