@@ -1,49 +1,38 @@
 //! Planners by name.
 
 use crate::Planner;
-use crate::planners::{
-    AlwaysAsk, Entropy, InformationSeeking, Lookahead, NeverAsk, NoAttribute, Optimal,
-    SparseSampling,
-};
+use crate::planners::ALL;
 
-/// Makes a planner with its default settings.
-type Make = fn() -> Box<dyn Planner + Send>;
-
-/// Every planner, the default first. A new planner is one file in `planners` and one line here.
-const PLANNERS: [(&str, Make); 8] = [
-    ("lookahead", || Box::new(Lookahead::default())),
-    ("optimal", || Box::new(Optimal::default())),
-    ("information-seeking", || Box::new(InformationSeeking)),
-    ("entropy", || Box::new(Entropy)),
-    ("sparse-sampling", || Box::new(SparseSampling::default())),
-    ("no-attribute", || Box::new(NoAttribute::default())),
-    ("always-ask", || Box::new(AlwaysAsk)),
-    ("never-ask", || Box::new(NeverAsk)),
-];
+pub use crate::planners::Entry;
 
 /// No planner has that name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("there is no planner \"{name}\"; the planners are {}", known.join(", "))]
 pub struct UnknownPlanner {
-    /// The name that was asked for.
+    /// The requested name.
     pub name: String,
-    /// The names that there are.
+    /// The valid names.
     pub known: Vec<&'static str>,
 }
 
-/// The planner of that name.
+/// Makes the planner of that name.
 ///
 /// # Errors
 /// If there is none.
 pub fn planner(name: &str) -> Result<Box<dyn Planner + Send>, UnknownPlanner> {
-    let found = PLANNERS.iter().find(|(known, _)| *known == name);
+    let found = ALL.iter().find(|entry| entry.name == name);
     let unknown = || UnknownPlanner { name: name.to_owned(), known: names().to_vec() };
-    found.map(|(_, make)| make()).ok_or_else(unknown)
+    found.map(|entry| (entry.make)()).ok_or_else(unknown)
 }
 
-/// The names of all planners, the default first.
-pub fn names() -> [&'static str; PLANNERS.len()] {
-    PLANNERS.map(|(name, _)| name)
+/// Returns every planner, the default first.
+pub fn entries() -> [Entry; ALL.len()] {
+    ALL
+}
+
+/// Returns the names of all planners, the default first.
+pub fn names() -> [&'static str; ALL.len()] {
+    ALL.map(|entry| entry.name)
 }
 
 #[cfg(test)]
@@ -51,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_planner_is_found_under_its_own_name() {
+    fn registry_finds_every_planner_by_its_own_name() {
         for name in names() {
             assert_eq!(planner(name).unwrap().name(), name);
         }
@@ -59,9 +48,18 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_name_is_told_the_known_ones() {
+    fn registry_names_the_known_planners_in_its_error() {
         let Err(error) = planner("oracle") else { panic!("there is no oracle") };
         assert_eq!(error.known, names());
         assert!(error.to_string().contains("oracle") && error.to_string().contains("entropy"));
+    }
+
+    #[test]
+    fn registry_and_docs_list_the_same_planners() {
+        let page = include_str!("../../../docs/planners.md");
+        for Entry { name, about, .. } in entries() {
+            let row = format!("| `{name}` | {about} |");
+            assert!(page.contains(&row), "expected in docs/planners.md: {row}");
+        }
     }
 }

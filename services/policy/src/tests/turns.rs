@@ -73,6 +73,26 @@ fn a_prompt_answer_counts_for_the_question_before_it() {
     assert!(mass(&after, asked[0].prompt) > 0.97, "{}", mass(&after, asked[0].prompt));
 }
 
+#[test]
+fn policy_publishes_the_attribution_of_an_utterance_between_two_questions() {
+    let mut manager = manager_with("mixture");
+    let (state, asked) = two_questions(&mut manager);
+    let heard = spoken(3, &asked, 6.2, Response::No);
+    let after = manager.next(&state, &Cause::Utterance(heard), at(8));
+    let view = crate::view::view(&manager, &after, 0);
+    assert_eq!(view.attributed.utterance, UtteranceSeq(3));
+    let mut prompts: Vec<PromptId> = view.attributed.questions.iter().map(|q| q.prompt).collect();
+    prompts.sort();
+    assert_eq!(prompts, [asked[1].prompt, asked[0].prompt]);
+    let shares: Vec<f64> = view.attributed.questions.iter().map(|q| q.share).collect();
+    assert!(shares.iter().all(|share| *share > 0.01), "{shares:?}");
+    let sum = shares.iter().sum::<f64>() + view.attributed.none;
+    assert!((sum - 1.0).abs() < 1e-12, "{shares:?}, none {}", view.attributed.none);
+    // What is published is typed: no English, no wire codes.
+    assert_eq!((view.decision, view.question), (after.act.kind, after.act.question));
+    assert_eq!(view.alternatives, after.act.alternatives);
+}
+
 /// "No. … No!", the second time as the next question begins: nobody has heard that one yet.
 #[test]
 fn a_doubled_answer_does_not_answer_the_question_that_begins() {

@@ -2,20 +2,27 @@
 
 use crate::{Actions, Belief, Decision, DecisionProblem, Mode, Planner, Step};
 
-use super::Outlook;
+use super::{Entry, Outlook};
+
+/// The registry's entry.
+pub(super) const ENTRY: Entry = Entry {
+    name: "always-ask",
+    about: "Picks only after a question and at 95 %; the predecessor's baseline.",
+    make: || Box::new(AlwaysAsk),
+};
 
 /// Asks at least once, and until one object is very probable: present, it points at the most
 /// probable object; remotely, where it cannot, it asks the most informative question. Objects that
 /// no question can tell apart count as one.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct AlwaysAsk;
+struct AlwaysAsk;
 
 /// Probability from which on it is sure.
 const SURE: f64 = 0.95;
 
 impl Planner for AlwaysAsk {
     fn name(&self) -> &'static str {
-        "always-ask"
+        ENTRY.name
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {

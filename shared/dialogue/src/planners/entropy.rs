@@ -2,12 +2,19 @@
 
 use crate::{Belief, Decision, DecisionProblem, Planner, Step};
 
-use super::Outlook;
+use super::{Entry, Outlook};
+
+/// The registry's entry.
+pub(super) const ENTRY: Entry = Entry {
+    name: "entropy",
+    about: "Asks for the most information per second (Deits et al. 2013).",
+    make: || Box::new(Entropy),
+};
 
 /// Asks for the most expected information per cost, and picks once a question costs more than the
 /// doubt about the most probable object puts at stake.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Entropy;
+struct Entropy;
 
 /// Information below this, in nats, is rounding: of questions that differ by less the first is
 /// asked.
@@ -15,7 +22,7 @@ const NOTHING: f64 = 1e-9;
 
 impl Planner for Entropy {
     fn name(&self) -> &'static str {
-        "entropy"
+        ENTRY.name
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, _: Step) -> Decision {

@@ -6,8 +6,15 @@ use crate::{Action, Answer, Belief, Decision, DecisionProblem, Model, Planner, S
 
 use scene::Question;
 
-use super::alternatives;
 use super::searched::{affordable, searched};
+use super::{Entry, alternatives};
+
+/// The registry's entry.
+pub(super) const ENTRY: Entry = Entry {
+    name: "information-seeking",
+    about: "Learns how reliable the user's answers are, and asks accordingly.",
+    make: || Box::new(InformationSeeking),
+};
 
 /// Weighs every promising question by what its answers would teach about the object and about the
 /// person together (after Abbasnejad et al.).
@@ -17,7 +24,7 @@ use super::searched::{affordable, searched};
 /// a question that tells a careful person from a careless one has a value of its own. Of a person
 /// of whom nothing is known, `ε` and `p_l` are those configured, but uncertain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct InformationSeeking;
+struct InformationSeeking;
 
 /// Most questions that are weighed, the most promising by the first glance.
 const WEIGHED_MAX: usize = 10;
@@ -27,7 +34,7 @@ const WORK_MAX: usize = 20_000;
 
 impl Planner for InformationSeeking {
     fn name(&self) -> &'static str {
-        "information-seeking"
+        ENTRY.name
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {

@@ -3,7 +3,15 @@
 use crate::planning::{Effort, Reduced};
 use crate::{Belief, Decision, DecisionProblem, Planner, Step};
 
+use super::Entry;
 use super::searched::{affordable, searched};
+
+/// The registry's entry.
+pub(super) const ENTRY: Entry = Entry {
+    name: "lookahead",
+    about: "Searches ahead until the best plan is certified or the effort is used up; the default.",
+    make: || Box::new(Lookahead::default()),
+};
 
 /// The default planner. It searches the beliefs that questions lead to (`planning`), until the
 /// value of the best policy is known or a number of beliefs has been looked at.
@@ -46,7 +54,7 @@ fn work(reduced: &Reduced) -> usize {
 
 impl Planner for Lookahead {
     fn name(&self) -> &'static str {
-        "lookahead"
+        ENTRY.name
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, _: Step) -> Decision {

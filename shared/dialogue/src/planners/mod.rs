@@ -1,26 +1,46 @@
 //! The planners, one file each, and what their decisions have in common.
 
-mod always_ask;
-mod entropy;
-mod information_seeking;
-mod lookahead;
-mod never_ask;
-mod no_attribute;
-mod optimal;
 mod searched;
-mod sparse_sampling;
 
-pub(crate) use always_ask::AlwaysAsk;
-pub(crate) use entropy::Entropy;
-pub(crate) use information_seeking::InformationSeeking;
+/// Declares the planners' modules and lists their entries.
+macro_rules! planners {
+    ($($module:ident),+ $(,)?) => {
+        $(mod $module;)+
+
+        /// Every planner, the default first.
+        pub(crate) const ALL: [Entry; [$(stringify!($module)),+].len()] = [$($module::ENTRY),+];
+    };
+}
+
+// The default comes first. A new planner is one file here and its name in this list.
+planners! {
+    lookahead,
+    optimal,
+    information_seeking,
+    entropy,
+    sparse_sampling,
+    no_attribute,
+    always_ask,
+    never_ask,
+}
+
 pub use lookahead::Lookahead;
-pub(crate) use never_ask::NeverAsk;
-pub(crate) use no_attribute::NoAttribute;
 pub use optimal::Optimal;
-pub(crate) use sparse_sampling::SparseSampling;
 
+use crate::Planner;
 use crate::planning::{Bound, Choice, Glance, Glancer, Reduced};
 use crate::{Action, Belief, Decision, DecisionProblem};
+
+/// A planner in the registry.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// Its name on the command line and in the configuration.
+    pub name: &'static str,
+    /// What it does, in one sentence.
+    pub about: &'static str,
+    /// Makes it with its default settings.
+    pub make: fn() -> Box<dyn Planner + Send>,
+}
 
 /// Most picks that a decision weighs.
 const PICKS_MAX: usize = 3;

@@ -2,15 +2,22 @@
 
 use crate::{Belief, Decision, DecisionProblem, Planner, Step};
 
-use super::Outlook;
+use super::{Entry, Outlook};
+
+/// The registry's entry.
+pub(super) const ENTRY: Entry = Entry {
+    name: "never-ask",
+    about: "Acts on the request alone; the predecessor's baseline.",
+    make: || Box::new(NeverAsk),
+};
 
 /// Picks the most probable object, or waits where a pick is worth less than waiting for ever.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct NeverAsk;
+struct NeverAsk;
 
 impl Planner for NeverAsk {
     fn name(&self) -> &'static str {
-        "never-ask"
+        ENTRY.name
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, _: Step) -> Decision {

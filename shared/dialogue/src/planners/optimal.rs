@@ -3,7 +3,15 @@
 use crate::planning::{Effort, Reduced};
 use crate::{Belief, Decision, DecisionProblem, Planner, PolicyTable, Step, evaluate};
 
+use super::Entry;
 use super::searched::{affordable, searched};
+
+/// The registry's entry.
+pub(super) const ENTRY: Entry = Entry {
+    name: "optimal",
+    about: "Solves the problem and stores its policy; for small scenes.",
+    make: || Box::new(Optimal::default()),
+};
 
 /// Solves the problem from every belief that is decided about, and remembers the decision.
 ///
@@ -55,7 +63,7 @@ impl Optimal {
 
 impl Planner for Optimal {
     fn name(&self) -> &'static str {
-        "optimal"
+        ENTRY.name
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, _: Step) -> Decision {

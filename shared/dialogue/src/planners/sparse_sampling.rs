@@ -3,7 +3,14 @@
 use crate::planning::{Bound, Glancer, Query, Reduced, outcomes};
 use crate::{Action, Belief, Decision, DecisionProblem, Planner, Rng, Step};
 
-use super::{alternatives, stop};
+use super::{Entry, alternatives, stop};
+
+/// The registry's entry.
+pub(super) const ENTRY: Entry = Entry {
+    name: "sparse-sampling",
+    about: "Draws answers two questions ahead; the predecessor's planner.",
+    make: || Box::new(SparseSampling::default()),
+};
 
 /// Looks a fixed number of questions ahead, and for every question draws a few answers instead of
 /// weighing all of them. The predecessor's public configuration has a horizon of 2.
@@ -11,7 +18,7 @@ use super::{alternatives, stop};
 /// Drawing is what makes it err: with three draws the improbable answer is mostly not seen. The
 /// same interaction and step draw the same answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct SparseSampling {
+struct SparseSampling {
     /// How many questions to look ahead, with a pick behind the last.
     horizon: u32,
     /// How many answers to draw for a question.
@@ -35,7 +42,7 @@ struct Tree<'a> {
 
 impl Planner for SparseSampling {
     fn name(&self) -> &'static str {
-        "sparse-sampling"
+        ENTRY.name
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
