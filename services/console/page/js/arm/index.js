@@ -73,41 +73,39 @@ function follow(picture, overlay, store, link) {
   const think = () => {
     const thoughts = thoughtsOf(store.get("dialogue"), store.get("scene"));
     overlay.setThoughts(thoughts);
-    picture.notify("setThoughts", thoughts);
+    picture.call("setThoughts", thoughts);
   };
   store.subscribe("scene", (scene) => {
     if (scene && scene.key !== key) {
       key = scene.key;
       overlay.setScene(scene);
-      picture.notify("setScene", scene);
+      picture.call("setScene", scene);
     }
     think();
   });
   store.subscribe("dialogue", think);
-  store.subscribe("world", (world) => picture.notify("setWorld", world));
-  store.subscribe("trajectory", (trajectory) => picture.notify("setTrajectory", trajectory));
-  store.subscribe("arm", (arm) => picture.notify("setArm", arm));
+  store.subscribe("world", (world) => picture.call("setWorld", world));
+  store.subscribe("trajectory", (trajectory) => picture.call("setTrajectory", trajectory));
+  store.subscribe("arm", (arm) => picture.call("setArm", arm));
   link.on("joints", (message) => {
     // Threads count from instants of their own, which the browser converts to one clock.
     const clockMs = link.toServer(0) - performance.timeOrigin;
-    picture.notify("setJoints", message, link.serverNow(), clockMs);
+    picture.call("setJoints", message, link.serverNow(), clockMs);
   });
 }
 
 /** Has the picture follow the page: its size, its theme, whether it is seen, and who looks at it. */
 function watch(picture, { stage, canvas, buttons }, overlay) {
-  watchTheme(stage, (dark) => picture.notify("setTheme", dark));
+  watchTheme(stage, (dark) => picture.call("setTheme", dark));
   watchSize(stage, (size) => {
     overlay.setSize(size);
-    picture.notify("setSize", size);
+    picture.call("setSize", size);
   });
-  watchSeen(stage, (seen) => picture.notify("setSeen", seen));
-  forwardInput(stage, canvas, (what, ...args) => picture.notify(what, ...args));
+  watchSeen(stage, (seen) => picture.call("setSeen", seen));
+  forwardInput(stage, canvas, (what, ...args) => picture.call(what, ...args));
   const calm = matchMedia("(prefers-reduced-motion: reduce)");
   for (const button of buttons.filter(({ dataset }) => VIEWS.includes(dataset.view ?? ""))) {
-    button.addEventListener("click", () =>
-      picture.notify("look", button.dataset.view, calm.matches),
-    );
+    button.addEventListener("click", () => picture.call("look", button.dataset.view, calm.matches));
   }
 }
 
