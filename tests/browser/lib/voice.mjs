@@ -18,14 +18,14 @@ export const ALOUD = ["speech.voice=espeak-ng", 'speech.player=["none"]'];
  * @param {import("./group.mjs").Group} group
  */
 export const hears = (group) =>
-  until("the recogniser", async () => (await group.state()).speech?.hearing?.ear === "ready");
+  until("the recogniser", async () => (await group.state()).hearing?.recogniser === "ready");
 
 /**
- * What the robot said last, as a name: a question that is asked again is to be answered again.
- * @param {{speech?: {speaking?: {prompt: number, presentation: number}|null}}} state
+ * Name of the robot's latest line: a question that is asked again is to be answered again.
+ * @param {{speaking?: {prompt: number, presentation: number}|null}} state
  */
-export const saidLast = ({ speech }) =>
-  speech?.speaking ? `${speech.speaking.prompt}-${speech.speaking.presentation}` : "";
+export const saidLast = ({ speaking }) =>
+  speaking ? `${speaking.prompt}-${speaking.presentation}` : "";
 
 /**
  * Says a text with flite, whose voice is cut from recordings of a person.

@@ -18,9 +18,9 @@ test("the belief's bars follow the words", async ({ console: page, group }) => {
   await type(page, "the clear bowl");
   await expect(question(page)).not.toContainText(t("question.idle", { noun: "bowl" }));
   const { scene, dialogue } = await group.state();
-  const clear = scene.objects.findIndex((object) => object.name === "clear");
-  const bar = page.getByRole("meter", { name: scene.objects[clear].label });
-  const percent = (100 * dialogue.belief[clear]).toFixed(1);
+  const { label } = scene.objects.find((object) => object.name === "clear");
+  const bar = page.getByRole("meter", { name: label });
+  const percent = (100 * dialogue.belief.clear).toFixed(1);
   await expect(bar).toHaveAttribute("aria-valuenow", percent);
 });
 
