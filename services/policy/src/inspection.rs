@@ -15,7 +15,7 @@ pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
     // Numbers of another scene have no words here.
     let scene = scene.filter(|scene| scene.key() == state.scene_key);
     let why = match cause {
-        Cause::Snapshot => "begun anew".to_owned(),
+        Cause::Snapshot => "started over".to_owned(),
         Cause::Utterance(heard) => format!("utterance {}", heard.seq),
         Cause::Silence => "silence".to_owned(),
         Cause::Quiet => "quiet".to_owned(),
@@ -175,7 +175,7 @@ mod tests {
     #[test]
     fn no_interaction_delivers_twice() {
         assert_eq!(check(&[heard(1), delivered(1, 1), delivered(1, 2)]), Ok(()));
-        let told = check(&[heard(1), delivered(1, 1), delivered(1, 1)]).unwrap_err();
-        assert_eq!(told, "interaction 1 delivered 2 times");
+        let error = check(&[heard(1), delivered(1, 1), delivered(1, 1)]).unwrap_err();
+        assert_eq!(error, "interaction 1 delivered 2 times");
     }
 }

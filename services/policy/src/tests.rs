@@ -158,9 +158,9 @@ fn silence_repeats_the_same_question_and_then_ends_the_interaction() {
 fn starting_over_forgets_what_was_said() {
     let mut manager = manager();
     let state = asked(&mut manager);
-    let told = manager.next(&state, &heard(2, state.act.prompt, answer(Response::Yes)), at(2));
+    let informed = manager.next(&state, &heard(2, state.act.prompt, answer(Response::Yes)), at(2));
     let over = Reading { intent: Intent::StartOver, ..Reading::default() };
-    let over = manager.next(&told, &heard(3, told.act.prompt, over), at(3));
+    let over = manager.next(&informed, &heard(3, informed.act.prompt, over), at(3));
     assert_eq!(belief(&over), belief(&state));
 }
 
@@ -226,7 +226,7 @@ fn silence_counts_from_the_end_of_the_spoken_question() {
         node.on(Event::Tick, now, &mut effects);
         effects.take_records().iter().any(|record| record.cause == Cause::Silence)
     };
-    assert!(!silent(&mut node, at(1000)), "nobody has heard it yet");
+    assert!(!silent(&mut node, at(1000)), "no one has heard it yet");
     let said = Presented {
         prompt: act.prompt.0,
         presentation: act.presentation,

@@ -36,7 +36,7 @@ const BUFFER_BYTES: usize = 1 << 16;
 /// inputs are fast and a person or program that waits for each answer gets it.
 ///
 /// # Errors
-/// The input cannot be read, or nobody takes the answers.
+/// The input cannot be read, or the output cannot be written.
 pub fn run<A>(input: impl Read, out: &mut Output<'_>, mut answer: A) -> Outcome
 where
     A: FnMut(&[u8]) -> Result<Json, String>,
@@ -89,7 +89,7 @@ fn strip(line: &[u8], number: u64) -> &[u8] {
     line.trim_ascii()
 }
 
-/// The line as what the tool reads, told what is wrong with it else.
+/// Parses a line, or returns its error.
 fn parse<T: DeserializeOwned>(line: &[u8]) -> Result<T, String> {
     serde_json::from_slice(line).map_err(|error| {
         let text = error.to_string();
@@ -142,7 +142,7 @@ mod tests {
         assert_eq!(exit, Exit::NotReached);
     }
 
-    /// Somebody who waits for each answer before the next line gets it.
+    /// A caller that waits for each answer before it writes the next line receives it.
     #[test]
     fn an_answer_appears_before_the_next_line_is_waited_for() {
         use std::cell::RefCell;

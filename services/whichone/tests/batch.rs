@@ -1,4 +1,4 @@
-//! The batch tools on the reference data, and on lines that nobody should write.
+//! The batch tools on the reference data, and on invalid lines.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on says where")]
 
 use std::path::{Path, PathBuf};

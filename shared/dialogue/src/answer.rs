@@ -37,8 +37,8 @@ impl Answer {
         }
     }
 
-    /// What somebody answers who wants `wanted` and neither errs nor stays silent, except that
-    /// there is nothing to say about an attribute that the object lacks. Whoever wants what is not
+    /// Returns the answer of a user who wants `wanted` and neither errs nor stays silent, except that
+    /// there is nothing to say about an attribute that the object lacks. A user who wants what is not
     /// here says no to everything.
     pub fn truthful(model: &Model, question: Question, wanted: ObjectId) -> Self {
         match question {

@@ -218,7 +218,7 @@ mod tests {
         assert!(questions[1] > 0.99 && none < 0.01, "{questions:?} {none}");
     }
 
-    /// The robot falls silent at once when somebody speaks: how little of the question had been said
+    /// The robot falls silent at once when a user speaks: how little of the question had been said
     /// counts, and not that it was its end.
     #[test]
     fn who_breaks_off_a_question_at_its_first_words_does_not_answer_it() {
@@ -230,7 +230,7 @@ mod tests {
         assert!(late.questions[1] > 0.6, "{late:?}");
     }
 
-    /// The answer comes just as the next question begins: nobody can have heard that one.
+    /// The answer comes just as the next question begins: no one can have heard that one.
     #[test]
     fn an_answer_into_a_new_question_is_meant_for_the_old_one() {
         let two = [asked(0.0, 2.0), asked(2.8, 4.6)];

@@ -14,7 +14,7 @@ use crate::observation::{log_mixture, weigh, weighty};
 /// It is held as the natural logarithms of weights, so that neither thousands of utterances nor
 /// hundreds of objects can under- or overflow, and an object that was all but ruled out can always
 /// come back. An update is one pass over them; what they must be divided by to sum to 1 is found
-/// when somebody asks for a probability. The logarithms are the whole state: stored and restored by
+/// when a probability is asked for. The logarithms are the whole state: stored and restored by
 /// [`Belief::log_weights`] and [`Belief::from_log`], it goes on bit for bit as before.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(try_from = "Vec<f64>", into = "Vec<f64>")]

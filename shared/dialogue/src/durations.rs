@@ -67,10 +67,10 @@ impl Durations {
             ("pick", fits(self.pick.len(), objects), self.pick.iter().all(right)),
         ];
         let fault = |(key, fits, right): (&'static str, bool, bool)| {
-            let cure = "measure the durations of this scene anew";
+            let help = "measure the durations of this scene again";
             match (fits, right) {
-                (false, _) => Some((key, "is not about this scene".to_owned(), cure)),
-                (true, false) => Some((key, "holds a duration of no seconds".to_owned(), cure)),
+                (false, _) => Some((key, "is not about this scene".to_owned(), help)),
+                (true, false) => Some((key, "holds a duration of no seconds".to_owned(), help)),
                 (true, true) => None,
             }
         };

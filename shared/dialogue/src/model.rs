@@ -56,7 +56,7 @@ struct Word {
 impl Model {
     /// Stands in a column for an object that lacks the attribute.
     pub const LACKS: u16 = u16::MAX;
-    /// Stands in every column for what is not here: nobody knows what it is like.
+    /// Stands in every column for what is not here: its values are unknown.
     pub const UNKNOWN: u16 = u16::MAX - 1;
 
     /// The tables of a scene.

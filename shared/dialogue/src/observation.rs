@@ -97,7 +97,7 @@ fn add_words(model: &Model, question: Question, reading: &Reading, log: &mut [f6
 /// How a person answers "what is its k?": the value that the object has with `1 − ε`, each other
 /// value of `V_k` with `ε/(|V_k| − 1)`; silence is `1 − p_l` as for every question.
 ///
-/// An object that lacks the attribute, or is not here, has no true answer that is known; whoever
+/// An object that lacks the attribute, or is not here, has no known true answer; a user who
 /// wants it is taken to name any value with the same probability. With one value there is nothing
 /// to confuse it with, so `ε` plays no part.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -128,7 +128,7 @@ impl OpenQuestion {
         Self { own: blend(self.own), other: blend(self.other), lacking: self.lacking }
     }
 
-    /// Probability of naming `v`, given an answer, of somebody who wants an object with that entry
+    /// Probability of naming `v`, given an answer, for a user who wants an object with that entry
     /// in the model's column.
     pub fn answer(&self, v: ValueId, entry: u16) -> f64 {
         match entry {
@@ -220,8 +220,8 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
             }
             if let Some(absent) = model.absent() {
                 let unknown = model.unknown_yes(k);
-                let told = params.p_l * if yes { unknown } else { 1.0 - unknown };
-                log[absent.index()] += told.ln() - right - if_false;
+                let unknown_share = params.p_l * if yes { unknown } else { 1.0 - unknown };
+                log[absent.index()] += unknown_share.ln() - right - if_false;
             }
             right
         }

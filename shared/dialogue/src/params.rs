@@ -14,7 +14,7 @@ pub struct Params {
     pub alpha: f64,
 }
 
-/// What is wrong with one setting: its key, the fault, and the cure.
+/// What is wrong with one setting: its key, the fault, and the fix.
 pub type Fault = (&'static str, String, &'static str);
 
 impl Default for Params {

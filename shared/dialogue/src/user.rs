@@ -4,7 +4,7 @@ use scene::{ObjectId, Question};
 
 use crate::{Answer, Model, Rng};
 
-/// What somebody answers who neither errs nor stays silent; [`Answer::text`] has the words.
+/// Returns the answer of a user who neither errs nor stays silent; [`Answer::text`] has the words.
 pub fn truthful_answer(model: &Model, question: Question, wanted: ObjectId) -> Answer {
     Answer::truthful(model, question, wanted)
 }
@@ -84,6 +84,6 @@ mod tests {
         };
         assert_eq!(talk(62), talk(62));
         let wanted: std::collections::HashSet<_> = (0..100).map(|seed| talk(seed).0).collect();
-        assert_eq!(wanted.len(), 6, "everything is wanted by somebody");
+        assert_eq!(wanted.len(), 6, "every object is wanted by some user");
     }
 }

@@ -35,11 +35,11 @@ const CONFIDENCE: f64 = 20.0;
 /// Units of a key in a probability of 1, and in a question that was answered.
 const KEY_UNITS: f64 = 1e9;
 /// How fast the prior falls with the distance of an error rate from the configured one, per nat:
-/// at 1.5 somebody who errs ten times as often is thirty times less likely.
+/// at 1.5 a user who errs ten times as often is thirty times less likely.
 const STEEPNESS: f64 = 1.5;
 
 impl Person {
-    /// Somebody of whom nothing is known but what is configured about people.
+    /// A user of whom nothing is known beyond the configuration.
     pub fn new(params: Params) -> Self {
         let distance = |rate: f64| (rate / params.epsilon).ln().abs();
         Self {
@@ -76,7 +76,7 @@ impl Person {
         }
     }
 
-    /// Error rates and counts in whole units; how fast somebody reacts changes no decision.
+    /// Error rates and counts in whole units; a user's reaction time changes no decision.
     fn key_into(&self, key: &mut Vec<i64>) {
         key.clear();
         key.extend(self.error_probabilities().iter().map(|p| (p * KEY_UNITS).round() as i64));

@@ -192,7 +192,7 @@ impl BaxterDriver {
         let set = &mut self.limbs[i];
         set.moved = moving;
         let hold = set.q.unwrap_or(q);
-        // Somebody has taken a standing limb by its cuff and put it elsewhere: there it stays.
+        // A person moved a limb at rest by its cuff: it stays where it was put.
         let hold = if !moving && furthest(&hold, &q).1 > path { q } else { hold };
         set.q = Some(hold);
         if set.sent.is_some_and(|sent| now.since(sent) < COMMAND_EVERY) {

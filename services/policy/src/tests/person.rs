@@ -6,7 +6,7 @@ fn learning_manager() -> Manager {
     settings_with(&[("dialogue.planner", "information-seeking")]).manager().unwrap()
 }
 
-/// One interaction with somebody who answers wrongly with that probability; the records of it.
+/// The records of one interaction with a user who answers wrongly with that probability.
 fn talk(manager: &mut Manager, state: &State, errs: f64, seed: u64) -> Vec<Record> {
     let settings = settings();
     let model = Model::new(&settings.scene, settings.dialogue.params);
@@ -102,7 +102,7 @@ fn what_is_learned_folds_again_and_survives_a_restart() {
     assert!(refold(&mut learning_manager(), &tampered).is_err());
 }
 
-/// A restart with other settings scores the interaction anew, and counts nothing twice.
+/// A restart with other settings scores the interaction again, and counts nothing twice.
 #[test]
 fn looking_anew_learns_nothing_twice() {
     let mut manager = learning_manager();

@@ -75,7 +75,7 @@ fn a_bowl_that_is_gone_drops_out_and_a_new_one_counts_with_what_was_said() {
     assert!((p("white4") - p("white2")).abs() < 1e-12, "white, as was said");
     assert!(p("white4") > 2.0 * p("metal"), "{:?}", belief(&after));
     assert_eq!(after.act.kind, ActKind::Ask);
-    assert!(after.act.prompt > state.act.prompt, "asked anew");
+    assert!(after.act.prompt > state.act.prompt, "asked again");
     let said = "The big metallic bowl is gone. ";
     let new = "The small white bowl in the cabinet is new. ";
     assert!(text(&after).starts_with(&format!("{said}{new}")), "{}", text(&after));
@@ -96,7 +96,7 @@ fn the_same_scene_gives_the_same_belief_bit_for_bit() {
                 belief.log_weights().iter().map(|w| w.to_bits()).collect()
             };
             assert_eq!(bits(&again), bits(&state), "seed {seed}");
-            assert_eq!(again.act.prompt, state.act.prompt, "seed {seed}: it is not asked anew");
+            assert_eq!(again.act.prompt, state.act.prompt, "seed {seed}: it is not asked again");
         }
     }
 }
@@ -139,8 +139,8 @@ fn a_change_of_the_scene_folds_again_bit_for_bit_from_the_record_before() {
     assert_eq!(refold_since(&mut slower, &records, key), Ok(2));
     let open = records[6].state.open.as_mut().expect("an open interaction");
     shift(open, 1e-12);
-    let told = refold_since(&mut manager_of(&changed), &records, key).unwrap_err();
-    assert_eq!((told.index, told.part), (6, "belief"));
+    let error = refold_since(&mut manager_of(&changed), &records, key).unwrap_err();
+    assert_eq!((error.index, error.part), (6, "belief"));
 }
 
 #[test]
@@ -194,8 +194,8 @@ fn where_nothing_is_left_the_interaction_ends() {
 #[test]
 fn a_word_that_nothing_had_counts_for_what_has_it_now() {
     let mut manager = manager();
-    let told = typed(1, PromptId(0), Reading::default());
-    let cause = Cause::Utterance(Utterance { unknown: "copper".to_owned(), ..told });
+    let utterance = typed(1, PromptId(0), Reading::default());
+    let cause = Cause::Utterance(Utterance { unknown: "copper".to_owned(), ..utterance });
     let state = manager.next(&manager.first(), &cause, at(1));
     let copper =
         SEVENTH.replace("white4", "copper1").replace("color = \"white\"", "color = \"copper\"");

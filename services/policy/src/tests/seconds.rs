@@ -13,7 +13,7 @@ const ROBOT: (&str, &str) = ("dialogue.costs.from", "robot");
 const POINTING: [(&str, &str); 3] =
     [ROBOT, ("dialogue.mode", "present"), ("dialogue.planner", "no-attribute")];
 
-/// A dialogue with somebody truthful, until the pick.
+/// A dialogue with a truthful user, until the pick.
 fn dialogue(manager: &mut Manager, wanted: ObjectId) -> Vec<Record> {
     let (mut state, mut records) = (manager.first(), Vec::new());
     let mut cause = heard(1, PromptId(0), Reading::default());

@@ -93,7 +93,7 @@ fn policy_publishes_the_attribution_of_an_utterance_between_two_questions() {
     assert_eq!(view.alternatives, after.act.alternatives);
 }
 
-/// "No. … No!", the second time as the next question begins: nobody has heard that one yet.
+/// "No. … No!", the second time as the next question begins: no one has heard that one yet.
 #[test]
 fn a_doubled_answer_does_not_answer_the_question_that_begins() {
     let doubled = |attribution: &str| {
@@ -127,12 +127,12 @@ fn words_count_whatever_they_answer() {
 fn what_is_said_in_doubt_says_less() {
     let mut manager = manager_with("mixture");
     let (state, asked) = two_questions(&mut manager);
-    let told = |doubt: f64, manager: &mut Manager| {
+    let after = |doubt: f64, manager: &mut Manager| {
         let mut heard = spoken(3, &asked, 7.9, Response::Yes);
         heard.interpretations.iter_mut().for_each(|meant| meant.reading.doubt.response = doubt);
         mass(&manager.next(&state, &Cause::Utterance(heard), at(9)), asked[0].prompt)
     };
-    let (sure, hedged) = (told(0.0, &mut manager), told(0.4, &mut manager));
+    let (sure, hedged) = (after(0.0, &mut manager), after(0.4, &mut manager));
     assert!(mass(&state, asked[0].prompt) < hedged && hedged < sure, "{hedged} {sure}");
 }
 

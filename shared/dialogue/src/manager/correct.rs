@@ -33,7 +33,7 @@ impl Manager {
     }
 
     /// Returns the denial of `object` alone, where it is likely that there is one. It counts in
-    /// addition to the utterance that it came with: nobody stops the robot on its way to the right
+    /// addition to the utterance that it came with: no user stops the robot on its way to the right
     /// object by a slip of the tongue, as may happen with the answer to a question.
     fn denial(
         &self,

@@ -20,7 +20,7 @@ pub(super) const ENTRY: Entry = Entry {
 /// person together (after Abbasnejad et al.).
 ///
 /// After each answer the dialogue is valued as it would go on with what is then expected of the
-/// person, so an answer that contradicts the belief is worth a question more to whoever errs, and
+/// person, so an answer that contradicts the belief is worth one more question to a user who errs, and
 /// a question that tells a careful person from a careless one has a value of its own. Of a person
 /// of whom nothing is known, `ε` and `p_l` are those configured, but uncertain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

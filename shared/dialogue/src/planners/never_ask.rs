@@ -1,4 +1,4 @@
-//! `never-ask`: the predecessor's baseline that acts on what it was told unasked.
+//! `never-ask`: the predecessor's baseline that acts on the request alone.
 
 use crate::{Belief, Decision, DecisionProblem, Planner, Step};
 

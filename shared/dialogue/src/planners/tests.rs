@@ -131,7 +131,7 @@ fn baselines_are_where_they_were_measured() {
     assert!(value("entropy", POINTING) < value("no-attribute", PRESENT));
 }
 
-/// A dialogue with somebody who tells the truth: the number of questions and the pick.
+/// A dialogue with a truthful user: the number of questions and the pick.
 fn truthful_dialogue(
     planner: &mut dyn Planner,
     problem: &DecisionProblem<'_>,
@@ -142,7 +142,7 @@ fn truthful_dialogue(
         let step = Step { interaction: 0, step };
         match planner.decide(problem, &belief, step).action {
             Action::Pick(i) => return (step.step as usize, i),
-            Action::Wait => panic!("waits although somebody answers"),
+            Action::Wait => panic!("waits although the user answers"),
             Action::Ask(question) => {
                 let answer = Answer::truthful(problem.model, question, wanted);
                 belief.update(problem.model, question, &answer.reading(problem.model));
@@ -269,7 +269,7 @@ fn one_object_is_picked_and_hopeless_cases_are_waited_out() {
     assert!((decision.value + 10.0).abs() < 1e-9);
 }
 
-/// Somebody wants what is not here, and says no to everything.
+/// A user wants what is not here, and says no to everything.
 #[test]
 fn what_is_not_here_is_concluded() {
     for scene in [bowls(), tools()] {

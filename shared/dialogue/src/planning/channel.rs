@@ -33,7 +33,7 @@ pub(crate) struct Channel {
     pub(crate) absent_other: f64,
     /// The same of a class that lacks the attribute.
     pub(crate) absent_lacking: f64,
-    /// Entropy of the answers about one class, nats: what is left open once all is told.
+    /// Entropy of the answers about one class, nats: what remains open after all answers.
     pub(crate) noise: f64,
     /// Most information that an answer can carry, nats, whatever the belief.
     pub(crate) capacity: f64,
@@ -141,9 +141,9 @@ impl Channel {
         let answer = OpenQuestion::new(problem.model, k);
         let cost = problem.cost(Action::Ask(Question::Which(k)));
         let absent_other = absent as f64 * answer.other;
-        let told = if lacking { 1.0 } else { 1.0 - absent_other };
-        let unheard = 1.0 - problem.model.params().p_l * told;
-        let (own, other) = (answer.own / told, answer.other / told);
+        let known = if lacking { 1.0 } else { 1.0 - absent_other };
+        let unheard = 1.0 - problem.model.params().p_l * known;
+        let (own, other) = (answer.own / known, answer.other / known);
         let absent_other = if lacking { absent_other } else { 0.0 };
         let answers = named + usize::from(lacking && absent > 0);
         // No class is answered for with less noise than one that has the attribute.

@@ -22,7 +22,7 @@ pub(crate) struct Column {
     pub(crate) open: Channel,
 }
 
-/// How "is its k v?" is answered about what is not here.
+/// Answers to "is its k v?" about a wanted object that is not here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unknown {
     pub(crate) cell: u16,
@@ -32,14 +32,14 @@ pub(crate) struct Unknown {
 
 impl Unknown {
     /// Probability of that answer.
-    pub(super) fn told(&self, yes: bool) -> f64 {
+    pub(super) fn probability(&self, yes: bool) -> f64 {
         if yes { self.yes } else { 1.0 - self.yes }
     }
 }
 
 impl Column {
     /// The partition that an attribute makes of classes, of each of which one object is given;
-    /// none if it tells nothing apart.
+    /// none if it separates nothing.
     pub(super) fn of(
         problem: &DecisionProblem<'_>,
         k: AttributeId,

@@ -1,6 +1,6 @@
 //! The value of the easier problem in which all classes but one may be picked together.
 //!
-//! Whoever is told for free, in the end, which of the other classes is wanted cannot do worse, so
+//! A planner that learns for free, in the end, which of the other classes is wanted cannot do worse, so
 //! the value of that two-class problem bounds the real one from above, for any choice of the one
 //! class. It is all but exact where one class is nearly certain, and that is where it counts:
 //! whether to make sure or to pick is the last decision of every dialogue.
@@ -84,10 +84,12 @@ impl Doubt {
 fn splits(reduced: &Reduced, costs: &Costs) -> Vec<Split> {
     let mut splits: Vec<Split> = Vec::new();
     for channel in reduced.channels() {
-        let told = channel.own + channel.other;
-        let unheard = 1.0 - told / channel.price.times;
-        let split =
-            Split { price: Price::new(costs, channel.cost, unheard), right: channel.own / told };
+        let answered = channel.own + channel.other;
+        let unheard = 1.0 - answered / channel.price.times;
+        let split = Split {
+            price: Price::new(costs, channel.cost, unheard),
+            right: channel.own / answered,
+        };
         if !splits.contains(&split) {
             splits.push(split);
         }

@@ -166,7 +166,7 @@ impl<'a> Glancer<'a> {
         outlook.choice(query, channel, self.entropy)
     }
 
-    /// Pointing questions at the most probable classes, and an upper bound on the others: whoever
+    /// Pointing questions at the most probable classes, and an upper bound on the others: a user who
     /// points at a less probable class learns less than by pointing at the last of these.
     fn point(&self, mass: &[f64], choices: &mut Vec<Choice>) -> f64 {
         let mut pointed = self.reduced.pointed.clone();

@@ -19,7 +19,7 @@ pub(crate) fn outcomes(reduced: &Reduced, query: Query, mass: &[f64]) -> Vec<(f6
             for (is, not) in [(channel.own, channel.other), (channel.other, channel.own)] {
                 answers.push(weigh(mass, |c| match (cells[c], unknown) {
                     (own, _) if own == cell => is,
-                    (none, Some(unknown)) if none == unknown.cell => unknown.told(is > not),
+                    (none, Some(unknown)) if none == unknown.cell => unknown.probability(is > not),
                     _ => not,
                 }));
             }

@@ -129,8 +129,8 @@ impl Reduced {
     }
 
     /// Collects the questions. Two yes/no questions are equal if they split the classes alike,
-    /// whichever half says yes; and, where the wanted object may not be here, if nobody knows the
-    /// answer about it equally. A set of classes is known by the exclusive or of random numbers,
+    /// whichever half says yes; and, where the wanted object may not be here, if an unknown value leaves
+    /// the same answers open. A set of classes is identified by the exclusive or of random numbers,
     /// one per class. Of equal questions the cheapest is kept, of those the first.
     fn find_questions(&mut self, problem: &DecisionProblem<'_>) {
         let mut rng = Rng::new(0x5eed);

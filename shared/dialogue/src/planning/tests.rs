@@ -145,7 +145,7 @@ fn stop_value(problem: &DecisionProblem<'_>, belief: &Belief) -> f64 {
     pick.max(problem.costs.wait_value())
 }
 
-/// The value of asking until something is told and then stopping, from the observation model and
+/// The value of asking until something is heard and then stopping, from the observation model and
 /// the belief update alone.
 fn ask_once(problem: &DecisionProblem<'_>, belief: &Belief, question: Question) -> f64 {
     let model = problem.model;

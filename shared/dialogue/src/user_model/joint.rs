@@ -24,7 +24,7 @@ impl Joint {
         Self { person, beliefs: vec![prior; ERROR_RATES.len()] }
     }
 
-    /// The person, with what this interaction has told about them: to go on with in the next.
+    /// The person, with what this interaction has taught about them, for the next one.
     pub fn person(&self) -> &Person {
         &self.person
     }

@@ -25,11 +25,11 @@ pub const TYPED: (f64, f64) = (3.0, 0.9);
 const SHAPE: f64 = 3.0;
 /// `Γ(3.5) / Γ(3)`.
 const GAMMA_RATIO: f64 = 1.661_675_445_222_153_8;
-/// Nobody is more regular than this: the least spread of the logarithm.
+/// The least spread of the logarithm: no person is more regular.
 const SPREAD_MIN: f64 = 0.1;
 /// Even of the most willing, some questions stay unanswered.
 const ANSWERED_MAX: f64 = 0.999;
-/// Times are cut off here: nobody reacts within, and typing at leisure is no reaction.
+/// Times are cut off here: no person reacts within, and typing at leisure is no reaction.
 const SECONDS: std::ops::RangeInclusive<f64> = 0.05..=60.0;
 
 /// Times of one person that are remembered in full: beyond it the latest of them count more than

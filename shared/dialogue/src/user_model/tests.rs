@@ -51,7 +51,7 @@ fn the_posterior_is_that_of_the_joint_distribution() {
     }
 }
 
-/// Twenty fetches for one person: the robot is told in the end what was right by the answers
+/// Twenty fetches for one person: the answers show the robot in the end what was right
 /// alone.
 fn acquaintance(params: Params, seed: u64) -> Person {
     let model = Model::new(&bowls(), Params::default());

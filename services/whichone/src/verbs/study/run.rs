@@ -50,7 +50,7 @@ pub(super) fn run(
                 let managers = HashMap::new();
                 let mut worker = Worker { room: house.room(), rows, count, seed, boards, managers };
                 while let Some((at, piece)) = take(next, pieces) {
-                    // Nobody to count for any more.
+                    // The receiver is gone.
                     if counted.send((at, worker.count(piece))).is_err() {
                         return;
                     }
