@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::mix::Mix;
+use crate::stable_hash::StableHash128;
 use crate::{Action, Actions, Decision, DecisionProblem};
 
 /// The decisions of one problem, by belief.
@@ -60,7 +60,10 @@ impl PolicyTable {
 }
 
 fn short(belief: &[i64]) -> u128 {
-    belief.iter().fold(Mix::default(), |mix, units| mix.add(units.cast_unsigned())).wide()
+    belief
+        .iter()
+        .fold(StableHash128::default(), |hash, units| hash.add(units.cast_unsigned()))
+        .wide()
 }
 
 impl DecisionProblem<'_> {
@@ -76,16 +79,16 @@ impl DecisionProblem<'_> {
             (costs.correct, costs.wrong),
             (costs.discount, 0.0),
         ];
-        let mut mix = Mix::default().add(EDITION);
+        let mut hash = StableHash128::default().add(EDITION);
         for (a, b) in amounts {
-            mix = mix.add(a.to_bits()).add(b.to_bits());
+            hash = hash.add(a.to_bits()).add(b.to_bits());
         }
         let Actions { mode, attribute, which } = self.actions;
-        mix = mix.add(mode as u64).add(u64::from(attribute)).add(u64::from(which));
-        self.model.identify(&mut |part| mix = mix.add(part));
+        hash = hash.add(mode as u64).add(u64::from(attribute)).add(u64::from(which));
+        self.model.identify(&mut |part| hash = hash.add(part));
         if let Some(durations) = self.durations {
-            durations.identify(&mut |part| mix = mix.add(part));
+            durations.identify(&mut |part| hash = hash.add(part));
         }
-        mix.narrow()
+        hash.narrow()
     }
 }

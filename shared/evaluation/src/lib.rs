@@ -11,6 +11,9 @@
 pub mod charts;
 pub mod simulation;
 pub mod user_study;
+mod verdict;
+
+pub use verdict::Verdict;
 
 /// Returns the items in order of appearance, each once.
 pub fn distinct<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {

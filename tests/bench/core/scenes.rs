@@ -1,6 +1,6 @@
 //! Scenes to measure on: those of the configuration, and random ones of any size.
 
-use dialogue::{Actions, Belief, DecisionProblem, Mode, Model, Params, Rng, SimulatedUser};
+use dialogue::{Actions, Belief, DecisionProblem, Mode, Model, ModelUser, Params, Rng};
 use scene::Scene;
 use serde_json::{Map, Value, json};
 
@@ -47,7 +47,7 @@ pub(super) fn beliefs(problem: &DecisionProblem<'_>, dialogues: u64) -> Vec<Beli
     let mut planner = dialogue::registry::planner("entropy").expect("a planner of that name");
     let mut beliefs = Vec::new();
     for seed in 0..dialogues {
-        let mut user = SimulatedUser::wanting_any(problem.model, seed);
+        let mut user = ModelUser::wanting_any(problem.model, seed);
         let mut belief = Belief::uniform(problem.model.objects());
         for step in 0..6 {
             beliefs.push(belief.clone());

@@ -3,7 +3,8 @@
 mod simulated_study;
 
 use dialogue::Rng;
-use evaluation::user_study::{Event, Participant, Protocol, Stage, Status, Verdict};
+use evaluation::Verdict;
+use evaluation::user_study::{Event, Participant, Protocol, Stage, Status};
 use messages::{ActKind, Outcome};
 use scene::Scene;
 use serde_json::{Map, json};

@@ -1,8 +1,9 @@
 //! Progress of the running interaction and the study's requests to the robot, derived from what it
 //! observes. Pure.
 
-use evaluation::user_study::{Event, Fault, Participant, Source, Stage, Trial, Verdict};
-use messages::{ActKind, Ended, Outcome, PolicyView};
+use evaluation::Verdict;
+use evaluation::user_study::{Event, Fault, Participant, Source, Stage, Trial};
+use messages::{ActKind, Ended, PolicyView};
 
 use super::robot_state::{NotReady, RobotState};
 use super::study_controller::StudyController;
@@ -159,17 +160,10 @@ fn spoilt(trial: &Trial, robot: &RobotState<'_>, is_away: bool) -> Option<Event>
 /// The robot has ended it.
 fn ended(trial: &Trial, robot: &RobotState<'_>) -> Option<Event> {
     let last = robot.view?.last.as_ref().filter(|last| last.interaction.0 == trial.after + 1)?;
-    let verdict = match last.outcome {
-        Outcome::Delivered if last.name.as_ref() == Some(&trial.drawn.object) => Verdict::Right,
-        Outcome::Delivered => Verdict::Wrong,
-        Outcome::Failed => Verdict::Failed,
-        Outcome::Cancelled => Verdict::Cancelled,
-        Outcome::Abandoned => Verdict::Abandoned,
-        Outcome::NotHere => Verdict::NotHere,
-        Outcome::SceneChanged => {
-            let why = "the scene was changed".to_owned();
-            return Some(Event::Faulted { fault: Fault::Scene, why });
-        }
+    let right = last.name.as_ref() == Some(&trial.drawn.object);
+    let Some(verdict) = Verdict::of(last.outcome, right) else {
+        let why = "the scene was changed".to_owned();
+        return Some(Event::Faulted { fault: Fault::Scene, why });
     };
     Some(Event::Ended {
         verdict,

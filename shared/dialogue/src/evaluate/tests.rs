@@ -1,6 +1,6 @@
 use super::*;
 use crate::testing::{bowls, markers, random_scene};
-use crate::{Actions, Costs, Lookahead, Mode, Model, Params, Rng, SimulatedUser, registry};
+use crate::{Actions, Costs, Lookahead, Mode, Model, ModelUser, Params, Rng, registry};
 
 const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
 
@@ -64,7 +64,7 @@ fn dialogue(
     problem: &DecisionProblem<'_>,
     seed: u64,
 ) -> (f64, bool, u32) {
-    let mut user = SimulatedUser::wanting_any(problem.model, seed);
+    let mut user = ModelUser::wanting_any(problem.model, seed);
     let mut belief = Belief::uniform(problem.model.objects());
     let (mut value, mut discount) = (0.0, 1.0);
     for step in 0.. {

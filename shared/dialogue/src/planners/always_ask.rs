@@ -34,12 +34,12 @@ impl Planner for AlwaysAsk {
         let outlook = Outlook::new(problem, belief);
         // Pointing questions come in order of falling probability: the first is at the most
         // probable object, even where pointing at the next tells as much.
-        let choices = outlook.glance.choices.iter();
+        let choices = outlook.one_step.choices.iter();
         let question = choices.reduce(|a, b| {
             let more = problem.actions.mode == Mode::Remote && b.information > a.information;
             if more { b } else { a }
         });
-        let sure = outlook.glance.peak >= SURE && step.step > 0;
+        let sure = outlook.one_step.peak >= SURE && step.step > 0;
         outlook.decide(problem, belief, question.filter(|_| !sure))
     }
 }

@@ -29,14 +29,14 @@ impl Planner for Entropy {
         let outlook = Outlook::new(problem, belief);
         let price = |query| outlook.reduced.channel(query).price;
         let rate = |query, information: f64| information / price(query).cost;
-        let most = (outlook.glance.choices.iter())
+        let most = (outlook.one_step.choices.iter())
             .filter(|choice| choice.information > NOTHING)
             .reduce(|a, b| {
                 let more = rate(b.query, b.information) - rate(a.query, a.information);
                 if more > NOTHING { b } else { a }
             });
         let costs = &problem.costs;
-        let at_stake = (1.0 - outlook.glance.peak) * (costs.correct + costs.wrong);
+        let at_stake = (1.0 - outlook.one_step.peak) * (costs.correct + costs.wrong);
         // Asking also puts the reward off.
         let worth_it = most.filter(|choice| {
             let price = price(choice.query);

@@ -1,6 +1,6 @@
 //! `information-seeking`: asks under uncertainty about the person who answers.
 
-use crate::planning::{Bound, Choice, Effort, Glancer, Reduced};
+use crate::planning::{Bound, Choice, Effort, OneStepEvaluator, Reduced};
 use crate::user_model::{Joint, Person};
 use crate::{Action, Answer, Belief, Decision, DecisionProblem, Model, Planner, Step};
 
@@ -26,7 +26,7 @@ pub(super) const ENTRY: Entry = Entry {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct InformationSeeking;
 
-/// Most questions that are weighed, the most promising by the first glance.
+/// Most questions that are weighed, the most promising by a one-step lookahead.
 const WEIGHED_MAX: usize = 10;
 /// Beliefs that are looked at to value what follows an answer, and with what work at most.
 const FOLLOWED_MAX: usize = 60;
@@ -92,7 +92,7 @@ fn stopping(problem: &DecisionProblem<'_>, belief: &Belief) -> (Action, f64) {
 fn promising(problem: &DecisionProblem<'_>, belief: &Belief) -> Vec<Question> {
     let reduced = Reduced::new(problem, belief);
     let bound = Bound::new(&reduced, &problem.costs);
-    let mut choices = Glancer::new(&reduced, &bound).glance(&reduced.mass).choices;
+    let mut choices = OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass).choices;
     let by_estimate = |a: &Choice, b: &Choice| b.value.estimate.total_cmp(&a.value.estimate);
     choices.sort_by(by_estimate);
     choices.truncate(WEIGHED_MAX);

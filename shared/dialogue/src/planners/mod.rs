@@ -28,7 +28,7 @@ pub use lookahead::Lookahead;
 pub use optimal::Optimal;
 
 use crate::Planner;
-use crate::planning::{Bound, Choice, Glance, Glancer, Reduced};
+use crate::planning::{Bound, Choice, OneStepEvaluator, OneStepLookahead, Reduced};
 use crate::{Action, Belief, Decision, DecisionProblem};
 
 /// A planner in the registry.
@@ -48,20 +48,20 @@ const PICKS_MAX: usize = 3;
 /// A belief seen one step ahead, as the planners see it that look no further.
 struct Outlook {
     reduced: Reduced,
-    glance: Glance,
+    one_step: OneStepLookahead,
 }
 
 impl Outlook {
     fn new(problem: &DecisionProblem<'_>, belief: &Belief) -> Self {
         let reduced = Reduced::new(problem, belief);
         let bound = Bound::new(&reduced, &problem.costs);
-        let glance = Glancer::new(&reduced, &bound).glance(&reduced.mass);
-        Self { reduced, glance }
+        let one_step = OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass);
+        Self { reduced, one_step }
     }
 
     /// The better of picking and waiting.
     fn stop(&self, problem: &DecisionProblem<'_>) -> Action {
-        stop(problem, &self.reduced, self.glance.class, self.glance.stop.lower)
+        stop(problem, &self.reduced, self.one_step.class, self.one_step.stop.lower)
     }
 
     /// The decision to stop, or to ask `choice`. A question is worth what stopping is worth after
@@ -73,13 +73,13 @@ impl Outlook {
         choice: Option<&Choice>,
     ) -> Decision {
         let asks = |choice: &Choice| Action::Ask(self.reduced.question(choice.query));
-        let asked = self.glance.choices.iter().map(|c| (asks(c), c.value.lower)).collect();
+        let asked = self.one_step.choices.iter().map(|c| (asks(c), c.value.lower)).collect();
         let (action, value) = choice.map_or_else(
-            || (self.stop(problem), self.glance.stop.lower),
+            || (self.stop(problem), self.one_step.stop.lower),
             |choice| (asks(choice), choice.value.lower),
         );
         let expected_questions = choice.map_or(0.0, |choice| {
-            self.reduced.channel(choice.query).times_until_spent(self.glance.entropy)
+            self.reduced.channel(choice.query).times_until_spent(self.one_step.entropy)
         });
         let alternatives = alternatives(problem, belief, asked, action);
         Decision { action, value, alternatives, expected_questions, bounds: None }

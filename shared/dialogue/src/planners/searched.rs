@@ -34,7 +34,7 @@ pub(super) fn searched(
 
 /// Beliefs that are looked at with that much work, counted in classes looked at times attributes.
 pub(super) fn affordable(reduced: &Reduced, work: usize) -> usize {
-    work / (reduced.classes() * (reduced.columns.len() + 2))
+    work / (reduced.classes() * (reduced.partitions.len() + 2))
 }
 
 /// Dialogues less probable than this do not count towards the expected number of questions.

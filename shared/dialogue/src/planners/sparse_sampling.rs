@@ -1,6 +1,6 @@
 //! `sparse-sampling`: the predecessor's planner (Kearns, Mansour and Ng 2002, over beliefs).
 
-use crate::planning::{Bound, Glancer, Query, Reduced, outcomes};
+use crate::planning::{Bound, OneStepEvaluator, Query, Reduced, outcomes};
 use crate::{Action, Belief, Decision, DecisionProblem, Planner, Rng, Step};
 
 use super::{Entry, alternatives, stop};
@@ -48,20 +48,20 @@ impl Planner for SparseSampling {
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
         let reduced = Reduced::new(problem, belief);
         let bound = Bound::new(&reduced, &problem.costs);
-        let glance = Glancer::new(&reduced, &bound).glance(&reduced.mass);
+        let one_step = OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass);
         let queries = reduced.all_queries();
         let rng = Rng::new(step.interaction.wrapping_mul(0x1_0000_0001) ^ u64::from(step.step));
         let mut tree = Tree { reduced: &reduced, problem, queries, width: self.width, rng };
         let asked = tree.ask(&reduced.mass, self.horizon);
         let best = asked.iter().copied().reduce(|a, b| if b.1 > a.1 { b } else { a });
-        let best = best.filter(|(_, value)| *value > glance.stop.lower);
+        let best = best.filter(|(_, value)| *value > one_step.stop.lower);
         let asks = |query| Action::Ask(reduced.question(query));
         let (action, value) = best.map_or_else(
-            || (stop(problem, &reduced, glance.class, glance.stop.lower), glance.stop.lower),
+            || (stop(problem, &reduced, one_step.class, one_step.stop.lower), one_step.stop.lower),
             |(query, value)| (asks(query), value),
         );
         let expected_questions =
-            best.map_or(0.0, |(q, _)| reduced.channel(q).times_until_spent(glance.entropy));
+            best.map_or(0.0, |(q, _)| reduced.channel(q).times_until_spent(one_step.entropy));
         let asked = asked.iter().map(|(query, value)| (asks(*query), *value)).collect();
         let alternatives = alternatives(problem, belief, asked, action);
         Decision { action, value, alternatives, expected_questions, bounds: None }

@@ -7,8 +7,7 @@ use crate::testing::{
     uniform,
 };
 use crate::{
-    Actions, Answer, Costs, Mode, Model, Params, Planner, Rng, SimulatedUser, Step, evaluate,
-    registry,
+    Actions, Answer, Costs, Mode, Model, ModelUser, Params, Planner, Rng, Step, evaluate, registry,
 };
 
 const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
@@ -81,7 +80,7 @@ fn a_kept_policy_is_the_policy() {
     assert!(!kept.fits(&DecisionProblem { actions: OPEN, ..problem }));
     let mut second = Optimal::default();
     second.adopt(kept);
-    let mut user = SimulatedUser::new(ObjectId(4), 91);
+    let mut user = ModelUser::new(ObjectId(4), 91);
     let mut belief = uniform;
     for step in (0..8).map(|step| Step { interaction: 0, step }) {
         let decision = second.decide(&problem, &belief, step);
@@ -200,7 +199,7 @@ fn every_planner_ends_every_dialogue_within_the_action_space() {
 
 fn drive(planner: &mut dyn Planner, problem: &DecisionProblem<'_>, seed: u64, label: &str) {
     let model = problem.model;
-    let mut user = SimulatedUser::wanting_any(model, seed);
+    let mut user = ModelUser::wanting_any(model, seed);
     let mut belief = Belief::uniform(model.objects());
     for step in 0..200 {
         let decision = planner.decide(problem, &belief, Step { interaction: seed, step });

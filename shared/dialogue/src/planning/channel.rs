@@ -7,10 +7,10 @@ use crate::{Action, Costs, DecisionProblem, OpenQuestion, Params};
 /// A question about classes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Query {
-    /// Yes/no: is the class in that cell of the column?
-    Is { column: u16, cell: u16 },
-    /// Open: in which cell of the column is it?
-    Which { column: u16 },
+    /// Yes/no: is the class in that block of the partition?
+    Is { partition: u16, block: u16 },
+    /// Open: in which block of the partition is it?
+    Which { partition: u16 },
     /// Yes/no: is it that class?
     Point { class: u32 },
 }

@@ -2,14 +2,14 @@
 //!
 //! All of it is deterministic and counts its work in beliefs looked at, never in time.
 
+mod block;
 mod bound;
-mod cell;
 mod channel;
-mod classes;
-mod column;
 mod doubt;
-mod glance;
+mod equivalence_classes;
+mod one_step_lookahead;
 mod outcome;
+mod partition;
 mod reduced;
 mod search;
 
@@ -18,7 +18,7 @@ mod tests;
 
 pub(crate) use bound::Bound;
 pub(crate) use channel::Query;
-pub(crate) use glance::{Choice, Glance, Glancer};
+pub(crate) use one_step_lookahead::{Choice, OneStepEvaluator, OneStepLookahead};
 pub(crate) use outcome::outcomes;
 pub(crate) use reduced::Reduced;
 pub(crate) use search::{Effort, Search};

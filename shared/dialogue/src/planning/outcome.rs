@@ -1,7 +1,7 @@
 //! The beliefs after the answers to a question.
 
 use super::channel::Query;
-use super::column::Column;
+use super::partition::Partition;
 use super::reduced::Reduced;
 
 /// Probability of each answer that tells something, and the class probabilities after it.
@@ -14,22 +14,22 @@ pub(crate) fn outcomes(reduced: &Reduced, query: Query, mass: &[f64]) -> Vec<(f6
             answers.push(weigh(mass, |c| if is(c) { channel.own } else { channel.other }));
             answers.push(weigh(mass, |c| if is(c) { channel.other } else { channel.own }));
         }
-        Query::Is { column, cell } => {
-            let Column { cells, unknown, .. } = reduced.column(column);
+        Query::Is { partition, block } => {
+            let Partition { blocks, unknown, .. } = reduced.partition(partition);
             for (is, not) in [(channel.own, channel.other), (channel.other, channel.own)] {
-                answers.push(weigh(mass, |c| match (cells[c], unknown) {
-                    (own, _) if own == cell => is,
-                    (none, Some(unknown)) if none == unknown.cell => unknown.probability(is > not),
+                answers.push(weigh(mass, |c| match (blocks[c], unknown) {
+                    (own, _) if own == block => is,
+                    (none, Some(unknown)) if none == unknown.block => unknown.probability(is > not),
                     _ => not,
                 }));
             }
         }
-        Query::Which { column } => {
-            let column = reduced.column(column);
-            let lacks = |c: usize| column.lacks(column.cells[c]);
-            for cell in column.named() {
-                answers.push(weigh(mass, |c| match column.cells[c] {
-                    own if own == cell => channel.own,
+        Query::Which { partition } => {
+            let partition = reduced.partition(partition);
+            let lacks = |c: usize| partition.lacks(partition.blocks[c]);
+            for block in partition.named() {
+                answers.push(weigh(mass, |c| match partition.blocks[c] {
+                    own if own == block => channel.own,
                     _ if lacks(c) => channel.lacking,
                     _ => channel.other,
                 }));

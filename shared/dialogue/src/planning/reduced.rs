@@ -11,11 +11,11 @@ use std::ops::Range;
 use scene::{AttributeId, ObjectId, Question, ValueId};
 
 use super::channel::{Channel, Channels, Query};
-use super::classes::Classes;
-use super::column::Column;
+use super::equivalence_classes::EquivalenceClasses;
+use super::partition::Partition;
 use crate::{Belief, DecisionProblem, Rng};
 
-/// Classes of objects and the questions that tell them apart.
+/// Equivalence classes of objects and the questions that tell them apart.
 #[derive(Debug)]
 pub(crate) struct Reduced {
     /// Probability of each class; sums to 1.
@@ -25,7 +25,7 @@ pub(crate) struct Reduced {
     /// That object's share of its class, for ever: nothing that is asked can change it.
     pub(crate) share: Vec<f64>,
     /// Attributes that tell classes apart.
-    pub(crate) columns: Vec<Column>,
+    pub(crate) partitions: Vec<Partition>,
     /// Yes/no and open questions about attributes, none the double of another; those about one
     /// attribute together.
     pub(crate) queries: Vec<Query>,
@@ -49,16 +49,27 @@ impl Reduced {
     pub(crate) fn new(problem: &DecisionProblem<'_>, belief: &Belief) -> Self {
         let model = problem.model;
         assert_eq!(belief.len(), model.hypotheses(), "belief and model are of one scene");
-        let Classes { mass, best, share, interchangeable } = Classes::of(problem, belief);
+        let EquivalenceClasses { mass, best, share, interchangeable } =
+            EquivalenceClasses::of(problem, belief);
         let asked = if problem.actions.about_attributes() { model.attributes() } else { 0 };
-        let columns =
-            (0..asked).filter_map(|k| Column::of(problem, AttributeId::from(k), &best)).collect();
+        let partitions = (0..asked)
+            .filter_map(|k| Partition::of(problem, AttributeId::from(k), &best))
+            .collect();
         let point_at = best.iter().map(|object| Question::Point(*object));
         let point = Channels::yes_no(problem, problem.costs.point_s, point_at);
         let absent = best.iter().position(|object| Some(*object) == model.absent());
         let (queries, pointed) = (Vec::new(), Vec::new());
-        let mut reduced =
-            Self { mass, best, share, columns, queries, absent, pointed, point, interchangeable };
+        let mut reduced = Self {
+            mass,
+            best,
+            share,
+            partitions,
+            queries,
+            absent,
+            pointed,
+            point,
+            interchangeable,
+        };
         reduced.find_questions(problem);
         reduced
     }
@@ -72,11 +83,11 @@ impl Reduced {
     pub(crate) fn question(&self, query: Query) -> Question {
         match query {
             Query::Point { class } => Question::Point(self.best[class as usize]),
-            Query::Which { column } => Question::Which(self.column(column).attribute),
-            Query::Is { column, cell } => {
-                let column = self.column(column);
-                let value = column.values[usize::from(cell)].unwrap_or(ValueId(0));
-                Question::Attribute(column.attribute, value)
+            Query::Which { partition } => Question::Which(self.partition(partition).attribute),
+            Query::Is { partition, block } => {
+                let partition = self.partition(partition);
+                let value = partition.values[usize::from(block)].unwrap_or(ValueId(0));
+                Question::Attribute(partition.attribute, value)
             }
         }
     }
@@ -85,8 +96,10 @@ impl Reduced {
     pub(crate) fn channel(&self, query: Query) -> &Channel {
         match query {
             Query::Point { class } => self.point.of(class as usize),
-            Query::Is { column, cell } => self.column(column).yes_no.of(usize::from(cell)),
-            Query::Which { column } => &self.column(column).open,
+            Query::Is { partition, block } => {
+                self.partition(partition).yes_no.of(usize::from(block))
+            }
+            Query::Which { partition } => &self.partition(partition).open,
         }
     }
 
@@ -124,8 +137,8 @@ impl Reduced {
             && self.interchangeable.iter().any(|run| run.contains(&a) && run.contains(&b))
     }
 
-    pub(super) fn column(&self, column: u16) -> &Column {
-        &self.columns[usize::from(column)]
+    pub(super) fn partition(&self, partition: u16) -> &Partition {
+        &self.partitions[usize::from(partition)]
     }
 
     /// Collects the questions. Two yes/no questions are equal if they split the classes alike,
@@ -137,23 +150,23 @@ impl Reduced {
         let codes: Vec<u64> = self.mass.iter().map(|_| rng.next_u64()).collect();
         let everyone = codes.iter().fold(0, |all, code| all ^ code);
         let split = |set: u64| set.min(set ^ everyone);
-        let (mut splits, mut partitions) = (Cheapest::default(), Cheapest::default());
+        let (mut splits, mut open) = (Cheapest::default(), Cheapest::default());
         let mut found = Vec::new();
-        for (index, column) in self.columns.iter().enumerate() {
+        for (index, partition) in self.partitions.iter().enumerate() {
             let index = index as u16;
-            let plainly = (0..column.values.len()).map(|cell| column.yes_no.of(cell).cost);
+            let plainly = (0..partition.values.len()).map(|block| partition.yes_no.of(block).cost);
             let plain = problem.actions.attribute
-                && column.is_yes_no()
-                && plainly.fold(f64::INFINITY, f64::min) <= column.open.cost;
-            if problem.actions.which && column.tells() && !plain {
-                partitions.offer(column.identity(), column.open.cost, found.len());
-                found.push(Query::Which { column: index });
+                && partition.is_yes_no()
+                && plainly.fold(f64::INFINITY, f64::min) <= partition.open.cost;
+            if problem.actions.which && partition.tells() && !plain {
+                open.offer(partition.identity(), partition.open.cost, found.len());
+                found.push(Query::Which { partition: index });
             }
             if problem.actions.attribute {
-                for (cell, set) in column.sets(&codes) {
-                    let split = column.unknown.map_or(split(set), |u| set ^ u.yes.to_bits());
-                    splits.offer(split, column.yes_no.of(usize::from(cell)).cost, found.len());
-                    found.push(Query::Is { column: index, cell });
+                for (block, set) in partition.sets(&codes) {
+                    let split = partition.unknown.map_or(split(set), |u| set ^ u.yes.to_bits());
+                    splits.offer(split, partition.yes_no.of(usize::from(block)).cost, found.len());
+                    found.push(Query::Is { partition: index, block });
                 }
             }
         }
@@ -166,7 +179,7 @@ impl Reduced {
             let pointed = here.filter(|(class, code)| !known(*class, **code));
             self.pointed = pointed.map(|(class, _)| class as u32).collect();
         }
-        let kept = splits.places().chain(partitions.places());
+        let kept = splits.places().chain(open.places());
         let mut kept: Vec<usize> = kept.collect();
         kept.sort_unstable();
         self.queries = kept.into_iter().map(|place| found[place]).collect();

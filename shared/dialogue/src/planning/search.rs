@@ -9,10 +9,10 @@ use std::collections::HashMap;
 
 use super::bound::{Bound, Value};
 use super::channel::Query;
-use super::glance::{Choice, Glance, Glancer};
+use super::one_step_lookahead::{Choice, OneStepEvaluator, OneStepLookahead};
 use super::outcome::outcomes;
 use super::reduced::Reduced;
-use crate::mix::Mix;
+use crate::stable_hash::StableHash128;
 
 /// How long to search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +27,7 @@ pub(crate) struct Effort {
 #[derive(Debug)]
 pub(crate) struct Search<'a> {
     reduced: &'a Reduced,
-    glancer: Glancer<'a>,
+    evaluator: OneStepEvaluator<'a>,
     nodes: Vec<Node>,
     /// Class probabilities, node after node.
     masses: Vec<f64>,
@@ -76,11 +76,11 @@ const BARREN_MAX: u32 = 32;
 const DEPTH_MAX: usize = 64;
 
 impl<'a> Search<'a> {
-    /// A search that has glanced at the belief itself.
+    /// A search that has looked one step ahead from the belief itself.
     pub(crate) fn new(reduced: &'a Reduced, bound: &'a Bound) -> Self {
         let mut search = Self {
             reduced,
-            glancer: Glancer::new(reduced, bound),
+            evaluator: OneStepEvaluator::new(reduced, bound),
             nodes: Vec::new(),
             masses: Vec::new(),
             known: HashMap::new(),
@@ -183,7 +183,7 @@ impl<'a> Search<'a> {
             return known;
         }
         let number = self.nodes.len();
-        self.nodes.push(Node::new(self.glancer.glance(mass)));
+        self.nodes.push(Node::new(self.evaluator.look_ahead(mass)));
         self.masses.extend_from_slice(mass);
         self.known.insert(key, number);
         number
@@ -191,8 +191,8 @@ impl<'a> Search<'a> {
 }
 
 impl Node {
-    fn new(glance: Glance) -> Self {
-        let Glance { stop, class, entropy, mut choices, mut rest, .. } = glance;
+    fn new(one_step: OneStepLookahead) -> Self {
+        let OneStepLookahead { stop, class, entropy, mut choices, mut rest, .. } = one_step;
         rest = rest.max(drop_unpromising(&mut choices, stop.lower));
         let branch = |Choice { query, value, .. }| Branch { query, value, answers: Vec::new() };
         let branches = choices.into_iter().map(branch).collect();
@@ -252,5 +252,7 @@ fn drop_unpromising(choices: &mut Vec<Choice>, stop: f64) -> f64 {
 /// is at stake in a pick.
 fn key(mass: &[f64]) -> u128 {
     const STEPS: f64 = (1_u64 << 36) as f64;
-    mass.iter().fold(Mix::default(), |mix, m| mix.add((m * STEPS).round() as u64)).wide()
+    mass.iter()
+        .fold(StableHash128::default(), |hash, m| hash.add((m * STEPS).round() as u64))
+        .wide()
 }

@@ -169,15 +169,15 @@ fn ask_once(problem: &DecisionProblem<'_>, belief: &Belief, question: Question) 
     (discount * after - cost) / (1.0 - discount * unheard)
 }
 
-/// The glance works on sums over cells of merged objects; this works on objects.
+/// The one-step lookahead works on sums over blocks of merged objects; this works on objects.
 #[test]
-fn a_glance_agrees_with_the_observation_model() {
+fn one_step_lookahead_agrees_with_the_observation_model() {
     for_many_problems(71, |problem, belief, label| {
         let reduced = Reduced::new(problem, belief);
         let bound = Bound::new(&reduced, &problem.costs);
-        let glance = Glancer::new(&reduced, &bound).glance(&reduced.mass);
-        assert!((glance.stop.lower - stop_value(problem, belief)).abs() < 1e-6, "{label}");
-        for choice in &glance.choices {
+        let one_step = OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass);
+        assert!((one_step.stop.lower - stop_value(problem, belief)).abs() < 1e-6, "{label}");
+        for choice in &one_step.choices {
             let question = reduced.question(choice.query);
             let expected = ask_once(problem, belief, question);
             let got = choice.value.lower;
@@ -192,9 +192,9 @@ fn nothing_better_is_dropped() {
     for_many_problems(72, |problem, belief, label| {
         let reduced = Reduced::new(problem, belief);
         let bound = Bound::new(&reduced, &problem.costs);
-        let glance = Glancer::new(&reduced, &bound).glance(&reduced.mass);
-        let kept = glance.choices.iter().map(|choice| choice.value.lower);
-        let best = kept.fold(glance.stop.lower, f64::max);
+        let one_step = OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass);
+        let kept = one_step.choices.iter().map(|choice| choice.value.lower);
+        let best = kept.fold(one_step.stop.lower, f64::max);
         for question in problem.actions.questions(problem.model) {
             let value = ask_once(problem, belief, question);
             // A question that tells nothing is asked for ever here, which is never worth it.
@@ -204,11 +204,11 @@ fn nothing_better_is_dropped() {
 }
 
 #[test]
-fn outcomes_agree_with_the_glance() {
+fn outcomes_agree_with_the_one_step_lookahead() {
     for_many_problems(73, |problem, belief, label| {
         let reduced = Reduced::new(problem, belief);
         let bound = Bound::new(&reduced, &problem.costs);
-        for choice in Glancer::new(&reduced, &bound).glance(&reduced.mass).choices {
+        for choice in OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass).choices {
             let mut total = 0.0;
             let mut left = 0.0;
             for (probability, mass) in outcomes(&reduced, choice.query, &reduced.mass) {

@@ -2,7 +2,7 @@ use scene::{ObjectId, Question, Reading, Response};
 
 use super::*;
 use crate::testing::bowls;
-use crate::{Action, Belief, Costs, DecisionProblem, Model, Rng, SimulatedUser, Step, registry};
+use crate::{Action, Belief, Costs, DecisionProblem, Model, ModelUser, Rng, Step, registry};
 use crate::{Actions, Answer};
 
 fn yes_no(response: Response) -> Reading {
@@ -59,7 +59,7 @@ fn acquaintance(params: Params, seed: u64) -> Person {
     let mut person = Person::new(model.params());
     let mut rng = Rng::new(seed);
     for interaction in 0..20 {
-        let mut user = SimulatedUser::wanting_any(&truth, seed * 100 + interaction);
+        let mut user = ModelUser::wanting_any(&truth, seed * 100 + interaction);
         let mut joint = Joint::new(Belief::uniform(6), person);
         for _ in 0..8 {
             let question = Question::Point(rng.below(6).into());
@@ -98,7 +98,7 @@ fn success(planner: &str, seed: u64) -> f64 {
     let mut right = 0;
     const DIALOGUES: u64 = 120;
     for interaction in 0..DIALOGUES {
-        let mut user = SimulatedUser::wanting_any(&truth, seed + interaction);
+        let mut user = ModelUser::wanting_any(&truth, seed + interaction);
         let mut joint = Joint::new(Belief::uniform(6), person);
         let picked = (0..60).find_map(|step| {
             let step = Step { interaction, step };

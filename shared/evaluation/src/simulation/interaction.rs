@@ -4,13 +4,14 @@
 use dialogue::manager::{Cause, Manager, Setup, State, Utterance};
 use dialogue::time::{Span, Time};
 use dialogue::{
-    ActKind, Action, Attribution, Costs, DecisionProblem, Interpretation, Planner, Presentation,
-    Prior, PriorObjects, Rng, TurnTaking, rendering,
+    ActKind, Action, Attribution, DecisionProblem, Interpretation, Planner, Presentation, Prior,
+    PriorObjects, Rng, TurnTaking, rendering,
 };
 use language::Reader;
 use preflight::{Motions, Pace, Voice};
 use scene::{Intent, ObjectId, Question, Reading, Response, Scene};
 
+use crate::Verdict;
 use crate::simulation::cached_planner::CachedPlanner;
 use crate::simulation::users::{Domain, Reply, SimulatedUser, Turn};
 
@@ -60,37 +61,11 @@ impl<'a> Room<'a> {
     }
 }
 
-/// Reasons for which an interaction ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
-    /// The wanted object was handed over.
-    Right,
-    /// Another one was.
-    Wrong,
-    /// The policy waits, and nothing will happen any more.
-    Waited,
-    /// The user answered none of the robot's repeated questions.
-    Abandoned,
-    /// The robot understood that nothing is wanted any more.
-    Cancelled,
-}
-
-impl End {
-    /// Returns the reward of this end.
-    pub(crate) fn worth(self, costs: &Costs) -> f64 {
-        match self {
-            Self::Right => costs.correct,
-            Self::Wrong => -costs.wrong,
-            Self::Waited | Self::Abandoned | Self::Cancelled => costs.wait_value(),
-        }
-    }
-}
-
-/// Outcome of an interaction.
+/// A simulated interaction that has ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
-    /// Reason for which it ended.
-    pub end: End,
+pub struct SimulatedInteraction {
+    /// Verdict; one in which the robot waits for ever is abandoned.
+    pub verdict: Verdict,
     /// Questions asked, repetitions included.
     pub questions: u32,
     /// Seconds from the request understood to the decision to pick, or to the end without one.
@@ -112,7 +87,7 @@ pub fn interact(
     manager: &mut Manager,
     user: &mut SimulatedUser,
     clock: &mut Rng,
-) -> Outcome {
+) -> SimulatedInteraction {
     let state = manager.first();
     let mut play = Play {
         room,
@@ -130,14 +105,14 @@ pub fn interact(
     play.begin(&user.request(room.domain()));
     loop {
         let act = &play.state.act;
-        let end = match (act.kind, act.pick) {
+        let verdict = match (act.kind, act.pick) {
             (ActKind::Pick, Some((_, object))) => return play.pick(object, user.wanted()),
             (ActKind::Ask, _) => play.ask(act.question, user),
             (ActKind::Wait, _) => play.wait(user),
             _ => Some(play.closed()),
         };
-        if let Some(end) = end {
-            return play.end(end, None);
+        if let Some(verdict) = verdict {
+            return play.end(verdict, None);
         }
     }
 }
@@ -186,7 +161,7 @@ impl<'r, 'a> Play<'r, 'a> {
     }
 
     /// Presents the standing question, with the arm aiming where it points, and waits for its answer.
-    fn ask(&mut self, question: Question, user: &mut SimulatedUser) -> Option<End> {
+    fn ask(&mut self, question: Question, user: &mut SimulatedUser) -> Option<Verdict> {
         self.pay(Action::Ask(question));
         self.questions += 1;
         let aimed = match question {
@@ -214,12 +189,12 @@ impl<'r, 'a> Play<'r, 'a> {
     }
 
     /// A turn without a question. Where the user is silent the robot would wait for ever.
-    fn wait(&mut self, user: &mut SimulatedUser) -> Option<End> {
+    fn wait(&mut self, user: &mut SimulatedUser) -> Option<Verdict> {
         let turn = user.answer(self.room.domain(), Question::None);
         self.waits += 1;
         if turn.reply == Reply::Silence || self.waits > self.manager.turns().questions_max {
             self.seconds += self.manager.response_window_s(&self.state);
-            return Some(End::Waited);
+            return Some(Verdict::Abandoned);
         }
         self.pay(Action::Wait);
         self.listen(&turn, None);
@@ -296,27 +271,25 @@ impl<'r, 'a> Play<'r, 'a> {
         }
     }
 
-    /// Returns the end of an interaction that the manager has closed.
-    fn closed(&self) -> End {
-        match self.state.ended.as_ref().map(|ended| ended.outcome) {
-            Some(dialogue::Outcome::Abandoned) => End::Abandoned,
-            _ => End::Cancelled,
-        }
+    /// Returns the verdict on an interaction that the manager has closed.
+    fn closed(&self) -> Verdict {
+        let ended = self.state.ended.as_ref();
+        ended.and_then(|ended| Verdict::of(ended.outcome, false)).unwrap_or(Verdict::Cancelled)
     }
 
-    fn pick(self, object: ObjectId, wanted: Option<ObjectId>) -> Outcome {
-        let end = if Some(object) == wanted { End::Right } else { End::Wrong };
-        self.end(end, Some(object))
+    fn pick(self, object: ObjectId, wanted: Option<ObjectId>) -> SimulatedInteraction {
+        let verdict = if Some(object) == wanted { Verdict::Right } else { Verdict::Wrong };
+        self.end(verdict, Some(object))
     }
 
-    fn end(mut self, end: End, picked: Option<ObjectId>) -> Outcome {
-        self.value += self.discount * end.worth(&self.room.problem.costs);
+    fn end(mut self, verdict: Verdict, picked: Option<ObjectId>) -> SimulatedInteraction {
+        self.value += self.discount * verdict.worth(&self.room.problem.costs);
         let talk_s = self.seconds;
         if let Some(object) = picked {
             self.seconds += self.fetch_s(object);
         }
-        Outcome {
-            end,
+        SimulatedInteraction {
+            verdict,
             questions: self.questions,
             talk_s,
             seconds: self.seconds,

@@ -26,7 +26,7 @@ pub mod turns;
 pub mod users;
 
 use dialogue::manager::Manager;
-pub use interaction::{End, Outcome, Room, interact};
+pub use interaction::{Room, SimulatedInteraction, interact};
 
 pub use cached_planner::{CachedPlanner, SharedDecisions, Situation};
 pub use stats::{Interval, Mean, wilson};

@@ -1,6 +1,7 @@
 //! Aggregate results of interactions.
 
-use crate::simulation::interaction::{End, Outcome};
+use crate::Verdict;
+use crate::simulation::interaction::SimulatedInteraction;
 use crate::simulation::stats::{Interval, Mean, wilson};
 
 /// Counts and means over interactions.
@@ -33,19 +34,19 @@ pub const HISTOGRAM: usize = 21;
 
 impl Tally {
     /// Adds an interaction.
-    pub fn add(&mut self, outcome: &Outcome) {
-        match outcome.end {
-            End::Right => self.right += 1,
-            End::Wrong => self.wrong += 1,
-            End::Waited | End::Abandoned | End::Cancelled => self.without += 1,
+    pub fn add(&mut self, ended: &SimulatedInteraction) {
+        match ended.verdict {
+            Verdict::Right => self.right += 1,
+            Verdict::Wrong => self.wrong += 1,
+            _ => self.without += 1,
         }
-        self.questions.add(f64::from(outcome.questions));
-        self.talk_s.add(outcome.talk_s);
-        self.seconds.add(outcome.seconds);
-        self.value.add(outcome.value);
-        self.misplaced += u64::from(outcome.misplaced);
-        self.answers += u64::from(outcome.answers);
-        self.histogram[(outcome.questions as usize).min(HISTOGRAM - 1)] += 1;
+        self.questions.add(f64::from(ended.questions));
+        self.talk_s.add(ended.talk_s);
+        self.seconds.add(ended.seconds);
+        self.value.add(ended.value);
+        self.misplaced += u64::from(ended.misplaced);
+        self.answers += u64::from(ended.answers);
+        self.histogram[(ended.questions as usize).min(HISTOGRAM - 1)] += 1;
     }
 
     /// Adds all that `other` counted. Merge in the order of the interactions.
@@ -93,9 +94,9 @@ fn share(part: u64, whole: u64) -> f64 {
 mod tests {
     use super::*;
 
-    fn outcome(end: End, questions: u32) -> Outcome {
-        Outcome {
-            end,
+    fn ended(verdict: Verdict, questions: u32) -> SimulatedInteraction {
+        SimulatedInteraction {
+            verdict,
             questions,
             talk_s: 1.0,
             seconds: f64::from(questions),
@@ -108,10 +109,13 @@ mod tests {
     #[test]
     fn tally_counts_interactions_by_their_end() {
         let mut tally = Tally::default();
-        for (end, questions) in
-            [(End::Right, 1), (End::Right, 3), (End::Wrong, 0), (End::Abandoned, 99)]
-        {
-            tally.add(&outcome(end, questions));
+        for (verdict, questions) in [
+            (Verdict::Right, 1),
+            (Verdict::Right, 3),
+            (Verdict::Wrong, 0),
+            (Verdict::Abandoned, 99),
+        ] {
+            tally.add(&ended(verdict, questions));
         }
         assert_eq!((tally.right, tally.wrong, tally.without), (2, 1, 1));
         assert_eq!((tally.interactions(), tally.success()), (4, 0.5));

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
+use crate::Verdict;
 use crate::user_study::plan::Step;
-use crate::user_study::trial::Verdict;
 use config::study::Protocol;
 
 /// Version of the lines' form.

@@ -43,4 +43,4 @@ pub use plan::{Counts, Step, draw, new_id, plan};
 pub use report::{Answers, Group, Report, report};
 pub use rows::{Tables, tables, to_json};
 pub use stamp::utc;
-pub use trial::{End, Trial, Verdict};
+pub use trial::{End, Trial};

@@ -3,9 +3,10 @@
 use crate::simulation::Mean;
 use serde_json::{Value as Json, json};
 
+use crate::Verdict;
 use crate::user_study::participant::Participant;
 use crate::user_study::report::mean_json;
-use crate::user_study::trial::{Trial, Verdict};
+use crate::user_study::trial::Trial;
 
 /// The differences of one policy from another: of each participant the mean with the one less the
 /// mean with the other.

@@ -2,12 +2,13 @@
 
 use serde_json::{Map, Value as Json, json};
 
+use crate::Verdict;
 use crate::distinct;
 use crate::user_study::dictionary::{INTERACTIONS, PARTICIPANTS, dictionary};
 use crate::user_study::event::Source;
 use crate::user_study::participant::Participant;
 use crate::user_study::stamp::utc;
-use crate::user_study::trial::{End, Trial, Verdict};
+use crate::user_study::trial::{End, Trial};
 use config::study::Item;
 
 /// The files of an export.

@@ -2,10 +2,10 @@
 
 use serde_json::{Map, json};
 
+use crate::Verdict;
 use crate::user_study::event::{Begun, Drawn, Entry, Event, Source, VERSION};
 use crate::user_study::participant::Participant;
 use crate::user_study::plan::{Counts, plan};
-use crate::user_study::trial::Verdict;
 use config::study::{Design, Objects, Order, Protocol};
 use config::study::{Item, Kind};
 

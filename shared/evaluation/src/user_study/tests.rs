@@ -2,10 +2,10 @@
 
 use serde_json::json;
 
+use crate::Verdict;
 use crate::user_study::event::{Drawn, Entry, Event, Fault, parse};
 use crate::user_study::participant::{Participant, Stage, Status};
 use crate::user_study::testing::{finished, interaction, journal, protocol};
-use crate::user_study::trial::Verdict;
 use crate::user_study::{report, tables, to_json};
 use config::study::Protocol;
 

@@ -1,47 +1,8 @@
 //! One interaction of a participant, folded from its lines.
 
-use serde::{Deserialize, Serialize};
-
+use crate::Verdict;
 use crate::user_study::event::{Drawn, Event, Fault, Source};
 use crate::user_study::plan::Step;
-
-/// Verdict on an interaction.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// The desired object was handed over.
-    Right,
-    /// Another one was.
-    Wrong,
-    /// The arm could not.
-    Failed,
-    /// The participant called it off.
-    Cancelled,
-    /// The participant fell silent, or no question helped.
-    Abandoned,
-    /// The robot concluded that the object is not there.
-    NotHere,
-    /// It took longer than the protocol allows.
-    TooLong,
-}
-
-impl Verdict {
-    /// Every verdict with its name in the data.
-    pub const ALL: [(Self, &'static str); 7] = [
-        (Self::Right, "right"),
-        (Self::Wrong, "wrong"),
-        (Self::Failed, "failed"),
-        (Self::Cancelled, "cancelled"),
-        (Self::Abandoned, "abandoned"),
-        (Self::NotHere, "not_here"),
-        (Self::TooLong, "too_long"),
-    ];
-
-    /// Its name in the data.
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(verdict, _)| *verdict == self).map_or("", |(_, name)| name)
-    }
-}
 
 /// End of an interaction.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 use super::*;
 use crate::simulation::testing::{bowls, yes_no};
 use crate::simulation::{UserKind, interactions};
-use dialogue::{Actions, Belief, Mode, Model, Params, evaluate, registry};
+use dialogue::{Actions, Belief, Costs, Mode, Model, Params, evaluate, registry};
 use language::Language;
 
 struct House {
@@ -33,7 +33,7 @@ impl House {
     }
 }
 
-fn play(house: &House, planner: &str, wanted: &str, turns: Vec<Turn>) -> Outcome {
+fn play(house: &House, planner: &str, wanted: &str, turns: Vec<Turn>) -> SimulatedInteraction {
     let mut manager = house.room().manager(CachedPlanner::new(registry::planner(planner).unwrap()));
     let wanted = house.scene.object_named(wanted).unwrap();
     interact(
@@ -79,7 +79,7 @@ fn interaction_fetches_at_once_after_an_unambiguous_request() {
     let house = House::new();
     let words = Turn::words("get me the small metal bowl in the cabinet, the silver one");
     let outcome = play(&house, "never-ask", "metal", vec![words]);
-    assert_eq!((outcome.end, outcome.questions), (End::Right, 0));
+    assert_eq!((outcome.verdict, outcome.questions), (Verdict::Right, 0));
     assert_eq!((outcome.talk_s, outcome.value), (0.0, 50.0));
     assert!(outcome.seconds > 1.0, "saying what it fetches takes time");
 }
@@ -89,7 +89,10 @@ fn interaction_repeats_a_question_into_silence_and_then_gives_up() {
     let house = House::new();
     let outcome = play(&house, "lookahead", "metal", vec![]);
     let patience = TurnTaking::default();
-    assert_eq!((outcome.end, outcome.questions), (End::Abandoned, patience.repeats_max + 1));
+    assert_eq!(
+        (outcome.verdict, outcome.questions),
+        (Verdict::Abandoned, patience.repeats_max + 1)
+    );
     assert!(outcome.talk_s > 4.0 * patience.response_window_s);
     let costs = Costs::SECONDS;
     let asked: f64 = (0..4).map(|k| -4.0 * costs.discount.powi(k)).sum();
@@ -107,7 +110,7 @@ fn interaction_treats_non_answers_like_the_policy() {
         (play(&house, "lookahead", "metal", repeated), play(&house, "lookahead", "metal", plain));
     assert_eq!(repeated.questions, plain.questions + 1);
     let cancelled = vec![Turn::SILENT, Turn::words("forget it, never mind")];
-    assert_eq!(play(&house, "lookahead", "metal", cancelled).end, End::Cancelled);
+    assert_eq!(play(&house, "lookahead", "metal", cancelled).verdict, Verdict::Cancelled);
     let late = Turn { late_s: 60.0, ..Turn::words("yes") };
     let late = [vec![Turn::SILENT, late], yes(9)].concat();
     let late = play(&house, "lookahead", "metal", late);
@@ -124,7 +127,7 @@ fn interaction_without_an_end_has_the_value_of_waiting() {
     let wanted = ObjectId(0);
     let mut silent = SimulatedUser::scripted(wanted, vec![]);
     let outcome = interact(&room, &mut manager, &mut silent, &mut Rng::new(1));
-    assert_eq!((outcome.end, outcome.questions), (End::Waited, 0));
+    assert_eq!((outcome.verdict, outcome.questions), (Verdict::Abandoned, 0));
     assert_eq!(outcome.value, Costs::PREDECESSOR.wait_value());
     let turns = vec![Turn::SILENT, Turn::words("it's in the dishwasher")];
     let outcome = interact(
@@ -133,5 +136,7 @@ fn interaction_without_an_end_has_the_value_of_waiting() {
         &mut SimulatedUser::scripted(wanted, turns),
         &mut Rng::new(1),
     );
-    assert!((outcome.value - (-1.0 + 0.9 * 10.0)).abs() < 1e-9 || outcome.end != End::Right);
+    assert!(
+        (outcome.value - (-1.0 + 0.9 * 10.0)).abs() < 1e-9 || outcome.verdict != Verdict::Right
+    );
 }

@@ -8,8 +8,9 @@ use dialogue::{ActKind, Action, Attribution, Interpretation, Presentation, Rng, 
 use scene::Question;
 
 use super::rules::Rules;
+use crate::Verdict;
 use crate::simulation::draw::log_normal;
-use crate::simulation::interaction::{End, Outcome, Room};
+use crate::simulation::interaction::{Room, SimulatedInteraction};
 use crate::simulation::users::{Reply, TimedKind, TimedUser, TimedUtterance};
 
 /// Duration of a spoken question: median, seconds, and standard deviation of the logarithm. It is
@@ -25,7 +26,7 @@ pub(super) fn talk(
     rules: &Rules,
     kind: &TimedKind,
     rng: Rng,
-) -> Outcome {
+) -> SimulatedInteraction {
     let mut user = kind.user(room.domain(), room.pace, rules.open, rng);
     let (median_s, log_sd) = room.pace.reaction_s;
     // With push-to-talk users wait for the click before they speak.
@@ -75,7 +76,7 @@ struct Talk<'a> {
 }
 
 impl Talk<'_> {
-    fn run(mut self) -> Outcome {
+    fn run(mut self) -> SimulatedInteraction {
         loop {
             if !self.plan() {
                 continue;
@@ -83,14 +84,13 @@ impl Talk<'_> {
             match (self.state.act.kind, self.state.act.pick) {
                 (ActKind::Pick, Some((_, object))) => {
                     let right = Some(object) == self.user.user().wanted();
-                    return self.end(if right { End::Right } else { End::Wrong });
+                    return self.end(if right { Verdict::Right } else { Verdict::Wrong });
                 }
                 (ActKind::Ask, _) => {
                     self.ask(self.state.act.question);
                     self.listen();
                 }
-                (ActKind::Wait, _) => return self.end(End::Waited),
-                _ => return self.end(End::Abandoned),
+                _ => return self.end(Verdict::Abandoned),
             }
         }
     }
@@ -220,10 +220,10 @@ impl Talk<'_> {
         self.step(&Cause::Utterance(utterance));
     }
 
-    fn end(mut self, end: End) -> Outcome {
-        self.value += self.discount * end.worth(&self.room.problem.costs);
-        Outcome {
-            end,
+    fn end(mut self, verdict: Verdict) -> SimulatedInteraction {
+        self.value += self.discount * verdict.worth(&self.room.problem.costs);
+        SimulatedInteraction {
+            verdict,
             questions: self.put.len() as u32,
             talk_s: self.now_s,
             seconds: self.now_s,

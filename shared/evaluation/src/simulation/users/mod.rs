@@ -186,7 +186,7 @@ impl From<UserKind> for Policy {
 /// A [`Policy`] with its traits drawn.
 #[derive(Clone, Debug)]
 enum Traits {
-    Model(dialogue::SimulatedUser),
+    Model(dialogue::ModelUser),
     Truthful { by_value: f64 },
     Unreliable { answers: f64, random: f64 },
     Noisy { wrong: f64, silent: f64 },
@@ -206,7 +206,7 @@ impl SimulatedUser {
     /// A user who wants that object.
     pub fn new(policy: Policy, wanted: ObjectId, mut rng: Rng) -> Self {
         let traits = match policy {
-            Policy::Model => Traits::Model(dialogue::SimulatedUser::new(wanted, rng.next_u64())),
+            Policy::Model => Traits::Model(dialogue::ModelUser::new(wanted, rng.next_u64())),
             Policy::Truthful { by_value } => Traits::Truthful { by_value },
             Policy::Unreliable { answers, random } => Traits::Unreliable { answers, random },
             Policy::Noisy => {

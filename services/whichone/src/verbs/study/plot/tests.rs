@@ -1,14 +1,15 @@
 use super::*;
 use crate::verbs::study::design::People;
+use evaluation::Verdict;
 use evaluation::simulation::turns::Rules;
 use evaluation::simulation::users::TimedKind;
-use evaluation::simulation::{End, Outcome, UserKind};
+use evaluation::simulation::{SimulatedInteraction, UserKind};
 
 fn tally(right: u32, wrong: u32) -> Tally {
     let mut tally = Tally::default();
     for n in 0..right + wrong {
-        tally.add(&Outcome {
-            end: if n < right { End::Right } else { End::Wrong },
+        tally.add(&SimulatedInteraction {
+            verdict: if n < right { Verdict::Right } else { Verdict::Wrong },
             questions: n % 7,
             talk_s: 10.0 + f64::from(n % 3),
             seconds: 20.0 + f64::from(n % 5),

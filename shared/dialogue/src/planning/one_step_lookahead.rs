@@ -1,17 +1,17 @@
 //! One step ahead from a belief: the value of every question, from one pass over the belief per
 //! attribute.
 //!
-//! Each attribute's cells collect what the bounds need of their classes. A question's answers
-//! weigh whole cells, so the beliefs after them never have to be written down.
+//! Each attribute's blocks collect what the bounds need of their classes. A question's answers
+//! weigh whole blocks, so the beliefs after them never have to be written down.
 
+use super::block::{Block, TwoGreatest};
 use super::bound::{Bound, Summary, Value};
-use super::cell::{Cell, TwoGreatest};
 use super::channel::{Channel, Query};
 use super::reduced::Reduced;
 
 /// A belief seen one step ahead.
 #[derive(Clone, Debug)]
-pub(crate) struct Glance {
+pub(crate) struct OneStepLookahead {
     /// What can be said without asking.
     pub(crate) stop: Value,
     /// The class that would be picked.
@@ -38,36 +38,36 @@ pub(crate) struct Choice {
 /// Most pointing questions that are looked at: those at the most probable classes tell most.
 const POINTED_MAX: usize = 24;
 
-/// Takes glances at beliefs about one reduced problem.
+/// Looks one step ahead from beliefs about one reduced problem.
 #[derive(Debug)]
-pub(crate) struct Glancer<'a> {
+pub(crate) struct OneStepEvaluator<'a> {
     reduced: &'a Reduced,
     bound: &'a Bound,
     /// Share and worth of every class, where all classes have the same.
     alike: Option<(f64, f64)>,
-    classes: Vec<Cell>,
-    all: Cell,
+    classes: Vec<Block>,
+    all: Block,
     /// What is not here; nothing where the model takes everything to be here.
-    absent: Cell,
+    absent: Block,
     entropy: f64,
 }
 
-impl<'a> Glancer<'a> {
+impl<'a> OneStepEvaluator<'a> {
     pub(crate) fn new(reduced: &'a Reduced, bound: &'a Bound) -> Self {
         let first = reduced.share[0];
         let alike = reduced.share.iter().all(|share| *share == first);
         let alike = alike.then(|| (first, bound.worth[0]));
-        let (classes, all, absent) = (Vec::new(), Cell::default(), Cell::default());
+        let (classes, all, absent) = (Vec::new(), Block::default(), Block::default());
         Self { reduced, bound, alike, classes, all, absent, entropy: 0.0 }
     }
 
     /// Looks one step ahead from a belief over the classes.
-    pub(crate) fn glance(&mut self, mass: &[f64]) -> Glance {
+    pub(crate) fn look_ahead(&mut self, mass: &[f64]) -> OneStepLookahead {
         let (share, worth) = (&self.reduced.share, &self.bound.worth);
         self.classes.clear();
-        self.classes.extend((0..mass.len()).map(|c| Cell::class(mass[c], share[c], worth[c])));
-        self.all = self.classes.iter().fold(Cell::default(), |sum, cell| sum.plus(cell));
-        self.absent = self.reduced.absent.map_or(Cell::default(), |class| self.classes[class]);
+        self.classes.extend((0..mass.len()).map(|c| Block::class(mass[c], share[c], worth[c])));
+        self.all = self.classes.iter().fold(Block::default(), |sum, block| sum.plus(block));
+        self.absent = self.reduced.absent.map_or(Block::default(), |class| self.classes[class]);
         let summary = self.all.summary();
         self.entropy = summary.entropy;
         let stop = self.bound.value(&summary);
@@ -75,56 +75,65 @@ impl<'a> Glancer<'a> {
         let mut choices = Vec::with_capacity(self.reduced.queries.len());
         self.ask_about_attributes(&mut choices);
         let rest = self.point(mass, &mut choices);
-        Glance { stop, class, entropy: summary.entropy, peak: summary.peak, choices, rest }
+        OneStepLookahead {
+            stop,
+            class,
+            entropy: summary.entropy,
+            peak: summary.peak,
+            choices,
+            rest,
+        }
     }
 
     fn ask_about_attributes(&self, choices: &mut Vec<Choice>) {
         let mut collected = None;
-        let mut cells = Vec::new();
+        let mut blocks = Vec::new();
         let mut greatest = TwoGreatest::default();
-        let mut here = Cell::default();
+        let mut here = Block::default();
         for &query in &self.reduced.queries {
-            let (Query::Is { column, .. } | Query::Which { column }) = query else { continue };
-            let unknown = self.reduced.column(column).unknown;
-            if collected != Some(column) {
-                collected = Some(column);
-                self.collect(column, &mut cells);
-                let unknown = unknown.map(|unknown| usize::from(unknown.cell));
-                let others = cells.iter().enumerate().filter(|(cell, _)| Some(*cell) != unknown);
+            let (Query::Is { partition, .. } | Query::Which { partition }) = query else {
+                continue;
+            };
+            let unknown = self.reduced.partition(partition).unknown;
+            if collected != Some(partition) {
+                collected = Some(partition);
+                self.collect(partition, &mut blocks);
+                let unknown = unknown.map(|unknown| usize::from(unknown.block));
+                let others = blocks.iter().enumerate().filter(|(block, _)| Some(*block) != unknown);
                 greatest = TwoGreatest::of(others.map(|(_, sum)| sum));
-                here = self.all.without(&self.absent, greatest.but(&Cell::default()));
+                here = self.all.without(&self.absent, greatest.but(&Block::default()));
             }
             choices.push(match query {
-                Query::Is { cell, .. } => {
-                    let yes = &cells[usize::from(cell)];
+                Query::Is { block, .. } => {
+                    let yes = &blocks[usize::from(block)];
                     let no = here.without(yes, greatest.but(yes));
                     let unknown = unknown.map_or(0.0, |unknown| unknown.yes);
                     self.yes_no(query, yes, &no, unknown)
                 }
-                _ => self.open(query, column, &cells),
+                _ => self.open(query, partition, &blocks),
             });
         }
     }
 
-    /// Sums the classes of every cell of a column: the inner loop of all planning.
-    fn collect(&self, column: u16, cells: &mut Vec<Cell>) {
-        let column = self.reduced.column(column);
-        cells.clear();
-        cells.resize(column.values.len(), Cell::default());
-        let classes = column.cells.iter().zip(&self.classes);
+    /// Sums the classes of every block of a partition: the inner loop of all planning.
+    fn collect(&self, partition: u16, blocks: &mut Vec<Block>) {
+        let partition = self.reduced.partition(partition);
+        blocks.clear();
+        blocks.resize(partition.values.len(), Block::default());
+        let classes = partition.blocks.iter().zip(&self.classes);
         let Some((share, worth)) = self.alike else {
-            return classes.for_each(|(cell, class)| {
-                let sum = &mut cells[usize::from(*cell)];
+            return classes.for_each(|(block, class)| {
+                let sum = &mut blocks[usize::from(*block)];
                 *sum = sum.plus(class);
             });
         };
-        for (cell, class) in classes {
-            let sum = &mut cells[usize::from(*cell)];
+        for (block, class) in classes {
+            let sum = &mut blocks[usize::from(*block)];
             sum.mass += class.mass;
             sum.log += class.log;
             sum.peak = if class.mass > sum.peak { class.mass } else { sum.peak };
         }
-        for sum in cells {
+        for sum in blocks {
             sum.worth = sum.mass * worth;
             sum.top = sum.peak * share;
         }
@@ -132,7 +141,7 @@ impl<'a> Glancer<'a> {
 
     /// A question to which some classes say yes and some no, and what is not here yes with
     /// probability `unknown`.
-    fn yes_no(&self, query: Query, yes: &Cell, no: &Cell, unknown: f64) -> Choice {
+    fn yes_no(&self, query: Query, yes: &Block, no: &Block, unknown: f64) -> Choice {
         let channel = self.reduced.channel(query);
         let mut outlook = Outlook::new(self.bound);
         for (is, not, unsure) in
@@ -144,15 +153,15 @@ impl<'a> Glancer<'a> {
         outlook.choice(query, channel, self.entropy)
     }
 
-    fn open(&self, query: Query, column: u16, cells: &[Cell]) -> Choice {
-        let column = self.reduced.column(column);
-        let channel = &column.open;
-        let named = || column.named().map(|cell| &cells[usize::from(cell)]);
-        let lacking = (0..cells.len()).filter(|cell| column.values[*cell].is_none());
-        let lack = lacking.fold(Cell::default(), |sum, cell| sum.plus(&cells[cell]));
+    fn open(&self, query: Query, partition: u16, blocks: &[Block]) -> Choice {
+        let partition = self.reduced.partition(partition);
+        let channel = &partition.open;
+        let named = || partition.named().map(|block| &blocks[usize::from(block)]);
+        let lacking = (0..blocks.len()).filter(|block| partition.values[*block].is_none());
+        let lack = lacking.fold(Block::default(), |sum, block| sum.plus(&blocks[block]));
         let greatest = TwoGreatest::of(named());
-        // No cell is greater than all of them, so nothing is left out of the maxima here.
-        let having = self.all.without(&lack, greatest.but(&Cell::default()));
+        // No block is greater than all of them, so nothing is left out of the maxima here.
+        let having = self.all.without(&lack, greatest.but(&Block::default()));
         let mut outlook = Outlook::new(self.bound);
         for own in named() {
             let others = having.without(own, greatest.but(own));
@@ -184,7 +193,7 @@ impl<'a> Glancer<'a> {
         pointed.dedup_by(|next, kept| self.reduced.interchange(*next, *kept, mass));
         let here = self.classes.iter().enumerate().filter(|(c, _)| Some(*c) != self.reduced.absent);
         let greatest = TwoGreatest::of(here.map(|(_, class)| class));
-        let here = self.all.without(&self.absent, greatest.but(&Cell::default()));
+        let here = self.all.without(&self.absent, greatest.but(&Block::default()));
         for class in pointed {
             let yes = &self.classes[class as usize];
             let no = here.without(yes, greatest.but(yes));
@@ -215,7 +224,7 @@ impl<'a> Outlook<'a> {
         Self { bound, value: Value::default(), entropy: 0.0 }
     }
 
-    fn add(&mut self, heard: &Cell) {
+    fn add(&mut self, heard: &Block) {
         let belief: Summary = heard.summary();
         self.value.add(heard.mass, &self.bound.value(&belief));
         self.entropy += heard.mass * belief.entropy;

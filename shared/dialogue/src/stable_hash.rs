@@ -2,18 +2,18 @@
 
 /// Two independent mixing lanes: keys that differ collide with one chance in about 1e30.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Mix {
+pub(crate) struct StableHash128 {
     low: u64,
     high: u64,
 }
 
-impl Default for Mix {
+impl Default for StableHash128 {
     fn default() -> Self {
         Self { low: 0x9e37_79b9_7f4a_7c15, high: 0xc2b2_ae3d_27d4_eb4f }
     }
 }
 
-impl Mix {
+impl StableHash128 {
     pub(crate) fn add(self, part: u64) -> Self {
         Self {
             low: (self.low ^ part).wrapping_mul(0xff51_afd7_ed55_8ccd).rotate_left(29),

@@ -4,7 +4,7 @@ use super::bound::Summary;
 
 /// Sums and maxima over some classes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Cell {
+pub(super) struct Block {
     /// `Σ b`.
     pub(super) mass: f64,
     /// `Σ b ln b`.
@@ -17,7 +17,7 @@ pub(super) struct Cell {
     pub(super) top: f64,
 }
 
-impl Cell {
+impl Block {
     /// One class: its probability, the share of its best object, and its worth `r`.
     pub(super) fn class(mass: f64, share: f64, worth: f64) -> Self {
         let log = if mass > 0.0 { mass * mass.ln() } else { 0.0 };
@@ -79,7 +79,7 @@ pub(super) struct Maxima {
     top: f64,
 }
 
-/// The two greatest of each, so that the maxima of all cells but one are known at once.
+/// The two greatest of each, so that the maxima of all blocks but one are known at once.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct TwoGreatest {
     first: Maxima,
@@ -87,22 +87,22 @@ pub(super) struct TwoGreatest {
 }
 
 impl TwoGreatest {
-    pub(super) fn of<'a>(cells: impl Iterator<Item = &'a Cell>) -> Self {
+    pub(super) fn of<'a>(blocks: impl Iterator<Item = &'a Block>) -> Self {
         let mut two = Self::default();
-        for cell in cells {
-            two.second.peak = two.second.peak.max(cell.peak.min(two.first.peak));
-            two.first.peak = two.first.peak.max(cell.peak);
-            two.second.top = two.second.top.max(cell.top.min(two.first.top));
-            two.first.top = two.first.top.max(cell.top);
+        for block in blocks {
+            two.second.peak = two.second.peak.max(block.peak.min(two.first.peak));
+            two.first.peak = two.first.peak.max(block.peak);
+            two.second.top = two.second.top.max(block.top.min(two.first.top));
+            two.first.top = two.first.top.max(block.top);
         }
         two
     }
 
-    /// The maxima over all cells that were looked at but this one.
-    pub(super) fn but(&self, cell: &Cell) -> Maxima {
+    /// The maxima over all blocks that were looked at but this one.
+    pub(super) fn but(&self, block: &Block) -> Maxima {
         Maxima {
-            peak: if cell.peak < self.first.peak { self.first.peak } else { self.second.peak },
-            top: if cell.top < self.first.top { self.first.top } else { self.second.top },
+            peak: if block.peak < self.first.peak { self.first.peak } else { self.second.peak },
+            top: if block.top < self.first.top { self.first.top } else { self.second.top },
         }
     }
 }

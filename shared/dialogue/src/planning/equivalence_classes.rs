@@ -7,8 +7,8 @@ use scene::{AttributeId, ObjectId, Question};
 
 use crate::{Action, Belief, DecisionProblem};
 
-/// Classes of objects, in the scene's order.
-pub(super) struct Classes {
+/// Equivalence classes of objects, in the scene's order.
+pub(super) struct EquivalenceClasses {
     pub(super) mass: Vec<f64>,
     pub(super) best: Vec<ObjectId>,
     pub(super) share: Vec<f64>,
@@ -19,7 +19,7 @@ pub(super) struct Classes {
 /// what is at stake in a pick.
 const NEGLIGIBLE: f64 = 1e-9;
 
-impl Classes {
+impl EquivalenceClasses {
     pub(super) fn of(problem: &DecisionProblem<'_>, belief: &Belief) -> Self {
         let probability = belief.probabilities();
         let floor = NEGLIGIBLE / probability.len() as f64;

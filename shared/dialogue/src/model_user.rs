@@ -1,23 +1,18 @@
-//! Simulated people who want one object: a truthful one and one who answers as the model says.
+//! The user whom the observation model assumes.
 
 use scene::{ObjectId, Question};
 
 use crate::{Answer, Model, Rng};
 
-/// Returns the answer of a user who neither errs nor stays silent; [`Answer::text`] has the words.
-pub fn truthful_answer(model: &Model, question: Question, wanted: ObjectId) -> Answer {
-    Answer::truthful(model, question, wanted)
-}
-
 /// A person who answers with the probabilities of eq. (6) and (7): silent with `1 − p_l`, wrong
 /// with `ε`. The same seed answers the same.
 #[derive(Clone, Debug)]
-pub struct SimulatedUser {
+pub struct ModelUser {
     wanted: ObjectId,
     rng: Rng,
 }
 
-impl SimulatedUser {
+impl ModelUser {
     /// A person who wants that object.
     pub fn new(wanted: ObjectId, seed: u64) -> Self {
         Self { wanted, rng: Rng::new(seed) }
@@ -58,7 +53,7 @@ mod tests {
         let scene = bowls();
         let model = Model::new(&scene, Params { p_l: 0.8, epsilon: 0.2, alpha: 0.2 });
         let wanted = scene.object_named("metal2").unwrap();
-        let mut user = SimulatedUser::new(wanted, 61);
+        let mut user = ModelUser::new(wanted, 61);
         let actions = Actions { mode: Mode::Present, ..Actions::default() };
         for question in actions.questions(&model) {
             const DRAWS: u32 = 2_000;
@@ -77,7 +72,7 @@ mod tests {
     fn the_same_seed_is_the_same_person() {
         let model = Model::new(&bowls(), Params::default());
         let talk = |seed| {
-            let mut user = SimulatedUser::wanting_any(&model, seed);
+            let mut user = ModelUser::wanting_any(&model, seed);
             let answers: Vec<_> =
                 (0..50).map(|i| user.answer(&model, Question::Point((i % 6).into()))).collect();
             (user.wanted(), answers)

@@ -5,18 +5,18 @@ use scene::{AttributeId, ObjectId, Question, ValueId};
 use super::channel::{Channel, Channels};
 use crate::{DecisionProblem, Model};
 
-/// An attribute that tells classes apart: those of one cell have the same value.
+/// An attribute that tells classes apart: those of one block have the same value.
 #[derive(Debug)]
-pub(crate) struct Column {
+pub(crate) struct Partition {
     pub(crate) attribute: AttributeId,
-    /// The cell of every class.
-    pub(crate) cells: Vec<u16>,
-    /// The value of every cell; `None` for the cell of classes that lack the attribute, and for
+    /// The block of every class.
+    pub(crate) blocks: Vec<u16>,
+    /// The value of every block; `None` for the block of classes that lack the attribute, and for
     /// that of what is not here.
     pub(crate) values: Vec<Option<ValueId>>,
-    /// The cell of what is not here.
+    /// The block of what is not here.
     pub(crate) unknown: Option<Unknown>,
-    /// How "is its k v?" is answered, per cell.
+    /// How "is its k v?" is answered, per block.
     pub(crate) yes_no: Channels,
     /// How "what is its k?" is answered.
     pub(crate) open: Channel,
@@ -25,7 +25,7 @@ pub(crate) struct Column {
 /// Answers to "is its k v?" about a wanted object that is not here.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Unknown {
-    pub(crate) cell: u16,
+    pub(crate) block: u16,
     /// Probability of yes, given an answer.
     pub(crate) yes: f64,
 }
@@ -37,7 +37,7 @@ impl Unknown {
     }
 }
 
-impl Column {
+impl Partition {
     /// The partition that an attribute makes of classes, of each of which one object is given;
     /// none if it separates nothing.
     pub(super) fn of(
@@ -46,9 +46,9 @@ impl Column {
         classes: &[ObjectId],
     ) -> Option<Self> {
         let model = problem.model;
-        let mut cell_of = vec![None; model.values(k) + 2];
+        let mut block_of = vec![None; model.values(k) + 2];
         let mut values = Vec::new();
-        let mut cells = Vec::with_capacity(classes.len());
+        let mut blocks = Vec::with_capacity(classes.len());
         for object in classes {
             let entry = model.column(k)[object.index()];
             let place = match entry {
@@ -56,11 +56,11 @@ impl Column {
                 Model::UNKNOWN => model.values(k) + 1,
                 value => usize::from(value),
             };
-            let cell = *cell_of[place].get_or_insert_with(|| {
+            let block = *block_of[place].get_or_insert_with(|| {
                 values.push((entry < Model::UNKNOWN).then_some(ValueId(entry)));
                 (values.len() - 1) as u16
             });
-            cells.push(cell);
+            blocks.push(block);
         }
         if values.len() < 2 {
             return None;
@@ -68,33 +68,33 @@ impl Column {
         let lacking = values.contains(&None);
         let named = values.iter().flatten().count();
         let absent = model.values(k) - named;
-        let unknown = cell_of[model.values(k) + 1];
-        let unknown = unknown.map(|cell| Unknown { cell, yes: model.unknown_yes(k) });
+        let unknown = block_of[model.values(k) + 1];
+        let unknown = unknown.map(|block| Unknown { block, yes: model.unknown_yes(k) });
         let open = Channel::open(problem, k, named, absent, lacking);
         let is = |value: &Option<ValueId>| {
             value.map_or(Question::None, |value| Question::Attribute(k, value))
         };
         let yes_no = Channels::yes_no(problem, problem.costs.attribute_s, values.iter().map(is));
-        Some(Self { attribute: k, cells, values, unknown, yes_no, open })
+        Some(Self { attribute: k, blocks, values, unknown, yes_no, open })
     }
 
-    /// Whether classes in that cell have no value to be named.
-    pub(super) fn lacks(&self, cell: u16) -> bool {
-        self.values[usize::from(cell)].is_none()
+    /// Whether classes in that block have no value to be named.
+    pub(super) fn lacks(&self, block: u16) -> bool {
+        self.values[usize::from(block)].is_none()
     }
 
-    /// The cells that have a value.
+    /// The blocks that have a value.
     pub(super) fn named(&self) -> impl Iterator<Item = u16> {
-        (0..self.values.len() as u16).filter(|cell| !self.lacks(*cell))
+        (0..self.values.len() as u16).filter(|block| !self.lacks(*block))
     }
 
-    /// Every value's cell, with the exclusive or of its classes' codes.
+    /// Every value's block, with the exclusive or of its classes' codes.
     pub(super) fn sets(&self, codes: &[u64]) -> impl Iterator<Item = (u16, u64)> {
         let mut sets = vec![0; self.values.len()];
-        for (cell, code) in self.cells.iter().zip(codes) {
-            sets[usize::from(*cell)] ^= code;
+        for (block, code) in self.blocks.iter().zip(codes) {
+            sets[usize::from(*block)] ^= code;
         }
-        self.named().map(move |cell| (cell, sets[usize::from(cell)]))
+        self.named().map(move |block| (block, sets[usize::from(block)]))
     }
 
     /// Whether its open question tells anything: not if there is one value to name.
@@ -109,9 +109,9 @@ impl Column {
             && self.open.own == self.yes_no.of(0).own
     }
 
-    /// Equal for columns whose open questions have the same answers for every class.
+    /// Equal for partitions whose open questions have the same answers for every class.
     pub(super) fn identity(&self) -> (Vec<u16>, Vec<u16>, [u64; 3]) {
         let answers = [self.open.other, self.open.lacking, self.open.absent_other];
-        (self.cells.clone(), self.named().collect(), answers.map(f64::to_bits))
+        (self.blocks.clone(), self.named().collect(), answers.map(f64::to_bits))
     }
 }
