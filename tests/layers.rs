@@ -66,6 +66,12 @@ fn grounding_links_neither_kinematics_nor_charts() {
 }
 
 #[test]
+fn messages_depend_on_no_configuration() {
+    let tree = tree("messages");
+    assert!(tree.contains("dialogue") && !tree.contains("config"), "{tree:?}");
+}
+
+#[test]
 fn no_service_depends_on_a_service() {
     let direct = dependencies();
     for service in SERVICES {

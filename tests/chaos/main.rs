@@ -3,8 +3,8 @@
 //! Every dialogue must end with the right object picked once, and the journals must fold again to
 //! the same belief. Prints the seed and what was done; exit code 70 on a broken invariant.
 
-use config::Service;
 use dialogue::Rng;
+use messages::Service;
 use rustix::process::Signal;
 use std::io::Write;
 use std::process::ExitCode;

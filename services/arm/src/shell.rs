@@ -2,7 +2,8 @@
 
 use crate::state::Record;
 use crate::{ArmNode, Config, In, Out, inspection};
-use config::{Driver, Service, Settings};
+use config::{Driver, Settings};
+use messages::Service;
 use messages::{
     ArmStatus, JointStates, MotionCommand, RobotAct, TrajectoryView, WorldView, topics,
 };

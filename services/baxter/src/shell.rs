@@ -2,8 +2,9 @@
 
 use crate::robot::side;
 use crate::{BaxterNode, Config, In, Out};
-use config::{Service, Settings};
+use config::Settings;
 use manipulation::Limb;
+use messages::Service;
 use messages::Topic;
 use messages::robot::{
     AssemblyState, Drill, EndEffectorCommand, EndEffectorProperties, EndEffectorState,

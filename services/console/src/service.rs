@@ -7,7 +7,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
-use config::{Recogniser, Service, Settings, Voice};
+use config::{Recogniser, Settings, Voice};
+use messages::Service;
 use service::client::Client;
 use service::clock;
 use service::exit::{Exit, Failure};
@@ -38,8 +39,7 @@ pub fn run() -> ExitCode {
 fn serve(arguments: Vec<String>) -> Result<(), Failure> {
     let environment = Environment::read(arguments)?;
     let lifecycle = Lifecycle::begin(&environment.paths)?;
-    let settings = Settings::load_snapshot(&environment.paths.run())
-        .map_err(|e| Failure::new(Exit::Config, e.to_string()))?;
+    let settings = Settings::load_snapshot(&environment.paths.run())?;
     let mut console = Console::open(&environment, &settings)?;
     console.web.try_to_listen(clock::now());
     service_loop::drive(lifecycle, &mut console)

@@ -1,8 +1,9 @@
 //! Grounding's topics and configuration.
 
 use crate::{Config, GroundingNode};
-use config::{Service, Settings};
+use config::Settings;
 use language::{Language, Reader as TextReader};
+use messages::Service;
 use messages::{Observation, Utterance, topics};
 use service::bus::{PortError, Reader, Writer};
 use service::exit::{Exit, Failure};

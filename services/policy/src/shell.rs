@@ -1,8 +1,9 @@
 //! The policy's topics and configuration.
 
 use crate::{In, Out, PolicyNode, inspection, policy_cache};
-use config::{ManagerError, Service, Settings};
+use config::{ManagerError, Settings};
 use dialogue::manager::{Manager, Record};
+use messages::Service;
 use messages::{
     Activity, AppliedMark, ArmStatus, Observation, PolicyView, Presented, RobotAct, topics,
 };

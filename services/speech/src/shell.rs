@@ -7,9 +7,10 @@ use crate::devices::stream::PlaybackMask;
 use crate::record::Record;
 use crate::stream_events::StreamEvent;
 use crate::{Config, In, Out, Recognised, SpeechNode, doctor, inspection};
-use config::{Service, Settings};
+use config::Settings;
 use crossbeam_channel::Receiver;
 use language::{Language, Reader as TextReader};
+use messages::Service;
 use messages::{
     Activity, AppliedMark, ArmStatus, AudioChunk, Hearing, Injection, MotionCommand, Partial,
     Presented, Receipt, RobotAct, Utterance, topics,

@@ -13,7 +13,7 @@ use rustix::process::{
 };
 
 use crate::machine::Effect;
-use service::process_exit::ProcessExit;
+use service::exit::ProcessExit;
 
 /// A child that leads its own process group and has not been reaped.
 #[derive(Debug)]

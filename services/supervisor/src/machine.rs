@@ -10,7 +10,7 @@ use std::time::Duration;
 use crate::Time;
 use crate::restart_limiter::{RestartLimiter, Verdict};
 use crate::spec::Restart;
-use service::process_exit::ProcessExit;
+use service::exit::ProcessExit;
 
 pub use service::status::{Actual, Failure, Wanted};
 pub use vocabulary::{Effect, Event, HeldBecause, Limits};

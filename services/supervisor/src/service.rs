@@ -14,8 +14,8 @@ use crate::machine::{Effect, Event, Failure};
 use crate::notify::{Notification, NotifySocket};
 use crate::spawn::{self, Launch, SpawnError};
 use crate::spec::{Log, ServiceSpec};
+use service::exit::ProcessExit;
 use service::log_file;
-use service::process_exit::ProcessExit;
 
 /// A service, whether or not a process of it runs.
 #[derive(Debug)]

@@ -15,7 +15,7 @@ use thiserror::Error;
 use crate::before_exec;
 use crate::child::Child;
 use crate::lifeline::Lifeline;
-use service::process_exit::ProcessExit;
+use service::exit::ProcessExit;
 
 /// Command and environment of a new process.
 #[derive(Debug)]

@@ -233,7 +233,8 @@ impl Supervisor {
 
     fn bound_logs(&self) {
         let services = self.services.iter().filter(|service| service.running.is_some());
-        let names = services.map(|service| service.spec.name.as_str()).chain([config::SUPERVISOR]);
+        let names =
+            services.map(|service| service.spec.name.as_str()).chain([messages::SUPERVISOR]);
         for name in names {
             match service::log_file::bound(&self.around.paths.log_file(name), &self.around.log) {
                 Ok(true) => tracing::warn!(service = name, "its log grew too fast and was cut"),

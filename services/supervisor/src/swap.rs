@@ -68,7 +68,7 @@ mod tests {
     use crate::Time;
     use crate::group::tests::{LIMITS, service};
     use crate::machine::{Event, Limits};
-    use service::process_exit::ProcessExit;
+    use service::exit::ProcessExit;
 
     const NOW: Time = Duration::from_secs(1);
 

@@ -8,10 +8,10 @@ use std::io::{self, BufRead, BufReader, Read};
 
 use serde::de::DeserializeOwned;
 use serde_json::{Value as Json, json};
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
+use crate::Outcome;
 use crate::cli::InputArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
 mod belief;
@@ -49,7 +49,7 @@ where
         }
         line.clear();
         let unreadable =
-            |e: io::Error| CliError::new(Exit::Storage, format!("the input cannot be read: {e}"));
+            |e: io::Error| Failure::new(Exit::Storage, format!("the input cannot be read: {e}"));
         if input.read_until(b'\n', &mut line).map_err(unreadable)? == 0 {
             out.flush()?;
             return Ok(exit);
@@ -73,9 +73,9 @@ where
 ///
 /// # Errors
 /// There is no such file.
-pub fn open(input: &InputArgs) -> Result<Box<dyn Read>, CliError> {
+pub fn open(input: &InputArgs) -> Result<Box<dyn Read>, Failure> {
     let Some(path) = &input.input else { return Ok(Box::new(io::stdin().lock())) };
-    let file = File::open(path).map_err(|error| CliError::file(path, &error))?;
+    let file = File::open(path).map_err(|error| Failure::file(path, &error))?;
     Ok(Box::new(file))
 }
 

@@ -7,10 +7,9 @@ use diagnostics::TextFile;
 use manipulation::{Chain, JOINTS, Joints, Limb};
 use nalgebra::Isometry3;
 use robot_model::{Joint, Robot};
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
 use crate::cli::WhichArm;
-use crate::error::CliError;
 
 /// An arm of seven joints, and which of the robot's links it is about.
 #[derive(Debug)]
@@ -28,12 +27,12 @@ impl DescribedArm {
     ///
     /// # Errors
     /// The file cannot be read, everything that is wrong with it, or why it has no such arm.
-    pub fn load(robot: Option<&Path>, which: &WhichArm) -> Result<Self, CliError> {
+    pub fn load(robot: Option<&Path>, which: &WhichArm) -> Result<Self, Failure> {
         let robot = match robot {
             None => Cow::Borrowed(Robot::baxter()),
             Some(path) => Cow::Owned(read(path)?),
         };
-        Self::of(robot, which).map_err(|reason| CliError::new(Exit::Usage, reason))
+        Self::of(robot, which).map_err(|reason| Failure::new(Exit::Usage, reason))
     }
 
     /// Name, and pose in the root's frame, of each of its links at a posture (radians, or metres
@@ -51,9 +50,9 @@ impl DescribedArm {
     ///
     /// # Errors
     /// The chain cannot be solved for a pose: some joint does not turn between limits.
-    pub fn chain(&self) -> Result<Chain, CliError> {
+    pub fn chain(&self) -> Result<Chain, Failure> {
         Chain::from_description(&self.robot, &self.tip)
-            .map_err(|reason| CliError::new(Exit::Usage, reason.to_string()))
+            .map_err(|reason| Failure::new(Exit::Usage, reason.to_string()))
     }
 
     fn of(robot: Cow<'static, Robot>, which: &WhichArm) -> Result<Self, String> {
@@ -101,8 +100,8 @@ fn subtree(robot: &Robot, first: usize) -> Vec<usize> {
     links
 }
 
-fn read(path: &Path) -> Result<Robot, CliError> {
-    let text = std::fs::read_to_string(path).map_err(|error| CliError::file(path, &error))?;
+fn read(path: &Path) -> Result<Robot, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::file(path, &error))?;
     let urdf = TextFile::new(path.display().to_string(), text);
     Ok(Robot::read(&urdf, None)?)
 }
@@ -116,7 +115,7 @@ mod tests {
         robot: Option<&Path>,
         limb: Option<LimbArg>,
         tip: Option<&str>,
-    ) -> Result<DescribedArm, CliError> {
+    ) -> Result<DescribedArm, Failure> {
         DescribedArm::load(robot, &WhichArm { limb, tip: tip.map(str::to_owned) })
     }
 

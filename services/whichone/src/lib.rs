@@ -5,23 +5,23 @@
 //! harm. The batch tools run the very code that the services run, on lines in place of messages.
 
 use std::ffi::OsString;
-use std::io::ErrorKind;
 
 use clap::Parser;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
 use crate::cli::Cli;
-use crate::error::CliError;
 use crate::output::{Output, print_error};
 
 pub mod batch;
 pub mod cli;
 pub mod described_arm;
-pub mod error;
 pub mod output;
 pub mod scene_file;
 
 pub mod verbs;
+
+/// Result of a verb: its exit code, or a failure to report.
+pub type Outcome = Result<Exit, Failure>;
 
 /// Runs the command line `arguments`, program name first, and returns the exit code of the process.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
@@ -35,16 +35,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     };
     let mut out = Output::standard(cli.json);
     let ended = verbs::run(cli, &mut out).and_then(|exit| out.flush().map(|()| exit));
-    match ended {
-        Ok(exit) => exit,
-        // The reader has closed the pipe.
-        Err(CliError::Output(error)) if error.kind() == ErrorKind::BrokenPipe => Exit::Ok,
-        Err(error) => {
-            print_error(&error);
-            match error {
-                CliError::Failure(failure) => failure.exit,
-                CliError::Output(_) => Exit::Storage,
-            }
-        }
-    }
+    ended.unwrap_or_else(|failure| {
+        print_error(&failure);
+        failure.exit
+    })
 }

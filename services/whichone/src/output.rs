@@ -3,12 +3,11 @@
 //! Invariant: results go to standard output, as text or as JSON; progress and errors go to standard
 //! error. Colour appears on terminals only, and never where `NO_COLOR` is set.
 
+use service::exit::Failure;
 use std::fmt::{self, Display};
 use std::io::{self, BufWriter, IsTerminal, Write};
 
 use serde::Serialize;
-
-use crate::error::CliError;
 
 /// Output of a verb.
 pub struct Output<'a> {
@@ -83,7 +82,7 @@ impl<'a> Output<'a> {
     ///
     /// # Errors
     /// The output is closed or full.
-    pub fn line(&mut self, text: impl Display) -> Result<(), CliError> {
+    pub fn line(&mut self, text: impl Display) -> Result<(), Failure> {
         self.queue_line(text)?;
         self.flush()
     }
@@ -92,15 +91,15 @@ impl<'a> Output<'a> {
     ///
     /// # Errors
     /// The output is closed or full.
-    pub fn queue_line(&mut self, text: impl Display) -> Result<(), CliError> {
-        writeln!(self.sink, "{text}").map_err(CliError::Output)
+    pub fn queue_line(&mut self, text: impl Display) -> Result<(), Failure> {
+        writeln!(self.sink, "{text}").map_err(Failure::output)
     }
 
     /// Prints a value as one line of JSON, at once.
     ///
     /// # Errors
     /// The output is closed or full.
-    pub fn json(&mut self, value: &impl Serialize) -> Result<(), CliError> {
+    pub fn json(&mut self, value: &impl Serialize) -> Result<(), Failure> {
         self.queue_json(value)?;
         self.flush()
     }
@@ -109,17 +108,17 @@ impl<'a> Output<'a> {
     ///
     /// # Errors
     /// The output is closed or full.
-    pub fn queue_json(&mut self, value: &impl Serialize) -> Result<(), CliError> {
-        serde_json::to_writer(&mut self.sink, value).map_err(|e| CliError::Output(e.into()))?;
-        self.sink.write_all(b"\n").map_err(CliError::Output)
+    pub fn queue_json(&mut self, value: &impl Serialize) -> Result<(), Failure> {
+        serde_json::to_writer(&mut self.sink, value).map_err(|e| Failure::output(e.into()))?;
+        self.sink.write_all(b"\n").map_err(Failure::output)
     }
 
     /// Prints text as it is, at once.
     ///
     /// # Errors
     /// The output is closed or full.
-    pub fn text(&mut self, text: &str) -> Result<(), CliError> {
-        self.sink.write_all(text.as_bytes()).map_err(CliError::Output)?;
+    pub fn text(&mut self, text: &str) -> Result<(), Failure> {
+        self.sink.write_all(text.as_bytes()).map_err(Failure::output)?;
         self.flush()
     }
 
@@ -127,8 +126,8 @@ impl<'a> Output<'a> {
     ///
     /// # Errors
     /// The output is closed or full.
-    pub fn flush(&mut self) -> Result<(), CliError> {
-        self.sink.flush().map_err(CliError::Output)
+    pub fn flush(&mut self) -> Result<(), Failure> {
+        self.sink.flush().map_err(Failure::output)
     }
 }
 
@@ -160,10 +159,13 @@ pub fn note(text: impl Display) {
     let _ = writeln!(io::stderr(), "{text}");
 }
 
-/// Prints an error on standard error.
-pub fn print_error(error: &CliError) {
+/// Prints the message of a failure, if it has one, on standard error.
+pub fn print_error(failure: &Failure) {
+    if failure.message.is_empty() {
+        return;
+    }
     let style = Style { colour: io::stderr().is_terminal() && colour_is_welcome() };
-    note(format_args!("{} {error}", style.paint(Ink::Red, "error:")));
+    note(format_args!("{} {failure}", style.paint(Ink::Red, "error:")));
 }
 
 fn colour_is_welcome() -> bool {

@@ -1,18 +1,17 @@
 //! Scene files, in TOML or JSON.
 
+use service::exit::Failure;
 use std::path::Path;
 
 use diagnostics::{Diagnostic, Diagnostics};
 use scene::Scene;
 
-use crate::error::CliError;
-
 /// Reads a scene file: JSON where the text begins with a brace, else TOML.
 ///
 /// # Errors
 /// The file cannot be read, or every problem of its text.
-pub fn load(path: &Path) -> Result<Scene, CliError> {
-    let text = std::fs::read_to_string(path).map_err(|error| CliError::file(path, &error))?;
+pub fn load(path: &Path) -> Result<Scene, Failure> {
+    let text = std::fs::read_to_string(path).map_err(|error| Failure::file(path, &error))?;
     Ok(read(&path.display().to_string(), &text)?)
 }
 
@@ -45,7 +44,7 @@ mod tests {
     fn errors_name_the_file() {
         let broken = [("{", "invalid JSON"), ("name = ", "s:"), ("{\"objects\":[]}", "s:")];
         for (text, part) in broken {
-            let error = CliError::from(read("s", text).unwrap_err()).to_string();
+            let error = Failure::from(read("s", text).unwrap_err()).to_string();
             assert!(error.contains(part) && error.starts_with("s:"), "{text}: {error}");
         }
         let trouble = load(Path::new("/nowhere/scene.toml")).unwrap_err();

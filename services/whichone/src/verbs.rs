@@ -1,12 +1,15 @@
 //! The verbs, a file each or a family a file.
 
 use messages::MotionOrder;
+use service::control::Request;
+use service::group::GroupPaths;
 
+use crate::Outcome;
 use crate::cli::{ArmArgs, Awaited, Cli, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
-use crate::error::{CliError, Outcome};
 use crate::output::Output;
 use crate::{batch, scene_file};
+use service::exit::Failure;
 
 mod arm;
 mod await_pick;
@@ -40,16 +43,28 @@ mod words;
 /// # Errors
 /// The verb failed.
 pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
-    let paths = || paths::group_paths(&cli.group);
+    let paths = || GroupPaths::resolve(&cli.group);
     match cli.verb {
         Verb::Up(args) => up::up(&paths()?, &args, out),
         Verb::Down(args) => operate::down(&paths()?, args.timeout, out),
         Verb::Status => status::status(&paths()?, out),
-        Verb::Start(args) => operate::start(&paths()?, args, out),
-        Verb::Stop(args) => operate::stop(&paths()?, args, out),
+        Verb::Start(args) => {
+            let request = |service, wait_ms| Request::Start { service, wait_ms };
+            operate::on_service(&paths()?, request, args, out)
+        }
+        Verb::Stop(args) => {
+            let request = |service, wait_ms| Request::Stop { service, wait_ms };
+            operate::on_service(&paths()?, request, args, out)
+        }
         Verb::Restart(args) => operate::restart(&paths()?, args, out),
-        Verb::Hold(args) => operate::hold(&paths()?, args, out),
-        Verb::Release(args) => operate::release(&paths()?, args, out),
+        Verb::Hold(args) => {
+            let request = |service, wait_ms| Request::Hold { service, wait_ms };
+            operate::on_service(&paths()?, request, args, out)
+        }
+        Verb::Release(args) => {
+            let request = |service, wait_ms| Request::Release { service, wait_ms };
+            operate::on_service(&paths()?, request, args, out)
+        }
         Verb::Logs(args) => logs::logs(&paths()?, &args, out),
         Verb::Reload(args) => operate::reload(&paths()?, args.timeout, out),
         Verb::Check(args) => check::check(&args, out),
@@ -93,6 +108,6 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
     }
 }
 
-fn described_arm(args: &ArmArgs) -> Result<DescribedArm, CliError> {
+fn described_arm(args: &ArmArgs) -> Result<DescribedArm, Failure> {
     DescribedArm::load(args.robot.as_deref(), &args.which)
 }

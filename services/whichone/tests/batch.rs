@@ -8,10 +8,10 @@ use language::Language;
 use manipulation::Limb;
 use serde_json::{Value as Json, json};
 use service::exit::Exit;
+use whichone::Outcome;
 use whichone::batch::{self, Decider, Grounder};
 use whichone::cli::{LimbArg, WhichArm};
 use whichone::described_arm::DescribedArm;
-use whichone::error::Outcome;
 use whichone::output::Output;
 use whichone::scene_file;
 

@@ -32,6 +32,7 @@ use std::path::{Path, PathBuf};
 
 use ::dialogue::Durations;
 use diagnostics::{Diagnostic, Diagnostics, Report, Source, Table, TextFile};
+use messages::Service;
 use scene::Scene;
 
 pub use crate::arm::{Arm, Baxter, Driver, Grasps, Limb, Motion, Simulated};
@@ -42,7 +43,7 @@ pub use crate::gesture::Gesture;
 pub use crate::group::{Group, Log, RestartLimits};
 pub use crate::manager::ManagerError;
 pub use crate::resolved::{Origin, Section};
-pub use crate::services::{Restart, SUPERVISOR, Service, ServiceConfig};
+pub use crate::services::{Restart, ServiceConfig};
 pub use crate::snapshot::SNAPSHOT_FILE;
 pub use crate::speech::{Microphone, MicrophoneMode, Recogniser, Speech, Voice};
 pub use crate::study::Study;

@@ -13,6 +13,7 @@ pub mod payloads;
 pub mod pick;
 pub mod robot;
 pub mod schema;
+mod services;
 pub mod text;
 pub mod topics;
 pub mod wire;
@@ -22,6 +23,7 @@ pub use dialogue::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPha
 pub use fixed::*;
 pub use ids::{Epoch, Incarnation, RequestKey};
 pub use payloads::*;
+pub use services::{SUPERVISOR, Service};
 pub use text::{FixedText, TextTooLong};
 pub use topics::Topic;
 pub use wire::{Code, WireCode, WireError, WireField};

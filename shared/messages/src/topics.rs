@@ -4,8 +4,6 @@
 //! the writer until its effect is seen. A reader with a wake-up is notified after each send; clients
 //! poll.
 
-use config::Service;
-
 use crate::schema::{Schema, SchemaKey};
 use crate::*;
 

@@ -2,11 +2,10 @@
 //! folder so that groups never see each other.
 
 use crate::group::GroupPaths;
-use config::Service;
 use iceoryx2::prelude::*;
 use messages::schema::Schema;
 use messages::topics::Topic;
-use messages::{Epoch, Incarnation, Stamp, WireField};
+use messages::{Epoch, Incarnation, Service, Stamp, WireField};
 use serde::de::DeserializeOwned;
 
 mod encoded;

@@ -1,6 +1,20 @@
-//! Exit codes: part of the contract with the supervisor and with scripts.
+//! Exit codes, the failures that lead to them, and the exits of other processes: part of the contract
+//! with the supervisor and with scripts.
 
+use std::fmt;
+use std::io::{self, ErrorKind};
+use std::path::Path;
 use std::process::ExitCode;
+
+use diagnostics::Diagnostics;
+use serde::{Deserialize, Serialize};
+
+use crate::NodeError;
+use crate::bus::{BusError, PortError};
+use crate::client::ClientError;
+use crate::control::{CallError, Refusal};
+use crate::group::GroupError;
+use crate::launch::LaunchError;
 
 /// Exit code of a program of the group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,13 +52,13 @@ impl Exit {
     }
 }
 
-/// Premature end of a service.
+/// Premature end of a service or a verb.
 #[derive(Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct Failure {
     /// The exit code, from which the supervisor decides about a restart.
     pub exit: Exit,
-    /// For the log and the operator's status.
+    /// For the log, the operator's status and the terminal. Empty if there is nothing to report.
     pub message: String,
 }
 
@@ -53,26 +67,179 @@ impl Failure {
     pub fn new(exit: Exit, message: impl Into<String>) -> Self {
         Self { exit, message: message.into() }
     }
+
+    /// A file that cannot be read or written.
+    pub fn file(path: &Path, error: &io::Error) -> Self {
+        Self::new(Exit::Storage, format!("{}: {error}", path.display()))
+    }
+
+    /// Output that cannot be printed. A closed pipe is the reader's choice: the program ends
+    /// silently and with success.
+    pub fn output(error: io::Error) -> Self {
+        match error.kind() {
+            ErrorKind::BrokenPipe => Self::new(Exit::Ok, ""),
+            _ => Self::new(Exit::Storage, format!("cannot print: {error}")),
+        }
+    }
 }
 
-impl From<crate::bus::BusError> for Failure {
-    fn from(error: crate::bus::BusError) -> Self {
+impl From<BusError> for Failure {
+    fn from(error: BusError) -> Self {
         let exit = match error {
-            crate::bus::BusError::Schema { .. } => Exit::Config,
-            crate::bus::BusError::Ipc { .. } => Exit::NotReached,
+            BusError::Schema { .. } => Exit::Config,
+            BusError::Ipc { .. } => Exit::NotReached,
         };
         Self::new(exit, error.to_string())
     }
 }
 
-impl From<crate::bus::PortError> for Failure {
-    fn from(error: crate::bus::PortError) -> Self {
+impl From<PortError> for Failure {
+    fn from(error: PortError) -> Self {
         Self::new(Exit::NotReached, error.to_string())
     }
 }
 
-impl From<crate::NodeError> for Failure {
-    fn from(error: crate::NodeError) -> Self {
+impl From<NodeError> for Failure {
+    fn from(error: NodeError) -> Self {
         Self::new(Exit::Config, error.to_string())
+    }
+}
+
+impl From<Diagnostics> for Failure {
+    fn from(diagnostics: Diagnostics) -> Self {
+        Self::new(Exit::Config, diagnostics.to_string())
+    }
+}
+
+impl From<GroupError> for Failure {
+    fn from(error: GroupError) -> Self {
+        Self::new(Exit::Usage, error.to_string())
+    }
+}
+
+impl From<ClientError> for Failure {
+    fn from(error: ClientError) -> Self {
+        match error {
+            ClientError::Bus(error) => error.into(),
+            other => Self::new(Exit::NotReached, other.to_string()),
+        }
+    }
+}
+
+impl From<CallError> for Failure {
+    fn from(error: CallError) -> Self {
+        match error {
+            CallError::Refused(refusal) => refusal.into(),
+            other => Self::new(Exit::NotReached, other.to_string()),
+        }
+    }
+}
+
+impl From<Refusal> for Failure {
+    fn from(refusal: Refusal) -> Self {
+        let details = refusal.details.iter().map(|line| format!("\n  {line}"));
+        let exit = refusal.exit();
+        Self::new(exit, details.fold(refusal.message, |text, line| text + &line))
+    }
+}
+
+impl From<LaunchError> for Failure {
+    fn from(error: LaunchError) -> Self {
+        match error {
+            LaunchError::Call(error) => error.into(),
+            other => Self::new(other.exit(), other.to_string()),
+        }
+    }
+}
+
+/// Exit of one incarnation of a service.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ProcessExit {
+    /// It exited with this code.
+    Code(i32),
+    /// This signal ended it.
+    Signal(i32),
+    /// It could not be started; a retry may succeed (e.g. no process slot).
+    NotStarted,
+    /// It could not be started; a retry cannot succeed (e.g. no such program).
+    NotStartable,
+}
+
+impl ProcessExit {
+    /// Returns true if a restart of the same command cannot help.
+    pub fn is_permanent(self) -> bool {
+        match self {
+            Self::Code(code) => {
+                matches!(Exit::of_process(Some(code)), Exit::Config | Exit::Usage)
+            }
+            exit => exit == Self::NotStartable,
+        }
+    }
+
+    /// Returns true if it ended with exit code 0.
+    pub fn is_clean(self) -> bool {
+        self == Self::Code(0)
+    }
+}
+
+impl fmt::Display for ProcessExit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Code(78) => write!(f, "exit 78 (configuration or schema refused)"),
+            Self::Code(64) => write!(f, "exit 64 (command line refused)"),
+            Self::Code(code) => write!(f, "exit {code}"),
+            Self::Signal(signal) => match signal_name(signal) {
+                Some(name) => write!(f, "signal {name}"),
+                None => write!(f, "signal {signal}"),
+            },
+            Self::NotStarted | Self::NotStartable => write!(f, "could not be started"),
+        }
+    }
+}
+
+/// Names of the signals that end services in practice; the same numbers on every Linux this runs on.
+fn signal_name(signal: i32) -> Option<&'static str> {
+    Some(match signal {
+        1 => "HUP",
+        2 => "INT",
+        3 => "QUIT",
+        4 => "ILL",
+        6 => "ABRT",
+        7 => "BUS",
+        8 => "FPE",
+        9 => "KILL",
+        11 => "SEGV",
+        13 => "PIPE",
+        15 => "TERM",
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_permanent_exits_prevent_a_restart() {
+        for exit in [ProcessExit::Code(64), ProcessExit::Code(78), ProcessExit::NotStartable] {
+            assert!(exit.is_permanent(), "{exit}");
+        }
+        for exit in [
+            ProcessExit::Code(0),
+            ProcessExit::Code(1),
+            ProcessExit::Code(75),
+            ProcessExit::Signal(9),
+            ProcessExit::NotStarted,
+        ] {
+            assert!(!exit.is_permanent(), "{exit}");
+        }
+    }
+
+    #[test]
+    fn exits_are_displayed_with_signal_names() {
+        assert_eq!(ProcessExit::Signal(9).to_string(), "signal KILL");
+        assert_eq!(ProcessExit::Signal(40).to_string(), "signal 40");
+        assert_eq!(ProcessExit::Code(3).to_string(), "exit 3");
     }
 }

@@ -2,7 +2,7 @@
 //! `whichone-SERVICE journal …` and `whichone-SERVICE doctor …`, so that only the service itself
 //! knows its records and its devices.
 
-use std::io::{self, BufWriter, ErrorKind, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use config::Settings;
@@ -11,6 +11,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::exit::{Exit, Failure};
+use crate::log_file;
 use crate::service_loop::{Program, Record};
 
 /// One file of a journal.
@@ -119,9 +120,8 @@ pub(crate) fn run<P: Program>(arguments: &[String]) -> Option<Exit> {
         _ => return None,
     };
     let mut out = BufWriter::new(io::stdout().lock());
-    let ended = Request::parse(&arguments[1..])
-        .and_then(|request| inspect(&request, &mut out))
-        .and_then(|()| out.flush().map_err(unprinted));
+    let ended = inspect(&Request::parse(&arguments[1..]), &mut out)
+        .and_then(|()| out.flush().map_err(Failure::output));
     Some(match ended {
         Ok(()) => Exit::Ok,
         Err(failure) => {
@@ -143,7 +143,7 @@ struct Request {
 }
 
 impl Request {
-    fn parse(arguments: &[String]) -> Result<Self, Failure> {
+    fn parse(arguments: &[String]) -> Self {
         let mut request = Self::default();
         let mut words = arguments.iter();
         while let Some(word) = words.next() {
@@ -154,12 +154,11 @@ impl Request {
                 file => request.file = file.into(),
             }
         }
-        Ok(request)
+        request
     }
 
     fn settings(&self) -> Result<Settings, Failure> {
-        Settings::load_snapshot(&self.settings)
-            .map_err(|error| Failure::new(Exit::Config, error.to_string()))
+        Ok(Settings::load_snapshot(&self.settings)?)
     }
 }
 
@@ -193,7 +192,7 @@ fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fail
             }
         }
     }
-    out.flush().map_err(unprinted)?;
+    out.flush().map_err(Failure::output)?;
     check_ending(&part)
 }
 
@@ -225,7 +224,7 @@ fn verify<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fai
         #[serde(skip_serializing_if = "Option::is_none")]
         facts: Option<Vec<String>>,
     }
-    let older = (1..=journal::KEPT).rev().map(|n| numbered_file(&request.file, n));
+    let older = (1..=journal::KEPT).rev().map(|n| log_file::numbered(&request.file, n));
     let files = older.filter(|file| file.is_file()).chain([request.file.clone()]);
     let parts: Vec<_> = files.map(|file| Part::read(&file)).collect::<Result<_, _>>()?;
     parts.iter().try_for_each(check_ending)?;
@@ -251,24 +250,10 @@ fn verify<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fai
 }
 
 fn json_line(out: &mut impl Write, value: &impl Serialize) -> Result<(), Failure> {
-    serde_json::to_writer(&mut *out, value).map_err(|error| unprinted(error.into()))?;
+    serde_json::to_writer(&mut *out, value).map_err(|error| Failure::output(error.into()))?;
     line(out, "")
 }
 
 fn line(out: &mut impl Write, text: impl std::fmt::Display) -> Result<(), Failure> {
-    writeln!(out, "{text}").map_err(unprinted)
-}
-
-/// A failure to print; a closed pipe is the reader's choice and not an error.
-fn unprinted(error: io::Error) -> Failure {
-    match error.kind() {
-        ErrorKind::BrokenPipe => Failure::new(Exit::Ok, ""),
-        _ => Failure::new(Exit::Storage, format!("cannot print: {error}")),
-    }
-}
-
-fn numbered_file(path: &Path, number: usize) -> PathBuf {
-    let mut name = path.as_os_str().to_owned();
-    name.push(format!(".{number}"));
-    name.into()
+    writeln!(out, "{text}").map_err(Failure::output)
 }

@@ -1,6 +1,6 @@
 //! Start of a supervisor from the command line: in the foreground, or detached from the terminal.
 
-use config::SUPERVISOR;
+use messages::SUPERVISOR;
 use std::env;
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -16,7 +16,7 @@ use crate::group::{ENV_HOME, GroupName, GroupPaths};
 use config::Log;
 use thiserror::Error;
 
-use crate::control::{CallError, Refusal, Reply, Request, call};
+use crate::control::{CallError, Reply, Request, call};
 use crate::log_file;
 
 /// Interval at which a starting supervisor is polled.
@@ -70,12 +70,9 @@ pub enum LaunchError {
         /// Its log.
         log: PathBuf,
     },
-    /// The status request failed.
+    /// The supervisor did not answer, or the group did not become ready.
     #[error(transparent)]
     Call(#[from] CallError),
-    /// The group did not become ready.
-    #[error("{}{}", .0.message, indented(&.0.details))]
-    Refused(Refusal),
 }
 
 impl LaunchError {
@@ -86,7 +83,6 @@ impl LaunchError {
                 Exit::Ok => Exit::NotReached,
                 exit => exit,
             },
-            Self::Refused(refusal) => refusal.exit(),
             Self::Io { .. } => Exit::Storage,
             Self::Late { .. } | Self::Call(_) => Exit::NotReached,
         }
@@ -215,13 +211,10 @@ impl Launched {
 pub fn wait_ready(paths: &GroupPaths, timeout: Duration) -> Result<String, LaunchError> {
     let wait_ms = u64::try_from(timeout.as_millis()).unwrap_or(u64::MAX);
     let request = Request::WaitReady { wait_ms };
-    match call(&paths.control_socket(), &request, timeout + ANSWER_PATIENCE)? {
+    let socket = paths.control_socket();
+    match call(&socket, &request, timeout + ANSWER_PATIENCE)? {
         Reply::Done { message } => Ok(message),
-        Reply::Refused(refusal) => Err(LaunchError::Refused(refusal)),
-        other => Err(LaunchError::Call(CallError::Unintelligible {
-            group: paths.name().to_string(),
-            why: format!("{other:?}"),
-        })),
+        other => Err(CallError::unintelligible(&socket, format!("{other:?}")).into()),
     }
 }
 

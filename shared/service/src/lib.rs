@@ -15,7 +15,6 @@ pub mod lifecycle;
 pub mod log_file;
 pub mod logging;
 mod notify;
-pub mod process_exit;
 mod reducer;
 pub mod service_loop;
 pub mod shm_cleanup;

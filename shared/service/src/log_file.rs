@@ -1,6 +1,7 @@
 //! The services' logs: files that the services themselves append to, so that nothing is lost when
 //! either side dies and no writer waits for a reader. The supervisor only bounds their size.
 
+use std::fmt::Display;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -92,7 +93,8 @@ fn shift(path: &Path, files_kept: u32) -> io::Result<()> {
     Ok(())
 }
 
-fn numbered(path: &Path, number: u32) -> PathBuf {
+/// Path of an older file, e.g. `arm.log.1`.
+pub(crate) fn numbered(path: &Path, number: impl Display) -> PathBuf {
     let mut name = path.as_os_str().to_owned();
     name.push(format!(".{number}"));
     name.into()

@@ -12,8 +12,9 @@ use crate::lifecycle::{Environment, Lifecycle};
 use crate::logging;
 use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
 use crate::{Effects, Event, Node, Span, Time};
-use config::{Service, Settings};
+use config::Settings;
 use journal::{Header, Journal, JournalOpenError};
+use messages::Service;
 use serde::{Serialize, de::DeserializeOwned};
 use std::ops::ControlFlow;
 use std::os::fd::BorrowedFd;
@@ -150,8 +151,7 @@ fn help(name: &str, about: &str) -> ExitCode {
 fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
     let environment = Environment::read(arguments)?;
     let lifecycle = Lifecycle::begin(&environment.paths)?;
-    let settings = Settings::load_snapshot(&environment.paths.run())
-        .map_err(|e| Failure::new(Exit::Config, e.to_string()))?;
+    let settings = Settings::load_snapshot(&environment.paths.run())?;
     let config = P::config(&environment, &settings)?;
     let (journal, records) = open_journal::<P>(&environment)?;
     let node = P::Node::recover(config, records)?;

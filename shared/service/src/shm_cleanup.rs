@@ -55,7 +55,7 @@ impl Admin {
         std::fs::create_dir_all(paths.ipc())
             .map_err(|e| BusError::ipc("iceoryx2 folder", e.to_string()))?;
         let identity = Identity { epoch, ..Identity::default() };
-        let bus = Bus::open(paths, config::SUPERVISOR, identity)?;
+        let bus = Bus::open(paths, messages::SUPERVISOR, identity)?;
         bus.node().blocking_cleanup_dead_nodes(CLEANUP_PATIENCE);
         let topics = Topics::create(&bus)?;
         Ok(Self { bus, _topics: topics, root: paths.ipc() })

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use crate::process_exit::ProcessExit;
+use crate::exit::ProcessExit;
 
 /// A group at one moment.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -42,7 +42,6 @@ pub(crate) fn watch(
                 let restart = Request::Restart { service, original: false, wait_ms: 0 };
                 let outcome = match call(&socket, &restart, PATIENCE) {
                     Ok(Reply::Done { message }) => Ok(Some(Answer::Supervisor { message })),
-                    Ok(Reply::Refused(refusal)) => Err(refusal.message),
                     Ok(_) => Ok(None),
                     Err(error) => Err(error.to_string()),
                 };

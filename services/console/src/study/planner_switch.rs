@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, bounded};
-use service::control::{Reply, Request, call};
+use service::control::{Request, call};
 
 use super::trial_monitor::RobotRequest;
 
@@ -71,9 +71,5 @@ fn carry_out(socket: &Path, policy: &Path, request: &RobotRequest) -> Result<(),
         }
         RobotRequest::Restore(_) => Request::Restart { service, original: true, wait_ms: READY_MS },
     };
-    match call(socket, &order, PATIENCE) {
-        Ok(Reply::Refused(refusal)) => Err(refusal.message),
-        Ok(_) => Ok(()),
-        Err(error) => Err(error.to_string()),
-    }
+    call(socket, &order, PATIENCE).map(drop).map_err(|error| error.to_string())
 }

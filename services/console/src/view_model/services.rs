@@ -1,6 +1,6 @@
 //! Services that the group has lost or that are back.
 
-use config::Service;
+use messages::Service;
 use service::status::Actual;
 use service::status::{GroupStatus, ServiceStatus};
 

@@ -2,7 +2,8 @@
 
 use std::env;
 
-use config::{Section, Service, ServiceConfig, Settings};
+use config::{Section, ServiceConfig, Settings};
+use messages::Service;
 
 use super::{Configuration, Load};
 use crate::spec::{GroupSpec, ServiceSpec};

@@ -5,7 +5,7 @@ use proptest::test_runner::RngSeed;
 
 use super::*;
 use crate::spec::{Log, Restart, RestartLimits, ServiceSpec};
-use service::process_exit::ProcessExit;
+use service::exit::ProcessExit;
 
 /// The same cases in every run, and no files.
 pub(crate) fn seeded() -> ProptestConfig {

@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use crate::spec::{Restart, RestartLimits, ServiceSpec};
-use service::process_exit::ProcessExit;
+use service::exit::ProcessExit;
 
 /// Input of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@ use std::time::{Duration, Instant};
 use rustix::process::Signal;
 use serde_json::json;
 use service::control::{RefusalKind, Request};
-use service::process_exit::ProcessExit;
+use service::exit::ProcessExit;
 use service::status::GroupState;
 use supervisor::machine::{Actual, Failure};
 
@@ -129,10 +129,7 @@ fn files_removed_by_hand_restart_the_group_once() {
     let group = Group::ready(vec![service("arm", &[]), service("policy", &[])]);
     std::fs::remove_dir_all(group.paths.run()).unwrap();
     wait_for("the group to be recreated", || {
-        let call = |request| {
-            service::control::call(&group.paths.control_socket(), request, crate::harness::PATIENCE)
-        };
-        call(&Request::WaitReady { wait_ms: WAIT_MS }).ok()
+        group.call(&Request::WaitReady { wait_ms: WAIT_MS }).ok()
     });
     for name in ["arm", "policy"] {
         group.until_ready(name, 2);

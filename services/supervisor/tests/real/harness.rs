@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process};
 use serde_json::{Value, json};
-use service::control::{Refusal, Reply, Request, call};
+use service::control::{CallError, Refusal, Reply, Request, call};
 use service::group::{GroupName, GroupPaths};
 use service::status::Actual;
 use service::status::{GroupStatus, ServiceStatus};
@@ -107,7 +107,7 @@ impl Group {
     pub(crate) fn run(&mut self) {
         let supervisor = self.command().spawn().unwrap();
         self.earlier.extend(self.supervisor.replace(supervisor));
-        wait_for("the supervisor to listen", || self.try_call(&Request::Ping));
+        wait_for("the supervisor to listen", || self.call(&Request::Ping).ok());
     }
 
     /// The command that starts a supervisor for the group.
@@ -135,13 +135,13 @@ impl Group {
         fs::read_to_string(self.home.path().join("supervisor.log")).unwrap_or_default()
     }
 
-    fn try_call(&self, request: &Request) -> Option<Reply> {
-        call(&self.paths.control_socket(), request, PATIENCE + PATIENCE).ok()
+    pub(crate) fn call(&self, request: &Request) -> Result<Reply, CallError> {
+        call(&self.paths.control_socket(), request, PATIENCE + PATIENCE)
     }
 
     #[track_caller]
     pub(crate) fn ask(&self, request: &Request) -> Reply {
-        self.try_call(request).unwrap_or_else(|| panic!("no reply to {request:?}:\n{}", self.log()))
+        self.call(request).unwrap_or_else(|e| panic!("{request:?}: {e}:\n{}", self.log()))
     }
 
     #[track_caller]
@@ -154,8 +154,8 @@ impl Group {
 
     #[track_caller]
     pub(crate) fn refused(&self, request: &Request) -> Refusal {
-        match self.ask(request) {
-            Reply::Refused(refusal) => refusal,
+        match self.call(request) {
+            Err(CallError::Refused(refusal)) => refusal,
             other => panic!("{request:?}: {other:?}"),
         }
     }

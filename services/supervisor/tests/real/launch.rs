@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::Path;
 
-use service::control::{Reply, Request, call};
+use service::control::{CallError, Reply, Request, call};
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
 use service::launch::{LaunchError, Launched, Options, detached, wait_ready};
@@ -48,8 +48,12 @@ impl Home {
         wait_ready(&self.paths, PATIENCE).unwrap();
     }
 
+    fn call(&self, request: &Request) -> Result<Reply, CallError> {
+        call(&self.paths.control_socket(), request, PATIENCE)
+    }
+
     fn ask(&self, request: &Request) -> Reply {
-        call(&self.paths.control_socket(), request, PATIENCE).unwrap()
+        self.call(request).unwrap()
     }
 }
 
@@ -117,7 +121,8 @@ fn invalid_configuration_is_reported_in_full() {
 fn reload_restarts_services_that_read_changed_settings() {
     let home = Home::new();
     home.up();
-    let reload = || home.ask(&Request::Reload { wait_ms: WAIT_MS });
+    let call = || home.call(&Request::Reload { wait_ms: WAIT_MS });
+    let reload = || call().unwrap();
     assert_eq!(reload(), Reply::Reloaded { restarted: vec![] });
     home.write("speech.toml", "# nothing but a remark\n");
     assert_eq!(reload(), Reply::Reloaded { restarted: vec![] });
@@ -129,6 +134,6 @@ fn reload_restarts_services_that_read_changed_settings() {
     let all = ["speech", "grounding", "policy", "arm", "console"].map(str::to_owned).to_vec();
     assert_eq!(reload(), Reply::Reloaded { restarted: all });
     home.write("group.toml", "scene = \"nowhere\"\n");
-    let Reply::Refused(refusal) = reload() else { panic!("not refused") };
+    let Err(CallError::Refused(refusal)) = call() else { panic!("not refused") };
     assert!(refusal.details.iter().any(|line| line.contains("nowhere")), "{refusal:?}");
 }

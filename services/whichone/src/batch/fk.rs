@@ -8,8 +8,8 @@ use serde::Deserialize;
 use serde_json::{Map, Value as Json, json};
 
 use super::{parse, run};
+use crate::Outcome;
 use crate::described_arm::DescribedArm;
-use crate::error::Outcome;
 use crate::output::Output;
 
 #[derive(Deserialize)]

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde_json::{Value as Json, json};
 
 use super::{parse, run};
-use crate::error::Outcome;
+use crate::Outcome;
 use crate::output::Output;
 
 /// Reads utterances about one scene.

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use serde_json::{Value as Json, json};
 
 use super::{parse, run};
-use crate::error::Outcome;
+use crate::Outcome;
 use crate::output::Output;
 
 /// A planner with one scene's decision problem.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use clap_complete::Shell;
-use config::Service;
+use messages::Service;
 
 use super::ConfigArgs;
 

@@ -5,13 +5,13 @@ use std::time::Instant;
 
 use messages::{Ended, Outcome as How};
 use serde_json::json;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::words;
+use crate::Outcome;
 use crate::cli::AwaitArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
 use user::TruthfulUser;
@@ -27,7 +27,7 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
     let wanted = args.answer_as.as_deref();
     let may_be_absent = conversation.may_be_absent();
     let user = wanted.map(|name| TruthfulUser::new(conversation.scene(), name, may_be_absent));
-    let mut user = user.transpose().map_err(|what| CliError::new(Exit::Usage, what))?;
+    let mut user = user.transpose().map_err(|what| Failure::new(Exit::Usage, what))?;
     let mut waiting = Waiting::new(reported_before(paths));
     loop {
         conversation.look()?;
@@ -103,9 +103,9 @@ fn reported_before(paths: &GroupPaths) -> u64 {
     text.trim().parse().unwrap_or(0)
 }
 
-fn remember(paths: &GroupPaths, interaction: u64) -> Result<(), CliError> {
+fn remember(paths: &GroupPaths, interaction: u64) -> Result<(), Failure> {
     let path = paths.run().join(AWAITED);
-    std::fs::write(&path, format!("{interaction}\n")).map_err(|error| CliError::file(&path, &error))
+    std::fs::write(&path, format!("{interaction}\n")).map_err(|error| Failure::file(&path, &error))
 }
 
 /// File with the number of the last reported interaction.

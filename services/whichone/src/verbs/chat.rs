@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 
 use messages::{MotionOrder, Receipt, ReceiptStatus};
 use serde_json::json;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::interrupt::Interrupt;
 use super::{await_pick, operate, up};
+use crate::Outcome;
 use crate::cli::ChatArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, note};
 
 /// Time that the end of a chat waits for the last interaction to end.
@@ -89,7 +89,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         Self { conversation, out, printed: None, ended: None }
     }
 
-    fn greet(&mut self) -> Result<(), CliError> {
+    fn greet(&mut self) -> Result<(), Failure> {
         if self.out.is_json() || !io::stdin().is_terminal() {
             return Ok(());
         }
@@ -103,7 +103,7 @@ impl<'a, 'b> Chat<'a, 'b> {
     }
 
     /// Prints new events.
-    fn look(&mut self) -> Result<(), CliError> {
+    fn look(&mut self) -> Result<(), Failure> {
         for receipt in self.conversation.look()? {
             if self.conversation.is_own(&receipt) {
                 self.refused(&receipt)?;
@@ -126,7 +126,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         self.outcome()
     }
 
-    fn robot_says(&mut self, text: &str) -> Result<(), CliError> {
+    fn robot_says(&mut self, text: &str) -> Result<(), Failure> {
         if self.out.is_json() {
             return self.out.json(&json!({ "robot": text }));
         }
@@ -135,7 +135,7 @@ impl<'a, 'b> Chat<'a, 'b> {
     }
 
     /// Prints the reason of a rejected utterance; accepted ones are in the terminal already.
-    fn refused(&mut self, receipt: &Receipt) -> Result<(), CliError> {
+    fn refused(&mut self, receipt: &Receipt) -> Result<(), Failure> {
         if receipt.status == ReceiptStatus::Accepted {
             return Ok(());
         }
@@ -147,7 +147,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         self.out.line(self.out.style().paint(Ink::Red, line))
     }
 
-    fn outcome(&mut self) -> Result<(), CliError> {
+    fn outcome(&mut self) -> Result<(), Failure> {
         let Some(view) = &self.conversation.latest().view else { return Ok(()) };
         let last = view.last.clone();
         let id = last.as_ref().map_or(0, |last| last.interaction.0);
@@ -165,7 +165,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         self.out.line(self.out.style().paint(Ink::Dim, format!("({sentence})")))
     }
 
-    fn resume(&mut self) -> Result<(), CliError> {
+    fn resume(&mut self) -> Result<(), Failure> {
         self.conversation.motion(MotionOrder::Resume)?;
         note("the arm may move");
         Ok(())

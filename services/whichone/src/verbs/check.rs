@@ -3,11 +3,11 @@
 use config::Settings;
 use diagnostics::Diagnostics;
 use serde_json::{Value as Json, json};
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
 use super::{paths, words};
+use crate::Outcome;
 use crate::cli::CheckArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, note, table};
 
 /// Reports every problem at once, or the services that would run.
@@ -99,7 +99,7 @@ fn service(service: &config::ServiceConfig) -> Vec<String> {
     ]
 }
 
-fn values(settings: &Settings, out: &mut Output<'_>) -> Result<(), CliError> {
+fn values(settings: &Settings, out: &mut Output<'_>) -> Result<(), Failure> {
     let rows: Vec<Vec<String>> =
         settings.origins().into_iter().map(|o| vec![o.key, o.value, o.from]).collect();
     table(&["KEY", "VALUE", "FROM"], &rows).into_iter().try_for_each(|line| out.line(line))

@@ -4,8 +4,8 @@ use clap::CommandFactory;
 use clap_complete::{Shell, generate};
 use service::exit::Exit;
 
+use crate::Outcome;
 use crate::cli::Cli;
-use crate::error::Outcome;
 use crate::output::Output;
 
 /// Prints the script.

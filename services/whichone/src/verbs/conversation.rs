@@ -14,13 +14,11 @@ use scene::Scene;
 use service::bus::EncodedWriter;
 use service::client::Client;
 use service::clock;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::submission::Submission;
 use service::view::{Latest, LatestTopics, quiet};
 use service::{Span, Time};
-
-use crate::error::CliError;
 
 #[cfg(test)]
 pub(super) mod example;
@@ -55,7 +53,7 @@ impl Conversation {
     ///
     /// # Errors
     /// It does not run, or is of another build.
-    pub(super) fn join(paths: &GroupPaths) -> Result<Self, CliError> {
+    pub(super) fn join(paths: &GroupPaths) -> Result<Self, Failure> {
         let client = Client::join(paths)?;
         let settings = Settings::load_snapshot(&paths.run())?;
         Ok(Self {
@@ -98,7 +96,7 @@ impl Conversation {
     ///
     /// # Errors
     /// The topic cannot be opened.
-    pub(super) fn say(&mut self, text: &str) -> Result<(), CliError> {
+    pub(super) fn say(&mut self, text: &str) -> Result<(), Failure> {
         if self.injections.is_none() {
             self.injections = Some(self.client.bus().encoded_writer(&topics::INJECTION)?);
         }
@@ -115,7 +113,7 @@ impl Conversation {
     ///
     /// # Errors
     /// The group has ended.
-    pub(super) fn first_look(&mut self) -> Result<(), CliError> {
+    pub(super) fn first_look(&mut self) -> Result<(), Failure> {
         let until = Instant::now() + FIRST_PATIENCE;
         while Instant::now() < until && self.latest.view.is_none() {
             self.look()?;
@@ -138,7 +136,7 @@ impl Conversation {
     ///
     /// # Errors
     /// The arm does not answer.
-    pub(super) fn motion(&self, order: messages::MotionOrder) -> Result<(), CliError> {
+    pub(super) fn motion(&self, order: messages::MotionOrder) -> Result<(), Failure> {
         Ok(self.client.motion(order, Span::from_ms(5_000))?)
     }
 
@@ -147,7 +145,7 @@ impl Conversation {
     ///
     /// # Errors
     /// The group has ended.
-    pub(super) fn look(&mut self) -> Result<Vec<Receipt>, CliError> {
+    pub(super) fn look(&mut self) -> Result<Vec<Receipt>, Failure> {
         if self.checked.elapsed() >= CHECK_EVERY {
             self.check()?;
         }
@@ -179,7 +177,7 @@ impl Conversation {
     }
 
     /// Detects the end of the group.
-    fn check(&mut self) -> Result<(), CliError> {
+    fn check(&mut self) -> Result<(), Failure> {
         self.checked = Instant::now();
         if folder(&self.paths) != Some(self.folder) {
             return Err(ended(&self.paths));
@@ -202,6 +200,6 @@ fn folder(paths: &GroupPaths) -> Option<u64> {
     paths.ipc().metadata().ok().map(|metadata| metadata.ino())
 }
 
-fn ended(paths: &GroupPaths) -> CliError {
-    CliError::new(Exit::NotReached, format!("group {} has ended", paths.name()))
+fn ended(paths: &GroupPaths) -> Failure {
+    Failure::new(Exit::NotReached, format!("group {} has ended", paths.name()))
 }

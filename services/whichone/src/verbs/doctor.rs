@@ -6,15 +6,16 @@ use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 
-use config::{SUPERVISOR, Service, Settings};
-use service::exit::Exit;
+use config::Settings;
+use messages::{SUPERVISOR, Service};
+use service::exit::{Exit, Failure};
 use service::group::{GroupName, GroupPaths};
 use service::inspection::{Condition, Finding};
 use service::shm_cleanup;
 
 use super::{console, leftovers, paths as locations, service_program, up, words};
+use crate::Outcome;
 use crate::cli::ConfigArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, Style};
 
 /// Examines everything that a group needs and suggests fixes.
@@ -48,7 +49,7 @@ pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>
 }
 
 /// Checks the devices of the speech service by its own program.
-fn devices(settings: &Settings) -> Result<Vec<Finding>, CliError> {
+fn devices(settings: &Settings) -> Result<Vec<Finding>, Failure> {
     let snapshot = service_program::Settings::write(settings)?;
     let mut command = service_program::command(Service::Speech.name(), "doctor");
     command.arg("--settings").arg(snapshot.folder()).stderr(Stdio::inherit());

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use dialogue::export::Pomdp;
 use serde_json::json;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
 use super::planning;
+use crate::Outcome;
 use crate::cli::{ExportArgs, Exported};
-use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
 /// Prints the problem or writes it to the given file.
@@ -18,7 +18,7 @@ pub(super) fn export(args: &ExportArgs, out: &mut Output<'_>) -> Outcome {
     let comment = comment(found.scene.name());
     let exported =
         dialogue::export::pomdp(&found.scene, &found.decision(), &comment).map_err(|error| {
-            CliError::new(Exit::Config, format!("{}: {error}", args.scene.display()))
+            Failure::new(Exit::Config, format!("{}: {error}", args.scene.display()))
         })?;
     let Pomdp { text, states, actions, observations } = exported;
     let mut written = json!({ "states": states, "actions": actions, "observations": observations });
@@ -42,8 +42,8 @@ pub(super) fn export(args: &ExportArgs, out: &mut Output<'_>) -> Outcome {
     Ok(Exit::Ok)
 }
 
-fn write(path: &Path, text: &str) -> Result<(), CliError> {
-    std::fs::write(path, text).map_err(|error| CliError::file(path, &error))
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    std::fs::write(path, text).map_err(|error| Failure::file(path, &error))
 }
 
 fn comment(scene: &str) -> String {

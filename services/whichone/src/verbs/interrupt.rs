@@ -3,9 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use service::exit::Exit;
-
-use crate::error::CliError;
+use service::exit::{Exit, Failure};
 
 /// A request to end: Ctrl-C or SIGTERM. Only for verbs that have something to clean up; others are
 /// simply terminated.
@@ -17,11 +15,11 @@ impl Interrupt {
     ///
     /// # Errors
     /// A signal handler cannot be installed.
-    pub(super) fn listen() -> Result<Self, CliError> {
+    pub(super) fn listen() -> Result<Self, Failure> {
         let requested = Arc::new(AtomicBool::new(false));
         for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
             signal_hook::flag::register(signal, Arc::clone(&requested))
-                .map_err(|error| CliError::new(Exit::NotReached, format!("signals: {error}")))?;
+                .map_err(|error| Failure::new(Exit::NotReached, format!("signals: {error}")))?;
         }
         Ok(Self(requested))
     }

@@ -1,11 +1,11 @@
 //! `journal`: the records of a service, listed or verified by the service's own program.
 
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
 use super::{paths as locations, service_program};
+use crate::Outcome;
 use crate::cli::JournalArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
 /// Prints a service's records, or verifies them.
@@ -14,7 +14,7 @@ pub(super) fn journal(paths: &GroupPaths, args: &JournalArgs, out: &mut Output<'
     if !file.is_file() {
         let what = format!("group {} has no journal of {} yet", paths.name(), args.service);
         let help = "help: start the group with `whichone up`";
-        return Err(CliError::new(Exit::NotReached, format!("{what}; {help}")));
+        return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
     }
     let mut command = service_program::command(&args.service, "journal");
     command.arg(&file).args(out.is_json().then_some("--json"));

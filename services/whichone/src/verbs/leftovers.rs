@@ -6,11 +6,9 @@ use std::path::PathBuf;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::shm_cleanup;
-
-use crate::error::CliError;
 
 /// Interval at which the end of the last service is polled.
 const LOOK_EVERY: Duration = Duration::from_millis(50);
@@ -20,14 +18,14 @@ const LOOK_EVERY: Duration = Duration::from_millis(50);
 ///
 /// # Errors
 /// A service still runs at the timeout.
-pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBuf>, CliError> {
+pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBuf>, Failure> {
     let until = Instant::now() + timeout;
     while some_service_lives(paths) {
         if Instant::now() >= until {
             let what =
                 format!("group {}: services without a supervisor are still running", paths.name());
             let help = "help: wait, or start the group and stop it again";
-            return Err(CliError::new(Exit::NotReached, format!("{what}; {help}")));
+            return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
         }
         thread::sleep(LOOK_EVERY);
     }
@@ -36,7 +34,7 @@ pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBu
     match std::fs::remove_dir_all(&run) {
         Ok(()) => removed.push(run),
         Err(error) if error.kind() == ErrorKind::NotFound => {}
-        Err(error) => return Err(CliError::file(&run, &error)),
+        Err(error) => return Err(Failure::file(&run, &error)),
     }
     Ok(removed)
 }

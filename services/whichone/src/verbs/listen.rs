@@ -11,12 +11,12 @@ use messages::{AudioChunk, Receipt, ReceiptStatus, Sound};
 use service::audio::AudioStream;
 use service::client::Client;
 use service::clock;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
 use super::speak;
+use crate::Outcome;
 use crate::cli::ListenArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
 /// Samples per block of a stream: a twentieth of a second.
@@ -35,15 +35,14 @@ pub(super) fn listen(paths: &GroupPaths, args: &ListenArgs, out: &mut Output<'_>
     }
     if args.live {
         let samples = read_wav(&args.file, LONGEST_S);
-        let samples =
-            samples.map_err(|error| CliError::new(Exit::NotReached, error.to_string()))?;
+        let samples = samples.map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?;
         return stream(paths, args, from_samples(samples), out);
     }
-    let absolute = args.file.canonicalize().map_err(|error| CliError::file(&args.file, &error))?;
-    std::fs::File::open(&absolute).map_err(|error| CliError::file(&args.file, &error))?;
+    let absolute = args.file.canonicalize().map_err(|error| Failure::file(&args.file, &error))?;
+    std::fs::File::open(&absolute).map_err(|error| Failure::file(&args.file, &error))?;
     let path = absolute.into_os_string().into_string().map_err(|path| {
         let what = format!("{}: the path is not UTF-8; rename the file", path.display());
-        CliError::new(Exit::Usage, what)
+        Failure::new(Exit::Usage, what)
     })?;
     speak::give(paths, Sound::Wav(path), args.timeout, out)
 }
@@ -63,7 +62,7 @@ fn stream(paths: &GroupPaths, args: &ListenArgs, blocks: Blocks, out: &mut Outpu
                 let taken = times.read(samples.len(), clock::now());
                 stream.send(taken, &samples)?;
             }
-            Ok(Err(why)) => return Err(CliError::new(Exit::NotReached, why)),
+            Ok(Err(why)) => return Err(Failure::new(Exit::NotReached, why)),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break,
         }
@@ -74,7 +73,7 @@ fn stream(paths: &GroupPaths, args: &ListenArgs, blocks: Blocks, out: &mut Outpu
         if Instant::now() >= until {
             let what =
                 format!("no answer within {} s; see: whichone status", args.timeout.as_secs());
-            return Err(CliError::new(Exit::NotReached, what));
+            return Err(Failure::new(Exit::NotReached, what));
         }
         if ended.is_none_or(|ended| ended.elapsed() >= RESEND_END_EVERY) {
             stream.end(clock::now())?;
@@ -94,7 +93,7 @@ struct Printed {
 }
 
 impl Printed {
-    fn print(&mut self, receipts: &[Receipt], out: &mut Output<'_>) -> Result<(), CliError> {
+    fn print(&mut self, receipts: &[Receipt], out: &mut Output<'_>) -> Result<(), Failure> {
         for receipt in receipts {
             if self.segments.contains(&receipt.segment) {
                 continue;
@@ -114,7 +113,7 @@ impl Printed {
 
     fn outcome(&self) -> Outcome {
         match self.segments.len() {
-            0 | 1 => Err(CliError::new(Exit::NotReached, "no speech found".to_owned())),
+            0 | 1 => Err(Failure::new(Exit::NotReached, "no speech found".to_owned())),
             _ => Ok(if self.accepted { Exit::Ok } else { Exit::NotReached }),
         }
     }

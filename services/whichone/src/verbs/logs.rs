@@ -7,11 +7,11 @@ use std::thread;
 use std::time::Duration;
 
 use serde::Serialize;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
+use crate::Outcome;
 use crate::cli::LogsArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output};
 
 use file::LogFile;
@@ -26,7 +26,7 @@ pub(super) fn logs(paths: &GroupPaths, args: &LogsArgs, out: &mut Output<'_>) ->
     let mut files = files(paths, args.service.as_deref())?;
     let mut lines = Vec::new();
     for file in &mut files {
-        let last = file.last_lines(args.tail).map_err(|e| CliError::file(file.path(), &e))?;
+        let last = file.last_lines(args.tail).map_err(|e| Failure::file(file.path(), &e))?;
         lines.extend(last.into_iter().map(|line| (file.service().to_owned(), line)));
     }
     let lines = in_order_of_time(lines);
@@ -48,7 +48,7 @@ fn follow(
     args: &LogsArgs,
     files: &mut Vec<LogFile>,
     out: &mut Output<'_>,
-) -> Result<(), CliError> {
+) -> Result<(), Failure> {
     if args.service.is_none() {
         // The log of a new service is printed from its beginning.
         let new = self::files(paths, None)?;
@@ -59,7 +59,7 @@ fn follow(
     let several = files.len() > 1;
     let mut lines = Vec::new();
     for file in files {
-        let new = file.new_lines().map_err(|e| CliError::file(file.path(), &e))?;
+        let new = file.new_lines().map_err(|e| Failure::file(file.path(), &e))?;
         lines.extend(new.into_iter().map(|line| (file.service().to_owned(), line)));
     }
     in_order_of_time(lines)
@@ -74,7 +74,7 @@ struct Line<'a> {
     line: &'a str,
 }
 
-fn print(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Result<(), CliError> {
+fn print(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Result<(), Failure> {
     if out.is_json() {
         return out.json(&Line { service, line });
     }
@@ -87,7 +87,7 @@ fn print(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Resu
 }
 
 /// The log of one service, or all logs of the group.
-fn files(paths: &GroupPaths, service: Option<&str>) -> Result<Vec<LogFile>, CliError> {
+fn files(paths: &GroupPaths, service: Option<&str>) -> Result<Vec<LogFile>, Failure> {
     let names = names(&paths.log())?;
     match service {
         None => Ok(names.iter().map(|name| LogFile::new(name, paths.log_file(name))).collect()),
@@ -100,15 +100,15 @@ fn files(paths: &GroupPaths, service: Option<&str>) -> Result<Vec<LogFile>, CliE
                 true => "help: start the group with `whichone up`".to_owned(),
                 false => format!("help: existing logs: {}", names.join(", ")),
             };
-            Err(CliError::new(Exit::Usage, format!("{what}; {help}")))
+            Err(Failure::new(Exit::Usage, format!("{what}; {help}")))
         }
     }
 }
 
-fn names(folder: &Path) -> Result<Vec<String>, CliError> {
+fn names(folder: &Path) -> Result<Vec<String>, Failure> {
     let entries = match fs::read_dir(folder) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
-        entries => entries.map_err(|error| CliError::file(folder, &error))?,
+        entries => entries.map_err(|error| Failure::file(folder, &error))?,
     };
     let name = |entry: std::io::Result<fs::DirEntry>| {
         Some(entry.ok()?.file_name().to_str()?.strip_suffix(".log")?.to_owned())

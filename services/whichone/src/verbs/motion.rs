@@ -9,7 +9,7 @@ use service::client::Client;
 use service::exit::Exit;
 use service::group::GroupPaths;
 
-use crate::error::Outcome;
+use crate::Outcome;
 use crate::output::Output;
 
 /// State of the motion stop.

@@ -7,87 +7,50 @@ use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Pid, PidfdFlags, pidfd_open};
 use rustix::time::Timespec;
 use serde::Serialize;
-use service::control::{CallError, DownReport, Refusal, Reply, Request, call};
-use service::exit::Exit;
+use service::control::{CallError, DownReport, Reply, Request, call};
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::status::GroupStatus;
 
 use super::{leftovers, words};
+use crate::Outcome;
 use crate::cli::{RestartArgs, ServiceArgs, SwapArgs};
-use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
 /// Timeout of the supervisor's answer, beyond the requested wait.
 const ANSWER_PATIENCE: Duration = Duration::from_secs(5);
-
-/// Reason for which a request is not fulfilled.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum Unanswered {
-    /// There was no reply.
-    #[error(transparent)]
-    Call(#[from] CallError),
-    /// The request was rejected.
-    #[error("{}", .0.message)]
-    Refused(Refusal),
-}
-
-impl From<Unanswered> for CliError {
-    fn from(unanswered: Unanswered) -> Self {
-        match unanswered {
-            Unanswered::Call(error) => error.into(),
-            Unanswered::Refused(refusal) => refusal.into(),
-        }
-    }
-}
 
 /// Sends a request to the group's supervisor; `wait` is the timeout of the request itself.
 pub(super) fn ask(
     paths: &GroupPaths,
     request: &Request,
     wait: Duration,
-) -> Result<Reply, Unanswered> {
-    match call(&paths.control_socket(), request, wait + ANSWER_PATIENCE)? {
-        Reply::Refused(refusal) => Err(Unanswered::Refused(refusal)),
-        reply => Ok(reply),
-    }
+) -> Result<Reply, CallError> {
+    call(&paths.control_socket(), request, wait + ANSWER_PATIENCE)
 }
 
 /// Returns the status of the group.
-pub(super) fn status_of(paths: &GroupPaths) -> Result<GroupStatus, Unanswered> {
+pub(super) fn status_of(paths: &GroupPaths) -> Result<GroupStatus, CallError> {
     match ask(paths, &Request::Status, Duration::ZERO)? {
         Reply::Status(status) => Ok(*status),
         other => Err(unintelligible(paths, &other)),
     }
 }
 
-/// Starts a service.
-pub(super) fn start(paths: &GroupPaths, args: ServiceArgs, out: &mut Output<'_>) -> Outcome {
-    let ServiceArgs { service, timeout } = args;
-    order(paths, &Request::Start { service, wait_ms: ms(timeout) }, timeout, out)
-}
-
-/// Stops a service.
-pub(super) fn stop(paths: &GroupPaths, args: ServiceArgs, out: &mut Output<'_>) -> Outcome {
-    let ServiceArgs { service, timeout } = args;
-    order(paths, &Request::Stop { service, wait_ms: ms(timeout) }, timeout, out)
+/// Sends a request about one service, made of its name and the wait in milliseconds.
+pub(super) fn on_service(
+    paths: &GroupPaths,
+    request: impl FnOnce(String, u64) -> Request,
+    ServiceArgs { service, timeout }: ServiceArgs,
+    out: &mut Output<'_>,
+) -> Outcome {
+    order(paths, &request(service, ms(timeout)), timeout, out)
 }
 
 /// Stops a service and starts it again.
 pub(super) fn restart(paths: &GroupPaths, args: RestartArgs, out: &mut Output<'_>) -> Outcome {
     let RestartArgs { service, original, timeout } = args;
     order(paths, &Request::Restart { service, original, wait_ms: ms(timeout) }, timeout, out)
-}
-
-/// Keeps a service from running.
-pub(super) fn hold(paths: &GroupPaths, args: ServiceArgs, out: &mut Output<'_>) -> Outcome {
-    let ServiceArgs { service, timeout } = args;
-    order(paths, &Request::Hold { service, wait_ms: ms(timeout) }, timeout, out)
-}
-
-/// Lets a held service run.
-pub(super) fn release(paths: &GroupPaths, args: ServiceArgs, out: &mut Output<'_>) -> Outcome {
-    let ServiceArgs { service, timeout } = args;
-    order(paths, &Request::Release { service, wait_ms: ms(timeout) }, timeout, out)
 }
 
 /// Reloads the configuration.
@@ -98,7 +61,7 @@ pub(super) fn reload(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>
 /// Replaces a service's program.
 pub(super) fn swap(paths: &GroupPaths, args: SwapArgs, out: &mut Output<'_>) -> Outcome {
     let directory = std::env::current_dir()
-        .map_err(|error| CliError::new(Exit::NotReached, format!("the current folder: {error}")))?;
+        .map_err(|error| Failure::new(Exit::NotReached, format!("the current folder: {error}")))?;
     let SwapArgs { service, command, timeout } = args;
     order(paths, &Request::Swap { service, command, directory }, timeout, out)
 }
@@ -109,9 +72,7 @@ pub(super) fn down(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) 
     let report = match ask(paths, &Request::Down, timeout) {
         Ok(Reply::Down(report)) => report,
         Ok(other) => return Err(unintelligible(paths, &other).into()),
-        Err(Unanswered::Call(CallError::NoGroup { .. })) => {
-            return not_running(paths, timeout, out);
-        }
+        Err(CallError::NoGroup { .. }) => return not_running(paths, timeout, out),
         Err(other) => return Err(other.into()),
     };
     supervisor.iter().for_each(await_end);
@@ -141,7 +102,7 @@ fn print_down_report(
     paths: &GroupPaths,
     report: &DownReport,
     out: &mut Output<'_>,
-) -> Result<(), CliError> {
+) -> Result<(), Failure> {
     let after = words::time(report.seconds);
     out.line(format_args!("group {} is down after {after}", paths.name()))?;
     let remarks = [
@@ -210,9 +171,8 @@ fn ms(time: Duration) -> u64 {
     u64::try_from(time.as_millis()).unwrap_or(u64::MAX)
 }
 
-fn unintelligible(paths: &GroupPaths, reply: &Reply) -> Unanswered {
-    let group = paths.name().to_string();
-    CallError::Unintelligible { group, why: format!("{reply:?}") }.into()
+fn unintelligible(paths: &GroupPaths, reply: &Reply) -> CallError {
+    CallError::unintelligible(&paths.control_socket(), format!("{reply:?}"))
 }
 
 #[cfg(test)]

@@ -1,31 +1,22 @@
-//! Paths: the group's folders, and the folder of the configuration.
+//! The folder of the configuration, and the settings in it.
 
 use std::env;
 use std::path::{Path, PathBuf};
 
 use config::Settings;
-use service::exit::Exit;
-use service::group::{GroupName, GroupPaths};
+use service::exit::{Exit, Failure};
+use service::group::GroupPaths;
 
 use crate::cli::ConfigArgs;
-use crate::error::CliError;
 
 /// A file that marks a configuration folder.
 const MARK: &str = "group.toml";
-
-/// Returns the folders of the group.
-///
-/// # Errors
-/// The folder of groups is unknown or its path is too long.
-pub(super) fn group_paths(group: &GroupName) -> Result<GroupPaths, CliError> {
-    Ok(GroupPaths::resolve(group)?)
-}
 
 /// Loads the settings that the command line names.
 ///
 /// # Errors
 /// No configuration is found, or every problem of it.
-pub(super) fn settings(args: &ConfigArgs) -> Result<Settings, CliError> {
+pub(super) fn settings(args: &ConfigArgs) -> Result<Settings, Failure> {
     let folder = config_folder(args)?;
     Ok(preflight::load(&folder, args.profile.as_deref(), &args.set)?)
 }
@@ -37,7 +28,7 @@ pub(super) fn settings(args: &ConfigArgs) -> Result<Settings, CliError> {
 pub(super) fn settings_in_force(
     paths: &GroupPaths,
     args: &ConfigArgs,
-) -> Result<Settings, CliError> {
+) -> Result<Settings, Failure> {
     let named = args.config.is_some() || args.profile.is_some() || !args.set.is_empty();
     if !named && paths.run().join(config::SNAPSHOT_FILE).is_file() {
         return Ok(Settings::load_snapshot(&paths.run())?);
@@ -50,7 +41,7 @@ pub(super) fn settings_in_force(
 ///
 /// # Errors
 /// None of them exists.
-pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, CliError> {
+pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, Failure> {
     if let Some(named) = args.config.as_ref().filter(|path| !path.as_os_str().is_empty()) {
         return Ok(absolute(named));
     }
@@ -59,7 +50,7 @@ pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, CliError> {
         .ok_or_else(|| {
             let what = format!("no configuration found: ./config/{MARK} is missing");
             let help = "help: pass --config DIR or set WHICHONE_CONFIG";
-            CliError::new(Exit::Config, format!("{what}; {help}"))
+            Failure::new(Exit::Config, format!("{what}; {help}"))
         })
 }
 

@@ -6,12 +6,11 @@ use config::{CostsFrom, Settings};
 use dialogue::{Actions, Costs, DecisionProblem, Durations, Model, Params, registry};
 use preflight::ArmSetup;
 use scene::Scene;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
 use super::paths;
 use crate::batch::Decider;
 use crate::cli::{ConfigArgs, PlanArgs, ProblemArgs};
-use crate::error::CliError;
 use crate::scene_file;
 
 /// Default planner without an option and a configuration.
@@ -47,11 +46,11 @@ impl Problem {
 ///
 /// # Errors
 /// An invalid scene or configuration.
-pub(super) fn decider(args: &PlanArgs) -> Result<Decider, CliError> {
+pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Failure> {
     let scene = scene_file::load(&args.scene)?;
     let problem = problem(scene, &args.problem)?;
     let planner = registry::planner(args.planner.as_deref().unwrap_or(problem.planner()))
-        .map_err(|error| CliError::new(Exit::Config, error.to_string()))?;
+        .map_err(|error| Failure::new(Exit::Config, error.to_string()))?;
     let Problem { scene, model, costs, durations, actions, .. } = problem;
     Ok(Decider { scene, model, costs, durations, actions, planner })
 }
@@ -60,13 +59,13 @@ pub(super) fn decider(args: &PlanArgs) -> Result<Decider, CliError> {
 ///
 /// # Errors
 /// An invalid scene or configuration.
-pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, CliError> {
+pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, Failure> {
     problem(scene_file::load(&scene_path(scene, &args.config)?)?, args)
 }
 
 /// Builds the problem from the command line, else the configuration, else, if none is named or
 /// found, the defaults.
-fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, CliError> {
+fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Failure> {
     let config = &args.config;
     let named = config.config.is_some() || config.profile.is_some() || !config.set.is_empty();
     let settings = match paths::config_folder(config) {
@@ -88,14 +87,14 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, CliError> {
         .map(|settings| {
             let setup = ArmSetup::new(settings)?;
             preflight::durations(settings, &setup, &scene, actions.point())
-                .map_err(|error| CliError::new(Exit::Config, error.to_string()))
+                .map_err(|error| Failure::new(Exit::Config, error.to_string()))
         })
         .transpose()?;
     Ok(Problem { scene, model, costs, durations, actions, settings })
 }
 
 /// Resolves a scene: a name without folder and extension is looked up in the configuration.
-pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, CliError> {
+pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Failure> {
     let is_word = named.extension().is_none() && named.components().count() == 1;
     if named.is_file() || !is_word {
         return Ok(named.to_owned());
@@ -108,5 +107,5 @@ pub(super) fn scene_path(named: &Path, args: &ConfigArgs) -> Result<PathBuf, Cli
     let (name, folder) = (named.display(), scenes.display());
     let what = format!("{name}: expected a scene file or the name of a scene in {folder}");
     let help = "name a scene file, or a scene without its folder and extension, e.g. bowls";
-    Err(CliError::new(Exit::Config, format!("{what}; help: {help}")))
+    Err(Failure::new(Exit::Config, format!("{what}; help: {help}")))
 }

@@ -4,10 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
 
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::launch;
-
-use crate::error::CliError;
 
 /// A snapshot of settings in a temporary folder.
 #[derive(Debug)]
@@ -18,10 +16,10 @@ impl Settings {
     ///
     /// # Errors
     /// It cannot be written.
-    pub(super) fn write(settings: &config::Settings) -> Result<Self, CliError> {
+    pub(super) fn write(settings: &config::Settings) -> Result<Self, Failure> {
         let folder = env::temp_dir().join(format!("whichone-settings-{}", std::process::id()));
         let written = fs::create_dir_all(&folder).and_then(|()| settings.write_snapshot(&folder));
-        written.map_err(|error| CliError::file(&folder, &error))?;
+        written.map_err(|error| Failure::file(&folder, &error))?;
         Ok(Self(folder))
     }
 
@@ -46,7 +44,7 @@ pub(super) fn command(service: &str, verb: &str) -> Command {
 }
 
 /// The error of a program that could not be run.
-pub(super) fn failed(command: &Command, error: &io::Error) -> CliError {
+pub(super) fn failed(command: &Command, error: &io::Error) -> Failure {
     let program = Path::new(command.get_program()).display();
-    CliError::new(Exit::NotReached, format!("cannot run {program}: {error}"))
+    Failure::new(Exit::NotReached, format!("cannot run {program}: {error}"))
 }

@@ -6,13 +6,13 @@ use messages::{Hypothesis, Receipt, ReceiptStatus, Sound, Source};
 use serde::Serialize;
 use service::client::Client;
 use service::clock;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::{Span, Time};
 
 use super::hearing;
+use crate::Outcome;
 use crate::cli::{PointArgs, SayArgs, TalkArgs};
-use crate::error::{CliError, Outcome};
 use crate::output::{Ink, Output, note};
 
 /// Submits an utterance and prints its receipt.
@@ -31,23 +31,23 @@ pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> O
 }
 
 /// When it was said.
-fn when(args: &SayArgs) -> Result<(Time, Time), CliError> {
+fn when(args: &SayArgs) -> Result<(Time, Time), Failure> {
     let ended = args.ended_ago.unwrap_or_default();
     let began = args.began_ago.unwrap_or(ended);
     if began < ended {
         let what = "expected --began-ago to be at least --ended-ago";
-        return Err(CliError::new(Exit::Usage, what));
+        return Err(Failure::new(Exit::Usage, what));
     }
     let now = clock::now();
     let ago = |time: Duration| now - Span::from_s(time.as_secs_f64());
     Ok((ago(began), ago(ended)))
 }
 
-fn transcript(args: &SayArgs) -> Result<Sound, CliError> {
+fn transcript(args: &SayArgs) -> Result<Sound, Failure> {
     let others: f64 = args.alternatives.iter().map(|(_, weight)| weight).sum();
     if others >= 1.0 {
         let what = format!("the alternatives weigh {others} and leave nothing of 1 for the text");
-        return Err(CliError::new(Exit::Usage, what));
+        return Err(Failure::new(Exit::Usage, what));
     }
     let (weight, word_confidence) = (1.0 - others, args.confidence.clone());
     let best = Hypothesis { text: args.text.join(" "), weight, word_confidence };
@@ -107,8 +107,8 @@ struct Printed<'a> {
 }
 
 /// Prints the receipt of an utterance.
-pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), CliError> {
-    let unclear = |error: messages::WireError| CliError::new(Exit::NotReached, error.to_string());
+pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Failure> {
+    let unclear = |error: messages::WireError| Failure::new(Exit::NotReached, error.to_string());
     let status = receipt.status.get();
     let source = receipt.source.get();
     let note = receipt.note.as_str().map_err(unclear)?;
@@ -142,7 +142,7 @@ pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), CliEr
         (ReceiptStatus::Over, _) if note.is_empty() => {}
         (ReceiptStatus::Over, _) => out.line(style.paint(Ink::Yellow, note))?,
         (ReceiptStatus::Refused, _) => {
-            return Err(CliError::new(Exit::NotReached, format!("not accepted: {note}")));
+            return Err(Failure::new(Exit::NotReached, format!("not accepted: {note}")));
         }
     }
     let measured = spoken && receipt.snr_db > 0.0;

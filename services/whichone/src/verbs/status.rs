@@ -3,22 +3,20 @@
 use serde::Serialize;
 use service::control::CallError;
 use service::exit::Exit;
-use service::group::GroupPaths;
-use service::status::GroupState;
-use service::status::{Actual, Wanted};
-use service::status::{GroupStatus, ServiceStatus};
+use service::group::{GroupName, GroupPaths};
+use service::status::{Actual, GroupState, GroupStatus, ServiceStatus, Wanted};
 use service::view::HearingView;
 
-use super::operate::{Unanswered, status_of};
+use super::operate::status_of;
 use super::{console, hearing, words};
-use crate::error::Outcome;
+use crate::Outcome;
 use crate::output::{Ink, Output, Style, table};
 
 /// Shows the group. The exit code is 0 if every service that is wanted up is ready.
 pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     let status = match status_of(paths) {
         Ok(status) => status,
-        Err(Unanswered::Call(CallError::NoGroup { .. })) => return down(paths, out),
+        Err(CallError::NoGroup { .. }) => return down(paths, out),
         Err(other) => return Err(other.into()),
     };
     let hearing = hearing::look(paths);
@@ -51,7 +49,7 @@ struct Printed<'a> {
 /// A group that is not running, with `--json`.
 #[derive(Serialize)]
 struct Down<'a> {
-    name: &'a str,
+    name: &'a GroupName,
     state: &'static str,
     services: [(); 0],
 }
@@ -59,7 +57,7 @@ struct Down<'a> {
 fn down(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     let name = paths.name();
     if out.is_json() {
-        out.json(&Down { name: name.as_str(), state: "down", services: [] })?;
+        out.json(&Down { name, state: "down", services: [] })?;
     } else {
         out.line(format_args!("group {name} is not running; start it with: whichone up"))?;
     }

@@ -5,10 +5,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use evaluation::simulation::Tally;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
+use crate::Outcome;
 use crate::cli::StudyArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::{Output, note};
 
 mod board;
@@ -35,7 +35,7 @@ pub(super) fn study(args: &StudyArgs, out: &mut Output<'_>) -> Outcome {
     let house = House::new(args)?;
     let rows = design::rows(args, house.planner())?;
     if let Some(folder) = &args.out {
-        std::fs::create_dir_all(folder).map_err(|error| CliError::file(folder, &error))?;
+        std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, &error))?;
     }
     let results: Vec<(&Row, Tally)> = rows.iter().zip(conduct(args, &house, &rows)).collect();
     if let Some(folder) = &args.out {
@@ -72,7 +72,7 @@ fn conduct(args: &StudyArgs, house: &House, rows: &[Row]) -> Vec<Tally> {
 }
 
 /// Writes a file of the study.
-fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), CliError> {
+fn write(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), Failure> {
     let path = folder.join(name);
-    std::fs::write(&path, bytes).map_err(|error| CliError::file(&path, &error))
+    std::fs::write(&path, bytes).map_err(|error| Failure::file(&path, &error))
 }

@@ -4,14 +4,14 @@ use std::time::Duration;
 
 use serde::Serialize;
 use service::control::{CallError, Request};
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::launch::{self, Options};
 use service::status::GroupStatus;
 
 use super::{console, operate, paths};
+use crate::Outcome;
 use crate::cli::{ConfigArgs, UpArgs, WaitFor};
-use crate::error::{CliError, Outcome};
 use crate::output::{Output, note};
 
 /// Time for which a new supervisor waits for services of a killed one.
@@ -53,33 +53,33 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
 }
 
 /// Starts a detached group with everything ready, for a verb that needs one.
-pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<(), CliError> {
+pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<(), Failure> {
     let options = options(paths, config, false)?;
     start(paths, &options, Some(Duration::from_secs(30))).map(drop)
 }
 
 /// Returns true if a supervisor answers for the group.
-pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, CliError> {
+pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, Failure> {
     match operate::ask(paths, &Request::Ping, Duration::ZERO) {
         Ok(_) => Ok(true),
-        Err(operate::Unanswered::Call(CallError::NoGroup { .. })) => Ok(false),
+        Err(CallError::NoGroup { .. }) => Ok(false),
         Err(other) => Err(other.into()),
     }
 }
 
-fn refuse_twice(paths: &GroupPaths) -> Result<(), CliError> {
+fn refuse_twice(paths: &GroupPaths) -> Result<(), Failure> {
     if !is_running(paths)? {
         return Ok(());
     }
     let name = paths.name();
     let pid = operate::status_of(paths)?.supervisor_pid;
     let what = format!("group {name} is already running (supervisor {pid})");
-    Err(CliError::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
+    Err(Failure::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
 }
 
 /// Returns the supervisor's options. It checks the configuration itself; here it is checked
 /// first so that problems are printed without its log around them.
-fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Options, CliError> {
+fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Options, Failure> {
     paths::settings(config)?;
     Ok(Options {
         group: paths.name().clone(),
@@ -92,11 +92,7 @@ fn options(paths: &GroupPaths, config: &ConfigArgs, fresh: bool) -> Result<Optio
 
 /// Starts a detached supervisor and waits until it listens, and until every service is ready
 /// if requested. Returns the supervisor's message.
-fn start(
-    paths: &GroupPaths,
-    options: &Options,
-    wait: Option<Duration>,
-) -> Result<String, CliError> {
+fn start(paths: &GroupPaths, options: &Options, wait: Option<Duration>) -> Result<String, Failure> {
     let mut launched = launch::detached(&launch::program(), options, paths)?;
     launched.wait_listening(EARLIER_SERVICES)?;
     let Some(timeout) = wait else { return Ok("services are starting".to_owned()) };

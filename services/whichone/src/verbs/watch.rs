@@ -4,13 +4,13 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use service::control::{Reply, Request, call};
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::interrupt::Interrupt;
+use crate::Outcome;
 use crate::cli::WatchArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::Output;
 
 mod frame;
@@ -53,7 +53,7 @@ fn follow(
     interrupt: &Interrupt,
     screen: bool,
     out: &mut Output<'_>,
-) -> Result<(), CliError> {
+) -> Result<(), Failure> {
     let (mut drawn, mut asked) = (None::<Instant>, Instant::now());
     while !interrupt.is_requested() {
         model.look()?;
@@ -74,7 +74,7 @@ fn follow(
     Ok(())
 }
 
-fn draw_once(model: &WatchModel, out: &mut Output<'_>) -> Result<(), CliError> {
+fn draw_once(model: &WatchModel, out: &mut Output<'_>) -> Result<(), Failure> {
     if out.is_json() {
         return out.json(&model.view());
     }
@@ -83,7 +83,7 @@ fn draw_once(model: &WatchModel, out: &mut Output<'_>) -> Result<(), CliError> {
 }
 
 /// Waits until every service has published something, up to [`FIRST_PATIENCE`].
-fn gather(model: &mut WatchModel) -> Result<(), CliError> {
+fn gather(model: &mut WatchModel) -> Result<(), Failure> {
     let until = Instant::now() + FIRST_PATIENCE;
     while Instant::now() < until && !model.is_complete() {
         model.look()?;

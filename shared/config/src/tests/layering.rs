@@ -6,7 +6,8 @@ use std::time::Duration;
 use language::Language;
 
 use super::{Folder, ONE_BOWL, shipped};
-use crate::{Limb, Recogniser, Restart, Section, Service, Settings, Voice};
+use crate::{Limb, Recogniser, Restart, Section, Settings, Voice};
+use messages::Service;
 
 #[test]
 fn the_shipped_folder_loads_with_every_profile_and_scene() {

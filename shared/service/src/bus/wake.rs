@@ -2,10 +2,10 @@
 //! listener was dead, so the woken side always drains everything and also polls from time to time.
 
 use super::{Bus, BusError, Ipc};
-use config::Service;
 use iceoryx2::port::{listener::Listener, notifier::Notifier};
 use iceoryx2::prelude::*;
 use iceoryx2::service::port_factory::event::PortFactory;
+use messages::Service;
 use messages::topics::NODES_MAX;
 use std::os::fd::BorrowedFd;
 

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
-use super::{Reply, Request};
+use super::{Refusal, Reply, Request};
 
 /// Failure to get a reply.
 #[derive(Debug, Error)]
@@ -42,6 +42,9 @@ pub enum CallError {
         /// The parser's error.
         why: String,
     },
+    /// The supervisor rejects the request.
+    #[error("{}", .0.message)]
+    Refused(Refusal),
     /// Failure of the socket.
     #[error("{}: {error}", .path.display())]
     Io {
@@ -50,6 +53,13 @@ pub enum CallError {
         /// Cause.
         error: io::Error,
     },
+}
+
+impl CallError {
+    /// An answer that is not one to the request, from the supervisor at control socket `path`.
+    pub fn unintelligible(path: &Path, why: impl ToString) -> Self {
+        Self::Unintelligible { group: group_of(path), why: why.to_string() }
+    }
 }
 
 fn of(group: &str) -> String {
@@ -66,8 +76,7 @@ fn of(group: &str) -> String {
 /// For a request that itself waits, `timeout` should be longer than its `wait_ms`.
 ///
 /// # Errors
-/// No reply; see [`CallError`]. A request that is answered with
-/// [`Reply::Refused`] is a reply.
+/// No reply, or a refusal; see [`CallError`].
 pub fn call(path: &Path, request: &Request, timeout: Duration) -> Result<Reply, CallError> {
     let failed = |error: io::Error| explain(error, path, timeout);
     let mut stream = UnixStream::connect(path).map_err(failed)?;
@@ -81,10 +90,11 @@ pub fn call(path: &Path, request: &Request, timeout: Duration) -> Result<Reply, 
     if !answer.ends_with('\n') {
         return Err(CallError::Closed { group: group_of(path) });
     }
-    serde_json::from_str(&answer).map_err(|error| CallError::Unintelligible {
-        group: group_of(path),
-        why: error.to_string(),
-    })
+    match serde_json::from_str(&answer) {
+        Ok(Reply::Refused(refusal)) => Err(CallError::Refused(refusal)),
+        Ok(reply) => Ok(reply),
+        Err(error) => Err(CallError::unintelligible(path, error)),
+    }
 }
 
 fn explain(error: io::Error, path: &Path, timeout: Duration) -> CallError {

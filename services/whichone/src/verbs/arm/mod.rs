@@ -6,11 +6,11 @@ use manipulation::{Cuboid, Limb, ObjectPose, PickPhase, PickPlan, PlanSettings, 
 use preflight::ArmSetup;
 use scene::Scene;
 use serde_json::{Value as Json, json};
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
 use super::{paths, planning};
+use crate::Outcome;
 use crate::cli::{ArmPlotArgs, ArmVerb, ArmVerbArgs};
-use crate::error::{CliError, Outcome};
 use crate::output::Output;
 use crate::scene_file;
 
@@ -40,7 +40,7 @@ fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
     if !["png", "svg"].contains(&ending) {
         let help = "end its name with .png or .svg";
         let what = format!("{}: not a picture format; help: {help}", args.out.display());
-        return Err(CliError::new(Exit::Usage, what));
+        return Err(Failure::new(Exit::Usage, what));
     }
     let settings = paths::settings(&args.config)?;
     let scene = match &args.scene {
@@ -60,7 +60,7 @@ fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
         "svg" => evaluation::charts::svg(&chart).map(String::into_bytes),
         _ => evaluation::charts::png(&chart),
     };
-    let bytes = picture.map_err(|error| CliError::new(Exit::Storage, error.to_string()))?;
+    let bytes = picture.map_err(|error| Failure::new(Exit::Storage, error.to_string()))?;
     write(&args.out, &bytes)?;
     let name = &pick.scene.object(pick.object.into()).name;
     let seconds = pick.plan.duration_s();
@@ -77,9 +77,9 @@ fn planned<'a>(
     limb: Option<Limb>,
     robot: &'a Robot,
     settings: &'a PlanSettings,
-) -> Result<Pick<'a>, CliError> {
+) -> Result<Pick<'a>, Failure> {
     let refuse =
-        |what: String| CliError::new(Exit::Config, format!("scene {}: {what}", scene.name()));
+        |what: String| Failure::new(Exit::Config, format!("scene {}: {what}", scene.name()));
     let names = || scene.objects().iter().map(|object| object.name.as_str()).collect::<Vec<_>>();
     let object = object.map_or(Some(0), |name| scene.objects().iter().position(|o| o.name == name));
     let object = object.ok_or_else(|| {
@@ -97,7 +97,7 @@ fn planned<'a>(
             grasp_width_m: at.grasp_width,
         })
     });
-    let places: Vec<ObjectPose> = placed.collect::<Result<_, CliError>>()?;
+    let places: Vec<ObjectPose> = placed.collect::<Result<_, Failure>>()?;
     let others = places.iter().enumerate().filter(|(i, _)| *i != object);
     let others: Vec<Cuboid> = others.map(|(_, place)| place.cuboid()).collect();
     let rest = robot.neutral();
@@ -127,6 +127,6 @@ fn to_json(pick: &Pick<'_>) -> Json {
     })
 }
 
-fn write(path: &Path, bytes: &[u8]) -> Result<(), CliError> {
-    std::fs::write(path, bytes).map_err(|error| CliError::file(path, &error))
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    std::fs::write(path, bytes).map_err(|error| Failure::file(path, &error))
 }

@@ -1,9 +1,8 @@
-use serde_json::Value as Json;
 use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixListener;
 use std::thread;
 
-use serde_json::json;
+use serde_json::{Value as Json, json};
 
 use super::*;
 
@@ -32,10 +31,8 @@ fn run(
         }
     });
     let mut printed = Vec::new();
-    let ended = verb(&paths, &mut Output::to(&mut printed, json)).map_err(|error| match error {
-        CliError::Failure(failure) => (failure.exit, failure.message),
-        CliError::Output(error) => panic!("{error}"),
-    });
+    let ended = verb(&paths, &mut Output::to(&mut printed, json))
+        .map_err(|failure| (failure.exit, failure.message));
     let asked = serde_json::from_str(&supervisor.join().unwrap()).unwrap();
     (asked, String::from_utf8(printed).unwrap(), ended)
 }
@@ -47,10 +44,14 @@ fn arm() -> ServiceArgs {
 #[test]
 fn verbs_send_their_requests() {
     let done = || json!({"reply": "done", "message": "arm is so"});
-    let (asked, printed, ended) = run(done(), false, |paths, out| hold(paths, arm(), out));
+    let (asked, printed, ended) = run(done(), false, |paths, out| {
+        on_service(paths, |service, wait_ms| Request::Hold { service, wait_ms }, arm(), out)
+    });
     assert_eq!(asked, json!({"verb": "hold", "service": "arm", "wait_ms": 1500}));
     assert_eq!((printed.as_str(), ended), ("arm is so\n", Ok(Exit::Ok)));
-    let (asked, printed, _) = run(done(), true, |paths, out| start(paths, arm(), out));
+    let (asked, printed, _) = run(done(), true, |paths, out| {
+        on_service(paths, |service, wait_ms| Request::Start { service, wait_ms }, arm(), out)
+    });
     assert_eq!(asked["verb"], "start");
     assert_eq!(printed, "{\"message\":\"arm is so\"}\n");
     let (asked, ..) = run(done(), false, |paths, out| {
@@ -68,7 +69,9 @@ fn refusal_is_printed_with_details_and_kind() {
     for (kind, exit) in kinds {
         let refused =
             json!({"reply": "refused", "kind": kind, "message": "no", "details": ["why"]});
-        let (_, printed, ended) = run(refused, false, |paths, out| release(paths, arm(), out));
+        let (_, printed, ended) = run(refused, false, |paths, out| {
+            on_service(paths, |service, wait_ms| Request::Release { service, wait_ms }, arm(), out)
+        });
         assert_eq!((printed.as_str(), ended), ("", Err((exit, "no\n  why".to_owned()))));
     }
 }

@@ -4,10 +4,9 @@ use dialogue::registry;
 use evaluation::simulation::UserKind;
 use evaluation::simulation::turns::Rules;
 use evaluation::simulation::users::TimedKind;
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
 use crate::cli::{STUDY_ALL, StudyArgs};
-use crate::error::CliError;
 
 /// One line of the table.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +65,7 @@ const TIMED: [(&str, TimedKind); 2] =
 ///
 /// # Errors
 /// Rules that are none.
-pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, CliError> {
+pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, Failure> {
     let policies = listed(&args.policies, &registry::names());
     let kinds: Vec<UserKind> =
         listed(&args.users, &[]).iter().filter_map(|name| UserKind::named(name)).collect();
@@ -78,7 +77,7 @@ pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, CliError
     let timed = policies.iter().find(|name| *name == planner).or(policies.first());
     for name in listed(&args.turns, &Rules::ALL) {
         let rules = Rules::parse(&name)
-            .map_err(|error| CliError::new(Exit::Usage, format!("--turns: {error}")))?;
+            .map_err(|error| Failure::new(Exit::Usage, format!("--turns: {error}")))?;
         for (name, kind) in TIMED {
             let people = People::RealTime { rules, name, kind };
             rows.extend(timed.map(|policy| Row { policy: policy.clone(), people }));

@@ -7,10 +7,9 @@ use evaluation::simulation::Room;
 use language::{Language, Reader};
 use manipulation::Robot;
 use preflight::{ArmSetup, Extent, Motions, Pace, Voice, measure};
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
 use crate::cli::{ModeArg, Preset, ProblemArgs, StudyArgs};
-use crate::error::CliError;
 use crate::output::note;
 use crate::verbs::planning::{Problem, of_scene};
 
@@ -33,7 +32,7 @@ impl House {
     ///
     /// # Errors
     /// A file that is wrong, or an object that the arm cannot reach.
-    pub(super) fn new(args: &StudyArgs) -> Result<Self, CliError> {
+    pub(super) fn new(args: &StudyArgs) -> Result<Self, Failure> {
         let scene = args.scene.as_deref().unwrap_or(Path::new(PAPER_SCENE));
         let problem = of_scene(scene, &preset(args))?;
         let settings = problem.settings.as_ref();
@@ -103,7 +102,7 @@ fn preset(args: &StudyArgs) -> ProblemArgs {
 }
 
 /// Returns the arm's motions in a scene with places.
-fn motions(problem: &Problem) -> Result<Option<Motions>, CliError> {
+fn motions(problem: &Problem) -> Result<Option<Motions>, Failure> {
     let scene = &problem.scene;
     if scene.objects().iter().any(|object| object.placement.is_none()) {
         note("the scene gives no places: the arm is taken to need no time");
@@ -117,5 +116,5 @@ fn motions(problem: &Problem) -> Result<Option<Motions>, CliError> {
     let extent = if pointing { Extent::Pairs } else { Extent::Picks };
     Motions::plan(robot, scene, limb, &plan, extent)
         .map(Some)
-        .map_err(|error| CliError::new(Exit::Config, error.to_string()))
+        .map_err(|error| Failure::new(Exit::Config, error.to_string()))
 }

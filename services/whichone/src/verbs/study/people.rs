@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use evaluation::simulation::{Interval, Mean};
 use evaluation::user_study::{Group, Paired, Participant, Report};
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
 use super::write;
+use crate::Outcome;
 use crate::cli::ReportArgs;
-use crate::error::{CliError, Outcome};
 use crate::output::{Output, note, table};
 use crate::verbs::{paths, words};
 
@@ -33,7 +33,7 @@ pub(crate) fn report(paths: &GroupPaths, args: &ReportArgs, out: &mut Output<'_>
     Ok(Exit::Ok)
 }
 
-fn folder(paths: &GroupPaths, args: &ReportArgs) -> Result<PathBuf, CliError> {
+fn folder(paths: &GroupPaths, args: &ReportArgs) -> Result<PathBuf, Failure> {
     if let Some(folder) = &args.folder {
         return Ok(folder.clone());
     }
@@ -41,22 +41,22 @@ fn folder(paths: &GroupPaths, args: &ReportArgs) -> Result<PathBuf, CliError> {
     Ok(settings.study.data_dir.unwrap_or_else(|| paths.study()))
 }
 
-fn read(folder: &Path) -> Result<Vec<Participant>, CliError> {
+fn read(folder: &Path) -> Result<Vec<Participant>, Failure> {
     let files = journal::lines::read_folder(folder, evaluation::user_study::FILE_ENDING)
-        .map_err(|(path, error)| CliError::file(&path, &error))?;
+        .map_err(|(path, error)| Failure::file(&path, &error))?;
     let people = evaluation::user_study::people(files).map_err(|(path, error)| {
-        CliError::new(Exit::Storage, format!("{}: {error}", path.display()))
+        Failure::new(Exit::Storage, format!("{}: {error}", path.display()))
     })?;
     if people.is_empty() {
         let what = format!("{} holds no data of a study", folder.display());
         let help = "name the folder, or conduct one: set study.enabled, and open /study";
-        return Err(CliError::new(Exit::NotReached, format!("{what}; help: {help}")));
+        return Err(Failure::new(Exit::NotReached, format!("{what}; help: {help}")));
     }
     Ok(people)
 }
 
-fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), CliError> {
-    std::fs::create_dir_all(folder).map_err(|error| CliError::file(folder, &error))?;
+fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| Failure::file(folder, &error))?;
     let tables = evaluation::user_study::tables(people);
     write(folder, "interactions.csv", tables.interactions.as_bytes())?;
     write(folder, "participants.csv", tables.participants.as_bytes())?;
@@ -69,7 +69,7 @@ fn export(folder: &Path, people: &[Participant], report: &Report) -> Result<(), 
     write(folder, "report.json", format!("{:#}\n", report.to_json()).as_bytes())?;
     for (name, chart) in evaluation::user_study::pictures(report) {
         let files = evaluation::charts::files(name, &chart)
-            .map_err(|error| CliError::new(Exit::Storage, format!("{name}: {error}")))?;
+            .map_err(|error| Failure::new(Exit::Storage, format!("{name}: {error}")))?;
         files.iter().try_for_each(|(name, bytes)| write(folder, name, bytes))?;
     }
     Ok(())

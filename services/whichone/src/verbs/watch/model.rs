@@ -12,8 +12,8 @@ use service::view::{
     ArmView, DialogueView, HearingView, Latest, PromptId, SaidView, Speaker, View,
 };
 
-use crate::error::CliError;
 use crate::verbs::conversation::Conversation;
+use service::exit::Failure;
 
 /// Lines of the dialogue that are kept.
 const LINES_MAX: usize = 6;
@@ -63,7 +63,7 @@ impl WatchModel {
     }
 
     /// Takes in what has arrived.
-    pub(super) fn look(&mut self) -> Result<(), CliError> {
+    pub(super) fn look(&mut self) -> Result<(), Failure> {
         let receipts = self.conversation.look()?;
         if self.before.is_none() {
             self.before = self.latest().view.as_ref().map(|view| view.applied);

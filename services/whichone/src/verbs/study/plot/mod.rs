@@ -3,12 +3,11 @@
 mod histogram;
 mod scatter;
 
-use service::exit::Exit;
+use service::exit::{Exit, Failure};
 
 use evaluation::simulation::Tally;
 
 use super::design::Row;
-use crate::error::CliError;
 
 /// File name and bytes.
 pub(super) type Picture = (String, Vec<u8>);
@@ -17,7 +16,7 @@ pub(super) type Picture = (String, Vec<u8>);
 ///
 /// # Errors
 /// A chart cannot be drawn.
-pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, CliError> {
+pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, Failure> {
     let (real_time, in_turns): (Vec<_>, Vec<_>) =
         results.iter().cloned().partition(|(row, _)| row.people.in_real_time());
     let mut charts = Vec::new();
@@ -33,7 +32,7 @@ pub(super) fn pictures(results: &[(&Row, Tally)]) -> Result<Vec<Picture>, CliErr
     let mut pictures = Vec::new();
     for (name, chart) in charts {
         let files = evaluation::charts::files(name, &chart)
-            .map_err(|error| CliError::new(Exit::Storage, format!("{name}: {error}")))?;
+            .map_err(|error| Failure::new(Exit::Storage, format!("{name}: {error}")))?;
         pictures.extend(files);
     }
     Ok(pictures)
