@@ -2,7 +2,8 @@
 //! joints are when they arrive, and how soon the robot answers.
 
 use crate::options::Options;
-use crate::report::{Report, Table, percentile};
+use crate::peers::resident_mib;
+use crate::report::{Report, percentile};
 use serde_json::{Value as Json, json};
 use service::clock;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -65,7 +66,7 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
     let frames: Vec<f64> =
         counted.iter().map(|page| page.frames as f64 / length.as_secs_f64()).collect();
     report.add("console: frames a second to each page", "1/s", &frames, "");
-    report.tables.push(answers(&operator.parts["latency"]));
+    answers(report, &operator.parts["latency"]);
     drop(operator);
     group.down();
 }
@@ -107,7 +108,7 @@ fn look_on(mut page: Page, over: &AtomicBool) -> Counted {
 
 /// Resident memory of the console, MiB, until it is over.
 fn watch_memory(group: &Group, over: &AtomicBool) -> Vec<f64> {
-    let pid = group.pid("console").as_raw_nonzero();
+    let pid = group.pid("console").as_raw_nonzero().get();
     let mut memory = Vec::new();
     let mut next = Instant::now();
     while !over.load(Ordering::Relaxed) {
@@ -116,25 +117,20 @@ fn watch_memory(group: &Group, over: &AtomicBool) -> Vec<f64> {
             continue;
         }
         next += SAMPLE_EVERY;
-        let text = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
-        let line = text.lines().find(|line| line.starts_with("VmRSS:")).unwrap_or_default();
-        let kib = line.split_whitespace().nth(1).and_then(|kib| kib.parse::<f64>().ok());
-        memory.extend(kib.map(|kib| kib / 1024.0));
+        memory.extend(resident_mib(pid));
     }
     memory
 }
 
 /// Response times of the robot, as the console reports them.
-fn answers(latency: &Json) -> Table {
+fn answers(report: &mut Report, latency: &Json) {
     let stages = ["heard_ms", "understood_ms", "decided_ms", "spoken_ms", "total_ms"];
     let row = |which: &str| {
         let cells = stages.iter().map(|stage| latency[which][stage].to_string());
         std::iter::once(which.to_owned()).chain(cells).collect()
     };
-    Table {
-        title: "End of a typed utterance to the first sound, milliseconds".to_owned(),
-        note: format!("Reported by the console over the latest 500 of {}.", latency["count"]),
-        heads: ["", "text", "meaning", "decision", "sound", "all"].map(str::to_owned).to_vec(),
-        rows: vec![row("p50"), row("p99")],
-    }
+    let note = format!("Reported by the console over the latest 500 of {}.", latency["count"]);
+    let title = "End of a typed utterance to the first sound, milliseconds";
+    let heads = ["", "text", "meaning", "decision", "sound", "all"];
+    report.table(title, note, heads, vec![row("p50"), row("p99")]);
 }

@@ -1,6 +1,8 @@
 //! Cost of an idle group: processor time and memory.
 
+use crate::peers::resident_mib;
 use crate::report::Report;
+use serde_json::Value as Json;
 use std::time::Duration;
 use whichone_tests::Group;
 
@@ -20,8 +22,9 @@ pub(crate) fn measure(report: &mut Report) {
         report.add(&format!("idle CPU of {name}"), "% of a core", &[percent], "");
     }
     report.add("idle CPU of the group", "% of a core", &[total], "bar: 2 %");
-    for (name, kib) in memory(&group) {
-        report.add(&format!("memory of {name}"), "MiB", &[kib / 1024.0], "resident");
+    for (name, pid) in pids(&group) {
+        let mib = resident_mib(pid).unwrap_or(0.0);
+        report.add(&format!("memory of {name}"), "MiB", &[mib], "resident");
     }
     group.down();
 }
@@ -31,7 +34,7 @@ fn cpu_s(group: &Group) -> Vec<(String, f64)> {
     pids(group).into_iter().map(|(name, pid)| (name, process_cpu_s(pid))).collect()
 }
 
-fn process_cpu_s(pid: i64) -> f64 {
+fn process_cpu_s(pid: i32) -> f64 {
     let runtime = std::fs::read_to_string(format!("/proc/{pid}/schedstat")).unwrap_or_default();
     let tasks = std::fs::read_dir(format!("/proc/{pid}/task"));
     let of = |text: String| {
@@ -42,21 +45,11 @@ fn process_cpu_s(pid: i64) -> f64 {
     files.map(|path| of(std::fs::read_to_string(path).unwrap_or_default())).sum()
 }
 
-fn pids(group: &Group) -> Vec<(String, i64)> {
+fn pids(group: &Group) -> Vec<(String, i32)> {
     let status = group.status();
     let services = status["services"].as_array().expect("services");
-    let supervisor = status["supervisor_pid"].as_i64().expect("a supervisor");
-    let of = |row: &serde_json::Value| {
-        (row["name"].as_str().expect("a name").to_owned(), row["pid"].as_i64().expect("a pid"))
-    };
-    std::iter::once(("supervisor".to_owned(), supervisor)).chain(services.iter().map(of)).collect()
-}
-
-fn memory(group: &Group) -> Vec<(String, f64)> {
-    let resident = |pid: i64| {
-        let text = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
-        let line = text.lines().find(|line| line.starts_with("VmRSS:")).unwrap_or_default();
-        line.split_whitespace().nth(1).and_then(|kib| kib.parse().ok()).unwrap_or(0.0)
-    };
-    pids(group).into_iter().map(|(name, pid)| (name, resident(pid))).collect()
+    let pid = |pid: &Json| pid.as_i64().and_then(|pid| pid.try_into().ok()).expect("a pid");
+    let of = |row: &Json| (row["name"].as_str().expect("a name").to_owned(), pid(&row["pid"]));
+    let supervisor = ("supervisor".to_owned(), pid(&status["supervisor_pid"]));
+    std::iter::once(supervisor).chain(services.iter().map(of)).collect()
 }

@@ -22,21 +22,17 @@ mod spoken;
 mod start;
 mod turns;
 
-use options::{HELP, Options};
+use clap::Parser;
+use options::Options;
 use report::Report;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    if words.iter().any(|word| word == "--help" || word == "-h") {
-        report::print(HELP);
-        return ExitCode::SUCCESS;
-    }
-    let options = match Options::read(words) {
+    let options = match Options::try_parse() {
         Ok(options) => options,
         Err(error) => {
-            report::print(&format!("{error}\n\n{HELP}"));
-            return ExitCode::from(64);
+            report::print(&error.to_string());
+            return ExitCode::from(if error.use_stderr() { 64 } else { 0 });
         }
     };
     let mut report = Report::default();
@@ -51,32 +47,33 @@ fn main() -> ExitCode {
 }
 
 fn measure(options: &Options, report: &mut Report) {
-    if options.wants("--core") {
+    let all = options.wants_all();
+    if all || options.core {
         peers::measure(report);
         let effort = if options.quick { core::Effort::QUICK } else { core::Effort::FULL };
         core::measure(report, effort);
     }
-    if options.wants("--kinematics") {
+    if all || options.kinematics {
         arm::measure(report, options.quick);
     }
-    if options.wants_all() {
+    if all {
         start::measure(report);
         latency::measure(report);
         idle::measure(report);
     }
-    if options.wants("--joints") {
+    if all || options.joints {
         jitter::measure(report);
     }
-    if options.wants("--speech") {
+    if all || options.speech {
         speech::measure(report, options.quick);
     }
-    if options.wants("--turns") {
+    if all || options.turns {
         turns::measure(report, options);
     }
-    if options.wants("--console") {
+    if all || options.console {
         console::measure(report, options);
     }
-    if options.wants("--spoken") {
+    if all || options.spoken {
         spoken::measure(report, options);
     }
 }

@@ -1,4 +1,5 @@
-//! The machine's own limits in the same run: the floor under the group's figures.
+//! The machine's own limits in the same run: the floor under the group's figures; and what it reports of
+//! a process.
 
 use crate::report::Report;
 use std::io::Write;
@@ -57,4 +58,11 @@ fn wake() -> Vec<f64> {
     here.send(&[0]).expect("a last word");
     echo.join().expect("an echo that ends");
     samples
+}
+
+/// Resident memory of a process, MiB.
+pub(crate) fn resident_mib(pid: i32) -> Option<f64> {
+    let text = std::fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
+    let line = text.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+    Some(line.split_whitespace().next()?.parse::<f64>().ok()? / 1024.0)
 }

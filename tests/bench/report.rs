@@ -1,7 +1,5 @@
 //! The table that is printed and written.
 
-pub(crate) use evaluation::charts::Series;
-use evaluation::charts::{Chart, Scale};
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -21,35 +19,18 @@ pub(crate) struct Figure {
 
 /// Figures that belong together in rows and columns.
 #[derive(Debug, Serialize)]
-pub(crate) struct Table {
-    pub(crate) title: String,
-    pub(crate) note: String,
-    pub(crate) heads: Vec<String>,
-    pub(crate) rows: Vec<Vec<String>>,
-}
-
-/// Lines of cost in microseconds over one thing that grows.
-#[derive(Debug, Serialize)]
-pub(crate) struct Plot {
-    /// Name of its files.
-    pub(crate) file: &'static str,
-    /// The growing quantity.
-    pub(crate) over: &'static str,
-    #[serde(serialize_with = "by_name")]
-    pub(crate) series: Vec<Series>,
-}
-
-/// The points of each line under its name.
-fn by_name<S: serde::Serializer>(series: &[Series], to: S) -> Result<S::Ok, S::Error> {
-    to.collect_map(series.iter().map(|line| (&line.name, &line.points)))
+struct Table {
+    title: String,
+    note: String,
+    heads: Vec<String>,
+    rows: Vec<Vec<String>>,
 }
 
 /// All figures of a run.
 #[derive(Debug, Default, Serialize)]
 pub(crate) struct Report {
     figures: Vec<Figure>,
-    pub(crate) tables: Vec<Table>,
-    pub(crate) plots: Vec<Plot>,
+    tables: Vec<Table>,
 }
 
 pub(crate) fn print(line: &str) {
@@ -77,6 +58,18 @@ impl Report {
             peer: None,
             note: note.to_owned(),
         });
+    }
+
+    /// Adds a table.
+    pub(crate) fn table<H: Into<String>>(
+        &mut self,
+        title: impl Into<String>,
+        note: impl Into<String>,
+        heads: impl IntoIterator<Item = H>,
+        rows: Vec<Vec<String>>,
+    ) {
+        let heads = heads.into_iter().map(Into::into).collect();
+        self.tables.push(Table { title: title.into(), note: note.into(), heads, rows });
     }
 
     /// Adds a figure with its ratio to a peer measured before.
@@ -111,15 +104,10 @@ impl Report {
             let rows = markdown(&table.heads, &table.rows);
             text += &format!("\n## {}\n\n{}\n\n{rows}", table.title, table.note);
         }
-        for Plot { file, over, series } in &self.plots {
-            let rows = plotted(series);
-            text += &format!("\n## Cost over {over}\n\nMedian, µs; plots: {file}.svg, {file}.png.");
-            text += &format!("\n\n{rows}");
-        }
         text
     }
 
-    /// Prints the tables and writes them, and the plots, to `target/bench`.
+    /// Prints the tables and writes them to `target/bench`.
     pub(crate) fn write(&self) -> std::io::Result<()> {
         let text = self.text();
         print(&text);
@@ -127,32 +115,8 @@ impl Report {
         std::fs::create_dir_all(&folder)?;
         std::fs::write(folder.join("report.md"), text)?;
         let json = serde_json::to_vec_pretty(self).map_err(std::io::Error::other)?;
-        std::fs::write(folder.join("report.json"), json)?;
-        self.plots.iter().try_for_each(|plot| plot.write(&folder))
+        std::fs::write(folder.join("report.json"), json)
     }
-}
-
-impl Plot {
-    fn write(&self, folder: &Path) -> std::io::Result<()> {
-        let title = format!("Cost over the number of {}", self.over);
-        let labels = (self.over, "median, µs");
-        let chart = Chart::lines(&title, labels, Scale::Logarithmic, &self.series)
-            .and_then(|chart| evaluation::charts::files(self.file, &chart))
-            .map_err(std::io::Error::other)?;
-        chart.iter().try_for_each(|(name, bytes)| std::fs::write(folder.join(name), bytes))
-    }
-}
-
-/// The points of a plot as a table.
-fn plotted(series: &[Series]) -> String {
-    let xs = series.first().map(|first| first.points.iter().map(|(x, _)| x.to_string()));
-    let heads: Vec<String> =
-        std::iter::once(String::new()).chain(xs.into_iter().flatten()).collect();
-    let row = |series: &Series| {
-        let ys = series.points.iter().map(|(_, y)| format!("{y:.2}"));
-        std::iter::once(series.name.clone()).chain(ys).collect()
-    };
-    markdown(&heads, &series.iter().map(row).collect::<Vec<_>>())
 }
 
 fn markdown(heads: &[String], rows: &[Vec<String>]) -> String {

@@ -1,21 +1,13 @@
-//! Spoken dialogues with the real group, and what the voice needs.
+//! Spoken dialogues with the real group.
 
 use crate::options::Options;
-use crate::report::{Report, Table, print};
-use speech::devices::voice::{
-    Player, Synthesiser, Voice, VoiceEvent, VoiceMode, VoiceOptions, VoiceOutput,
-};
-use speech::{PlaybackEvent, PlaybackState};
+use crate::report::{Report, print};
 use std::path::Path;
 use std::process::Command;
-use std::time::Instant;
 use whichone_tests::spoken::{Conditions, Held, Tally, tally};
 
 /// Noise under the speech: how far the speech stands above it, decibels, and how that is called.
 const NOISES: [(f64, &str); 2] = [(40.0, "quiet"), (20.0, "20 dB")];
-/// Times that a sentence is broken off.
-const BREAKS: usize = 40;
-
 /// Dialogues in each noise where nothing else is said: alone, and among everything else.
 const DIALOGUES: (u64, u64) = (60, 6);
 
@@ -25,11 +17,10 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
     }
     let usual = if options.wants_all() { DIALOGUES.1 } else { DIALOGUES.0 };
     let (dialogues, seed) = (options.dialogues.unwrap_or(usual), options.seed);
-    voice(report);
     let tallies: Vec<(&str, Tally)> = NOISES
         .iter()
         .map(|(snr_db, name)| {
-            let conditions = Conditions { snr_db: *snr_db, barge_in: false, number: 0, seed };
+            let conditions = Conditions { snr_db: *snr_db, number: 0, seed };
             (*name, tally(conditions, dialogues, options.groups, show))
         })
         .collect();
@@ -44,16 +35,13 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         "rejected",
         "misunderstood",
     ];
-    report.tables.push(Table {
-        title: "Spoken dialogues".to_owned(),
-        note: format!(
-            "{dialogues} dialogues of seed {seed} over the six bowls in each noise, with the real \
-             processes: a synthesised person speaks into the microphone's program in real time, and \
-             answers after the robot's real questions. Every dialogue is in target/bench/spoken.json."
-        ),
-        heads: heads.map(str::to_owned).to_vec(),
-        rows: tallies.iter().map(|(name, tally)| row(name, tally)).collect(),
-    });
+    let note = format!(
+        "{dialogues} dialogues of seed {seed} over the six bowls in each noise, with the real \
+         processes: a synthesised person speaks into the microphone's program in real time, and \
+         answers after the robot's real questions. Every dialogue is in target/bench/spoken.json."
+    );
+    let rows = tallies.iter().map(|(name, tally)| row(name, tally)).collect();
+    report.table("Spoken dialogues", note, heads, rows);
 }
 
 fn can_speak() -> bool {
@@ -98,44 +86,4 @@ fn keep(tallies: &[(&str, Tally)]) {
     if let Err(error) = kept {
         print(&format!("target/bench/spoken.json: {error}"));
     }
-}
-
-/// Measures the time to synthesise and to interrupt a sentence.
-fn voice(report: &mut Report) {
-    let folder = tempfile::tempdir().expect("a folder");
-    let options = VoiceOptions::new(folder.path());
-    let mut synthesiser = Synthesiser::new(&options);
-    let time = |synthesiser: &mut Synthesiser, text: &str| {
-        let began = Instant::now();
-        synthesiser.samples(text).expect("espeak-ng");
-        began.elapsed().as_secs_f64() * 1e3
-    };
-    let new: Vec<f64> =
-        (0..BREAKS).map(|n| time(&mut synthesiser, &format!("Is it number {n}?"))).collect();
-    let known: Vec<f64> =
-        (0..BREAKS).map(|n| time(&mut synthesiser, &format!("Is it number {n}?"))).collect();
-    report.add("synthesis of a new sentence", "ms", &new, "not counted as speech");
-    report.add("synthesis of a cached sentence", "ms", &known, "");
-    // A player that never ends, like a blocked sound card.
-    let script = "case \"$1\" in *silence.wav) ;; *) exec sleep 60 ;; esac";
-    let words = ["-c", script, "player"].map(str::to_owned).to_vec();
-    let players = vec![Player { program: "sh".to_owned(), arguments: words }];
-    let options = VoiceOptions { mode: VoiceMode::Aloud, players, ..options };
-    let (voice, events) = Voice::start(options);
-    assert!(matches!(events.recv(), Ok(VoiceEvent::Output(VoiceOutput::Aloud(_)))));
-    let broken: Vec<f64> = (0..BREAKS as u64)
-        .map(|id| {
-            voice.speak(id, "bench", "Is it in the dishwasher?").expect("a voice");
-            assert_eq!(events.recv(), Ok(playback(id, PlaybackState::Started)));
-            let began = Instant::now();
-            voice.interrupt();
-            assert_eq!(events.recv(), Ok(playback(id, PlaybackState::Interrupted)));
-            began.elapsed().as_secs_f64() * 1e3
-        })
-        .collect();
-    report.add("stop speaking to the player's end", "ms", &broken, "bar: 50 ms");
-}
-
-fn playback(playback: u64, state: PlaybackState) -> VoiceEvent {
-    VoiceEvent::Playback(PlaybackEvent { playback, state })
 }

@@ -1,7 +1,7 @@
 //! Turn-taking in simulated time: the rules of attribution side by side.
 
 use crate::options::Options;
-use crate::report::{Report, Table, print};
+use crate::report::{Report, print};
 use whichone_tests::simulated_group::{Count, study};
 
 /// Dialogues where nothing else is said.
@@ -9,8 +9,8 @@ const DIALOGUES: u64 = 500;
 
 pub(crate) fn measure(report: &mut Report, options: &Options) {
     let (dialogues, seed) = (options.dialogues.unwrap_or(DIALOGUES), options.seed);
-    let study = study(dialogues, seed);
-    for count in study.counts.iter().filter(|count| count.rule == "mixture") {
+    let counts = study(dialogues, seed);
+    for count in counts.iter().filter(|count| count.rule == "mixture") {
         for story in count.stories.iter().take(3) {
             print(&format!("{}, wrong by timing: {story}\n", count.rule));
         }
@@ -26,17 +26,14 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         "questions",
         "seconds",
     ];
-    report.tables.push(Table {
-        title: "Answers late, early, into the next question, and twice".to_owned(),
-        note: format!(
-            "{dialogues} dialogues of seed {seed} through the real reducers of speech, grounding and \
-             policy, the same people under each rule; half of them heard live, half by what arrives \
-             when they have ended. Every user answers truthfully. By timing: the same user who \
-             answers in good time gets the right object."
-        ),
-        heads: heads.map(str::to_owned).to_vec(),
-        rows: study.counts.iter().map(row).collect(),
-    });
+    let note = format!(
+        "{dialogues} dialogues of seed {seed} through the real reducers of speech, grounding and \
+         policy, the same people under each rule; half of them heard live, half by what arrives \
+         when they have ended. Every user answers truthfully. By timing: the same user who answers \
+         in good time gets the right object."
+    );
+    let title = "Answers late, early, into the next question, and twice";
+    report.table(title, note, heads, counts.iter().map(row).collect());
 }
 
 fn row(count: &Count) -> Vec<String> {

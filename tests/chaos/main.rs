@@ -3,6 +3,7 @@
 //! Every dialogue must end with the right object picked once, and the journals must fold again to
 //! the same belief. Prints the seed and what was done; exit code 70 on a broken invariant.
 
+use clap::Parser;
 use dialogue::Rng;
 use messages::Service;
 use rustix::process::Signal;
@@ -14,11 +15,30 @@ use whichone_tests::Group;
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
 
-/// When to stop, and the seed.
+/// Random faults on real processes while dialogues run
+#[derive(Parser)]
+#[command(name = "chaos")]
 struct Plan {
-    kills: u64,
-    until: Option<Instant>,
+    /// Stop after so many minutes
+    #[arg(long, value_name = "N")]
+    minutes: Option<u64>,
+    /// Stop after so many kills [200, unless --minutes is given]
+    #[arg(long, value_name = "N")]
+    kills: Option<u64>,
+    /// Seed of all faults; a random one unless given
+    #[arg(long, value_name = "S", default_value_t = random_seed(), hide_default_value = true)]
     seed: u64,
+}
+
+fn random_seed() -> u64 {
+    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
+    now.map_or(1, |t| u64::from(t.subsec_nanos()))
+}
+
+impl Plan {
+    fn kills_max(&self) -> u64 {
+        self.kills.unwrap_or(if self.minutes.is_some() { u64::MAX } else { 200 })
+    }
 }
 
 /// Counts of the injected faults.
@@ -37,11 +57,11 @@ impl Counters {
 }
 
 fn main() -> ExitCode {
-    let plan = match plan(std::env::args().skip(1).collect()) {
+    let plan = match Plan::try_parse() {
         Ok(plan) => plan,
-        Err(usage) => {
-            print(&usage);
-            return ExitCode::from(64);
+        Err(error) => {
+            print(&error.to_string());
+            return ExitCode::from(if error.use_stderr() { 64 } else { 0 });
         }
     };
     print(&format!("seed {}", plan.seed));
@@ -63,32 +83,12 @@ fn print(line: &str) {
     let _ = writeln!(std::io::stdout(), "{line}");
 }
 
-fn plan(words: Vec<String>) -> Result<Plan, String> {
-    let usage = || "scripts/chaos [--minutes N | --kills N] [--seed S]".to_owned();
-    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH);
-    let mut plan =
-        Plan { kills: 200, until: None, seed: now.map_or(1, |t| u64::from(t.subsec_nanos())) };
-    for pair in words.chunks(2) {
-        let [key, value] = pair else { return Err(usage()) };
-        let number: u64 = value.parse().map_err(|_| usage())?;
-        match key.as_str() {
-            "--kills" => plan.kills = number,
-            "--seed" => plan.seed = number,
-            "--minutes" => {
-                plan.until = Some(Instant::now() + Duration::from_secs(60 * number));
-                plan.kills = u64::MAX;
-            }
-            _ => return Err(usage()),
-        }
-    }
-    Ok(plan)
-}
-
 fn run(plan: &Plan) -> Counters {
     let mut rng = Rng::new(plan.seed);
     let group = Group::up(&["arm.time_scale=20.0"]);
     let mut counters = Counters::default();
-    while counters.kills() < plan.kills && plan.until.is_none_or(|until| Instant::now() < until) {
+    let until = plan.minutes.map(|n| Instant::now() + Duration::from_secs(60 * n));
+    while counters.kills() < plan.kills_max() && until.is_none_or(|until| Instant::now() < until) {
         let bowl = BOWLS[rng.below(BOWLS.len())];
         dialogue(&group, bowl, plan, &mut rng, &mut counters);
         counters.dialogues += 1;
@@ -112,7 +112,7 @@ fn dialogue(group: &Group, bowl: &str, plan: &Plan, rng: &mut Rng, counters: &mu
         });
         while !over.load(Ordering::SeqCst) && !person.is_finished() {
             std::thread::sleep(Duration::from_millis(10 + rng.below(250) as u64));
-            if counters.kills() < plan.kills {
+            if counters.kills() < plan.kills_max() {
                 fault(group, rng, counters);
             }
         }

@@ -8,10 +8,9 @@ const DIALOGUES: u64 = 60;
 #[test]
 fn policy_credits_badly_timed_answers_to_their_questions() {
     let seed = crate::number("WHICHONE_SEED").unwrap_or(1);
-    let study = study(crate::number("WHICHONE_SEEDS").unwrap_or(DIALOGUES), seed);
-    let of = |rule: &str| -> Vec<&Count> {
-        study.counts.iter().filter(|count| count.rule == rule).collect()
-    };
+    let counts = study(crate::number("WHICHONE_SEEDS").unwrap_or(DIALOGUES), seed);
+    let of =
+        |rule: &str| -> Vec<&Count> { counts.iter().filter(|count| count.rule == rule).collect() };
     let sum = |rule: &str, of_count: fn(&Count) -> f64| -> f64 {
         of(rule).into_iter().map(of_count).sum()
     };
@@ -20,6 +19,6 @@ fn policy_credits_badly_timed_answers_to_their_questions() {
     }
     let wrong = |rule| sum(rule, |count| count.wrong as f64);
     let credited = |rule| sum(rule, |count| count.credited) / sum(rule, |c| c.answers as f64);
-    assert!(wrong("mixture") < wrong("naive"), "seed {seed}: {study:#?}");
-    assert!(credited("mixture") > credited("naive"), "seed {seed}: {study:#?}");
+    assert!(wrong("mixture") < wrong("naive"), "seed {seed}: {counts:#?}");
+    assert!(credited("mixture") > credited("naive"), "seed {seed}: {counts:#?}");
 }

@@ -2,8 +2,9 @@
 //! up. Its forward kinematics are this project's own, so what differs is the method.
 
 use super::inverse::Solver;
-use super::targets::Random;
+use super::targets::posture;
 use super::{BUDGET_S, arm, thread_s};
+use dialogue::Rng;
 use manipulation::{Joints, Limb};
 use nalgebra::{Isometry3, Matrix6, Vector6};
 
@@ -12,14 +13,7 @@ const TOLERANCE: f64 = 1e-5;
 /// Steps from one posture.
 const STEPS: usize = 60;
 
-#[derive(Debug)]
-pub(super) struct Damped(Random);
-
-impl Damped {
-    pub(super) fn new() -> Self {
-        Self(Random::new(11))
-    }
-}
+pub(super) struct Damped(pub(super) Rng);
 
 impl Solver for Damped {
     fn name(&self) -> String {
@@ -36,7 +30,7 @@ impl Solver for Damped {
             if thread_s() - started > BUDGET_S {
                 return None;
             }
-            q = self.0.posture(limb);
+            q = posture(limb, &mut self.0);
         }
     }
 }

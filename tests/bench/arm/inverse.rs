@@ -1,10 +1,11 @@
-//! Any posture that reaches a pose: how often, how fast, and how far from where it began.
+//! Postures that reach a pose, any one or that nearest to a seed: how often, how fast, how far from the
+//! seed.
 
 use super::damped::Damped;
-use super::judge::{Judge, Rule, apart};
-use super::targets::{Target, middle};
+use super::targets::{Judge, Rule, Target, apart, middle};
 use super::{Effort, arm, mean, timed};
-use crate::report::{Report, Table, percentile};
+use crate::report::{Report, percentile};
+use dialogue::Rng;
 use manipulation::{Joints, Limb};
 use nalgebra::Isometry3;
 
@@ -57,7 +58,7 @@ impl Outcome {
         let (mut micros, mut distances) = (Vec::new(), Vec::new());
         for (target, (answer, time)) in targets.iter().zip(answers) {
             micros.push(time);
-            let accepted = answer.filter(|q| judge.accepts(target.limb, &target.pose, q, rule));
+            let accepted = answer.filter(|q| judge.accepts(target, q, rule));
             distances.extend(accepted.map(|q| apart(&q, &seed.of(target))));
         }
         let solved = distances.len() as f64 / micros.len().max(1) as f64;
@@ -85,14 +86,11 @@ impl Outcome {
 }
 
 /// The heads of [`Outcome::cells`].
-pub(super) fn heads() -> Vec<String> {
-    ["solver", "targets", "solved", "mean µs", "median", "p99", "distance to seed, rad", "× ours"]
-        .map(str::to_owned)
-        .to_vec()
-}
+const HEADS: [&str; 8] =
+    ["solver", "targets", "solved", "mean µs", "median", "p99", "distance to seed, rad", "× ours"];
 
 /// Has a solver answer the targets.
-pub(super) fn run(solver: &mut dyn Solver, targets: &[Target], seed: Seed, rule: Rule) -> Outcome {
+fn run(solver: &mut dyn Solver, targets: &[Target], seed: Seed, rule: Rule) -> Outcome {
     let name = solver.name();
     let answers = targets.iter().map(|target| {
         let from = seed.of(target);
@@ -129,7 +127,7 @@ pub(super) fn measure(
 ) {
     let few = &targets[..effort.peers];
     let own = run(&mut Own::First, targets, Seed::Middle, Rule::OWN);
-    let mut peers = vec![run(&mut Damped::new(), few, Seed::Middle, Rule::PEER)];
+    let mut peers = vec![run(&mut Damped(Rng::new(11)), few, Seed::Middle, Rule::PEER)];
     #[cfg(feature = "peers")]
     for solver in super::k_crate::solvers() {
         let mut solver = solver;
@@ -161,10 +159,30 @@ pub(super) fn measure(
     }
     let ours = own.mean();
     let rows = std::iter::once(&own).chain(&peers).map(|outcome| outcome.cells(ours)).collect();
-    report.tables.push(Table {
-        title: "Inverse kinematics".to_owned(),
-        note,
-        heads: heads(),
-        rows,
-    });
+    report.table("Inverse kinematics", note, HEADS, rows);
+}
+
+/// The posture nearest to a seed: how near, and how fast.
+pub(super) fn measure_nearest(
+    report: &mut Report,
+    targets: &[Target],
+    python: &super::python::Measured,
+    effort: Effort,
+) {
+    let few = &targets[..effort.peers];
+    let mut rows = Vec::new();
+    for (seed, from) in [(Seed::Middle, "middle"), (Seed::Random, "random")] {
+        let own = run(&mut Own::Nearest, few, seed, Rule::OWN);
+        let peers = python.outcomes(targets, true, seed);
+        rows.extend(std::iter::once(&own).chain(&peers).map(|outcome| {
+            let mut cells = outcome.cells(own.mean());
+            cells.insert(1, from.to_owned());
+            cells
+        }));
+    }
+    let mut heads = HEADS.to_vec();
+    heads.insert(1, "seed");
+    let note = "The same targets; distances are means over what was solved. Peers look for better \
+                answers until their time is up.";
+    report.table("Inverse kinematics nearest to a seed", note, heads, rows);
 }

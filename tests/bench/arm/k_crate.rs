@@ -1,8 +1,9 @@
 //! The crate `k`, which is on an older version of our linear algebra.
 
 use super::inverse::Solver;
-use super::targets::Random;
+use super::targets::posture;
 use super::{BUDGET_S, thread_s};
+use dialogue::Rng;
 use k::prelude::*;
 use manipulation::{Joints, Limb};
 use nalgebra::Isometry3;
@@ -25,7 +26,7 @@ pub(super) fn solvers() -> [Peer; 2] {
 pub(super) struct Peer {
     arms: [Serial; 2],
     solver: k::JacobianIkSolver<f64>,
-    restarts: Option<Random>,
+    restarts: Option<Rng>,
 }
 
 /// A limb's chain from `base` to `<limb>_gripper`. It gets a robot of this limb alone: in a larger
@@ -80,7 +81,7 @@ impl Peer {
         Self {
             arms: Limb::BOTH.map(chain),
             solver: k::JacobianIkSolver::new(TOLERANCE, TOLERANCE, MULTIPLIER, STEPS),
-            restarts: restarting.then(|| Random::new(13)),
+            restarts: restarting.then(|| Rng::new(13)),
         }
     }
 }
@@ -107,7 +108,7 @@ impl Solver for Peer {
             if thread_s() - started > BUDGET_S {
                 return None;
             }
-            from = random.posture(limb);
+            from = posture(limb, random);
         }
     }
 }

@@ -4,18 +4,13 @@
 //! answer is judged by forward kinematics that none of them uses. The targets are the same in
 //! every run.
 
-mod clearance;
+mod checks;
 mod damped;
-mod elsewhere;
-mod forward;
 mod inverse;
-mod judge;
 #[cfg(feature = "peers")]
 mod k_crate;
 mod motion;
-mod nearest;
 mod python;
-mod refusal;
 mod targets;
 
 use crate::report::Report;
@@ -27,12 +22,9 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
     let targets = targets::reachable(effort.own);
     let python = python::measure(&targets, effort);
     inverse::measure(report, &targets, &python, effort);
-    nearest::measure(report, &targets, &python, effort);
-    elsewhere::add(report);
-    refusal::measure(report);
-    forward::measure(report);
+    inverse::measure_nearest(report, &targets, &python, effort);
+    checks::measure(report);
     motion::measure(report);
-    clearance::measure(report);
 }
 
 /// Number of targets by kind of solver: slow ones get the first targets only.

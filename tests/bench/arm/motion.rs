@@ -1,7 +1,7 @@
 //! Duration of motions against the shortest known, and the cost of planning them.
 
 use super::{arm, fixture, mean, numbers, rows, seven, timed};
-use crate::report::{Report, Table};
+use crate::report::Report;
 use manipulation::{Joints, Limb, MotionLimits, Path, PositionLimits, State, Trajectory};
 
 /// Grid intervals: as the services time a path, and finer.
@@ -10,17 +10,11 @@ const INTERVALS: [usize; 2] = [manipulation::INTERVALS_MIN, 4000];
 pub(super) fn measure(report: &mut Report) {
     let mut rows = splines();
     rows.push(moves());
-    report.tables.push(Table {
-        title: "Durations of motions".to_owned(),
-        note: "Spline paths of 3 to 7 waypoints with limited acceleration beside toppra 0.6 \
-               (1,000 intervals), and moves between states with limited jerk beside ruckig 0.19: \
-               duration over the reference's, and what planning takes."
-            .to_owned(),
-        heads: ["motion", "motions", "mean ratio", "worst ratio", "mean µs"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows,
-    });
+    let note = "Spline paths of 3 to 7 waypoints with limited acceleration beside toppra 0.6 (1,000 \
+                intervals), and moves between states with limited jerk beside ruckig 0.19: duration \
+                over the reference's, and what planning takes.";
+    let heads = ["motion", "motions", "mean ratio", "worst ratio", "mean µs"];
+    report.table("Durations of motions", note, heads, rows);
 }
 
 fn row(what: String, ratios: &[f64], micros: &[f64]) -> Vec<String> {

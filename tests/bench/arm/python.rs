@@ -3,8 +3,7 @@
 //! Each call is timed in Python, so it holds a few microseconds of the way there and back.
 
 use super::inverse::{Outcome, Seed};
-use super::judge::Rule;
-use super::targets::{Target, middle};
+use super::targets::{Rule, Target, middle};
 use super::{BUDGET_S, Effort};
 use manipulation::{Joints, Limb};
 use serde::Deserialize;
@@ -18,7 +17,7 @@ const SCRIPT: &str = include_str!("peers.py");
 const VARIABLE: &str = "WHICHONE_PEERS_PYTHON";
 
 /// The peers' answer.
-#[derive(Debug, Default)]
+#[derive(Debug, Deserialize)]
 pub(super) struct Measured {
     runs: Vec<Run>,
     /// Peers that were left out, with the reason.
@@ -33,12 +32,6 @@ struct Run {
     random_seed: bool,
     answers: Vec<Option<Joints>>,
     micros: Vec<f64>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Reply {
-    runs: Vec<Run>,
-    left_out: Vec<String>,
 }
 
 impl Measured {
@@ -59,13 +52,10 @@ impl Measured {
 
 pub(super) fn measure(targets: &[Target], effort: Effort) -> Measured {
     let python = std::env::var(VARIABLE).unwrap_or_else(|_| "python3".to_owned());
-    call(&python, &question(&targets[..effort.peers], effort)).map_or_else(
-        |error| Measured {
-            left_out: vec![format!("Solvers in Python are left out: {error}.")],
-            ..Measured::default()
-        },
-        |reply| Measured { runs: reply.runs, left_out: reply.left_out },
-    )
+    call(&python, &question(&targets[..effort.peers], effort)).unwrap_or_else(|error| Measured {
+        runs: Vec::new(),
+        left_out: vec![format!("Solvers in Python are left out: {error}.")],
+    })
 }
 
 fn question(targets: &[Target], effort: Effort) -> String {
@@ -101,7 +91,7 @@ fn question(targets: &[Target], effort: Effort) -> String {
     .to_string()
 }
 
-fn call(python: &str, question: &str) -> Result<Reply, String> {
+fn call(python: &str, question: &str) -> Result<Measured, String> {
     let mut child = Command::new(python)
         .args(["-c", SCRIPT])
         .stdin(Stdio::piped())

@@ -2,7 +2,7 @@
 
 use super::scenes::{OPEN, YES_NO, beliefs, configured, random};
 use super::{Effort, micros};
-use crate::report::{Report, Table, percentile};
+use crate::report::{Report, percentile};
 use dialogue::{Actions, Costs, DecisionProblem, Model, Params, Step, registry};
 
 /// A scene, its size (objects times attributes), and its model.
@@ -31,21 +31,17 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
         large("1,000 × 10", 1_000, 10),
         large("10,000 × 20", 10_000, 20),
     ];
-    let mut heads = vec!["planner, µs per decision: first / p50 / p99".to_owned()];
-    heads.extend(places.iter().map(|place| place.name.to_owned()));
+    let heads = ["planner, µs per decision: first / p50 / p99"];
+    let heads = heads.into_iter().chain(places.iter().map(|place| place.name));
     let rows = registry::names().iter().map(|name| row(name, &places, effort, report)).collect();
-    report.tables.push(Table {
-        title: "Decisions".to_owned(),
-        note: format!(
-            "A new planner for each decision, so that nothing is remembered: the first is at the \
-             uniform belief, the others at beliefs that dialogues lead to. Costs in seconds. A \
-             planner is left out of a scene where it would need more than {} s, judged by the \
-             smaller scene before it.",
-            effort.budget_s
-        ),
-        heads,
-        rows,
-    });
+    let note = format!(
+        "A new planner for each decision, so that nothing is remembered: the first is at the \
+         uniform belief, the others at beliefs that dialogues lead to. Costs in seconds. A \
+         planner is left out of a scene where it would need more than {} s, judged by the \
+         smaller scene before it.",
+        effort.budget_s
+    );
+    report.table("Decisions", note, heads, rows);
 }
 
 fn row(name: &str, places: &[Place], effort: Effort, report: &mut Report) -> Vec<String> {

@@ -2,7 +2,7 @@
 
 use super::scenes::{OPEN, YES_NO, configured, random};
 use super::{Effort, micros};
-use crate::report::{Report, Table, percentile};
+use crate::report::{Report, percentile};
 use dialogue::{Actions, Belief, Costs, DecisionProblem, Model, Optimal, Params, Planner, Step};
 
 /// Beliefs looked at.
@@ -29,14 +29,9 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
             std::iter::once((*name).to_owned()).chain(cells).collect()
         })
         .collect();
-    report.tables.push(Table {
-        title: "Certified gap against time".to_owned(),
-        note: "Lower and upper bound on the value of the best policy at the uniform belief, costs \
-               in seconds. The search ends where the value is known."
-            .to_owned(),
-        heads,
-        rows,
-    });
+    let note = "Lower and upper bound on the value of the best policy at the uniform belief, costs \
+                in seconds. The search ends where the value is known.";
+    report.table("Certified gap against time", note, heads, rows);
 }
 
 fn cell(problem: &DecisionProblem<'_>, beliefs_max: usize, effort: Effort) -> String {

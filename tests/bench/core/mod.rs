@@ -5,7 +5,6 @@
 mod decide;
 mod gap;
 mod quality;
-mod scaling;
 pub(crate) mod scenes;
 mod update;
 
@@ -40,7 +39,6 @@ pub(crate) fn measure(report: &mut Report, effort: Effort) {
     update::measure(report, effort);
     gap::measure(report, effort);
     quality::measure(report, effort);
-    scaling::measure(report, effort);
 }
 
 /// Microseconds of `act`, sample by sample, until there are enough or patience ends. Each sample

@@ -3,7 +3,7 @@
 
 use super::Effort;
 use super::scenes::{OPEN, POINTING, PRESENT, PRESENT_OPEN, YES_NO, configured, random};
-use crate::report::{Report, Table};
+use crate::report::Report;
 use dialogue::{
     Actions, Belief, Costs, DecisionProblem, Model, Optimal, Params, Planner, Step, evaluate,
     registry,
@@ -40,17 +40,14 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
             }
         }
     }
-    report.tables.push(Table {
-        title: "Exact values".to_owned(),
-        note: format!(
-            "Expected discounted return from the uniform belief, by following every dialogue that \
-             is more probable than {:e}; the best policy's value lies between the two bounds. \
-             sparse-sampling is followed for one set of draws.",
-            effort.cut
-        ),
-        heads: heads(["scene", "questions", "costs", "best policy"]),
-        rows,
-    });
+    let note = format!(
+        "Expected discounted return from the uniform belief, by following every dialogue that \
+         is more probable than {:e}; the best policy's value lies between the two bounds. \
+         sparse-sampling is followed for one set of draws.",
+        effort.cut
+    );
+    let heads = ["scene", "questions", "costs", "best policy"];
+    report.table("Exact values", note, heads.into_iter().chain(registry::names()), rows);
     larger(report, effort);
 }
 
@@ -69,20 +66,13 @@ fn larger(report: &mut Report, effort: Effort) {
             rows.push(row);
         }
     }
-    report.tables.push(Table {
-        title: "Values on larger scenes".to_owned(),
-        note: format!(
-            "Random scenes in another room, costs in seconds. Dialogues less probable than \
-             {CUT_LARGER:e} end with a pick at once, which takes up to a tenth or so from \
-             every column. A dash: its decisions would take longer than this table is worth.",
-        ),
-        heads: heads(["objects × attributes", "questions", "best policy"]),
-        rows,
-    });
-}
-
-fn heads<const N: usize>(first: [&str; N]) -> Vec<String> {
-    first.into_iter().chain(registry::names()).map(str::to_owned).collect()
+    let note = format!(
+        "Random scenes in another room, costs in seconds. Dialogues less probable than \
+         {CUT_LARGER:e} end with a pick at once, which takes up to a tenth or so from every \
+         column. A dash: its decisions would take longer than this table is worth.",
+    );
+    let heads = ["objects × attributes", "questions", "best policy"];
+    report.table("Values on larger scenes", note, heads.into_iter().chain(registry::names()), rows);
 }
 
 /// Certified bounds on the best policy's value.

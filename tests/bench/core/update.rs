@@ -8,8 +8,6 @@ use scene::{AttributeId, Question, Reading, Response, ValueId};
 
 /// Objects; the largest is the most that a scene can hold (its indices have 16 bits).
 const OBJECTS: [usize; 4] = [6, 1_000, 10_000, 65_535];
-/// Hypotheses beyond any scene, which evidence of another kind can be about.
-const HYPOTHESES: [usize; 2] = [100_000, 1_000_000];
 /// Passes over small arrays that make one sample, so that the clock's own cost does not count.
 const PASSES_BYTES: usize = 1 << 20;
 
@@ -31,30 +29,10 @@ pub(super) fn measure(report: &mut Report, effort: Effort) {
             &note,
         );
     }
-    HYPOTHESES.into_iter().for_each(|hypotheses| weighing(report, hypotheses, effort));
-}
-
-/// Evidence given as a likelihood per hypothesis, which has no scene's limits.
-fn weighing(report: &mut Report, hypotheses: usize, effort: Effort) {
-    let likelihood: Vec<f64> = (0..hypotheses).map(|i| -((i % 7) as f64) / 1e3).collect();
-    let mut array = vec![0.0; hypotheses];
-    let peer = format!("plain pass, {hypotheses} hypotheses");
-    let samples = per_pass(hypotheses, effort, |_| {
-        array.iter_mut().zip(&likelihood).for_each(|(entry, more)| *entry += more);
-        std::hint::black_box(&array);
-    });
-    report.add(&peer, "µs", &samples, "reads one array, reads and writes another (8 B each)");
-    let mut belief = Belief::uniform(hypotheses);
-    let samples = per_pass(hypotheses, effort, |_| {
-        belief.weigh(&likelihood);
-        std::hint::black_box(&belief);
-    });
-    let note = "a likelihood for each; one pass more finds the greatest";
-    report.add_beside(&format!("weighing, {hypotheses} hypotheses"), "µs", &samples, &peer, note);
 }
 
 /// Updates with yes and no in turn, µs each.
-pub(super) fn answers(model: &Model, effort: Effort) -> Vec<f64> {
+fn answers(model: &Model, effort: Effort) -> Vec<f64> {
     let question = Question::Attribute(AttributeId(1), ValueId(2));
     let readings =
         [Response::Yes, Response::No].map(|response| Reading { response, ..Reading::default() });

@@ -1,17 +1,21 @@
-//! The corpus: sentences, voices, noise.
+//! The corpora: sentences, voices, noise.
 
-use super::noise::pink;
-use super::voices::{Voice, Voices};
+use super::voices::Voices;
 use ::speech::devices::audio::RATE_HZ;
-use scene::Scene;
+use dialogue::Rng;
+use realfft::RealFftPlanner;
+use realfft::num_complex::Complex;
+use scene::{Question, Scene};
+use std::f64::consts::TAU;
 use std::ops::Range;
+use whichone_tests::spoken::{SPEAKERS, Speaker};
 
 /// Sentences of one kind, and who speaks them.
 pub(super) struct Corpus {
     pub(super) name: &'static str,
     pub(super) scenes: Vec<Scene>,
     pub(super) sentences: Vec<Sentence>,
-    pub(super) voices: &'static [Voice],
+    pub(super) voices: &'static [Speaker],
 }
 
 /// A sentence, and to whom it is said.
@@ -24,8 +28,6 @@ pub(super) struct Sentence {
     pub(super) question: Question,
 }
 
-use scene::Question;
-
 /// A sentence as it reaches the microphone.
 pub(super) struct Clip {
     /// 16 kHz, one channel.
@@ -34,20 +36,12 @@ pub(super) struct Clip {
     pub(super) speech: Range<usize>,
 }
 
-/// Formant voices, which are hard for a model trained on people, and voices cut from recordings.
-const VOICES: &[Voice] = &[
-    Voice::espeak("en-us", 150),
-    Voice::espeak("en-us+f2", 165),
-    Voice::espeak("en-gb", 145),
-    Voice::flite("slt"),
-    Voice::flite("rms"),
-];
-/// Others of both kinds.
-const FRESH_VOICES: &[Voice] = &[
-    Voice::espeak("en-us+f4", 160),
-    Voice::espeak("en-gb-scotland", 150),
-    Voice::flite("awb"),
-    Voice::flite("kal16"),
+/// Voices that [`SPEAKERS`] does not hold, of both kinds.
+const FRESH_SPEAKERS: &[Speaker] = &[
+    Speaker::espeak("en-us+f4", 160),
+    Speaker::espeak("en-gb-scotland", 150),
+    Speaker::flite("awb"),
+    Speaker::flite("kal16"),
 ];
 
 /// Quiet before and behind the voice, seconds.
@@ -59,12 +53,12 @@ impl Corpus {
     pub(super) fn main() -> Self {
         let everything = fixture("everything.toml");
         let scene = Scene::from_toml("everything.toml", &everything).expect("a scene that holds");
-        Self::of("main", vec![scene], &fixture("main.txt"), VOICES)
+        Self::of("main", vec![scene], &fixture("main.txt"), &SPEAKERS)
     }
 
     /// Sentences and voices on which nothing was tuned.
     pub(super) fn fresh() -> Self {
-        Self::of("fresh", configured(), &fixture("fresh.txt"), FRESH_VOICES)
+        Self::of("fresh", configured(), &fixture("fresh.txt"), FRESH_SPEAKERS)
     }
 
     /// The public utterances, as far as they can be spoken.
@@ -72,10 +66,10 @@ impl Corpus {
         let scenes = configured();
         let lines = include_str!("../../fixtures/utterances/public.jsonl").lines();
         let sentences = lines.filter_map(|line| spoken(&scenes, line)).collect();
-        Self { name: "utterances", scenes, sentences, voices: FRESH_VOICES }
+        Self { name: "utterances", scenes, sentences, voices: FRESH_SPEAKERS }
     }
 
-    fn of(name: &'static str, scenes: Vec<Scene>, text: &str, voices: &'static [Voice]) -> Self {
+    fn of(name: &'static str, scenes: Vec<Scene>, text: &str, voices: &'static [Speaker]) -> Self {
         let lines = text.lines().filter(|line| !line.starts_with('#'));
         let lines = lines.filter_map(|line| line.split_once(" | "));
         let sentence = |(n, (to, text)): (usize, (&str, &str))| {
@@ -137,6 +131,24 @@ fn configured() -> Vec<Scene> {
 fn fixture(name: &str) -> String {
     let path = format!("{}/fixtures/speech/{name}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// So many samples of noise of power 1 that falls by 3 dB an octave, as that of most rooms does; the
+/// same for the same seed. Every frequency gets a random amplitude and phase (Box and Muller),
+/// divided by the root of the frequency.
+fn pink(len: usize, seed: u64) -> Vec<f64> {
+    let transform = RealFftPlanner::new().plan_fft_inverse(len.next_power_of_two());
+    let (mut spectrum, mut noise) = (transform.make_input_vec(), transform.make_output_vec());
+    let mut rng = Rng::new(seed);
+    let [_, bins @ .., _] = &mut spectrum[..] else { unreachable!("a spectrum has two ends") };
+    for (bin, k) in bins.iter_mut().zip(1..) {
+        let radius = (-2.0 * (1.0 - rng.uniform()).ln()).sqrt();
+        *bin = Complex::from_polar(radius / f64::from(k).sqrt(), TAU * rng.uniform());
+    }
+    transform.process(&mut spectrum, &mut noise).expect("vectors of the transform's own lengths");
+    noise.truncate(len);
+    let power = noise.iter().map(|x| x * x).sum::<f64>() / len as f64;
+    noise.into_iter().map(|x| x / power.sqrt()).collect()
 }
 
 fn samples(seconds: f64) -> usize {

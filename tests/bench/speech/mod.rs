@@ -7,7 +7,6 @@
 mod corpus;
 mod listener;
 mod meaning;
-mod noise;
 mod score;
 mod tables;
 mod voices;
@@ -16,14 +15,14 @@ use crate::report::{Report, print};
 use ::speech::devices::recogniser::RecogniserUnavailable;
 use ::speech::devices::vad::SegmenterOptions;
 use corpus::Corpus;
+use language::{Language, Reader};
 use listener::Listener;
-use score::{Judge, Score};
+use score::Score;
 use voices::Voices;
 
 /// One clip's score, and what clip it is.
 struct Trial {
     sentence: usize,
-    voice: usize,
     snr_db: f64,
     score: Score,
 }
@@ -49,7 +48,7 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
 /// The ears of one robot for each scene of a corpus.
 struct Ears {
     listeners: Vec<Listener>,
-    judges: Vec<Judge>,
+    readers: Vec<Reader>,
     starts_ms: Vec<f64>,
     /// Holds the recognisers' files.
     _work: tempfile::TempDir,
@@ -71,8 +70,9 @@ impl Ears {
             starts_ms.push(listener.start_s * 1e3);
             listeners.push(listener);
         }
-        let judges = corpus.scenes.iter().map(Judge::new).collect();
-        Ok(Self { listeners, judges, starts_ms, _work: work })
+        let reader = |scene| Reader::new(scene, Language::Careful);
+        let readers = corpus.scenes.iter().map(reader).collect();
+        Ok(Self { listeners, readers, starts_ms, _work: work })
     }
 
     fn hear(&mut self, corpus: &Corpus, voices: &Voices, levels: &[f64]) -> Vec<Trial> {
@@ -83,8 +83,9 @@ impl Ears {
                 for voice in 0..corpus.voices.len() {
                     let clip = corpus.clip(voices, sentence, voice, snr_db);
                     let heard = self.listeners[said.scene].hear(&clip);
-                    let score = self.judges[said.scene].score(said, &clip, &heard, pause_s);
-                    trials.push(Trial { sentence, voice, snr_db, score });
+                    let reader = &self.readers[said.scene];
+                    let score = Score::of(reader, said, &clip, &heard, pause_s);
+                    trials.push(Trial { sentence, snr_db, score });
                 }
             }
         }

@@ -3,7 +3,7 @@
 use super::Trial;
 use super::corpus::Corpus;
 use super::score::Score;
-use crate::report::{Report, Table, percentile};
+use crate::report::{Report, percentile};
 
 /// Title of a row and filter of its trials.
 type Of<'a> = (String, Box<dyn Fn(&Trial) -> bool + 'a>);
@@ -19,10 +19,6 @@ pub(super) fn add(report: &mut Report, corpus: &Corpus, levels: &[f64], trials: 
             let of = move |t: &Trial| t.snr_db == level && t.sentence % 2 == half;
             rows.push((format!("{level} dB, {name} sentences"), Box::new(of)));
         }
-        for (voice, named) in corpus.voices.iter().enumerate() {
-            let of = move |t: &Trial| t.snr_db == level && t.voice == voice;
-            rows.push((format!("{level} dB, {}", named.title()), Box::new(of)));
-        }
     }
     let of = |rows: &[Of<'_>]| -> Vec<Row> {
         let scores = |is: &dyn Fn(&Trial) -> bool| {
@@ -30,66 +26,51 @@ pub(super) fn add(report: &mut Report, corpus: &Corpus, levels: &[f64], trials: 
         };
         rows.iter().map(|(name, is)| (name.clone(), scores(is))).collect()
     };
-    report.tables.push(understood(corpus, &of(&rows)));
+    understood(report, corpus.name, &of(&rows));
     rows.truncate(levels.len());
-    report.tables.push(timed(corpus, &of(&rows)));
-    report.tables.push(reliable(corpus, &of(&rows)));
+    timed(report, corpus.name, &of(&rows));
+    reliable(report, corpus.name, &of(&rows));
 }
 
 /// A row's name, and what it is about.
 type Row = (String, Vec<Score>);
 
-fn understood(corpus: &Corpus, rows: &[Row]) -> Table {
+fn understood(report: &mut Report, corpus: &str, rows: &[Row]) {
     let heads = [
         "noise",
         "for the robot",
-        "word errors",
         "right: best",
         "right: weighed",
         "right: any of them",
-        "right by word spotting",
         "passed and right",
         "wrong action",
-        "likeliest objects right",
         "about other things",
         "acted on",
     ];
     let row = |(name, scores): &Row| {
         let (meant, other): (Vec<Score>, Vec<Score>) =
             scores.iter().cloned().partition(|score| score.for_the_robot);
-        let words: usize = meant.iter().map(|s| s.words).sum();
-        let errors: usize = meant.iter().map(|s| s.word_errors).sum();
         vec![
             name.clone(),
             meant.len().to_string(),
-            percent(errors, words),
             share(&meant, |s| s.best),
             share(&meant, |s| s.weighed),
             share(&meant, |s| s.oracle),
-            share(&meant, |s| s.spotted),
             share(&meant, |s| s.passed),
             share(&meant, |s| s.wrong_action),
-            share(&meant, |s| s.objects),
             other.len().to_string(),
             share(&other, |s| s.acted_on),
         ]
     };
-    Table {
-        title: format!("Spoken input: {}", corpus.name),
-        note: "Right: values asserted, groups ruled out, answer and order all equal those of the \
-               true text. Best: of the best hypothesis; weighed: the meaning with the largest sum \
-               of weights over the five; any: one of the five is right; these three with the gate \
-               open. Passed: the gate lets it in and the weighed meaning is right; wrong action: \
-               it lets it in and the robot would act on another meaning. Likeliest objects: the \
-               objects most probable after the weighed hypotheses are those after the true text. \
-               Word errors: edits of scene words of the best hypothesis over scene words said."
-            .to_owned(),
-        heads: heads.map(str::to_owned).into(),
-        rows: rows.iter().map(row).collect(),
-    }
+    let note = "Right: values asserted, groups ruled out, answer and order all equal those of the true \
+                text. Best: of the best hypothesis; weighed: the meaning with the largest sum of \
+                weights over the five; any: one of the five is right; these three with the gate open. \
+                Passed: the gate lets it in and the weighed meaning is right; wrong action: it lets it \
+                in and the robot would act on another meaning.";
+    report.table(format!("Spoken input: {corpus}"), note, heads, rows.iter().map(row).collect());
 }
 
-fn timed(corpus: &Corpus, rows: &[Row]) -> Table {
+fn timed(report: &mut Report, corpus: &str, rows: &[Row]) {
     let heads = [
         "noise",
         "onset late by, ms, p50",
@@ -99,7 +80,6 @@ fn timed(corpus: &Corpus, rows: &[Row]) -> Table {
         "voice's end to result less the closing pause, ms, p50",
         "p95",
         "decoding, CPU over sound",
-        "not one stretch",
     ];
     let row = |(name, scores): &Row| {
         let of = |value: fn(&Score) -> f64| -> Vec<f64> {
@@ -117,21 +97,15 @@ fn timed(corpus: &Corpus, rows: &[Row]) -> Table {
             at(&delay, 0.5),
             at(&delay, 0.95),
             format!("{:.3}", sum(|s| s.cpu_s) / sum(|s| s.sound_s)),
-            share(scores, |s| s.stretches != 1),
         ]
     };
-    Table {
-        title: format!("Spoken input, times: {}", corpus.name),
-        note: "Onset and release: the detector's edges against the voice's. Not one stretch: the \
-               voice was missed or cut in two."
-            .to_owned(),
-        heads: heads.map(str::to_owned).into(),
-        rows: rows.iter().map(row).collect(),
-    }
+    let title = format!("Spoken input, times: {corpus}");
+    let note = "Onset and release: the detector's edges against the voice's.";
+    report.table(title, note, heads, rows.iter().map(row).collect());
 }
 
 /// Share of right words by the recogniser's confidence.
-fn reliable(corpus: &Corpus, rows: &[Row]) -> Table {
+fn reliable(report: &mut Report, corpus: &str, rows: &[Row]) {
     const BOUNDS: [f32; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.001];
     let cell = |words: &[(f32, bool)], from: f32, to: f32| {
         let within: Vec<&(f32, bool)> = words.iter().filter(|w| from <= w.0 && w.0 < to).collect();
@@ -149,14 +123,10 @@ fn reliable(corpus: &Corpus, rows: &[Row]) -> Table {
         std::iter::once(name.clone()).chain(cells).collect()
     };
     let heads = ["noise", "below 0.2", "0.2 to 0.4", "0.4 to 0.6", "0.6 to 0.8", "from 0.8"];
-    Table {
-        title: format!("Spoken input, confidence of words: {}", corpus.name),
-        note: "Words of the best hypotheses of what is for the robot, by their confidence: its \
-               mean, the share of words that were said (number of words)."
-            .to_owned(),
-        heads: heads.map(str::to_owned).into(),
-        rows: rows.iter().map(row).collect(),
-    }
+    let title = format!("Spoken input, confidence of words: {corpus}");
+    let note = "Words of the best hypotheses of what is for the robot, by their confidence: its mean, the \
+                share of words that were said (number of words).";
+    report.table(title, note, heads, rows.iter().map(row).collect());
 }
 
 fn share(scores: &[Score], is: fn(&Score) -> bool) -> String {

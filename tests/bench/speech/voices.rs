@@ -1,57 +1,9 @@
-//! Programs that speak.
+//! Synthesised sentences.
 
-use ::speech::devices::audio::{RATE_HZ, read_wav};
+use ::speech::devices::audio::RATE_HZ;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
-
-/// One voice of one program.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Voice {
-    program: Program,
-    name: &'static str,
-    words_per_minute: u32,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Program {
-    Espeak,
-    Flite,
-}
-
-impl Voice {
-    pub(super) const fn espeak(name: &'static str, words_per_minute: u32) -> Self {
-        Self { program: Program::Espeak, name, words_per_minute }
-    }
-
-    pub(super) const fn flite(name: &'static str) -> Self {
-        Self { program: Program::Flite, name, words_per_minute: 0 }
-    }
-
-    /// `espeak-ng en-gb`.
-    pub(super) fn title(&self) -> String {
-        match self.program {
-            Program::Espeak => format!("espeak-ng {}", self.name),
-            Program::Flite => format!("flite {}", self.name),
-        }
-    }
-
-    fn command(&self, text: &str, wav: &std::path::Path) -> Command {
-        let mut command;
-        match self.program {
-            Program::Espeak => {
-                command = Command::new("espeak-ng");
-                command.args(["-v", self.name, "-s", &self.words_per_minute.to_string(), "-w"]);
-                command.arg(wav).args(["--", text]);
-            }
-            Program::Flite => {
-                command = Command::new("flite");
-                command.args(["-voice", self.name, "-t", text, "-o"]).arg(wav);
-            }
-        }
-        command.stdout(Stdio::null());
-        command
-    }
-}
+use whichone_tests::spoken::Speaker;
 
 /// Speaks, and keeps what was spoken in `target/bench/speech`.
 pub(super) struct Voices {
@@ -82,9 +34,9 @@ impl Voices {
     }
 
     /// The sentence, without silence around it, as 16 kHz samples.
-    pub(super) fn speak(&self, voice: &Voice, text: &str) -> Vec<i16> {
+    pub(super) fn speak(&self, speaker: &Speaker, text: &str) -> Vec<i16> {
         let letters = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
-        let name = format!("{} {} {text}", voice.title(), voice.words_per_minute);
+        let name = format!("{} {text}", speaker.title());
         let mut name: String = name.chars().map(letters).collect();
         // What is longer may share its beginning with another sentence; so its length stands there.
         if name.len() > 150 {
@@ -95,16 +47,11 @@ impl Voices {
         if let Ok(bytes) = std::fs::read(&cached) {
             return bytes.chunks_exact(2).map(|b| i16::from_le_bytes([b[0], b[1]])).collect();
         }
-        // espeak-ng cuts off long names of files.
-        let wav = self.folder.join("spoken.wav");
-        let status = voice.command(text, &wav).status();
-        let spoke = status.as_ref().is_ok_and(std::process::ExitStatus::success);
-        assert!(spoke, "{} does not speak {text:?}: {status:?}", voice.title());
-        let samples = read_wav(&wav, 60.0).expect("a WAV file of a voice");
-        let samples = trimmed(&normalised(&samples));
+        let spoken = speaker.synthesiser(&self.folder).samples(text);
+        let spoken = spoken.unwrap_or_else(|error| panic!("{text:?}: {error}"));
+        let samples = trimmed(&normalised(&spoken));
         let bytes: Vec<u8> = samples.iter().flat_map(|s| s.to_le_bytes()).collect();
         std::fs::write(&cached, bytes).expect("room for a sentence");
-        let _ = std::fs::remove_file(wav);
         samples
     }
 }

@@ -8,13 +8,12 @@ use dialogue::manager::{Cause, Interaction, Record};
 use dialogue::{Model, NamedQuestion};
 use evaluation::simulation::users::{Domain, Habits};
 use scene::ObjectId;
-use serde::Serialize;
 
 use super::{Channel, GroupUser, SimulatedGroup};
 use crate::settings;
 
 /// The rules that are compared, by their names in the settings.
-pub const RULES: [&str; 3] = ["mixture", "onset", "naive"];
+const RULES: [&str; 3] = ["mixture", "onset", "naive"];
 /// Turn-taking errors of the users.
 const HABITS: Habits = Habits { late: 0.15, early: 0.12, overlapping: 0.12, doubled: 0.12 };
 /// Silence after which a question is repeated, seconds: short, so that answers come into what the
@@ -22,7 +21,7 @@ const HABITS: Habits = Habits { late: 0.15, early: 0.12, overlapping: 0.12, doub
 const WINDOW: &str = "2.5";
 
 /// Results of many dialogues under one rule and one input channel.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default)]
 pub struct Count {
     /// Name of the rule.
     pub rule: String,
@@ -48,22 +47,15 @@ pub struct Count {
     pub stories: Vec<String>,
 }
 
-/// Every rule and channel.
-#[derive(Clone, Debug, Serialize)]
-pub struct Study {
-    /// The counts, rule by rule.
-    pub counts: Vec<Count>,
-}
-
-/// Holds `dialogues` dialogues under each rule, half of them live.
+/// Holds `dialogues` dialogues under each rule, half of them live; counts them by rule and channel.
 ///
 /// # Panics
 /// If a rule is not in the settings.
-pub fn study(dialogues: u64, seed: u64) -> Study {
+pub fn study(dialogues: u64, seed: u64) -> Vec<Count> {
     let counts = RULES.iter().flat_map(|rule| {
         [Channel::Live, Channel::Afterwards].map(|channel| count(rule, channel, dialogues, seed))
     });
-    Study { counts: counts.collect() }
+    counts.collect()
 }
 
 fn count(rule: &str, channel: Channel, dialogues: u64, seed: u64) -> Count {

@@ -26,7 +26,7 @@ use scene::{ObjectId, Scene};
 use service::{Span, Time};
 use speech::{PlaybackEvent, PlaybackRequest, PlaybackState, SpeechNode};
 
-pub use attribution::{Count, RULES, Study, study};
+pub use attribution::{Count, study};
 pub use faults::Faults;
 pub use host::{Crash, Host, configured};
 pub use user::{Channel, GroupUser};

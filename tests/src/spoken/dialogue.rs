@@ -29,8 +29,6 @@ use crate::{Group, wait_for};
 pub struct Conditions {
     /// Signal to noise ratio, decibels.
     pub snr_db: f64,
-    /// True if the user may interrupt the robot, whose voice the microphone does not hear.
-    pub barge_in: bool,
     /// Number of the dialogue: determines the object, the voice, the words and the times.
     pub number: u64,
     /// Seed of all dialogues.
@@ -92,7 +90,7 @@ pub fn converse(conditions: Conditions) -> Held {
     let noise = SPEECH_RMS / 10_f64.powf(conditions.snr_db / 20.0);
     let noise = Pink::new(noise, conditions.seed ^ (conditions.number << 20));
     let room = Room::open(&pipe, noise);
-    let settings = settings(&pipe, conditions);
+    let settings = settings(&pipe);
     let group = Group::up(&settings.iter().map(String::as_str).collect::<Vec<_>>());
     let client = Client::join(group.paths()).expect("a running group");
     let scene = config::Settings::load_snapshot(&group.paths().run()).expect("a snapshot").scene;
@@ -106,14 +104,14 @@ pub fn converse(conditions: Conditions) -> Held {
 }
 
 /// The shipped speech settings with the pipe for a microphone, and a voice that takes its time.
-fn settings(pipe: &Path, conditions: Conditions) -> Vec<String> {
+fn settings(pipe: &Path) -> Vec<String> {
     vec![
         "speech.voice=espeak-ng".to_owned(),
         "speech.player=[\"none\"]".to_owned(),
         "speech.recogniser=pocketsphinx".to_owned(),
         "speech.microphone.mode=hands-free".to_owned(),
         format!("speech.microphone.command=[\"cat\", \"{}\"]", pipe.display()),
-        format!("speech.microphone.barge_in={}", conditions.barge_in),
+        "speech.microphone.barge_in=false".to_owned(),
     ]
 }
 

@@ -11,38 +11,43 @@ pub const SPEECH_RMS: f64 = 2_000.0;
 /// A synthesised voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Speaker {
-    /// Its name in reports.
+    /// The program's name of the voice.
     pub name: &'static str,
     /// True if flite speaks; else espeak-ng.
     flite: bool,
-    voice: &'static str,
     words_per_minute: u16,
 }
 
 /// Voices of both kinds: formants (harder to recognise than people) and cuts of recorded people.
 pub const SPEAKERS: [Speaker; 5] = [
-    speaker("en-us", false, "en-us", 150),
-    speaker("en-us+f2", false, "en-us+f2", 165),
-    speaker("en-gb", false, "en-gb", 145),
-    speaker("slt", true, "slt", 165),
-    speaker("rms", true, "rms", 165),
+    Speaker::espeak("en-us", 150),
+    Speaker::espeak("en-us+f2", 165),
+    Speaker::espeak("en-gb", 145),
+    Speaker::flite("slt"),
+    Speaker::flite("rms"),
 ];
 
-const fn speaker(
-    name: &'static str,
-    flite: bool,
-    voice: &'static str,
-    words_per_minute: u16,
-) -> Speaker {
-    Speaker { name, flite, voice, words_per_minute }
-}
-
 impl Speaker {
+    /// A voice of espeak-ng.
+    pub const fn espeak(name: &'static str, words_per_minute: u16) -> Self {
+        Self { name, flite: false, words_per_minute }
+    }
+
+    /// A voice of flite at its own pace.
+    pub const fn flite(name: &'static str) -> Self {
+        Self { name, flite: true, words_per_minute: 165 }
+    }
+
+    /// Program and name: `espeak-ng en-gb`.
+    pub fn title(&self) -> String {
+        format!("{} {}", if self.flite { "flite" } else { "espeak-ng" }, self.name)
+    }
+
     /// The voice, working in a folder of its own.
     pub fn synthesiser(&self, work: &Path) -> Synthesiser {
         let (flite, espeak_ng) = ("flite".into(), "espeak-ng".into());
         let program = if self.flite { Program::Flite(flite) } else { Program::EspeakNg(espeak_ng) };
-        let (voice, words_per_minute) = (self.voice.to_owned(), self.words_per_minute);
+        let (voice, words_per_minute) = (self.name.to_owned(), self.words_per_minute);
         let options = VoiceOptions { program, voice, words_per_minute, ..VoiceOptions::new(work) };
         Synthesiser::new(&options)
     }
