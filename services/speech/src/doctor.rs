@@ -10,7 +10,7 @@ use service::Span;
 use service::inspection::Finding;
 
 use crate::devices::microphone::{Microphone, MicrophoneEvent, MicrophoneOptions, MicrophoneState};
-use crate::devices::recogniser::{PocketSphinx, PocketSphinxOptions, WhisperOptions};
+use crate::devices::recogniser::Backend;
 use crate::devices::stream::PlaybackMask;
 use crate::devices::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
 
@@ -41,24 +41,23 @@ fn recogniser(settings: &Settings) -> Finding {
     if settings.speech.recogniser == Recogniser::None {
         return Finding::good(WHAT, "switched off (speech.recogniser)");
     }
-    if settings.speech.recogniser == Recogniser::Whisper {
-        let options =
-            WhisperOptions::new(settings.speech.whisper_model.clone().unwrap_or_default());
-        return match options.open() {
-            Ok(_) => Finding::good(WHAT, format!("whisper.cpp with {}", options.model.display())),
-            Err(error) => Finding::poor(WHAT, format!("{error}; without it only typed text works")),
-        };
-    }
     let work = Work::new("recogniser");
-    let defaults = PocketSphinxOptions::debian(&work.0);
-    let model = settings.speech.model_dir.clone().unwrap_or_else(|| defaults.model.clone());
-    let options = PocketSphinxOptions { model, ..defaults };
-    match PocketSphinx::open(&settings.scene, &options) {
-        Ok(recogniser) if recogniser.unpronounceable().is_empty() => {
-            Finding::good(WHAT, format!("pocketsphinx with {}", options.model.display()))
-        }
-        Ok(recogniser) => {
-            let words = recogniser.unpronounceable().join(", ");
+    let backend = Backend::of(&settings.speech, &work.0);
+    match backend.open(&settings.scene) {
+        Ok((_, unpronounceable)) if unpronounceable.is_empty() => Finding::good(
+            WHAT,
+            match &backend {
+                Backend::PocketSphinx(options) => {
+                    format!("pocketsphinx with {}", options.model.display())
+                }
+                Backend::Whisper(options) => {
+                    format!("whisper.cpp with {}", options.model.display())
+                }
+                Backend::Command(options) => options.command.join(" "),
+            },
+        ),
+        Ok((_, words)) => {
+            let words = words.join(", ");
             Finding::poor(WHAT, format!("words of the scene that cannot be recognised: {words}"))
         }
         Err(error) => Finding::poor(WHAT, format!("{error}; without it only typed text works")),

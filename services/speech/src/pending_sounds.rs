@@ -1,4 +1,4 @@
-//! Sounds in progress or awaiting recognition.
+//! Sounds in progress or awaiting recognition, and the ended streams that wait for them.
 
 use std::collections::BTreeMap;
 
@@ -22,11 +22,26 @@ pub(crate) struct PendingSound {
     pub(crate) end: Option<Time>,
 }
 
+/// A client's stream that has ended.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ClosedStream {
+    pub(crate) key: RequestKey,
+    /// Number of its utterances.
+    pub(crate) utterances: u32,
+    /// Samples lost in transit.
+    pub(crate) lost: u64,
+}
+
+/// Streams that may wait for the results of their utterances.
+const STREAMS_MAX: usize = 64;
+
 /// Every sound that has begun and has no result yet.
 #[derive(Debug, Default)]
 pub(crate) struct PendingSounds {
     sounds: BTreeMap<u64, PendingSound>,
     last: u64,
+    /// Ended streams that have not been reported.
+    closed: Vec<ClosedStream>,
 }
 
 impl PendingSounds {
@@ -70,6 +85,24 @@ impl PendingSounds {
     /// Removes a sound that has its result.
     pub(crate) fn remove(&mut self, sound: u64) -> Option<PendingSound> {
         self.sounds.remove(&sound)
+    }
+
+    /// Adds an ended stream. Clients repeat the end until it is confirmed; only the first end counts.
+    pub(crate) fn close(&mut self, stream: ClosedStream) {
+        if self.closed.iter().any(|closed| closed.key == stream.key) {
+            return;
+        }
+        if self.closed.len() >= STREAMS_MAX {
+            self.closed.remove(0);
+        }
+        self.closed.push(stream);
+    }
+
+    /// Removes the ended streams whose utterances all have their results.
+    pub(crate) fn take_closed(&mut self) -> Vec<ClosedStream> {
+        let sounds = &self.sounds;
+        let is_done = |stream: &mut ClosedStream| sounds.values().all(|s| s.key != stream.key);
+        self.closed.extract_if(.., is_done).collect()
     }
 
     /// Returns when the first of them began.

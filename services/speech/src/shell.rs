@@ -1,19 +1,25 @@
 //! The speech service's topics and devices.
 
 use std::sync::Arc;
+use std::time::Duration;
 
+use crate::devices::asr_worker::AsrWorker;
 use crate::devices::client_streams::ClientStreams;
+use crate::devices::microphone::Microphone;
 use crate::devices::stream::PlaybackMask;
+use crate::devices::vad::SegmenterOptions;
+use crate::devices::voice::Voice;
 use crate::record::Record;
 use crate::stream_events::StreamEvent;
-use crate::{Config, In, Out, Recognised, SpeechNode, doctor, inspection};
+use crate::{
+    Config, In, Out, PlaybackRequest, Recognised, RecognitionInput, SpeechNode, doctor, inspection,
+};
 use config::Settings;
 use crossbeam_channel::Receiver;
 use language::{Language, Reader as TextReader};
-use messages::Service;
 use messages::{
     Activity, AppliedMark, ArmStatus, AudioChunk, Hearing, Injection, MotionCommand, Partial,
-    Presented, Receipt, RobotAct, Utterance, topics,
+    Presented, Receipt, RobotAct, Service, Utterance, topics,
 };
 use service::Span;
 use service::bus::{EncodedReader, PortError, Reader, Writer};
@@ -26,10 +32,6 @@ use service::worker_channel::DeviceSender;
 mod microphone;
 mod recogniser;
 mod voice;
-
-use microphone::MicrophoneDevice;
-use recogniser::RecogniserDevice;
-use voice::VoiceDevice;
 
 /// Speech as a program.
 #[derive(Debug)]
@@ -81,10 +83,12 @@ pub struct SpeechShell {
     motion: Writer<MotionCommand>,
     hearing: Writer<Hearing>,
     partials: Writer<Partial>,
-    recogniser: RecogniserDevice,
-    microphone: MicrophoneDevice,
+    /// The recogniser, or why it is off.
+    recogniser: Result<AsrWorker, String>,
+    /// The microphone, or why it is off.
+    microphone: Result<Microphone, String>,
     streams: ClientStreams,
-    voice: VoiceDevice,
+    voice: Voice,
     inbox: DeviceSender<In>,
     /// Replies on behalf of the devices that did not fit into the inbox.
     replies: Vec<In>,
@@ -94,6 +98,25 @@ impl SpeechShell {
     /// Replies on behalf of a device, without waiting: the main loop must not wait for itself.
     fn reply(&mut self, message: In) {
         self.replies.extend(self.inbox.offer(message).err());
+    }
+
+    fn recognise(&self, sound: u64, input: RecognitionInput) -> Result<(), String> {
+        let submitted = self.recogniser.as_ref()?.submit(sound, input);
+        submitted.map_err(|error| format!("speech recognition is {error}"))
+    }
+
+    /// Records one utterance.
+    fn talk(&self, sound: u64, longest: Span) -> Result<(), String> {
+        let talk = self.microphone.as_ref()?.talk(sound, Duration::from_secs_f64(longest.s()));
+        talk.map_err(|error| format!("the microphone is {error}"))
+    }
+
+    fn speak(&self, PlaybackRequest { playback, prompt, presentation, text }: &PlaybackRequest) {
+        self.voice.interrupt();
+        let name = format!("{prompt}-{presentation}");
+        if let Err(error) = self.voice.speak(*playback, &name, text) {
+            tracing::warn!("prompt not spoken: the voice is {error}");
+        }
     }
 }
 
@@ -117,10 +140,14 @@ impl Shell<SpeechNode> for SpeechShell {
             motion: bus.writer(&topics::MOTION)?,
             hearing: bus.writer(&topics::HEARING)?,
             partials: bus.writer(&topics::PARTIAL)?,
-            recogniser: RecogniserDevice::start(settings, &work, inbox),
-            microphone: MicrophoneDevice::start(settings, &playback_mask, inbox),
-            streams: microphone::streams(settings, &playback_mask, inbox),
-            voice: VoiceDevice::start(settings, &work, playback_mask, inbox),
+            recogniser: recogniser::start(settings, &work, inbox),
+            microphone: microphone::start(settings, &playback_mask, inbox),
+            streams: ClientStreams::start(
+                SegmenterOptions::of(&settings.speech),
+                Arc::clone(&playback_mask),
+                microphone::sink(inbox),
+            ),
+            voice: voice::start(settings, &work, playback_mask, inbox),
             inbox: inbox.clone(),
             replies: Vec::new(),
         })
@@ -147,21 +174,29 @@ impl Shell<SpeechNode> for SpeechShell {
             Out::Motion(message) => return self.motion.send(&message),
             Out::Hearing(message) => return self.hearing.send(&message),
             Out::Partial(message) => return self.partials.send(&message),
-            Out::InterimSamples(sound, samples) => self.recogniser.interim_samples(sound, samples),
-            Out::DecodeEarly(sound, segment) => self.recogniser.decode_early(sound, segment),
+            Out::InterimSamples(sound, samples) => {
+                if let Ok(recogniser) = &self.recogniser {
+                    recogniser.interim_samples(sound, samples);
+                }
+            }
+            Out::DecodeEarly(sound, segment) => {
+                if let Ok(recogniser) = &self.recogniser {
+                    recogniser.decode_early(sound, segment);
+                }
+            }
             Out::Recognise(sound, input) => {
-                if let Err(reason) = self.recogniser.submit(sound, input) {
+                if let Err(reason) = self.recognise(sound, input) {
                     tracing::warn!(reason, "audio not recognised");
                     self.reply(In::Recognised(Recognised { sound, segments: Err(reason) }));
                 }
             }
             Out::OpenMicrophone(sound, longest) => {
-                if let Err(reason) = self.microphone.talk(sound, longest) {
+                if let Err(reason) = self.talk(sound, longest) {
                     self.reply(In::Stream(StreamEvent::Silent { sound, reason }));
                 }
             }
-            Out::Speak(request) => self.voice.speak(&request),
-            Out::StopSpeaking => self.voice.stop(),
+            Out::Speak(request) => self.speak(&request),
+            Out::StopSpeaking => self.voice.interrupt(),
         }
         Ok(())
     }
@@ -171,9 +206,9 @@ impl Shell<SpeechNode> for SpeechShell {
 fn forward<T: Send + 'static>(
     name: &str,
     events: Receiver<T>,
-    hand_over: impl Fn(T) -> bool + Send + 'static,
+    mut hand_over: impl FnMut(T) -> bool + Send + 'static,
 ) {
-    let work = move || while events.recv().is_ok_and(&hand_over) {};
+    let work = move || while events.recv().is_ok_and(&mut hand_over) {};
     if let Err(error) = std::thread::Builder::new().name(name.to_owned()).spawn(work) {
         tracing::error!(%error, name, "the thread of a device cannot be started");
     }

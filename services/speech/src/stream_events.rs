@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use messages::{RequestKey, Source};
 use service::Time;
 
-use crate::devices::stream::{SegmentEvent, SpeechSegment};
+use crate::devices::stream::SpeechSegment;
 
 /// An event of a live source. Every utterance that began ends exactly once.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,25 +52,6 @@ pub enum StreamEvent {
 }
 
 impl StreamEvent {
-    /// Numbers the events of a stream. `open` is the utterance in progress; `began` returns the beginning
-    /// of a new one. Events outside an utterance are dropped.
-    pub(crate) fn number(
-        event: SegmentEvent,
-        open: &mut Option<u64>,
-        began: impl FnOnce(Time) -> Began,
-    ) -> Option<Self> {
-        Some(match event {
-            SegmentEvent::Began(at) => {
-                let began = began(at);
-                *open = Some(began.sound);
-                Self::Began(began)
-            }
-            SegmentEvent::Samples(samples) => Self::Samples { sound: (*open)?, samples },
-            SegmentEvent::Paused(segment) => Self::Paused { sound: (*open)?, segment },
-            SegmentEvent::Ended(segment) => Self::Ended { sound: open.take()?, segment },
-        })
-    }
-
     /// Returns whether the event is optional.
     pub fn is_optional(&self) -> bool {
         matches!(self, Self::Samples { .. } | Self::Paused { .. })

@@ -1,6 +1,7 @@
 //! Rules of hearing and speaking, without devices.
 
 use crate::devices::stream::SpeechSegment;
+use crate::devices::testing;
 use crate::record::Record;
 use crate::stream_events::{Began, LIVE_FROM, StreamEvent};
 use crate::{
@@ -12,17 +13,10 @@ use messages::{
     ActKind, Activity, AppliedMark, FixedText, Injection, PresentationState, Receipt, RequestKey,
     RobotAct, Sound, Source, Utterance, WireCode,
 };
-use scene::{AttributeId, Question, Scene, ValueId};
+use scene::{AttributeId, Question, ValueId};
 use service::{Effects, Event, Node, Span, Time};
 
 const WHITE: Question = Question::Attribute(AttributeId(0), ValueId(0));
-
-fn config() -> Config {
-    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml");
-    let scene = Scene::from_toml("bowls.toml", &std::fs::read_to_string(scene).unwrap()).unwrap();
-    let reader = Reader::new(&scene, Language::Careful);
-    Config { reader, utterance_bytes_max: 4000, gestures: false }
-}
 
 /// A speech service with its clock.
 struct Speech {
@@ -33,7 +27,9 @@ struct Speech {
 
 impl Speech {
     fn new() -> Self {
-        let node = SpeechNode::recover(config(), Vec::new()).unwrap();
+        let reader = Reader::new(&testing::bowls(), Language::Careful);
+        let config = Config { reader, utterance_bytes_max: 4000, gestures: false };
+        let node = SpeechNode::recover(config, Vec::new()).unwrap();
         let mut speech = Self { node, now: Time(0), records: Vec::new() };
         speech.take(1.0, In::Mark(AppliedMark::default()));
         speech
@@ -120,14 +116,7 @@ const SOUND: u64 = LIVE_FROM;
 
 /// Returns the beginning of an utterance in a microphone that does not record the robot.
 fn began(at: Time, interrupts: bool) -> In {
-    In::Stream(StreamEvent::Began(Began {
-        sound: SOUND,
-        at,
-        stream: RequestKey([7; 16]),
-        segment: None,
-        source: Source::Microphone,
-        interrupts,
-    }))
+    In::Stream(StreamEvent::Began(Began { interrupts, ..testing::began(at) }))
 }
 
 fn segment(onset: Time) -> SpeechSegment {

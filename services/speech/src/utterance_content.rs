@@ -1,6 +1,6 @@
 //! Content of one utterance, and its validation.
 
-use messages::{HYPOTHESES_MAX, POINTED_AT_MAX_M, Source, is_somewhere};
+use messages::{HYPOTHESES_MAX, POINTED_AT_MAX_M, is_somewhere};
 
 use crate::{Config, Hypothesis};
 
@@ -11,21 +11,19 @@ pub(crate) struct UtteranceContent {
     pub(crate) hypotheses: Vec<Hypothesis>,
     /// The point that was pointed at, metres, frame `base`.
     pub(crate) gesture: Option<[f64; 3]>,
-    /// Origin of the utterance.
-    pub(crate) source: Source,
 }
 
 impl UtteranceContent {
     /// Returns words without a gesture.
-    pub(crate) fn words(hypotheses: Vec<Hypothesis>, source: Source) -> Self {
-        Self { hypotheses, gesture: None, source }
+    pub(crate) fn words(hypotheses: Vec<Hypothesis>) -> Self {
+        Self { hypotheses, gesture: None }
     }
 
     /// Returns a gesture, with words unless they are blank.
     pub(crate) fn pointing(target_m: [f64; 3], words: String) -> Self {
         let is_blank = words.trim().is_empty();
         let hypotheses = if is_blank { Vec::new() } else { vec![Hypothesis::certain(words)] };
-        Self { hypotheses, gesture: Some(target_m), source: Source::Gesture }
+        Self { hypotheses, gesture: Some(target_m) }
     }
 
     /// Returns the hypotheses of a client's own recogniser, most likely first; only the best where
@@ -53,14 +51,14 @@ impl UtteranceContent {
         }
         hypotheses.sort_by(|a, b| b.weight.total_cmp(&a.weight));
         hypotheses.truncate(HYPOTHESES_MAX);
-        Ok(Self::words(hypotheses, Source::Browser))
+        Ok(Self::words(hypotheses))
     }
 
-    /// Checks the content against the configuration.
+    /// Returns the content if the configuration admits it.
     ///
     /// # Errors
     /// Why it is rejected, for users.
-    pub(crate) fn check(&self, config: &Config) -> Result<(), String> {
+    pub(crate) fn checked(self, config: &Config) -> Result<Self, String> {
         let best = self.hypotheses.first().map_or("", |best| best.text.as_str());
         let (bytes, max) = (best.len(), config.utterance_bytes_max);
         Err(match &self.gesture {
@@ -72,7 +70,7 @@ impl UtteranceContent {
             _ if bytes > max => {
                 format!("expected at most {max} bytes (speech.utterance_bytes_max), found {bytes}")
             }
-            _ => return Ok(()),
+            _ => return Ok(self),
         })
     }
 }

@@ -2,30 +2,23 @@
 //! applied.
 
 mod accepted;
-mod closing_streams;
 mod hearing_status;
-mod interim_results;
 mod origin;
-mod outgoing_messages;
-mod receipts;
 
 use crate::devices::microphone::MicrophoneStatus;
-use crate::pending_sounds::PendingSounds;
+use crate::pending_sounds::{ClosedStream, PendingSound, PendingSounds};
 use crate::prompt_player::PromptPlayer;
 use crate::record::{Accepted, Record};
 use crate::stream_events::StreamEvent;
 use crate::utterance_content::UtteranceContent;
 use crate::{Config, Fx, Hypothesis, Out, Recognised, RecognisedSegment, RecognitionInput};
-use accepted::AcceptedUtterances;
-use closing_streams::ClosingStreams;
+use accepted::{AcceptedUtterances, Receipts};
 use hearing_status::HearingStatus;
-use interim_results::InterimResults;
 use messages::{
-    AppliedMark, EarState, Injection, MotionCommand, MotionOrder, ReceiptStatus, Sound, Source,
+    AppliedMark, EarState, FixedText, Injection, MotionCommand, MotionOrder, Partial,
+    ReceiptStatus, Sound, Source,
 };
 use origin::Origin;
-use outgoing_messages::{receipt, rejection, utterance};
-use receipts::Receipts;
 use scene::{Intent, Question};
 use service::{Span, Time};
 use std::ops::RangeInclusive;
@@ -42,8 +35,8 @@ pub(crate) struct UtteranceIntake {
     receipts: Receipts,
     pending: PendingSounds,
     status: HearingStatus,
-    interim: InterimResults,
-    closing: ClosingStreams,
+    /// Number of the last interim result.
+    last_partial: u64,
 }
 
 impl UtteranceIntake {
@@ -54,14 +47,13 @@ impl UtteranceIntake {
             receipts: Receipts::default(),
             pending: PendingSounds::default(),
             status: HearingStatus::default(),
-            interim: InterimResults::default(),
-            closing: ClosingStreams::default(),
+            last_partial: 0,
         }
     }
 
     /// Restores an utterance from the journal.
     pub(crate) fn restore(&mut self, accepted: Accepted) {
-        self.receipts.record(receipt(&accepted));
+        self.receipts.record(accepted.receipt());
         self.accepted.add(accepted);
     }
 
@@ -74,36 +66,32 @@ impl UtteranceIntake {
         now: Time,
         fx: &mut Fx,
     ) -> bool {
-        let key = injection.key;
+        let (key, span) = (injection.key, span(&injection, now));
         let is_pending = self.pending.contains(key);
         if is_pending || self.receipts.repeat(key, fx) || !self.accepted.is_marked() {
             return false;
         }
-        let origin = Origin::whole(key, span(&injection, now));
-        match injection.sound {
+        let origin = |source| Origin { key, segment: (0, 1), source, span, snr_db: 0.0 };
+        let (source, content) = match injection.sound {
             Sound::Text(text) => {
-                let hypotheses = vec![Hypothesis::certain(text)];
-                let content = UtteranceContent::words(hypotheses, Source::Text);
-                self.accept(origin, content, player, now, fx)
+                (Source::Text, Ok(UtteranceContent::words(vec![Hypothesis::certain(text)])))
             }
             Sound::Point { target_m, words } => {
-                let content = UtteranceContent::pointing(target_m, words);
-                self.accept(origin, content, player, now, fx)
+                (Source::Gesture, Ok(UtteranceContent::pointing(target_m, words)))
+            }
+            Sound::Transcript { hypotheses } => {
+                (Source::Browser, UtteranceContent::transcript(hypotheses))
             }
             Sound::Wav(path) => {
-                let sound = self.pending.add(key, Source::Wav, origin.span.0);
+                let sound = self.pending.add(key, Source::Wav, span.0);
                 fx.publish(Out::Recognise(sound, RecognitionInput::File(path)));
-                false
+                return false;
             }
-            Sound::Transcript { hypotheses } => match UtteranceContent::transcript(hypotheses) {
-                Ok(content) => {
-                    let origin = Origin { source: Source::Browser, ..origin };
-                    self.accept(origin, content, player, now, fx)
-                }
-                Err(reason) => self.reject(origin, &reason, fx),
-            },
-            Sound::Talk { longest_s } => self.talk(origin, longest_s, now, fx),
-        }
+            Sound::Talk { longest_s } => {
+                return self.talk(origin(Source::Microphone), longest_s, now, fx);
+            }
+        };
+        self.accept(origin(source), content, player, now, fx)
     }
 
     fn talk(&mut self, origin: Origin, longest_s: f64, now: Time, fx: &mut Fx) -> bool {
@@ -144,7 +132,7 @@ impl UtteranceIntake {
                 }
             }
             StreamEvent::Closed { stream, utterances, lost } => {
-                self.closing.add(stream, utterances, lost);
+                self.pending.close(ClosedStream { key: stream, utterances, lost });
                 self.report_closed_streams(fx);
             }
             StreamEvent::Silent { sound, reason } => {
@@ -158,16 +146,34 @@ impl UtteranceIntake {
 
     /// Reports the end of streams whose utterances all have their results.
     fn report_closed_streams(&mut self, fx: &mut Fx) {
-        for (origin, note) in self.closing.take_done(&self.pending) {
-            self.report(origin, ReceiptStatus::Over, &note, fx);
+        for ClosedStream { key, utterances, lost } in self.pending.take_closed() {
+            let note = match lost {
+                0 => String::new(),
+                lost => format!("{lost} samples lost in transit"),
+            };
+            self.report(Origin::closed(key, utterances), ReceiptStatus::Over, &note, fx);
         }
     }
 
     /// Publishes an interim result.
     pub(crate) fn interim_result(&mut self, sound: u64, text: &str, fx: &mut Fx) {
-        if let Some(sound) = self.pending.in_progress(sound) {
-            self.interim.publish(sound, text, fx);
+        if let Some(sound) = self.pending.in_progress(sound).copied() {
+            self.publish_partial(&sound, text, false, fx);
         }
+    }
+
+    /// Publishes the words of a sound so far; `over`: it has its result.
+    fn publish_partial(&mut self, sound: &PendingSound, text: &str, over: bool, fx: &mut Fx) {
+        self.last_partial += 1;
+        fx.publish(Out::Partial(Box::new(Partial {
+            stream: sound.key.0,
+            onset_ns: sound.onset.ns(),
+            number: self.last_partial,
+            segment: sound.segment.map_or(0, |(segment, _)| segment),
+            over: u8::from(over),
+            text: FixedText::truncated(text),
+            ..Partial::default()
+        })));
     }
 
     pub(crate) fn set_microphone(&mut self, status: &MicrophoneStatus, fx: &mut Fx) {
@@ -199,7 +205,9 @@ impl UtteranceIntake {
         fx: &mut Fx,
     ) {
         let Some(sound) = self.pending.remove(recognised.sound) else { return };
-        self.interim.finish(&sound, fx);
+        if sound.source == Source::Microphone {
+            self.publish_partial(&sound, "", true, fx);
+        }
         let whole = Origin::of(&sound, 0, 1);
         match recognised.segments {
             Ok(segments) if segments.is_empty() => {
@@ -231,29 +239,30 @@ impl UtteranceIntake {
         self.status.set_measured(origin.span.0, segment.snr_db);
         match segment.hypotheses {
             Ok(hypotheses) => {
-                let content = UtteranceContent::words(hypotheses, origin.source);
-                self.accept(origin, content, player, now, fx);
+                self.accept(origin, Ok(UtteranceContent::words(hypotheses)), player, now, fx);
             }
             Err(text) => self.report(origin, ReceiptStatus::NotForMe, &text, fx),
         }
     }
 
-    /// Accepts an utterance. Returns whether it is new.
+    /// Accepts an utterance unless its content is invalid. Returns whether it is new.
     fn accept(
         &mut self,
         origin: Origin,
-        content: UtteranceContent,
+        content: Result<UtteranceContent, String>,
         player: &PromptPlayer,
         now: Time,
         fx: &mut Fx,
     ) -> bool {
         // A segment that was accepted before a restart keeps its number.
         if let Some(accepted) = self.accepted.find(origin.key, origin.segment.0) {
-            fx.publish(Out::Receipt(Box::new(receipt(accepted))));
+            fx.publish(Out::Receipt(Box::new(accepted.receipt())));
             return false;
         }
-        let seq = match content.check(&self.config).and_then(|()| self.accepted.next()) {
-            Ok(seq) => seq,
+        let content = content.and_then(|content| content.checked(&self.config));
+        let numbered = content.and_then(|content| Ok((content, self.accepted.next()?)));
+        let (content, seq) = match numbered {
+            Ok(numbered) => numbered,
             Err(reason) => return self.reject(origin, &reason, fx),
         };
         if self.is_stop(&content.hypotheses) {
@@ -267,7 +276,7 @@ impl UtteranceIntake {
             segment: origin.segment,
             hypotheses: content.hypotheses,
             gesture: content.gesture,
-            source: content.source,
+            source: origin.source,
             asked: player.asked(),
             onset: origin.span.0,
             end: origin.span.1,
@@ -275,8 +284,8 @@ impl UtteranceIntake {
             accepted: now,
         };
         fx.append(Record::Accepted(accepted.clone()));
-        fx.publish(Out::Receipt(Box::new(receipt(&accepted))));
-        fx.publish(Out::Utterance(Box::new(utterance(&accepted))));
+        fx.publish(Out::Receipt(Box::new(accepted.receipt())));
+        fx.publish(Out::Utterance(Box::new(accepted.utterance())));
         self.restore(accepted);
         self.publish_activity(fx);
         true
@@ -295,7 +304,7 @@ impl UtteranceIntake {
     }
 
     fn report(&mut self, origin: Origin, status: ReceiptStatus, note: &str, fx: &mut Fx) {
-        let receipt = rejection(&origin, status, note);
+        let receipt = origin.rejection(status, note);
         fx.publish(Out::Receipt(Box::new(receipt)));
         self.receipts.record(receipt);
     }
@@ -312,7 +321,7 @@ impl UtteranceIntake {
     /// Sends the utterances that are not applied yet, and the status.
     pub(crate) fn send(&self, fx: &mut Fx) {
         for accepted in self.accepted.to_send() {
-            fx.publish(Out::Utterance(Box::new(utterance(accepted))));
+            fx.publish(Out::Utterance(Box::new(accepted.utterance())));
         }
         self.publish(fx);
     }
@@ -335,13 +344,4 @@ fn span(injection: &Injection, now: Time) -> (Time, Time) {
     let reported = |ns: u64| if ns == 0 { now } else { Time(ns).min(now) };
     let onset = reported(injection.onset_ns);
     (onset, reported(injection.end_ns).max(onset))
-}
-
-/// Appends an item and drops the oldest beyond a limit.
-fn push_bounded<T>(queue: &mut std::collections::VecDeque<T>, item: T) {
-    const ITEMS_MAX: usize = 128;
-    if queue.len() >= ITEMS_MAX {
-        queue.pop_front();
-    }
-    queue.push_back(item);
 }

@@ -8,63 +8,12 @@ use hound::{SampleFormat, WavReader};
 
 use super::{RATE_HZ, resample};
 
-/// Error of reading a WAV file.
+/// Error of reading a WAV file, with its path.
 #[derive(Debug, thiserror::Error)]
-pub enum WavError {
-    /// Missing, or not readable.
-    #[error("{} cannot be read: {source}", path.display())]
-    Unreadable {
-        /// The file.
-        path: PathBuf,
-        /// The system's reason.
-        source: io::Error,
-    },
-    /// A folder, a device or a pipe: reading it could block forever.
-    #[error("{} is not a regular file", path.display())]
-    NotAFile {
-        /// The path.
-        path: PathBuf,
-    },
-    /// Not a WAV file, or damaged.
-    #[error("{} is not a valid WAV file: {reason}", path.display())]
-    NotWav {
-        /// The file.
-        path: PathBuf,
-        /// Reason.
-        reason: String,
-    },
-    /// An unsupported encoding.
-    #[error("{}: {what}; help: convert it to 16 kHz, 16 bit, mono PCM", path.display())]
-    Unsupported {
-        /// The file.
-        path: PathBuf,
-        /// Unsupported property.
-        what: String,
-    },
-    /// Shorter than its header says.
-    #[error("{} is truncated: expected {announced_s:.1} s, found {found_s:.1} s", path.display())]
-    Truncated {
-        /// The file.
-        path: PathBuf,
-        /// Seconds according to its header.
-        announced_s: f64,
-        /// Seconds in the file.
-        found_s: f64,
-    },
-    /// Without samples.
-    #[error("{} contains no audio", path.display())]
-    Empty {
-        /// The file.
-        path: PathBuf,
-    },
-    /// Longer than allowed.
-    #[error("{} is longer than {longest_s} s", path.display())]
-    TooLong {
-        /// The file.
-        path: PathBuf,
-        /// The limit, seconds.
-        longest_s: f64,
-    },
+#[error("{} {problem}", path.display())]
+pub struct WavError {
+    path: PathBuf,
+    problem: String,
 }
 
 /// Largest file: 64 MiB are 43 s of 192 kHz stereo float.
@@ -79,30 +28,29 @@ const RATE_MAX_HZ: u32 = 192_000;
 /// # Errors
 /// If the file is missing, not WAV, truncated, empty, too long, or of an unsupported encoding.
 pub fn read_wav(path: &Path, longest_s: f64) -> Result<Vec<i16>, WavError> {
-    let mut bytes = read(path, longest_s)?;
+    samples(path, longest_s).map_err(|problem| WavError { path: path.to_owned(), problem })
+}
+
+fn samples(path: &Path, longest_s: f64) -> Result<Vec<i16>, String> {
+    let too_long = || format!("is longer than {longest_s} s");
+    let mut bytes = read(path)?.ok_or_else(too_long)?;
     repair_streamed_length(&mut bytes);
     let not_wav = |error: hound::Error| match error {
-        hound::Error::Unsupported => WavError::Unsupported {
-            path: path.to_owned(),
-            what: "expected PCM or float samples".to_owned(),
-        },
-        hound::Error::IoError(_) => {
-            WavError::NotWav { path: path.to_owned(), reason: "its header is truncated".to_owned() }
-        }
-        error => WavError::NotWav { path: path.to_owned(), reason: error.to_string() },
+        hound::Error::Unsupported => unsupported("expected PCM or float samples"),
+        hound::Error::IoError(_) => "is not a valid WAV file: its header is truncated".to_owned(),
+        error => format!("is not a valid WAV file: {error}"),
     };
     let mut wav = WavReader::new(Cursor::new(bytes)).map_err(not_wav)?;
     let (spec, frames) = (wav.spec(), wav.duration());
-    if frames == 0 {
-        return Err(WavError::Empty { path: path.to_owned() });
-    }
-    let unsupported = |what| Err(WavError::Unsupported { path: path.to_owned(), what });
-    if !(RATE_MIN_HZ..=RATE_MAX_HZ).contains(&spec.sample_rate) {
-        return unsupported(format!("expected 8 to 192 kHz, found {} Hz", spec.sample_rate));
-    }
     let rate = f64::from(spec.sample_rate);
+    if frames == 0 {
+        return Err("contains no audio".to_owned());
+    }
+    if !(RATE_MIN_HZ..=RATE_MAX_HZ).contains(&spec.sample_rate) {
+        return Err(unsupported(&format!("expected 8 to 192 kHz, found {rate} Hz")));
+    }
     if f64::from(frames) / rate > longest_s {
-        return Err(WavError::TooLong { path: path.to_owned(), longest_s });
+        return Err(too_long());
     }
     let wanted = wav.len() as usize;
     let samples: Vec<f32> = match spec.sample_format {
@@ -115,30 +63,34 @@ pub fn read_wav(path: &Path, longest_s: f64) -> Result<Vec<i16>, WavError> {
     if samples.len() < wanted {
         let in_s = |n: usize| n as f64 / f64::from(spec.channels) / rate;
         let (announced_s, found_s) = (in_s(wanted), in_s(samples.len()));
-        return Err(WavError::Truncated { path: path.to_owned(), announced_s, found_s });
+        return Err(format!("is truncated: expected {announced_s:.1} s, found {found_s:.1} s"));
     }
     if samples.iter().any(|s| !s.is_finite()) {
-        return unsupported("it contains samples that are not numbers".to_owned());
+        return Err(unsupported("it contains samples that are not numbers"));
     }
-    let mono = mix_down(&samples, usize::from(spec.channels));
-    match resample(&mono, spec.sample_rate, RATE_HZ) {
-        Ok(samples) => Ok(quantise(&samples)),
-        Err(reason) => unsupported(reason),
-    }
+    let channels = usize::from(spec.channels);
+    let frames = samples.chunks_exact(channels);
+    let mono: Vec<f32> = frames.map(|f| f.iter().sum::<f32>() / channels as f32).collect();
+    let samples = resample(&mono, spec.sample_rate, RATE_HZ).map_err(|e| unsupported(&e))?;
+    // The cast saturates: values beyond full scale are clipped.
+    Ok(samples.iter().map(|s| (s * 32_768.0).round() as i16).collect())
 }
 
-fn read(path: &Path, longest_s: f64) -> Result<Vec<u8>, WavError> {
-    let unreadable = |source| WavError::Unreadable { path: path.to_owned(), source };
+fn unsupported(what: &str) -> String {
+    format!("is not supported: {what}; help: convert it to 16 kHz, 16 bit, mono PCM")
+}
+
+/// Returns the content of a file; `None` if it is too long.
+fn read(path: &Path) -> Result<Option<Vec<u8>>, String> {
+    let unreadable = |error: io::Error| format!("cannot be read: {error}");
+    // Reading a device or a pipe could block forever.
     if !path.metadata().map_err(unreadable)?.is_file() {
-        return Err(WavError::NotAFile { path: path.to_owned() });
+        return Err("is not a regular file".to_owned());
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(unreadable)?;
     file.take(BYTES_MAX + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > BYTES_MAX {
-        return Err(WavError::TooLong { path: path.to_owned(), longest_s });
-    }
-    Ok(bytes)
+    Ok((bytes.len() as u64 <= BYTES_MAX).then_some(bytes))
 }
 
 /// Replaces the placeholder length that programs write into a pipe by the actual one.
@@ -165,18 +117,6 @@ fn repair_streamed_length(bytes: &mut [u8]) {
         // Chunks begin at even offsets.
         at += 8 + len as usize + (len & 1) as usize;
     }
-}
-
-fn mix_down(samples: &[f32], channels: usize) -> Vec<f32> {
-    samples
-        .chunks_exact(channels)
-        .map(|frame| frame.iter().sum::<f32>() / channels as f32)
-        .collect()
-}
-
-fn quantise(samples: &[f32]) -> Vec<i16> {
-    // The cast saturates: values beyond full scale are clipped.
-    samples.iter().map(|s| (s * 32_768.0).round() as i16).collect()
 }
 
 #[cfg(test)]

@@ -4,17 +4,18 @@
 //! once; the recogniser follows when it has loaded. Interim results and early decoding delay no
 //! result.
 
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 
-use crossbeam_channel::{Receiver, Sender, TrySendError, bounded, unbounded};
+use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
 use scene::Scene;
 
-use crate::devices::recogniser::{Backend, Gate, PocketSphinxOptions, Recogniser};
+use crate::devices::recogniser::{Backend, Gate, Recogniser};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::SegmenterOptions;
+use crate::devices::worker_thread::{QueueError, WorkerThread};
 use crate::{Recognised, RecognitionInput};
 use worker::{EarlyResults, Worker};
 
@@ -35,13 +36,13 @@ pub struct AsrOptions {
 }
 
 impl AsrOptions {
-    /// Returns the measured defaults, with work files in `work`.
-    pub fn new(work: impl Into<PathBuf>) -> Self {
+    /// Returns the options of the configuration, with work files in `work`.
+    pub fn of(speech: &config::Speech, work: &Path) -> Self {
         Self {
-            recogniser: Backend::PocketSphinx(PocketSphinxOptions::debian(work)),
-            segmenter: SegmenterOptions::default(),
-            gate_threshold: Gate::THRESHOLD,
-            longest_s: 60.0,
+            recogniser: Backend::of(speech, work),
+            segmenter: SegmenterOptions::of(speech),
+            gate_threshold: speech.accept_score_min as f32,
+            longest_s: speech.recording_max.as_secs_f64(),
         }
     }
 }
@@ -79,17 +80,6 @@ pub enum AsrEvent {
     Recognised(Recognised),
 }
 
-/// Error of submitting input.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SubmitError {
-    /// The queue is full.
-    #[error("{WAITING_MAX} recordings or utterances are waiting for recognition already")]
-    Busy,
-    /// The worker's thread has panicked.
-    #[error("speech recognition has crashed")]
-    Gone,
-}
-
 /// Inputs that may wait.
 pub const WAITING_MAX: usize = 8;
 /// Possible ends of utterances that may wait for early decoding.
@@ -97,11 +87,11 @@ const HINTS_MAX: usize = 4;
 
 /// The worker's thread. Dropping it ends the thread after the segment that is being decoded.
 pub struct AsrWorker {
-    inputs: Option<Sender<(u64, RecognitionInput)>>,
-    hints: Option<Sender<(u64, SpeechSegment)>>,
-    blocks: Option<Sender<(u64, Vec<i16>)>>,
+    hints: Sender<(u64, SpeechSegment)>,
+    blocks: Sender<(u64, Vec<i16>)>,
     closed: Arc<AtomicBool>,
-    thread: Option<JoinHandle<()>>,
+    /// Declared last: it ends once the channels above are closed.
+    thread: WorkerThread<(u64, RecognitionInput)>,
 }
 
 impl AsrWorker {
@@ -119,13 +109,12 @@ impl AsrWorker {
         segmenter: SegmenterOptions,
         longest_s: f64,
     ) -> (Self, Receiver<AsrEvent>) {
-        let (inputs, waiting) = bounded(WAITING_MAX);
         let (hints, hinted) = bounded(HINTS_MAX);
         let (blocks, spoken) = bounded(interim::BLOCKS_MAX);
         let (events, happened) = unbounded();
         let closed = Arc::new(AtomicBool::new(false));
         let worker_closed = Arc::clone(&closed);
-        let thread = thread::spawn(move || {
+        let thread = WorkerThread::start(WAITING_MAX, move |inputs| {
             // Without a receiver of its events the worker has no more to do.
             let _ = events.send(AsrEvent::State(AsrState::Loading));
             let (recogniser, state) = match open() {
@@ -141,48 +130,38 @@ impl AsrWorker {
                 opener.map(|open| thread::spawn(move || interim::run(open, &spoken, &results)));
             let (closed, early) = (worker_closed, EarlyResults::default());
             let worker = Worker { recogniser, gate, segmenter, longest_s, closed, early };
-            worker.run(&waiting, &hinted, &events);
+            worker.run(inputs, &hinted, &events);
             // A panic of the thread has been logged.
             let _ = interim.map(JoinHandle::join);
         });
-        let (inputs, hints, blocks) = (Some(inputs), Some(hints), Some(blocks));
-        (Self { inputs, hints, blocks, closed, thread: Some(thread) }, happened)
+        (Self { hints, blocks, closed, thread }, happened)
     }
 
     /// Offers a possible end of utterance `sound`. A quick recogniser decodes it while it is idle, and
     /// [`Self::submit`] of the same samples then needs no decoding.
     pub fn decode_early(&self, sound: u64, segment: SpeechSegment) {
         // Without room it is decoded when the end is certain.
-        let _ = self.hints.as_ref().map(|hints| hints.try_send((sound, segment)));
+        let _ = self.hints.try_send((sound, segment));
     }
 
     /// Offers the next samples of utterance `sound` for interim results.
     pub fn interim_samples(&self, sound: u64, samples: Vec<i16>) {
         // Without room they are missing from the interim results, not from the result.
-        let _ = self.blocks.as_ref().map(|blocks| blocks.try_send((sound, samples)));
+        let _ = self.blocks.try_send((sound, samples));
     }
 
     /// Queues input. `sound` identifies it in the events.
     ///
     /// # Errors
     /// If [`WAITING_MAX`] inputs wait already, or the thread is gone.
-    pub fn submit(&self, sound: u64, input: RecognitionInput) -> Result<(), SubmitError> {
-        let inputs = self.inputs.as_ref().ok_or(SubmitError::Gone)?;
-        inputs.try_send((sound, input)).map_err(|error| match error {
-            TrySendError::Full(_) => SubmitError::Busy,
-            TrySendError::Disconnected(_) => SubmitError::Gone,
-        })
+    pub fn submit(&self, sound: u64, input: RecognitionInput) -> Result<(), QueueError> {
+        self.thread.offer((sound, input))
     }
 }
 
 impl Drop for AsrWorker {
     fn drop(&mut self) {
         self.closed.store(true, Ordering::SeqCst);
-        (self.inputs, self.hints, self.blocks) = (None, None, None);
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread has been logged.
-            let _ = thread.join();
-        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! except when this process is killed; the supervisor then ends the process group, which contains the
 //! children.
 
+use std::fmt::Display;
 use std::io::{ErrorKind, Read};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
@@ -11,39 +12,13 @@ use std::time::{Duration, Instant};
 
 /// Error of running a program.
 #[derive(Debug, thiserror::Error)]
-pub enum ProcessError {
-    /// Not installed.
-    #[error("the program {program} is not installed")]
-    NotInstalled {
-        /// Name of the program.
-        program: String,
-    },
-    /// Not started.
-    #[error("{program} cannot be started: {source}")]
-    NotStarted {
-        /// Name of the program.
-        program: String,
-        /// Reason.
-        source: std::io::Error,
-    },
-    /// Killed at its deadline.
-    #[error("{program} did not exit within {deadline:?} and was killed")]
-    Overdue {
-        /// Name of the program.
-        program: String,
-        /// The deadline.
-        deadline: Duration,
-    },
-    /// Exited with an error.
-    #[error("{program} failed ({status}): {message}")]
-    Failed {
-        /// Name of the program.
-        program: String,
-        /// Exit status.
-        status: ExitStatus,
-        /// Beginning of its standard error.
-        message: String,
-    },
+pub(crate) enum ProcessError {
+    /// The program of this name is not installed.
+    #[error("the program {0} is not installed")]
+    NotInstalled(String),
+    /// It was not started, exited with an error, or was killed at its deadline.
+    #[error("{0}")]
+    Failed(String),
 }
 
 /// Outcome of a wait.
@@ -74,9 +49,11 @@ impl ChildProcess {
         match command.spawn() {
             Ok(child) => Ok(Self { program, child }),
             Err(error) if error.kind() == ErrorKind::NotFound => {
-                Err(ProcessError::NotInstalled { program })
+                Err(ProcessError::NotInstalled(program))
             }
-            Err(source) => Err(ProcessError::NotStarted { program, source }),
+            Err(error) => {
+                Err(ProcessError::Failed(format!("{program} cannot be started: {error}")))
+            }
         }
     }
 
@@ -90,16 +67,14 @@ impl ChildProcess {
         loop {
             match self.child.try_wait() {
                 Ok(Some(status)) if status.success() => return Ok(End::Done),
-                Ok(Some(status)) => return Err(self.failure(status)),
+                Ok(Some(status)) => return Err(self.exit_failure(status)),
                 Ok(None) => {}
-                Err(source) => {
-                    let program = self.program.clone();
-                    return Err(ProcessError::NotStarted { program, source });
-                }
+                Err(error) => return Err(self.failure(&error)),
             }
             if start.elapsed() >= deadline {
                 self.kill();
-                return Err(ProcessError::Overdue { program: self.program.clone(), deadline });
+                let what = format!("it did not exit within {deadline:?} and was killed");
+                return Err(self.failure(&what));
             }
             if pause(POLL_EVERY) {
                 self.kill();
@@ -108,14 +83,19 @@ impl ChildProcess {
         }
     }
 
-    fn failure(&mut self, status: ExitStatus) -> ProcessError {
+    fn failure(&self, why: &dyn Display) -> ProcessError {
+        ProcessError::Failed(format!("{} failed: {why}", self.program))
+    }
+
+    /// Returns the error of a program that exited, with the beginning of its standard error.
+    fn exit_failure(&mut self, status: ExitStatus) -> ProcessError {
         let mut output = Vec::new();
         if let Some(stderr) = self.child.stderr.take() {
             // An unreadable part is omitted from the message.
             let _ = stderr.take(STDERR_MAX).read_to_end(&mut output);
         }
         let message = String::from_utf8_lossy(&output).trim().replace('\n', "; ");
-        ProcessError::Failed { program: self.program.clone(), status, message }
+        ProcessError::Failed(format!("{} failed ({status}): {message}", self.program))
     }
 
     fn kill(&mut self) {
@@ -139,10 +119,7 @@ pub(crate) fn output(mut command: Command, deadline: Duration) -> Result<Vec<u8>
     running.wait(deadline, sleep)?;
     let mut output = Vec::new();
     if let Some(mut stdout) = running.child.stdout.take() {
-        let program = running.program.clone();
-        stdout
-            .read_to_end(&mut output)
-            .map_err(|source| ProcessError::NotStarted { program, source })?;
+        stdout.read_to_end(&mut output).map_err(|error| running.failure(&error))?;
     }
     Ok(output)
 }
@@ -183,7 +160,7 @@ mod tests {
     fn child_process_is_killed_at_its_deadline_or_on_cancellation() {
         let start = Instant::now();
         let error = run(shell("exec sleep 30"), Duration::from_millis(50)).unwrap_err();
-        assert!(matches!(error, ProcessError::Overdue { .. }), "{error}");
+        assert!(error.to_string().contains("did not exit within 50ms"), "{error}");
         let mut running = ChildProcess::start(shell("exec sleep 30")).unwrap();
         assert_eq!(running.wait(Duration::from_secs(20), |_| true).unwrap(), End::Cancelled);
         assert!(running.child.try_wait().unwrap().is_some());

@@ -5,17 +5,17 @@
 //! queue are bounded; losses are counted and replaced by silence.
 
 use std::sync::Arc;
-use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
+use crossbeam_channel::{Receiver, RecvTimeoutError};
 use messages::{AudioChunk, RequestKey, Source};
 use service::clock;
 use service::{Span, Time};
 
 use crate::devices::microphone::{EventQueue, MicrophoneEvent, Sink};
-use crate::devices::stream::{Duplex, MaskedStream, PlaybackMask, SegmentEvent, shifted};
+use crate::devices::stream::{Duplex, MaskedStream, PlaybackMask, shifted};
 use crate::devices::vad::SegmenterOptions;
+use crate::devices::worker_thread::WorkerThread;
 use crate::stream_events::{Began, StreamEvent, next_sound};
 
 /// Simultaneous streams; further ones are closed before they begin.
@@ -34,36 +34,19 @@ const TIMEOUT: Duration = Duration::from_secs(10);
 const OLDEST: Span = Span::from_ms(30_000);
 
 /// The thread that segments clients' streams. Dropping it ends the thread.
-pub struct ClientStreams {
-    chunks: Option<Sender<Box<AudioChunk>>>,
-    thread: Option<JoinHandle<()>>,
-}
+pub struct ClientStreams(WorkerThread<Box<AudioChunk>>);
 
 impl ClientStreams {
     /// Starts the thread.
     pub fn start(segmenter: SegmenterOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
-        let (chunks, received) = bounded(CHUNKS_MAX);
         let streams = Streams { segmenter, mask, queue: EventQueue::new(sink), open: Vec::new() };
-        let thread = std::thread::spawn(move || streams.run(&received));
-        Self { chunks: Some(chunks), thread: Some(thread) }
+        Self(WorkerThread::start(CHUNKS_MAX, move |chunks| streams.run(chunks)))
     }
 
     /// Queues a chunk. Without room it is lost, as in transit.
     pub fn take(&self, chunk: &AudioChunk) {
-        if let Some(chunks) = &self.chunks {
-            // The next chunk reveals the gap.
-            let _ = chunks.try_send(Box::new(*chunk));
-        }
-    }
-}
-
-impl Drop for ClientStreams {
-    fn drop(&mut self) {
-        self.chunks = None;
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread has been logged.
-            let _ = thread.join();
-        }
+        // The next chunk reveals the gap.
+        let _ = self.0.offer(Box::new(*chunk));
     }
 }
 
@@ -83,8 +66,6 @@ struct OpenStream {
     next: u64,
     lost: u64,
     utterances: u32,
-    /// The utterance in progress.
-    sound: Option<u64>,
     is_held: bool,
     last_chunk: Instant,
 }
@@ -133,7 +114,6 @@ impl Streams {
             next: chunk.first_sample,
             lost: 0,
             utterances: 0,
-            sound: None,
             is_held: false,
             last_chunk: Instant::now(),
         }
@@ -141,8 +121,7 @@ impl Streams {
 
     fn end(&mut self, at: usize) {
         let mut open = self.open.swap_remove(at);
-        let events = open.end_utterance();
-        self.send(events);
+        self.send(open.stream.finish());
         self.close(open.key, open.utterances, open.lost);
     }
 
@@ -150,10 +129,10 @@ impl Streams {
         if lost > 0 {
             tracing::warn!(lost, "samples of a client's stream were lost in transit");
         }
-        self.send(vec![StreamEvent::Closed { stream, utterances, lost }]);
+        self.send([StreamEvent::Closed { stream, utterances, lost }]);
     }
 
-    fn send(&mut self, events: Vec<StreamEvent>) {
+    fn send(&mut self, events: impl IntoIterator<Item = StreamEvent>) {
         events.into_iter().for_each(|event| self.queue.send(MicrophoneEvent::Stream(event)));
     }
 
@@ -163,8 +142,8 @@ impl Streams {
             if quiet >= TIMEOUT {
                 self.end(at);
             } else if quiet >= PAUSE {
-                let events = self.open[at].end_utterance();
-                self.send(events);
+                let event = self.open[at].stream.finish();
+                self.send(event);
             }
         }
     }
@@ -187,7 +166,7 @@ impl OpenStream {
         let gap = chunk.first_sample - self.next;
         self.lost = self.lost.saturating_add(gap);
         if gap > GAP_MAX || released {
-            events.extend(self.end_utterance());
+            events.extend(self.stream.finish());
         }
         let duplex =
             if held || chunk.is(AudioChunk::ECHO_FREE) { Duplex::Full } else { Duplex::Half };
@@ -202,40 +181,21 @@ impl OpenStream {
 
     /// Processes samples, the first of which is number `first` of the stream.
     fn push(&mut self, at: Time, samples: &[i16], first: u64, duplex: Duplex) -> Vec<StreamEvent> {
-        let events = self.stream.push(at, samples, duplex);
-        self.numbered(events, |onset| {
-            let before = (onset.since(Time(0)).s() - at.since(Time(0)).s()) * 10.0;
-            ((first as f64 / 1_600.0 + before).max(0.0) as u32, duplex)
-        })
-    }
-
-    fn end_utterance(&mut self) -> Vec<StreamEvent> {
-        let events = self.stream.finish();
-        self.numbered(events, |_| (0, Duplex::Half))
-    }
-
-    /// Numbers the events; `segment` returns number and duplex mode of an utterance by its onset.
-    fn numbered(
-        &mut self,
-        events: Vec<SegmentEvent>,
-        segment: impl Fn(Time) -> (u32, Duplex),
-    ) -> Vec<StreamEvent> {
         let (stream, utterances) = (self.key, &mut self.utterances);
-        let mut began = |at| {
+        let mut began = |onset: Time| {
             *utterances += 1;
-            let (segment, duplex) = segment(at);
+            let before = (onset.since(Time(0)).s() - at.since(Time(0)).s()) * 10.0;
+            let tenths = (first as f64 / 1_600.0 + before).max(0.0) as u32;
             Began {
                 sound: next_sound(),
-                at,
+                at: onset,
                 stream,
-                segment: Some(segment),
+                segment: Some(tenths),
                 source: Source::Microphone,
                 interrupts: duplex == Duplex::Full,
             }
         };
-        let sound = &mut self.sound;
-        let numbered = events.into_iter();
-        numbered.filter_map(|event| StreamEvent::number(event, sound, &mut began)).collect()
+        self.stream.push(at, samples, duplex, &mut began)
     }
 }
 

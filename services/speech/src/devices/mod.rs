@@ -18,3 +18,4 @@ pub mod stream;
 pub(crate) mod testing;
 pub mod vad;
 pub mod voice;
+pub mod worker_thread;

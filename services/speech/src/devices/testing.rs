@@ -3,9 +3,12 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
+use messages::{RequestKey, Source};
 use scene::Scene;
+use service::Time;
 
 use crate::devices::audio::RATE_HZ;
+use crate::stream_events::{Began, LIVE_FROM};
 
 /// Returns the six bowls.
 pub(crate) fn bowls() -> Scene {
@@ -17,6 +20,18 @@ pub(crate) fn bowls() -> Scene {
 pub(crate) fn tools() -> Scene {
     let text = include_str!("../../../../config/scenes/tools.toml");
     Scene::from_toml("tools.toml", text).expect("a valid scene")
+}
+
+/// Returns the beginning of an utterance at a time.
+pub(crate) fn began(at: Time) -> Began {
+    Began {
+        sound: LIVE_FROM,
+        at,
+        stream: RequestKey([7; 16]),
+        segment: None,
+        source: Source::Microphone,
+        interrupts: false,
+    }
 }
 
 /// Writes samples as a WAV file of the service's own format.

@@ -32,6 +32,17 @@ pub struct SegmenterOptions {
     pub longest_s: f64,
 }
 
+impl SegmenterOptions {
+    /// Returns the options of the configuration.
+    pub fn of(speech: &config::Speech) -> Self {
+        Self {
+            closing_pause_s: speech.closing_pause.as_secs_f64(),
+            longest_s: speech.spoken_max.as_secs_f64(),
+            ..Self::default()
+        }
+    }
+}
+
 impl Default for SegmenterOptions {
     fn default() -> Self {
         Self {
@@ -101,19 +112,16 @@ impl Segmenter {
     }
 
     /// Ends the stream and an open segment with it, and resets the segmenter.
-    pub fn finish(&mut self) -> Vec<VadEvent> {
-        let mut events = Vec::new();
+    pub fn finish(&mut self) -> Option<VadEvent> {
         let track = std::mem::take(&mut self.track);
-        if let Some(open) = track.open {
-            let end = track.at + self.rest.len();
-            // Speech in the last frame may continue in the incomplete one.
-            let speech_end = if open.speech_end == track.at { end } else { open.speech_end };
-            let (range, speech) = open.cut(speech_end, end, &self.options);
-            events.push(VadEvent::End { range, speech });
-        }
+        let end = track.at + self.rest.len();
         self.rest.clear();
         self.detector.reset();
-        events
+        let open = track.open?;
+        // Speech in the last frame may continue in the incomplete one.
+        let speech_end = if open.speech_end == track.at { end } else { open.speech_end };
+        let (range, speech) = open.cut(speech_end, end, &self.options);
+        Some(VadEvent::End { range, speech })
     }
 }
 
@@ -327,6 +335,6 @@ mod tests {
         let noise: Vec<i16> =
             (0..samples(3.0)).map(|_| (signed(&mut rng) * 128.0) as i16).collect();
         assert_eq!(segmenter.push(&noise), []);
-        assert_eq!(segmenter.finish(), []);
+        assert_eq!(segmenter.finish(), None);
     }
 }

@@ -1,13 +1,13 @@
-//! Accepted utterances until the policy has applied them.
+//! Accepted utterances until the policy has applied them, and the receipts of all requests.
 
 use std::collections::VecDeque;
 
 use messages::outbox::Outbox;
-use messages::{AppliedMark, RequestKey, UtteranceSeq, topics};
+use messages::{AppliedMark, Receipt, RequestKey, UtteranceSeq, topics};
 use service::Time;
 
-use super::push_bounded;
 use crate::record::Accepted;
+use crate::{Fx, Out};
 
 /// Utterances that may wait to be applied; beyond it users are asked to wait.
 const WAITING_MAX: usize = 256;
@@ -84,4 +84,36 @@ impl AcceptedUtterances {
     pub(super) fn snapshot(&self) -> Option<Vec<Accepted>> {
         self.outbox.is_empty().then(|| self.recent.iter().cloned().collect())
     }
+}
+
+/// The latest receipts that were sent, so that a repeated request gets the same ones.
+#[derive(Default)]
+pub(super) struct Receipts {
+    sent: VecDeque<Receipt>,
+}
+
+impl Receipts {
+    pub(super) fn record(&mut self, receipt: Receipt) {
+        push_bounded(&mut self.sent, receipt);
+    }
+
+    /// Publishes the receipts of a request again. Returns `false` unless it has all of them.
+    pub(super) fn repeat(&self, key: RequestKey, fx: &mut Fx) -> bool {
+        let receipts = || self.sent.iter().filter(|receipt| receipt.request() == key);
+        let segments = receipts().next().map_or(u32::MAX, |receipt| receipt.segments);
+        if receipts().count() < segments as usize {
+            return false;
+        }
+        receipts().for_each(|receipt| fx.publish(Out::Receipt(Box::new(*receipt))));
+        true
+    }
+}
+
+/// Appends an item and drops the oldest beyond a limit.
+fn push_bounded<T>(queue: &mut VecDeque<T>, item: T) {
+    const ITEMS_MAX: usize = 128;
+    if queue.len() >= ITEMS_MAX {
+        queue.pop_front();
+    }
+    queue.push_back(item);
 }

@@ -2,7 +2,7 @@
 
 use crate::RecognisedSegment;
 use crate::pending_sounds::PendingSound;
-use messages::{RequestKey, Source};
+use messages::{FixedText, Receipt, ReceiptStatus, RequestKey, Source};
 use service::{Span, Time};
 
 /// Origin of an utterance.
@@ -19,15 +19,10 @@ pub(super) struct Origin {
 }
 
 impl Origin {
-    /// Returns the origin of text, or of another request without segments.
-    pub(super) fn whole(key: RequestKey, span: (Time, Time)) -> Self {
-        Self { key, segment: (0, 1), source: Source::Text, span, snr_db: 0.0 }
-    }
-
     /// Returns the origin for the end of a client's stream.
     pub(super) fn closed(key: RequestKey, utterances: u32) -> Self {
-        let (segment, source) = ((u32::MAX, utterances), Source::Microphone);
-        Self { segment, source, ..Self::whole(key, (Time(0), Time(0))) }
+        let (segment, span) = ((u32::MAX, utterances), (Time(0), Time(0)));
+        Self { key, segment, source: Source::Microphone, span, snr_db: 0.0 }
     }
 
     /// Returns the origin of segment `number` of `count` in a sound; a live sound is a segment itself.
@@ -44,5 +39,21 @@ impl Origin {
         let recorded = (at(segment.span_s.0), at(segment.span_s.1));
         let span = if self.span.1 == Time(0) { recorded } else { self.span };
         Self { span, snr_db: segment.snr_db, ..self }
+    }
+
+    /// Returns the receipt for a request or sound without a new utterance.
+    pub(super) fn rejection(&self, status: ReceiptStatus, note: &str) -> Receipt {
+        Receipt {
+            key: self.key.0,
+            segment: self.segment.0,
+            segments: self.segment.1,
+            onset_ns: self.span.0.ns(),
+            end_ns: self.span.1.ns(),
+            snr_db: self.snr_db,
+            status: status.code(),
+            source: self.source.code(),
+            note: FixedText::truncated(note),
+            ..Receipt::default()
+        }
     }
 }

@@ -32,7 +32,7 @@ impl Recogniser for Stub {
             permission.recv_timeout(PATIENCE).unwrap();
         }
         if self.fails {
-            return Err(RecogniseError::Failed);
+            return Err(RecogniseError("no model".to_owned()));
         }
         let word = if pcm.len() > 16_000 || self.permission.is_some() { "white" } else { "zebra" };
         Ok(vec![Hypothesis::certain(word)])
@@ -139,7 +139,7 @@ fn asr_worker_bounds_its_queue_while_the_recogniser_loads() {
     for sound in 0..WAITING_MAX as u64 {
         worker.submit(sound, input()).unwrap();
     }
-    assert_eq!(worker.submit(99, input()), Err(SubmitError::Busy));
+    assert_eq!(worker.submit(99, input()), Err(QueueError::Full));
     go.send(()).unwrap();
     assert!(matches!(next(&events), AsrEvent::State(AsrState::Ready { .. })));
     for sound in 0..WAITING_MAX as u64 {
@@ -153,7 +153,7 @@ fn asr_worker_reports_a_crash_of_its_thread() {
     while events.recv_timeout(PATIENCE).is_ok() {}
     // The two ends of the thread close one after the other.
     let start = Instant::now();
-    while worker.submit(1, RecognitionInput::Speech(segment(1))) != Err(SubmitError::Gone) {
+    while worker.submit(1, RecognitionInput::Speech(segment(1))) != Err(QueueError::Closed) {
         assert!(start.elapsed() < PATIENCE);
         thread::sleep(Duration::from_millis(5));
     }

@@ -59,7 +59,7 @@ impl Client {
     }
 
     fn waiting(&self) -> usize {
-        self.streams.chunks.as_ref().unwrap().len()
+        self.streams.0.waiting()
     }
 
     fn end(&mut self) {

@@ -74,20 +74,13 @@ impl EventQueue {
 mod tests {
     use super::*;
     use crate::devices::stream::SpeechSegment;
+    use crate::devices::testing;
     use crate::stream_events::Began;
     use crossbeam_channel::{TrySendError, bounded};
-    use messages::{RequestKey, Source};
     use service::Time;
 
     fn began(sound: u64) -> MicrophoneEvent {
-        MicrophoneEvent::Stream(StreamEvent::Began(Began {
-            sound,
-            at: Time(sound),
-            stream: RequestKey([0; 16]),
-            segment: None,
-            source: Source::Microphone,
-            interrupts: false,
-        }))
+        MicrophoneEvent::Stream(StreamEvent::Began(Began { sound, ..testing::began(Time(0)) }))
     }
 
     fn ended(sound: u64) -> MicrophoneEvent {

@@ -11,13 +11,11 @@ mod recorder;
 mod worker;
 
 use std::sync::Arc;
-use std::thread::JoinHandle;
 use std::time::Duration;
-
-use crossbeam_channel::{Sender, TrySendError, bounded};
 
 use crate::devices::stream::PlaybackMask;
 use crate::devices::vad::SegmenterOptions;
+use crate::devices::worker_thread::{QueueError, WorkerThread};
 use crate::stream_events::StreamEvent;
 pub(crate) use event_queue::EventQueue;
 pub use event_queue::Sink;
@@ -51,11 +49,7 @@ impl MicrophoneOptions {
             programs: microphone.command.clone().map_or(defaults.programs, |own| vec![own]),
             hands_free: microphone.mode == config::MicrophoneMode::HandsFree,
             barge_in: microphone.barge_in,
-            segmenter: SegmenterOptions {
-                closing_pause_s: speech.closing_pause.as_secs_f64(),
-                longest_s: speech.spoken_max.as_secs_f64(),
-                ..SegmenterOptions::default()
-            },
+            segmenter: SegmenterOptions::of(speech),
             ..defaults
         }
     }
@@ -106,17 +100,6 @@ impl MicrophoneStatus {
     }
 }
 
-/// Error of opening the microphone.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum TalkError {
-    /// In use.
-    #[error("the microphone is in use already")]
-    Busy,
-    /// The thread has panicked.
-    #[error("the microphone thread has crashed")]
-    Gone,
-}
-
 /// A request to record one utterance.
 #[derive(Clone, Copy, Debug)]
 struct Talk {
@@ -125,17 +108,13 @@ struct Talk {
 }
 
 /// The microphone's thread. Dropping it ends the thread and the recording program.
-pub struct Microphone {
-    requests: Option<Sender<Talk>>,
-    thread: Option<JoinHandle<()>>,
-}
+pub struct Microphone(WorkerThread<Talk>);
 
 impl Microphone {
     /// Starts the thread.
     pub fn start(options: MicrophoneOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
-        let (requests, requested) = bounded(1);
-        let work = move || worker::Worker::new(options, mask, sink).run(&requested);
-        Self { requests: Some(requests), thread: Some(std::thread::spawn(work)) }
+        let run = move |requests: &_| worker::Worker::new(options, mask, sink).run(requests);
+        Self(WorkerThread::start(1, run))
     }
 
     /// Records one utterance with the number `sound`, from now on for `longest` at most. The robot's own
@@ -143,22 +122,8 @@ impl Microphone {
     ///
     /// # Errors
     /// If another request is in progress, or the thread is gone.
-    pub fn talk(&self, sound: u64, longest: Duration) -> Result<(), TalkError> {
-        let requests = self.requests.as_ref().ok_or(TalkError::Gone)?;
-        requests.try_send(Talk { sound, longest }).map_err(|error| match error {
-            TrySendError::Full(_) => TalkError::Busy,
-            TrySendError::Disconnected(_) => TalkError::Gone,
-        })
-    }
-}
-
-impl Drop for Microphone {
-    fn drop(&mut self) {
-        self.requests = None;
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread has been logged.
-            let _ = thread.join();
-        }
+    pub fn talk(&self, sound: u64, longest: Duration) -> Result<(), QueueError> {
+        self.0.offer(Talk { sound, longest })
     }
 }
 

@@ -11,8 +11,8 @@ use service::clock;
 use super::event_queue::{EventQueue, Sink};
 use super::level::{Level, QUIETEST_DB};
 use super::recorder::{Read, Recorder};
-use super::{MicrophoneEvent, MicrophoneOptions, MicrophoneStatus, Talk, TalkError};
-use crate::devices::stream::{Duplex, MaskedStream, PlaybackMask, SampleClock, SegmentEvent};
+use super::{MicrophoneEvent, MicrophoneOptions, MicrophoneStatus, Talk};
+use crate::devices::stream::{Duplex, MaskedStream, PlaybackMask, SampleClock};
 use crate::stream_events::{Began, StreamEvent, next_sound};
 
 /// Timeout of one read.
@@ -38,8 +38,6 @@ pub(super) struct Worker {
     level: Level,
     status: MicrophoneStatus,
     request: Option<Request>,
-    /// The utterance in progress.
-    open: Option<u64>,
 }
 
 /// A request in progress.
@@ -66,7 +64,6 @@ impl Worker {
             level: Level::default(),
             status: MicrophoneStatus::closed(),
             request: None,
-            open: None,
             options,
         }
     }
@@ -97,7 +94,7 @@ impl Worker {
 
     fn begin(&mut self, talk: Talk) {
         if self.request.is_some() {
-            let reason = TalkError::Busy.to_string();
+            let reason = "the microphone is busy already".to_owned();
             return self.send(StreamEvent::Silent { sound: talk.sound, reason });
         }
         // Speech in progress does not belong to the request.
@@ -153,10 +150,25 @@ impl Worker {
         if let Some(request) = &mut self.request {
             request.has_samples = true;
         }
-        let is_full = self.request.is_some() || self.options.barge_in;
+        let barge_in = self.options.barge_in;
+        let is_full = self.request.is_some() || barge_in;
         let duplex = if is_full { Duplex::Full } else { Duplex::Half };
-        for event in self.stream.push(at, samples, duplex) {
-            self.on_segment_event(event);
+        // The next utterance is the requested one, unless that is in progress already.
+        let mut requested = self.request.as_ref().map(|request| request.sound);
+        requested = requested.filter(|sound| self.stream.sound_in_progress() != Some(*sound));
+        let mut began = |at| {
+            let requested = requested.take();
+            Began {
+                sound: requested.unwrap_or_else(next_sound),
+                at,
+                stream: random_key(),
+                segment: None,
+                source: Source::Microphone,
+                interrupts: barge_in || requested.is_some(),
+            }
+        };
+        for event in self.stream.push(at, samples, duplex, &mut began) {
+            self.forward(event);
         }
         let muted = self.stream.is_muted();
         let state = if muted { MicrophoneState::Muted } else { MicrophoneState::Listening };
@@ -168,30 +180,19 @@ impl Worker {
         }
     }
 
-    fn on_segment_event(&mut self, event: SegmentEvent) {
-        let requested = self.request.as_ref().map(|request| request.sound);
-        let interrupts = self.options.barge_in || requested.is_some();
-        let event = StreamEvent::number(event, &mut self.open, |at| Began {
-            sound: requested.unwrap_or_else(next_sound),
-            at,
-            stream: random_key(),
-            segment: None,
-            source: Source::Microphone,
-            interrupts,
-        });
-        if let Some(StreamEvent::Ended { sound, .. }) = &event {
+    /// Sends an event of the stream. The end of the requested utterance ends the request.
+    fn forward(&mut self, event: StreamEvent) {
+        if let StreamEvent::Ended { sound, .. } = &event {
             self.request.take_if(|request| request.sound == *sound);
         }
-        if let Some(event) = event {
-            self.send(event);
-        }
+        self.send(event);
     }
 
     /// Ends a request whose time is up.
     fn check_timeout(&mut self) {
         let now = Instant::now();
         let Some(request) = self.request.take_if(|request| now >= request.until) else { return };
-        if self.open == Some(request.sound) {
+        if self.stream.sound_in_progress() == Some(request.sound) {
             return self.end_stream();
         }
         let note = &self.status.note;
@@ -240,8 +241,8 @@ impl Worker {
 
     /// Ends the stream and an utterance in progress; further samples start a new stream.
     fn end_stream(&mut self) {
-        for event in self.stream.finish() {
-            self.on_segment_event(event);
+        if let Some(event) = self.stream.finish() {
+            self.forward(event);
         }
         self.clock = SampleClock::default();
         self.running_since = None;

@@ -44,6 +44,7 @@ pub struct Command {
     program: Option<Program>,
 }
 
+const HELP: &str = "help: set speech.recogniser_command to a program and its arguments";
 /// Longest line of an answer, bytes.
 const LINE_MAX: u64 = 64 * 1024;
 
@@ -54,7 +55,7 @@ impl Command {
     /// If no program is named, or it cannot be started.
     pub fn open(options: CommandOptions) -> Result<Self, RecogniserUnavailable> {
         let program = Program::start(&options.command)
-            .map_err(|reason| RecogniserUnavailable::Command { reason })?;
+            .map_err(|reason| RecogniserUnavailable(format!("{reason}; {HELP}")))?;
         Ok(Self { options, program: Some(program) })
     }
 
@@ -81,10 +82,10 @@ impl Recogniser for Command {
             // Further output belongs to this utterance; the next one gets a new program.
             self.program = None;
             let name = self.options.command.first().cloned().unwrap_or_default();
-            RecogniseError::Backend { reason: format!("{name}: {reason}") }
+            RecogniseError(format!("{name}: {reason}"))
         })?;
         match answer.error {
-            Some(reason) => Err(RecogniseError::Backend { reason }),
+            Some(reason) => Err(RecogniseError(reason)),
             None => Ok(hypotheses(answer.hypotheses, self.options.n_best_max)),
         }
     }

@@ -7,7 +7,7 @@
 #![allow(unsafe_code)]
 
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::ptr::{self, NonNull};
 use std::sync::{PoisonError, RwLock};
 
@@ -23,8 +23,35 @@ type NBest = *mut c_void;
 type Segment = *mut c_void;
 type LogMath = *mut c_void;
 
-/// The functions used, and the shared object that keeps them mapped.
-pub(super) struct Library {
+/// Declares the functions used, and how they are resolved.
+macro_rules! library {
+    ($($name:ident: $signature:ty,)*) => {
+        /// The functions used, and the shared object that keeps them mapped.
+        pub(super) struct Library {
+            $($name: $signature,)*
+            /// Declared last: the functions above point into it.
+            _object: SharedObject,
+        }
+
+        impl Library {
+            /// Opens the shared object `file` (a path, or a name for the loader) and resolves the
+            /// functions; libsphinxbase is loaded as its dependency.
+            pub(super) fn open(file: &Path) -> Result<Self, libloading::Error> {
+                // SAFETY: opening runs the initialisers of pocketsphinx, sphinxbase and their BLAS,
+                // which are plain C without demands on the caller. The type of each field is the C
+                // declaration of the function of that name in the headers named above. `get` looks
+                // through dependencies too. The copied pointers stay valid because the object is
+                // kept beside them.
+                unsafe {
+                    let object = SharedObject::new(file)?;
+                    Ok(Self { $($name: *object.get(stringify!($name))?,)* _object: object })
+                }
+            }
+        }
+    };
+}
+
+library! {
     cmd_ln_init: unsafe extern "C" fn(Config, *const c_void, i32, ...) -> Config,
     cmd_ln_free_r: unsafe extern "C" fn(Config) -> c_int,
     err_set_logfile: unsafe extern "C" fn(*const c_char) -> c_int,
@@ -45,59 +72,14 @@ pub(super) struct Library {
     ps_nbest_next: unsafe extern "C" fn(NBest) -> NBest,
     ps_nbest_hyp: unsafe extern "C" fn(NBest, *mut i32) -> *const c_char,
     ps_nbest_free: unsafe extern "C" fn(NBest),
-    /// Declared last: the functions above point into it.
-    _object: SharedObject,
-}
-
-impl Library {
-    /// Opens the shared object `file` (a path, or a name for the loader) and resolves the functions;
-    /// libsphinxbase is loaded as its dependency.
-    pub(super) fn open(file: &Path) -> Result<Self, libloading::Error> {
-        // SAFETY: opening runs the initialisers of pocketsphinx, sphinxbase and their BLAS, which
-        // are plain C without demands on the caller.
-        let object = unsafe { SharedObject::new(file) }?;
-        macro_rules! library {
-            ($($name:ident),*) => {
-                // SAFETY: the type of each field is the C declaration of the function of that
-                // name in the headers named above. `get` looks through dependencies too. The
-                // copied pointers stay valid because the object is kept beside them.
-                unsafe { Self { $($name: *object.get(stringify!($name))?,)* _object: object } }
-            };
-        }
-        Ok(library!(
-            cmd_ln_init,
-            cmd_ln_free_r,
-            err_set_logfile,
-            logmath_log_to_ln,
-            ps_args,
-            ps_init,
-            ps_free,
-            ps_get_logmath,
-            ps_start_stream,
-            ps_start_utt,
-            ps_process_raw,
-            ps_end_utt,
-            ps_get_hyp,
-            ps_seg_iter,
-            ps_seg_next,
-            ps_seg_word,
-            ps_nbest,
-            ps_nbest_next,
-            ps_nbest_hyp,
-            ps_nbest_free
-        ))
-    }
 }
 
 /// Files of a decoder; no path may contain a NUL byte.
-pub(super) struct DecoderFiles<'a> {
-    pub(super) acoustic_model: &'a Path,
-    pub(super) dictionary: &'a Path,
-    pub(super) language_model: &'a Path,
-    /// File for the library's messages while opening.
-    pub(super) log: &'a Path,
-    /// Decoding passes.
-    pub(super) passes: Passes,
+#[derive(Clone)]
+pub(super) struct DecoderFiles {
+    pub(super) acoustic_model: PathBuf,
+    pub(super) dictionary: PathBuf,
+    pub(super) language_model: PathBuf,
 }
 
 /// Passes of a decoder over an utterance.
@@ -109,19 +91,14 @@ pub(super) enum Passes {
     First,
 }
 
-/// A hypothesis of the library: text and natural logarithm of its score, not normalised.
-pub(super) struct Scored {
-    pub(super) text: String,
-    pub(super) ln_score: f64,
-}
-
 /// The library's result for one utterance.
 #[derive(Default)]
 pub(super) struct Decoded {
     /// Words of the best path, including fillers and pronunciation markers.
-    pub(super) best: Vec<String>,
-    /// Best first; a text may appear more than once (other times or pronunciations).
-    pub(super) n_best: Vec<Scored>,
+    pub(super) best: String,
+    /// Texts with the natural logarithms of their scores, not normalised. Best first; a text may
+    /// appear more than once (other times or pronunciations).
+    pub(super) n_best: Vec<(String, f64)>,
 }
 
 /// A decoder: one acoustic model, dictionary and language model.
@@ -135,12 +112,17 @@ pub(super) struct Decoder {
 unsafe impl Send for Decoder {}
 
 impl Decoder {
-    /// Opens a decoder. `None`: the library failed; `files.log` holds its reasons.
-    pub(super) fn open(library: Library, files: &DecoderFiles<'_>) -> Option<Self> {
+    /// Opens a decoder. `None`: the library failed; `log` holds its reasons.
+    pub(super) fn open(
+        library: Library,
+        files: &DecoderFiles,
+        passes: Passes,
+        log: &Path,
+    ) -> Option<Self> {
         let path = |p: &Path| CString::new(p.as_os_str().as_encoded_bytes()).ok();
-        let (hmm, dict) = (path(files.acoustic_model)?, path(files.dictionary)?);
-        let (lm, log) = (path(files.language_model)?, path(files.log)?);
-        let more_passes = if files.passes == Passes::All { c"yes" } else { c"no" };
+        let (hmm, dict) = (path(&files.acoustic_model)?, path(&files.dictionary)?);
+        let (lm, log) = (path(&files.language_model)?, path(log)?);
+        let more_passes = if passes == Passes::All { c"yes" } else { c"no" };
         let _log = MESSAGE_LOG.write().unwrap_or_else(PoisonError::into_inner);
         // SAFETY: the strings are NUL-terminated and outlive the calls, which copy them. The
         // variadic list is pairs of strings ended by a null pointer, as `cmd_ln_init` demands; it
@@ -234,7 +216,7 @@ impl Decoder {
     }
 
     /// Returns the words of the best path.
-    fn best(&mut self) -> Vec<String> {
+    fn best(&mut self) -> String {
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         let mut words = Vec::new();
         // SAFETY: the iterator is walked to its end, where the library frees it and answers null;
@@ -247,11 +229,11 @@ impl Decoder {
                 segment = (lib.ps_seg_next)(segment);
             }
         }
-        words
+        words.join(" ")
     }
 
     /// Returns the best paths through the word lattice, as texts without fillers.
-    fn n_best(&mut self, at_most: usize) -> Vec<Scored> {
+    fn n_best(&mut self, at_most: usize) -> Vec<(String, f64)> {
         let (lib, ps) = (&self.library, self.decoder.as_ptr());
         let mut found = Vec::new();
         // SAFETY: the search starts at its first result (`ps_nbest` advances it once), or is null
@@ -265,7 +247,7 @@ impl Decoder {
                 let text = (lib.ps_nbest_hyp)(search, &raw mut score);
                 if !text.is_null() {
                     let ln_score = (lib.logmath_log_to_ln)(logmath, score) * SCORE_UNIT;
-                    found.push(Scored { text: text_of(text), ln_score });
+                    found.push((text_of(text), ln_score));
                 }
                 search = (lib.ps_nbest_next)(search);
             }

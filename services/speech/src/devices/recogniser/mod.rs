@@ -5,11 +5,12 @@ mod ffi;
 mod gate;
 mod pocketsphinx;
 mod scene_files;
-mod unavailable;
 mod whisper;
 mod word_confidence;
 
+use std::io;
 use std::ops::Range;
+use std::path::Path;
 
 use scene::Scene;
 
@@ -18,21 +19,38 @@ use crate::Hypothesis;
 pub use command::{Command, CommandOptions};
 pub use gate::{Gate, Rejected};
 pub use pocketsphinx::{PocketSphinx, PocketSphinxOptions};
-pub use unavailable::RecogniserUnavailable;
 pub use whisper::WhisperOptions;
 
 /// Error of decoding an utterance.
+///
+/// Contains the reason; the next utterance may succeed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum RecogniseError {
-    /// The library failed; the next utterance may succeed.
-    #[error("the recogniser failed on this utterance")]
-    Failed,
-    /// A backend reported an error, or failed itself.
-    #[error("the recogniser failed on this utterance: {reason}")]
-    Backend {
-        /// Reason.
-        reason: String,
-    },
+#[error("the recogniser failed on this utterance: {0}")]
+pub struct RecogniseError(pub String);
+
+/// Error of opening a recogniser: the reason, for the operator.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct RecogniserUnavailable(String);
+
+impl RecogniserUnavailable {
+    /// A file of the model is missing.
+    fn unreadable(file: &Path, error: &io::Error) -> Self {
+        let file = file.display();
+        Self(format!(
+            "{file} cannot be read: {error}; help: install the package pocketsphinx-en-us"
+        ))
+    }
+
+    /// A work file cannot be written.
+    fn unwritable(file: &Path, error: &io::Error) -> Self {
+        Self(format!("{} cannot be written: {error}", file.display()))
+    }
+
+    /// The library rejected its model.
+    fn rejected(reason: &str) -> Self {
+        Self(format!("pocketsphinx rejected its model: {reason}"))
+    }
 }
 
 /// A recogniser of whole utterances.
@@ -91,6 +109,25 @@ pub enum Backend {
 }
 
 impl Backend {
+    /// Returns the recogniser of the configuration, with work files in `work`.
+    pub fn of(speech: &config::Speech, work: &Path) -> Self {
+        match speech.recogniser {
+            config::Recogniser::Command => {
+                let command = speech.recogniser_command.clone().unwrap_or_default();
+                Self::Command(CommandOptions::new(command))
+            }
+            config::Recogniser::Whisper => {
+                let model = speech.whisper_model.clone().unwrap_or_default();
+                Self::Whisper(WhisperOptions::new(model))
+            }
+            _ => {
+                let options = PocketSphinxOptions::debian(work);
+                let model = speech.model_dir.clone().unwrap_or_else(|| options.model.clone());
+                Self::PocketSphinx(PocketSphinxOptions { model, ..options })
+            }
+        }
+    }
+
     /// Opens the recogniser for a scene. Also returns the words of the scene that it cannot recognise.
     ///
     /// # Errors

@@ -1,5 +1,6 @@
 //! The offline recogniser: Debian's pocketsphinx with a language model of the scene.
 
+use std::error::Error as _;
 use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -49,27 +50,18 @@ pub struct PocketSphinx {
     decoder: Decoder,
     n_best_max: usize,
     unpronounceable: Vec<String>,
-    files: Files,
+    opener: Opener,
 }
 
-/// Files of a decoder.
+/// What is needed to open a decoder.
 #[derive(Clone)]
-struct Files {
+struct Opener {
     library: PathBuf,
-    acoustic_model: PathBuf,
-    dictionary: PathBuf,
-    language_model: PathBuf,
+    files: DecoderFiles,
     work: PathBuf,
 }
 
-impl Files {
-    fn library(&self) -> Result<Library, RecogniserUnavailable> {
-        Library::open(&self.library).map_err(|error| RecogniserUnavailable::Library {
-            file: self.library.clone(),
-            reason: reason(&error),
-        })
-    }
-
+impl Opener {
     /// Returns the file for the library's messages.
     fn log(&self, passes: Passes) -> PathBuf {
         self.work.join(match passes {
@@ -79,20 +71,22 @@ impl Files {
     }
 
     fn open(&self, passes: Passes) -> Result<Decoder, RecogniserUnavailable> {
-        let library = self.library()?;
-        let log = self.log(passes);
-        fs::write(&log, "")
-            .map_err(|source| RecogniserUnavailable::Work { path: log.clone(), source })?;
-        let files = DecoderFiles {
-            acoustic_model: &self.acoustic_model,
-            dictionary: &self.dictionary,
-            language_model: &self.language_model,
-            log: &log,
-            passes,
-        };
-        Decoder::open(library, &files)
-            .ok_or_else(|| RecogniserUnavailable::Refused { reason: last_errors(&log) })
+        let (library, log) = (library(&self.library)?, self.log(passes));
+        fs::write(&log, "").map_err(|error| RecogniserUnavailable::unwritable(&log, &error))?;
+        Decoder::open(library, &self.files, passes, &log)
+            .ok_or_else(|| RecogniserUnavailable::rejected(&last_errors(&log)))
     }
+}
+
+fn library(file: &Path) -> Result<Library, RecogniserUnavailable> {
+    Library::open(file).map_err(|error| {
+        // The source is the loader's own message.
+        let source = error.source().map(|source| format!(": {source}")).unwrap_or_default();
+        RecogniserUnavailable(format!(
+            "{} cannot be loaded: {error}{source}; help: install the package libpocketsphinx3",
+            file.display()
+        ))
+    })
 }
 
 impl PocketSphinx {
@@ -106,31 +100,30 @@ impl PocketSphinx {
         options: &PocketSphinxOptions,
     ) -> Result<Self, RecogniserUnavailable> {
         // The library is checked first: its package depends on the rest.
-        let files = Files {
-            library: options.library.clone(),
-            acoustic_model: options.model.join("en-us"),
-            dictionary: PathBuf::new(),
-            language_model: PathBuf::new(),
-            work: options.work.clone(),
-        };
-        files.library()?;
+        library(&options.library)?;
         // The library may end the process over a missing file, so each one is checked first.
+        let acoustic_model = options.model.join("en-us");
         for file in ["mdef", "means", "variances", "transition_matrices", "sendump", "feat.params"]
         {
-            readable(&files.acoustic_model.join(file))?;
+            let file = acoustic_model.join(file);
+            fs::File::open(&file)
+                .map_err(|error| RecogniserUnavailable::unreadable(&file, &error))?;
         }
         let pronouncing = options.model.join("cmudict-en-us.dict");
         let scene = SceneFiles::get(scene, options.weights, &pronouncing, &options.work)?;
-        if let Some(reason) = last_fatal_error(&files.log(Passes::All)) {
+        let (dictionary, language_model) = (scene.dictionary.clone(), scene.language_model.clone());
+        let opener = Opener {
+            library: options.library.clone(),
+            files: DecoderFiles { acoustic_model, dictionary, language_model },
+            work: options.work.clone(),
+        };
+        if let Some(reason) = last_fatal_error(&opener.log(Passes::All)) {
             scene.invalidate();
-            return Err(RecogniserUnavailable::Refused { reason });
+            return Err(RecogniserUnavailable::rejected(&reason));
         }
-        let SceneFiles { dictionary, language_model, .. } = &scene;
-        let (dictionary, language_model) = (dictionary.clone(), language_model.clone());
-        let files = Files { dictionary, language_model, ..files };
-        let decoder = files.open(Passes::All).inspect_err(|_| scene.invalidate())?;
+        let decoder = opener.open(Passes::All).inspect_err(|_| scene.invalidate())?;
         let unpronounceable = scene.unpronounceable;
-        Ok(Self { decoder, n_best_max: options.n_best_max, unpronounceable, files })
+        Ok(Self { decoder, n_best_max: options.n_best_max, unpronounceable, opener })
     }
 
     /// Returns the words of the scene that cannot be recognised because their pronunciation is unknown.
@@ -150,7 +143,7 @@ impl Recogniser for PocketSphinx {
     ) -> Result<Vec<Hypothesis>, RecogniseError> {
         let clear = denoised(pcm, &speech);
         let pcm = with_noise_floor(&clear);
-        let decoded = self.decoder.decode(&pcm, PATHS_MAX).ok_or(RecogniseError::Failed)?;
+        let decoded = self.decoder.decode(&pcm, PATHS_MAX).ok_or_else(failed)?;
         Ok(weighed(&decoded, self.n_best_max))
     }
 
@@ -159,8 +152,8 @@ impl Recogniser for PocketSphinx {
     }
 
     fn interim_decoder(&self) -> Option<InterimDecoderOpener> {
-        let files = self.files.clone();
-        Some(Box::new(move || match files.open(Passes::First) {
+        let opener = self.opener.clone();
+        Some(Box::new(move || match opener.open(Passes::First) {
             Ok(decoder) => {
                 Some(Box::new(FirstPass { decoder, samples: Vec::new() }) as Box<dyn InterimDecoder>)
             }
@@ -172,6 +165,10 @@ impl Recogniser for PocketSphinx {
     }
 }
 
+fn failed() -> RecogniseError {
+    RecogniseError("pocketsphinx rejected the samples".to_owned())
+}
+
 /// A decoder with a single pass while the audio arrives: less accurate than one of whole utterances.
 struct FirstPass {
     decoder: Decoder,
@@ -181,7 +178,7 @@ struct FirstPass {
 impl InterimDecoder for FirstPass {
     fn begin(&mut self) -> Result<(), RecogniseError> {
         self.samples.clear();
-        self.decoder.begin().ok_or(RecogniseError::Failed)
+        self.decoder.begin().ok_or_else(failed)
     }
 
     fn decode(&mut self, pcm: &[i16]) -> Result<String, RecogniseError> {
@@ -189,7 +186,7 @@ impl InterimDecoder for FirstPass {
         self.samples.extend_from_slice(pcm);
         // The estimate of the missing noise improves with the length.
         let new = &with_noise_floor(&self.samples)[known..];
-        let text = self.decoder.decode_next(new).ok_or(RecogniseError::Failed)?;
+        let text = self.decoder.decode_next(new).ok_or_else(failed)?;
         Ok(plain(&text))
     }
 }
@@ -201,9 +198,9 @@ const SCORE_SCALE: f64 = 20.0;
 
 fn weighed(decoded: &Decoded, at_most: usize) -> Vec<Hypothesis> {
     let mut paths: Vec<(String, f64)> =
-        decoded.n_best.iter().map(|path| (plain(&path.text), path.ln_score)).collect();
+        decoded.n_best.iter().map(|(text, score)| (plain(text), *score)).collect();
     // The best path may lie outside the paths that were examined; it is the best all the same.
-    let best = plain(&decoded.best.join(" "));
+    let best = plain(&decoded.best);
     if paths.iter().all(|(text, _)| *text != best) {
         let top = paths.iter().map(|(_, score)| *score).reduce(f64::max).unwrap_or(0.0);
         paths.insert(0, (best, top));
@@ -225,13 +222,6 @@ fn spelling(word: &str) -> Option<String> {
     (!word.is_empty()).then(|| word.to_owned())
 }
 
-fn readable(path: &Path) -> Result<(), RecogniserUnavailable> {
-    match fs::File::open(path) {
-        Ok(_) => Ok(()),
-        Err(source) => Err(RecogniserUnavailable::Model { path: path.to_owned(), source }),
-    }
-}
-
 /// Returns the last three errors in the library's log.
 fn last_errors(log: &Path) -> String {
     let text = fs::read_to_string(log).unwrap_or_default();
@@ -249,12 +239,6 @@ fn last_fatal_error(log: &Path) -> Option<String> {
     let words = text.lines().rfind(|line| line.starts_with("FATAL"))?;
     fs::remove_file(log).ok()?;
     Some(words.to_owned())
-}
-
-/// Returns the error with its source, the loader's own message.
-fn reason(error: &dyn std::error::Error) -> String {
-    let source = error.source().map(|source| format!(": {source}")).unwrap_or_default();
-    format!("{error}{source}")
 }
 
 #[cfg(test)]

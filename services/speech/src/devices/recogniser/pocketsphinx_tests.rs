@@ -4,7 +4,6 @@ use std::time::Duration;
 use scene::Scene;
 use tempfile::TempDir;
 
-use super::super::ffi::Scored;
 use super::super::{Gate, Rejected};
 use super::*;
 use crate::devices::audio::{RATE_HZ, read_wav};
@@ -12,29 +11,25 @@ use crate::devices::child_process;
 use crate::devices::testing::{bowls, tools};
 use crate::devices::voice::{Synthesiser, VoiceOptions};
 
-fn decoded(best: &[&str], n_best: &[(&str, f64)]) -> Decoded {
-    let scored = |&(text, ln_score): &(&str, f64)| Scored { text: text.to_owned(), ln_score };
-    Decoded {
-        best: best.iter().map(|&word| word.to_owned()).collect(),
-        n_best: n_best.iter().map(scored).collect(),
-    }
+fn decoded(best: &str, n_best: &[(&str, f64)]) -> Decoded {
+    let scored = |&(text, ln_score): &(&str, f64)| (text.to_owned(), ln_score);
+    Decoded { best: best.to_owned(), n_best: n_best.iter().map(scored).collect() }
 }
 
 #[test]
 fn pocketsphinx_hypotheses_omit_markers_and_silence() {
     let paths =
         [("<s> the white one", -100.0), ("the one", -120.0), ("the white(2) <sil> one", -100.0)];
-    let best = ["<s>", "the", "white(2)", "<sil>", "one", "</s>"];
-    let found = weighed(&decoded(&best, &paths), 5);
+    let found = weighed(&decoded("<s> the white(2) <sil> one </s>", &paths), 5);
     let texts: Vec<&str> = found.iter().map(|h| h.text.as_str()).collect();
     assert_eq!(texts, ["the white one", "the one"]);
     let other = (-20.0 / SCORE_SCALE).exp();
     assert!((found[0].weight - 2.0 / (2.0 + other)).abs() < 1e-6);
     assert!((f64::from(found[0].word_confidence[1]) - found[0].weight).abs() < 1e-6);
     assert!((found[1].word_confidence[1] - 1.0).abs() < 1e-6);
-    assert_eq!(weighed(&decoded(&["<sil>"], &[]), 5), []);
+    assert_eq!(weighed(&decoded("<sil>", &[]), 5), []);
     for (paths, weight) in [(&[][..], 1.0), (&[("no", -9.0)], 0.5)] {
-        let best = weighed(&decoded(&["yes"], paths), 5);
+        let best = weighed(&decoded("yes", paths), 5);
         assert_eq!((best[0].text.as_str(), best[0].weight), ("yes", weight), "best path alone");
     }
 }

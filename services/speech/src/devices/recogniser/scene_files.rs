@@ -64,9 +64,8 @@ impl SceneFiles {
         work: &Path,
         origin: u64,
     ) -> Result<(), RecogniserUnavailable> {
-        let dictionary = fs::read_to_string(pronouncing).map_err(|source| {
-            RecogniserUnavailable::Model { path: pronouncing.to_owned(), source }
-        })?;
+        let dictionary = fs::read_to_string(pronouncing)
+            .map_err(|error| RecogniserUnavailable::unreadable(pronouncing, &error))?;
         let model = Trigram::train(&scene_sentences(scene), common_words(), weights);
         let spoken = Pronunciations::collect(model.vocabulary(), &dictionary, &EspeakLetterToSound);
         let (dictionary, model) = (spoken.to_text(), model.to_arpa());
@@ -110,7 +109,7 @@ fn mark(origin: u64, contents: u64) -> String {
 
 fn write(folder: &Path, file: &Path, text: &str) -> Result<(), RecogniserUnavailable> {
     let written = fs::create_dir_all(folder).and_then(|()| fs::write(file, text));
-    written.map_err(|source| RecogniserUnavailable::Work { path: file.to_owned(), source })
+    written.map_err(|error| RecogniserUnavailable::unwritable(file, &error))
 }
 
 #[cfg(test)]

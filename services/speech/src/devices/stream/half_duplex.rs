@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use service::Time;
 
-use super::{PlaybackMask, SegmentEvent, Stream, shifted};
+use super::{PlaybackMask, Stream, shifted};
 use crate::devices::vad::SegmenterOptions;
+use crate::stream_events::{Began, StreamEvent};
 
 /// Samples per decision: 16 ms.
 const BLOCK: usize = 256;
@@ -32,9 +33,15 @@ impl MaskedStream {
         Self { stream: Stream::new(options), mask, is_muted: false }
     }
 
-    /// Processes the next samples, the first of which was recorded at `at`. An utterance in progress ends
-    /// when the robot begins to speak.
-    pub fn push(&mut self, at: Time, samples: &[i16], duplex: Duplex) -> Vec<SegmentEvent> {
+    /// Processes the next samples; see [`Stream::push`]. An utterance in progress ends when the robot
+    /// begins to speak.
+    pub fn push(
+        &mut self,
+        at: Time,
+        samples: &[i16],
+        duplex: Duplex,
+        began: &mut dyn FnMut(Time) -> Began,
+    ) -> Vec<StreamEvent> {
         let mut events = Vec::new();
         for (n, block) in samples.chunks(BLOCK).enumerate() {
             let at = shifted(at, (n * BLOCK) as i64);
@@ -44,16 +51,21 @@ impl MaskedStream {
             }
             self.is_muted = mute;
             if !mute {
-                events.extend(self.stream.push(at, block));
+                events.extend(self.stream.push(at, block, began));
             }
         }
         events
     }
 
     /// Ends the stream; see [`Stream::finish`].
-    pub fn finish(&mut self) -> Vec<SegmentEvent> {
+    pub fn finish(&mut self) -> Option<StreamEvent> {
         self.is_muted = false;
         self.stream.finish()
+    }
+
+    /// Returns the utterance in progress.
+    pub fn sound_in_progress(&self) -> Option<u64> {
+        self.stream.sound_in_progress()
     }
 
     /// Returns whether the latest samples were dropped.
@@ -65,7 +77,7 @@ impl MaskedStream {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::devices::testing::voice;
+    use crate::devices::testing::{began, voice};
     use service::Span;
 
     fn s(seconds: f64) -> Time {
@@ -80,11 +92,11 @@ mod tests {
         let mut stream = MaskedStream::new(SegmenterOptions::default(), mask);
         let mut events = Vec::new();
         for (n, samples) in voice(4.0).chunks(1_600).enumerate() {
-            events.extend(stream.push(s(n as f64 / 10.0), samples, duplex));
+            events.extend(stream.push(s(n as f64 / 10.0), samples, duplex, &mut began));
         }
         events.extend(stream.finish());
         let spans = events.iter().filter_map(|event| match event {
-            SegmentEvent::Ended(segment) => {
+            StreamEvent::Ended { segment, .. } => {
                 Some((segment.onset.since(s(0.0)).s(), segment.end.since(s(0.0)).s()))
             }
             _ => None,

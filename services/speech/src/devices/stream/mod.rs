@@ -1,8 +1,8 @@
 //! A live audio stream, segmented into utterances as it arrives.
 //!
-//! Invariant: every [`SegmentEvent::Began`] is followed by exactly one [`SegmentEvent::Ended`], at the
+//! Invariant: every [`StreamEvent::Began`] is followed by exactly one [`StreamEvent::Ended`], at the
 //! latest at the end of the stream, and all events between them belong to that utterance. Unless speech
-//! continues, a [`SegmentEvent::Paused`] carries the same segment as the end. Memory is bounded by the
+//! continues, a [`StreamEvent::Paused`] carries the same segment as the end. Memory is bounded by the
 //! longest utterance.
 
 mod half_duplex;
@@ -19,6 +19,7 @@ pub use playback_mask::PlaybackMask;
 
 use crate::devices::audio::RATE_HZ;
 use crate::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
+use crate::stream_events::{Began, StreamEvent};
 
 /// Samples beyond the pre-roll that are kept between utterances: the detector decides on the third
 /// frame of speech, and a frame may be incomplete.
@@ -40,19 +41,6 @@ pub struct SpeechSegment {
     pub speech: Range<usize>,
 }
 
-/// An event of a stream.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum SegmentEvent {
-    /// An utterance began at this time.
-    Began(Time),
-    /// The next samples of the utterance in progress, starting with its pre-roll.
-    Samples(Vec<i16>),
-    /// The speaker paused; this may be the whole utterance.
-    Paused(SpeechSegment),
-    /// The utterance ended.
-    Ended(SpeechSegment),
-}
-
 /// Finds the utterances in a stream.
 pub struct Stream {
     segmenter: Segmenter,
@@ -63,37 +51,42 @@ pub struct Stream {
     first: usize,
     /// Number and time of a sample.
     anchor: (usize, Time),
-    /// Number of the next sample to publish of the utterance in progress.
-    published: Option<usize>,
+    /// The utterance in progress, and the number of its next sample to publish.
+    open: Option<(u64, usize)>,
 }
 
 impl Stream {
     /// Returns a stream that has not begun.
     pub fn new(options: SegmenterOptions) -> Self {
-        let pre_roll = (options.pre_roll_s * f64::from(RATE_HZ)) as usize;
         Self {
+            pre_roll: (options.pre_roll_s * f64::from(RATE_HZ)) as usize,
             segmenter: Segmenter::new(options),
-            pre_roll,
             buffer: Vec::new(),
             first: 0,
             anchor: (0, Time(0)),
-            published: None,
+            open: None,
         }
     }
 
-    /// Returns whether an utterance is in progress.
-    pub fn is_open(&self) -> bool {
-        self.published.is_some()
+    /// Returns the utterance in progress.
+    pub fn sound_in_progress(&self) -> Option<u64> {
+        self.open.map(|(sound, _)| sound)
     }
 
-    /// Processes the next samples, the first of which was recorded at `at`.
-    pub fn push(&mut self, at: Time, samples: &[i16]) -> Vec<SegmentEvent> {
+    /// Processes the next samples, the first of which was recorded at `at`. `began` numbers an
+    /// utterance by the time of its onset.
+    pub fn push(
+        &mut self,
+        at: Time,
+        samples: &[i16],
+        began: &mut dyn FnMut(Time) -> Began,
+    ) -> Vec<StreamEvent> {
         self.anchor = (self.first + self.buffer.len(), at);
         self.buffer.extend_from_slice(samples);
-        let found = self.segmenter.push(samples);
-        let mut events: Vec<_> = found.into_iter().map(|event| self.event(event)).collect();
+        let found = self.segmenter.push(samples).into_iter();
+        let mut events: Vec<_> = found.filter_map(|event| self.event(event, began)).collect();
         events.extend(self.next_blocks());
-        if !self.is_open() {
+        if self.open.is_none() {
             let spare = self.buffer.len().saturating_sub(self.pre_roll + UNDECIDED);
             self.buffer.drain(..spare);
             self.first += spare;
@@ -102,36 +95,49 @@ impl Stream {
     }
 
     /// Ends the stream and an utterance in progress with it. Further samples start a new stream.
-    pub fn finish(&mut self) -> Vec<SegmentEvent> {
-        let found = self.segmenter.finish();
-        let events = found.into_iter().map(|event| self.event(event)).collect();
+    pub fn finish(&mut self) -> Option<StreamEvent> {
+        let event = match self.segmenter.finish() {
+            Some(VadEvent::End { range, speech }) => self.end(range, speech),
+            _ => None,
+        };
         self.buffer.clear();
         self.first = 0;
-        events
+        event
     }
 
     /// Returns the blocks of the utterance in progress since the last call.
-    fn next_blocks(&mut self) -> Vec<SegmentEvent> {
-        let Some(from) = &mut self.published else { return Vec::new() };
+    fn next_blocks(&mut self) -> Vec<StreamEvent> {
+        let Some((sound, from)) = &mut self.open else { return Vec::new() };
         let samples = &self.buffer[(*from - self.first).min(self.buffer.len())..];
-        let blocks = samples.chunks_exact(BLOCK);
-        let events: Vec<_> = blocks.map(|block| SegmentEvent::Samples(block.to_vec())).collect();
+        let block = |block: &[i16]| StreamEvent::Samples { sound: *sound, samples: block.to_vec() };
+        let events: Vec<_> = samples.chunks_exact(BLOCK).map(block).collect();
         *from += events.len() * BLOCK;
         events
     }
 
-    fn event(&mut self, event: VadEvent) -> SegmentEvent {
-        match event {
+    fn event(
+        &mut self,
+        event: VadEvent,
+        began: &mut dyn FnMut(Time) -> Began,
+    ) -> Option<StreamEvent> {
+        Some(match event {
             VadEvent::Onset { at_sample } => {
-                self.published = Some(at_sample.saturating_sub(self.pre_roll).max(self.first));
-                SegmentEvent::Began(self.time(at_sample))
+                let began = began(self.time(at_sample));
+                let from = at_sample.saturating_sub(self.pre_roll).max(self.first);
+                self.open = Some((began.sound, from));
+                StreamEvent::Began(began)
             }
-            VadEvent::Pause { range, speech } => SegmentEvent::Paused(self.segment(range, speech)),
-            VadEvent::End { range, speech } => {
-                self.published = None;
-                SegmentEvent::Ended(self.segment(range, speech))
+            VadEvent::Pause { range, speech } => {
+                let (sound, _) = self.open?;
+                StreamEvent::Paused { sound, segment: self.segment(range, speech) }
             }
-        }
+            VadEvent::End { range, speech } => return self.end(range, speech),
+        })
+    }
+
+    fn end(&mut self, range: Range<usize>, speech: Range<usize>) -> Option<StreamEvent> {
+        let (sound, _) = self.open.take()?;
+        Some(StreamEvent::Ended { sound, segment: self.segment(range, speech) })
     }
 
     fn segment(&self, range: Range<usize>, speech: Range<usize>) -> SpeechSegment {
@@ -155,7 +161,7 @@ impl Stream {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::devices::testing::voice;
+    use crate::devices::testing::{began, voice};
 
     const MS: u64 = 1_000_000;
     const BEGAN: u64 = 50_000;
@@ -166,11 +172,11 @@ mod tests {
         [quiet(1.0), voice(1.0), quiet(1.5), voice(0.6), quiet(1.0)].concat()
     }
 
-    fn run(stream: &mut Stream, samples: &[i16], block: usize) -> Vec<SegmentEvent> {
+    fn run(stream: &mut Stream, samples: &[i16], block: usize) -> Vec<StreamEvent> {
         let mut events = Vec::new();
         for (n, samples) in samples.chunks(block).enumerate() {
             let at = shifted(Time(BEGAN * MS), (n * block) as i64);
-            events.extend(stream.push(at, samples));
+            events.extend(stream.push(at, samples, &mut began));
         }
         events
     }
@@ -179,10 +185,8 @@ mod tests {
         Stream::new(SegmenterOptions::default())
     }
 
-    fn edges(events: Vec<SegmentEvent>) -> Vec<SegmentEvent> {
-        let is_edge =
-            |e: &SegmentEvent| matches!(e, SegmentEvent::Began(_) | SegmentEvent::Ended(_));
-        events.into_iter().filter(is_edge).collect()
+    fn edges(events: Vec<StreamEvent>) -> Vec<StreamEvent> {
+        events.into_iter().filter(|event| !event.is_optional()).collect()
     }
 
     fn near(time: Time, ms: u64) -> bool {
@@ -195,10 +199,10 @@ mod tests {
         let mut stream = new();
         let events = edges(run(&mut stream, &recording, 320));
         let [
-            SegmentEvent::Began(first),
-            SegmentEvent::Ended(a),
-            SegmentEvent::Began(second),
-            SegmentEvent::Ended(b),
+            StreamEvent::Began(Began { at: first, .. }),
+            StreamEvent::Ended { segment: a, .. },
+            StreamEvent::Began(Began { at: second, .. }),
+            StreamEvent::Ended { segment: b, .. },
         ] = events.as_slice()
         else {
             panic!("{events:?}")
@@ -211,7 +215,7 @@ mod tests {
             assert_eq!(segment.samples, recording[from..from + segment.samples.len()]);
             assert_eq!(segment.speech.start, 8_000, "half a second of pre-roll");
         }
-        assert!(!stream.is_open() && stream.finish().is_empty());
+        assert!(stream.sound_in_progress().is_none() && stream.finish().is_none());
         for block in [33, 256, 1_600, recording.len()] {
             assert_eq!(edges(run(&mut new(), &recording, block)), events, "blocks of {block}");
         }
@@ -221,12 +225,11 @@ mod tests {
     fn stream_end_ends_an_utterance_in_progress_once() {
         let mut stream = new();
         let events = edges(run(&mut stream, &recording()[..24_000], 320));
-        assert!(matches!(events.as_slice(), [SegmentEvent::Began(_)]), "{events:?}");
-        assert!(stream.is_open());
-        let events = stream.finish();
-        let [SegmentEvent::Ended(segment)] = events.as_slice() else { panic!("{events:?}") };
+        assert!(matches!(events.as_slice(), [StreamEvent::Began(_)]), "{events:?}");
+        assert!(stream.sound_in_progress().is_some());
+        let Some(StreamEvent::Ended { segment, .. }) = stream.finish() else { panic!() };
         assert!(near(segment.end, 1_500), "{:?}", segment.end);
-        assert!(!stream.is_open() && stream.finish().is_empty());
+        assert!(stream.sound_in_progress().is_none() && stream.finish().is_none());
         assert_eq!(edges(run(&mut stream, &recording(), 320)).len(), 4, "reusable");
     }
 
@@ -236,7 +239,9 @@ mod tests {
         let samples = [recording()[..30_000].to_vec(), pause, voice(0.5), vec![0; 16_000]].concat();
         let events = run(&mut new(), &samples, 320);
         let segments = events.iter().filter_map(|event| match event {
-            SegmentEvent::Paused(segment) | SegmentEvent::Ended(segment) => Some(segment),
+            StreamEvent::Paused { segment, .. } | StreamEvent::Ended { segment, .. } => {
+                Some(segment)
+            }
             _ => None,
         });
         let [first, second, end] = segments.collect::<Vec<_>>()[..] else { panic!("{events:?}") };
@@ -251,11 +256,11 @@ mod tests {
         for block in [320, 4_000, recording.len()] {
             let events = run(&mut new(), &recording[..50_000], block);
             let samples = events.iter().filter_map(|event| match event {
-                SegmentEvent::Samples(samples) => Some(samples.clone()),
+                StreamEvent::Samples { samples, .. } => Some(samples.clone()),
                 _ => None,
             });
             let samples: Vec<i16> = samples.flatten().collect();
-            let SegmentEvent::Began(at) = events[0] else { panic!("{events:?}") };
+            let StreamEvent::Began(Began { at, .. }) = events[0] else { panic!("{events:?}") };
             let onset = (at.since(Time(BEGAN * MS)).0 / 62_500) as usize;
             assert!(samples.len() >= 11_200 || block > 16_000, "{} samples", samples.len());
             assert!(samples == recording[onset - 8_000..][..samples.len()]);
@@ -270,7 +275,7 @@ mod tests {
         assert!(stream.buffer.len() <= 8_000 + UNDECIDED);
         let mut most = 0;
         for (n, samples) in voice(10.0).chunks(320).enumerate() {
-            stream.push(shifted(Time(BEGAN * MS), n as i64 * 320), samples);
+            stream.push(shifted(Time(BEGAN * MS), n as i64 * 320), samples, &mut began);
             most = most.max(stream.buffer.len());
         }
         assert!(most < 32_000 + 8_000 + UNDECIDED + 8_000, "{most} samples");

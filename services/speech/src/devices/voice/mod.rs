@@ -17,12 +17,13 @@ mod trim;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread::{self, JoinHandle};
+use std::thread;
 use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, SendError, Sender, TrySendError, bounded, unbounded};
+use crossbeam_channel::{Receiver, SendError, Sender, unbounded};
 
 use crate::devices::child_process::End;
+use crate::devices::worker_thread::{QueueError, WorkerThread};
 use crate::{PlaybackEvent, PlaybackState};
 pub use options::{VoiceMode, VoiceOptions};
 pub use player::Player;
@@ -53,26 +54,14 @@ pub enum VoiceEvent {
     Playback(PlaybackEvent),
 }
 
-/// Error of queueing a prompt.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SpeakError {
-    /// The queue is full.
-    #[error("{WAITING_MAX} prompts are waiting already")]
-    Busy,
-    /// The thread has panicked.
-    #[error("the voice thread has crashed")]
-    Gone,
-}
-
 /// Prompts that may wait.
 pub const WAITING_MAX: usize = 8;
 
 /// The voice, on a thread of its own. Dropping it interrupts the current prompt.
 pub struct Voice {
-    prompts: Option<Sender<Prompt>>,
     /// Prompts of an earlier generation are cancelled.
     generation: Arc<AtomicU64>,
-    thread: Option<JoinHandle<()>>,
+    thread: WorkerThread<Prompt>,
 }
 
 struct Prompt {
@@ -86,35 +75,30 @@ struct Prompt {
 impl Voice {
     /// Starts the thread.
     pub fn start(options: VoiceOptions) -> (Self, Receiver<VoiceEvent>) {
-        let (prompts, received) = bounded(WAITING_MAX);
         let (events, happened) = unbounded();
         let generation = Arc::new(AtomicU64::new(0));
         let current = Arc::clone(&generation);
-        let thread = thread::spawn(move || {
+        let thread = WorkerThread::start(WAITING_MAX, move |prompts| {
             let mut synthesiser = Synthesiser::new(&options);
             let output = choose(&options, &mut synthesiser);
             let (mode, cache) = (options.mode, options.audio_dir.as_deref().and_then(cache));
             // Without a receiver of its events the voice has no more to do.
             if events.send(VoiceEvent::Output(output.clone())).is_ok() {
                 let generation = current;
-                Speaker { mode, output, synthesiser, cache, events, generation }.run(&received);
+                Speaker { mode, output, synthesiser, cache, events, generation }.run(prompts);
             }
         });
-        (Self { prompts: Some(prompts), generation, thread: Some(thread) }, happened)
+        (Self { generation, thread }, happened)
     }
 
     /// Queues a prompt. `playback` identifies it in the events, `name` in the cache.
     ///
     /// # Errors
     /// If [`WAITING_MAX`] prompts wait already, or the thread is gone.
-    pub fn speak(&self, playback: u64, name: &str, text: &str) -> Result<(), SpeakError> {
+    pub fn speak(&self, playback: u64, name: &str, text: &str) -> Result<(), QueueError> {
         let generation = self.generation.load(Ordering::SeqCst);
         let (name, text) = (name.to_owned(), text.to_owned());
-        let prompts = self.prompts.as_ref().ok_or(SpeakError::Gone)?;
-        prompts.try_send(Prompt { playback, generation, name, text }).map_err(|error| match error {
-            TrySendError::Full(_) => SpeakError::Busy,
-            TrySendError::Disconnected(_) => SpeakError::Gone,
-        })
+        self.thread.offer(Prompt { playback, generation, name, text })
     }
 
     /// Interrupts the current prompt and cancels those that wait.
@@ -126,11 +110,6 @@ impl Voice {
 impl Drop for Voice {
     fn drop(&mut self) {
         self.interrupt();
-        self.prompts = None;
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread has been logged.
-            let _ = thread.join();
-        }
     }
 }
 

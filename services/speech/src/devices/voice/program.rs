@@ -31,16 +31,10 @@ impl Program {
     /// Returns help for a missing program.
     pub(super) fn hint(&self, error: &ProcessError) -> &'static str {
         match (self, error) {
-            (Self::EspeakNg(_), ProcessError::NotInstalled { .. }) => {
-                "; help: install the package espeak-ng"
-            }
-            (Self::Flite(_), ProcessError::NotInstalled { .. }) => {
-                "; help: install the package flite"
-            }
-            (Self::Command(_), ProcessError::NotInstalled { .. }) => {
-                "; help: see speech.voice_command"
-            }
-            _ => "",
+            (_, ProcessError::Failed(_)) => "",
+            (Self::EspeakNg(_), _) => "; help: install the package espeak-ng",
+            (Self::Flite(_), _) => "; help: install the package flite",
+            (Self::Command(_), _) => "; help: see speech.voice_command",
         }
     }
 

@@ -2,37 +2,21 @@
 
 use std::collections::VecDeque;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
 use super::program::Program;
 use super::{VoiceOptions, trim};
-use crate::devices::audio::{RATE_HZ, WavError, read_wav};
+use crate::devices::audio::{RATE_HZ, read_wav};
 use crate::devices::child_process::{ChildProcess, End, ProcessError};
 
 /// Error of synthesis.
 #[derive(Debug, thiserror::Error)]
 pub enum SynthesisError {
-    /// The program is missing or failed.
-    #[error("{source}{hint}")]
-    Program {
-        /// The failure.
-        source: ProcessError,
-        /// Help for the operator.
-        hint: &'static str,
-    },
-    /// Its output cannot be read.
-    #[error("invalid audio from the voice: {0}")]
-    Sound(#[from] WavError),
-    /// The folder cannot be written.
-    #[error("{} cannot be written: {source}", path.display())]
-    Work {
-        /// The file or folder.
-        path: PathBuf,
-        /// Reason.
-        source: std::io::Error,
-    },
+    /// The program, its output or the folder is to blame; the reason is for the operator.
+    #[error("{0}")]
+    Failed(String),
     /// Cancelled.
     #[error("cancelled")]
     Cancelled,
@@ -80,7 +64,7 @@ impl Synthesiser {
     /// If the program is missing or fails.
     pub fn samples(&mut self, text: &str) -> Result<Vec<i16>, SynthesisError> {
         match self.speak(text, || false)? {
-            Some(sound) => Ok(read_wav(&sound.file, SOUND_MAX_S)?),
+            Some(sound) => read(&sound.file),
             None => Ok(Vec::new()),
         }
     }
@@ -123,9 +107,8 @@ impl Synthesiser {
         mut command: Command,
         is_cancelled: impl Fn() -> bool,
     ) -> Result<(), SynthesisError> {
-        let failed = |source: ProcessError| {
-            let hint = self.program.hint(&source);
-            SynthesisError::Program { source, hint }
+        let failed = |error: ProcessError| {
+            SynthesisError::Failed(format!("{error}{}", self.program.hint(&error)))
         };
         command.stdout(std::process::Stdio::null());
         let mut running = ChildProcess::start(command).map_err(failed)?;
@@ -157,16 +140,25 @@ impl Synthesiser {
             (0..RATE_HZ / 20).try_for_each(|_| wav.write_sample(0_i16))?;
             wav.finalize()
         });
-        written.map_err(|error| trim::unwritten(&file, error))?;
+        written.map_err(|error| trim::unwritten(&file, &error))?;
         Ok(file)
     }
 
     fn file(&self, name: &str) -> Result<PathBuf, SynthesisError> {
         match fs::create_dir_all(&self.work) {
             Ok(()) => Ok(self.work.join(name)),
-            Err(source) => Err(SynthesisError::Work { path: self.work.clone(), source }),
+            Err(error) => {
+                let folder = self.work.display();
+                Err(SynthesisError::Failed(format!("{folder} cannot be written: {error}")))
+            }
         }
     }
+}
+
+/// Returns the samples of a synthesised file.
+pub(super) fn read(file: &Path) -> Result<Vec<i16>, SynthesisError> {
+    read_wav(file, SOUND_MAX_S)
+        .map_err(|error| SynthesisError::Failed(format!("invalid audio from the voice: {error}")))
 }
 
 /// Returns the text without instructions for espeak-ng: `[[` begins phoneme names.

@@ -6,8 +6,8 @@ use std::path::Path;
 use hound::{SampleFormat, WavReader, WavWriter};
 
 use super::SynthesisError;
-use super::synthesis::SOUND_MAX_S;
-use crate::devices::audio::{WavError, read_wav, seconds};
+use super::synthesis::{SOUND_MAX_S, read};
+use crate::devices::audio::seconds;
 
 /// Level of silence relative to the loudest sample.
 const QUIET: f64 = 0.01;
@@ -16,7 +16,7 @@ const MARGIN_S: f64 = 0.02;
 
 /// Trims the silence from both ends of a file of the usual format. Returns the duration, seconds.
 pub(super) fn trim(file: &Path) -> Result<f64, SynthesisError> {
-    let whole = || Ok(seconds(read_wav(file, SOUND_MAX_S)?.len()));
+    let whole = || Ok(seconds(read(file)?.len()));
     let Ok(mut reader) = WavReader::open(file) else { return whole() };
     let spec = reader.spec();
     if spec.channels != 1 || spec.bits_per_sample != 16 || spec.sample_format != SampleFormat::Int {
@@ -36,7 +36,7 @@ pub(super) fn trim(file: &Path) -> Result<f64, SynthesisError> {
         cut.iter().try_for_each(|&sample| wav.write_sample(sample))?;
         wav.finalize()
     });
-    written.map_err(|error| unwritten(file, error))?;
+    written.map_err(|error| unwritten(file, &error))?;
     Ok(cut.len() as f64 / rate)
 }
 
@@ -52,12 +52,8 @@ fn audible(samples: &[i16], margin: usize) -> std::ops::Range<usize> {
 }
 
 /// Returns the error of writing a WAV file.
-pub(super) fn unwritten(file: &Path, error: hound::Error) -> SynthesisError {
-    let path = file.to_owned();
-    match error {
-        hound::Error::IoError(source) => SynthesisError::Work { path, source },
-        error => WavError::NotWav { path, reason: error.to_string() }.into(),
-    }
+pub(super) fn unwritten(file: &Path, error: &hound::Error) -> SynthesisError {
+    SynthesisError::Failed(format!("{} cannot be written: {error}", file.display()))
 }
 
 #[cfg(test)]

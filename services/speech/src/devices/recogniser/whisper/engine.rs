@@ -93,7 +93,7 @@ impl Recogniser for Engine {
             let deadline = self.deadline;
             let reason =
                 format!("whisper.cpp took longer than {deadline:?}; help: use a smaller model");
-            return Err(RecogniseError::Backend { reason });
+            return Err(RecogniseError(reason));
         }
         done.map_err(|error| failed(&error))?;
         Ok(self.hypothesis()?.into_iter().collect())
@@ -132,7 +132,7 @@ fn abort_at(params: &mut FullParams<'_, '_>, due: &Instant) {
 }
 
 fn failed(error: &whisper_rs::WhisperError) -> RecogniseError {
-    RecogniseError::Backend { reason: format!("whisper.cpp: {error}") }
+    RecogniseError(format!("whisper.cpp: {error}"))
 }
 
 #[cfg(test)]

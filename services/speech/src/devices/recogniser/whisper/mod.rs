@@ -9,6 +9,10 @@ use std::time::Duration;
 
 use super::{Recogniser, RecogniserUnavailable};
 
+#[cfg(not(feature = "whisper"))]
+const NOT_BUILT: &str = "speech.toml: recogniser: `whisper` is not part of this build; \
+    help: build with `--features speech/whisper` (WHICHONE_FEATURES=speech/whisper scripts/run), or set `command`";
+
 /// Model file and time limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WhisperOptions {
@@ -31,13 +35,15 @@ impl WhisperOptions {
     /// If the file is missing or the library rejects it, or this build lacks the library.
     pub fn open(&self) -> Result<Box<dyn Recogniser>, RecogniserUnavailable> {
         #[cfg(not(feature = "whisper"))]
-        return Err(RecogniserUnavailable::WhisperNotBuilt);
+        return Err(RecogniserUnavailable(NOT_BUILT.to_owned()));
         #[cfg(feature = "whisper")]
         match engine::Engine::open(self) {
             Ok(engine) => Ok(Box::new(engine)),
-            Err(reason) => {
-                Err(RecogniserUnavailable::WhisperModel { path: self.model.clone(), reason })
-            }
+            Err(reason) => Err(RecogniserUnavailable(format!(
+                "{} cannot be loaded: {reason}; help: set speech.whisper_model to a model of \
+                 whisper.cpp, ggml-….bin",
+                self.model.display()
+            ))),
         }
     }
 }
