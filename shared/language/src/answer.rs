@@ -4,11 +4,9 @@ use scene::Response;
 
 use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
-use crate::lexicon::Sense;
 use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::tokens::Gap;
 
 /// An answer to the question asked, or the lack of one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,11 +119,9 @@ fn is_other_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     let before = tags[clause.span.start..at].last();
     let after = tags[at + 1..clause.span.end].first();
     let whole = after.is_none_or(|next| {
-        next.is_any(classes![Head Attribute Courtesy Filler No Be]) || next.gap >= Gap::Pause
+        next.is_any(classes![Head Attribute Courtesy Filler No Be]) || next.pauses()
     });
-    let plain = tags[clause.span.clone()]
-        .iter()
-        .all(|tag| !matches!(tag.sense, Sense::Unknown) && tag.value().is_none());
+    let plain = tags[clause.span.clone()].iter().all(|tag| !tag.is_unknown() && !tag.is_value());
     whole && plain && !before.is_some_and(|before| before.is_any(classes![Quantifier AskBack]))
 }
 
@@ -133,10 +129,10 @@ fn is_other_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
 fn is_judged(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     let before = &tags[clause.span.start..at];
     let plain = |tag: &Tag<'_>| {
-        tag.value().is_some() || tag.is_any(classes![Determiner Head Filler Yes No Preposition])
+        tag.is_value() || tag.is_any(classes![Determiner Head Filler Yes No Preposition])
     };
     matches!(before, [said @ .., be]
-        if be.is(Class::Be) && said.iter().all(plain) && said.iter().any(|tag| tag.value().is_some()))
+        if be.is(Class::Be) && said.iter().all(plain) && said.iter().any(|tag| tag.is_value()))
         && at + 1 == clause.span.end
 }
 
@@ -148,9 +144,7 @@ fn is_affirmed(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     if said.is_empty() {
         // "it very much is", but not "if it is"
         const OPEN: &[Class] = classes![Question Join Unsure Not Unlisted Ordinal AskBack];
-        let plain = |tag: &Tag<'_>| {
-            tag.sense != Sense::Unknown && tag.value().is_none() && !tag.is_any(OPEN)
-        };
+        let plain = |tag: &Tag<'_>| !tag.is_unknown() && !tag.is_value() && !tag.is_any(OPEN);
         return subject.is_some_and(|tag| tag.is(Class::It)) && before.iter().all(plain);
     }
     let about_it = before.last().is_some_and(|tag| tag.is_any(classes![It Pointer]));
@@ -166,8 +160,8 @@ fn is_what(said: &[Tag<'_>]) -> bool {
     let phrase = what.is(Class::AskBack) && what.word == "what";
     (what.is(Class::Question) || phrase)
         && (whose.is_any(classes![It First Possessive Be]) || whose.word == "it")
-        && rest.iter().all(|tag| tag.value().is_none() && !tag.is_any(STRANGE))
-        && rest.iter().filter(|tag| tag.sense == Sense::Unknown).count() <= 1
+        && rest.iter().all(|tag| !tag.is_value() && !tag.is_any(STRANGE))
+        && rest.iter().filter(|tag| tag.is_unknown()).count() <= 1
 }
 
 /// "it is made of that", "it does have that", "it's in there", "it is one".
@@ -186,8 +180,8 @@ fn is_it(said: &[Tag<'_>]) -> bool {
 fn is_the_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     let said = &tags[at + 1..clause.span.end];
     let plain = tags[clause.span.clone()].iter().all(|tag| {
-        tag.value().is_none()
-            && tag.sense != Sense::Unknown
+        !tag.is_value()
+            && !tag.is_unknown()
             && !tag.is_any(classes![Not Ordinal Unlisted Other Question])
     });
     let the_one = said.windows(2).any(|pair| {

@@ -1,13 +1,11 @@
-//! Which parts of an utterance are about the objects. A extractor who knows the objects ignores
+//! Which parts of an utterance are about the objects. A listener who knows the objects ignores
 //! "red wine" and "the dishwasher is broken", and takes "the red one" and "in the dishwasher".
 
 use std::ops::Range;
 
-use crate::lexicon::{Lexicon, Sense};
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
-use crate::tokens::Gap;
-use crate::topic::ClauseAnalysis;
+use crate::topic::classify;
 
 /// Topic of a clause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,14 +40,13 @@ impl Clause {
 const CLAUSE_MARKS_MAX: usize = 64;
 
 /// Splits an utterance and finds the topic of each part. `code` tags a text that no person says.
-pub(crate) fn clauses(lexicon: &Lexicon, tags: &[Tag<'_>], code: bool) -> Vec<Clause> {
+pub(crate) fn clauses(tags: &[Tag<'_>], code: bool) -> Vec<Clause> {
     let injected = code || tags.iter().any(|tag| tag.is(Class::Injection));
     let mut clauses: Vec<Clause> = Vec::new();
     let mut start = 0;
     for at in 1..=tags.len() {
         if at == tags.len() || at - start == CLAUSE_MARKS_MAX || starts_clause(tags, at) {
-            let analysis = ClauseAnalysis::of(lexicon, tags, start..at);
-            clauses.push(analysis.classify(clauses.last(), injected));
+            clauses.push(classify(tags, start..at, clauses.last(), injected));
             start = at;
         }
     }
@@ -65,12 +62,10 @@ fn starts_clause(tags: &[Tag<'_>], at: usize) -> bool {
     let before = &tags[at - 1];
     let next = tags.get(at + 1);
     match tag.class() {
-        _ if tag.gap >= Gap::Pause => true,
+        _ if tag.pauses() => true,
         Some(Class::Join) => !before.is(Class::Not),
         Some(Class::But) => true,
-        Some(Class::And) => {
-            next.is_some_and(|next| next.is_any(SUBJECTS) || next.sense == Sense::Unknown)
-        }
+        Some(Class::And) => next.is_some_and(|next| next.is_any(SUBJECTS) || next.is_unknown()),
         // "yes my hands are full", "no get me the red one"
         Some(Class::First | Class::Fetch | Class::Want | Class::Possessive | Class::It) => before
             .is_any(classes![

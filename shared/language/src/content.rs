@@ -1,19 +1,19 @@
 //! Collects the content of the tags: values asserted, groups ruled out, answers given. One pass
-//! from left to right, like an incremental extractor.
+//! from left to right, like a person who listens.
 
 use std::ops::Deref;
 
-use scene::{Role, WordId};
+use scene::WordId;
 
 use crate::answer::{self, Answer, Answers};
 use crate::clauses::{Clause, Topic};
 use crate::intent::commands;
-use crate::lexicon::{Lexicon, Sense, ValueSense};
+use crate::lexicon::{Sense, ValueSense};
 use crate::negation::{self, NoUse};
 use crate::negation_scope::NegationScope;
 use crate::question_words::QuestionWords;
 use crate::repair;
-use crate::tagger::Tag;
+use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 
@@ -59,9 +59,8 @@ pub(crate) struct Content<'a> {
 }
 
 /// The pass over the tags.
-struct Extractor<'a, 'm> {
-    lexicon: &'a Lexicon,
-    tags: &'m [Tag<'m>],
+struct Extractor<'a, 't> {
+    tags: &'t [Tag<'a>],
     asked: QuestionWords<'a>,
     content: Content<'a>,
     scope: Option<NegationScope<'a>>,
@@ -77,13 +76,11 @@ struct Extractor<'a, 'm> {
 
 /// Listens to the clauses that are on topic.
 pub(crate) fn extract<'a>(
-    lexicon: &'a Lexicon,
-    tags: &[Tag<'_>],
+    tags: &[Tag<'a>],
     clauses: &[Clause],
     asked: QuestionWords<'a>,
 ) -> Content<'a> {
     let mut extractor = Extractor {
-        lexicon,
         tags,
         asked,
         content: Content::default(),
@@ -116,7 +113,7 @@ impl<'a> Extractor<'a, '_> {
         let tag = &self.tags[at];
         self.pause(tag, at);
         match tag.sense {
-            Sense::Value(value) if clause.counts(at) => self.value(at, self.lexicon.value(value)),
+            Sense::Value(value) if clause.counts(at) => self.value(at, value),
             Sense::Value(_) => {}
             Sense::Unknown => self.stray(),
             Sense::Class(class) => self.class(clause, at, class),
@@ -161,7 +158,7 @@ impl<'a> Extractor<'a, '_> {
     }
 
     fn pause(&mut self, tag: &Tag<'_>, at: usize) {
-        if tag.gap < Gap::Pause {
+        if !tag.pauses() {
             return;
         }
         self.landmark = false;
@@ -180,14 +177,14 @@ impl<'a> Extractor<'a, '_> {
             return;
         }
         if let Some(scope) = &mut self.scope {
-            let adjacent = at > 0 && self.tags[at - 1].value().is_some();
+            let adjacent = at > 0 && self.tags[at - 1].is_value();
             if scope.value(value, adjacent, self.tags[at].answer_doubt()) {
                 return;
             }
             self.end_negation();
         }
         if let Some(strength) = self.repair.take() {
-            let new = repair::Replacement::at(self.lexicon, self.tags, at);
+            let new = repair::Replacement::at(self.tags, at);
             let agreed = self.agrees();
             new.replace(&mut self.content.base, strength);
             let asked = matches!(self.asked, QuestionWords::Value(_, asked) if asked == value.word);
@@ -199,8 +196,8 @@ impl<'a> Extractor<'a, '_> {
             // "not the red one, I mean the red one": taken back in so many words.
             let restated = |group: &Excluded| group.words[..] == [value.word];
             self.content.excluded.retain(|group| !restated(group));
-        } else if repair::is_stumble(self.lexicon, self.tags, at) {
-            let new = repair::Replacement::at(self.lexicon, self.tags, at);
+        } else if repair::is_stumble(self.tags, at) {
+            let new = repair::Replacement::at(self.tags, at);
             new.replace(&mut self.content.base, repair::Strength::Stumble);
         }
         let doubt = self.tags[at].word_doubt();
@@ -229,8 +226,7 @@ impl<'a> Extractor<'a, '_> {
     /// A noun ends what is denied, but for "anything tight", whose quality follows it.
     fn head(&mut self, at: usize) {
         let indefinite = matches!(self.tags[at].word, "anything" | "something" | "everything");
-        let next = self.tags.get(at + 1).filter(|next| next.gap <= Gap::None);
-        if !(indefinite && next.is_some_and(|next| next.value().is_some())) {
+        if !(indefinite && after(self.tags, at).is_some_and(Tag::is_value)) {
             self.in_negation(NegationScope::head);
         }
     }
@@ -238,9 +234,8 @@ impl<'a> Extractor<'a, '_> {
     fn and(&mut self, at: usize) {
         self.wondering = false;
         let next = self.tags.get(at + 1);
-        let listed = next.is_some_and(|next| {
-            next.value().is_some() || next.is_any(classes![Determiner Preposition])
-        });
+        let listed = next
+            .is_some_and(|next| next.is_value() || next.is_any(classes![Determiner Preposition]));
         if listed { self.in_negation(NegationScope::and) } else { self.end_filled_negation() }
     }
 
@@ -274,7 +269,7 @@ impl<'a> Extractor<'a, '_> {
     }
 
     fn no(&mut self, at: usize) {
-        match negation::use_of_no(self.lexicon, self.tags, at, &self.content.base, self.asked) {
+        match negation::use_of_no(self.tags, at, &self.content.base, self.asked) {
             NoUse::Answer => {
                 self.end_filled_negation();
                 self.content.answers.push(Answer::No, self.tags, at);
@@ -306,11 +301,10 @@ impl<'a> Extractor<'a, '_> {
 
     /// "not sure if it is white", "I don't care what colour", "it doesn't have to be white".
     fn wonders_after(&self, at: usize) -> bool {
-        let next = self.tags.get(at + 1).filter(|next| next.gap <= Gap::None);
         let open = matches!(self.tags[at].word, "does" | "do" | "need" | "it" | "i" | "at");
-        next.is_some_and(|next| {
+        after(self.tags, at).is_some_and(|next| {
             next.is_any(classes![Join Question Preposition])
-                || open && (next.value().is_some() || next.is(Class::Determiner))
+                || open && (next.is_value() || next.is(Class::Determiner))
         })
     }
 
@@ -345,14 +339,4 @@ impl<'a> Extractor<'a, '_> {
             }
         }
     }
-}
-
-/// Returns whether two values belong to the same attribute.
-pub(crate) fn rivals(a: &ValueSense, b: &ValueSense) -> bool {
-    a.attributes.iter().any(|k| b.attributes.contains(k))
-}
-
-/// Returns whether a value is a location.
-pub(crate) fn is_place(value: &ValueSense) -> bool {
-    value.role == Role::Place
 }

@@ -3,196 +3,201 @@
 use scene::Role;
 
 use crate::lexicon::{Lexicon, Sense};
-use crate::tagger::{Tag, doubts};
+use crate::tagger::{Tag, after, before, doubts};
 use crate::token_class::{Class, classes};
-use crate::tokens::Gap;
 
 /// Resolves the tags that depend on their neighbours.
-pub(crate) fn disambiguate(lexicon: &Lexicon, tags: &mut [Tag<'_>]) {
+pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
     for at in 0..tags.len() {
-        let settled = match tags[at].sense {
-            Sense::Class(Class::One) => one(tags, at),
-            Sense::Class(Class::OtherLanguage) if tags[at].word == "non" => not_prefix(tags, at),
-            Sense::Class(Class::But) => exception(tags, at),
-            Sense::Class(Class::Join) if tags[at].word == "so" => degree(tags, at),
-            Sense::Class(Class::Preposition) if tags[at].word == "as" => equal(tags, at),
-            Sense::Class(Class::Courtesy) => named(tags, at),
-            Sense::Class(Class::SideTalk) => pause_for_repair(tags, at),
-            Sense::Class(Class::Put) if tags[at].word == "leave" => leave_out(lexicon, tags, at),
-            Sense::Unknown => participle(lexicon, tags, at).or_else(|| {
-                let (sense, doubt) =
-                    misheard(lexicon, tags, at).or_else(|| misheard_place(lexicon, tags, at))?;
-                tags[at].doubt = 1.0 - (1.0 - tags[at].doubt) * (1.0 - doubt);
-                Some(sense)
-            }),
-            _ => None,
-        };
-        if let Some(sense) = settled {
+        let place = Place { tags, at };
+        if let Some(class) = place.resolved_class() {
+            tags[at].sense = class.map_or(Sense::Unknown, Sense::Class);
+        } else if tags[at].is_unknown()
+            && let Some((sense, doubt)) = place.misheard(lexicon)
+        {
             tags[at].sense = sense;
+            tags[at].add_doubt(doubt);
         }
     }
 }
 
-/// "one" is what an object is called after "the" or "white", and a number elsewhere.
-fn one(tags: &[Tag<'_>], at: usize) -> Option<Sense> {
-    let before = tags[..at].last().filter(|_| tags[at].gap <= Gap::None);
-    let head = before.is_some_and(|before| match before.sense {
-        Sense::Value(_) | Sense::Unknown => true,
-        Sense::Class(class) => matches!(
-            class,
-            Class::Determiner
-                | Class::Pointer
-                | Class::Quantifier
-                | Class::Unlisted
-                | Class::Ordinal
-                | Class::Other
-                | Class::Possessive
-                | Class::Plain
-                | Class::Question
-                | Class::Filler
-                | Class::WeakYes
-                | Class::WeakNo
-                | Class::Not
-                | Class::Story
-                | Class::Fetch
-        ),
-    });
-    Some(Sense::Class(if head { Class::Head } else { Class::Plain }))
-}
-
-/// "non-metal" in English, "non merci" in French.
-fn not_prefix(tags: &[Tag<'_>], at: usize) -> Option<Sense> {
-    let next = tags.get(at + 1).filter(|next| next.gap <= Gap::None)?;
-    next.value().map(|_| Sense::Class(Class::Not))
-}
-
-/// "any bowl but the white one".
-fn exception(tags: &[Tag<'_>], at: usize) -> Option<Sense> {
-    let before = &tags[at.saturating_sub(3)..at];
-    let any = before.iter().any(|tag| matches!(tag.word, "any" | "every" | "all" | "anyone"));
-    any.then_some(Sense::Class(Class::Except))
-}
-
-/// "so blue", where "so" joins nothing.
-fn degree(tags: &[Tag<'_>], at: usize) -> Option<Sense> {
-    let after_verb = at > 0 && tags[at - 1].is_any(classes![Be Not]);
-    let next = tags.get(at + 1).filter(|next| next.gap <= Gap::None);
-    let before_value = next.is_some_and(|next| next.value().is_some());
-    (after_verb || before_value).then_some(Sense::Class(Class::Plain))
-}
-
-/// "as big as the metal one": what follows the second "as" is another object.
-fn equal(tags: &[Tag<'_>], at: usize) -> Option<Sense> {
-    let near = |tag: &&Tag<'_>| tag.gap <= Gap::None;
-    let value = |tag: &Tag<'_>| tag.value().is_some();
-    let first = tags[..at].last().is_some_and(value);
-    let second = tags.get(at + 1).filter(near).is_some_and(value);
-    match (first, second) {
-        (_, true) => Some(Sense::Class(Class::Plain)),
-        (true, false) => Some(Sense::Class(Class::Than)),
-        _ => None,
-    }
-}
-
-/// "the honey please": a thing, not what the robot is called.
-fn named(tags: &[Tag<'_>], at: usize) -> Option<Sense> {
-    let before = tags[..at].last().filter(|_| tags[at].gap <= Gap::None)?;
-    before.is(Class::Determiner).then_some(Sense::Unknown)
-}
-
-/// "the wide bowl", "the red ranch": where a value belongs, the one that sounds or looks like it.
-fn misheard(lexicon: &Lexicon, tags: &[Tag<'_>], at: usize) -> Option<(Sense, f64)> {
-    let word = tags[at].word;
-    if lexicon.is_like_noun(word) && ends_noun_phrase(tags, at) {
-        return Some((Sense::Class(Class::Head), 0.0));
-    }
-    let (value, doubt) = lexicon
-        .sounds_like(word)
-        .map(|value| (value, doubts::SOUND))
-        .or_else(|| lexicon.looks_like(word).map(|value| (value, doubts::EVERYDAY)))?;
-    let before = tags[..at].last().filter(|_| tags[at].gap <= Gap::None);
-    let after = tags.get(at + 1).filter(|tag| tag.gap <= Gap::None);
-    let describes = |tag: &Tag<'_>| {
-        matches!(tag.sense, Sense::Value(_) | Sense::Class(Class::Determiner | Class::Fetch))
-    };
-    let belongs = match lexicon.value(value).role {
-        Role::Quality => {
-            let noun = |tag: &Tag<'_>| {
-                tag.is_any(classes![Head One])
-                    || tag.value().is_some_and(|v| lexicon.value(v).role == Role::Kind)
-            };
-            before.is_some_and(describes) && after.is_some_and(noun)
-        }
-        Role::Kind => {
-            let qualified = |tag: &Tag<'_>| tag.value().is_some();
-            let asked_for = || {
-                let recent = &tags[at.saturating_sub(4)..at];
-                recent.iter().any(|tag| tag.is_any(classes![Fetch Want]))
-            };
-            let ends = after.is_none_or(|tag| tag.is_any(AFTER_NOUN));
-            ends && (before.is_some_and(qualified) || before.is_some_and(describes) && asked_for())
-        }
-        Role::Place => false,
-    };
-    belongs.then_some((Sense::Value(value), doubt))
-}
-
-/// Classes that may follow the noun of a noun phrase.
+/// Words that the noun of a noun phrase may be followed by.
 const AFTER_NOUN: &[Class] = classes![Preposition Courtesy Filler Pointer];
 
-/// "the small white bold": where the noun belongs.
-fn ends_noun_phrase(tags: &[Tag<'_>], at: usize) -> bool {
-    let before = tags[..at].last().filter(|_| tags[at].gap <= Gap::None);
-    let after = tags.get(at + 1).filter(|tag| tag.gap <= Gap::None);
-    before.is_some_and(|tag| tag.value().is_some())
-        && after.is_none_or(|tag| tag.is_any(AFTER_NOUN))
+/// A tag among its neighbours.
+struct Place<'t, 'a> {
+    tags: &'t [Tag<'a>],
+    at: usize,
 }
 
-/// "the clear one, hang on, the white one": a moment to think, and the words before are replaced.
-fn pause_for_repair(tags: &[Tag<'_>], at: usize) -> Option<Sense> {
-    const REACH: usize = 4;
-    let names = |tag: &Tag<'_>| tag.value().is_some() || tag.is_any(classes![Yes No]);
-    let thinks = matches!(tags[at].word, "hang" | "hold" | "one" | "just");
-    let before = tags[at.saturating_sub(REACH)..at].iter().any(names);
-    let after = tags[at + 1..].iter().take(REACH).any(names);
-    (thinks && before && after).then_some(Sense::Class(Class::Repair))
-}
+impl<'a> Place<'_, 'a> {
+    fn tag(&self) -> &Tag<'a> {
+        &self.tags[self.at]
+    }
 
-/// "leave the white one, …", but not "leave the white one on the counter".
-fn leave_out(lexicon: &Lexicon, tags: &[Tag<'_>], at: usize) -> Option<Sense> {
-    let rest = &tags[at + 1..];
-    let phrase = rest.iter().position(|tag| tag.gap >= Gap::Pause).unwrap_or(rest.len());
-    let place = |value: u32| lexicon.value(value).role == Role::Place;
-    let values = || rest[..phrase].iter().filter_map(Tag::value);
-    let headed = rest[..phrase].iter().any(|tag| tag.is_any(classes![Head One]))
-        || values().any(|value| lexicon.value(value).role == Role::Kind);
-    let strange = rest[..phrase].iter().any(|tag| tag.sense == Sense::Unknown);
-    let named = values().next().is_some() && !values().any(place) && headed && !strange;
-    named.then_some(Sense::Class(Class::Except))
-}
+    /// The tag before, unless there is a pause between.
+    fn before(&self) -> Option<&Tag<'a>> {
+        before(self.tags, self.at)
+    }
 
-/// "the shirt draped over the chair", "the pen clipped to the drawer": how it is where it is.
-fn participle(lexicon: &Lexicon, tags: &[Tag<'_>], at: usize) -> Option<Sense> {
-    let tag = &tags[at];
-    let before = tags[..at].last().filter(|_| tag.gap <= Gap::None)?;
-    let noun = before.is(Class::Head)
-        || before.value().is_some_and(|value| lexicon.value(value).role == Role::Kind);
-    let next = tags.get(at + 1).filter(|next| next.gap <= Gap::None)?;
-    let ends = tag.word.len() > 4 && (tag.word.ends_with("ed") || tag.word.ends_with("ing"));
-    let leads = next.is_any(classes![Preposition Landmark Destination]);
-    (noun && ends && leads).then_some(Sense::Class(Class::Plain))
-}
+    /// The tag after, unless there is a pause between.
+    fn after(&self) -> Option<&Tag<'a>> {
+        after(self.tags, self.at)
+    }
 
-/// "on the counted", "in the draw": where a place ends the sentence, the one that it sounds like.
-fn misheard_place(lexicon: &Lexicon, tags: &[Tag<'_>], at: usize) -> Option<(Sense, f64)> {
-    let [.., preposition, determiner] = &tags[..at] else { return None };
-    let after = tags.get(at + 1).filter(|tag| tag.gap <= Gap::None);
-    let stands = preposition.is(Class::Preposition)
-        && determiner.word == "the"
-        && after.is_none_or(|tag| tag.is_any(classes![Courtesy Filler]));
-    let word = tags[at].word;
-    let value =
-        lexicon.looks_like(word).or_else(|| lexicon.sounds_like(word)).filter(|_| stands)?;
-    let place = lexicon.value(value).role == Role::Place;
-    place.then_some((Sense::Value(value), doubts::EVERYDAY))
+    /// Up to `reach` tags before.
+    fn recent(&self, reach: usize) -> &[Tag<'a>] {
+        &self.tags[self.at.saturating_sub(reach)..self.at]
+    }
+
+    /// The class that the word has here: `None` as listed, `Some(None)` that of an unknown word.
+    fn resolved_class(&self) -> Option<Option<Class>> {
+        let tag = self.tag();
+        let class = match (tag.class(), tag.word) {
+            (None, _) => self.is_participle().then_some(Class::Plain),
+            (Some(Class::One), _) => {
+                Some(if self.is_noun_one() { Class::Head } else { Class::Plain })
+            }
+            (Some(Class::OtherLanguage), "non") => self.is_prefix().then_some(Class::Not),
+            (Some(Class::But), _) => self.is_exception().then_some(Class::Except),
+            (Some(Class::Join), "so") => self.is_degree().then_some(Class::Plain),
+            (Some(Class::Preposition), "as") => self.comparison(),
+            (Some(Class::Courtesy), _) if self.is_named_thing() => return Some(None),
+            (Some(Class::SideTalk), _) => self.is_pause_to_think().then_some(Class::Repair),
+            (Some(Class::Put), "leave") => self.leaves_out().then_some(Class::Except),
+            _ => None,
+        };
+        class.map(Some)
+    }
+
+    /// "one" is what an object is called after "the" or "white", and a number elsewhere.
+    fn is_noun_one(&self) -> bool {
+        const BEFORE: &[Class] = classes![
+            Determiner Pointer Quantifier Unlisted Ordinal Other Possessive Plain Question Filler
+            WeakYes WeakNo Not Story Fetch
+        ];
+        self.before().is_some_and(|b| b.is_value() || b.is_unknown() || b.is_any(BEFORE))
+    }
+
+    /// "non-metal" in English, "non merci" in French.
+    fn is_prefix(&self) -> bool {
+        self.after().is_some_and(Tag::is_value)
+    }
+
+    /// "any bowl but the white one".
+    fn is_exception(&self) -> bool {
+        let any = |tag: &Tag<'_>| matches!(tag.word, "any" | "every" | "all" | "anyone");
+        self.recent(3).iter().any(any)
+    }
+
+    /// "so blue", where "so" joins nothing.
+    fn is_degree(&self) -> bool {
+        let after_verb = self.recent(1).iter().any(|tag| tag.is_any(classes![Be Not]));
+        after_verb || self.after().is_some_and(Tag::is_value)
+    }
+
+    /// "as big as the metal one": what follows the second "as" is another object.
+    fn comparison(&self) -> Option<Class> {
+        if self.after().is_some_and(Tag::is_value) {
+            return Some(Class::Plain);
+        }
+        self.recent(1).iter().any(Tag::is_value).then_some(Class::Than)
+    }
+
+    /// "the honey please": a thing, not what the robot is called.
+    fn is_named_thing(&self) -> bool {
+        self.before().is_some_and(|before| before.is(Class::Determiner))
+    }
+
+    /// "the clear one, hang on, the white one": a moment to think, and the words before are replaced.
+    fn is_pause_to_think(&self) -> bool {
+        const REACH: usize = 4;
+        let names = |tag: &Tag<'_>| tag.is_value() || tag.is_any(classes![Yes No]);
+        matches!(self.tag().word, "hang" | "hold" | "one" | "just")
+            && self.recent(REACH).iter().any(names)
+            && self.tags[self.at + 1..].iter().take(REACH).any(names)
+    }
+
+    /// "leave the white one, …", but not "leave the white one on the counter".
+    fn leaves_out(&self) -> bool {
+        let rest = &self.tags[self.at + 1..];
+        let phrase = &rest[..rest.iter().position(Tag::pauses).unwrap_or(rest.len())];
+        let is_noun = |tag: &Tag<'_>| tag.is_any(classes![Head One]) || tag.is_role(Role::Kind);
+        phrase.iter().any(Tag::is_value)
+            && phrase.iter().any(is_noun)
+            && !phrase.iter().any(|tag| tag.is_role(Role::Place) || tag.is_unknown())
+    }
+
+    /// "the shirt draped over the chair", "the pen clipped to the drawer": how it is where it is.
+    fn is_participle(&self) -> bool {
+        let word = self.tag().word;
+        let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) || tag.is_role(Role::Kind);
+        let leads = |tag: &Tag<'_>| tag.is_any(classes![Preposition Landmark Destination]);
+        self.tag().is_unknown()
+            && word.len() > 4
+            && (word.ends_with("ed") || word.ends_with("ing"))
+            && self.before().is_some_and(is_noun)
+            && self.after().is_some_and(leads)
+    }
+
+    /// An unknown word as what it was misheard or misspelt for, with the doubt of it.
+    fn misheard(&self, lexicon: &'a Lexicon) -> Option<(Sense<'a>, f64)> {
+        if lexicon.lookalikes().is_like_noun(self.tag().word) && self.ends_noun_phrase() {
+            return Some((Sense::Class(Class::Head), 0.0));
+        }
+        self.misheard_description(lexicon).or_else(|| self.misheard_place(lexicon))
+    }
+
+    /// "the small white bold": where the noun belongs.
+    fn ends_noun_phrase(&self) -> bool {
+        self.before().is_some_and(Tag::is_value) && self.may_end_noun_phrase()
+    }
+
+    fn may_end_noun_phrase(&self) -> bool {
+        self.after().is_none_or(|tag| tag.is_any(AFTER_NOUN))
+    }
+
+    /// "the wide bowl", "the red ranch": where a value belongs, the one that sounds or looks like it.
+    fn misheard_description(&self, lexicon: &'a Lexicon) -> Option<(Sense<'a>, f64)> {
+        let (word, lookalikes) = (self.tag().word, lexicon.lookalikes());
+        let sounding = lookalikes.sounds_like(word).map(|value| (value, doubts::SOUND));
+        let looking = || lookalikes.looks_like(word).map(|value| (value, doubts::EVERYDAY));
+        let (value, doubt) = sounding.or_else(looking)?;
+        let value = lexicon.value(value);
+        let belongs = match value.role {
+            Role::Quality => self.is_where_a_quality_belongs(),
+            Role::Kind => self.is_where_a_kind_belongs(),
+            Role::Place => false,
+        };
+        belongs.then_some((Sense::Value(value), doubt))
+    }
+
+    /// Inside a noun phrase: after "the", "get" or another value.
+    fn is_described(&self) -> bool {
+        self.before().is_some_and(|b| b.is_value() || b.is_any(classes![Determiner Fetch]))
+    }
+
+    /// "the … bowl".
+    fn is_where_a_quality_belongs(&self) -> bool {
+        let is_noun = |tag: &Tag<'_>| tag.is_any(classes![Head One]) || tag.is_role(Role::Kind);
+        self.is_described() && self.after().is_some_and(is_noun)
+    }
+
+    /// "the red …", "get me the …".
+    fn is_where_a_kind_belongs(&self) -> bool {
+        let asked_for = || self.recent(4).iter().any(|tag| tag.is_any(classes![Fetch Want]));
+        self.ends_noun_phrase() || self.may_end_noun_phrase() && self.is_described() && asked_for()
+    }
+
+    /// "on the counted", "in the draw": where a place ends the sentence, the one that it sounds like.
+    fn misheard_place(&self, lexicon: &'a Lexicon) -> Option<(Sense<'a>, f64)> {
+        let [preposition, determiner] = self.recent(2) else { return None };
+        let stands = preposition.is(Class::Preposition)
+            && determiner.word == "the"
+            && self.after().is_none_or(|tag| tag.is_any(classes![Courtesy Filler]));
+        let (word, lookalikes) = (self.tag().word, lexicon.lookalikes());
+        let value = lookalikes.looks_like(word).or_else(|| lookalikes.sounds_like(word))?;
+        let value = lexicon.value(value);
+        (stands && value.is_place()).then_some((Sense::Value(value), doubts::EVERYDAY))
+    }
 }

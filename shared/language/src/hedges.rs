@@ -108,9 +108,9 @@ pub(crate) fn hedge(tags: &mut [Tag<'_>], clauses: &[Clause]) {
 
 /// Returns whether a clause has content that a hedge in it weakens.
 fn says_more(clause: &[Tag<'_>]) -> bool {
-    clause.iter().any(|tag| {
-        tag.value().is_some() || tag.is_any(classes![Yes No WeakYes WeakNo Not Except Other])
-    })
+    clause
+        .iter()
+        .any(|tag| tag.is_value() || tag.is_any(classes![Yes No WeakYes WeakNo Not Except Other]))
 }
 
 #[cfg(test)]

@@ -4,10 +4,8 @@ use scene::Intent;
 
 use crate::clauses::{Clause, Topic};
 use crate::content::Content;
-use crate::lexicon::Sense;
-use crate::tagger::Tag;
+use crate::tagger::{Tag, before};
 use crate::token_class::{Class, classes};
-use crate::tokens::Gap;
 
 /// The intent of an utterance whose content is known.
 ///
@@ -50,26 +48,14 @@ pub(crate) fn commands(tags: &[Tag<'_>], clause: &Clause, class: Class) -> bool 
     if at > range.start && tags[at - 1].is(Class::Not) {
         return false;
     }
-    let plain = tags[range.clone()].iter().all(|tag| tag.sense != Sense::Unknown);
-    let leads = [
-        Class::Filler,
-        Class::Courtesy,
-        Class::No,
-        Class::Yes,
-        Class::Repair,
-        Class::WeakYes,
-        Class::And,
-        Class::But,
-        Class::Join,
-        Class::Plain,
-    ];
-    let opens = tags[range.start..at].iter().all(|tag| tag.is_any(&leads));
+    let plain = tags[range.clone()].iter().all(|tag| !tag.is_unknown());
+    const LEADS: &[Class] = classes![Filler Courtesy No Yes Repair WeakYes And But Join Plain];
+    let opens = tags[range.start..at].iter().all(|tag| tag.is_any(LEADS));
     match class {
         // Better to stop once too often.
         Class::Stop => {
             let next = tags[at + 1..range.end].first();
-            let joined = next
-                .is_some_and(|next| next.sense == Sense::Unknown || next.is(Class::Preposition));
+            let joined = next.is_some_and(|next| next.is_unknown() || next.is(Class::Preposition));
             opens && !joined || plain && clause.topic == Topic::On
         }
         _ => plain && clause.topic != Topic::Off,
@@ -83,7 +69,7 @@ fn declines(tags: &[Tag<'_>], clause: &Clause) -> bool {
     let fetches = tags.iter().any(|tag| tag.is_any(classes![Fetch Want]) || tag.word == "forget");
     let noun = tags.iter().any(|tag| tag.is(Class::Head) && !tag.word.starts_with("one"));
     let plain = tags.iter().all(|tag| {
-        tag.sense != Sense::Unknown
+        !tag.is_unknown()
             && !tag.is_any(classes![Pointer Other Unlisted Ordinal Attribute Preposition Landmark])
     });
     clause.topic == Topic::On && denies && fetches && noun && plain
@@ -146,10 +132,7 @@ pub(crate) fn unknown_words(tags: &[Tag<'_>], clauses: &[Clause]) -> Vec<String>
 
 /// An unknown word where a value or noun belongs: "the purpure one", "get me a foobar".
 fn is_in_noun_phrase(tags: &[Tag<'_>], at: usize) -> bool {
-    let before = at.checked_sub(1).map(|before| &tags[before]);
-    tags[at].sense == Sense::Unknown
-        && tags[at].gap <= Gap::None
-        && before.is_some_and(|before| {
-            before.value().is_some() || before.is_any(classes![Determiner Unlisted])
-        })
+    tags[at].is_unknown()
+        && before(tags, at)
+            .is_some_and(|before| before.is_value() || before.is_any(classes![Determiner Unlisted]))
 }

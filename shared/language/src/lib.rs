@@ -11,8 +11,8 @@
 //! |---|---|---|
 //! | normalise | `normalise.rs` | plain lower-case text |
 //! | tokenise | `tokens.rs` | words and the pauses between them |
-//! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `morphology.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
-//! | clauses | `clauses.rs` (`topic.rs`, `distractors.rs`) | the parts that are about the objects |
+//! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
+//! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`) | the parts that are about the objects |
 //! | content | `content.rs` (`negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs`, `intent.rs` | the response that counts, the user's intent |
 //! | readings | `parsed.rs` (`hedges.rs`) | alternative readings with weights and doubts |
@@ -23,6 +23,7 @@
 //! `vocabulary/`.
 
 mod answer;
+mod asking_back;
 mod clauses;
 mod confusion;
 mod content;
@@ -31,6 +32,7 @@ mod distractors;
 mod hedges;
 mod intent;
 mod lexicon;
+mod lookalikes;
 mod morphology;
 mod negation;
 mod negation_scope;

@@ -1,10 +1,9 @@
 //! Function of a "no" or "not": an answer, a repair, a determiner, or none.
 
 use crate::clauses::Clause;
-use crate::content::{Asserted, rivals};
-use crate::lexicon::{Lexicon, Sense};
+use crate::content::Asserted;
 use crate::question_words::QuestionWords;
-use crate::tagger::Tag;
+use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
 
@@ -21,18 +20,15 @@ pub(crate) enum NoUse {
 
 /// Distinguishes the uses of "no" by what has been said and what follows.
 pub(crate) fn use_of_no(
-    lexicon: &Lexicon,
     tags: &[Tag<'_>],
     at: usize,
     base: &[Asserted<'_>],
     asked: QuestionWords<'_>,
 ) -> NoUse {
     const GOVERNORS: &[Class] = classes![Preposition Be Want Fetch Auxiliary];
-    let governed = at > 0 && tags[at].gap <= Gap::None && tags[at - 1].is_any(GOVERNORS);
-    let next = tags.get(at + 1).filter(|next| next.gap <= Gap::None);
-    let value = next.and_then(|next| next.value()).map(|value| lexicon.value(value));
+    let value = after(tags, at).and_then(Tag::value);
     if let Some(value) = value.filter(|_| tags[at].word == "no") {
-        if governed {
+        if before(tags, at).is_some_and(|before| before.is_any(GOVERNORS)) {
             return NoUse::Determiner;
         }
         if base.is_empty() {
@@ -43,7 +39,7 @@ pub(crate) fn use_of_no(
             };
             return if asked_about { NoUse::Determiner } else { NoUse::Answer };
         }
-        if !base.iter().any(|before| rivals(before, value)) {
+        if !base.iter().any(|before| before.rivals(value)) {
             return NoUse::Determiner;
         }
     }
@@ -54,7 +50,7 @@ pub(crate) fn use_of_no(
 fn leads_to_value(tags: &[Tag<'_>]) -> bool {
     const REACH: usize = 10;
     for (n, tag) in tags.iter().take(REACH).enumerate() {
-        if tag.value().is_some() {
+        if tag.is_value() {
             return true;
         }
         if tag.is_any(classes![Not Except]) || n > 0 && tag.gap == Gap::Stop {
@@ -74,10 +70,7 @@ pub(crate) fn is_rhetorical(tags: &[Tag<'_>], clause: &Clause, at: usize) -> boo
         }
         [] => false,
     };
-    inverted
-        && tags.get(at + 1).is_some_and(|next| {
-            next.gap <= Gap::None && next.is_any(classes![Second It First Pointer])
-        })
+    inverted && after(tags, at).is_some_and(|next| next.is_any(classes![Second It First Pointer]))
 }
 
 fn is_verb(tag: &Tag<'_>) -> bool {
@@ -91,24 +84,20 @@ pub(crate) fn is_whole_answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> b
     ];
     // "nice weather, isn't it" is not about the question.
     let before = &tags[clause.span.start..at];
-    if tags[at].word == "forget" || before.iter().any(|tag| tag.sense == Sense::Unknown) {
+    if tags[at].word == "forget" || before.iter().any(|tag| tag.is_unknown()) {
         return false;
     }
     if is_not_what(tags, clause, at) || is_not_by_far(tags, clause, at) {
         return true;
     }
     let mut rest = tags[at + 1..].iter().peekable();
-    while rest.next_if(|tag| tag.gap < Gap::Pause && tag.is_any(LINKS)).is_some() {}
-    let head = rest.next_if(|tag| {
-        let heads = [Class::Head, Class::It, Class::Yes, Class::WeakYes, Class::Likely];
-        tag.gap < Gap::Pause && tag.is_any(&heads)
-    });
-    while rest.next_if(|tag| tag.gap < Gap::Pause && tag.is_any(classes![Plain Courtesy])).is_some()
-    {
-    }
+    while rest.next_if(|tag| !tag.pauses() && tag.is_any(LINKS)).is_some() {}
+    let head =
+        rest.next_if(|tag| !tag.pauses() && tag.is_any(classes![Head It Yes WeakYes Likely]));
+    while rest.next_if(|tag| !tag.pauses() && tag.is_any(classes![Plain Courtesy])).is_some() {}
     match rest.next() {
         None => true,
-        Some(next) if next.gap >= Gap::Pause => true,
+        Some(next) if next.pauses() => true,
         Some(next) if head.is_some() => next.is_any(classes![
             Determiner First Fetch Want It And But Join No Repair Filler Not Story
         ]),
@@ -130,14 +119,14 @@ fn is_not_by_far(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
         .all(|tag| tag.is_any(classes![Filler Courtesy No Yes WeakNo]));
     let next = tags[at + 1..clause.span.end].first();
     opens
-        && next.is_some_and(|next| next.is(Class::Preposition) && next.gap <= Gap::None)
+        && next.is_some_and(|next| next.is(Class::Preposition) && !next.pauses())
         && denies_no_value(tags, clause, at)
 }
 
 /// Nothing after the negation describes an object, not even one that the scene lacks.
 fn denies_no_value(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     (at + 1..clause.span.end).all(|at| {
-        let describes = tags[at].value().is_some() && clause.counts(at);
+        let describes = tags[at].is_value() && clause.counts(at);
         !describes && !tags[at].is_any(classes![Unlisted Head Fetch])
     })
 }

@@ -72,9 +72,7 @@ impl<'a> NegationScope<'a> {
         if self.is_closed() && !adjacent {
             return false;
         }
-        let rival =
-            |other: &&ValueSense| other.attributes.iter().any(|k| value.attributes.contains(k));
-        if let Some(at) = self.last().values.iter().position(rival) {
+        if let Some(at) = self.last().values.iter().position(|other| other.rivals(value)) {
             // "not white clear": nothing is both, so the second is what is wanted instead.
             if !self.coordinated && !self.joined {
                 return false;

@@ -3,7 +3,7 @@
 use scene::{Doubt, Intent, Reading, Response};
 
 use crate::clauses::Clause;
-use crate::content::{Asserted, Content, rivals};
+use crate::content::{Asserted, Content};
 use crate::hedges::MAYBE;
 use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
@@ -73,13 +73,13 @@ impl ParsedUtterance<'_> {
             return Vec::new();
         };
         let (left, right) = (&base[at], &base[at + 1]);
-        if !rivals(left, right) {
+        if !left.rivals(right) {
             let parts = [&base[..=at], &base[at + 1..]];
             return parts.map(<[_]>::to_vec).into();
         }
-        let members: Vec<&Asserted<'_>> = base.iter().filter(|one| rivals(one, left)).collect();
+        let members: Vec<&Asserted<'_>> = base.iter().filter(|one| one.rivals(left)).collect();
         let chosen = |member: &&Asserted<'_>| {
-            let others = |one: &&Asserted<'_>| !rivals(one, left) || one.word == member.word;
+            let others = |one: &&Asserted<'_>| !one.rivals(left) || one.word == member.word;
             base.iter().filter(others).copied().collect()
         };
         members.iter().take(READINGS_MAX - 1).map(chosen).collect()

@@ -104,10 +104,10 @@ impl Reader {
 
     fn parse<'a>(&'a self, tokens: &Tokens<'a>, last_question: Question) -> ParsedUtterance<'a> {
         let mut tags = tag(&self.lexicon, &tokens.words);
-        let clauses = clauses(&self.lexicon, &tags, tokens.code);
+        let clauses = clauses(&tags, tokens.code);
         hedge(&mut tags, &clauses);
         let asked = self.questions.asked(last_question);
-        let mut content = extract(&self.lexicon, &tags, &clauses, asked);
+        let mut content = extract(&tags, &clauses, asked);
         let side_talk =
             content.base.is_empty() && content.excluded.is_empty() && is_side_talk(&tags, &clauses);
         if side_talk {

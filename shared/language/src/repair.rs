@@ -1,10 +1,10 @@
 //! Self-repair: "the red, no, the blue one". What is said after the repair replaces what it
 //! competes with, and leaves the rest standing.
 
-use scene::{Role, WordId};
+use scene::Role;
 
-use crate::content::{Asserted, is_place, rivals};
-use crate::lexicon::{Lexicon, ValueSense};
+use crate::content::Asserted;
+use crate::lexicon::ValueSense;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
@@ -34,7 +34,7 @@ pub(crate) struct Replacement<'a> {
 
 impl<'a> Replacement<'a> {
     /// The replacement whose first value is at `at`.
-    pub(crate) fn at(lexicon: &'a Lexicon, tags: &[Tag<'_>], at: usize) -> Self {
+    pub(crate) fn at(tags: &[Tag<'a>], at: usize) -> Self {
         const REACH: usize = 12;
         let ends = |tag: &Tag<'_>| {
             tag.gap == Gap::Stop
@@ -46,7 +46,7 @@ impl<'a> Replacement<'a> {
         let lead = tags[..at].iter().rev().take_while(|tag| !ends(tag)).take(3);
         let lead: Vec<&Tag<'_>> = lead.collect();
         Self {
-            values: values.map(|value| lexicon.value(value)).collect(),
+            values: values.collect(),
             whole: lead.first().is_some_and(|tag| tag.is(Class::Determiner)),
             statement: lead.iter().any(|tag| tag.is(Class::Be)),
             anaphoric: head.is_some_and(|tag| tag.word.starts_with("one")),
@@ -57,18 +57,18 @@ impl<'a> Replacement<'a> {
     pub(crate) fn replace(&self, base: &mut Vec<Asserted<'a>>, strength: Strength) {
         if let Some(from) = self.retraced(base).filter(|_| strength > Strength::Stumble) {
             let mut at = 0..;
-            base.retain(|old| at.next() < Some(from) || is_place(old));
+            base.retain(|old| at.next() < Some(from) || old.is_place());
         }
-        let rival = |old: &ValueSense| self.values.iter().any(|new| rivals(old, new));
+        let rival = |old: &ValueSense| self.values.iter().any(|new| old.rivals(new));
         if base.iter().any(|old| rival(old)) {
             // "the blue pen, no, the marker": another kind of thing, the rest goes with the old.
             let renamed = self.whole && strength > Strength::Stumble && self.renames(base);
-            base.retain(|old| !rival(old) && (!renamed || is_place(old)));
+            base.retain(|old| !rival(old) && (!renamed || old.is_place()));
         } else if strength == Strength::Hard || strength == Strength::Soft && !self.statement {
             // "the white one, no, the metal one": nothing in common, so one for the other; but
             // "…, no, in the cabinet" only says where.
-            if self.values.iter().any(|new| !is_place(new)) {
-                base.retain(|old| is_place(old));
+            if self.values.iter().any(|new| !new.is_place()) {
+                base.retain(|old| old.is_place());
             }
         }
     }
@@ -81,25 +81,22 @@ impl<'a> Replacement<'a> {
     }
 
     fn renames(&self, base: &[Asserted<'_>]) -> bool {
-        let kind = |value: &ValueSense| value.role == Role::Kind;
-        let new = self.values.iter().filter(|value| kind(value));
-        let new: Vec<WordId> = new.map(|value| value.word).collect();
-        !new.is_empty()
-            && base.iter().filter(|old| kind(old)).all(|old| !new.contains(&old.word))
-            && base.iter().any(|old| old.role == Role::Kind)
-            && self.values.iter().all(|value| value.role == Role::Kind)
+        let is_kind = |value: &ValueSense| value.role == Role::Kind;
+        let is_new = |old: &Asserted<'_>| self.values.iter().all(|new| new.word != old.word);
+        let mut kinds = base.iter().filter(|old| is_kind(old)).peekable();
+        self.values.iter().all(|new| is_kind(new)) && kinds.peek().is_some() && kinds.all(is_new)
     }
 }
 
 /// "the red uh blue one", "the red one uh the blue one": a hesitation between rivals. "the red …
 /// the blue one": a noun phrase broken off and begun again.
-pub(crate) fn is_stumble(lexicon: &Lexicon, tags: &[Tag<'_>], at: usize) -> bool {
+pub(crate) fn is_stumble(tags: &[Tag<'_>], at: usize) -> bool {
     const REACH: usize = 6;
-    let Some(new) = tags[at].value().map(|value| lexicon.value(value)) else { return false };
+    let Some(new) = tags[at].value() else { return false };
     let (mut hesitated, mut begun, mut ended) = (false, false, false);
     for tag in tags[..at].iter().rev().take(REACH) {
         if let Some(old) = tag.value() {
-            return (hesitated || begun && !ended) && rivals(lexicon.value(old), new);
+            return (hesitated || begun && !ended) && old.rivals(new);
         }
         match tag.class() {
             Some(Class::Filler) => hesitated = true,

@@ -14,18 +14,18 @@ const LETTERS_MAX: usize = 32;
 /// Known words by what remains of them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SpellingIndex {
-    words: Vec<(String, u32)>,
-    remains: HashMap<String, Vec<u32>>,
+    words: Vec<(String, usize)>,
+    remains: HashMap<String, Vec<usize>>,
 }
 
 impl SpellingIndex {
     /// Adds a known word and what it stands for.
-    pub(crate) fn add(&mut self, word: &str, sense: u32) {
+    pub(crate) fn add(&mut self, word: &str, sense: usize) {
         let letters = word.chars().count();
         if !(KNOWN_LETTERS_MIN..=LETTERS_MAX).contains(&letters) {
             return;
         }
-        let at = u32::try_from(self.words.len()).expect("a scene has fewer words");
+        let at = self.words.len();
         self.words.push((word.to_owned(), sense));
         for remain in remains(word) {
             let at_remain = self.remains.entry(remain).or_default();
@@ -36,7 +36,7 @@ impl SpellingIndex {
     }
 
     /// Returns the meaning of the word, if exactly one is one slip away.
-    pub(crate) fn correct(&self, word: &str) -> Option<u32> {
+    pub(crate) fn correct(&self, word: &str) -> Option<usize> {
         let letters = word.chars().count();
         if !(KNOWN_LETTERS_MIN - 1..=LETTERS_MAX).contains(&letters) {
             return None;
@@ -44,7 +44,7 @@ impl SpellingIndex {
         let mut found = None;
         for remain in remains(word) {
             for &at in self.remains.get(&remain).into_iter().flatten() {
-                let (known, sense) = &self.words[at as usize];
+                let (known, sense) = &self.words[at];
                 if found != Some(*sense) && strsim::osa_distance(word, known) <= 1 {
                     if found.is_some() {
                         return None;
@@ -131,7 +131,7 @@ mod tests {
         #[test]
         fn agrees_with_comparing_every_word(word in "[bdehilnstw]{3,7}") {
             let index = index();
-            let near: std::collections::BTreeSet<u32> = (index.words.iter())
+            let near: std::collections::BTreeSet<usize> = (index.words.iter())
                 .filter(|(known, _)| strsim::osa_distance(&word, known) <= 1)
                 .map(|(_, sense)| *sense)
                 .collect();

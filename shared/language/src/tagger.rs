@@ -1,8 +1,10 @@
 //! Words to tags: each word or phrase with the part that it plays, misspelt, misheard and split
 //! values included.
 
+use scene::Role;
+
 use crate::disambiguate::disambiguate;
-use crate::lexicon::{Lexicon, Sense};
+use crate::lexicon::{Lexicon, Sense, ValueSense};
 use crate::spelling::shortened;
 use crate::token_class::Class;
 use crate::tokens::{Gap, Token};
@@ -10,7 +12,7 @@ use crate::tokens::{Gap, Token};
 /// A word or phrase, what it is taken for, and the pause before it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tag<'a> {
-    pub(crate) sense: Sense,
+    pub(crate) sense: Sense<'a>,
     pub(crate) gap: Gap,
     /// Its first word.
     pub(crate) word: &'a str,
@@ -21,12 +23,22 @@ pub(crate) struct Tag<'a> {
     pub(crate) sure: f64,
 }
 
-/// A word or phrase taken for what it is not written as.
+/// What the words at some place are taken for.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Guess {
+struct Found<'a> {
     words: usize,
-    sense: Sense,
+    sense: Sense<'a>,
+    /// What the rest of a single word is taken for: "bowl" of "whitebowl".
+    second: Option<Sense<'a>>,
     doubt: f64,
+    sure: f64,
+}
+
+impl<'a> Found<'a> {
+    /// One word, without doubt.
+    fn word(sense: Sense<'a>) -> Self {
+        Self { words: 1, sense, second: None, doubt: 0.0, sure: 1.0 }
+    }
 }
 
 /// Doubts of taking a word for another, judged.
@@ -42,17 +54,19 @@ pub(crate) mod doubts {
 }
 
 impl<'a> Tag<'a> {
-    /// The tag of `words` tokens, the first of which is `tokens[0]`.
-    fn of(tokens: &[Token<'a>], words: usize, sense: Sense) -> Self {
-        let run = &tokens[..words.min(tokens.len())];
+    /// The tag of the first of `tokens`.
+    fn of(tokens: &[Token<'a>], found: &Found<'a>) -> Self {
+        let run = &tokens[..found.words.min(tokens.len())];
         let least = run.iter().map(|token| token.confidence).fold(1.0, f32::min);
         let Token { word, gap, .. } = tokens[0];
-        Self { sense, gap, word, doubt: 1.0 - f64::from(least), sure: 1.0 }
+        let mut tag = Self { sense: found.sense, gap, word, doubt: 0.0, sure: found.sure };
+        tag.add_doubt(1.0 - f64::from(least));
+        tag.add_doubt(found.doubt);
+        tag
     }
 
-    /// Taken for what it is, with this doubt.
-    fn doubted(self, doubt: f64) -> Self {
-        Self { doubt: 1.0 - (1.0 - self.doubt) * (1.0 - doubt), ..self }
+    pub(crate) fn add_doubt(&mut self, doubt: f64) {
+        self.doubt = 1.0 - (1.0 - self.doubt) * (1.0 - doubt);
     }
 
     /// Probability that a scene word that it stands for was not meant.
@@ -67,10 +81,7 @@ impl<'a> Tag<'a> {
     }
 
     pub(crate) fn class(&self) -> Option<Class> {
-        match self.sense {
-            Sense::Class(class) => Some(class),
-            Sense::Value(_) | Sense::Unknown => None,
-        }
+        if let Sense::Class(class) = self.sense { Some(class) } else { None }
     }
 
     pub(crate) fn is(&self, class: Class) -> bool {
@@ -81,12 +92,37 @@ impl<'a> Tag<'a> {
         self.class().is_some_and(|class| classes.contains(&class))
     }
 
-    pub(crate) fn value(&self) -> Option<u32> {
-        match self.sense {
-            Sense::Value(value) => Some(value),
-            Sense::Class(_) | Sense::Unknown => None,
-        }
+    pub(crate) fn value(&self) -> Option<&'a ValueSense> {
+        if let Sense::Value(value) = self.sense { Some(value) } else { None }
     }
+
+    pub(crate) fn is_value(&self) -> bool {
+        self.value().is_some()
+    }
+
+    /// Returns whether it is a value of this role.
+    pub(crate) fn is_role(&self, role: Role) -> bool {
+        self.value().is_some_and(|value| value.role == role)
+    }
+
+    pub(crate) fn is_unknown(&self) -> bool {
+        matches!(self.sense, Sense::Unknown)
+    }
+
+    /// Returns whether there is a pause before it.
+    pub(crate) fn pauses(&self) -> bool {
+        self.gap >= Gap::Pause
+    }
+}
+
+/// The tag before `at`, unless there is a pause between them.
+pub(crate) fn before<'t, 'a>(tags: &'t [Tag<'a>], at: usize) -> Option<&'t Tag<'a>> {
+    tags[..at].last().filter(|_| !tags[at].pauses())
+}
+
+/// The tag after `at`, unless there is a pause between them.
+pub(crate) fn after<'t, 'a>(tags: &'t [Tag<'a>], at: usize) -> Option<&'t Tag<'a>> {
+    tags.get(at + 1).filter(|next| !next.pauses())
 }
 
 /// Fewest letters of a value that may be written as several words.
@@ -95,128 +131,125 @@ const JOINED_LETTERS_MIN: usize = 6;
 const RUN_ON_LETTERS_MAX: usize = 24;
 
 /// The tags of some words.
-pub(crate) fn tag<'a>(lexicon: &Lexicon, tokens: &[Token<'a>]) -> Vec<Tag<'a>> {
+pub(crate) fn tag<'a>(lexicon: &'a Lexicon, tokens: &[Token<'a>]) -> Vec<Tag<'a>> {
     let mut tags: Vec<Tag<'a>> = Vec::with_capacity(tokens.len());
     let mut at = 0;
     while at < tokens.len() {
-        let here = &tokens[at..];
-        let phrase = lexicon.longest(tokens, at);
-        let apart = match phrase {
-            Some(found) if found.words > 1 => None,
-            _ => written_apart(lexicon, here),
-        };
-        if let Some(Guess { words, sense, doubt }) = apart {
-            tags.push(Tag::of(here, words, sense).doubted(doubt));
-            at += words;
-            continue;
-        }
-        if let Some(found) = phrase {
-            tags.push(Tag { sure: found.sure, ..Tag::of(here, found.words, found.sense) });
-            at += found.words;
-            continue;
-        }
-        let (first, second) = guessed(lexicon, here[0].word);
-        if first.sense == Sense::Unknown
-            && let Some(Guess { words, sense, doubt }) =
-                heard_apart(lexicon, here, tags.last().is_some_and(describes))
-        {
-            tags.push(Tag::of(here, words, sense).doubted(doubt));
-            at += words;
-            continue;
-        }
-        let tag = Tag::of(here, 1, first.sense).doubted(first.doubt);
+        let described = tags.last().is_some_and(|tag| tag.is_value() || tag.is(Class::Determiner));
+        let found = find(lexicon, tokens, at, described);
+        let tag = Tag::of(&tokens[at..], &found);
         tags.push(tag);
-        tags.extend(second.map(|sense| Tag { sense, gap: Gap::Glued, ..tag }));
-        at += 1;
+        tags.extend(found.second.map(|sense| Tag { sense, gap: Gap::Glued, ..tag }));
+        at += found.words;
     }
     disambiguate(lexicon, &mut tags);
     tags
 }
 
+/// What the words from `at` on are taken for; `described`: inside a noun phrase.
+fn find<'a>(lexicon: &'a Lexicon, tokens: &[Token<'_>], at: usize, described: bool) -> Found<'a> {
+    let here = &tokens[at..];
+    let phrase = lexicon.longest(tokens, at);
+    if phrase.is_none_or(|phrase| phrase.words == 1)
+        && let Some(found) = written_apart(lexicon, here)
+    {
+        return found;
+    }
+    if let Some(phrase) = phrase {
+        return Found { words: phrase.words, sure: phrase.sure, ..Found::word(phrase.sense) };
+    }
+    guessed(lexicon, here[0].word)
+        .or_else(|| heard_apart(lexicon, here, described))
+        .unwrap_or(Found::word(Sense::Unknown))
+}
+
+/// The first two or three words without a pause between them.
+fn runs<'t, 'a>(tokens: &'t [Token<'a>]) -> impl Iterator<Item = &'t [Token<'a>]> {
+    let runs = (2..=3).filter_map(|words| tokens.get(..words));
+    runs.filter(|run| !run[1..].iter().any(Token::pauses))
+}
+
+fn joined(run: &[Token<'_>]) -> String {
+    run.iter().map(|token| token.word).collect()
+}
+
 /// "dish washer", "screw driver": neighbours that together are one value.
-fn written_apart(lexicon: &Lexicon, tokens: &[Token<'_>]) -> Option<Guess> {
-    (2..=3).filter(|&words| words <= tokens.len()).find_map(|words| {
-        let run = &tokens[..words];
+fn written_apart<'a>(lexicon: &'a Lexicon, tokens: &[Token<'_>]) -> Option<Found<'a>> {
+    runs(tokens).find_map(|run| {
         let letters: usize = run.iter().map(|token| token.word.len()).sum();
-        if !(JOINED_LETTERS_MIN..=RUN_ON_LETTERS_MAX).contains(&letters)
-            || run[1..].iter().any(|token| token.gap > Gap::None)
-        {
+        if !(JOINED_LETTERS_MIN..=RUN_ON_LETTERS_MAX).contains(&letters) {
             return None;
         }
-        let joined: String = run.iter().map(|token| token.word).collect();
+        let (words, joined) = (run.len(), joined(run));
         if let Some(sense @ Sense::Value(_)) = lexicon.word(&joined) {
-            return Some(Guess { words, sense, doubt: 0.0 });
+            return Some(Found { words, ..Found::word(sense) });
         }
         let whole = matches!(lexicon.word(run[0].word), Some(Sense::Value(_)));
-        let value = lexicon.misspelt_compound(&joined).filter(|_| !whole)?;
-        Some(Guess { words, sense: Sense::Value(value), doubt: doubts::SLIP })
+        let value = lexicon.lookalikes().misspelt_compound(&joined).filter(|_| !whole)?;
+        let sense = Sense::Value(lexicon.value(value));
+        Some(Found { words, doubt: doubts::SLIP, ..Found::word(sense) })
     })
 }
 
 /// "mark her", "cab in it": neighbours that together sound like one long value; a shorter one where
 /// a noun phrase continues (`described`).
-fn heard_apart(lexicon: &Lexicon, tokens: &[Token<'_>], described: bool) -> Option<Guess> {
-    (2..=3).filter(|&words| words <= tokens.len()).find_map(|words| {
-        let run = &tokens[..words];
-        if run[1..].iter().any(|token| token.gap > Gap::None) {
-            return None;
-        }
-        let joined: String = run.iter().map(|token| token.word).collect();
-        let value = lexicon.sounds_like_long(&joined).or_else(|| {
-            let run = run.iter().map(|token| token.word);
-            lexicon.sounds_like_run(run).filter(|_| described)
+fn heard_apart<'a>(
+    lexicon: &'a Lexicon,
+    tokens: &[Token<'_>],
+    described: bool,
+) -> Option<Found<'a>> {
+    let lookalikes = lexicon.lookalikes();
+    runs(tokens).find_map(|run| {
+        let value = lookalikes.sounds_like_long(&joined(run)).or_else(|| {
+            let words = run.iter().map(|token| token.word);
+            lookalikes.sounds_like_run(words).filter(|_| described)
         })?;
-        Some(Guess { words, sense: Sense::Value(value), doubt: doubts::APART })
+        let sense = Sense::Value(lexicon.value(value));
+        Some(Found { words: run.len(), doubt: doubts::APART, ..Found::word(sense) })
     })
 }
 
-fn describes(tag: &Tag<'_>) -> bool {
-    tag.value().is_some() || tag.is(Class::Determiner)
-}
-
 /// A word that the lexicon does not have as it stands: lengthened, misspelt, or two run together.
-fn guessed(lexicon: &Lexicon, word: &str) -> (Guess, Option<Sense>) {
-    let one = |sense, doubt| (Guess { words: 1, sense, doubt }, None);
-    let short = if lexicon.is_common(word) { None } else { shortened(word) };
-    for candidate in short.iter().flatten() {
-        if let Some(sense) = lexicon.word(candidate) {
-            return one(sense, 0.0);
-        }
+fn guessed<'a>(lexicon: &'a Lexicon, word: &str) -> Option<Found<'a>> {
+    let lookalikes = lexicon.lookalikes();
+    let short = if lookalikes.is_common(word) { None } else { shortened(word) };
+    if let Some(sense) = short.iter().flatten().find_map(|candidate| lexicon.word(candidate)) {
+        return Some(Found::word(sense));
     }
-    if let Some(value) = lexicon.misspelt(word) {
-        return one(Sense::Value(value), doubts::SLIP);
+    if let Some(value) = lookalikes.misspelt(word) {
+        let sense = Sense::Value(lexicon.value(value));
+        return Some(Found { doubt: doubts::SLIP, ..Found::word(sense) });
     }
     if let Some(stem) = word.strip_suffix('s')
         && let Some(sense @ Sense::Class(Class::Unlisted | Class::Story)) = lexicon.word(stem)
     {
-        return one(sense, 0.0);
+        return Some(Found::word(sense));
     }
     // "honestly", "immediately": an adverb changes no meaning here.
     if word.len() > 4 && word.ends_with("ly") {
-        return one(Sense::Class(Class::Plain), 0.0);
+        return Some(Found::word(Sense::Class(Class::Plain)));
     }
-    match run_on(lexicon, word) {
-        Some((sense, second)) => (Guess { words: 1, sense, doubt: 0.0 }, Some(second)),
-        None => one(Sense::Unknown, 0.0),
-    }
+    run_on(lexicon, word)
 }
 
 /// "whitebowl", "nonmetal": a value and what it stands with, run together.
-fn run_on(lexicon: &Lexicon, word: &str) -> Option<(Sense, Sense)> {
-    if !word.is_ascii() || word.len() > RUN_ON_LETTERS_MAX || lexicon.is_common(word) {
+fn run_on<'a>(lexicon: &'a Lexicon, word: &str) -> Option<Found<'a>> {
+    let is_common = lexicon.lookalikes().is_common(word);
+    if !word.is_ascii() || word.len() > RUN_ON_LETTERS_MAX || is_common {
         return None;
     }
     (3..word.len().saturating_sub(2)).find_map(|at| {
         let (left, right) = word.split_at(at);
-        let right_sense = lexicon.word(right)?;
-        if left == "non" && matches!(right_sense, Sense::Value(_)) {
-            return Some((Sense::Class(Class::Not), right_sense));
+        let mut second = lexicon.word(right)?;
+        let first = match second {
+            Sense::Value(_) if left == "non" => Sense::Class(Class::Not),
+            _ => lexicon.word(left).filter(|sense| matches!(sense, Sense::Value(_)))?,
+        };
+        match second {
+            Sense::Value(_) | Sense::Class(Class::Head) => {}
+            Sense::Class(Class::One) => second = Sense::Class(Class::Head),
+            _ => return None,
         }
-        let left_sense @ Sense::Value(_) = lexicon.word(left)? else { return None };
-        match right_sense {
-            Sense::Value(_) | Sense::Class(Class::Head) => Some((left_sense, right_sense)),
-            Sense::Class(Class::One) => Some((left_sense, Sense::Class(Class::Head))),
-            _ => None,
-        }
+        Some(Found { second: Some(second), ..Found::word(first) })
     })
 }

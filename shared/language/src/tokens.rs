@@ -25,6 +25,13 @@ pub(crate) struct Token<'a> {
     pub(crate) confidence: f32,
 }
 
+impl Token<'_> {
+    /// Returns whether there is a pause before it.
+    pub(crate) fn pauses(&self) -> bool {
+        self.gap >= Gap::Pause
+    }
+}
+
 /// The words of a text.
 #[derive(Debug, Default)]
 pub(crate) struct Tokens<'a> {
