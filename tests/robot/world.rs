@@ -169,7 +169,7 @@ impl World {
                 Out::Status(status) => self.statuses.push(status),
                 Out::Robot(order) => {
                     if let Order::Joints(limb, _) = &order {
-                        self.commanded[baxter::robot::side(*limb)].push(self.now);
+                        self.commanded[*limb].push(self.now);
                     }
                     self.orders.push((self.now, order.clone()));
                     commands.push(to_robot(order));

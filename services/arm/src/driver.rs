@@ -6,7 +6,7 @@ mod kinematic;
 pub use baxter::BaxterDriver;
 pub use kinematic::KinematicArm;
 
-use crate::state::{Posture, side};
+use crate::state::Posture;
 use manipulation::{Joints, Limb, Robot};
 use messages::MotionInhibit;
 use messages::robot::{
@@ -118,7 +118,7 @@ impl Measured {
 
     /// Returns whether the limb's fingers hold something, if known.
     pub fn holds(&self, limb: Limb) -> Option<bool> {
-        self.holding[side(limb)]
+        self.holding[limb]
     }
 }
 

@@ -2,13 +2,13 @@
 
 use crate::driver::{Fingers, Grip, Measured};
 use crate::executor::{Program, Purpose, Step};
-use crate::state::{ArmState, Held, side};
+use crate::state::{ArmState, Held};
 use crate::world::{World, from_array};
 use config::Grasps;
 use dialogue::Rng;
 use manipulation::{
-    ArmShape, Arms, Cuboid, Limb, MotionLimits, PickPhase as PickStage, PlanError, PlanSettings,
-    Robot, Stage, Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_return,
+    ArmShape, Cuboid, Joints, Limb, MotionLimits, Phase, PlanError, PlanSettings, Robot, Stage,
+    Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_return,
 };
 use messages::pick::Pick;
 use messages::{MotionPhase, PickId, PickPhase};
@@ -46,6 +46,16 @@ pub(crate) enum Refusal {
     Plan(#[from] PlanError),
 }
 
+/// Start of a plan.
+struct Start {
+    /// Steps before it.
+    steps: VecDeque<Step>,
+    /// Arms after those steps.
+    arms: [Joints; 2],
+    /// Obstacles.
+    obstacles: Vec<Cuboid>,
+}
+
 /// Last seconds of an approach, in which the fingers must already be open.
 const DESCENT_S: f64 = 1.0;
 /// Pause after opening the fingers, seconds.
@@ -73,12 +83,12 @@ impl Planner<'_> {
         })?;
         self.refuse_other(plan.limb())?;
         let mut steps = start.steps;
-        let stages = plan.timeline.stages();
+        let stages = plan.stages();
         if steps.is_empty() {
             steps.extend(self.open_first(plan.limb(), stages[0].motion.duration_s()));
         }
         steps.iter_mut().for_each(|step| step.phase = Some(PickPhase::Moving));
-        steps.extend(stages.iter().map(|stage| self.pick_step(stage)));
+        steps.extend(stages.iter().map(|stage| self.step(stage)));
         Ok(Program { purpose: Purpose::Pick(pick.id), limb: plan.limb(), steps })
     }
 
@@ -87,11 +97,11 @@ impl Planner<'_> {
         let object = self.world.place(held.object).ok_or(Refusal::NoPlace)?;
         let in_gripper = from_array(&held.in_gripper);
         let others = self.world.obstacles(self.state, None);
-        let arms = self.arms();
+        let arms = &self.measured.posture.joints;
         let plan = self.with_reduced_margin(|settings| {
-            plan_delivery(self.robot, object, &in_gripper, held.limb, &arms, &others, settings)
+            plan_delivery(self.robot, object, &in_gripper, held.limb, arms, &others, settings)
         })?;
-        let steps = plan.timeline.stages().iter().map(|stage| self.pick_step(stage)).collect();
+        let steps = plan.stages().iter().map(|stage| self.step(stage)).collect();
         Ok(Program { purpose: Purpose::Pick(pick), limb: held.limb, steps })
     }
 
@@ -114,12 +124,7 @@ impl Planner<'_> {
         })?;
         self.refuse_other(plan.limb())?;
         let mut steps = start.steps;
-        steps.push_back(Step {
-            kind: MotionPhase::Aim,
-            phase: None,
-            motion: plan.timeline.stages()[0].motion.clone(),
-            fingers: Fingers::Open(0.0),
-        });
+        steps.push_back(self.step(&plan.stages()[0]));
         Ok(Program { purpose: Purpose::Aim(object), limb: plan.limb(), steps })
     }
 
@@ -137,9 +142,9 @@ impl Planner<'_> {
         })?;
         let holds = self.state.held.is_some_and(|held| held.limb == limb);
         let mut steps = start.steps;
-        steps.extend(plan.timeline.stages().iter().map(|stage| Step {
+        steps.extend(plan.stages().iter().map(|stage| Step {
             fingers: if holds { Fingers::Stay } else { Fingers::Open(stage.width_m.1) },
-            ..self.pick_step(stage)
+            ..self.step(stage)
         }));
         Ok(Program { purpose: Purpose::Return, limb, steps })
     }
@@ -176,19 +181,14 @@ impl Planner<'_> {
         self.robot.arm(limb).limits.at_speed_ratio(self.settings.speed_ratio)
     }
 
-    fn arms(&self) -> Arms {
-        let [left, right] = self.measured.posture.joints;
-        Arms { left, right }
-    }
-
     fn tip(&self, limb: Limb) -> Translation3<f64> {
-        self.robot.arm(limb).chain.forward(&self.measured.posture.joints[side(limb)]).translation
+        self.robot.arm(limb).chain.forward(&self.measured.posture.joints[limb]).translation
     }
 
     /// Returns a pause before an approach in which fingers that start now would not open in time.
     fn open_first(&self, limb: Limb, approach_s: f64) -> Option<Step> {
         let short_s = self.opening_s(limb) + DESCENT_S - approach_s;
-        let q = &self.measured.posture.joints[side(limb)];
+        let q = &self.measured.posture.joints[limb];
         (short_s > 0.0 && self.opening_s(limb) > 0.0).then(|| Step {
             motion: Trajectory::hold(q, short_s, &self.limits(limb)),
             ..self.opening(limb)
@@ -196,7 +196,7 @@ impl Planner<'_> {
     }
 
     fn opening_s(&self, limb: Limb) -> f64 {
-        let width_m = self.measured.posture.width_m[side(limb)];
+        let width_m = self.measured.posture.width_m[limb];
         gripper::seconds_between(width_m, self.settings.open_width_m)
     }
 
@@ -204,29 +204,17 @@ impl Planner<'_> {
     fn opening(&self, limb: Limb) -> Step {
         let travel_s = self.opening_s(limb);
         let seconds = if travel_s > 0.0 { travel_s + SETTLE_S } else { 0.0 };
-        let q = &self.measured.posture.joints[side(limb)];
+        let q = &self.measured.posture.joints[limb];
         let motion = Trajectory::hold(q, seconds, &self.limits(limb));
         let fingers = Fingers::Open(self.settings.open_width_m);
         Step { kind: MotionPhase::Clear, phase: None, motion, fingers }
     }
-}
 
-/// Start of a plan.
-struct Start {
-    /// Steps before it.
-    steps: VecDeque<Step>,
-    /// Arms after those steps.
-    arms: Arms,
-    /// Obstacles.
-    obstacles: Vec<Cuboid>,
-}
-
-impl Planner<'_> {
     /// Returns the start of a plan: with a limb that is away from rest clear of every object, and `rise_m`
     /// higher than it is. It may stand among them, stopped or killed on its way down; what it then
     /// touches it leaves as it came, straight up with open fingers.
     fn start(&self, fetched: Option<ObjectId>, rise_m: f64) -> Start {
-        let mut arms = self.arms();
+        let mut arms = self.measured.posture.joints;
         let mut steps = VecDeque::new();
         let away = Limb::BOTH.into_iter().find(|limb| !self.measured.is_at_rest(self.robot, *limb));
         let others = self.world.obstacles(self.state, fetched);
@@ -235,12 +223,12 @@ impl Planner<'_> {
             let holds = self.state.held.is_some();
             let opening = self.opening(limb);
             let fingers = if holds { Fingers::Stay } else { opening.fingers };
-            *arms.of_mut(limb) = up.end();
+            arms[limb] = up.end();
             steps.extend((!holds && opening.motion.duration_s() > 0.0).then_some(opening));
             steps.push_back(Step { kind: MotionPhase::Clear, phase: None, motion: up, fingers });
         }
         // An object that it still touches cannot be an obstacle.
-        let shape = ArmShape::at(self.robot.arm(limb), arms.of(limb));
+        let shape = ArmShape::at(self.robot.arm(limb), &arms[limb]);
         let obstacles = others.into_iter().filter(|cuboid| !touches(&shape, cuboid)).collect();
         Start { steps, arms, obstacles }
     }
@@ -248,7 +236,7 @@ impl Planner<'_> {
     /// Straight up from the objects that the limb touches, and at least by `rise_m`, as far as the
     /// limb can.
     fn up(&self, limb: Limb, rise_m: f64) -> Option<Trajectory> {
-        let q = &self.measured.posture.joints[side(limb)];
+        let q = &self.measured.posture.joints[limb];
         let shape = ArmShape::at(self.robot.arm(limb), q);
         let chain = &self.robot.arm(limb).chain;
         let pose = chain.forward(q);
@@ -262,25 +250,19 @@ impl Planner<'_> {
         })?;
         Trajectory::through(&line, BLEND_RAD, &self.limits(limb)).ok()
     }
-}
 
-fn touches(shape: &ArmShape<'_>, cuboid: &Cuboid) -> bool {
-    shape.to_cuboid("object", cuboid, 0.0).is_some()
-}
-
-impl Planner<'_> {
-    fn pick_step(&self, stage: &Stage<PickStage>) -> Step {
+    fn step(&self, stage: &Stage) -> Step {
         let (_, width_m) = stage.width_m;
         let (grip, open) = (Fingers::Grip(self.grip(width_m)), Fingers::Open(width_m));
         let (kind, phase, fingers) = match stage.phase {
-            PickStage::Approach => (MotionPhase::Approach, PickPhase::Moving, open),
-            PickStage::Close => (MotionPhase::Close, PickPhase::Closing, grip),
-            PickStage::Lift => (MotionPhase::Lift, PickPhase::Holding, grip),
-            PickStage::HandOver => (MotionPhase::HandOver, PickPhase::Holding, grip),
-            PickStage::Release => (MotionPhase::Release, PickPhase::Holding, open),
-            PickStage::Return => (MotionPhase::Return, PickPhase::Done, open),
+            Phase::Approach => (MotionPhase::Approach, Some(PickPhase::Moving), open),
+            Phase::Close => (MotionPhase::Close, Some(PickPhase::Closing), grip),
+            Phase::Lift => (MotionPhase::Lift, Some(PickPhase::Holding), grip),
+            Phase::HandOver => (MotionPhase::HandOver, Some(PickPhase::Holding), grip),
+            Phase::Release => (MotionPhase::Release, Some(PickPhase::Holding), open),
+            Phase::Aim | Phase::Hold => (MotionPhase::Aim, None, open),
+            Phase::Return => (MotionPhase::Return, None, open),
         };
-        let phase = Some(phase).filter(|phase| *phase != PickPhase::Done);
         Step { kind, phase, motion: stage.motion.clone(), fingers }
     }
 
@@ -292,7 +274,10 @@ impl Planner<'_> {
             .pick
             .map_or(0, |pick| (pick.id.interaction.0 << 16) ^ (u64::from(pick.id.attempt) << 8));
         let mut random = Rng::new(key ^ u64::from(self.state.misses));
-        let uniform = [random.uniform(), random.uniform()];
-        Grip { object_m, offset_m: gripper::placement_error_m(self.grasps.error_m, uniform) }
+        Grip { object_m, offset_m: self.grasps.error_m * random.normal() }
     }
+}
+
+fn touches(shape: &ArmShape<'_>, cuboid: &Cuboid) -> bool {
+    shape.to_cuboid("object", cuboid, 0.0).is_some()
 }

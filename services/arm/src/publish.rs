@@ -2,7 +2,7 @@
 
 use crate::driver::{Measured, Source};
 use crate::executor::{Executor, Purpose};
-use crate::state::{ArmState, side};
+use crate::state::ArmState;
 use crate::world::World;
 use crate::{Fx, Out};
 use manipulation::{JOINTS, Limb, gripper};
@@ -18,7 +18,7 @@ const WORLD_EVERY: (Span, Span) = (Span::from_ms(100), Span::from_ms(1_000));
 /// Publishes joints, world and status when they are due.
 pub(crate) struct Publisher {
     /// Limb and joint of each entry of a joint state; none for the head and the torso, which stay.
-    sources: [Option<(usize, usize)>; JOINT_STATE_LEN],
+    sources: [Option<(Limb, usize)>; JOINT_STATE_LEN],
     /// Simulated seconds per second.
     time_scale: f64,
     /// Period of a model's joint states; sensors have their own.
@@ -148,10 +148,10 @@ impl Publisher {
 }
 
 /// Returns limb and joint of a joint state's name.
-fn source(name: &str) -> Option<(usize, usize)> {
+fn source(name: &str) -> Option<(Limb, usize)> {
     let (limb, joint) = name.split_once('_')?;
     let joint = JOINTS.iter().position(|own| *own == joint)?;
-    Some((side(Limb::named(limb)?), joint))
+    Some((Limb::named(limb)?, joint))
 }
 
 /// A periodic timer.
@@ -185,11 +185,11 @@ mod tests {
         let sources: Vec<_> = JOINT_STATE_NAMES.into_iter().filter_map(source).collect();
         for limb in Limb::BOTH {
             for joint in 0..JOINTS.len() {
-                assert!(sources.contains(&(side(limb), joint)));
+                assert!(sources.contains(&(limb, joint)));
             }
         }
-        assert_eq!(source("left_w2"), Some((0, 6)));
-        assert_eq!(source("right_s0"), Some((1, 0)));
+        assert_eq!(source("left_w2"), Some((Limb::Left, 6)));
+        assert_eq!(source("right_s0"), Some((Limb::Right, 0)));
         assert_eq!(source("torso_t0"), None);
         assert_eq!(sources.len(), 14);
     }

@@ -3,7 +3,7 @@
 //! last in memory.
 
 use crate::Config;
-use crate::state::{ArmState, Record, side};
+use crate::state::{ArmState, Record};
 use manipulation::Limb;
 use messages::pick::Pick;
 use messages::{PickOutcome, PickPhase};
@@ -46,13 +46,9 @@ pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, Node
         || ArmState::first(&config.setup.robot, config.scene.key(), config.setup.plan.open_width_m);
     let state = records.pop().map_or_else(first, |record| record.state);
     let within = |limb: &Limb| {
-        config.setup.robot.arm(*limb).chain.limits().within(&state.posture.joints[side(*limb)])
+        config.setup.robot.arm(*limb).chain.limits().within(&state.posture.joints[*limb])
     };
-    match Limb::BOTH
-        .into_iter()
-        .find(|limb| !within(limb))
-        .map(|limb| state.posture.joints[side(limb)])
-    {
+    match Limb::BOTH.into_iter().find(|limb| !within(limb)).map(|limb| state.posture.joints[limb]) {
         None => Ok(state),
         Some(q) => Err(NodeError {
             what: format!("the journal has an arm at {q:?} rad, outside its joint limits"),

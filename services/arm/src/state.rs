@@ -121,15 +121,7 @@ impl ArmState {
 impl Posture {
     /// Returns whether the limb is in its neutral posture, each joint to `accuracy_rad`.
     pub fn is_at_rest(&self, robot: &Robot, limb: Limb, accuracy_rad: f64) -> bool {
-        let (joints, neutral) = (&self.joints[side(limb)], &robot.arm(limb).neutral);
+        let (joints, neutral) = (&self.joints[limb], &robot.arm(limb).neutral);
         joints.iter().zip(neutral).all(|(q, rest)| (q - rest).abs() < accuracy_rad)
-    }
-}
-
-/// Index of a limb where both are listed.
-pub(crate) fn side(limb: Limb) -> usize {
-    match limb {
-        Limb::Left => 0,
-        Limb::Right => 1,
     }
 }

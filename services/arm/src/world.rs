@@ -1,11 +1,11 @@
 //! Places of the objects: where they stood, in a gripper, or taken.
 
 use crate::driver::Measured;
-use crate::state::{ArmState, Held, side};
-use manipulation::{Cuboid, Limb, ObjectPose, Robot, attached_pose};
+use crate::state::{ArmState, Held};
+use manipulation::{Cuboid, Limb, ObjectPose, Robot};
 use messages::WorldView;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
-use scene::{ObjectId, Placement, Scene};
+use scene::{ObjectId, Scene};
 use service::Time;
 
 /// The objects' places in the scene.
@@ -17,7 +17,8 @@ pub(crate) struct World {
 
 impl World {
     pub(crate) fn new(robot: &Robot, scene: &Scene) -> Self {
-        let places = scene.objects().iter().map(|object| object.placement.as_ref().map(place));
+        let places =
+            scene.objects().iter().map(|object| object.placement.as_ref().map(preflight::pose));
         Self { robot: robot.clone(), places: places.collect() }
     }
 
@@ -52,7 +53,7 @@ impl World {
         limb: Limb,
         measured: &Measured,
     ) -> Option<Held> {
-        let gripper = self.robot.arm(limb).chain.forward(&measured.posture.joints[side(limb)]);
+        let gripper = self.robot.arm(limb).chain.forward(&measured.posture.joints[limb]);
         let in_gripper = gripper.inverse() * self.place(object)?.isometry();
         Some(Held { object, limb, in_gripper: to_array(&in_gripper) })
     }
@@ -60,8 +61,7 @@ impl World {
     /// Returns the world view for clients.
     pub(crate) fn view(&self, state: &ArmState, measured: &Measured, now: Time) -> WorldView {
         let joints = &measured.posture.joints;
-        let grippers =
-            Limb::BOTH.map(|limb| self.robot.arm(limb).chain.forward(&joints[side(limb)]));
+        let grippers = Limb::BOTH.map(|limb| self.robot.arm(limb).chain.forward(&joints[limb]));
         let mut objects: Vec<Option<[f64; 7]>> =
             self.places.iter().map(|p| p.as_ref().map(|p| to_array(&p.isometry()))).collect();
         let mut put = |object: ObjectId, pose| {
@@ -71,7 +71,7 @@ impl World {
         };
         state.gone.iter().for_each(|object| put(*object, None));
         if let Some(held) = &state.held {
-            let pose = attached_pose(&grippers[side(held.limb)], &from_array(&held.in_gripper));
+            let pose = grippers[held.limb] * from_array(&held.in_gripper);
             put(held.object, Some(to_array(&pose)));
         }
         WorldView {
@@ -80,15 +80,6 @@ impl World {
             held: state.held.map(|held| held.object.0),
             grippers: grippers.map(|gripper| to_array(&gripper)),
         }
-    }
-}
-
-fn place(placement: &Placement) -> ObjectPose {
-    ObjectPose {
-        xyz_m: placement.xyz,
-        yaw_rad: placement.yaw,
-        size_m: placement.size,
-        grasp_width_m: placement.grasp_width,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use manipulation::gripper;
 use manipulation::{Limb, ObjectPose};
-use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use nalgebra::Isometry3;
 use scene::Scene;
 use serde::{Deserialize, Serialize};
 
@@ -35,14 +35,8 @@ pub struct ObjectWorld {
 impl ObjectWorld {
     /// Returns the scene's objects in their places.
     pub fn new(scene: &Scene) -> Self {
-        let pose = |p: &scene::Placement| ObjectPose {
-            xyz_m: p.xyz,
-            yaw_rad: p.yaw,
-            size_m: p.size,
-            grasp_width_m: p.grasp_width,
-        };
         let places: Vec<_> =
-            scene.objects().iter().map(|o| o.placement.as_ref().map(pose)).collect();
+            scene.objects().iter().map(|o| o.placement.as_ref().map(preflight::pose)).collect();
         let stands = |place: &Option<ObjectPose>| match place {
             Some(place) => Whereabouts::Stands(place.xyz_m),
             None => Whereabouts::Gone,
@@ -73,14 +67,14 @@ impl ObjectWorld {
 
     /// A limb has taken hold of the object.
     pub fn take(&mut self, object: usize, limb: Limb) {
-        self.now[object] = Whereabouts::Held(number(limb));
+        self.now[object] = Whereabouts::Held(limb as u8);
     }
 
     /// A limb with its gripper at `tip` lets go: a person takes what is held up, and what is not
     /// stands below the gripper.
     pub fn let_go(&mut self, limb: Limb, tip: &Isometry3<f64>) {
         for (now, place) in self.now.iter_mut().zip(&self.places) {
-            let Some(place) = place.filter(|_| *now == Whereabouts::Held(number(limb))) else {
+            let Some(place) = place.filter(|_| *now == Whereabouts::Held(limb as u8)) else {
                 continue;
             };
             let top_m = place.top_z_m() + HANDED_OVER_M;
@@ -103,19 +97,12 @@ impl ObjectWorld {
 
     /// Returns the object that a limb holds.
     pub fn held(&self, limb: Limb) -> Option<usize> {
-        self.now.iter().position(|now| *now == Whereabouts::Held(number(limb)))
+        self.now.iter().position(|now| *now == Whereabouts::Held(limb as u8))
     }
 }
 
 /// Position and quaternion of a pose: x, y, z, x, y, z, w.
 pub fn to_array(pose: &Isometry3<f64>) -> [f64; 7] {
-    let (Translation3 { vector: p }, r) = (pose.translation, UnitQuaternion::from(pose.rotation));
+    let (p, r) = (pose.translation, pose.rotation);
     [p.x, p.y, p.z, r.i, r.j, r.k, r.w]
-}
-
-fn number(limb: Limb) -> u8 {
-    match limb {
-        Limb::Left => 0,
-        Limb::Right => 1,
-    }
 }

@@ -2,8 +2,8 @@
 
 use crate::Out;
 use crate::object_world::to_array;
-use crate::robot::{Robot, side};
-use manipulation::{Limb, gripper};
+use crate::robot::Robot;
+use manipulation::Limb;
 use messages::FixedText;
 use messages::robot::{EndEffectorProperties, EndpointState, JointState, Measurement, UiType};
 use messages::{JOINT_STATE_NAMES, WireError};
@@ -28,7 +28,7 @@ pub(crate) fn all(robot: &mut Robot, beat: u64, now: Time) -> Vec<Out> {
         reports.push(Out::Endpoint(limb, Box::new(endpoint(robot, limb, now))));
         if beat.is_multiple_of(GRIPPER_BEATS) {
             let enabled = robot.assembly.is_enabled();
-            let state = robot.fingers[side(limb)].state(now.ns(), enabled);
+            let state = robot.fingers[limb].state(now.ns(), enabled);
             reports.push(Out::Gripper(limb, Box::new(state)));
         }
         if beat.is_multiple_of(PROPERTIES_BEATS) {
@@ -45,10 +45,10 @@ fn joint_states(robot: &mut Robot, now: Time) -> Vec<Result<JointState, WireErro
     for limb in Limb::BOTH {
         let names = robot.config.robot.arm(limb).joint_names.clone();
         for (j, name) in names.into_iter().enumerate() {
-            let servo = &robot.servos[side(limb)];
+            let servo = &robot.servos[limb];
             let (q, qd) = (servo.q[j], servo.qd[j]);
-            let q = q + noise_rad * normal(&mut robot.random);
-            let qd = qd + VELOCITY_NOISE * noise_rad * normal(&mut robot.random);
+            let q = q + noise_rad * robot.random.normal();
+            let qd = qd + VELOCITY_NOISE * noise_rad * robot.random.normal();
             measured.push((name, [q, qd, 0.0]));
         }
     }
@@ -67,7 +67,7 @@ fn joint_states(robot: &mut Robot, now: Time) -> Vec<Result<JointState, WireErro
 
 /// Pose and velocity of the gripper's tip; the model feels no forces.
 fn endpoint(robot: &Robot, limb: Limb, now: Time) -> EndpointState {
-    let servo = &robot.servos[side(limb)];
+    let servo = &robot.servos[limb];
     let (frame, jacobian) = robot.config.robot.arm(limb).chain.tool_and_jacobian(&servo.q);
     let twist = jacobian * SVector::<f64, 7>::from(servo.qd);
     EndpointState {
@@ -94,9 +94,4 @@ fn properties(limb: Limb) -> EndEffectorProperties {
         serial_number: FixedText::truncated(limb.name()),
         ..EndEffectorProperties::default()
     }
-}
-
-/// Returns a standard normal number.
-fn normal(random: &mut dialogue::Rng) -> f64 {
-    gripper::placement_error_m(1.0, [random.uniform(), random.uniform()])
 }

@@ -74,7 +74,7 @@ impl Robot {
         Self {
             servos: Limb::BOTH.map(|limb| {
                 let limits = &config.robot.arm(limb).limits;
-                Servo::at(body.joints[side(limb)], limits, config.simulated.lag_s)
+                Servo::at(body.joints[limb], limits, config.simulated.lag_s)
             }),
             fingers: body.fingers,
             assembly: body.assembly,
@@ -116,9 +116,9 @@ impl Robot {
             _ if !self.assembly.is_enabled() => {}
             In::Joints(limb, command) => self.command(*limb, command),
             In::FeedForward(limb, point) => self.feed_forward(*limb, point),
-            In::SpeedRatio(limb, ratio) => self.servos[side(*limb)].set_speed_ratio(ratio.data),
+            In::SpeedRatio(limb, ratio) => self.servos[*limb].set_speed_ratio(ratio.data),
             In::Gripper(limb, command) => {
-                let event = self.fingers[side(*limb)].command(command);
+                let event = self.fingers[*limb].command(command);
                 event.into_iter().for_each(|event| self.react(*limb, event));
             }
         }
@@ -133,13 +133,13 @@ impl Robot {
         }
         let moves = self.assembly.is_enabled();
         for limb in Limb::BOTH {
-            let servo = &mut self.servos[side(limb)];
+            let servo = &mut self.servos[limb];
             if moves && now >= self.obstructed_until {
                 servo.advance(seconds);
             } else {
                 servo.brake();
             }
-            if moves && let Some(event) = self.fingers[side(limb)].advance(seconds) {
+            if moves && let Some(event) = self.fingers[limb].advance(seconds) {
                 self.react(limb, event);
             }
         }
@@ -157,7 +157,7 @@ impl Robot {
         let target = JointMode::from_code(command.mode).and_then(|mode| {
             let joints = &self.config.robot.arm(limb).joint_names;
             let mut values = match mode {
-                JointMode::Position => self.servos[side(limb)].q,
+                JointMode::Position => self.servos[limb].q,
                 JointMode::Velocity => [0.0; 7],
             };
             for (name, value) in command.joints()? {
@@ -172,29 +172,28 @@ impl Robot {
             })
         });
         match target {
-            Ok(target) => self.servos[side(limb)].command(target),
+            Ok(target) => self.servos[limb].command(target),
             Err(error) => tracing::warn!(%error, "a joint command that makes no sense is ignored"),
         }
     }
 
     fn feed_forward(&mut self, limb: Limb, point: &JointTrajectoryPoint) {
         if point.velocities.iter().all(|v| v.is_finite()) {
-            self.servos[side(limb)].feed_forward(&point.velocities);
+            self.servos[limb].feed_forward(&point.velocities);
         }
     }
 
     fn react(&mut self, limb: Limb, event: Event) {
-        let i = side(limb);
-        let tip = self.config.robot.arm(limb).chain.forward(&self.servos[i].q);
+        let tip = self.config.robot.arm(limb).chain.forward(&self.servos[limb].q);
         match event {
             Event::Closes => {
                 self.closings += 1;
                 let missed = self.misses > 0;
                 self.misses = self.misses.saturating_sub(1);
                 let offset_m = self.placement_error_m();
-                let opening_m = self.fingers[i].width_m;
+                let opening_m = self.fingers[limb].width_m;
                 let found = self.objects.between(&tip, opening_m, offset_m).filter(|_| !missed);
-                self.fingers[i].meet(found.map(|(_, width_m)| width_m));
+                self.fingers[limb].meet(found.map(|(_, width_m)| width_m));
             }
             Event::Holds => {
                 let wide_m = gripper::STROKE_M;
@@ -209,8 +208,7 @@ impl Robot {
     /// Returns the offset of the object from its place at this closing, metres.
     fn placement_error_m(&self) -> f64 {
         let mut random = Rng::new(self.config.simulated.seed ^ (self.closings << 32));
-        let uniform = [random.uniform(), random.uniform()];
-        gripper::placement_error_m(self.config.grasp_error_m, uniform)
+        self.config.grasp_error_m * random.normal()
     }
 
     fn drill(&mut self, drill: &Drill, now: Time) {
@@ -233,17 +231,9 @@ impl Robot {
     }
 
     fn rests(&self, limb: Limb) -> bool {
-        let q = &self.servos[side(limb)].q;
+        let q = &self.servos[limb].q;
         q.iter()
             .zip(&self.config.robot.arm(limb).neutral)
             .all(|(q, rest)| (q - rest).abs() < AT_REST_RAD)
-    }
-}
-
-/// Index of a limb where both are listed.
-pub fn side(limb: Limb) -> usize {
-    match limb {
-        Limb::Left => 0,
-        Limb::Right => 1,
     }
 }

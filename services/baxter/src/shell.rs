@@ -1,6 +1,5 @@
 //! The simulated robot's topics and configuration.
 
-use crate::robot::side;
 use crate::{BaxterNode, Config, In, Out};
 use config::Settings;
 use manipulation::Limb;
@@ -80,11 +79,10 @@ impl Shell<BaxterNode> for BaxterShell {
     fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
         self.drills.drain(|drill| take(In::Drill(*drill)))?;
         for limb in Limb::BOTH {
-            let i = side(limb);
-            self.ratios[i].drain(|ratio| take(In::SpeedRatio(limb, *ratio)))?;
-            self.commands[i].drain(|command| take(In::Joints(limb, Box::new(*command))))?;
-            self.feed_forward[i].drain(|point| take(In::FeedForward(limb, Box::new(*point))))?;
-            self.fingers[i].drain(|command| take(In::Gripper(limb, Box::new(*command))))?;
+            self.ratios[limb].drain(|ratio| take(In::SpeedRatio(limb, *ratio)))?;
+            self.commands[limb].drain(|command| take(In::Joints(limb, Box::new(*command))))?;
+            self.feed_forward[limb].drain(|point| take(In::FeedForward(limb, Box::new(*point))))?;
+            self.fingers[limb].drain(|command| take(In::Gripper(limb, Box::new(*command))))?;
         }
         Ok(())
     }
@@ -93,9 +91,9 @@ impl Shell<BaxterNode> for BaxterShell {
         match output {
             Out::Joints(state) => self.joints.send(&state),
             Out::Assembly(state) => self.assembly.send(&state),
-            Out::Endpoint(limb, state) => self.endpoints[side(limb)].send(&state),
-            Out::Gripper(limb, state) => self.grippers[side(limb)].send(&state),
-            Out::Properties(limb, own) => self.properties[side(limb)].send(&own),
+            Out::Endpoint(limb, state) => self.endpoints[limb].send(&state),
+            Out::Gripper(limb, state) => self.grippers[limb].send(&state),
+            Out::Properties(limb, own) => self.properties[limb].send(&own),
         }
     }
 }

@@ -29,6 +29,23 @@ impl Rng {
         (self.next_u64() >> 11) as f64 * STEP
     }
 
+    /// Uniform between two numbers.
+    pub fn between(&mut self, (low, high): (f64, f64)) -> f64 {
+        low + (high - low) * self.uniform()
+    }
+
+    /// Standard normal (Box and Muller 1958).
+    pub fn normal(&mut self) -> f64 {
+        // In (0, 1], so that the logarithm is finite.
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        radius * (std::f64::consts::TAU * self.uniform()).cos()
+    }
+
+    /// Log-normal with that median and standard deviation of the logarithm.
+    pub fn log_normal(&mut self, median: f64, log_sd: f64) -> f64 {
+        median * (log_sd * self.normal()).exp()
+    }
+
     /// Uniform in `0..bound`; the bias of the multiply-and-shift is below `bound / 2^64`.
     ///
     /// # Panics
@@ -66,5 +83,15 @@ mod tests {
         }
         assert!((sum / 6_000.0 - 0.5).abs() < 0.02, "mean {}", sum / 6_000.0);
         assert!(seen.iter().all(|&count| (900..1_100).contains(&count)), "{seen:?}");
+    }
+
+    #[test]
+    fn log_normal_numbers_have_their_moments() {
+        let mut rng = Rng::new(11);
+        let logs: Vec<f64> = (0..20_000).map(|_| rng.log_normal(0.9, 0.55).ln()).collect();
+        let mean = logs.iter().sum::<f64>() / 20_000.0;
+        let variance = logs.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 20_000.0;
+        assert!((mean - 0.9_f64.ln()).abs() < 0.02, "{mean}");
+        assert!((variance.sqrt() - 0.55).abs() < 0.02, "{variance}");
     }
 }

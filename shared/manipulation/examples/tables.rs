@@ -3,7 +3,7 @@
 //! `cargo run --release -p manipulation --example tables [TABLES] [SEED]`.
 #![expect(clippy::print_stdout, reason = "printing figures is what this example is for")]
 
-#[path = "../tests/support/mod.rs"]
+#[path = "../tests/plans/support/mod.rs"]
 mod support;
 
 use std::time::Instant;
@@ -38,7 +38,7 @@ fn scene(scene: &str) {
             println!("{scene} {name}: rejected");
             continue;
         };
-        let aim_s = pointed.timeline.stages()[0].motion.duration_s();
+        let aim_s = pointed.stages()[0].motion.duration_s();
         println!(
             "{scene} {name}: {} {:.2} s ({:.1} ms), {} {aim_s:.2} s ({:.1} ms)",
             picked.limb(),

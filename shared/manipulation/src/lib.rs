@@ -19,27 +19,26 @@
 //!
 //! Start at [`Robot`], then [`plan_pick`].
 
-pub mod baxter;
 mod collision;
 pub mod gripper;
 mod kinematics;
 mod planning;
+mod random;
 mod robot;
 #[cfg(test)]
 mod samples;
 mod trajectory;
 
 pub use collision::{ArmShape, Capsule, Clearance, Cuboid, Gap};
-pub use gripper::attached_pose;
 pub use kinematics::chain::{Axis, Chain, Frame, Jacobian, LineError, ZeroPosture};
 pub use kinematics::inverse::{IkSolution, TOLERANCE_M, TOLERANCE_RAD, Unreachable};
-pub use kinematics::limb::{Arms, JOINTS, Joints, Limb};
+pub use kinematics::limb::{JOINTS, Joints, Limb};
 pub use kinematics::limits::{self, MotionLimits, PositionLimits};
 pub use planning::{
-    Grasp, GraspError, ObjectPose, PickPhase, PickPlan, PlanError, PlanSettings, PointPhase,
-    PointPlan, check_reachable, plan_delivery, plan_pick, plan_point, plan_return,
+    Grasp, GraspError, ObjectPose, PlanError, PlanSettings, check_reachable, plan_delivery,
+    plan_pick, plan_point, plan_return,
 };
 pub use robot::{Arm, Robot, Unsuitable};
 pub use trajectory::{
-    INTERVALS_MIN, Moment, Path, Stage, State, Timeline, Trajectory, TrajectoryError,
+    INTERVALS_MIN, Moment, Path, Phase, Stage, State, Timeline, Trajectory, TrajectoryError,
 };

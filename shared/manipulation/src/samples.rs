@@ -2,28 +2,13 @@
 
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 
-use crate::baxter::tool;
-use crate::kinematics::chain::Chain;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::kinematics::limits::MotionLimits;
 use crate::robot::{Arm, Robot};
 
-/// A small generator (xorshift); tests name its seed when they fail.
-pub(crate) struct Random(u64);
+pub(crate) use crate::random::Random;
 
 impl Random {
-    pub(crate) fn seeded(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1)
-    }
-
-    /// Uniform in [0, 1).
-    pub(crate) fn unit(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
@@ -71,12 +56,6 @@ pub(crate) fn named(limb: Limb, name: &str) -> Joints {
         let joint = description.joint(&names[i]).expect("a joint");
         posture.position(joint.child - 1).expect("its position")
     })
-}
-
-/// Returns the limb with its tool frame at `tool_m` past the hand, metres.
-pub(crate) fn with_tool(limb: Limb, tool_m: f64) -> Chain {
-    let chain = &arm(limb).chain;
-    chain.with_tool(&Translation3::new(0.0, 0.0, tool_m - tool::ELECTRIC_EXTENDED_M).into())
 }
 
 /// Returns a file of the reference.

@@ -12,7 +12,6 @@
 //! | durations of speech: robot, person, recogniser | `speech.rs` |
 //! | durations of every question and pick in a scene | `measure.rs` |
 
-mod draw;
 mod load;
 mod measure;
 mod motion;
@@ -24,9 +23,9 @@ mod testing;
 #[cfg(test)]
 mod tests;
 
-pub use draw::{between, log_normal};
 pub use load::{durations, load};
 pub use measure::measure;
 pub use motion::{Extent, MotionError, Motions, Refusal};
+pub use reach::pose;
 pub use setup::ArmSetup;
 pub use speech::{Pace, Voice};

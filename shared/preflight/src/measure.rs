@@ -38,7 +38,7 @@ mod tests {
     use crate::Extent;
     use crate::testing::bowls;
     use dialogue::{Model, Params};
-    use manipulation::{PickPhase, PlanSettings, PointPhase, Robot, plan_pick, plan_point};
+    use manipulation::{PlanSettings, Robot};
 
     #[test]
     fn questions_take_the_seconds_of_their_words_and_of_the_answer() {
@@ -57,25 +57,17 @@ mod tests {
     }
 
     #[test]
-    fn pointing_and_picking_take_the_seconds_of_their_trajectories() {
+    fn pointing_and_picking_take_the_seconds_of_their_motions() {
         let scene = bowls();
-        let (voice, pace) = (Voice::default(), Pace::default());
-        let (robot, settings) = (Robot::baxter(), PlanSettings::default());
-        let motions = Motions::plan(robot, &scene, None, &settings, Extent::FromRest).unwrap();
+        let (voice, pace, settings) = (Voice::default(), Pace::default(), PlanSettings::default());
+        let motions =
+            Motions::plan(Robot::baxter(), &scene, None, &settings, Extent::FromRest).unwrap();
         let durations = measure(&scene, &voice, &pace, Some(&motions));
-        let places = crate::motion::places(&scene).unwrap();
-        for i in 0..6 {
-            let others = |except| (0..6).filter(move |j| Some(*j) != except);
-            let cuboids = |except| others(except).map(|j| places[j].cuboid()).collect::<Vec<_>>();
-            let (rest, at) = (&robot.neutral(), &places[i]);
-            let pick = plan_pick(robot, at, None, rest, &cuboids(Some(i)), &settings).unwrap();
-            let released_s = pick.timeline.span_s(PickPhase::Release).unwrap().1;
-            assert_eq!(durations.pick_s(i.into()), Some(released_s));
-            let aim = plan_point(robot, at.xyz_m, None, rest, &cuboids(None), &settings).unwrap();
-            let aimed_s = aim.timeline.span_s(PointPhase::Aim).unwrap().1;
-            let question = Question::Point(i.into());
-            let said_s = voice.seconds(&scene.phrase(question)) + pace.mean_answer_s();
-            assert_eq!(durations.question_s(question), Some(aimed_s + said_s));
+        for i in (0..6).map(ObjectId::from) {
+            assert_eq!(durations.pick_s(i), Some(motions.pick_s(None, i)));
+            let said_s = voice.seconds(&scene.phrase(Question::Point(i))) + pace.mean_answer_s();
+            let aimed_s = motions.point_s(None, i).unwrap();
+            assert_eq!(durations.question_s(Question::Point(i)), Some(aimed_s + said_s));
         }
         assert!(durations.point.iter().any(|s| *s != durations.point[0]), "some stand farther");
     }

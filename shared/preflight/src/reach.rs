@@ -112,7 +112,7 @@ fn hand_over_problem(settings: &Settings, error: &PlanError) -> Diagnostic {
 }
 
 /// Converts the placement of a scene's object.
-pub(crate) fn pose(placement: &Placement) -> ObjectPose {
+pub fn pose(placement: &Placement) -> ObjectPose {
     ObjectPose {
         xyz_m: placement.xyz,
         yaw_rad: placement.yaw,

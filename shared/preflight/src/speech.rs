@@ -3,8 +3,6 @@
 use dialogue::Rng;
 use dialogue::user_model::SPOKEN;
 
-use crate::draw::{between, log_normal};
-
 /// The robot's voice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Voice {
@@ -67,18 +65,18 @@ impl Default for Pace {
 impl Pace {
     /// Draws how long it takes to react, seconds.
     pub fn reaction_s(&self, rng: &mut Rng) -> f64 {
-        log_normal(rng, self.reaction_s.0, self.reaction_s.1)
+        rng.log_normal(self.reaction_s.0, self.reaction_s.1)
     }
 
     /// Draws how long a person takes to say so many words, seconds.
     pub fn speech_s(&self, rng: &mut Rng, words: usize) -> f64 {
-        let factor = log_normal(rng, 1.0, self.word_s.1);
+        let factor = rng.log_normal(1.0, self.word_s.1);
         factor * (self.word_s.0 + self.further_word_s * words.saturating_sub(1) as f64)
     }
 
     /// Draws how long the recogniser takes after the last sound, seconds.
     pub fn recogniser_s(&self, rng: &mut Rng) -> f64 {
-        between(rng, self.recogniser_s)
+        rng.between(self.recogniser_s)
     }
 
     /// From a question's end to an answer of one word recognised, seconds, in expectation.

@@ -17,13 +17,12 @@
 //! ```
 
 mod builtin;
-mod chain;
+mod kinematics;
 mod model;
-mod poses;
 mod read;
 
 pub use builtin::{BAXTER_SRDF, BAXTER_URDF};
-pub use chain::{Jacobian, SerialChain, UnknownLink};
+pub use kinematics::{SerialChain, UnknownLink};
 pub use model::{
     Body, Inertial, Joint, JointKind, Limits, Link, Mimic, Posture, Rgba, Robot, Shape,
 };

@@ -172,13 +172,6 @@ impl JointKind {
     }
 }
 
-impl Joint {
-    /// Returns true for a joint that is neither fixed nor mimics another.
-    pub fn is_movable(&self) -> bool {
-        self.kind != JointKind::Fixed && self.mimic.is_none()
-    }
-}
-
 impl Robot {
     /// The robot's name.
     pub fn name(&self) -> &str {
@@ -238,11 +231,6 @@ impl Robot {
     /// first, in the order of the file.
     pub fn may_touch(&self) -> &[(usize, usize)] {
         &self.may_touch
-    }
-
-    /// Returns true if contact between two links (by their indices) is permitted.
-    pub fn is_touch_allowed(&self, a: usize, b: usize) -> bool {
-        self.may_touch.contains(&(a.min(b), a.max(b)))
     }
 }
 

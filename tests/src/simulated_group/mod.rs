@@ -21,7 +21,6 @@ use evaluation::simulation::users::Domain;
 use grounding::GroundingNode;
 use messages::{ActKind, Outcome, PolicyView};
 use policy::PolicyNode;
-use preflight::log_normal;
 use scene::{ObjectId, Scene};
 use service::{Span, Time};
 use speech::{PlaybackEvent, PlaybackRequest, PlaybackState, SpeechNode};
@@ -264,7 +263,7 @@ impl SimulatedGroup {
 
     fn speak(&mut self, line: &PlaybackRequest) {
         self.stop_speaking();
-        let length_s = log_normal(&mut self.rng, self.sentence_s.0, self.sentence_s.1);
+        let length_s = self.rng.log_normal(self.sentence_s.0, self.sentence_s.1);
         self.log(format_args!("robot: {}", line.text));
         let ends = self.now + Span::from_s(length_s);
         self.saying = Some(Saying { playback: line.playback, ends });

@@ -10,7 +10,7 @@ use evaluation::simulation::SimulatedUser;
 use evaluation::simulation::users::{Domain, Manners, Policy, Turn};
 use language::{Language, Reader};
 use messages::{EarState, Outcome, ReceiptStatus};
-use preflight::{Pace, between};
+use preflight::Pace;
 use scene::{Question, Reading, Scene};
 use serde::Serialize;
 use service::client::Client;
@@ -244,7 +244,7 @@ impl Talk {
         let end = self.say(ended + reaction, text, question);
         if self.user.rng().uniform() < SECOND_THOUGHT {
             let text = self.turn(|user, domain| user.answer(domain, Question::None));
-            let pause = Span::from_s(between(self.user.rng(), SECOND_THOUGHT_S));
+            let pause = Span::from_s(self.user.rng().between(SECOND_THOUGHT_S));
             self.thought = Some(Thought { at: end + pause, text });
         }
     }

@@ -13,7 +13,7 @@ mod tests;
 
 use super::{ArmDriver, Command, Fault, Fingers, Measured, Order, Report, Source};
 use crate::Config;
-use crate::state::{ArmState, side};
+use crate::state::ArmState;
 use config::Baxter;
 use gripper::{Condition, Gripper};
 use manipulation::{JOINTS, Joints, Limb, PositionLimits, Robot};
@@ -126,7 +126,7 @@ impl BaxterDriver {
         }
         for limb in Limb::BOTH {
             let limits = &self.robot.arm(limb).limits.position;
-            self.measured.posture.joints[side(limb)] = on_limits(&posture[side(limb)], limits);
+            self.measured.posture.joints[limb] = on_limits(&posture[limb], limits);
         }
         (self.measured.velocity, self.measured.effort) = (velocity, effort);
         let at = stamp.min(now);
@@ -136,10 +136,10 @@ impl BaxterDriver {
     }
 
     /// Limb and joint of a joint's name.
-    fn place(&self, name: &str) -> Option<(usize, usize)> {
+    fn place(&self, name: &str) -> Option<(Limb, usize)> {
         Limb::BOTH.into_iter().find_map(|limb| {
             let names = &self.robot.arm(limb).joint_names;
-            Some((side(limb), names.iter().position(|own| own == name)?))
+            Some((limb, names.iter().position(|own| own == name)?))
         })
     }
 
@@ -180,16 +180,15 @@ impl BaxterDriver {
         matches!(self.inhibit, None | Stale | Gripper | Calibrating)
     }
 
-    fn measured_of(&self, limb: usize) -> Joints {
+    fn measured_of(&self, limb: Limb) -> Joints {
         self.measured.posture.joints[limb]
     }
 
     /// The commands to one limb in this pass.
     fn command_limb(&mut self, limb: Limb, now: Time, orders: &mut Vec<Order>) {
-        let i = side(limb);
-        let q = self.measured_of(i);
-        let (path, moving) = (self.settings.path_tolerance_rad, self.limbs[i].command.is_some());
-        let set = &mut self.limbs[i];
+        let q = self.measured_of(limb);
+        let (path, moving) = (self.settings.path_tolerance_rad, self.limbs[limb].command.is_some());
+        let set = &mut self.limbs[limb];
         set.moved = moving;
         let hold = set.q.unwrap_or(q);
         // A person moved a limb at rest by its cuff: it stays where it was put.
@@ -236,10 +235,9 @@ impl ArmDriver for BaxterDriver {
         if !self.accepts_commands() {
             return;
         }
-        let i = side(command.limb);
-        self.limbs[i].q = Some(command.q);
-        self.limbs[i].command = Some(*command);
-        self.grippers[i].want(command.fingers, self.now);
+        let set = &mut self.limbs[command.limb];
+        (set.q, set.command) = (Some(command.q), Some(*command));
+        self.grippers[command.limb].want(command.fingers, self.now);
     }
 
     fn on_report(&mut self, report: &Report, now: Time) {
@@ -247,14 +245,14 @@ impl ArmDriver for BaxterDriver {
             Report::Joints(state) => self.on_joints(state, now),
             Report::Assembly(state) => self.assembly = Some((*state, now)),
             Report::Gripper(limb, state) => {
-                let gripper = &mut self.grippers[side(*limb)];
+                let gripper = &mut self.grippers[*limb];
                 gripper.on_state(state, now);
                 if let Some(width_m) = gripper.width_m() {
-                    self.measured.posture.width_m[side(*limb)] = width_m;
+                    self.measured.posture.width_m[*limb] = width_m;
                 }
             }
             Report::Properties(limb, properties) => {
-                self.grippers[side(*limb)].on_properties(properties);
+                self.grippers[*limb].on_properties(properties);
             }
         }
     }
@@ -284,7 +282,7 @@ impl ArmDriver for BaxterDriver {
         self.send_ratio(now, &mut orders);
         Limb::BOTH.into_iter().for_each(|limb| self.command_limb(limb, now, &mut orders));
         for limb in Limb::BOTH {
-            let due = self.grippers[side(limb)].due(now);
+            let due = self.grippers[limb].due(now);
             orders.extend(due.map(|message| Order::Gripper(limb, Box::new(message))));
         }
         orders
@@ -296,8 +294,8 @@ impl ArmDriver for BaxterDriver {
 
     fn fault(&self) -> Option<Fault> {
         Limb::BOTH.into_iter().find_map(|limb| {
-            let set = &self.limbs[side(limb)];
-            let (joint, error_rad) = furthest(&set.q?, &self.measured_of(side(limb)));
+            let set = &self.limbs[limb];
+            let (joint, error_rad) = furthest(&set.q?, &self.measured_of(limb));
             let tolerance_rad = self.settings.path_tolerance_rad;
             let left = set.moved && error_rad > tolerance_rad;
             left.then_some(Fault::Path { limb, joint, error_rad, tolerance_rad })
@@ -305,18 +303,19 @@ impl ArmDriver for BaxterDriver {
     }
 
     fn has_arrived(&mut self, command: &Command, late_s: f64) -> Result<bool, Fault> {
-        let (limb, i) = (command.limb, side(command.limb));
-        let (joint, error_rad) = furthest(&command.q, &self.measured_of(i));
+        let limb = command.limb;
+        let (joint, error_rad) = furthest(&command.q, &self.measured_of(limb));
         let tolerance_rad = self.settings.goal_tolerance_rad;
-        let velocity = &self.measured.velocity[i];
+        let velocity = &self.measured.velocity[limb];
         let still = velocity.iter().all(|v| v.abs() < self.settings.still_rad_s);
         // Once it has arrived only the fingers are waited for: noise takes nothing back.
-        let there = error_rad <= tolerance_rad && still || self.limbs[i].arrived == Some(command.q);
-        self.limbs[i].arrived = there.then_some(command.q);
+        let there =
+            error_rad <= tolerance_rad && still || self.limbs[limb].arrived == Some(command.q);
+        self.limbs[limb].arrived = there.then_some(command.q);
         if !there && late_s > self.settings.goal_time_s {
             return Err(Fault::Goal { limb, joint, error_rad, tolerance_rad, late_s });
         }
-        let gripper = &self.grippers[i];
+        let gripper = &self.grippers[limb];
         let done = command.fingers == Fingers::Stay || gripper.has_settled(self.now);
         if there && !done && late_s > FINGERS_MAX_S {
             return Err(Fault::Fingers { limb, late_s });

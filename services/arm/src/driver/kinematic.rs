@@ -1,7 +1,7 @@
 //! The kinematic model of a robot in a simulated world.
 
 use super::{ArmDriver, Command, Fingers, Measured, Source};
-use crate::state::{ArmState, side};
+use crate::state::ArmState;
 use manipulation::gripper;
 
 /// Distance of a joint from the neutral posture that still counts as rest, radians.
@@ -22,7 +22,7 @@ impl KinematicArm {
         let posture = state.posture;
         let mut grip = [None; 2];
         if let Some(held) = &state.held {
-            grip[side(held.limb)] = Some(posture.width_m[side(held.limb)]);
+            grip[held.limb] = Some(posture.width_m[held.limb]);
         }
         let holding = grip.map(|grip| Some(grip.is_some()));
         let still = [[0.0; 7]; 2];
@@ -45,7 +45,7 @@ impl ArmDriver for KinematicArm {
 
     fn command(&mut self, command: &Command, seconds: f64) {
         let Self { measured, grip } = self;
-        let i = side(command.limb);
+        let i = command.limb;
         measured.posture.joints[i] = command.q;
         measured.velocity[i] = command.qd;
         let width_m = &mut measured.posture.width_m[i];

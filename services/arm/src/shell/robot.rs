@@ -1,7 +1,6 @@
 //! The arm's side of the robot's own topics.
 
 use crate::driver::{Order, Report};
-use crate::state::side;
 use manipulation::Limb;
 use messages::robot::{
     AssemblyState, EndEffectorCommand, EndEffectorProperties, EndEffectorState, JointCommand,
@@ -41,19 +40,18 @@ impl RobotTopics {
         // The robot as a whole first: joints mean nothing on one that has been switched off.
         self.assembly.drain(|state| take(Report::Assembly(*state)))?;
         for limb in Limb::BOTH {
-            let i = side(limb);
-            self.properties[i].drain(|own| take(Report::Properties(limb, Box::new(*own))))?;
-            self.grippers[i].drain(|state| take(Report::Gripper(limb, Box::new(*state))))?;
+            self.properties[limb].drain(|own| take(Report::Properties(limb, Box::new(*own))))?;
+            self.grippers[limb].drain(|state| take(Report::Gripper(limb, Box::new(*state))))?;
         }
         self.joints.drain(|state| take(Report::Joints(Box::new(*state))))
     }
 
     pub(super) fn send(&self, order: &Order) -> Result<(), PortError> {
         match order {
-            Order::Joints(limb, command) => self.commands[side(*limb)].send(command),
-            Order::FeedForward(limb, point) => self.feed_forward[side(*limb)].send(point),
-            Order::SpeedRatio(limb, ratio) => self.ratios[side(*limb)].send(ratio),
-            Order::Gripper(limb, command) => self.fingers[side(*limb)].send(command),
+            Order::Joints(limb, command) => self.commands[*limb].send(command),
+            Order::FeedForward(limb, point) => self.feed_forward[*limb].send(point),
+            Order::SpeedRatio(limb, ratio) => self.ratios[*limb].send(ratio),
+            Order::Gripper(limb, command) => self.fingers[*limb].send(command),
         }
     }
 }

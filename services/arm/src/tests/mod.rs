@@ -12,7 +12,7 @@ mod trajectory_view;
 
 use crate::driver::ArmDriver;
 use crate::recover;
-use crate::state::{Record, side};
+use crate::state::Record;
 use crate::{ArmNode, Config, In, Out};
 use config::Settings;
 use manipulation::{Joints, Limb};
@@ -237,7 +237,7 @@ impl Machine {
     }
 
     fn joints_of(&self, limb: Limb) -> Joints {
-        self.robot.posture().joints[side(limb)]
+        self.robot.posture().joints[limb]
     }
 
     fn status(&self) -> ArmStatus {

@@ -2,7 +2,7 @@
 
 use crate::Config;
 use crate::driver::{ArmDriver, Command, Fingers, KinematicArm, Measured};
-use crate::state::{ArmState, Posture, side};
+use crate::state::{ArmState, Posture};
 use manipulation::{Arm, ArmShape, Cuboid, Limb};
 use messages::PickPhase;
 use messages::pick::Pick;
@@ -106,7 +106,7 @@ impl ArmDriver for Robot {
 
     fn command(&mut self, command: &Command, seconds: f64) {
         let mut body = self.0.borrow_mut();
-        let i = side(command.limb);
+        let i = command.limb;
         let before = body.arm.measured();
         body.check(command, &before, seconds);
         let closes = matches!(command.fingers, Fingers::Grip(_));
@@ -129,9 +129,9 @@ impl ArmDriver for Robot {
 impl Body {
     /// Limits are kept, and no motion of a pick comes before its durable phase.
     fn check(&mut self, command: &Command, before: &Measured, seconds: f64) {
-        let from = &before.posture.joints[side(command.limb)];
+        let from = &before.posture.joints[command.limb];
         let mut moved = false;
-        let limits = self.limbs[side(command.limb)].limits;
+        let limits = self.limbs[command.limb].limits;
         if !limits.position.within(&command.q) {
             self.wrongs.push(format!("outside the limits: {:?}", command.q));
         }
@@ -165,7 +165,7 @@ impl Body {
 
     /// The arm touches no object but the one that it fetches.
     fn check_clear(&mut self, command: &Command) {
-        let shape = ArmShape::at(&self.limbs[side(command.limb)], &command.q);
+        let shape = ArmShape::at(&self.limbs[command.limb], &command.q);
         let fetched = self.durable.map(|pick| pick.object.index());
         for (i, object) in self.objects.iter().enumerate().filter(|(i, _)| Some(*i) != fetched) {
             let gap = shape.to_cuboid("object", object, -TOUCH_M);

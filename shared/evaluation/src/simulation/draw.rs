@@ -1,7 +1,6 @@
 //! Random draws, and how the randomness of a study is divided.
 
 use dialogue::Rng;
-pub(crate) use preflight::{between, log_normal};
 
 /// Purpose of a stream of random numbers. Each has its own, so that one more utterance of a user
 /// does not change any duration.
@@ -56,7 +55,5 @@ mod tests {
         assert_eq!(one_of::<u8>(&mut rng, &[]), None);
         assert_eq!(one_of(&mut rng, &[5]), Some(&5));
         assert!(!chance(&mut rng, 0.0) && chance(&mut rng, 1.0));
-        let x = between(&mut rng, (2.0, 3.0));
-        assert!((2.0..3.0).contains(&x));
     }
 }

@@ -36,13 +36,6 @@ impl Capsule {
         segment_to_segment(self, other) - self.radius - other.radius
     }
 
-    /// Signed distance to a ball.
-    pub fn to_ball(&self, centre: &Vector3<f64>, radius: f64) -> f64 {
-        let d = self.b - self.a;
-        let t = (centre - self.a).dot(&d) / d.norm_squared().max(1e-18);
-        (self.a + d * t.clamp(0.0, 1.0) - centre).norm() - self.radius - radius
-    }
-
     /// Signed distance to an upright box.
     pub fn to_cuboid(&self, cuboid: &Cuboid) -> f64 {
         let half = Vector3::from(cuboid.size) * 0.5;

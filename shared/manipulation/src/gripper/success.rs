@@ -12,7 +12,7 @@ use std::f64::consts::{PI, SQRT_2};
 
 /// Returns the largest offset from the middle of fingers `opening_m` apart for an object of width `object_m`,
 /// metres; none for one that is too wide.
-pub fn tolerance_m(opening_m: f64, object_m: f64) -> Option<f64> {
+fn tolerance_m(opening_m: f64, object_m: f64) -> Option<f64> {
     (object_m <= opening_m).then_some(0.5 * (opening_m - object_m))
 }
 
@@ -36,13 +36,6 @@ pub fn success_probability(opening_m: f64, object_m: f64, error_m: f64) -> f64 {
         Some(_) if error_m <= 0.0 => 1.0,
         Some(tolerance_m) => erf(tolerance_m / (SQRT_2 * error_m)),
     }
-}
-
-/// Returns a placement error with standard deviation `error_m`, metres, from two numbers that are
-/// uniform in `[0, 1)` (Box and Muller 1958).
-pub fn placement_error_m(error_m: f64, uniform: [f64; 2]) -> f64 {
-    let [u, v] = uniform;
-    error_m * (-2.0 * (1.0 - u).ln()).sqrt() * (2.0 * PI * v).cos()
 }
 
 /// Returns the error function, for arguments that are not negative: its Taylor series about zero
@@ -106,7 +99,9 @@ mod tests {
         let mut caught = 0;
         for u in 0..side {
             for v in 0..side {
-                let offset_m = placement_error_m(error_m, [grid(u), grid(v)]);
+                // A placement error from two uniform numbers (Box and Muller 1958).
+                let radius_m = error_m * (-2.0 * (1.0 - grid(u)).ln()).sqrt();
+                let offset_m = radius_m * (2.0 * PI * grid(v)).cos();
                 caught += i32::from(catches(opening_m, object_m, offset_m));
             }
         }

@@ -1,6 +1,7 @@
 //! Limbs, and the names and order of their joints.
 
 use std::fmt;
+use std::ops::{Index, IndexMut};
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +12,7 @@ pub type Joints = [f64; 7];
 /// everything in Baxter's own interface except its alphabetical joint-state message.
 pub const JOINTS: [&str; 7] = ["s0", "s1", "e0", "e1", "w0", "w1", "w2"];
 
-/// One of Baxter's two arms.
+/// One of Baxter's two arms. Pairs of what each arm has, left first, are indexed by it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Limb {
@@ -54,23 +55,9 @@ impl Limb {
         }
     }
 
-    /// Returns the joint's full name, e.g. `left_s0`.
-    ///
-    /// # Panics
-    /// If `i` is above 6.
-    pub fn joint_name(self, i: usize) -> String {
-        format!("{self}_{}", JOINTS[i])
-    }
-
     /// Returns the seven full joint names in the order of [`Joints`].
     pub fn joint_names(self) -> [String; 7] {
         JOINTS.map(|joint| format!("{self}_{joint}"))
-    }
-
-    /// Returns the posture reflected in the xz plane: what the other limb does when this one does
-    /// `q`.
-    pub fn mirror(q: &Joints) -> Joints {
-        [-q[0], q[1], -q[2], q[3], -q[4], q[5], -q[6]]
     }
 }
 
@@ -80,31 +67,23 @@ impl fmt::Display for Limb {
     }
 }
 
-/// Joint positions of both arms, radians.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arms {
-    /// The left arm's.
-    pub left: Joints,
-    /// The right arm's.
-    pub right: Joints,
+impl<T> Index<Limb> for [T; 2] {
+    type Output = T;
+
+    fn index(&self, limb: Limb) -> &T {
+        &self[limb as usize]
+    }
 }
 
-impl Arms {
-    /// One arm's joint positions.
-    pub fn of(&self, limb: Limb) -> &Joints {
-        match limb {
-            Limb::Left => &self.left,
-            Limb::Right => &self.right,
-        }
+impl<T> IndexMut<Limb> for [T; 2] {
+    fn index_mut(&mut self, limb: Limb) -> &mut T {
+        &mut self[limb as usize]
     }
+}
 
-    /// One arm's joint positions, to be changed.
-    pub fn of_mut(&mut self, limb: Limb) -> &mut Joints {
-        match limb {
-            Limb::Left => &mut self.left,
-            Limb::Right => &mut self.right,
-        }
-    }
+/// Returns the Euclidean distance of two postures, radians.
+pub(crate) fn distance(a: &Joints, b: &Joints) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]
@@ -113,7 +92,6 @@ mod tests {
 
     #[test]
     fn names_are_baxters() {
-        assert_eq!(Limb::Left.joint_name(0), "left_s0");
         assert_eq!(Limb::Right.joint_names()[6], "right_w2");
         assert_eq!(serde_json::to_string(&Limb::Right).unwrap(), "\"right\"");
         assert_eq!(serde_json::from_str::<Limb>("\"left\"").unwrap(), Limb::Left);
@@ -122,12 +100,5 @@ mod tests {
             assert_eq!(limb.other().other(), limb);
         }
         assert_eq!(Limb::named("Left"), None);
-    }
-
-    #[test]
-    fn mirroring_twice_changes_nothing() {
-        let q = [0.1, -0.2, 0.3, 0.4, -0.5, 0.6, -0.7];
-        assert_eq!(Limb::mirror(&Limb::mirror(&q)), q);
-        assert_ne!(Limb::mirror(&q), q);
     }
 }

@@ -4,14 +4,14 @@ use nalgebra::{Isometry3, Translation3};
 
 use super::error::PlanError;
 use super::fetch::{ABOVE, Carry, HAND_OVER, HOME};
-use super::pick::{PickPhase, PickPlan, planning_scene};
+use super::pick::planning_scene;
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
 use crate::gripper;
-use crate::kinematics::limb::{Arms, Joints, Limb};
+use crate::kinematics::limb::{Joints, Limb};
 use crate::planning::grasp::ObjectPose;
 use crate::robot::Robot;
-use crate::trajectory::{Stage, Timeline, Trajectory, refuse_outside};
+use crate::trajectory::{Phase, Stage, Timeline, Trajectory, refuse_outside};
 
 /// Waypoints of a straight line left out at its upper end, so that the corner there has room: 3 cm.
 pub(crate) const CORNER: usize = 6;
@@ -32,10 +32,10 @@ pub fn plan_delivery(
     object: &ObjectPose,
     object_in_gripper: &Isometry3<f64>,
     limb: Limb,
-    arms: &Arms,
+    arms: &[Joints; 2],
     others: &[Cuboid],
     settings: &PlanSettings,
-) -> Result<PickPlan, PlanError> {
+) -> Result<Timeline, PlanError> {
     let scene = planning_scene(robot, object, limb, arms, others, settings)?;
     let carrying = scene.carrying(object, object_in_gripper);
     let held = scene.chain.forward(&scene.q);
@@ -47,8 +47,7 @@ pub fn plan_delivery(
     })?;
     let width_m = gripper::closed_on(object.grasp_width_m);
     let stages = deliver(&scene, &carrying, lift, width_m, Search::Yes)?;
-    let timeline = Timeline::new(limb, stages);
-    Ok(PickPlan { timeline, grasp: None, object_in_gripper: *object_in_gripper })
+    Ok(Timeline::new(limb, stages))
 }
 
 /// Returns the rise left before the gripper may leave the object's place, metres; 0 elsewhere.
@@ -73,24 +72,23 @@ pub(crate) fn still_to_lift_m(
 pub fn plan_return(
     robot: &Robot,
     limb: Limb,
-    arms: &Arms,
+    arms: &[Joints; 2],
     others: &[Cuboid],
     settings: &PlanSettings,
-) -> Result<PickPlan, PlanError> {
+) -> Result<Timeline, PlanError> {
     let chain = &robot.arm(limb).chain;
-    refuse_outside(chain.limits(), arms.of(limb))?;
-    let at = chain.forward(arms.of(limb)).translation;
+    refuse_outside(chain.limits(), &arms[limb])?;
+    let at = chain.forward(&arms[limb]).translation;
     // Whatever the arm is over now it has reached down to without touching.
     let place = ([at.x, at.y, at.z], at.z - BELOW_TIP_M);
     let scene = PlanningScene::new(robot, limb, arms, others, place, settings);
     let way = home(&scene, &scene.q, Search::Yes)?;
     let stage = Stage {
-        phase: PickPhase::Return,
+        phase: Phase::Return,
         motion: scene.motion(HOME, &way)?,
         width_m: (settings.open_width_m, settings.open_width_m),
     };
-    let timeline = Timeline::new(limb, vec![stage]);
-    Ok(PickPlan { timeline, grasp: None, object_in_gripper: Isometry3::identity() })
+    Ok(Timeline::new(limb, vec![stage]))
 }
 
 /// Lift, hand over, release and return, from the low end of `lift`: `carrying` the object, and
@@ -101,7 +99,7 @@ pub(crate) fn deliver(
     lift: Vec<Joints>,
     width_m: f64,
     search: Search,
-) -> Result<Vec<Stage<PickPhase>>, PlanError> {
+) -> Result<Vec<Stage>, PlanError> {
     let above = lift[lift.len() - 1];
     let carry = Carry::find(carrying, &above, search)?;
     let mut waypoints = lift[..lift.len().saturating_sub(CORNER).max(1)].to_vec();
@@ -114,10 +112,10 @@ pub(crate) fn deliver(
     let home = scene.motion(HOME, &home(scene, carry.end(), search)?)?;
     let closed = (width_m, width_m);
     Ok(vec![
-        Stage { phase: PickPhase::Lift, motion: lift, width_m: closed },
-        Stage { phase: PickPhase::HandOver, motion: hand_over, width_m: closed },
-        fingers(scene, PickPhase::Release, carry.end(), (width_m, open_m)),
-        Stage { phase: PickPhase::Return, motion: home, width_m: (open_m, open_m) },
+        Stage { phase: Phase::Lift, motion: lift, width_m: closed },
+        Stage { phase: Phase::HandOver, motion: hand_over, width_m: closed },
+        fingers(scene, Phase::Release, carry.end(), (width_m, open_m)),
+        Stage { phase: Phase::Return, motion: home, width_m: (open_m, open_m) },
     ])
 }
 
@@ -142,10 +140,30 @@ fn home(
 
 pub(crate) fn fingers(
     scene: &PlanningScene<'_>,
-    phase: PickPhase,
+    phase: Phase,
     q: &Joints,
     (from_m, to_m): (f64, f64),
-) -> Stage<PickPhase> {
+) -> Stage {
     let seconds = gripper::seconds_between(from_m, to_m) + SETTLE_S;
     Stage { phase, motion: Trajectory::hold(q, seconds, &scene.limits), width_m: (from_m, to_m) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_raised_gripper_needs_no_lift() {
+        let object = ObjectPose {
+            xyz_m: [0.68, -0.15, -0.148],
+            yaw_rad: 0.3,
+            size_m: [0.14, 0.014, 0.014],
+            grasp_width_m: 0.014,
+        };
+        let settings = PlanSettings::default();
+        let far = Isometry3::translation(0.2, 0.6, 0.3);
+        assert_eq!(still_to_lift_m(&object, &far, &settings), 0.0);
+        let lift = still_to_lift_m(&object, &object.isometry(), &settings);
+        assert!((lift - settings.hover_m - 0.007).abs() < 1e-9);
+    }
 }

@@ -12,14 +12,12 @@ mod planning_scene;
 mod point;
 mod posture;
 mod static_obstacles;
-#[cfg(test)]
-mod tests;
 
 pub use check::check_reachable;
 pub use deliver::{plan_delivery, plan_return};
 pub use error::PlanError;
 pub use grasp::{Grasp, GraspError, ObjectPose};
-pub use pick::{PickPhase, PickPlan, plan_pick};
+pub use pick::plan_pick;
 pub use planning_scene::PlanSettings;
-pub use point::{PointPhase, PointPlan, plan_point};
+pub use point::plan_point;
 pub(crate) use static_obstacles::Obstacle;

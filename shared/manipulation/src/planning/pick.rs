@@ -1,8 +1,5 @@
 //! Fetching an object: approach, close, lift, hand over, release, return.
 
-use nalgebra::Isometry3;
-use serde::{Deserialize, Serialize};
-
 use super::choices::{Choice, Choices};
 use super::deliver::{CORNER, deliver, fingers};
 use super::error::{Furthest, PlanError};
@@ -10,61 +7,10 @@ use super::fetch::{ABOVE, GRASP, Hold};
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
 use crate::gripper;
-use crate::kinematics::limb::{Arms, Joints, Limb};
-use crate::planning::grasp::{Grasp, ObjectPose};
+use crate::kinematics::limb::{Joints, Limb};
+use crate::planning::grasp::ObjectPose;
 use crate::robot::Robot;
-use crate::trajectory::{Moment, Stage, Timeline, Trajectory, refuse_outside};
-
-/// The stages of a pick, in order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PickPhase {
-    /// To above the object and straight down to it, fingers opening.
-    Approach,
-    /// The fingers close.
-    Close,
-    /// Straight up.
-    Lift,
-    /// To where the person takes the object.
-    HandOver,
-    /// The fingers open.
-    Release,
-    /// Back to the neutral posture.
-    Return,
-}
-
-/// A pick, from the arm's present posture to neutral, checked along its whole length.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PickPlan {
-    /// The stages in time.
-    pub timeline: Timeline<PickPhase>,
-    /// Grasp of the object; `None` for a plan that only returns.
-    pub grasp: Option<Grasp>,
-    /// The object's pose in the gripper's frame from the end of `Close` to the start of `Release`.
-    pub object_in_gripper: Isometry3<f64>,
-}
-
-impl PickPlan {
-    /// Returns the limb that fetches.
-    pub fn limb(&self) -> Limb {
-        self.timeline.limb()
-    }
-
-    /// Returns the duration of the whole, seconds.
-    pub fn duration_s(&self) -> f64 {
-        self.timeline.duration_s()
-    }
-
-    /// Returns the state `t_s` seconds after the start.
-    pub fn at(&self, t_s: f64) -> Moment<PickPhase> {
-        self.timeline.at(t_s)
-    }
-
-    /// Returns whether the object moves with the gripper in this phase.
-    pub fn carries(phase: PickPhase) -> bool {
-        matches!(phase, PickPhase::Lift | PickPhase::HandOver)
-    }
-}
+use crate::trajectory::{Phase, Stage, Timeline, Trajectory, refuse_outside};
 
 /// Choices that are tried.
 const TRIES: usize = 64;
@@ -77,7 +23,7 @@ const COMPARED_LOW: usize = 10;
 /// Choices for which ways are searched for at length.
 const SEARCHED: usize = 8;
 
-/// Plans to fetch `object` with the arms at `arms`: with `limb`, or with the better one. `others` is
+/// Plans a pick, from `arms` (both arms' postures) to neutral and checked along its whole length: with `limb`, or with the better one. `others` is
 /// everything else that stands around; neither the arm nor what it holds touches any of it.
 ///
 /// Limbs, grasps and postures are tried in the order of their cost (seconds, closeness to joint
@@ -90,19 +36,19 @@ pub fn plan_pick(
     robot: &Robot,
     object: &ObjectPose,
     limb: Option<Limb>,
-    arms: &Arms,
+    arms: &[Joints; 2],
     others: &[Cuboid],
     settings: &PlanSettings,
-) -> Result<PickPlan, PlanError> {
+) -> Result<Timeline, PlanError> {
     let scenes = planning_scenes(robot, object, limb, arms, others, settings)?;
     let mut furthest = Furthest::default();
     let mut choices = Choices::new(object, &scenes, &mut furthest)?;
-    let (mut best, mut found, mut lost) = (None::<(f64, PickPlan)>, 0, Vec::new());
+    let (mut best, mut found, mut lost) = (None::<(f64, Timeline)>, 0, Vec::new());
     for _ in 0..TRIES {
         let Some(choice) = choices.next(&mut furthest) else { break };
         match choice.plan(object, Search::No) {
             Ok(plan) => {
-                let low_s = choice.scene.plan_lowness_s(&plan.timeline);
+                let low_s = choice.scene.plan_lowness_s(&plan);
                 let cost_s = plan.duration_s() + low_s;
                 if best.as_ref().is_none_or(|(least_s, _)| cost_s < *least_s) {
                     best = Some((cost_s, plan));
@@ -141,7 +87,7 @@ pub(crate) fn planning_scenes<'a>(
     robot: &'a Robot,
     object: &ObjectPose,
     limb: Option<Limb>,
-    arms: &Arms,
+    arms: &[Joints; 2],
     others: &[Cuboid],
     settings: &'a PlanSettings,
 ) -> Result<Vec<PlanningScene<'a>>, PlanError> {
@@ -159,22 +105,21 @@ pub(crate) fn planning_scene<'a>(
     robot: &'a Robot,
     object: &ObjectPose,
     limb: Limb,
-    arms: &Arms,
+    arms: &[Joints; 2],
     others: &[Cuboid],
     settings: &'a PlanSettings,
 ) -> Result<PlanningScene<'a>, PlanError> {
-    refuse_outside(robot.arm(limb).chain.limits(), arms.of(limb))?;
+    refuse_outside(robot.arm(limb).chain.limits(), &arms[limb])?;
     let bottom = object.bottom_z_m();
     let scene = PlanningScene::new(robot, limb, arms, others, (object.xyz_m, bottom), settings);
     Ok(scene.with_board_under(&object.cuboid()))
 }
 
 impl Choice<'_> {
-    fn plan(&self, object: &ObjectPose, search: Search) -> Result<PickPlan, (usize, PlanError)> {
+    fn plan(&self, object: &ObjectPose, search: Search) -> Result<Timeline, (usize, PlanError)> {
         let scene = self.scene;
         let carrying = self.carrying(object);
         let hold = self.hold(&carrying)?;
-        let limb = scene.limb;
         let way = scene
             .way(&scene.q, hold.above(), search)
             .ok_or_else(|| (5, scene.no_path(ABOVE, &scene.q, hold.above())))?;
@@ -185,15 +130,11 @@ impl Choice<'_> {
         let approach = approach(scene, &way, &hold).map_err(|error| (7, error))?;
         let open_m = scene.settings.open_width_m;
         let mut stages = vec![
-            Stage { phase: PickPhase::Approach, motion: approach, width_m: (open_m, open_m) },
-            fingers(scene, PickPhase::Close, hold.grasp(), (open_m, width_m)),
+            Stage { phase: Phase::Approach, motion: approach, width_m: (open_m, open_m) },
+            fingers(scene, Phase::Close, hold.grasp(), (open_m, width_m)),
         ];
         stages.extend(delivery);
-        Ok(PickPlan {
-            timeline: Timeline::new(limb, stages),
-            grasp: Some(self.grasp),
-            object_in_gripper: self.grasp.object_in_gripper(object),
-        })
+        Ok(Timeline::new(scene.limb, stages))
     }
 }
 

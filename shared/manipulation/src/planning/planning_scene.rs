@@ -5,12 +5,11 @@ use nalgebra::{Isometry3, UnitQuaternion};
 use super::error::PlanError;
 use super::held_object::Held;
 use super::static_obstacles::{self, Obstacle};
-use crate::baxter::DEFAULT_SPEED_RATIO;
 use crate::collision::Cuboid;
 use crate::collision::block::Block;
 use crate::collision::{ArmShape, Gap};
 use crate::kinematics::chain::Chain;
-use crate::kinematics::limb::{Arms, Joints, Limb};
+use crate::kinematics::limb::{Joints, Limb};
 use crate::kinematics::limits::MotionLimits;
 use crate::planning::grasp::ObjectPose;
 use crate::robot::{Arm, Robot};
@@ -43,7 +42,8 @@ pub struct PlanSettings {
 impl Default for PlanSettings {
     fn default() -> Self {
         Self {
-            speed_ratio: DEFAULT_SPEED_RATIO,
+            // The SDK's default.
+            speed_ratio: 0.3,
             hover_m: 0.15,
             hand_over_xyz_m: [0.80, 0.30, 0.22],
             table_z_m: -0.155,
@@ -87,7 +87,7 @@ impl<'a> PlanningScene<'a> {
     pub(crate) fn new(
         robot: &'a Robot,
         limb: Limb,
-        arms: &Arms,
+        arms: &[Joints; 2],
         others: &[Cuboid],
         (place_m, lowest_z_m): ([f64; 3], f64),
         settings: &'a PlanSettings,
@@ -100,10 +100,10 @@ impl<'a> PlanningScene<'a> {
             arm,
             chain: &arm.chain,
             limits: arm.limits.at_speed_ratio(settings.speed_ratio),
-            q: *arms.of(limb),
+            q: arms[limb],
             settings,
             other_arm: robot.arm(limb.other()),
-            other: ArmShape::at(robot.arm(limb.other()), arms.of(limb.other())),
+            other: ArmShape::at(robot.arm(limb.other()), &arms[limb.other()]),
             surroundings,
             board: None,
             held: None,

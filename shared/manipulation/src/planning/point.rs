@@ -3,49 +3,15 @@
 use std::f64::consts::PI;
 
 use nalgebra::{Isometry3, Rotation3, Translation3, UnitQuaternion, Vector3};
-use serde::{Deserialize, Serialize};
 
 use super::error::{Furthest, PlanError};
 use super::fetch::HOME;
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
 use crate::kinematics::chain::positive;
-use crate::kinematics::limb::{Arms, Joints, Limb};
+use crate::kinematics::limb::{Joints, Limb};
 use crate::robot::Robot;
-use crate::trajectory::{Stage, Timeline, Trajectory, refuse_outside};
-
-/// The stages of pointing, in order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PointPhase {
-    /// To where the gripper looks at the object.
-    Aim,
-    /// Still.
-    Hold,
-    /// Back to the neutral posture.
-    Return,
-}
-
-/// Pointing, from the arm's present posture to neutral.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PointPlan {
-    /// The stages in time.
-    pub timeline: Timeline<PointPhase>,
-    /// Pose of the gripper while it points, in `base`.
-    pub gripper: Isometry3<f64>,
-}
-
-impl PointPlan {
-    /// Returns the limb that points.
-    pub fn limb(&self) -> Limb {
-        self.timeline.limb()
-    }
-
-    /// Returns the duration of the whole, seconds.
-    pub fn duration_s(&self) -> f64 {
-        self.timeline.duration_s()
-    }
-}
+use crate::trajectory::{Phase, Stage, Timeline, Trajectory, refuse_outside};
 
 /// Pitch of the gripper towards the object, radians from the horizontal, best first.
 const ELEVATIONS: [f64; 4] = [0.9, 0.6, 1.2, PI / 2.0];
@@ -77,16 +43,16 @@ pub fn plan_point(
     robot: &Robot,
     target_m: [f64; 3],
     limb: Option<Limb>,
-    arms: &Arms,
+    arms: &[Joints; 2],
     others: &[Cuboid],
     settings: &PlanSettings,
-) -> Result<PointPlan, PlanError> {
+) -> Result<Timeline, PlanError> {
     let mut furthest = Furthest::default();
     let mut choices = Vec::new();
     let sides = Limb::BOTH.into_iter().filter(|side| limb.is_none_or(|limb| limb == *side));
     let scenes: Vec<_> = sides
         .map(|side| {
-            refuse_outside(robot.arm(side).chain.limits(), arms.of(side))?;
+            refuse_outside(robot.arm(side).chain.limits(), &arms[side])?;
             let place = (target_m, target_m[2] - LOWER_M);
             Ok(PlanningScene::new(robot, side, arms, others, place, settings))
         })
@@ -96,7 +62,7 @@ pub fn plan_point(
             match scene.chain.nearest(&gripper, &scene.q) {
                 Ok(solution) => {
                     let cost_s = scene.cost_s(&scene.q, &solution.q);
-                    choices.push((cost_s + 0.3 * rank, scene, gripper, solution.q));
+                    choices.push((cost_s + 0.3 * rank, scene, solution.q));
                 }
                 Err(missed) => {
                     let (limb, distance_m) = (scene.limb, missed.position_error_m);
@@ -107,15 +73,15 @@ pub fn plan_point(
     }
     choices.sort_by(|a, b| a.0.total_cmp(&b.0));
     choices.truncate(TRIES);
-    for (cost_s, scene, _, q) in &mut choices {
+    for (cost_s, scene, q) in &mut choices {
         // What is blocked is refused, with its reason, when it is tried.
         *cost_s += scene.crowding_s(q).unwrap_or(0.0);
     }
     choices.sort_by(|a, b| a.0.total_cmp(&b.0));
     for search in [Search::No, Search::Yes] {
-        let plans = choices.iter().filter_map(|(_, scene, gripper, q)| {
-            let tried = point_from(scene, *gripper, q, search)
-                .map(|plan| (plan.duration_s() + scene.plan_lowness_s(&plan.timeline), plan));
+        let plans = choices.iter().filter_map(|(_, scene, q)| {
+            let tried = point_from(scene, q, search)
+                .map(|plan| (plan.duration_s() + scene.plan_lowness_s(&plan), plan));
             tried.map_err(|(progress, error)| furthest.add(progress, error)).ok()
         });
         let compared = if search == Search::No { COMPARED } else { 1 };
@@ -129,10 +95,9 @@ pub fn plan_point(
 
 fn point_from(
     scene: &PlanningScene<'_>,
-    gripper: Isometry3<f64>,
     q: &Joints,
     search: Search,
-) -> Result<PointPlan, (usize, PlanError)> {
+) -> Result<Timeline, (usize, PlanError)> {
     let limb = scene.limb;
     if let Some(gap) = scene.blocked(q) {
         return Err((1, PlanError::Blocked { at: AIM, limb, gap }));
@@ -145,12 +110,9 @@ fn point_from(
     let home = scene.motion(HOME, &back).map_err(|error| (4, error))?;
     let still = Trajectory::hold(q, scene.settings.point_s, &scene.limits);
     let stage = |phase, motion| Stage { phase, motion, width_m: (0.0, 0.0) };
-    let stages = vec![
-        stage(PointPhase::Aim, aim),
-        stage(PointPhase::Hold, still),
-        stage(PointPhase::Return, home),
-    ];
-    Ok(PointPlan { timeline: Timeline::new(limb, stages), gripper })
+    let stages =
+        vec![stage(Phase::Aim, aim), stage(Phase::Hold, still), stage(Phase::Return, home)];
+    Ok(Timeline::new(limb, stages))
 }
 
 /// Poses of the gripper that point at `target`, each with its penalty.

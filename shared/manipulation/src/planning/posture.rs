@@ -52,7 +52,7 @@ impl PlanningScene<'_> {
     }
 
     /// Returns the cost of the lowest elbow of a whole plan, seconds.
-    pub(crate) fn plan_lowness_s<P: Copy + PartialEq>(&self, timeline: &Timeline<P>) -> f64 {
+    pub(crate) fn plan_lowness_s(&self, timeline: &Timeline) -> f64 {
         let looks = (timeline.duration_s() / LOOK_S).ceil() as usize;
         let cost_s = |k: usize| self.lowness_s(&timeline.at(k as f64 * LOOK_S).q);
         // What the arm begins with is not the plan's to choose.

@@ -1,13 +1,13 @@
 //! A robot for the kinematics from its description.
 
 use std::collections::BTreeSet;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{Isometry3, Point3, Vector3};
 use robot_model::{Body as Shaped, Joint, JointKind, Limits, Robot as Description, Shape};
 
-use super::{Body, Parts, Robot};
-use crate::collision::{Capsule, Cuboid};
+use super::{Arm, Body, Enclosure, Robot, pairs};
+use crate::collision::{ArmShape, Capsule, Cuboid};
 use crate::kinematics::chain::{Axis, Chain, ZeroPosture};
 use crate::kinematics::limb::{Joints, Limb};
 use crate::kinematics::limits::{MotionLimits, PositionLimits};
@@ -41,9 +41,9 @@ impl Robot {
     /// # Errors
     /// [`Unsuitable`] names what is missing.
     pub fn from_description(description: &Description) -> Result<Self, Unsuitable> {
-        let left = parts(description, Limb::Left)?;
-        let right = parts(description, Limb::Right)?;
-        Ok(Self::new(description.clone(), left, right, body(description)?))
+        let body = Arc::new(body(description)?);
+        let [left, right] = Limb::BOTH.map(|limb| arm(description, limb, &body));
+        Ok(Self { description: Arc::new(description.clone()), limbs: Arc::new([left?, right?]) })
     }
 }
 
@@ -60,7 +60,7 @@ impl Chain {
     }
 }
 
-fn parts(description: &Description, limb: Limb) -> Result<Parts, Unsuitable> {
+fn arm(description: &Description, limb: Limb, body: &Arc<Body>) -> Result<Arm, Unsuitable> {
     let tip = format!("{limb}_gripper");
     let joints = joints(description, &tip)?;
     let of = |f: &dyn Fn(&Limits) -> f64| joints.map(|joint| joint.limits.as_ref().map_or(0.0, f));
@@ -71,15 +71,21 @@ fn parts(description: &Description, limb: Limb) -> Result<Parts, Unsuitable> {
         of(&acceleration),
         of(&|limits| limits.jerk.unwrap_or_else(|| JERK_PER_S * acceleration(limits))),
     );
-    Ok(Parts {
-        posture: posture(description, &joints, &tip),
+    let chain = Chain::new(&posture(description, &joints, &tip), limits.position);
+    let enclosures = enclosures(description, limb, &joints, &chain)?;
+    let mut arm = Arm {
+        limb,
+        joint_names: joints.map(|joint| joint.name.clone()),
+        pairs: pairs(&chain, &enclosures, &may_touch(description, limb)),
+        chain,
         limits,
-        names: joints.map(|joint| joint.name.clone()),
         neutral: named(description, limb, "neutral", &joints)?,
-        via_postures: via_postures(description, limb, &joints),
-        capsules: capsules(description, limb, &joints)?,
-        may_touch: may_touch(description, limb),
-    })
+        via_postures: Vec::new(),
+        enclosures,
+        body: Arc::clone(body),
+    };
+    arm.via_postures = via_postures(description, &joints, &arm);
+    Ok(arm)
 }
 
 /// Returns the seven joints that move `tip`, shoulder first.
@@ -140,9 +146,15 @@ fn named(
     }
 }
 
-fn via_postures(description: &Description, limb: Limb, joints: &[&Joint; 7]) -> Vec<Joints> {
-    let of_limb = description.postures().iter().filter(|posture| posture.group == group(limb));
-    of_limb.filter_map(|posture| named(description, limb, &posture.name, joints).ok()).collect()
+/// Returns the limb's named postures in which it is clear of itself and of the body.
+fn via_postures(description: &Description, joints: &[&Joint; 7], arm: &Arm) -> Vec<Joints> {
+    let clear = |q: &Joints| {
+        let shape = ArmShape::at(arm, q);
+        !shape.to_itself(0.0).is_some() && !shape.to_trunk(0.0).is_some()
+    };
+    let of_limb = description.postures().iter().filter(|posture| posture.group == group(arm.limb));
+    let named = of_limb.filter_map(|own| named(description, arm.limb, &own.name, joints).ok());
+    named.filter(clear).collect()
 }
 
 /// Returns the last of the limb's joints that moves a link.
@@ -156,21 +168,26 @@ fn mover(description: &Description, joints: &[&Joint; 7], mut link: usize) -> Op
     None
 }
 
-fn capsules(
+/// Returns the capsules round the limb's links, each in the frame of the joint that moves it.
+fn enclosures(
     description: &Description,
     limb: Limb,
     joints: &[&Joint; 7],
-) -> Result<Vec<(usize, &'static str, Capsule)>, Unsuitable> {
+    chain: &Chain,
+) -> Result<Vec<Enclosure>, Unsuitable> {
     let poses = description.poses(|_| 0.0);
-    let mut capsules = Vec::new();
+    let frames = chain.frames(&[0.0; 7]);
+    let mut enclosures = Vec::new();
     for (index, link) in description.links().iter().enumerate() {
         let Some(joint) = mover(description, joints, index) else { continue };
+        let local = |p: Vector3<f64>| frames[joint].seen(&(p - frames[joint].origin));
         for shaped in &link.collision {
-            let capsule = enclosing(shaped, &poses[index], &link.name)?;
-            capsules.push((joint, kept(short(limb, &link.name)), capsule));
+            let Capsule { a, b, radius } = enclosing(shaped, &poses[index], &link.name)?;
+            let capsule = Capsule { a: local(a), b: local(b), radius };
+            enclosures.push(Enclosure { joint, link: kept(short(limb, &link.name)), capsule });
         }
     }
-    Ok(capsules)
+    Ok(enclosures)
 }
 
 /// Shapes of the body.

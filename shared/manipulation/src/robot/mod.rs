@@ -6,14 +6,11 @@ mod tests;
 
 use std::sync::{Arc, LazyLock};
 
-use nalgebra::Vector3;
-
 use robot_model::Robot as Description;
 
-use crate::collision::ArmShape;
 use crate::collision::{Capsule, Cuboid};
-use crate::kinematics::chain::{Chain, ZeroPosture};
-use crate::kinematics::limb::{Arms, Joints, Limb};
+use crate::kinematics::chain::Chain;
+use crate::kinematics::limb::{Joints, Limb};
 use crate::kinematics::limits::MotionLimits;
 
 pub use describe::Unsuitable;
@@ -67,19 +64,6 @@ pub(crate) struct Body {
     pub(crate) capsules: Vec<(&'static str, Capsule)>,
 }
 
-/// Parts of a limb.
-struct Parts {
-    posture: ZeroPosture,
-    limits: MotionLimits,
-    names: [String; 7],
-    neutral: Joints,
-    via_postures: Vec<Joints>,
-    /// Capsules with the joint that moves them and their link's name, in `base` at zero.
-    capsules: Vec<(usize, &'static str, Capsule)>,
-    /// Pairs of links that may touch.
-    may_touch: Vec<(String, String)>,
-}
-
 impl Robot {
     /// Returns the robot that whichone ships: Baxter with its electric grippers and extended
     /// fingers.
@@ -90,13 +74,6 @@ impl Robot {
         &BAXTER
     }
 
-    fn new(description: Description, left: Parts, right: Parts, body: Body) -> Self {
-        let body = Arc::new(body);
-        let arms = [(Limb::Left, left), (Limb::Right, right)];
-        let limbs = Arc::new(arms.map(|(limb, parts)| Arm::new(limb, parts, &body)));
-        Self { description: Arc::new(description), limbs }
-    }
-
     /// Description with every link and its shape.
     pub fn description(&self) -> &Description {
         &self.description
@@ -104,50 +81,16 @@ impl Robot {
 
     /// One of its limbs.
     pub fn arm(&self, limb: Limb) -> &Arm {
-        match limb {
-            Limb::Left => &self.limbs[0],
-            Limb::Right => &self.limbs[1],
-        }
+        &self.limbs[limb]
     }
 
     /// Both limbs at rest.
-    pub fn neutral(&self) -> Arms {
-        let [left, right] = Limb::BOTH.map(|limb| self.arm(limb).neutral);
-        Arms { left, right }
+    pub fn neutral(&self) -> [Joints; 2] {
+        self.limbs.each_ref().map(|arm| arm.neutral)
     }
 }
 
 impl Arm {
-    fn new(limb: Limb, parts: Parts, body: &Arc<Body>) -> Self {
-        let chain = Chain::new(&parts.posture, parts.limits.position);
-        let frames = chain.frames(&[0.0; 7]);
-        let enclosures = parts.capsules.into_iter().map(|(joint, link, capsule)| {
-            let local = |p: &Vector3<f64>| frames[joint].seen(&(p - frames[joint].origin));
-            let capsule = Capsule { a: local(&capsule.a), b: local(&capsule.b), ..capsule };
-            Enclosure { joint, link, capsule }
-        });
-        let enclosures: Vec<Enclosure> = enclosures.collect();
-        let pairs = pairs(&chain, &enclosures, &parts.may_touch);
-        let mut arm = Self {
-            limb,
-            joint_names: parts.names,
-            chain,
-            limits: parts.limits,
-            neutral: parts.neutral,
-            via_postures: parts.via_postures,
-            enclosures,
-            pairs,
-            body: Arc::clone(body),
-        };
-        let clear = |q: &Joints| {
-            let shape = ArmShape::at(&arm, q);
-            !shape.to_itself(0.0).is_some() && !shape.to_trunk(0.0).is_some()
-        };
-        let via_postures = arm.via_postures.iter().copied().filter(clear).collect();
-        arm.via_postures = via_postures;
-        arm
-    }
-
     /// Returns the enclosing capsules at `q`, in `base`.
     pub(crate) fn capsules(&self, q: &Joints) -> Vec<Capsule> {
         placed(&self.chain, &self.enclosures, q)

@@ -1,8 +1,7 @@
-use std::f64::consts::FRAC_PI_2;
-
 use nalgebra::Isometry3;
 
 use super::*;
+use crate::kinematics::chain::Geometry;
 use crate::kinematics::inverse::{TOLERANCE_M, TOLERANCE_RAD};
 use crate::samples::{Random, difference, fixture, neutral, robot};
 
@@ -18,14 +17,18 @@ fn others() -> [Chain; 2] {
     [iiwa, &askew].map(|urdf| Chain::from_description(&described(urdf), "flange").unwrap())
 }
 
+fn is_closed_form(chain: &Chain) -> bool {
+    matches!(chain.geometry(), Geometry::Alternating(_))
+}
+
 #[test]
 fn robot_limits_and_postures_match_the_data_sheet() {
     let facts: toml::Table = fixture("baxter_facts.toml").parse().unwrap();
     let joints = facts["joint"].as_array().unwrap();
     for limb in Limb::BOTH {
         let arm = robot().arm(limb);
+        assert_eq!(arm.joint_names, limb.joint_names());
         for (i, name) in arm.joint_names.iter().enumerate() {
-            assert_eq!(*name, limb.joint_name(i));
             let fact = joints.iter().find(|j| j["name"].as_str() == Some(name)).unwrap();
             let of = |key: &str| fact[key].as_float().unwrap();
             assert_eq!((of("lower"), of("upper")), arm.limits.position.0[i], "{name}");
@@ -34,7 +37,7 @@ fn robot_limits_and_postures_match_the_data_sheet() {
         assert_eq!((arm.limits.acceleration, arm.limits.jerk), ([2.0; 7], [20.0; 7]));
         assert_eq!(arm.neutral, neutral());
         assert_eq!(arm.via_postures.len(), 2, "neutral and untuck; the tuck is in the trunk");
-        assert!(arm.chain.is_closed_form());
+        assert!(is_closed_form(&arm.chain));
     }
 }
 
@@ -47,10 +50,6 @@ fn chain_agrees_with_its_description() {
         for _ in 0..200 {
             let q = random.posture();
             assert!(difference(&arm.chain.forward(&q), &described.forward(&q)) < 1e-10);
-            let (fast, slow) = (arm.chain.jacobian(&q), described.jacobian(&q));
-            assert!((0..7).all(|j| (fast.column(j) - slow.column(j)).amax() < 1e-10));
-            let m = (arm.chain.manipulability(&q), described.manipulability(&q));
-            assert!((m.0 - m.1).abs() < 1e-9);
         }
     }
 }
@@ -58,7 +57,7 @@ fn chain_agrees_with_its_description() {
 #[test]
 fn limb_family_is_recognised() {
     let [family, askew] = others();
-    assert!(family.is_closed_form() && !askew.is_closed_form());
+    assert!(is_closed_form(&family) && !is_closed_form(&askew));
 }
 
 #[test]
@@ -150,16 +149,13 @@ fn robot_encloses_unsupported_shapes() {
 #[test]
 fn a_tool_may_point_anywhere() {
     let mut random = Random::seeded(54);
-    let chain = &robot().arm(Limb::Right).chain;
-    let aside = Isometry3::new([0.02, -0.05, 0.1].into(), [0.4, FRAC_PI_2, 0.1].into());
-    let tooled = chain.with_tool(&aside);
-    assert!(tooled.is_closed_form());
+    let range = Chain::from_description(robot().description(), "left_hand_range").unwrap();
+    let described = robot().description().chain("left_hand_range").unwrap();
+    assert!(is_closed_form(&range));
     for _ in 0..100 {
         let q = random.posture();
-        let target = tooled.forward(&q);
-        let placed = chain.forward(&q) * aside;
-        assert!((target.translation.vector - placed.translation.vector).norm() < 1e-9);
-        assert!(target.rotation.angle_to(&placed.rotation) < 1e-7);
-        assert_reaches(&tooled, &target, &tooled.inverse(&target, None).unwrap().q);
+        let target = range.forward(&q);
+        assert!(difference(&target, &described.forward(&q)) < 1e-9);
+        assert_reaches(&range, &target, &range.inverse(&target, None).unwrap().q);
     }
 }

@@ -1,7 +1,8 @@
 //! Ways through joint space that touch nothing.
 
-use crate::kinematics::limb::Joints;
+use crate::kinematics::limb::{Joints, distance};
 use crate::kinematics::limits::PositionLimits;
+use crate::random::Random;
 
 /// Joint distance between two checks along a line, the largest joint's change, radians. The
 /// gripper moves less than 6 cm between them and half of that from the nearer one.
@@ -63,17 +64,12 @@ pub(crate) fn blocking<G>(
 
 /// Returns whether `clear` holds along the straight line, both ends included.
 fn line_clear(from: &Joints, to: &Joints, clear: &impl Fn(&Joints) -> bool) -> bool {
-    let steps = (largest_change(from, to) / CHECK_RAD).ceil().max(1.0) as usize;
-    (0..=steps).all(|k| clear(&mix(from, to, k as f64 / steps as f64)))
+    blocking(from, to, &|q| (!clear(q)).then_some(())).is_none()
 }
 
 /// Returns the largest change of any joint, radians.
 pub(crate) fn largest_change(a: &Joints, b: &Joints) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
-fn distance(a: &Joints, b: &Joints) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
 fn length(points: &[Joints]) -> f64 {
@@ -97,7 +93,7 @@ struct Trees {
 
 impl Trees {
     fn new(from: Joints, to: Joints) -> Self {
-        Self { trees: [vec![(from, 0)], vec![(to, 0)]], random: Random(0x9E37_79B9_7F4A_7C15) }
+        Self { trees: [vec![(from, 0)], vec![(to, 0)]], random: Random::seeded(1) }
     }
 
     /// Grows the trees in turn towards random postures and each other.
@@ -115,7 +111,7 @@ impl Trees {
             // Most ways need only a bend: every second sample is beside the straight line.
             let sample = match samples % 2 {
                 0 => self.random.beside(&self.trees[0][0].0, &self.trees[1][0].0, limits),
-                _ => self.random.posture(limits),
+                _ => self.random.within(limits),
             };
             if let Some(reached) = extend(&mut self.trees[growing], &sample, clear) {
                 let other = 1 - growing;
@@ -139,8 +135,9 @@ impl Trees {
             if way.len() < 3 {
                 break;
             }
-            let i = self.random.below(way.len() - 2);
-            let j = i + 2 + self.random.below(way.len() - i - 2);
+            let mut below = |n: usize| ((self.random.unit() * n as f64) as usize).min(n - 1);
+            let i = below(way.len() - 2);
+            let j = i + 2 + below(way.len() - i - 2);
             if line_clear(&way[i], &way[j], clear) {
                 way.drain(i + 1..j);
             }
@@ -177,30 +174,16 @@ fn to_root(tree: &Tree) -> Vec<Joints> {
     way
 }
 
-/// A small generator (xorshift), so that the same question has the same answer.
-struct Random(u64);
-
 impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        ((self.next() * n as f64) as usize).min(n.saturating_sub(1))
-    }
-
     /// Returns a posture within [`BESIDE_RAD`] of the line between two, in every joint.
     fn beside(&mut self, a: &Joints, b: &Joints, limits: &PositionLimits) -> Joints {
-        let share = self.next();
+        let share = self.unit();
         let on_line = mix(a, b, share);
-        limits.clamp(&on_line.map(|q| q + BESIDE_RAD * (2.0 * self.next() - 1.0)))
+        limits.clamp(&on_line.map(|q| q + BESIDE_RAD * (2.0 * self.unit() - 1.0)))
     }
 
-    fn posture(&mut self, limits: &PositionLimits) -> Joints {
-        let share = std::array::from_fn(|_| self.next());
+    fn within(&mut self, limits: &PositionLimits) -> Joints {
+        let share = std::array::from_fn(|_| self.unit());
         limits.at(&share)
     }
 }

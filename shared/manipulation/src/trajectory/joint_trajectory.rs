@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::kinematics::limb::Joints;
+use crate::kinematics::limb::{Joints, distance};
 use crate::kinematics::limits::{MotionLimits, PositionLimits};
 use crate::trajectory::path::Path;
 use crate::trajectory::profile::{self, State};
@@ -124,33 +124,7 @@ impl Trajectory {
         Self::of(SmoothedTrajectory::exact(Path::rounded(&[*q], 0.0), knots, limits))
     }
 
-    /// Returns the motion stop: from `q` at velocity `qd` to rest on a straight line in joint
-    /// space.
-    ///
-    /// Decelerates at [`MotionLimits::stop`], so within 0.1 s from any velocity that the limits
-    /// allow. A joint too near to its limit for that brakes harder: the position limit is
-    /// the one that is kept.
-    pub fn halt(q: &Joints, qd: &Joints, limits: &MotionLimits) -> Self {
-        let q = limits.position.clamp(q);
-        let qd: Joints = std::array::from_fn(|j| if qd[j].is_finite() { qd[j] } else { 0.0 });
-        let speed = qd.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let seconds = (0..7).map(|j| qd[j].abs() / limits.stop[j]).fold(0.0, f64::max);
-        let room = (0..7)
-            .map(|j| seconds_to_limit(limits.position.0[j], q[j], qd[j]))
-            .fold(f64::INFINITY, f64::min);
-        // At a constant deceleration the way is half of speed times time.
-        let seconds = seconds.min(2.0 * room);
-        if speed < 1e-9 || seconds < 1e-6 {
-            return Self::hold(&q, 0.0, limits);
-        }
-        let rest: Joints = std::array::from_fn(|j| q[j] + 0.5 * qd[j] * seconds);
-        let path = Path::rounded(&[q, limits.position.clamp(&rest)], 0.0);
-        let start = Knot { time: 0.0, s: 0.0, speed, acceleration: -speed / seconds, piece: 0 };
-        let end = Knot { time: seconds, s: path.length(), speed: 0.0, acceleration: 0.0, piece: 0 };
-        Self::of(SmoothedTrajectory::exact(path, vec![start, end], limits))
-    }
-
-    /// Returns the motion stop that keeps to the curve: from this trajectory's state at `t_s` to
+    /// Returns the motion stop: on the curve, from this trajectory's state at `t_s` to
     /// rest as soon as [`MotionLimits::stop`] allows. Where the motion was clear, so is the stop.
     pub fn halted_at(&self, t_s: f64) -> Self {
         let at_s = self.time(t_s);
@@ -216,14 +190,11 @@ impl Trajectory {
 
     /// Returns the time at which the motion is nearest to `q`, to one grid interval, seconds from the start.
     pub fn time_nearest(&self, q: &Joints) -> f64 {
-        let distance = |time: &f64| {
-            let at = self.state(*time).q;
-            at.iter().zip(q).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
-        };
+        let off = |time: &f64| distance(&self.state(*time).q, q);
         let passed = self.smoothed.times().map(|time| time - self.begin_s);
         let times = passed.chain([0.0, self.duration_s()]);
         let within = times.filter(|time| (0.0..=self.duration_s()).contains(time));
-        within.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0.0)
+        within.min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(0.0)
     }
 
     fn of(smoothed: SmoothedTrajectory) -> Self {
@@ -236,17 +207,6 @@ impl Trajectory {
     fn time(&self, t_s: f64) -> f64 {
         let t_s = if t_s.is_nan() { 0.0 } else { t_s };
         (self.begin_s + t_s).clamp(self.begin_s, self.end_s)
-    }
-}
-
-/// Seconds until a joint with these limits, at `q` and moving on at `qd`, is at one.
-fn seconds_to_limit((lower, upper): (f64, f64), q: f64, qd: f64) -> f64 {
-    if qd > 0.0 {
-        (upper - q) / qd
-    } else if qd < 0.0 {
-        (lower - q) / qd
-    } else {
-        f64::INFINITY
     }
 }
 

@@ -18,4 +18,4 @@ pub(crate) use joint_trajectory::refuse_outside;
 pub use joint_trajectory::{INTERVALS_MIN, Trajectory, TrajectoryError};
 pub use path::Path;
 pub use profile::State;
-pub use timeline::{Moment, Stage, Timeline};
+pub use timeline::{Moment, Phase, Stage, Timeline};

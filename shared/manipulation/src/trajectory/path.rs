@@ -4,7 +4,7 @@
 //! rounded polyline stays inside the convex hull of its waypoints, so inside the joint limits if
 //! they are.
 
-use crate::kinematics::limb::Joints;
+use crate::kinematics::limb::{Joints, distance};
 
 #[cfg(test)]
 mod tests;
@@ -171,7 +171,7 @@ struct Line {
 
 impl Line {
     fn between(from: &Joints, to: &Joints) -> Self {
-        let length = from.iter().zip(to).map(|(a, b)| (b - a) * (b - a)).sum::<f64>().sqrt();
+        let length = distance(from, to);
         Self { from: *from, direction: each(|j| (to[j] - from[j]) / length), length }
     }
 }

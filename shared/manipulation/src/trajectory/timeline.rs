@@ -1,14 +1,38 @@
 //! A plan in time: stages one after another, each a motion of the arm and of the gripper.
 
+use serde::Serialize;
+
 use crate::gripper;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::trajectory::joint_trajectory::Trajectory;
 
+/// The stages of plans. A pick goes from `Approach` to `Return`; pointing is `Aim`, `Hold`, `Return`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// To above the object and straight down to it, fingers opening.
+    Approach,
+    /// The fingers close.
+    Close,
+    /// Straight up.
+    Lift,
+    /// To where the person takes the object.
+    HandOver,
+    /// The fingers open.
+    Release,
+    /// To where the gripper looks at the object.
+    Aim,
+    /// Still, pointing.
+    Hold,
+    /// Back to the neutral posture.
+    Return,
+}
+
 /// One stage of a plan.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stage<P> {
+pub struct Stage {
     /// Purpose of the part.
-    pub phase: P,
+    pub phase: Phase,
     /// The arm's motion; standing still where only the gripper moves.
     pub motion: Trajectory,
     /// Width between the fingers at the start of the stage, and their goal, metres.
@@ -17,16 +41,16 @@ pub struct Stage<P> {
 
 /// Stages of one limb in order, each beginning where the one before ends.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Timeline<P> {
+pub struct Timeline {
     limb: Limb,
-    stages: Vec<Stage<P>>,
+    stages: Vec<Stage>,
 }
 
 /// The state of a plan at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment<P> {
+pub struct Moment {
     /// The stage's phase.
-    pub phase: P,
+    pub phase: Phase,
     /// Joint positions, radians.
     pub q: Joints,
     /// Joint velocities, rad/s.
@@ -35,10 +59,10 @@ pub struct Moment<P> {
     pub width_m: f64,
 }
 
-impl<P: Copy + PartialEq> Timeline<P> {
+impl Timeline {
     /// # Panics
     /// Without a stage.
-    pub(crate) fn new(limb: Limb, stages: Vec<Stage<P>>) -> Self {
+    pub(crate) fn new(limb: Limb, stages: Vec<Stage>) -> Self {
         assert!(!stages.is_empty(), "a plan has at least one stage");
         Self { limb, stages }
     }
@@ -49,7 +73,7 @@ impl<P: Copy + PartialEq> Timeline<P> {
     }
 
     /// Returns the stages in order.
-    pub fn stages(&self) -> &[Stage<P>] {
+    pub fn stages(&self) -> &[Stage] {
         &self.stages
     }
 
@@ -59,7 +83,7 @@ impl<P: Copy + PartialEq> Timeline<P> {
     }
 
     /// Returns the start and end of the first stage of `phase`, seconds from the start of the plan.
-    pub fn span_s(&self, phase: P) -> Option<(f64, f64)> {
+    pub fn span_s(&self, phase: Phase) -> Option<(f64, f64)> {
         let index = self.stages.iter().position(|stage| stage.phase == phase)?;
         // From plus zero: the sum of no numbers is minus zero.
         let before = self.stages[..index].iter().map(|s| s.motion.duration_s());
@@ -69,7 +93,7 @@ impl<P: Copy + PartialEq> Timeline<P> {
 
     /// Returns the state `t_s` seconds after the start; before it and after the end, those of the
     /// start and the end.
-    pub fn at(&self, t_s: f64) -> Moment<P> {
+    pub fn at(&self, t_s: f64) -> Moment {
         let (stage, t_s) = self.stage_at(t_s);
         let (q, qd) = stage.motion.sample(t_s);
         Moment { phase: stage.phase, q, qd, width_m: stage.width_at(t_s) }
@@ -82,7 +106,7 @@ impl<P: Copy + PartialEq> Timeline<P> {
     }
 
     /// Returns the stage at `t_s` and the seconds since it began.
-    fn stage_at(&self, t_s: f64) -> (&Stage<P>, f64) {
+    fn stage_at(&self, t_s: f64) -> (&Stage, f64) {
         let mut left = if t_s.is_nan() { 0.0 } else { t_s.max(0.0) };
         let (last, others) = self.stages.split_last().expect("a plan has at least one stage");
         for stage in others {
@@ -95,7 +119,7 @@ impl<P: Copy + PartialEq> Timeline<P> {
     }
 }
 
-impl<P> Stage<P> {
+impl Stage {
     /// The fingers set out as the stage begins and move at their own speed.
     fn width_at(&self, t_s: f64) -> f64 {
         let (from, to) = self.width_m;

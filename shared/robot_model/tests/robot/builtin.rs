@@ -111,8 +111,7 @@ fn permitted_contacts_are_those_without_a_reference_pair() {
             let (one, two) = (name(a), name(b));
             let looked_for =
                 listed.iter().any(|(x, y)| (x, y) == (&one, &two) || (x, y) == (&two, &one));
-            assert_eq!(robot.is_touch_allowed(a, b), !looked_for, "{one} {two}");
-            assert_eq!(robot.is_touch_allowed(b, a), !looked_for, "{two} {one}");
+            assert_eq!(robot.may_touch().contains(&(a, b)), !looked_for, "{one} {two}");
         }
     }
 }
@@ -168,10 +167,12 @@ fn fingers_follow_each_other() {
     let finger = robot.chain("r_gripper_r_finger_tip").unwrap();
     let last = finger.movable().last().unwrap();
     assert_eq!(last.name, "r_gripper_l_finger_joint");
-    let jacobian = finger.jacobian(&[0.0; 8]);
+    let tip = |travel: f64| {
+        finger.forward(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, travel]).translation.vector
+    };
     let arm = robot.chain("right_gripper").unwrap().forward(&[0.0; 7]);
-    let expected = arm.rotation * Vector3::new(0.0, -1.0, 0.0);
-    assert!((jacobian.fixed_view::<3, 1>(0, 7) - expected).amax() < 1e-12);
+    let expected = arm.rotation * Vector3::new(0.0, -0.02, 0.0);
+    assert!((tip(0.02) - tip(0.0) - expected).amax() < 1e-12);
 }
 
 #[test]

@@ -49,7 +49,7 @@ impl Bench {
         let mut joints = vec![("head_pan", [0.3; 3])];
         for limb in Limb::BOTH {
             let names = self.config.setup.robot.arm(limb).joint_names.iter();
-            let q = self.joints[side(limb)];
+            let q = self.joints[limb];
             joints.extend(names.zip(q).map(|(name, q)| (name.as_str(), [q, 0.0, 0.0])));
         }
         joints.reverse();
@@ -59,7 +59,7 @@ impl Bench {
     fn report_all(&mut self) {
         self.driver.on_report(&Report::Assembly(self.assembly), self.now);
         for limb in Limb::BOTH {
-            let state = Box::new(self.grippers[side(limb)]);
+            let state = Box::new(self.grippers[limb]);
             self.driver.on_report(&Report::Gripper(limb, state), self.now);
         }
         self.driver.on_report(&Report::Joints(Box::new(self.joint_state())), self.now);

@@ -1,19 +1,19 @@
 //! Chart of a planned pick: joints over time, and the path of the gripper.
 
 use evaluation::charts::{Axis, Chart, Panel, Point, Shape};
-use manipulation::{JOINTS, ObjectPose, PickPhase};
+use manipulation::{JOINTS, ObjectPose, Phase};
 use nalgebra::Vector3;
 
 use super::Pick;
 
 /// Phases with their names.
-pub(super) const PHASES: [(PickPhase, &str); 6] = [
-    (PickPhase::Approach, "approach"),
-    (PickPhase::Close, "close"),
-    (PickPhase::Lift, "lift"),
-    (PickPhase::HandOver, "hand over"),
-    (PickPhase::Release, "release"),
-    (PickPhase::Return, "return"),
+pub(super) const PHASES: [(Phase, &str); 6] = [
+    (Phase::Approach, "approach"),
+    (Phase::Close, "close"),
+    (Phase::Lift, "lift"),
+    (Phase::HandOver, "hand over"),
+    (Phase::Release, "release"),
+    (Phase::Return, "return"),
 ];
 
 /// Moments that curves are drawn through.
@@ -67,7 +67,7 @@ fn over_time(pick: &Pick<'_>, heading: &str, value: impl Fn(f64, usize) -> f64) 
     let (low, high) = y.ends();
     let mut shapes = Vec::new();
     for (n, (phase, name)) in PHASES.into_iter().enumerate() {
-        let Some((begin_s, end_s)) = pick.plan.timeline.span_s(phase) else { continue };
+        let Some((begin_s, end_s)) = pick.plan.span_s(phase) else { continue };
         if n % 2 == 0 {
             shapes.push((GREY, Shape::Band(begin_s, end_s)));
         }
@@ -85,7 +85,7 @@ fn path(pick: &Pick<'_>, heading: &str, label: &str, axis: usize) -> Panel {
     let flat = |at: Vector3<f64>| (at.x, at[axis]);
     let at = |t_s: f64| flat(gripper(pick, t_s));
     let path: Vec<Point> = times(pick).map(at).collect();
-    let ends = PHASES.iter().filter_map(|(phase, _)| pick.plan.timeline.span_s(*phase));
+    let ends = PHASES.iter().filter_map(|(phase, _)| pick.plan.span_s(*phase));
     let marks = ends.map(|(_, end_s)| at(end_s)).collect();
     let outlines: Vec<Vec<Point>> =
         pick.places.iter().map(|place| corners(place).map(flat).collect()).collect();

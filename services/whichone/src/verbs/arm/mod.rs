@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use manipulation::{Cuboid, Limb, ObjectPose, PickPhase, PickPlan, PlanSettings, Robot, plan_pick};
+use manipulation::{Cuboid, Limb, ObjectPose, Phase, PlanSettings, Robot, Timeline, plan_pick};
 use preflight::ArmSetup;
 use scene::Scene;
 use serde_json::{Value as Json, json};
@@ -25,7 +25,7 @@ struct Pick<'a> {
     places: Vec<ObjectPose>,
     /// Number of the object to fetch.
     object: usize,
-    plan: PickPlan,
+    plan: Timeline,
 }
 
 /// Runs the verb.
@@ -90,12 +90,7 @@ fn planned<'a>(
             let help = "add `xyz`, `size` and `grasp_width`";
             refuse(format!("object `{}` has no place; help: {help}", object.name))
         })?;
-        Ok(ObjectPose {
-            xyz_m: at.xyz,
-            yaw_rad: at.yaw,
-            size_m: at.size,
-            grasp_width_m: at.grasp_width,
-        })
+        Ok(preflight::pose(&at))
     });
     let places: Vec<ObjectPose> = placed.collect::<Result<_, Failure>>()?;
     let others = places.iter().enumerate().filter(|(i, _)| *i != object);
@@ -112,8 +107,8 @@ fn planned<'a>(
 
 fn to_json(pick: &Pick<'_>) -> Json {
     let plan = &pick.plan;
-    let stage = |phase: PickPhase| {
-        let (begin_s, end_s) = plan.timeline.span_s(phase)?;
+    let stage = |phase: Phase| {
+        let (begin_s, end_s) = plan.span_s(phase)?;
         Some(
             json!({ "phase": phase, "begin_s": begin_s, "end_s": end_s, "seconds": end_s - begin_s }),
         )

@@ -9,7 +9,6 @@ use scene::Question;
 
 use super::rules::Rules;
 use crate::Verdict;
-use crate::simulation::draw::log_normal;
 use crate::simulation::interaction::{Room, SimulatedInteraction};
 use crate::simulation::users::{Reply, TimedKind, TimedUser, TimedUtterance};
 
@@ -134,7 +133,7 @@ impl Talk<'_> {
         self.value -= self.discount * self.room.problem.cost(Action::Ask(question));
         self.discount *= self.room.problem.costs.discount;
         let began = time(self.now_s);
-        self.now_s += log_normal(self.user.user_mut().rng(), QUESTION_S.0, QUESTION_S.1);
+        self.now_s += self.user.user_mut().rng().log_normal(QUESTION_S.0, QUESTION_S.1);
         self.put.push(Presentation {
             prompt: self.state.act.prompt,
             number: self.state.act.presentation,

@@ -6,7 +6,7 @@ use scene::{AttributeId, ObjectId, Question, Role, ValueId};
 use super::recogniser::Recogniser;
 use super::wording::{Wording, number, own_values};
 use super::{Domain, Turn, answer_or_slip};
-use crate::simulation::draw::{between, chance, one_of};
+use crate::simulation::draw::{chance, one_of};
 
 /// Seconds by which a late answer is late: least and most.
 const LATE_S: (f64, f64) = (2.0, 20.0);
@@ -221,6 +221,6 @@ impl Speaker<'_> {
     fn say(&mut self, text: &str) -> Turn {
         let reply = self.manners.recogniser.hear(text, self.domain.scene, self.rng);
         let late = chance(self.rng, self.manners.late);
-        Turn { reply, late_s: if late { between(self.rng, LATE_S) } else { 0.0 } }
+        Turn { reply, late_s: if late { self.rng.between(LATE_S) } else { 0.0 } }
     }
 }

@@ -25,7 +25,7 @@ use scene::{ObjectId, Question, Scene};
 pub use manners::Manners;
 pub use timing::{Habits, TimedKind, TimedUser, TimedUtterance, Timing};
 
-use crate::simulation::draw::{Stream, between, chance, one_of, stream};
+use crate::simulation::draw::{Stream, chance, one_of, stream};
 use recogniser::Recogniser;
 use wording::{Wording, own_values};
 
@@ -210,8 +210,8 @@ impl SimulatedUser {
             Policy::Truthful { by_value } => Traits::Truthful { by_value },
             Policy::Unreliable { answers, random } => Traits::Unreliable { answers, random },
             Policy::Noisy => {
-                let wrong = between(&mut rng, NOISY_WRONG);
-                Traits::Noisy { wrong, silent: between(&mut rng, NOISY_SILENT) }
+                let wrong = rng.between(NOISY_WRONG);
+                Traits::Noisy { wrong, silent: rng.between(NOISY_SILENT) }
             }
             Policy::Talkative(manners) => Traits::Talkative(manners),
         };

@@ -6,7 +6,7 @@ use preflight::Pace;
 use scene::Question;
 
 use super::{Domain, Policy, Reply, SimulatedUser, Turn};
-use crate::simulation::draw::{between, chance};
+use crate::simulation::draw::chance;
 
 /// Delay of a late answer, relative to the robot's response window, seconds.
 const LATE_S: (f64, f64) = (-0.3, 2.5);
@@ -194,7 +194,7 @@ impl TimedUser {
         let Self { upcoming, answered, .. } = self;
         upcoming.retain(|plan| plan.again || !answered.contains(&plan.prompt));
         let within =
-            |rng: &mut Rng, least| began_s + (ends_s - began_s) * between(rng, (least, 0.95));
+            |rng: &mut Rng, least| began_s + (ends_s - began_s) * rng.between((least, 0.95));
         if let Some(repeated) = self.overlapping.take() {
             let at_s = within(self.user.rng(), 0.05);
             self.plan(repeated, at_s, false, true);
@@ -233,13 +233,13 @@ impl TimedUser {
         let (pace, (least, most)) = (self.timing.pace, self.timing.reaction_s);
         let mut reaction_s = pace.reaction_s(self.user.rng()).clamp(least, most);
         if habit == Habit::Late {
-            reaction_s = self.timing.window_s + between(self.user.rng(), LATE_S);
+            reaction_s = self.timing.window_s + self.user.rng().between(LATE_S);
         }
         let answer = (prompt, question, turn);
         self.plan(answer.clone(), ended_s + reaction_s, lost, false);
         match habit {
             Habit::Doubled => {
-                let at_s = self.silent_s + between(self.user.rng(), REPEAT_S);
+                let at_s = self.silent_s + self.user.rng().between(REPEAT_S);
                 self.plan(answer, at_s, false, true);
             }
             Habit::Overlapping => self.overlapping = Some(answer),

@@ -53,33 +53,9 @@ impl Chain {
         Self { geometry, limits }
     }
 
-    /// Returns the same limb with its tool frame moved by `tool`, a pose in the present tool frame.
-    pub fn with_tool(&self, tool: &Isometry3<f64>) -> Self {
-        let tool = self.forward(&[0.0; 7]) * tool;
-        let axes = match &self.geometry {
-            Geometry::Alternating(chain) => {
-                let frames = chain.frames(&[0.0; 7]);
-                std::array::from_fn(|i| Axis {
-                    point: frames[i].origin,
-                    direction: Alternating::axis(i, &frames[i]),
-                })
-            }
-            Geometry::General(chain) => chain
-                .frames(&[0.0; 7])
-                .map(|frame| Axis { point: frame.origin, direction: frame.z }),
-        };
-        Self::new(&ZeroPosture { axes, tool }, self.limits)
-    }
-
     /// Position limits of the joints.
     pub fn limits(&self) -> &PositionLimits {
         &self.limits
-    }
-
-    /// Returns whether the limb is of Baxter's family, for which inverse kinematics are in closed
-    /// form; those of others are found by iteration, some ten times slower.
-    pub fn is_closed_form(&self) -> bool {
-        matches!(self.geometry, Geometry::Alternating(_))
     }
 
     /// Returns the foot of the first axis beside the shoulder, in `base`, metres.
@@ -139,12 +115,6 @@ impl Chain {
                 (tool, jacobian(&frames, &tool, |_, frame| frame.z))
             }
         }
-    }
-
-    /// Manipulability `√det(J Jᵀ)` at `q` (Yoshikawa 1985); 0 where the arm loses a direction.
-    pub fn manipulability(&self, q: &Joints) -> f64 {
-        let j = self.jacobian(q);
-        (j * j.transpose()).determinant().max(0.0).sqrt()
     }
 }
 

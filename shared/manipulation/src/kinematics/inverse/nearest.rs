@@ -3,11 +3,11 @@
 use super::goal::Aim;
 use super::golden;
 use super::posture::{Branch, Posture};
-use super::refine::{Refined, distance, drift, refine};
+use super::refine::{Refined, drift, refine};
 use super::slice::{NARROW_RAD, Slice};
 use super::solve::{SAMPLE_RAD, exact, first, samples};
 use super::{IkSolution, Unreachable};
-use crate::kinematics::limb::Joints;
+use crate::kinematics::limb::{Joints, distance};
 
 /// Curves of solutions that are followed to their nearest point.
 const FOLLOWED: usize = 3;

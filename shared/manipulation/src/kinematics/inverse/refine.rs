@@ -5,7 +5,7 @@ use nalgebra::{Matrix6, SVector, Vector6};
 
 use super::goal::{Goal, turn_between};
 use crate::kinematics::chain::{Frame, Jacobian};
-use crate::kinematics::limb::Joints;
+use crate::kinematics::limb::{Joints, distance};
 use crate::kinematics::limits::PositionLimits;
 
 /// A posture within the limits and how far from the target it is.
@@ -89,11 +89,6 @@ const DRIFT_STEPS: usize = 6;
 
 /// A drift that gains less than this has arrived, radians.
 const DRIFT_RAD: f64 = 1e-5;
-
-/// Euclidean distance in joint space, radians.
-pub(crate) fn distance(a: &Joints, b: &Joints) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
-}
 
 fn linearise(goal: &Goal<'_>, q: &Joints) -> (Vector6<f64>, Jacobian) {
     let (tool, jacobian) = goal.chain.tool_and_jacobian(q);

@@ -1,9 +1,9 @@
 //! Inverse kinematics of any chain: damped least squares from many postures in turn.
 
 use super::goal::Goal;
-use super::refine::{Refined, distance, drift, refine};
+use super::refine::{Refined, drift, refine};
 use super::{IkSolution, Unreachable};
-use crate::kinematics::limb::Joints;
+use crate::kinematics::limb::{Joints, distance};
 
 /// Postures to set out from before a target counts as out of reach.
 const STARTS_MAX: usize = 400;

@@ -6,9 +6,9 @@ use super::IkSolution;
 use super::closer::{Missed, Nearly};
 use super::goal::Aim;
 use super::posture::{Branch, Posture};
-use super::refine::{Refined, distance, refine};
+use super::refine::{Refined, refine};
 use super::slice::{NARROW_RAD, Slice, WIDE_RAD};
-use crate::kinematics::limb::Joints;
+use crate::kinematics::limb::{Joints, distance};
 
 /// The sweep divides s0 into intervals of at most this, radians: 64 on Baxter.
 const CELL_RAD: f64 = 0.0535;

@@ -1,13 +1,8 @@
-//! The way from the root to one link: its joints, forward kinematics and Jacobian.
+//! Forward kinematics of the whole tree, and of the way from the root to one link.
 
-use nalgebra::{DMatrix, Isometry3, Matrix6xX, Vector3};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 
 use crate::model::{Joint, JointKind, Link, Robot};
-use crate::poses::positive;
-
-/// Rows v_x v_y v_z w_x w_y w_z: velocity of the tip's origin in m/s and angular velocity in rad/s
-/// per unit of a joint's velocity, axes of the root. One column per movable joint.
-pub type Jacobian = Matrix6xX<f64>;
 
 /// A link that the robot does not have.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -82,75 +77,13 @@ impl<'a> SerialChain<'a> {
         self.joints.last().map_or(self.robot.root(), |&joint| &self.robot.links[joint + 1])
     }
 
-    /// Pose in the root's frame of every link of [`SerialChain::links`]; quaternions have w ≥ 0.
-    ///
-    /// # Panics
-    /// If `q` has not one position (radians or metres) per movable joint.
-    pub fn poses(&self, q: &[f64]) -> Vec<Isometry3<f64>> {
-        let mut poses = Vec::with_capacity(self.joints.len() + 1);
-        let mut pose = Isometry3::identity();
-        poses.push(pose);
-        for joint in self.joints() {
-            pose = positive(pose * joint.child_pose(self.position(joint, q)));
-            poses.push(pose);
-        }
-        poses
-    }
-
     /// Pose of the tip in the root's frame; the quaternion has w ≥ 0.
     ///
     /// # Panics
-    /// As [`SerialChain::poses`].
+    /// If `q` has not one position (radians or metres) per movable joint.
     pub fn forward(&self, q: &[f64]) -> Isometry3<f64> {
         let steps = self.joints().map(|joint| joint.child_pose(self.position(joint, q)));
         positive(steps.fold(Isometry3::identity(), |pose, step| pose * step))
-    }
-
-    /// Geometric Jacobian of the tip at `q`.
-    ///
-    /// # Panics
-    /// As [`SerialChain::poses`].
-    pub fn jacobian(&self, q: &[f64]) -> Jacobian {
-        let poses = self.poses(q);
-        let tip = poses[self.joints.len()].translation.vector;
-        let mut jacobian = Jacobian::zeros(self.movable.len());
-        for ((&index, joint), pose) in self.joints.iter().zip(self.joints()).zip(&poses[1..]) {
-            let (by, factor) = joint.mimic.map_or((index, 1.0), |m| (m.joint, m.multiplier));
-            // A fixed joint has no column.
-            let Some(column) = self.movable.iter().position(|&movable| movable == by) else {
-                continue;
-            };
-            let axis = pose.rotation * joint.axis.into_inner() * factor;
-            let (linear, angular) = match joint.kind {
-                JointKind::Fixed => continue,
-                JointKind::Prismatic => (axis, Vector3::zeros()),
-                JointKind::Revolute | JointKind::Continuous => {
-                    (axis.cross(&(tip - pose.translation.vector)), axis)
-                }
-            };
-            let mut linear_part = jacobian.fixed_view_mut::<3, 1>(0, column);
-            linear_part += linear;
-            let mut angular_part = jacobian.fixed_view_mut::<3, 1>(3, column);
-            angular_part += angular;
-        }
-        jacobian
-    }
-
-    /// Manipulability `√det(J Jᵀ)` at `q` (Yoshikawa 1985); 0 where the chain loses a direction.
-    /// With fewer than six movable joints it is `√det(Jᵀ J)`, the volume that they span.
-    ///
-    /// # Panics
-    /// As [`SerialChain::poses`].
-    pub fn manipulability(&self, q: &[f64]) -> f64 {
-        let jacobian = self.jacobian(q);
-        let gram: DMatrix<f64> = if jacobian.ncols() < 6 {
-            let j = DMatrix::from_column_slice(6, jacobian.ncols(), jacobian.as_slice());
-            j.transpose() * j
-        } else {
-            let square = &jacobian * jacobian.transpose();
-            DMatrix::from_column_slice(6, 6, square.as_slice())
-        };
-        gram.determinant().max(0.0).sqrt()
     }
 
     fn position(&self, joint: &Joint, q: &[f64]) -> f64 {
@@ -161,4 +94,53 @@ impl<'a> SerialChain<'a> {
             place.map_or(0.0, |place| q[place])
         })
     }
+}
+
+impl Robot {
+    /// The pose of every link in the root's frame, in the order of [`Robot::links`]; quaternions
+    /// have w ≥ 0.
+    ///
+    /// `positions` is called for the driven joints, in radians or metres; limits are ignored. Mimic
+    /// joints follow.
+    pub fn poses(&self, positions: impl Fn(&Joint) -> f64) -> Vec<Isometry3<f64>> {
+        let mut poses = Vec::with_capacity(self.links.len());
+        poses.push(Isometry3::identity());
+        for joint in &self.joints {
+            let position = self.position(joint, &positions);
+            poses.push(positive(poses[joint.parent] * joint.child_pose(position)));
+        }
+        poses
+    }
+
+    /// Returns the position of any joint, given those of the driven joints; 0 for a fixed one.
+    fn position(&self, joint: &Joint, positions: impl Fn(&Joint) -> f64) -> f64 {
+        match (joint.kind, joint.mimic) {
+            (JointKind::Fixed, _) => 0.0,
+            (_, None) => positions(joint),
+            (_, Some(rule)) => rule.multiplier * positions(&self.joints[rule.joint]) + rule.offset,
+        }
+    }
+}
+
+impl Joint {
+    /// The child's frame in the parent's at a position (radians or metres).
+    fn child_pose(&self, position: f64) -> Isometry3<f64> {
+        match self.kind {
+            JointKind::Fixed => self.origin,
+            JointKind::Revolute | JointKind::Continuous => {
+                self.origin * UnitQuaternion::from_axis_angle(&self.axis, position)
+            }
+            JointKind::Prismatic => {
+                self.origin * Translation3::from(self.axis.into_inner() * position)
+            }
+        }
+    }
+}
+
+/// The same pose with a quaternion of w ≥ 0.
+fn positive(mut pose: Isometry3<f64>) -> Isometry3<f64> {
+    if pose.rotation.w < 0.0 {
+        pose.rotation = UnitQuaternion::new_unchecked(-pose.rotation.into_inner());
+    }
+    pose
 }

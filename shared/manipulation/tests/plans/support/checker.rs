@@ -2,9 +2,7 @@
 //! surfaces of the capsules and boxes, put where the robot description's own forward kinematics puts
 //! its links. Shares no code with the planner's clearances.
 
-use manipulation::{
-    Cuboid, Joints, Limb, MotionLimits, ObjectPose, PickPhase, PickPlan, Robot, attached_pose,
-};
+use manipulation::{Cuboid, Joints, Limb, MotionLimits, ObjectPose, Phase, Robot, Timeline};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
 use super::fixture;
@@ -30,6 +28,9 @@ struct Part {
     /// `true` if the held object may touch it.
     wrist: bool,
 }
+
+/// A solid and where it is.
+type Placed<'a> = (&'a Solid, &'a Isometry3<f64>);
 
 /// A collision found by the checker.
 #[derive(Debug)]
@@ -83,32 +84,42 @@ impl<'a> Checker<'a> {
     /// that goes wrong.
     pub(crate) fn violation(
         &self,
-        plan: &PickPlan,
+        plan: &Timeline,
         object: &ObjectPose,
         others: &[Cuboid],
         table_z_m: f64,
     ) -> Option<Violation> {
+        let (limb, other) = (plan.limb(), plan.limb().other());
         let around = surroundings(others, table_z_m);
-        let held = Solid::cuboid("the object", object.size_m);
-        let neutral = self.robot.neutral();
-        let (still, _) = self.poses(plan.limb().other(), neutral.of(plan.limb().other()));
-        let released_s = plan.timeline.span_s(PickPhase::Release)?.0;
-        let closed_s = plan.timeline.span_s(PickPhase::Close)?.1;
+        let solid = Solid::cuboid("the object", object.size_m);
+        let (still, _) = self.poses(other, &self.robot.neutral()[other]);
+        // What stays where it is: the other arm, and what stands around.
+        let parts = self.arms[other].iter().map(|part| &part.solid).zip(&still);
+        let fixed: Vec<Placed<'_>> = parts.chain(around.iter().map(|(s, p)| (s, p))).collect();
+        let released_s = plan.span_s(Phase::Release)?.0;
+        let closed_s = plan.span_s(Phase::Close)?.1;
+        let in_gripper = self.poses(limb, &plan.at(closed_s).q).1.inverse() * object.isometry();
         let steps = (plan.duration_s() * RATE_HZ).ceil() as usize;
         (0..=steps).find_map(|k| {
             let t_s = k as f64 / RATE_HZ;
-            let (now, gripper) = self.poses(plan.limb(), &plan.at(t_s).q);
-            let holds = (closed_s..released_s).contains(&t_s);
-            let carried = holds.then(|| attached_pose(&gripper, &plan.object_in_gripper));
+            let (now, gripper) = self.poses(limb, &plan.at(t_s).q);
+            let holds = t_s >= closed_s;
+            let at = if holds { gripper * in_gripper } else { object.isometry() };
+            let lifted = at.translation.vector - Vector3::from(object.xyz_m);
+            let on_object = || {
+                // The wrist and the gripper may touch what they hold.
+                let arm = self.arms[limb].iter().zip(&now).filter(|(part, _)| !part.wrist);
+                let arm = arm.map(|(part, pose)| ((&part.solid, pose), TOLERANCE_M));
+                let body = self.body.iter().map(|(solid, pose)| (solid, pose));
+                let rest = body.chain(fixed.iter().copied()).filter(|_| holds);
+                let leaves = lifted.xy().norm() < 0.005 && lifted.z < 0.02;
+                let tolerance_m = if leaves { LIFT_TOLERANCE_M } else { TOLERANCE_M };
+                arm.chain(rest.map(|other| (other, tolerance_m)))
+                    .find_map(|(other, tolerance_m)| touching((&solid, &at), other, tolerance_m))
+            };
             let what = self
-                .arm_touches(plan.limb(), &now, &still, &around)
-                .or_else(|| {
-                    self.held_touches(plan.limb(), &held, carried?, object, &now, &still, &around)
-                })
-                .or_else(|| {
-                    let stands = t_s < closed_s;
-                    stands.then(|| self.arm_on_object(plan.limb(), &now, &held, object)).flatten()
-                });
+                .arm_touches(limb, &now, &fixed)
+                .or_else(|| (t_s < released_s).then(on_object).flatten());
             what.map(|what| Violation { t_s, what })
         })
     }
@@ -117,68 +128,14 @@ impl<'a> Checker<'a> {
         &self,
         limb: Limb,
         now: &[Isometry3<f64>],
-        still: &[Isometry3<f64>],
-        around: &[(Solid, Isometry3<f64>)],
+        fixed: &[Placed<'_>],
     ) -> Option<String> {
-        let (own, theirs) = (&self.arms[side(limb)], &self.arms[side(limb.other())]);
-        let pair = |a: &Part, at: &Isometry3<f64>, b: &Solid, there: &Isometry3<f64>| {
-            touching(&a.solid, at, b, there, TOLERANCE_M)
-        };
-        let body = self.body_pairs.iter().find_map(|(i, k)| {
-            let (solid, pose) = &self.body[*k];
-            pair(&own[*i], &now[*i], solid, pose)
-        });
-        body.or_else(|| {
-            self.own_pairs
-                .iter()
-                .find_map(|(i, j)| pair(&own[*i], &now[*i], &own[*j].solid, &now[*j]))
-        })
-        .or_else(|| {
-            (0..own.len()).find_map(|i| {
-                let others = theirs.iter().zip(still).map(|(part, pose)| (&part.solid, pose));
-                let around = around.iter().map(|(solid, pose)| (solid, pose));
-                others.chain(around).find_map(|(solid, pose)| pair(&own[i], &now[i], solid, pose))
-            })
-        })
-    }
-
-    #[expect(clippy::too_many_arguments, reason = "everything that stands somewhere")]
-    fn held_touches(
-        &self,
-        limb: Limb,
-        held: &Solid,
-        at: Isometry3<f64>,
-        object: &ObjectPose,
-        now: &[Isometry3<f64>],
-        still: &[Isometry3<f64>],
-        around: &[(Solid, Isometry3<f64>)],
-    ) -> Option<String> {
-        let stood = Vector3::from(object.xyz_m);
-        let lifted = at.translation.vector - stood;
-        let over_its_place = lifted.xy().norm() < 0.005 && lifted.z < 0.02;
-        let own = self.arms[side(limb)].iter().zip(now).filter(|(part, _)| !part.wrist);
-        let theirs = self.arms[side(limb.other())].iter().zip(still);
-        let parts = own.chain(theirs).map(|(part, pose)| (&part.solid, pose));
-        let body = self.body.iter().map(|(solid, pose)| (solid, pose));
-        let robot = parts.chain(body).find_map(|(s, p)| touching(held, &at, s, p, TOLERANCE_M));
-        robot.or_else(|| {
-            let tolerance = if over_its_place { LIFT_TOLERANCE_M } else { TOLERANCE_M };
-            around.iter().find_map(|(s, p)| touching(held, &at, s, p, tolerance))
-        })
-    }
-
-    /// The arm against the object where it stands, the wrist and the gripper apart.
-    fn arm_on_object(
-        &self,
-        limb: Limb,
-        now: &[Isometry3<f64>],
-        standing: &Solid,
-        object: &ObjectPose,
-    ) -> Option<String> {
-        let own = self.arms[side(limb)].iter().zip(now).filter(|(part, _)| !part.wrist);
-        let place = object.isometry();
-        own.into_iter()
-            .find_map(|(part, pose)| touching(&part.solid, pose, standing, &place, TOLERANCE_M))
+        let own = |i: usize| (&self.arms[limb][i].solid, &now[i]);
+        let body = |k: usize| (&self.body[k].0, &self.body[k].1);
+        let with_body = self.body_pairs.iter().map(|(i, k)| (own(*i), body(*k)));
+        let with_itself = self.own_pairs.iter().map(|(i, j)| (own(*i), own(*j)));
+        let others = (0..now.len()).flat_map(|i| fixed.iter().map(move |other| (own(i), *other)));
+        with_body.chain(with_itself).chain(others).find_map(|(a, b)| touching(a, b, TOLERANCE_M))
     }
 
     /// Returns the poses of one arm's capsule links and of its gripper.
@@ -188,15 +145,15 @@ impl<'a> Checker<'a> {
         let poses = description
             .poses(|joint| names.iter().position(|name| *name == joint.name).map_or(0.0, |i| q[i]));
         let gripper = description.link_index(&format!("{limb}_gripper")).unwrap();
-        (self.arms[side(limb)].iter().map(|part| poses[part.link]).collect(), poses[gripper])
+        (self.arms[limb].iter().map(|part| poses[part.link]).collect(), poses[gripper])
     }
 }
 
 /// Returns the first limit that a plan breaks, checked a thousand times a second.
-pub(crate) fn broken_limit(plan: &PickPlan, limits: &MotionLimits) -> Option<Violation> {
+pub(crate) fn broken_limit(plan: &Timeline, limits: &MotionLimits) -> Option<Violation> {
     let mut begin_s = 0.0;
     let mut before: Option<(Joints, Joints)> = None;
-    for stage in plan.timeline.stages() {
+    for stage in plan.stages() {
         let steps = (stage.motion.duration_s() * 1e3).ceil() as usize;
         let mut accelerations: Option<(f64, Joints)> = None;
         for k in 0..=steps {
@@ -238,20 +195,7 @@ pub(crate) fn broken_limit(plan: &PickPlan, limits: &MotionLimits) -> Option<Vio
     None
 }
 
-fn side(limb: Limb) -> usize {
-    match limb {
-        Limb::Left => 0,
-        Limb::Right => 1,
-    }
-}
-
-fn touching(
-    a: &Solid,
-    at: &Isometry3<f64>,
-    b: &Solid,
-    there: &Isometry3<f64>,
-    tolerance_m: f64,
-) -> Option<String> {
+fn touching((a, at): Placed<'_>, (b, there): Placed<'_>, tolerance_m: f64) -> Option<String> {
     let depth = a.overlap(at, b, there);
     (depth > tolerance_m).then(|| format!("{} is {:.1} mm in {}", a.name, depth * 1e3, b.name))
 }
