@@ -4,7 +4,6 @@ use super::arm;
 use dialogue::Rng;
 use manipulation::{Joints, Limb};
 use nalgebra::Isometry3;
-use preflight::between;
 use robot_model::{Robot, SerialChain};
 
 /// A pose of `<limb>_gripper` in `base`.
@@ -49,7 +48,7 @@ pub(super) fn postures(limb: Limb, count: usize) -> Vec<Joints> {
 
 /// A posture uniform within the limits.
 pub(super) fn posture(limb: Limb, rng: &mut Rng) -> Joints {
-    arm(limb).limits.position.0.map(|ends| between(rng, ends))
+    arm(limb).limits.position.0.map(|ends| rng.between(ends))
 }
 
 /// Tolerances of an answer.
