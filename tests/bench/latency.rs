@@ -3,10 +3,10 @@
 use crate::peers::{SYNC, WAKE};
 use crate::report::{Report, percentile};
 use messages::{Injection, Observation, Receipt, RobotAct, Sound, Utterance, topics};
-use service::Span;
 use service::bus::Reader;
-use service::client::Client;
+use service::client::{Client, deliver};
 use service::clock;
+use service::{Span, Time};
 use std::time::Duration;
 use whichone_tests::{Group, wait_for};
 
@@ -30,7 +30,7 @@ pub(crate) fn measure(report: &mut Report) {
     let group = Group::up(&["dialogue.turns.questions_max=1000"]);
     let client = Client::join(group.paths()).expect("a running group");
     let mut taps = Taps::open(&client);
-    let samples: Vec<Moments> = (0..UTTERANCES).map(|n| taps.utter(&client, n)).collect();
+    let samples: Vec<Moments> = (0..UTTERANCES).map(|n| taps.utter(n)).collect();
     let ms = |from: usize, to: usize| -> Vec<f64> {
         samples.iter().map(|m| m[to].saturating_sub(m[from]) as f64 / 1e6).collect()
     };
@@ -68,13 +68,14 @@ impl Taps {
     }
 
     /// Says something that changes nothing for good, and collects the moments of its way.
-    fn utter(&mut self, client: &Client, n: usize) -> Moments {
+    fn utter(&mut self, n: usize) -> Moments {
         std::thread::sleep(Duration::from_millis(20));
         let text = if n.is_multiple_of(2) { "the white one" } else { "start over" };
         let mut moments = [clock::now().ns(), 0, 0, 0, 0, 0, 0];
         let sound = Sound::Text(text.to_owned());
         let patience = Span::from_ms(10_000);
-        let receipts = client.inject_with(&self.injections, &self.receipts, sound, patience);
+        let said = (clock::now(), Time(0));
+        let receipts = deliver(&self.injections, &self.receipts, sound, said, patience);
         let seq = receipts.expect("a receipt")[0].utterance().expect("an accepted utterance").0;
         wait_for("the decision", 10.0, || {
             self.collect(seq, &mut moments);

@@ -24,7 +24,7 @@ pub use belief::belief;
 pub use fk::fk;
 pub use ground::{Grounder, ground};
 pub use ik::ik;
-pub use plan::{Decider, plan};
+pub use plan::{Decider, Problem, plan};
 
 /// Bytes read at a time.
 const BUFFER_BYTES: usize = 1 << 16;

@@ -9,10 +9,10 @@ mod group;
 mod study;
 mod talk;
 
-pub use arm::{AnyLimbArg, ArmPlotArgs, ArmVerb, ArmVerbArgs};
+pub use arm::{AnyLimb, ArmPlotArgs, ArmVerb, ArmVerbArgs};
 pub use batch::{
-    ArmArgs, BeliefArgs, ExportArgs, Exported, GroundArgs, InputArgs, LanguageArg, LimbArg,
-    ModeArg, PlanArgs, ProblemArgs, WhichArm,
+    ArmArgs, BeliefArgs, ExportArgs, Exported, GroundArgs, InputArgs, PlanArgs, ProblemArgs,
+    WhichArm,
 };
 pub use group::{
     CheckArgs, ConfigArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, SwapArgs,

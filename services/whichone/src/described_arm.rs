@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use diagnostics::TextFile;
-use manipulation::{Chain, JOINTS, Joints, Limb};
+use manipulation::{Chain, JOINTS, Joints};
 use nalgebra::Isometry3;
 use robot_model::{Joint, Robot};
 use service::exit::{Exit, Failure};
@@ -56,7 +56,7 @@ impl DescribedArm {
     }
 
     fn of(robot: Cow<'static, Robot>, which: &WhichArm) -> Result<Self, String> {
-        let limb = which.limb.map(Limb::from);
+        let limb = which.limb;
         let tip = match (&which.tip, limb) {
             (Some(tip), _) => tip.clone(),
             (None, Some(limb)) => format!("{limb}_gripper"),
@@ -109,11 +109,11 @@ fn read(path: &Path) -> Result<Robot, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::LimbArg;
+    use manipulation::Limb;
 
     fn arm(
         robot: Option<&Path>,
-        limb: Option<LimbArg>,
+        limb: Option<Limb>,
         tip: Option<&str>,
     ) -> Result<DescribedArm, Failure> {
         DescribedArm::load(robot, &WhichArm { limb, tip: tip.map(str::to_owned) })
@@ -126,8 +126,8 @@ mod tests {
     #[test]
     fn limb_contains_its_mount_and_all_descendants() {
         let q = [0.3, -0.5, 0.2, 0.8, -0.1, 1.0, 0.4];
-        for (arg, limb) in [(LimbArg::Left, Limb::Left), (LimbArg::Right, Limb::Right)] {
-            let arm = arm(None, Some(arg), None).unwrap();
+        for limb in Limb::BOTH {
+            let arm = arm(None, Some(limb), None).unwrap();
             let found: Vec<_> = arm.links(&q).collect();
             assert_eq!((found.len(), found[0].0), (22, format!("{limb}_arm_mount").as_str()));
             let gripper =
@@ -154,7 +154,7 @@ mod tests {
             "3 of robot \"seven_joints\"'s joints move link \"link_3\" (a1, a2, a3); an arm has 7"
         );
         assert!(error(None, None, Some("pedestal")).contains("0 of robot \"baxter\"'s joints"));
-        let unknown = error(Some(&seven), Some(LimbArg::Left), None);
+        let unknown = error(Some(&seven), Some(Limb::Left), None);
         assert!(
             unknown.contains("has no link \"left_gripper\"; it has world, link_0"),
             "{unknown}"

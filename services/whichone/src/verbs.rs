@@ -88,7 +88,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Belief(args) => batch::belief(batch::open(&args.input)?, out),
         Verb::Ground(args) => {
             let scene = scene_file::load(&args.scene)?;
-            let grounder = batch::Grounder::new(scene, args.language.into());
+            let grounder = batch::Grounder::new(scene, args.language);
             batch::ground(&grounder, batch::open(&args.input)?, out)
         }
         Verb::Plan(args) => {

@@ -9,8 +9,8 @@ use manipulation::Limb;
 use serde_json::{Value as Json, json};
 use service::exit::Exit;
 use whichone::Outcome;
-use whichone::batch::{self, Decider, Grounder};
-use whichone::cli::{LimbArg, WhichArm};
+use whichone::batch::{self, Decider, Grounder, Problem};
+use whichone::cli::WhichArm;
 use whichone::described_arm::DescribedArm;
 use whichone::output::Output;
 use whichone::scene_file;
@@ -21,10 +21,6 @@ fn repository(path: &str) -> PathBuf {
 
 /// The built-in robot's arm.
 fn arm(limb: Limb) -> DescribedArm {
-    let limb = match limb {
-        Limb::Left => LimbArg::Left,
-        Limb::Right => LimbArg::Right,
-    };
     DescribedArm::load(None, &WhichArm { limb: Some(limb), tip: None }).unwrap()
 }
 
@@ -203,7 +199,8 @@ fn beliefs_become_actions() {
     let planner = dialogue::registry::planner("lookahead").unwrap();
     let actions = Actions { mode: Mode::Remote, attribute: true, which: false };
     let costs = Costs::default();
-    let mut decider = Decider { scene, model, costs, durations: None, actions, planner };
+    let problem = Problem { scene, model, costs, durations: None, actions, settings: None };
+    let mut decider = Decider { problem, planner };
     let input = "{\"id\":1,\"belief\":[1,0,0,0,0,0]}\n{\"id\":2,\"belief\":[0.2,0.8]}\n\
                  {\"id\":3,\"belief\":[0,0,0,0,0,0]}\n{\"id\":4,\"belief\":[1,2,3,4,5,\"6\"]}\n\
                  {\"id\":5,\"belief\":[1,1,1,1,1,1]}\n";

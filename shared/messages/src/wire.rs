@@ -1,6 +1,6 @@
-//! Enums and questions as bytes in fixed layouts, and the check of bytes that another process wrote.
+//! Enums as bytes in fixed layouts, and the check of bytes that another process wrote.
 
-use scene::{AttributeId, Intent, ObjectId, Question, Response, ValueId};
+use scene::{Intent, Response};
 use std::marker::PhantomData;
 
 /// An invalid value on the wire.
@@ -22,8 +22,8 @@ impl WireError {
 pub trait WireCode: Copy + 'static {
     /// Name of the enum.
     const NAME: &'static str;
-    /// Names of the variants with their codes, all of them; the first stands for an unset field.
-    const CODES: &'static [(&'static str, u8)];
+    /// Variants with their names and codes, all of them; the first stands for an unset field.
+    const CODES: &'static [(Self, &'static str, u8)];
 
     /// Returns the code in a message.
     fn code(self) -> Code<Self> {
@@ -37,7 +37,10 @@ pub trait WireCode: Copy + 'static {
     ///
     /// # Errors
     /// A byte without a variant.
-    fn from_byte(byte: u8) -> Result<Self, WireError>;
+    fn from_byte(byte: u8) -> Result<Self, WireError> {
+        let found = Self::CODES.iter().find(|(.., code)| *code == byte);
+        found.map(|(variant, ..)| *variant).ok_or(WireError::new(Self::NAME, byte.into()))
+    }
 }
 
 /// The byte of an enum inside a fixed-layout message. Readers reject messages with invalid codes
@@ -61,8 +64,7 @@ impl<E: WireCode> Code<E> {
 
     /// Returns the variant. An invalid code, which no message from a reader has, counts as unset.
     pub fn get(self) -> E {
-        let unset = || E::from_byte(E::CODES[0].1);
-        E::from_byte(self.byte).or_else(|_| unset()).unwrap_or_else(|_| unreachable!())
+        E::from_byte(self.byte).unwrap_or(E::CODES[0].0)
     }
 }
 
@@ -86,8 +88,8 @@ impl<E> Default for Code<E> {
 
 impl<E: WireCode> std::fmt::Debug for Code<E> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match E::CODES.iter().find(|(_, byte)| *byte == self.byte) {
-            Some((name, _)) => f.write_str(name),
+        match E::CODES.iter().find(|(.., code)| *code == self.byte) {
+            Some((_, name, _)) => f.write_str(name),
             None => write!(f, "<invalid {} {}>", E::NAME, self.byte),
         }
     }
@@ -137,7 +139,7 @@ impl<E: WireCode> WireField for Code<E> {
     }
 
     fn detail() -> String {
-        E::CODES.iter().map(|(name, byte)| format!("{byte}={name} ")).collect()
+        E::CODES.iter().map(|(_, name, byte)| format!("{byte}={name} ")).collect()
     }
 }
 
@@ -146,17 +148,11 @@ macro_rules! wire_codes {
     ($name:ident { $($variant:ident = $code:literal,)+ }) => {
         impl $crate::wire::WireCode for $name {
             const NAME: &'static str = stringify!($name);
-            const CODES: &'static [(&'static str, u8)] = &[$((stringify!($variant), $code)),+];
+            const CODES: &'static [(Self, &'static str, u8)] =
+                &[$((Self::$variant, stringify!($variant), $code)),+];
 
             fn to_byte(self) -> u8 {
                 match self { $(Self::$variant => $code,)+ }
-            }
-
-            fn from_byte(byte: u8) -> Result<Self, $crate::WireError> {
-                match byte {
-                    $($code => Ok(Self::$variant),)+
-                    _ => Err($crate::WireError::new(stringify!($name), byte.into())),
-                }
             }
         }
     };
@@ -196,27 +192,5 @@ wire_codes! {
         Repeat = 4,
         StartOver = 5,
         AskBack = 6,
-    }
-}
-
-/// Returns a question as four numbers: kind, object, attribute, value; unused ones are 0.
-pub(crate) fn question_codes(question: Question) -> (u16, u16, u16, u16) {
-    match question {
-        Question::None => (0, 0, 0, 0),
-        Question::Point(i) => (1, i.0, 0, 0),
-        Question::Attribute(k, v) => (2, 0, k.0, v.0),
-        Question::Which(k) => (3, 0, k.0, 0),
-    }
-}
-
-/// Returns the question of four numbers. The reader checks that the scene has it.
-pub(crate) fn question_from(codes: (u16, u16, u16, u16)) -> Result<Question, WireError> {
-    let (kind, object, attribute, value) = codes;
-    match kind {
-        0 => Ok(Question::None),
-        1 => Ok(Question::Point(ObjectId(object))),
-        2 => Ok(Question::Attribute(AttributeId(attribute), ValueId(value))),
-        3 => Ok(Question::Which(AttributeId(attribute))),
-        _ => Err(WireError::new("question kind", kind.into())),
     }
 }

@@ -4,9 +4,7 @@
 use crate::group::GroupPaths;
 use iceoryx2::prelude::*;
 use messages::schema::Schema;
-use messages::topics::Topic;
-use messages::{Epoch, Incarnation, Service, Stamp, WireField};
-use serde::de::DeserializeOwned;
+use messages::{Epoch, Incarnation, Stamp, WireField};
 
 mod encoded;
 mod open;
@@ -122,49 +120,6 @@ impl Bus {
     /// Returns the identity of this process.
     pub fn identity(&self) -> Identity {
         self.identity
-    }
-
-    /// Writes a fixed-layout topic.
-    ///
-    /// # Errors
-    /// Another schema, too many writers, or an error of iceoryx2.
-    pub fn writer<T: WireMessage>(&self, topic: &Topic) -> Result<Writer<T>, BusError> {
-        Writer::open(self, topic)
-    }
-
-    /// Reads a fixed-layout topic.
-    ///
-    /// # Errors
-    /// As [`Bus::writer`].
-    pub fn reader<T: WireMessage>(&self, topic: &Topic) -> Result<Reader<T>, BusError> {
-        Reader::open(self, topic)
-    }
-
-    /// Writes a topic of encoded payloads.
-    ///
-    /// # Errors
-    /// As [`Bus::writer`].
-    pub fn encoded_writer<T: Schema>(&self, topic: &Topic) -> Result<EncodedWriter<T>, BusError> {
-        EncodedWriter::open(self, topic)
-    }
-
-    /// Reads a topic of encoded payloads.
-    ///
-    /// # Errors
-    /// As [`Bus::writer`].
-    pub fn encoded_reader<T: Schema + DeserializeOwned>(
-        &self,
-        topic: &Topic,
-    ) -> Result<EncodedReader<T>, BusError> {
-        EncodedReader::open(self, topic)
-    }
-
-    /// Returns the wake-up listener of `service`, for that service itself.
-    ///
-    /// # Errors
-    /// iceoryx2 fails.
-    pub fn wake_listener(&self, service: Service) -> Result<WakeListener, BusError> {
-        WakeListener::open(self, service)
     }
 
     pub(crate) fn node(&self) -> &Node<Ipc> {

@@ -2,17 +2,14 @@
 //!
 //! Clients poll; they are few, short-lived, and must not cost the services anything.
 
-use crate::bus::{
-    Bus, BusError, EncodedReader, EncodedWriter, Identity, PortError, Reader, Writer,
-};
+use crate::bus::{Bus, BusError, EncodedWriter, Identity, PortError, Reader, Writer};
 use crate::clock;
 use crate::group::GroupPaths;
 use crate::lifecycle::Environment;
 use crate::submission::Submission;
 use crate::{Span, Time};
 use messages::{
-    ArmStatus, Epoch, Injection, MotionCommand, MotionOrder, PolicyView, Receipt, RequestKey,
-    Sound, topics,
+    ArmStatus, Epoch, Injection, MotionCommand, MotionOrder, Receipt, RequestKey, Sound, topics,
 };
 use std::time::Duration;
 
@@ -80,14 +77,6 @@ impl Client {
         &self.bus
     }
 
-    /// Reads the policy's view.
-    ///
-    /// # Errors
-    /// Another build.
-    pub fn views(&self) -> Result<EncodedReader<PolicyView>, BusError> {
-        self.bus.encoded_reader(&topics::VIEW)
-    }
-
     /// Submits `sound` to the speech service and returns its receipts: one for text, one for every
     /// utterance in a sound file.
     ///
@@ -110,35 +99,6 @@ impl Client {
         let receipts = self.bus.reader::<Receipt>(&topics::RECEIPT)?;
         let writer = self.bus.encoded_writer::<Injection>(&topics::INJECTION)?;
         deliver(&writer, &receipts, sound, said, patience)
-    }
-
-    /// Submits a pointing gesture at a place (metres, frame `base`) with the words that accompany it,
-    /// if any. Otherwise as [`Client::inject`]: where gestures are disabled the receipt is a refusal
-    /// that names the setting.
-    ///
-    /// # Errors
-    /// As [`Client::inject`].
-    pub fn point(
-        &self,
-        target_m: [f64; 3],
-        words: &str,
-        patience: Span,
-    ) -> Result<Vec<Receipt>, ClientError> {
-        self.inject(Sound::Point { target_m, words: words.to_owned() }, patience)
-    }
-
-    /// As [`Client::inject`], with open topics.
-    ///
-    /// # Errors
-    /// As [`Client::inject`].
-    pub fn inject_with(
-        &self,
-        writer: &EncodedWriter<Injection>,
-        receipts: &Reader<Receipt>,
-        sound: Sound,
-        patience: Span,
-    ) -> Result<Vec<Receipt>, ClientError> {
-        deliver(writer, receipts, sound, (clock::now(), Time(0)), patience)
     }
 
     /// Latches or releases the motion stop and waits for the arm's confirmation.
@@ -172,8 +132,11 @@ impl Client {
     }
 }
 
-/// Submits a sound and waits for its receipts.
-fn deliver(
+/// As [`Client::inject_said`], with open topics.
+///
+/// # Errors
+/// As [`Client::inject`].
+pub fn deliver(
     writer: &EncodedWriter<Injection>,
     receipts: &Reader<Receipt>,
     sound: Sound,

@@ -6,7 +6,6 @@ pub mod bus;
 pub mod client;
 pub mod clock;
 pub mod control;
-mod effects;
 pub mod exit;
 pub mod group;
 pub mod inspection;
@@ -24,6 +23,5 @@ pub mod view;
 pub mod worker_channel;
 
 pub use dialogue::time::{Span, Time};
-pub use effects::Effects;
 pub use journal::{replace_file, replace_file_synced};
-pub use reducer::{Event, Never, Node, NodeError};
+pub use reducer::{Effects, Event, Never, Node, NodeError};

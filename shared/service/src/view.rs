@@ -11,10 +11,7 @@ mod latest;
 use serde::Serialize;
 
 pub use arm::ArmView;
-pub use dialogue::{
-    ActionView, AlternativeView, AttributionView, DialogueView, EndedView, QuestionView, ShareView,
-    UserView,
-};
+pub use dialogue::{ActionView, AlternativeView, DialogueView, EndedView, QuestionView, UserView};
 pub use hearing::HearingView;
 pub use latest::{Arrived, Latest, LatestTopics, PromptId, drain, quiet};
 

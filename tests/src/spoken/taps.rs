@@ -48,7 +48,7 @@ impl Taps {
             presented: bus.reader(&topics::PRESENTED).expect("presented"),
             receipts: bus.reader(&topics::RECEIPT).expect("receipts"),
             activity: bus.reader(&topics::ACTIVITY).expect("activity"),
-            views: client.views().expect("views"),
+            views: bus.encoded_reader(&topics::VIEW).expect("views"),
             questions: BTreeMap::new(),
             picks: false,
             view: PolicyView::default(),

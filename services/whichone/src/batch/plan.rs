@@ -3,7 +3,8 @@
 use std::io::Read;
 use std::time::Instant;
 
-use dialogue::{Action, Belief, DecisionProblem, Model, Planner, Step};
+use config::Settings;
+use dialogue::{Action, Actions, Belief, Costs, DecisionProblem, Durations, Model, Planner, Step};
 use scene::{Scene, question_to_json};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
@@ -12,19 +13,36 @@ use super::{parse, run};
 use crate::Outcome;
 use crate::output::Output;
 
-/// A planner with one scene's decision problem.
-pub struct Decider {
+/// A scene's decision problem, with what it borrows.
+pub struct Problem {
     /// The scene.
     pub scene: Scene,
-    /// What the observation model needs of it.
+    /// Its observation model.
     pub model: Model,
-    /// What actions cost.
-    pub costs: dialogue::Costs,
-    /// What each question costs, where that was measured.
-    pub durations: Option<dialogue::Durations>,
-    /// What the robot may do.
-    pub actions: dialogue::Actions,
-    /// What decides.
+    /// Costs of actions and rewards of picks.
+    pub costs: Costs,
+    /// Costs of the questions by the robot's durations, if these are used.
+    pub durations: Option<Durations>,
+    /// Actions that are allowed.
+    pub actions: Actions,
+    /// The configuration, if there is one.
+    pub settings: Option<Settings>,
+}
+
+impl Problem {
+    /// Returns the decision problem for planners.
+    pub fn decision(&self) -> DecisionProblem<'_> {
+        let Self { model, costs, durations, actions, .. } = self;
+        let durations = durations.as_ref();
+        DecisionProblem { model, costs: *costs, actions: *actions, durations }
+    }
+}
+
+/// A planner with one scene's decision problem.
+pub struct Decider {
+    /// The problem.
+    pub problem: Problem,
+    /// The planner.
     pub planner: Box<dyn Planner + Send>,
 }
 
@@ -47,26 +65,21 @@ pub fn plan(decider: &mut Decider, input: impl Read, out: &mut Output<'_>) -> Ou
 impl Decider {
     /// Lets the planner work ahead, as the policy service does before it is ready.
     fn prepare(&mut self) {
-        let Self { model, costs, durations, actions, planner, .. } = self;
-        let durations = durations.as_ref();
-        let problem = DecisionProblem { model, costs: *costs, actions: *actions, durations };
-        planner.prepare(&problem, &Belief::uniform(problem.model.hypotheses()));
+        let problem = self.problem.decision();
+        self.planner.prepare(&problem, &Belief::uniform(problem.model.hypotheses()));
     }
 
     fn answer(&mut self, line: Line) -> Result<Json, String> {
-        let objects = self.scene.objects().len();
+        let objects = self.problem.scene.objects().len();
         if line.belief.len() != objects {
             let given = line.belief.len();
             return Err(format!("belief: {given} probabilities for {objects} objects"));
         }
         let belief = Belief::from_probabilities(&line.belief).map_err(|e| e.to_string())?;
-        let Self { model, costs, durations, actions, planner, .. } = self;
-        let durations = durations.as_ref();
-        let problem = DecisionProblem { model, costs: *costs, actions: *actions, durations };
         let started = Instant::now();
-        let decision = planner.decide(&problem, &belief, Step::default());
+        let decision = self.planner.decide(&self.problem.decision(), &belief, Step::default());
         let micros = started.elapsed().as_secs_f64() * 1e6;
-        let action = action_to_json(&self.scene, decision.action);
+        let action = action_to_json(&self.problem.scene, decision.action);
         Ok(json!({ "id": line.id, "action": action, "value": decision.value, "micros": micros }))
     }
 }

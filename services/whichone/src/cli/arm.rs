@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 use manipulation::Limb;
 
 use super::ConfigArgs;
+use super::batch::{Choice, one_of};
 
 /// Arguments of `arm`.
 #[derive(Debug, Args)]
@@ -33,8 +34,8 @@ pub struct ArmPlotArgs {
     #[arg(long, value_name = "NAME")]
     pub object: Option<String>,
     /// Limb; the configured one by default.
-    #[arg(long, value_enum)]
-    pub limb: Option<AnyLimbArg>,
+    #[arg(long, value_parser = one_of(LIMBS))]
+    pub limb: Option<AnyLimb>,
     /// Picture; PNG or SVG by its extension.
     #[arg(long, value_name = "FILE", default_value = "pick.png")]
     pub out: PathBuf,
@@ -46,26 +47,14 @@ pub struct ArmPlotArgs {
     pub config: ConfigArgs,
 }
 
-/// A limb, or automatic choice.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum AnyLimbArg {
-    /// The arm at the robot's left.
-    Left,
-    /// The arm at the robot's right.
-    Right,
-    /// The one with the faster motion.
-    Auto,
-}
+/// A limb, or none for an automatic choice.
+pub type AnyLimb = Option<Limb>;
 
-impl From<AnyLimbArg> for Option<Limb> {
-    fn from(arg: AnyLimbArg) -> Self {
-        match arg {
-            AnyLimbArg::Left => Some(Limb::Left),
-            AnyLimbArg::Right => Some(Limb::Right),
-            AnyLimbArg::Auto => None,
-        }
-    }
-}
+const LIMBS: &[Choice<AnyLimb>] = &[
+    ("left", "The arm at the robot's left", Some(Limb::Left)),
+    ("right", "The arm at the robot's right", Some(Limb::Right)),
+    ("auto", "The one with the faster motion", None),
+];
 
 fn width(text: &str) -> Result<u32, String> {
     let sensible = text.trim().parse().ok().filter(|width| (800..=4000).contains(width));

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
 use dialogue::{Costs, Mode};
 use language::Language;
@@ -33,8 +33,8 @@ pub struct GroundArgs {
     #[arg(long, value_name = "FILE")]
     pub scene: PathBuf,
     /// Interpretation of utterances.
-    #[arg(long, value_enum, default_value_t = LanguageArg::Careful)]
-    pub language: LanguageArg,
+    #[arg(long, value_parser = one_of(LANGUAGES), default_value = "careful")]
+    pub language: Language,
     /// The lines.
     #[command(flatten)]
     pub input: InputArgs,
@@ -44,8 +44,8 @@ pub struct GroundArgs {
 #[derive(Clone, Debug, Args)]
 pub struct ProblemArgs {
     /// Whether user and robot share the room; the robot points only in mode `present`.
-    #[arg(long, value_enum, default_value_t = ModeArg::Remote)]
-    pub mode: ModeArg,
+    #[arg(long, value_parser = one_of(MODES), default_value = "remote")]
+    pub mode: Mode,
     /// Exclude questions like "Is it white?".
     #[arg(long)]
     pub no_attr: bool,
@@ -67,7 +67,7 @@ pub struct PlanArgs {
     #[arg(long, value_name = "FILE")]
     pub scene: PathBuf,
     /// The planner [default: the configuration's].
-    #[arg(long, value_name = "NAME", value_parser = planner_names())]
+    #[arg(long, value_name = "NAME", value_parser = planner_names(&[]))]
     pub planner: Option<String>,
     /// The problem.
     #[command(flatten)]
@@ -119,69 +119,55 @@ pub struct ArmArgs {
 #[group(required = true, multiple = false)]
 pub struct WhichArm {
     /// The arm of a robot with Baxter's names.
-    #[arg(long, value_enum)]
-    pub limb: Option<LimbArg>,
+    #[arg(long, value_parser = one_of(LIMBS))]
+    pub limb: Option<Limb>,
     /// The last link of an arm with seven joints, of any robot.
     #[arg(long, value_name = "LINK")]
     pub tip: Option<String>,
 }
 
-/// [`Language`] on the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LanguageArg {
-    /// With synonyms, negation, corrections, and requests to stop or to start over.
-    Careful,
-    /// With the scene's own words and answer words only, as in the publication.
-    Paper,
+/// A choice on the command line: its name, its help, and its value.
+pub(super) type Choice<T> = (&'static str, &'static str, T);
+
+const LANGUAGES: &[Choice<Language>] = &[
+    (
+        "careful",
+        "With synonyms, negation, corrections, and requests to stop or to start over",
+        Language::Careful,
+    ),
+    (
+        "paper",
+        "With the scene's own words and answer words only, as in the publication",
+        Language::Paper,
+    ),
+];
+
+const MODES: &[Choice<Mode>] = &[
+    ("remote", "The user does not see the robot", Mode::Remote),
+    ("present", "The user sees what the robot points at", Mode::Present),
+];
+
+const LIMBS: &[Choice<Limb>] =
+    &[("left", "The left arm", Limb::Left), ("right", "The right arm", Limb::Right)];
+
+/// Parses the name of one of the choices.
+pub(super) fn one_of<T>(choices: &'static [Choice<T>]) -> impl TypedValueParser<Value = T>
+where
+    T: Copy + Send + Sync + 'static,
+{
+    let value = |(name, help, _): &Choice<T>| PossibleValue::new(*name).help(*help);
+    let names = PossibleValuesParser::new(choices.iter().map(value));
+    names.try_map(|chosen| {
+        let found = choices.iter().find(|(name, ..)| *name == chosen);
+        found.map(|(.., value)| *value).ok_or("not one of the choices")
+    })
 }
 
-/// [`Mode`] on the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum ModeArg {
-    /// The user does not see the robot.
-    Remote,
-    /// The user sees what the robot points at.
-    Present,
-}
-
-/// [`Limb`] on the command line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum LimbArg {
-    /// The left arm.
-    Left,
-    /// The right arm.
-    Right,
-}
-
-impl From<LanguageArg> for Language {
-    fn from(arg: LanguageArg) -> Self {
-        match arg {
-            LanguageArg::Careful => Self::Careful,
-            LanguageArg::Paper => Self::Paper,
-        }
-    }
-}
-
-impl From<ModeArg> for Mode {
-    fn from(arg: ModeArg) -> Self {
-        match arg {
-            ModeArg::Remote => Self::Remote,
-            ModeArg::Present => Self::Present,
-        }
-    }
-}
-
-impl From<LimbArg> for Limb {
-    fn from(arg: LimbArg) -> Self {
-        match arg {
-            LimbArg::Left => Self::Left,
-            LimbArg::Right => Self::Right,
-        }
-    }
-}
-
-fn planner_names() -> PossibleValuesParser {
-    dialogue::registry::names().to_vec().into()
+/// The planners by name, each with its description, after `others`.
+pub(super) fn planner_names(others: &[PossibleValue]) -> PossibleValuesParser {
+    let planners = dialogue::registry::entries();
+    let planners = planners.iter().map(|entry| PossibleValue::new(entry.name).help(entry.about));
+    PossibleValuesParser::new(others.iter().cloned().chain(planners))
 }
 
 fn cost_names() -> PossibleValuesParser {

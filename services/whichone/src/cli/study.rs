@@ -3,11 +3,11 @@
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::PathBuf;
 
-use clap::builder::PossibleValuesParser;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Subcommand, ValueEnum};
 use evaluation::simulation::UserKind;
 
-use super::batch::ProblemArgs;
+use super::batch::{ProblemArgs, planner_names};
 use super::group::ConfigArgs;
 
 /// Arguments of `study`.
@@ -23,7 +23,7 @@ pub struct StudyArgs {
     pub scene: Option<PathBuf>,
     /// The policies, by name, or all.
     #[arg(
-        long, value_name = "NAME,…", value_delimiter = ',', value_parser = policies(),
+        long, value_name = "NAME,…", value_delimiter = ',', value_parser = planner_names(&[PossibleValue::new(ALL).help("Every planner")]),
         default_value = ALL, default_value_if("preset", "paper-present", "lookahead,no-attribute")
     )]
     pub policies: Vec<String>,
@@ -82,11 +82,6 @@ pub enum Preset {
     PaperPresent,
     /// Section 6: six bowls in another room, 45 interactions.
     PaperRemote,
-}
-
-fn policies() -> PossibleValuesParser {
-    let names = dialogue::registry::names();
-    std::iter::once(ALL).chain(names).collect::<Vec<_>>().into()
 }
 
 fn users() -> PossibleValuesParser {

@@ -2,44 +2,23 @@
 
 use std::path::{Path, PathBuf};
 
-use config::{CostsFrom, Settings};
-use dialogue::{Actions, Costs, DecisionProblem, Durations, Model, Params, registry};
+use config::CostsFrom;
+use dialogue::{Actions, Costs, Model, Params, registry};
 use preflight::ArmSetup;
 use scene::Scene;
 use service::exit::{Exit, Failure};
 
 use super::paths;
-use crate::batch::Decider;
+use crate::batch::{Decider, Problem};
 use crate::cli::{ConfigArgs, PlanArgs, ProblemArgs};
 use crate::scene_file;
 
 /// Default planner without an option and a configuration.
 const PLANNER: &str = "lookahead";
 
-/// A scene's decision problem, with what it borrows.
-pub(super) struct Problem {
-    pub(super) scene: Scene,
-    pub(super) model: Model,
-    pub(super) costs: Costs,
-    /// Costs of the questions by the robot's durations, if these are used.
-    pub(super) durations: Option<Durations>,
-    pub(super) actions: Actions,
-    /// The configuration, if there is one.
-    pub(super) settings: Option<Settings>,
-}
-
-impl Problem {
-    /// Returns the decision problem for planners.
-    pub(super) fn decision(&self) -> DecisionProblem<'_> {
-        let Self { model, costs, durations, actions, .. } = self;
-        let durations = durations.as_ref();
-        DecisionProblem { model, costs: *costs, actions: *actions, durations }
-    }
-
-    /// The name of the planner that is configured.
-    pub(super) fn planner(&self) -> &str {
-        self.settings.as_ref().map_or(PLANNER, |settings| &settings.dialogue.planner)
-    }
+/// The name of the planner that is configured for a problem.
+pub(super) fn planner_of(problem: &Problem) -> &str {
+    problem.settings.as_ref().map_or(PLANNER, |settings| &settings.dialogue.planner)
 }
 
 /// The planner and its problem.
@@ -49,10 +28,9 @@ impl Problem {
 pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Failure> {
     let scene = scene_file::load(&args.scene)?;
     let problem = problem(scene, &args.problem)?;
-    let planner = registry::planner(args.planner.as_deref().unwrap_or(problem.planner()))
+    let planner = registry::planner(args.planner.as_deref().unwrap_or(planner_of(&problem)))
         .map_err(|error| Failure::new(Exit::Config, error.to_string()))?;
-    let Problem { scene, model, costs, durations, actions, .. } = problem;
-    Ok(Decider { scene, model, costs, durations, actions, planner })
+    Ok(Decider { problem, planner })
 }
 
 /// The problem of a scene given by its file or by its name in the configuration.
@@ -76,8 +54,7 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Failure> {
     let params = configured.map_or_else(Params::default, |dialogue| dialogue.params);
     let preset = args.costs.as_deref().and_then(Costs::preset);
     let costs = preset.or(configured.map(|dialogue| dialogue.costs)).unwrap_or_default();
-    let actions =
-        Actions { mode: args.mode.into(), attribute: !args.no_attr, which: !args.no_which };
+    let actions = Actions { mode: args.mode, attribute: !args.no_attr, which: !args.no_which };
     let model = Model::new(&scene, params);
     // A preset counts in units of its own.
     let of_robot = settings

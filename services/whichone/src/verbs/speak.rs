@@ -59,9 +59,8 @@ fn transcript(args: &SayArgs) -> Result<Sound, Failure> {
 
 /// Submits a pointing gesture and prints its receipt.
 pub(super) fn point(paths: &GroupPaths, args: &PointArgs, out: &mut Output<'_>) -> Outcome {
-    let patience = Span::from_s(args.timeout.as_secs_f64());
-    let client = Client::join(paths)?;
-    print_all(&client.point([args.x, args.y, args.z], &args.say, patience)?, out)
+    let sound = Sound::Point { target_m: [args.x, args.y, args.z], words: args.say.clone() };
+    give(paths, sound, args.timeout, out)
 }
 
 /// Opens the microphone for one utterance and prints its receipt.

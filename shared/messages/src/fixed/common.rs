@@ -1,12 +1,12 @@
 //! Definitions shared by several messages.
 
 use crate::schema::wire_struct;
-use crate::wire::{self, WireError};
+use crate::wire::WireError;
 use dialogue::Presentation;
 use dialogue::ids::PromptId;
 use dialogue::time::Time;
 use iceoryx2::prelude::ZeroCopySend;
-use scene::Question;
+use scene::{AttributeId, ObjectId, Question, ValueId};
 
 wire_struct! {
     /// The sender of a message; the user header of every topic.
@@ -38,16 +38,28 @@ wire_struct! {
 
 impl From<Question> for WireQuestion {
     fn from(question: Question) -> Self {
-        let (kind, object, attribute, value) = wire::question_codes(question);
+        let (kind, object, attribute, value) = match question {
+            Question::None => (0, 0, 0, 0),
+            Question::Point(i) => (1, i.0, 0, 0),
+            Question::Attribute(k, v) => (2, 0, k.0, v.0),
+            Question::Which(k) => (3, 0, k.0, 0),
+        };
         Self { kind, object, attribute, value }
     }
 }
 
+/// Whether the scene has the question is for the reader to check.
 impl TryFrom<WireQuestion> for Question {
     type Error = WireError;
 
     fn try_from(wire: WireQuestion) -> Result<Self, WireError> {
-        wire::question_from((wire.kind, wire.object, wire.attribute, wire.value))
+        match wire.kind {
+            0 => Ok(Self::None),
+            1 => Ok(Self::Point(ObjectId(wire.object))),
+            2 => Ok(Self::Attribute(AttributeId(wire.attribute), ValueId(wire.value))),
+            3 => Ok(Self::Which(AttributeId(wire.attribute))),
+            kind => Err(WireError::new("question kind", kind.into())),
+        }
     }
 }
 
@@ -104,11 +116,78 @@ impl TryFrom<&AskedQuestion> for Presentation {
     }
 }
 
+/// Farthest coordinate that anybody points at, metres. It keeps a mistyped number out.
+pub const POINTED_AT_MAX_M: f64 = 100.0;
+
+wire_struct! {
+    /// A pointing gesture, or none.
+    WireGesture = "Gesture" {
+        /// The point that the person points at, metres, frame `base`: x, y, z.
+        target_m: [f64; 3],
+        /// 1 where there is a gesture, else 0.
+        present: u8,
+        /// Zero.
+        reserved: [u8; 7],
+    }
+}
+
+impl From<Option<[f64; 3]>> for WireGesture {
+    fn from(target_m: Option<[f64; 3]>) -> Self {
+        let present = u8::from(target_m.is_some());
+        Self { target_m: target_m.unwrap_or_default(), present, ..Self::default() }
+    }
+}
+
+impl WireGesture {
+    /// The point that is pointed at, metres, frame `base`; none without a gesture.
+    ///
+    /// # Errors
+    /// A code or a coordinate that makes no sense.
+    pub fn target_m(&self) -> Result<Option<[f64; 3]>, WireError> {
+        match self.present {
+            0 => Ok(None),
+            1 if is_somewhere(&self.target_m) => Ok(Some(self.target_m)),
+            1 => Err(WireError::new("pointing target with flag", 1)),
+            other => Err(WireError::new("gesture flag", other.into())),
+        }
+    }
+}
+
+/// Returns whether a person can point there: finite, and not farther than [`POINTED_AT_MAX_M`].
+pub fn is_somewhere(target_m: &[f64; 3]) -> bool {
+    target_m.iter().all(|x| x.abs() <= POINTED_AT_MAX_M)
+}
+
+/// The used entries of a list in a fixed layout; `what` names their count in the error.
+pub(super) fn used<'a, T>(
+    slots: &'a [T],
+    count: u8,
+    what: &'static str,
+) -> Result<&'a [T], WireError> {
+    slots.get(..usize::from(count)).ok_or(WireError::new(what, count.into()))
+}
+
 /// A number from 0 to 1; `what` names it in the error.
 pub(super) fn checked_share(what: &'static str, share: f64) -> Result<f64, WireError> {
     if share.is_finite() && (0.0..=1.0 + 1e-9).contains(&share) {
         Ok(share)
     } else {
         Err(WireError::new(what, (share as f32).to_bits()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gesture_round_trips_and_invalid_targets_are_rejected() {
+        for target in [None, Some([0.5, -0.25, 0.0]), Some([100.0, 0.0, -100.0])] {
+            assert_eq!(WireGesture::from(target).target_m(), Ok(target));
+        }
+        for x in [f64::NAN, f64::INFINITY, 100.5] {
+            assert!(WireGesture::from(Some([0.0, x, 0.0])).target_m().is_err());
+        }
+        assert!(WireGesture { present: 2, ..WireGesture::default() }.target_m().is_err());
     }
 }

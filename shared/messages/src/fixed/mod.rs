@@ -7,7 +7,6 @@
 mod arm;
 mod audio;
 mod common;
-mod gesture;
 mod observation;
 mod policy;
 mod speech;
@@ -15,8 +14,7 @@ mod utterance;
 
 pub use arm::*;
 pub use audio::{AudioChunk, CHUNK_SAMPLES_MAX, Pcm};
-pub use common::{AskedQuestion, Stamp, WireQuestion};
-pub use gesture::{POINTED_AT_MAX_M, WireGesture, is_somewhere};
+pub use common::{AskedQuestion, POINTED_AT_MAX_M, Stamp, WireGesture, WireQuestion, is_somewhere};
 pub use observation::*;
 pub use policy::*;
 pub use speech::*;

@@ -1,7 +1,6 @@
 //! The interpretation of an utterance.
 
-use crate::fixed::common::{AskedQuestion, checked_share};
-use crate::fixed::gesture::WireGesture;
+use crate::fixed::common::{AskedQuestion, WireGesture, checked_share, used};
 use crate::fixed::utterance::{ASKED_MAX, Source};
 use crate::schema::wire_struct;
 use crate::text::FixedText;
@@ -96,10 +95,7 @@ impl WireReading {
 
     fn reading(&self, words: usize) -> Result<Reading, WireError> {
         let base = checked_words(&self.base, self.base_count, words)?;
-        let groups = self
-            .excluded
-            .get(..usize::from(self.excluded_count))
-            .ok_or(WireError::new("excluded count", self.excluded_count.into()))?;
+        let groups = used(&self.excluded, self.excluded_count, "excluded count")?;
         let excluded: Vec<Vec<WordId>> = groups
             .iter()
             .zip(self.excluded_len)
@@ -110,13 +106,8 @@ impl WireReading {
             excluded: doubts(&self.excluded_doubt, excluded.len())?,
             response: checked_share("doubt", self.response_doubt.into())?,
         };
-        Ok(Reading {
-            base,
-            excluded,
-            response: self.response.get(),
-            intent: self.intent.get(),
-            doubt,
-        })
+        let (response, intent) = (self.response.get(), self.intent.get());
+        Ok(Reading { base, excluded, response, intent, doubt })
     }
 }
 
@@ -145,16 +136,10 @@ fn copy_words(slots: &mut [u16], words: &[WordId]) -> usize {
 }
 
 fn checked_words(slots: &[u16], count: u8, known: usize) -> Result<Vec<WordId>, WireError> {
-    let used = slots.get(..usize::from(count)).ok_or(WireError::new("word count", count.into()))?;
-    used.iter()
-        .map(|&w| {
-            if usize::from(w) < known {
-                Ok(WordId(w))
-            } else {
-                Err(WireError::new("word", w.into()))
-            }
-        })
-        .collect()
+    let known = |&w: &u16| {
+        (usize::from(w) < known).then_some(WordId(w)).ok_or(WireError::new("word", w.into()))
+    };
+    used(slots, count, "word count")?.iter().map(known).collect()
 }
 
 wire_struct! {
@@ -197,13 +182,12 @@ impl Observation {
     /// # Errors
     /// As [`WireReading::interpretation`]; or none or too many.
     pub fn interpretations(&self, words: usize) -> Result<Vec<Interpretation>, WireError> {
-        let (count, asked) = (usize::from(self.reading_count), self.asked()?.len());
-        match self.readings.get(..count) {
-            Some(used) if count > 0 => {
-                used.iter().map(|reading| reading.interpretation(words, asked)).collect()
-            }
-            _ => Err(WireError::new("reading count", self.reading_count.into())),
+        let asked = self.asked()?.len();
+        let readings = used(&self.readings, self.reading_count, "reading count")?;
+        if readings.is_empty() {
+            return Err(WireError::new("reading count", 0));
         }
+        readings.iter().map(|reading| reading.interpretation(words, asked)).collect()
     }
 
     /// The questions that the utterance may answer, newest first.
@@ -211,7 +195,6 @@ impl Observation {
     /// # Errors
     /// A count that makes no sense.
     pub fn asked(&self) -> Result<&[AskedQuestion], WireError> {
-        let asked = self.asked.get(..usize::from(self.asked_count));
-        asked.ok_or(WireError::new("asked count", self.asked_count.into()))
+        used(&self.asked, self.asked_count, "asked count")
     }
 }

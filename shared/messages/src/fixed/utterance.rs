@@ -1,7 +1,6 @@
 //! An accepted utterance.
 
-use crate::fixed::common::{AskedQuestion, checked_share};
-use crate::fixed::gesture::WireGesture;
+use crate::fixed::common::{AskedQuestion, WireGesture, checked_share, used};
 use crate::schema::wire_struct;
 use crate::text::{FixedText, TextTooLong};
 use crate::wire::{Code, WireError, wire_enum};
@@ -128,13 +127,9 @@ impl Utterance {
     /// # Errors
     /// Counts, spans, weights or bytes that make no sense.
     pub fn hypotheses(&self) -> Result<Vec<Hypothesis>, WireError> {
-        let count = usize::from(self.hypothesis_count);
-        let used = self
-            .hypotheses
-            .get(..count)
-            .ok_or(WireError::new("hypothesis count", self.hypothesis_count.into()))?;
         let text = self.text.as_str()?;
-        used.iter()
+        used(&self.hypotheses, self.hypothesis_count, "hypothesis count")?
+            .iter()
             .map(|h| {
                 let end = h.start.saturating_add(h.len) as usize;
                 let words = text.get(h.start as usize..end);
@@ -156,8 +151,7 @@ impl Utterance {
     /// # Errors
     /// A count that makes no sense.
     pub fn asked(&self) -> Result<&[AskedQuestion], WireError> {
-        let asked = self.asked.get(..usize::from(self.asked_count));
-        asked.ok_or(WireError::new("asked count", self.asked_count.into()))
+        used(&self.asked, self.asked_count, "asked count")
     }
 }
 

@@ -7,18 +7,10 @@
 //!
 //! Message facts from baxter_common 1.2.0, BSD-3-Clause, Copyright (c) 2013-2015 Rethink Robotics.
 
-mod assembly;
-mod drill;
 mod end_effector;
 mod joints;
+mod state;
 
-pub use assembly::{AssemblyState, EstopButton};
-pub use drill::{Drill, DrillKind};
-pub use end_effector::{
-    Command, EndEffectorCommand, EndEffectorProperties, EndEffectorState, NO_SEQUENCE, Tristate,
-    UiType,
-};
-pub use joints::{
-    EndpointState, JOINTS_MAX, JointCommand, JointMode, JointState, JointTrajectoryPoint,
-    LIMB_JOINTS, Measurement, SpeedRatio,
-};
+pub use end_effector::*;
+pub use joints::*;
+pub use state::*;

@@ -17,6 +17,56 @@ const BYTES: usize = 4096;
 /// Largest payload, bytes.
 const BYTES_MAX: usize = 16 << 20;
 
+impl Bus {
+    /// Writes a topic of encoded payloads.
+    ///
+    /// # Errors
+    /// As [`Bus::writer`].
+    pub fn encoded_writer<T: Schema>(&self, topic: &Topic) -> Result<EncodedWriter<T>, BusError> {
+        let service = open_topic!(self, topic, [u8])?;
+        let publisher = service
+            .publisher_builder()
+            .max_loaned_samples(1)
+            .initial_max_slice_len(BYTES)
+            .allocation_strategy(AllocationStrategy::PowerOfTwo)
+            .backpressure_strategy(BackpressureStrategy::DiscardData)
+            .create()
+            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let notifiers = notifiers(self, topic)?;
+        let (topic, stamp) = (topic.name, self.stamp());
+        Ok(EncodedWriter {
+            topic,
+            publisher,
+            notifiers,
+            stamp,
+            _service: service,
+            _payload: PhantomData,
+        })
+    }
+
+    /// Reads a topic of encoded payloads.
+    ///
+    /// # Errors
+    /// As [`Bus::writer`].
+    pub fn encoded_reader<T: Schema>(&self, topic: &Topic) -> Result<EncodedReader<T>, BusError> {
+        let service = open_topic!(self, topic, [u8])?;
+        let subscriber = service
+            .subscriber_builder()
+            .buffer_size(topic.buffer)
+            .history_request(topic.history)
+            .create()
+            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let gate = Gate::new(self.identity().epoch, topic);
+        Ok(EncodedReader {
+            topic: topic.name,
+            subscriber,
+            gate,
+            _service: service,
+            _payload: PhantomData,
+        })
+    }
+}
+
 /// Writes a topic of postcard payloads.
 #[derive(Debug)]
 pub struct EncodedWriter<T: Schema> {
@@ -29,21 +79,6 @@ pub struct EncodedWriter<T: Schema> {
 }
 
 impl<T: Schema> EncodedWriter<T> {
-    pub(super) fn open(bus: &Bus, topic: &Topic) -> Result<Self, BusError> {
-        let service = open_topic!(bus, topic, [u8])?;
-        let publisher = service
-            .publisher_builder()
-            .max_loaned_samples(1)
-            .initial_max_slice_len(BYTES)
-            .allocation_strategy(AllocationStrategy::PowerOfTwo)
-            .backpressure_strategy(BackpressureStrategy::DiscardData)
-            .create()
-            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
-        let notifiers = notifiers(bus, topic)?;
-        let (topic, stamp) = (topic.name, bus.stamp());
-        Ok(Self { topic, publisher, notifiers, stamp, _service: service, _payload: PhantomData })
-    }
-
     /// Encodes and sends the payload.
     ///
     /// # Errors
@@ -77,18 +112,6 @@ pub struct EncodedReader<T: Schema> {
 }
 
 impl<T: Schema + DeserializeOwned> EncodedReader<T> {
-    pub(super) fn open(bus: &Bus, topic: &Topic) -> Result<Self, BusError> {
-        let service = open_topic!(bus, topic, [u8])?;
-        let subscriber = service
-            .subscriber_builder()
-            .buffer_size(topic.buffer)
-            .history_request(topic.history)
-            .create()
-            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
-        let gate = Gate::new(bus.identity().epoch, topic);
-        Ok(Self { topic: topic.name, subscriber, gate, _service: service, _payload: PhantomData })
-    }
-
     /// Returns the next payload; an invalid one is logged and skipped, because a client's invalid
     /// bytes must not stop a service.
     ///

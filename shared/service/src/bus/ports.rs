@@ -12,6 +12,46 @@ use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
 use messages::Stamp;
 use messages::topics::Topic;
 
+impl Bus {
+    /// Writes a fixed-layout topic.
+    ///
+    /// # Errors
+    /// Another schema, too many writers, or an error of iceoryx2.
+    pub fn writer<T: WireMessage>(&self, topic: &Topic) -> Result<Writer<T>, BusError> {
+        let service = open_topic!(self, topic, T)?;
+        let publisher = service
+            .publisher_builder()
+            .max_loaned_samples(1)
+            .backpressure_strategy(BackpressureStrategy::DiscardData)
+            .create()
+            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let notifiers = notifiers(self, topic)?;
+        Ok(Writer {
+            topic: topic.name,
+            publisher,
+            notifiers,
+            stamp: self.stamp(),
+            _service: service,
+        })
+    }
+
+    /// Reads a fixed-layout topic.
+    ///
+    /// # Errors
+    /// As [`Bus::writer`].
+    pub fn reader<T: WireMessage>(&self, topic: &Topic) -> Result<Reader<T>, BusError> {
+        let service = open_topic!(self, topic, T)?;
+        let subscriber = service
+            .subscriber_builder()
+            .buffer_size(topic.buffer)
+            .history_request(topic.history)
+            .create()
+            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let gate = Gate::new(self.identity().epoch, topic);
+        Ok(Reader { topic: topic.name, subscriber, gate, _service: service })
+    }
+}
+
 /// Writes a fixed-layout topic.
 #[derive(Debug)]
 pub struct Writer<T: WireMessage> {
@@ -23,18 +63,6 @@ pub struct Writer<T: WireMessage> {
 }
 
 impl<T: WireMessage> Writer<T> {
-    pub(super) fn open(bus: &Bus, topic: &Topic) -> Result<Self, BusError> {
-        let service = open_topic!(bus, topic, T)?;
-        let publisher = service
-            .publisher_builder()
-            .max_loaned_samples(1)
-            .backpressure_strategy(BackpressureStrategy::DiscardData)
-            .create()
-            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
-        let notifiers = notifiers(bus, topic)?;
-        Ok(Self { topic: topic.name, publisher, notifiers, stamp: bus.stamp(), _service: service })
-    }
-
     /// Sends the message and wakes the topic's readers. That it was sent does not mean that it was
     /// received.
     ///
@@ -61,18 +89,6 @@ pub struct Reader<T: WireMessage> {
 }
 
 impl<T: WireMessage> Reader<T> {
-    pub(super) fn open(bus: &Bus, topic: &Topic) -> Result<Self, BusError> {
-        let service = open_topic!(bus, topic, T)?;
-        let subscriber = service
-            .subscriber_builder()
-            .buffer_size(topic.buffer)
-            .history_request(topic.history)
-            .create()
-            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
-        let gate = Gate::new(bus.identity().epoch, topic);
-        Ok(Self { topic: topic.name, subscriber, gate, _service: service })
-    }
-
     /// Returns the next message without copying it, if one is pending.
     ///
     /// # Errors

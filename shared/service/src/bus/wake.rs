@@ -37,16 +37,22 @@ pub(super) fn open(bus: &Bus, service: Service) -> Result<PortFactory<Ipc>, BusE
         .map_err(|e| BusError::ipc(&name, format!("{e:?}")))
 }
 
-impl WakeListener {
-    pub(super) fn open(bus: &Bus, service: Service) -> Result<Self, BusError> {
-        let topic = open(bus, service)?;
+impl Bus {
+    /// Returns the wake-up listener of `service`, for that service itself.
+    ///
+    /// # Errors
+    /// iceoryx2 fails.
+    pub fn wake_listener(&self, service: Service) -> Result<WakeListener, BusError> {
+        let topic = open(self, service)?;
         let listener = topic
             .listener_builder()
             .create()
             .map_err(|e| BusError::ipc(service.name(), format!("{e:?}")))?;
-        Ok(Self { listener, _topic: topic })
+        Ok(WakeListener { listener, _topic: topic })
     }
+}
 
+impl WakeListener {
     /// Readable while a wake-up waits.
     pub fn fd(&self) -> BorrowedFd<'_> {
         // SAFETY: the descriptor belongs to `listener`, which lives as long as the borrow of

@@ -1,5 +1,4 @@
-use dialogue::Action;
-use dialogue::Attributed;
+use dialogue::{Action, Attributed};
 use messages::{ActKind, Outcome, PolicyView};
 use scene::{Question, Scene};
 use serde::ser::{Serialize, Serializer};
@@ -35,7 +34,7 @@ pub struct DialogueView<'a> {
     /// The best other actions.
     pub alternatives: Vec<AlternativeView<'a>>,
     /// The questions that the latest utterance was attributed to.
-    pub attributed: AttributionView,
+    pub attributed: &'a Attributed,
     /// Questions asked in the open interaction.
     pub questions: u32,
     /// Expected number of further questions.
@@ -96,28 +95,6 @@ pub enum ActionView<'a> {
     Ask(QuestionView<'a>),
 }
 
-/// The questions that an utterance was attributed to.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct AttributionView {
-    /// The utterance, 0 before the first.
-    pub utterance: u64,
-    /// Probability that it answers each presentation of a question.
-    pub questions: Vec<ShareView>,
-    /// Probability that it answers no question.
-    pub none: f64,
-}
-
-/// The share of one presentation of a question in an utterance.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct ShareView {
-    /// The prompt.
-    pub prompt: u64,
-    /// Number of its presentation.
-    pub presentation: u32,
-    /// Probability that the utterance answers it.
-    pub share: f64,
-}
-
 /// An action that the planner has weighed.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct AlternativeView<'a> {
@@ -167,7 +144,7 @@ impl<'a> DialogueView<'a> {
                     value: *value,
                 })
                 .collect(),
-            attributed: AttributionView::new(&view.attributed),
+            attributed: &view.attributed,
             questions: view.questions,
             expected_questions: view.expected_questions,
             last: view.last.as_ref().map(|last| EndedView {
@@ -193,21 +170,6 @@ impl<'a> ActionView<'a> {
             Action::Ask(question) => {
                 Self::Ask(QuestionView::new(scene, question).unwrap_or(QuestionView::None))
             }
-        }
-    }
-}
-
-impl AttributionView {
-    fn new(attributed: &Attributed) -> Self {
-        let questions = attributed.questions.iter().map(|question| ShareView {
-            prompt: question.prompt.0,
-            presentation: question.presentation,
-            share: question.share,
-        });
-        Self {
-            utterance: attributed.utterance.0,
-            questions: questions.collect(),
-            none: attributed.none,
         }
     }
 }

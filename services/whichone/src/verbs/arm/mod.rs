@@ -48,7 +48,7 @@ fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
         Some(named) => scene_file::load(&planning::scene_path(named, &args.config)?)?,
     };
     let setup = ArmSetup::new(&settings)?;
-    let limb = args.limb.map_or(setup.limb, Into::into);
+    let limb = args.limb.unwrap_or(setup.limb);
     let robot = &setup.robot;
     let pick = planned(&scene, args.object.as_deref(), limb, robot, &setup.plan)?;
     if out.is_json() {

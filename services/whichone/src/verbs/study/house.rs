@@ -9,9 +9,10 @@ use manipulation::Robot;
 use preflight::{ArmSetup, Extent, Motions, Pace, Voice, measure};
 use service::exit::{Exit, Failure};
 
-use crate::cli::{ModeArg, Preset, ProblemArgs, StudyArgs};
+use crate::batch::Problem;
+use crate::cli::{Preset, ProblemArgs, StudyArgs};
 use crate::output::note;
-use crate::verbs::planning::{Problem, of_scene};
+use crate::verbs::planning::{of_scene, planner_of};
 
 /// Everything that the interactions of a study share.
 pub(super) struct House {
@@ -66,7 +67,7 @@ impl House {
 
     /// Returns the name of the planner that is configured.
     pub(super) fn planner(&self) -> &str {
-        self.problem.planner()
+        planner_of(&self.problem)
     }
 
     /// Returns the arm's motions, where objects have places.
@@ -95,7 +96,7 @@ fn preset(args: &StudyArgs) -> ProblemArgs {
     let mut problem = args.problem.clone();
     match args.preset {
         None => {}
-        Some(Preset::PaperPresent) => (problem.mode, problem.no_which) = (ModeArg::Present, true),
+        Some(Preset::PaperPresent) => (problem.mode, problem.no_which) = (Mode::Present, true),
         Some(Preset::PaperRemote) => problem.no_which = true,
     }
     problem
