@@ -5,6 +5,7 @@ use std::env;
 use std::error::Error;
 use std::fmt::Write as _;
 use std::fs;
+use std::hash::{DefaultHasher, Hasher as _};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -37,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             table,
             "Asset {{ path: {name:?}, mime: {mime:?}, tag: \"\\\"{:016x}\\\"\", \
              bytes: include_bytes!({file:?}), gzip: {gzip} }},",
-            fnv(&bytes)
+            hash(&bytes)
         )?;
     }
     table.push(']');
@@ -82,8 +83,8 @@ fn gzip(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
     encoder.finish()
 }
 
-fn fnv(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-    })
+fn hash(bytes: &[u8]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    hasher.write(bytes);
+    hasher.finish()
 }

@@ -73,7 +73,7 @@ impl Console {
             hub: Hub::new(channels, settings.console.viewers_max, handover),
             access: Access::new(settings.console.token.clone()),
             group: paths.name().to_string(),
-            settings: page_settings(settings, &study),
+            settings: page_settings(settings, study.is_some()),
             urdf: settings.robot_files().urdf.text.clone(),
             voice_dir: settings.voice_dir(&paths.run()),
             study_dir: study::folder(settings, paths),
@@ -89,14 +89,14 @@ impl Console {
     }
 }
 
-fn page_settings(settings: &Settings, study: &Study) -> PageSettings {
+fn page_settings(settings: &Settings, study: bool) -> PageSettings {
     PageSettings {
         language: settings.console.language.clone(),
         voice: VoiceSettings {
             recogniser: settings.speech.recogniser != Recogniser::None,
             voice: settings.speech.voice != Voice::Print,
         },
-        study: study.is_offered(),
+        study,
     }
 }
 

@@ -16,9 +16,6 @@ const START_OVER: &str = "start over";
 
 /// Returns the words that deny what the robot asks about or is fetching. A fetched object is named,
 /// so that it is denied before the robot has announced it, too.
-///
-/// # Errors
-/// The robot asks and fetches nothing.
 pub(super) fn not_that(scene: &Scene, latest: &Latest) -> Result<String, String> {
     let view = open(latest).ok_or(NOTHING)?;
     match (view.decision, view.question) {
@@ -55,9 +52,6 @@ fn fetched(view: &PolicyView, arm: Option<&ArmStatus>) -> usize {
 const NOTHING: &str = "the robot neither asks about an object nor fetches one";
 
 /// Returns the words that make the robot forget the request, or withdraw a pick.
-///
-/// # Errors
-/// No request is open.
 pub(super) fn start_over(latest: &Latest) -> Result<&'static str, String> {
     let view = open(latest).ok_or("no request is open; help: say what you want")?;
     let fetches = matches!(view.decision, ActKind::Pick | ActKind::Cancel);

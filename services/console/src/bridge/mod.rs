@@ -44,6 +44,8 @@ const JOINTS_EVERY: (Span, Span) = (Span::from_ms(33), Span::from_ms(500));
 /// Joints that change by less are at rest, radians or percent.
 const STILL: f64 = 1e-4;
 
+const NO_STUDY: &str = "no study is running; help: set study.enabled, and reload the group";
+
 /// Everything that the main loop owns.
 #[derive(Debug)]
 pub struct Bridge {
@@ -55,7 +57,7 @@ pub struct Bridge {
     motion: Writer<MotionCommand>,
     model: ViewModel,
     voice: Voice,
-    study: Study,
+    study: Option<Study>,
     submissions: Submissions,
     motions: Motions,
     store: TranscriptStore,
@@ -68,23 +70,17 @@ pub struct Bridge {
 /// The receiving ends of the channels to the main loop.
 #[derive(Debug)]
 pub struct Inbox {
-    /// Commands of viewers.
     pub commands: DeviceReceiver<Command>,
-    /// Orders to the motion stop.
     pub motions: DeviceReceiver<Motion>,
 }
 
 impl Bridge {
-    /// Opens the topics.
-    ///
-    /// # Errors
-    /// A topic of another schema, or no shared memory.
     pub fn open(
         app: Arc<App>,
         client: Client,
         paths: &GroupPaths,
         settings: &Settings,
-        study: Study,
+        study: Option<Study>,
     ) -> Result<Self, Failure> {
         let bus = client.bus();
         let store = TranscriptStore::in_folder(&paths.run());
@@ -208,8 +204,11 @@ impl Bridge {
             Verb::NotThat => corrections::not_that(scene, latest).map(|words| typed(&words)),
             Verb::StartOver => corrections::start_over(latest).map(typed),
             Verb::Study(verb, arguments) => {
-                let outcome = self.study.command(&verb, &arguments, &self.model, now);
-                return self.hub().answer(viewer, id, outcome.map(Some));
+                let outcome = match &mut self.study {
+                    Some(study) => study.command(&verb, &arguments, &self.model, now).map(Some),
+                    None => Err(NO_STUDY.to_owned()),
+                };
+                return self.hub().answer(viewer, id, outcome);
             }
         };
         let submitted =
@@ -223,19 +222,20 @@ impl Bridge {
         self.submissions.pass(&self.injections, &self.app.hub, now.at);
         self.motions.pass(&self.motion, &self.app.hub, now.at);
         self.voice.pass(&self.app.hub, now.at);
-        for event in self.model.take_events() {
-            self.study.on_event(&event, &self.model, now);
-        }
-        for words in self.study.pass(&self.model, now) {
-            if let Err(why) = self.submissions.add(None, words, now.at) {
-                tracing::warn!(why, "the study's words are not submitted");
-            }
+        let events = self.model.take_events();
+        let Some(study) = &mut self.study else { return };
+        events.iter().for_each(|event| study.on_event(event, &self.model, now));
+        if let Some(words) = study.pass(&self.model, now)
+            && let Err(why) = self.submissions.add(None, words, now.at)
+        {
+            tracing::warn!(why, "the study's words are not submitted");
         }
     }
 
     fn show(&mut self, now: Now) {
         let sections = self.model.sections(now);
-        let study = self.study.section(&self.model, now).map(|study| ("study", study));
+        let study = self.study.as_ref().and_then(|study| study.section(&self.model, now));
+        let study = study.map(|study| ("study", study));
         for (name, text) in sections.into_iter().chain(study) {
             self.hub().board.section(name, &text);
         }
@@ -244,8 +244,8 @@ impl Bridge {
             self.hub().board.line(line.id, &line.to_text());
         }
         self.store.write(self.model.transcript().lines(), now.at);
-        for stages in self.model.latency().take_news() {
-            self.hub().metrics.latency.observe(stages.total / 1e3);
+        for [.., total_ms] in self.model.latency().take_news() {
+            self.hub().metrics.latency.observe(total_ms / 1e3);
         }
         self.show_joints(now.at);
     }

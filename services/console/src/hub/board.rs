@@ -73,7 +73,6 @@ impl Board {
         true
     }
 
-    /// Sets the joints' frame.
     pub fn joints(&self, frame: String) {
         let mut state = self.state();
         state.joints = Some(Item { revision: state.revision + 1, text: frame.into() });

@@ -12,9 +12,7 @@ use crate::voice::PcmFrame;
 pub enum Command {
     /// A command that is answered once, under the number that the page gave it.
     Do(ViewerId, u64, Verb),
-    /// Sound of a viewer's microphone.
     Sound(ViewerId, PcmFrame),
-    /// A viewer has gone.
     Left(ViewerId),
     /// The supervisor's status of the group, or why there is none.
     Group(Result<Box<GroupStatus>, String>),
@@ -23,7 +21,6 @@ pub enum Command {
 /// A command for dialogue or study.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verb {
-    /// Says something to the robot.
     Say(Words),
     /// Denies what the robot asks about or is fetching.
     NotThat,
@@ -36,19 +33,15 @@ pub enum Verb {
 /// Words for the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Words {
-    /// The text.
     pub text: String,
     /// Other hypotheses of a browser's recogniser, with weights.
     pub alternatives: Vec<(String, f64)>,
     /// `true` if a browser's recogniser has heard it, `false` if it was typed.
     pub spoken: bool,
-    /// When the user began, if known.
     pub began: Option<Time>,
-    /// When the user ended, if known.
     pub ended: Option<Time>,
 }
 
-/// Returns words that were typed.
 pub fn typed(text: &str) -> Words {
     let alternatives = Vec::new();
     Words { text: text.to_owned(), alternatives, spoken: false, began: None, ended: None }
@@ -57,9 +50,7 @@ pub fn typed(text: &str) -> Words {
 /// An order to the motion stop; handled before everything else.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
-    /// The viewer who gave it.
     pub viewer: ViewerId,
-    /// The number that the page gave it.
     pub id: u64,
     /// `true` latches the stop, `false` releases it.
     pub stop: bool,

@@ -74,7 +74,6 @@ impl Lease {
         }
     }
 
-    /// Removes a viewer.
     pub fn left(&mut self, viewer: ViewerId, now: Time) {
         if self.asked.is_some_and(|asked| asked.by == viewer) {
             self.asked = None;
@@ -85,9 +84,6 @@ impl Lease {
     }
 
     /// Requests control for a viewer.
-    ///
-    /// # Errors
-    /// Another viewer has asked before.
     pub fn take(
         &mut self,
         viewer: ViewerId,
@@ -111,11 +107,6 @@ impl Lease {
                 Ok(Taken::Asked(until))
             }
         }
-    }
-
-    /// The operator gives control to another viewer.
-    pub fn give(&mut self, viewer: ViewerId, session: &str) {
-        self.grant(viewer, session);
     }
 
     /// The operator keeps control.
@@ -143,7 +134,8 @@ impl Lease {
         true
     }
 
-    fn grant(&mut self, viewer: ViewerId, session: &str) {
+    /// Gives control to a viewer.
+    pub fn grant(&mut self, viewer: ViewerId, session: &str) {
         self.holder = Some(Holder { viewer, session: session.to_owned(), away: None });
         self.asked = None;
     }
@@ -216,7 +208,7 @@ mod tests {
         lease.keep();
         assert!(lease.holds(A) && lease.asked().is_none());
         assert_eq!(lease.take(C, "c", at(3)), Ok(Taken::Asked(at(13))));
-        lease.give(C, "c");
+        lease.grant(C, "c");
         assert!(lease.holds(C) && lease.asked().is_none());
     }
 

@@ -48,7 +48,6 @@ impl std::str::FromStr for ViewerId {
 /// Channels to the main loop and to the supervisor's thread.
 #[derive(Debug)]
 pub struct Channels {
-    /// To the main loop.
     pub commands: DeviceSender<Command>,
     /// To the main loop, before everything else.
     pub motions: DeviceSender<Motion>,
@@ -69,16 +68,14 @@ struct ControlSection<'a> {
 /// Shared by bridge and server.
 #[derive(Debug)]
 pub struct Hub {
-    /// The state for every viewer.
     pub board: Board,
-    /// Metrics.
     pub metrics: Metrics,
     channels: Channels,
     control: Mutex<Control>,
     viewers_max: usize,
     ending: watch::Sender<bool>,
     /// Beats of the web server's tasks.
-    progress: AtomicU64,
+    pub progress: AtomicU64,
     /// Time of the main loop's last pass, nanoseconds.
     alive: AtomicU64,
 }
@@ -108,9 +105,6 @@ impl Hub {
     }
 
     /// Admits a page; returns its number and the frames for it alone.
-    ///
-    /// # Errors
-    /// The maximum of open pages is reached.
     pub fn join(
         &self,
         name: &str,
@@ -131,7 +125,6 @@ impl Hub {
         Ok((viewer, frames))
     }
 
-    /// Removes a page.
     pub fn leave(&self, viewer: ViewerId, now: Time) {
         let mut control = self.control();
         control.viewers.remove(viewer);
@@ -142,12 +135,10 @@ impl Hub {
         let _ = self.channels.commands.offer(Command::Left(viewer));
     }
 
-    /// Returns the number of open pages.
     pub fn viewers(&self) -> usize {
         self.control().viewers.len()
     }
 
-    /// Advances the lease.
     pub fn tick(&self, now: Time) {
         let mut control = self.control();
         let Control { viewers, lease } = &mut *control;
@@ -184,47 +175,33 @@ impl Hub {
     }
 
     /// Passes a command to the bridge, which answers by [`Hub::answer`].
-    pub fn ask(&self, viewer: ViewerId, id: u64, verb: Verb) {
+    pub fn ask(&self, viewer: ViewerId, id: u64, verb: Verb) -> Result<(), String> {
         // A study checks its participant's page instead.
-        let is_free = matches!(verb, Verb::Study(..));
-        if let (Err(why), false) = (self.must_hold(viewer), is_free) {
-            return self.answer(viewer, id, Err(why));
+        if !matches!(verb, Verb::Study(..)) {
+            self.must_hold(viewer)?;
         }
-        if self.channels.commands.offer(Command::Do(viewer, id, verb)).is_err() {
-            self.answer(viewer, id, Err("the console is busy; help: try again".to_owned()));
-        }
+        let offered = self.channels.commands.offer(Command::Do(viewer, id, verb));
+        offered.map_err(|_| "the console is busy; help: try again".to_owned())
     }
 
-    /// Latches the motion stop for every viewer, releases it for the operator.
-    pub fn motion(&self, viewer: ViewerId, id: u64, stop: bool) {
-        if let Err(why) = self.must_hold(viewer)
-            && !stop
-        {
-            return self.answer(viewer, id, Err(why));
+    /// Latches the motion stop for every viewer, releases it for the operator; the bridge answers.
+    pub fn motion(&self, viewer: ViewerId, id: u64, stop: bool) -> Result<(), String> {
+        if !stop {
+            self.must_hold(viewer)?;
         }
-        if self.channels.motions.offer(Motion { viewer, id, stop }).is_err() {
-            self.answer(
-                viewer,
-                id,
-                Err("the console is busy; help: use the robot's emergency stop".to_owned()),
-            );
-        }
+        let offered = self.channels.motions.offer(Motion { viewer, id, stop });
+        let help = "the console is busy; help: use the robot's emergency stop";
+        offered.map_err(|_| help.to_owned())
     }
 
-    /// Restarts a service.
-    pub fn restart(&self, viewer: ViewerId, id: u64, service: String) {
-        if let Err(why) = self.must_hold(viewer) {
-            return self.answer(viewer, id, Err(why));
-        }
-        if self.channels.restarts.try_send((viewer, id, service)).is_err() {
-            self.answer(viewer, id, Err("the supervisor is busy; help: try again".to_owned()));
-        }
+    /// Restarts a service; the supervisor's thread answers.
+    pub fn restart(&self, viewer: ViewerId, id: u64, service: String) -> Result<(), String> {
+        self.must_hold(viewer)?;
+        let sent = self.channels.restarts.try_send((viewer, id, service));
+        sent.map_err(|_| "the supervisor is busy; help: try again".to_owned())
     }
 
     /// Passes on sound of the operator.
-    ///
-    /// # Errors
-    /// The viewer is not the operator, or the console is busy.
     pub fn sound(&self, viewer: ViewerId, frame: crate::voice::PcmFrame) -> Result<(), String> {
         self.must_hold(viewer)?;
         let offered = self.channels.commands.offer(Command::Sound(viewer, frame));
@@ -232,52 +209,36 @@ impl Hub {
     }
 
     /// Handles a viewer's request for control.
-    pub fn take_control(&self, viewer: ViewerId, id: u64, now: Time) {
+    pub fn take_control(&self, viewer: ViewerId, now: Time) -> Result<Option<Answer>, String> {
         let mut control = self.control();
         let Control { viewers, lease } = &mut *control;
-        let taken = match viewers.get(viewer) {
-            Some(there) if there.role != Role::Screen => lease.take(viewer, &there.session, now),
-            Some(_) => Err("a screen has no controls; help: open the console's own page"),
-            None => return,
-        };
+        let there = viewers.get(viewer).filter(|there| there.role != Role::Screen);
+        let there = there.ok_or("a screen has no controls; help: open the console's own page")?;
+        let taken = lease.take(viewer, &there.session, now)?;
         self.show(&control);
-        drop(control);
-        let answer = taken.map(|taken| match taken {
+        Ok(Some(match taken {
             Taken::Granted => Answer::Control { granted: true, expires_ms: None },
             Taken::Asked(until) => Answer::Control { granted: false, expires_ms: Some(ms(until)) },
-        });
-        self.answer(viewer, id, answer.map(Some).map_err(str::to_owned));
+        }))
     }
 
     /// The operator hands control to another viewer.
-    pub fn give_control(&self, viewer: ViewerId, id: u64, to: ViewerId) {
-        let given = self.change(viewer, |viewers, lease| {
-            let there = viewers.get(to).filter(|there| there.role != Role::Screen);
-            let there = there.ok_or_else(|| format!("{to} is not an open page, or a screen"))?;
-            lease.give(to, &there.session);
-            Ok(())
-        });
-        self.answer(viewer, id, given);
-    }
-
-    /// The operator keeps control despite a request.
-    pub fn keep_control(&self, viewer: ViewerId, id: u64) {
-        let kept = self.change(viewer, |_, lease| {
-            lease.keep();
-            Ok(())
-        });
-        self.answer(viewer, id, kept);
-    }
-
-    fn change(
-        &self,
-        viewer: ViewerId,
-        change: impl FnOnce(&Viewers, &mut Lease) -> Result<(), String>,
-    ) -> Result<Option<Answer>, String> {
+    pub fn give_control(&self, viewer: ViewerId, to: ViewerId) -> Result<Option<Answer>, String> {
         self.must_hold(viewer)?;
         let mut control = self.control();
         let Control { viewers, lease } = &mut *control;
-        change(viewers, lease)?;
+        let there = viewers.get(to).filter(|there| there.role != Role::Screen);
+        let there = there.ok_or_else(|| format!("{to} is not an open page, or a screen"))?;
+        lease.grant(to, &there.session);
+        self.show(&control);
+        Ok(None)
+    }
+
+    /// The operator keeps control despite a request.
+    pub fn keep_control(&self, viewer: ViewerId) -> Result<Option<Answer>, String> {
+        self.must_hold(viewer)?;
+        let mut control = self.control();
+        control.lease.keep();
         self.show(&control);
         Ok(None)
     }
@@ -290,7 +251,6 @@ impl Hub {
         }
     }
 
-    /// Ends the server.
     pub fn end(&self) {
         self.ending.send_replace(true);
     }
@@ -298,16 +258,6 @@ impl Hub {
     /// Returns a receiver that is true once the server is to end.
     pub fn ending(&self) -> watch::Receiver<bool> {
         self.ending.subscribe()
-    }
-
-    /// Counts progress of the web server's tasks.
-    pub fn advance(&self) {
-        self.progress.fetch_add(1, Ordering::Relaxed);
-    }
-
-    /// Returns the progress of the web server's tasks.
-    pub fn progress(&self) -> u64 {
-        self.progress.load(Ordering::Relaxed)
     }
 
     /// Notes a pass of the main loop.

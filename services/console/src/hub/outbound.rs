@@ -11,46 +11,23 @@ use super::ms;
 #[derive(Debug, Serialize)]
 #[serde(tag = "t", rename_all = "snake_case")]
 pub enum PageMessage<'a> {
-    /// The first message.
     Welcome(Welcome<'a>),
-    /// The answer to a ping.
-    Pong {
-        /// The page's own time, as it sent it.
-        at: &'a Json,
-        /// The server's time, milliseconds.
-        server_ms: f64,
-    },
-    /// The answer to a command.
+    Pong { at: &'a Json, server_ms: f64 },
     Done(Done<'a>),
-    /// A message or frame that made no sense.
-    Error {
-        /// The error.
-        error: &'a str,
-    },
-    /// States of the joints.
+    Error { error: &'a str },
     Joints(Joints),
-    /// The interim text of an utterance.
     Partial(Interim<'a>),
-    /// The receipt of a part of a stream.
     Receipt(StreamReceipt<'a>),
 }
 
-/// The first message to a page.
 #[derive(Debug, Serialize)]
 pub struct Welcome<'a> {
-    /// Version of the protocol.
     pub protocol: u64,
-    /// The page's number.
     pub viewer: String,
-    /// Version of the console.
     pub version: &'a str,
-    /// The group's name.
     pub group: &'a str,
-    /// The server's time, milliseconds.
     pub server_ms: f64,
-    /// First line of the transcript.
     pub first_line: u64,
-    /// Settings that concern the page.
     pub settings: &'a PageSettings,
 }
 
@@ -59,32 +36,23 @@ pub struct Welcome<'a> {
 pub struct PageSettings {
     /// The language where the page has chosen none.
     pub language: String,
-    /// Voice settings.
     pub voice: VoiceSettings,
-    /// `true` if a study runs.
     pub study: bool,
 }
 
-/// Voice settings that concern pages.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct VoiceSettings {
-    /// `true` if it recognises speech.
     pub recogniser: bool,
-    /// `true` if it speaks.
     pub voice: bool,
 }
 
 /// The answer to a command, under the number that the page gave it.
 #[derive(Debug, Serialize)]
 pub struct Done<'a> {
-    /// The command's number.
     pub id: u64,
-    /// `true` if it was carried out.
     pub ok: bool,
-    /// The reason of a refusal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<&'a str>,
-    /// The result.
     #[serde(flatten)]
     pub answer: Option<Answer>,
 }
@@ -93,39 +61,29 @@ pub struct Done<'a> {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Answer {
-    /// An utterance was accepted.
     Accepted {
-        /// Its number.
         seq: u64,
     },
-    /// The motion stop has changed.
     Motion {
-        /// `true` if the stop is latched.
         stopped: bool,
     },
     /// The viewer has control, or asks for it.
     Control {
-        /// `true` if the viewer has control.
         granted: bool,
         /// When it gets control unless the operator keeps it, milliseconds.
         #[serde(skip_serializing_if = "Option::is_none")]
         expires_ms: Option<f64>,
     },
-    /// The supervisor's answer.
     Supervisor {
-        /// In words.
         message: String,
     },
     /// The participant of a page of the study, and the stage.
     Found {
-        /// The participant's code.
         participant: Option<String>,
-        /// The stage's name.
         stage: Option<&'static str>,
     },
     /// The participant that a command of the study concerned.
     Participant {
-        /// The participant's code.
         participant: String,
     },
 }
@@ -138,7 +96,6 @@ pub struct Joints {
     grip: Vec<f64>,
 }
 
-/// The interim text of an utterance.
 #[derive(Debug, Serialize)]
 pub struct Interim<'a> {
     stream: Option<u32>,
@@ -159,7 +116,6 @@ pub struct StreamReceipt<'a> {
     utterances: Option<Option<u32>>,
 }
 
-/// An utterance of a stream.
 #[derive(Debug, Serialize)]
 struct Heard {
     seq: Option<u64>,
@@ -170,7 +126,6 @@ struct Heard {
 }
 
 impl PageMessage<'_> {
-    /// Returns the message as JSON text.
     pub fn to_text(&self) -> String {
         // Every message can be written.
         serde_json::to_string(self).unwrap_or_default()

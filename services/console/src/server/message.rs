@@ -20,18 +20,14 @@ const OLDEST_MS: f64 = 120_000.0;
 pub struct Hello {
     /// Kept by the page through its reloads.
     pub session: String,
-    /// The user's name.
     pub name: String,
-    /// The last line of the transcript that the page has.
     pub last_line: u64,
-    /// The role that it asks for.
     pub role: Role,
 }
 
 /// A later message of a page.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
-    /// A ping with the page's own time.
     Ping(Json),
     /// A command, under a number.
     Do(u64, Do),
@@ -39,27 +35,18 @@ pub enum Message {
     Wrong(u64, String),
 }
 
-/// A command.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Do {
-    /// For dialogue or study.
     Ask(Verb),
     /// Stop the arm, or release the stop.
     Motion(bool),
-    /// Take control.
     Take,
-    /// Give control to another viewer.
     Give(ViewerId),
-    /// Keep control.
     Keep,
-    /// Restart a service.
     Restart(String),
 }
 
 /// Reads the first message.
-///
-/// # Errors
-/// The message is invalid.
 pub fn hello(text: &str) -> Result<Hello, String> {
     let json = object(text)?;
     if json["t"] != "hello" {
@@ -87,9 +74,6 @@ pub fn hello(text: &str) -> Result<Hello, String> {
 }
 
 /// Reads a later message; `now` bounds the times in it.
-///
-/// # Errors
-/// The message is invalid.
 pub fn message(text: &str, now: Time) -> Result<Message, String> {
     let json = object(text)?;
     match json["t"].as_str() {

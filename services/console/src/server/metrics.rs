@@ -9,13 +9,9 @@ use prometheus_client::registry::Registry;
 /// The console's metrics.
 #[derive(Clone, Debug)]
 pub struct Metrics {
-    /// Pages that are open.
     pub viewers: Gauge,
-    /// Pages disconnected because they did not read.
     pub dropped: Counter,
-    /// Frames sent to pages.
     pub frames: Counter,
-    /// Bytes of these frames.
     pub bytes: Counter,
     /// Seconds from the end of an utterance to the first sound of the answer.
     pub latency: Histogram,

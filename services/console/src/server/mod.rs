@@ -2,9 +2,6 @@
 
 mod access;
 mod assets;
-mod headers;
-pub mod listen;
-mod login;
 pub mod message;
 pub mod metrics;
 pub mod routes;
@@ -13,12 +10,13 @@ pub mod web;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use axum::Router;
 use axum::body::Body;
 use axum::extract::{Request, State};
-use axum::http::{Method, Response, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Response, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Redirect};
 use axum::routing::get;
@@ -34,13 +32,9 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 /// State and files that the server serves.
 #[derive(Debug)]
 pub struct App {
-    /// Shared with the main loop.
     pub hub: Hub,
-    /// Access rules.
     pub access: Access,
-    /// The group's name.
     pub group: String,
-    /// Settings that concern pages.
     pub settings: PageSettings,
     /// The robot's description (URDF).
     pub urdf: String,
@@ -51,9 +45,6 @@ pub struct App {
 }
 
 /// Serves a listener until the hub ends.
-///
-/// # Errors
-/// The listener fails.
 pub async fn serve(listener: TcpListener, app: Arc<App>) -> std::io::Result<()> {
     let mut ending = app.hub.ending();
     let beating = Arc::clone(&app);
@@ -61,7 +52,7 @@ pub async fn serve(listener: TcpListener, app: Arc<App>) -> std::io::Result<()> 
         let mut beat = tokio::time::interval(PROGRESS_EVERY);
         loop {
             beat.tick().await;
-            beating.hub.advance();
+            beating.hub.progress.fetch_add(1, Ordering::Relaxed);
             beating.hub.tick(service::clock::now());
         }
     });
@@ -87,7 +78,7 @@ fn router(app: Arc<App>) -> Router {
         .layer(middleware::from_fn_with_state(Arc::clone(&app), admit))
         // The routes below are open without the token.
         .route("/healthz", get(routes::health))
-        .route("/login", get(routes::asset).post(login::login))
+        .route("/login", get(routes::asset).post(routes::login))
         .layer(middleware::from_fn_with_state(Arc::clone(&app), address))
         .with_state(app)
 }
@@ -119,6 +110,51 @@ async fn address(State(app): State<Arc<App>>, request: Request, next: Next) -> R
             "this console serves its own machine only; help: use http://localhost and its port\n";
         (StatusCode::MISDIRECTED_REQUEST, why).into_response()
     };
-    headers::secure(response.headers_mut(), host.as_deref());
+    secure(response.headers_mut(), host.as_deref());
     response
+}
+
+/// Adds security headers to an answer to a request that was addressed to `host`: no foreign scripts, no
+/// framing.
+fn secure(headers: &mut HeaderMap, host: Option<&str>) {
+    // `'self'` covers sockets of the same host in newer browsers only.
+    let plain =
+        |host: &&str| host.bytes().all(|b| b.is_ascii_alphanumeric() || b".-:[]".contains(&b));
+    let sockets = host.filter(plain).map(|host| format!(" ws://{host} wss://{host}"));
+    let policy = format!(
+        "default-src 'self'; img-src 'self' data: blob:; media-src 'self' blob:; \
+         connect-src 'self'{}; worker-src 'self' blob:; object-src 'none'; base-uri 'none'; \
+         form-action 'self'; frame-ancestors 'none'",
+        sockets.unwrap_or_default()
+    );
+    if let Ok(policy) = HeaderValue::from_str(&policy) {
+        headers.insert(header::CONTENT_SECURITY_POLICY, policy);
+    }
+    for (name, value) in [
+        ("x-content-type-options", "nosniff"),
+        ("x-frame-options", "DENY"),
+        ("referrer-policy", "no-referrer"),
+        ("cross-origin-opener-policy", "same-origin"),
+        ("cross-origin-resource-policy", "same-origin"),
+        ("permissions-policy", "microphone=(self), camera=(), geolocation=()"),
+    ] {
+        headers.insert(HeaderName::from_static(name), HeaderValue::from_static(value));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headers_forbid_foreign_scripts() {
+        let mut headers = HeaderMap::new();
+        secure(&mut headers, Some("localhost:8377"));
+        let policy = headers[header::CONTENT_SECURITY_POLICY].to_str().unwrap().to_owned();
+        assert!(policy.contains("connect-src 'self' ws://localhost:8377 wss://localhost:8377;"));
+        assert!(!policy.contains("unsafe"));
+        secure(&mut headers, Some("x; script-src *"));
+        let policy = headers[header::CONTENT_SECURITY_POLICY].to_str().unwrap();
+        assert!(!policy.contains("script-src"), "{policy}");
+    }
 }

@@ -189,14 +189,20 @@ fn text_frame(text: &str, viewer: ViewerId, hub: &Hub) {
         Ok(Message::Ping(at)) => {
             hub.send(viewer, &PageMessage::Pong { at: &at, server_ms: ms(now) });
         }
-        Ok(Message::Do(id, what)) => match what {
-            Do::Ask(verb) => hub.ask(viewer, id, verb),
-            Do::Motion(stop) => hub.motion(viewer, id, stop),
-            Do::Take => hub.take_control(viewer, id, now),
-            Do::Give(to) => hub.give_control(viewer, id, to),
-            Do::Keep => hub.keep_control(viewer, id),
-            Do::Restart(service) => hub.restart(viewer, id, service),
-        },
+        Ok(Message::Do(id, what)) => {
+            // Others than control are answered by those who carry them out.
+            let passed_on = match what {
+                Do::Ask(verb) => hub.ask(viewer, id, verb),
+                Do::Motion(stop) => hub.motion(viewer, id, stop),
+                Do::Restart(service) => hub.restart(viewer, id, service),
+                Do::Take => return hub.answer(viewer, id, hub.take_control(viewer, now)),
+                Do::Give(to) => return hub.answer(viewer, id, hub.give_control(viewer, to)),
+                Do::Keep => return hub.answer(viewer, id, hub.keep_control(viewer)),
+            };
+            if let Err(why) = passed_on {
+                hub.answer(viewer, id, Err(why));
+            }
+        }
         Ok(Message::Wrong(id, why)) => hub.answer(viewer, id, Err(why)),
         Err(why) => hub.error(viewer, &why),
     }

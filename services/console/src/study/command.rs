@@ -8,9 +8,6 @@ use super::study_controller::Command;
 const WHY_MAX: usize = 200;
 
 /// Returns the secret of a page.
-///
-/// # Errors
-/// It is missing or invalid.
 pub(super) fn page(arguments: &Json) -> Result<String, String> {
     let page = arguments["page"].as_str().unwrap_or_default();
     if page.len() != 32 || !page.bytes().all(|byte| byte.is_ascii_hexdigit()) {
@@ -20,9 +17,6 @@ pub(super) fn page(arguments: &Json) -> Result<String, String> {
 }
 
 /// Reads a command.
-///
-/// # Errors
-/// An unknown command, or a missing argument.
 pub(super) fn read(verb: &str, arguments: &Json) -> Result<Command, String> {
     let text = |key: &str| {
         let text = arguments[key].as_str().filter(|text| !text.trim().is_empty());

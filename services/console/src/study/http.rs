@@ -8,9 +8,9 @@ use axum::extract::{Path, State};
 use axum::http::{StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use evaluation::user_study::{FILE_ENDING, Participant};
-use journal::lines;
+use evaluation::user_study::{self, Participant};
 
+use super::files;
 use crate::server::App;
 
 /// Everything below `/study/`.
@@ -25,24 +25,20 @@ async fn file(State(app): State<Arc<App>>, Path(name): Path<String>) -> Response
 }
 
 fn serve(folder: PathBuf, name: &str) -> Response {
-    let people = match read(folder) {
+    let people = match files::read(&folder) {
         Ok(people) => people,
         Err(why) => return (StatusCode::INTERNAL_SERVER_ERROR, why + "\n").into_response(),
     };
     let csv = |text: String| download(name, "text/csv; charset=utf-8", text);
     match name {
-        "export.csv" | "interactions.csv" => {
-            csv(evaluation::user_study::tables(&people).interactions)
+        "export.csv" | "interactions.csv" => csv(user_study::tables(&people).interactions),
+        "participants.csv" => csv(user_study::tables(&people).participants),
+        "dictionary.csv" => csv(user_study::tables(&people).dictionary),
+        "export.json" => {
+            download(name, "application/json", format!("{:#}\n", user_study::to_json(&people)))
         }
-        "participants.csv" => csv(evaluation::user_study::tables(&people).participants),
-        "dictionary.csv" => csv(evaluation::user_study::tables(&people).dictionary),
-        "export.json" => download(
-            name,
-            "application/json",
-            format!("{:#}\n", evaluation::user_study::to_json(&people)),
-        ),
         "report.json" => {
-            let report = evaluation::user_study::report(&people).to_json();
+            let report = user_study::report(&people).to_json();
             ([(header::CONTENT_TYPE, "application/json")], report.to_string()).into_response()
         }
         _ => picture(&people, name),
@@ -50,7 +46,7 @@ fn serve(folder: PathBuf, name: &str) -> Response {
 }
 
 fn picture(people: &[Participant], name: &str) -> Response {
-    let pictures = evaluation::user_study::pictures(&evaluation::user_study::report(people));
+    let pictures = user_study::pictures(&user_study::report(people));
     let wanted = name.strip_suffix(".svg");
     let found = pictures.into_iter().find(|(name, _)| Some(*name) == wanted);
     let Some((_, chart)) = found else {
@@ -60,13 +56,6 @@ fn picture(people: &[Participant], name: &str) -> Response {
         Ok(text) => ([(header::CONTENT_TYPE, "image/svg+xml")], text).into_response(),
         Err(error) => (StatusCode::INTERNAL_SERVER_ERROR, format!("{error}\n")).into_response(),
     }
-}
-
-fn read(folder: PathBuf) -> Result<Vec<Participant>, String> {
-    let files = lines::read_folder(&folder, FILE_ENDING)
-        .map_err(|(path, error)| format!("{}: {error}", path.display()))?;
-    evaluation::user_study::people(files)
-        .map_err(|(path, error)| format!("{}: {error}", path.display()))
 }
 
 fn download(name: &str, kind: &'static str, text: String) -> Response {

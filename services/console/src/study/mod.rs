@@ -23,9 +23,7 @@ mod trial_monitor;
 use std::path::PathBuf;
 
 use config::Settings;
-use evaluation::user_study::{Entry, Event, Source};
-use messages::{Receipt, Source as Way};
-use scene::Question;
+use evaluation::user_study::{Entry, Event};
 use serde_json::Value as Json;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -40,7 +38,7 @@ use planner_switch::PlannerSwitch;
 use robot_state::RobotState;
 use section::StudySection;
 use study_controller::StudyController;
-use trial_monitor::{DialogueLine, RobotRequest};
+use trial_monitor::RobotRequest;
 
 pub use http::routes;
 
@@ -51,12 +49,9 @@ const ORDER_EVERY: Span = Span::from_ms(10_000);
 /// Words that cancel an open interaction.
 const CANCEL: &str = "never mind";
 
-/// The study, where one is configured.
+/// A study that is offered to pages.
 #[derive(Debug)]
-pub struct Study(Option<Running>);
-
-#[derive(Debug)]
-struct Running {
+pub struct Study {
     controller: StudyController,
     files: Files,
     switch: PlannerSwitch,
@@ -73,93 +68,52 @@ pub fn folder(settings: &Settings, paths: &GroupPaths) -> PathBuf {
 }
 
 impl Study {
-    /// Reads the settings and recovers the participants.
-    ///
-    /// # Errors
-    /// The data cannot be read.
-    pub fn new(settings: &Settings, paths: &GroupPaths) -> Result<Self, Failure> {
+    /// Reads the settings and recovers the participants; none where no study is configured.
+    pub fn new(settings: &Settings, paths: &GroupPaths) -> Result<Option<Self>, Failure> {
         if !settings.study.enabled {
-            return Ok(Self(None));
+            return Ok(None);
         }
-        let mut files = Files::in_folder(folder(settings, paths));
-        let people = files.recover().map_err(|why| Failure::new(Exit::Storage, why))?;
+        let folder = folder(settings, paths);
+        let people = files::read(&folder).map_err(|why| Failure::new(Exit::Storage, why))?;
         let policy = std::env::current_exe().map(|own| own.with_file_name("whichone-policy"));
         let switch = policy.and_then(|policy| PlannerSwitch::start(paths.control_socket(), policy));
         let switch = switch
             .map_err(|error| Failure::new(Exit::NotReached, format!("study's thread: {error}")))?;
         let protocol = settings.study.protocol.clone();
-        Ok(Self(Some(Running {
+        Ok(Some(Self {
             controller: StudyController::new(protocol, paths.name().to_string(), people),
-            files,
+            files: Files::in_folder(folder),
             switch,
             fault_ms: 1e3 * settings.study.fault.as_secs_f64(),
             requested: None,
             trouble: None,
-        })))
-    }
-
-    /// Returns whether pages may begin a study.
-    pub fn is_offered(&self) -> bool {
-        self.0.is_some()
-    }
-
-    /// Carries out a command of a page.
-    ///
-    /// # Errors
-    /// Why not, in a sentence.
-    pub fn command(
-        &mut self,
-        verb: &str,
-        arguments: &Json,
-        model: &ViewModel,
-        now: Now,
-    ) -> Result<Answer, String> {
-        let help = "set study.enabled, and reload the group";
-        let study = self.0.as_mut().ok_or_else(|| format!("no study is running; help: {help}"))?;
-        let robot = study.robot(model, now);
-        study.command(verb, arguments, &robot)
+        }))
     }
 
     /// Takes in an event of the dialogue.
     pub fn on_event(&mut self, event: &DialogueEvent, model: &ViewModel, now: Now) {
-        let Some(study) = &mut self.0 else { return };
-        let said = match event {
-            DialogueEvent::Heard(receipt) => heard(receipt),
-            DialogueEvent::Presented { prompt, presentation, question, text, .. }
-                if *question != Question::None =>
-            {
-                let (prompt, presentation, words) = (*prompt, *presentation, text.clone());
-                Some(DialogueLine::Asked { prompt, presentation, words })
-            }
-            _ => None,
-        };
-        let robot = study.robot(model, now);
-        if let Some((id, event)) = said.and_then(|said| study.controller.said(&said, &robot)) {
-            study.note(&id, vec![event], now.unix_ms);
+        if let Some((id, event)) = self.controller.said(event, &self.robot(model, now)) {
+            self.note(&id, vec![event], now.unix_ms);
         }
     }
 
     /// Takes in the robot's state; returns what is to be said to the robot.
-    pub fn pass(&mut self, model: &ViewModel, now: Now) -> Vec<Words> {
-        let Some(study) = &mut self.0 else { return Vec::new() };
-        let robot = study.robot(model, now);
-        study.take_results(now.unix_ms);
-        if let Some((id, event)) = study.controller.look(&robot, study.fault_ms) {
-            study.note(&id, vec![event], now.unix_ms);
+    pub fn pass(&mut self, model: &ViewModel, now: Now) -> Option<Words> {
+        let robot = self.robot(model, now);
+        self.take_results(now.unix_ms);
+        if let Some((id, event)) = self.controller.look(&robot, self.fault_ms) {
+            self.note(&id, vec![event], now.unix_ms);
         }
-        study.request(&robot, now)
+        self.request(&robot, now)
     }
 
     /// Returns the section `study` as JSON text.
     pub fn section(&self, model: &ViewModel, now: Now) -> Option<String> {
-        let study = self.0.as_ref()?;
-        let robot = study.robot(model, now);
-        let section = StudySection::new(&study.controller, &robot, study.trouble.as_deref());
+        let robot = self.robot(model, now);
+        let section = StudySection::new(&self.controller, &robot, self.trouble.as_deref());
         serde_json::to_string(&section).ok()
     }
-}
 
-impl Running {
     fn robot<'a>(&self, model: &'a ViewModel, now: Now) -> RobotState<'a> {
         RobotState {
             at: now.unix_ms,
@@ -172,11 +126,13 @@ impl Running {
         }
     }
 
-    fn command(
+    /// Carries out a command of a page.
+    pub fn command(
         &mut self,
         verb: &str,
         arguments: &Json,
-        robot: &RobotState<'_>,
+        model: &ViewModel,
+        now: Now,
     ) -> Result<Answer, String> {
         let page = command::page(arguments)?;
         if verb == "find" {
@@ -187,8 +143,9 @@ impl Running {
             });
         }
         let command = command::read(verb, arguments)?;
-        let (id, events) = self.controller.handle(&page, &command, robot, command::seed())?;
-        self.write(&id, events, robot.at).map_err(|error| {
+        let robot = self.robot(model, now);
+        let (id, events) = self.controller.handle(&page, &command, &robot, command::seed())?;
+        self.write(&id, events, now.unix_ms).map_err(|error| {
             tracing::error!(participant = id, %error, "the study's data is not written");
             format!("The data cannot be written: {error}. Please tell the experimenter.")
         })?;
@@ -212,7 +169,7 @@ impl Running {
         Ok(())
     }
 
-    /// As [`Running::write`], where no page waits for an answer: the next pass repeats it.
+    /// As [`Study::write`], where no page waits for an answer: the next pass repeats it.
     fn note(&mut self, id: &str, events: Vec<Event>, at: u64) {
         if let Err(error) = self.write(id, events, at) {
             tracing::error!(participant = id, %error, "the study's data is not written");
@@ -231,22 +188,20 @@ impl Running {
         }
     }
 
-    fn request(&mut self, robot: &RobotState<'_>, now: Now) -> Vec<Words> {
+    fn request(&mut self, robot: &RobotState<'_>, now: Now) -> Option<Words> {
         let Some(request) = self.controller.request(robot) else {
             self.requested = None;
-            return Vec::new();
+            return None;
         };
         let every = if request == RobotRequest::Cancel { REQUEST_EVERY } else { ORDER_EVERY };
-        let is_due = match &self.requested {
-            Some((before, at)) => *before != request || now.at >= *at + every,
-            None => true,
-        };
+        let is_due = (self.requested.as_ref())
+            .is_none_or(|(before, at)| *before != request || now.at >= *at + every);
         if !is_due || self.switch.is_busy() {
-            return Vec::new();
+            return None;
         }
         self.requested = Some((request.clone(), now.at));
         match &request {
-            RobotRequest::Cancel => return vec![typed(CANCEL)],
+            RobotRequest::Cancel => return Some(typed(CANCEL)),
             RobotRequest::Switch(planner) => {
                 // Before it is done, so that it is given back whatever happens in between.
                 let event = Event::Switched { planner: planner.clone() };
@@ -256,16 +211,6 @@ impl Running {
             RobotRequest::Restore(_) => {}
         }
         self.switch.order(request);
-        Vec::new()
+        None
     }
-}
-
-fn heard(receipt: &Receipt) -> Option<DialogueLine> {
-    let is_typed = receipt.source == Way::Text;
-    (receipt.seq > 0).then(|| DialogueLine::Heard {
-        seq: receipt.seq,
-        source: if is_typed { Source::Typed } else { Source::Voice },
-        onset_ms: ms(Time(receipt.onset_ns)),
-        words: receipt.note.as_str().unwrap_or_default().to_owned(),
-    })
 }

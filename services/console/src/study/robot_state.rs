@@ -2,6 +2,7 @@
 
 use messages::{ArmStatus, PickPhase, PolicyView};
 use scene::Scene;
+use serde::Serialize;
 
 /// The robot at one moment.
 #[derive(Clone, Copy, Debug)]
@@ -23,38 +24,27 @@ pub(super) struct RobotState<'a> {
 }
 
 /// Reason why an interaction cannot begin yet.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub(super) enum NotReady {
     /// A service is not ready, or the policy has published nothing yet.
-    Service(String),
+    Service,
     /// The policy uses another planner.
     Planner,
     /// An interaction is open, or the arm moves.
     Busy,
 }
 
-impl NotReady {
-    /// Returns its name in the section `study`.
-    pub(super) fn name(&self) -> &'static str {
-        match self {
-            Self::Service(_) => "service",
-            Self::Planner => "planner",
-            Self::Busy => "busy",
-        }
-    }
-}
-
 impl RobotState<'_> {
     /// Returns what keeps an interaction with this planner from beginning.
     pub(super) fn not_ready(&self, planner: &str) -> Option<NotReady> {
-        if let Some(name) = self.missing {
-            return Some(NotReady::Service(name.to_owned()));
-        }
-        let Some(view) = self.view else { return Some(NotReady::Service("policy".to_owned())) };
-        match () {
-            () if view.planner != planner || self.is_switching => Some(NotReady::Planner),
-            () if view.interaction != 0 || self.arm_is_busy => Some(NotReady::Busy),
-            () => None,
+        match self.view {
+            Some(view) if self.missing.is_none() => match () {
+                () if view.planner != planner || self.is_switching => Some(NotReady::Planner),
+                () if view.interaction != 0 || self.arm_is_busy => Some(NotReady::Busy),
+                () => None,
+            },
+            _ => Some(NotReady::Service),
         }
     }
 

@@ -3,7 +3,7 @@
 use evaluation::user_study::{End, Item, Participant, Protocol, Stage, Status, Trial};
 use serde::Serialize;
 
-use super::robot_state::RobotState;
+use super::robot_state::{NotReady, RobotState};
 use super::study_controller::StudyController;
 
 /// The section. A page finds its participant by the code that it was given at its beginning.
@@ -46,7 +46,7 @@ struct TrialView<'a> {
     policy: &'a str,
     desired: &'a str,
     scene_key: &'a str,
-    waits_for: Option<&'static str>,
+    waits_for: Option<NotReady>,
     started_at: Option<u64>,
     said: u32,
     questions: usize,
@@ -121,7 +121,7 @@ impl<'a> TrialView<'a> {
             policy: &trial.step.policy,
             desired: &trial.drawn.object,
             scene_key: &trial.drawn.scene_key,
-            waits_for: waits_for.map(|reason| reason.name()),
+            waits_for,
             started_at: trial.started_at,
             said: trial.utterances(),
             questions: trial.asked.len(),

@@ -92,9 +92,6 @@ impl StudyController {
     }
 
     /// Applies a request; `seed` is fresh.
-    ///
-    /// # Errors
-    /// The command is not possible now.
     pub(super) fn handle(
         &self,
         page: &str,

@@ -3,10 +3,13 @@
 
 use evaluation::Verdict;
 use evaluation::user_study::{Event, Fault, Participant, Source, Stage, Trial};
-use messages::{ActKind, Ended, PolicyView};
+use messages::{ActKind, Ended, PolicyView, Source as Way};
+use service::Time;
 
 use super::robot_state::{NotReady, RobotState};
 use super::study_controller::StudyController;
+use crate::hub::ms;
+use crate::view_model::DialogueEvent;
 
 /// Utterances and questions of an interaction that are written down.
 const LINES_MAX: usize = 500;
@@ -22,31 +25,6 @@ pub(super) enum RobotRequest {
     Restore(String),
 }
 
-/// Something that was said.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum DialogueLine {
-    /// By the participant.
-    Heard {
-        /// The utterance's number.
-        seq: u64,
-        /// By which way.
-        source: Source,
-        /// When it began; 0 where that is not known.
-        onset_ms: f64,
-        /// The words.
-        words: String,
-    },
-    /// By the robot.
-    Asked {
-        /// The question's number.
-        prompt: u64,
-        /// The number of earlier attempts, plus one.
-        presentation: u32,
-        /// The words.
-        words: String,
-    },
-}
-
 impl StudyController {
     /// The running interaction.
     fn running(&self) -> Option<(&Participant, &Trial)> {
@@ -54,10 +32,10 @@ impl StudyController {
         Some((person, person.trial()?))
     }
 
-    /// Returns the consequences of an utterance.
+    /// Returns the consequences of an utterance or question.
     pub(super) fn said(
         &self,
-        said: &DialogueLine,
+        said: &DialogueEvent,
         robot: &RobotState<'_>,
     ) -> Option<(String, Event)> {
         let (person, trial) = self.running()?;
@@ -66,12 +44,14 @@ impl StudyController {
         }
         let kept = |words: &str| person.begun.protocol.keep_words.then(|| words.to_owned());
         let event = match said {
-            DialogueLine::Heard { seq, source, onset_ms, words } => {
-                let onset_ms = if *onset_ms > 0.0 { *onset_ms } else { robot.ms };
-                let (seq, source, accepted_ms) = (*seq, *source, robot.ms);
-                Event::Heard { seq, source, onset_ms, accepted_ms, words: kept(words) }
-            }
-            DialogueLine::Asked { prompt, presentation, words } => {
+            DialogueEvent::Heard(receipt) => Event::Heard {
+                seq: receipt.seq,
+                source: if receipt.source == Way::Text { Source::Typed } else { Source::Voice },
+                onset_ms: if receipt.onset_ns > 0 { ms(Time(receipt.onset_ns)) } else { robot.ms },
+                accepted_ms: robot.ms,
+                words: kept(receipt.note.as_str().unwrap_or_default()),
+            },
+            DialogueEvent::Asked { prompt, presentation, words } => {
                 let (prompt, presentation) = (*prompt, *presentation);
                 Event::Asked { prompt, presentation, words: kept(words) }
             }

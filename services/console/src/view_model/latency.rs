@@ -14,32 +14,34 @@ const OPEN_MAX: usize = 32;
 /// ten seconds at most. A question after a longer silence is not an answer.
 const DECIDED_NS_MAX: u64 = 11_000_000_000;
 
-/// The stages of one answer, milliseconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Stages {
-    /// From the end of the utterance to its text.
-    #[serde(rename = "heard_ms")]
-    pub heard: f64,
-    /// From the text to its meaning.
-    #[serde(rename = "understood_ms")]
-    pub understood: f64,
-    /// From the meaning to a decision.
-    #[serde(rename = "decided_ms")]
-    pub decided: f64,
-    /// From the decision to the first sound.
-    #[serde(rename = "spoken_ms")]
-    pub spoken: f64,
-    /// All of it.
-    #[serde(rename = "total_ms")]
-    pub total: f64,
+/// Milliseconds of one answer: from the end of the utterance to its text, from there to its meaning, to a
+/// decision, to the first sound; and all of it.
+pub type Stages = [f64; 5];
+
+/// Stages to a tenth of a millisecond.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+struct StagesView {
+    heard_ms: f64,
+    understood_ms: f64,
+    decided_ms: f64,
+    spoken_ms: f64,
+    total_ms: f64,
+}
+
+impl From<Stages> for StagesView {
+    fn from(stages: Stages) -> Self {
+        let [heard_ms, understood_ms, decided_ms, spoken_ms, total_ms] =
+            stages.map(|ms| (ms * 10.0).round() / 10.0);
+        Self { heard_ms, understood_ms, decided_ms, spoken_ms, total_ms }
+    }
 }
 
 /// The section `latency`: stages of the latest answer and their quantiles.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct LatencySection {
-    last: Option<Stages>,
-    p50: Option<Stages>,
-    p99: Option<Stages>,
+    last: Option<StagesView>,
+    p50: Option<StagesView>,
+    p99: Option<StagesView>,
     count: u64,
 }
 
@@ -107,8 +109,7 @@ impl Latency {
         }
         let ms = |from: usize| (marks[from + 1] - marks[from]) as f64 / 1e6;
         let total = (started - open.end) as f64 / 1e6;
-        let stages =
-            Stages { heard: ms(0), understood: ms(1), decided: ms(2), spoken: ms(3), total };
+        let stages = [ms(0), ms(1), ms(2), ms(3), total];
         if self.done.len() == KEPT {
             self.done.pop_front();
         }
@@ -134,45 +135,26 @@ impl Latency {
         self.open.back_mut()
     }
 
-    /// Returns the section, to a tenth of a millisecond.
+    /// Returns the section.
     pub(super) fn section(&self) -> LatencySection {
-        let quantile = |q: f64| self.quantiles(q).map(Stages::rounded);
         LatencySection {
-            last: self.done.back().map(|stages| stages.rounded()),
-            p50: quantile(0.5),
-            p99: quantile(0.99),
+            last: self.done.back().map(|stages| (*stages).into()),
+            p50: self.quantile(0.5),
+            p99: self.quantile(0.99),
             count: self.count,
         }
     }
 
     /// Returns the quantile of each stage.
-    fn quantiles(&self, q: f64) -> Option<Stages> {
-        let of = |stage: fn(&Stages) -> f64| {
-            let mut all: Vec<f64> = self.done.iter().map(stage).collect();
+    fn quantile(&self, q: f64) -> Option<StagesView> {
+        let last = self.done.len().checked_sub(1)?;
+        let at = (last as f64 * q).round() as usize;
+        let of = |stage: usize| {
+            let mut all: Vec<f64> = self.done.iter().map(|stages| stages[stage]).collect();
             all.sort_by(f64::total_cmp);
-            let last = all.len().checked_sub(1)?;
-            all.get((last as f64 * q).round() as usize).copied()
+            all[at]
         };
-        Some(Stages {
-            heard: of(|s| s.heard)?,
-            understood: of(|s| s.understood)?,
-            decided: of(|s| s.decided)?,
-            spoken: of(|s| s.spoken)?,
-            total: of(|s| s.total)?,
-        })
-    }
-}
-
-impl Stages {
-    fn rounded(self) -> Self {
-        let round = |ms: f64| (ms * 10.0).round() / 10.0;
-        Self {
-            heard: round(self.heard),
-            understood: round(self.understood),
-            decided: round(self.decided),
-            spoken: round(self.spoken),
-            total: round(self.total),
-        }
+        Some(StagesView::from(std::array::from_fn(of)))
     }
 }
 
@@ -201,11 +183,9 @@ mod tests {
     fn latency_counts_each_answer_once() {
         let mut latency = Latency::default();
         answer(&mut latency, 1, [100, 700, 705, 725, 745]);
-        let expected =
-            Stages { heard: 600.0, understood: 5.0, decided: 20.0, spoken: 20.0, total: 645.0 };
-        assert_eq!(latency.take_news(), [expected]);
+        assert_eq!(latency.take_news(), [[600.0, 5.0, 20.0, 20.0, 645.0]]);
         assert_eq!(latency.section().count, 1);
-        assert_eq!(latency.section().p99.unwrap().total, 645.0);
+        assert_eq!(latency.section().p99.unwrap().total_ms, 645.0);
     }
 
     #[test]
@@ -222,8 +202,8 @@ mod tests {
     fn latency_quantiles_cover_the_latest_five_hundred() {
         let mut latency = Latency::default();
         (1..=1_000).for_each(|n| answer(&mut latency, n, [1, 2, 3, 4, 4 + n]));
-        assert_eq!(latency.section().p50.unwrap().spoken, 751.0);
-        assert_eq!(latency.section().p99.unwrap().spoken, 995.0);
+        assert_eq!(latency.section().p50.unwrap().spoken_ms, 751.0);
+        assert_eq!(latency.section().p99.unwrap().spoken_ms, 995.0);
         assert_eq!(latency.section().count, 1_000);
         (2_000..3_000)
             .for_each(|seq| latency.on_receipt(&Receipt { seq, end_ns: 1, ..Receipt::default() }));

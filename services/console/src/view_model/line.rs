@@ -13,14 +13,11 @@ pub struct Line {
     pub at_ms: f64,
     /// Time, milliseconds since 1970.
     pub unix_ms: u64,
-    /// The speaker.
     pub who: Speaker,
-    /// The words.
     pub text: String,
     /// Source of an utterance: typed, browser, microphone, stream, file, gesture.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub source: String,
-    /// Number of the utterance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seq: Option<u64>,
     /// Probability of the text among all that it may have been.
@@ -45,21 +42,18 @@ pub struct Line {
 pub struct Meaning {
     /// In words: `yes · small · not white`.
     pub text: String,
-    /// Its probability.
     pub weight: f64,
 }
 
 /// A question that an utterance answers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Answered {
-    /// Its words.
     pub question: String,
     /// Probability that the utterance answers it.
     pub share: f64,
 }
 
 impl Line {
-    /// Returns the line as JSON.
     pub fn to_text(&self) -> String {
         // Every part of a line can be written.
         serde_json::to_string(self).unwrap_or_default()

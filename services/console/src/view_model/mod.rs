@@ -3,7 +3,6 @@
 //! Pure: no IO, no clock, no thread. Messages come in any order and more than once (a service that is
 //! restarted repeats its latest); folding one twice changes nothing.
 
-mod event;
 mod latency;
 mod line;
 mod prompts;
@@ -28,11 +27,10 @@ use service::Time;
 use service::status::GroupStatus;
 use service::view::{ArmView, DialogueView, HearingView, Latest};
 
-pub use event::DialogueEvent;
-pub use latency::{Latency, Stages};
-pub use line::{Answered, Line, Meaning};
+pub use latency::Latency;
+pub use line::Line;
 pub use transcript::Transcript;
-pub use turn::{Turn, TurnState};
+use turn::Turn;
 
 use sections::{
     SceneSection, SpeakingSection, TrajectorySection, TurnSection, WorldSection, labels,
@@ -45,10 +43,18 @@ const READINGS_MAX: usize = 16;
 /// A moment on both clocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Now {
-    /// The monotonic clock.
     pub at: Time,
     /// Milliseconds since 1970.
     pub unix_ms: u64,
+}
+
+/// Something that was said, for the study; reported once.
+#[derive(Clone, Debug, PartialEq)]
+pub enum DialogueEvent {
+    /// A question of the robot has begun.
+    Asked { prompt: u64, presentation: u32, words: String },
+    /// An utterance was accepted.
+    Heard(Box<Receipt>),
 }
 
 /// Everything that pages show, at one moment.
@@ -98,7 +104,6 @@ impl ViewModel {
         }
     }
 
-    /// Returns the scene that is shown.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
@@ -113,12 +118,10 @@ impl ViewModel {
         self.group.as_ref()
     }
 
-    /// Returns the transcript.
     pub fn transcript(&mut self) -> &mut Transcript {
         &mut self.transcript
     }
 
-    /// Returns the latency of the answers.
     pub fn latency(&mut self) -> &mut Latency {
         &mut self.latency
     }
@@ -128,7 +131,6 @@ impl ViewModel {
         self.latest.view.as_ref().is_some_and(|view| view.scene_key != self.scene.key())
     }
 
-    /// Replaces the scene.
     pub fn set_scene(&mut self, scene: Scene) {
         self.labels = labels(&scene);
         self.scene = scene;
@@ -138,11 +140,8 @@ impl ViewModel {
     /// Takes in what the policy believes and decides.
     pub fn on_view(&mut self, view: PolicyView, now: Now) {
         self.is_changed = true;
-        if let Some(ended) = &view.last
-            && self.transcript.on_end(&self.scene, &self.labels, ended, now)
-            && self.latest.view.is_some()
-        {
-            self.events.push(DialogueEvent::Ended(ended.clone()));
+        if let Some(ended) = &view.last {
+            self.transcript.on_end(&self.scene, &self.labels, ended, now);
         }
         self.latest.view = Some(view);
         self.attribute();
@@ -163,13 +162,11 @@ impl ViewModel {
         self.has_sound = has_sound;
         if let Some(prompt) = self.prompts.of(&presented)
             && self.transcript.on_presented(&presented, prompt, now)
+            && prompt.asks
         {
-            self.events.push(DialogueEvent::Presented {
-                prompt: presented.prompt,
-                presentation: presented.presentation,
-                question: prompt.question,
-                text: prompt.text.clone(),
-            });
+            let Presented { prompt: id, presentation, .. } = presented;
+            let words = prompt.text.clone();
+            self.events.push(DialogueEvent::Asked { prompt: id, presentation, words });
         }
     }
 

@@ -17,7 +17,8 @@ pub(super) struct Prompts(VecDeque<Prompt>);
 pub(super) struct Prompt {
     pub(super) id: u64,
     pub(super) presentation: u32,
-    pub(super) question: Question,
+    /// True if it is a question.
+    pub(super) asks: bool,
     pub(super) text: String,
 }
 
@@ -32,11 +33,10 @@ impl Prompts {
             self.0.pop_front();
         }
         let question = Question::try_from(act.question).unwrap_or_default();
-        let asks = act.kind == ActKind::Ask;
         self.0.push_back(Prompt {
             id: act.prompt,
             presentation: act.presentation,
-            question: if asks { question } else { Question::None },
+            asks: act.kind == ActKind::Ask && question != Question::None,
             text: text.to_owned(),
         });
     }

@@ -117,8 +117,7 @@ fn view_model_ignores_repeated_messages() {
     let events = model.take_events();
     let count = |is: fn(&DialogueEvent) -> bool| events.iter().filter(|event| is(event)).count();
     assert_eq!(count(|event| matches!(event, DialogueEvent::Heard(_))), 1);
-    assert_eq!(count(|event| matches!(event, DialogueEvent::Presented { .. })), 1);
-    assert_eq!(count(|event| matches!(event, DialogueEvent::Ended { .. })), 1);
+    assert_eq!(count(|event| matches!(event, DialogueEvent::Asked { .. })), 1);
 }
 
 /// As `view`, after the policy has attributed utterance 2 with these shares.

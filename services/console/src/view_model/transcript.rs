@@ -126,22 +126,16 @@ impl Transcript {
         true
     }
 
-    /// Takes in the end of an interaction; returns whether it is new.
-    pub(super) fn on_end(
-        &mut self,
-        scene: &Scene,
-        labels: &[String],
-        ended: &Ended,
-        now: Now,
-    ) -> bool {
+    /// Takes in the end of an interaction.
+    pub(super) fn on_end(&mut self, scene: &Scene, labels: &[String], ended: &Ended, now: Now) {
         let is_first = self.ended == 0;
         if ended.interaction.0 <= self.ended {
-            return false;
+            return;
         }
         self.ended = ended.interaction.0;
         // One that ended before this console started is not new, nor one that its predecessor noted.
         if is_first && self.lines.iter().any(|line| line.outcome.is_some()) {
-            return false;
+            return;
         }
         let object = ended.name.as_deref().map(|name| {
             let object = scene.object_named(name).map(ObjectId::index);
@@ -162,7 +156,6 @@ impl Transcript {
         let text = format!("{what} ({} question{s}, {:.1} s)", ended.questions, ended.seconds);
         let line = self.blank(Speaker::System, &text, now);
         self.push(Line { outcome: Some(ended.outcome), ..line });
-        true
     }
 
     /// Takes in that the motion stop was latched or released.

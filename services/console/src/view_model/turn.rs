@@ -8,11 +8,9 @@ use service::view::Latest;
 
 use super::services;
 
-/// The next to act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Actor {
-    /// A user.
     Person,
     /// The robot thinks or speaks.
     Robot,
@@ -50,9 +48,7 @@ pub enum TurnState {
 /// The current turn: who acts, and in which state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Turn {
-    /// The next to act.
     pub who: Actor,
-    /// The state.
     pub state: TurnState,
     /// When the user began to speak, in state [`TurnState::Hearing`].
     pub onset: Option<Time>,

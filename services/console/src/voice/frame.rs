@@ -23,7 +23,6 @@ pub struct PcmFrame {
     pub taken: Time,
     /// Samples of the stream before this frame.
     pub before: u64,
-    /// The sound.
     pub samples: Vec<i16>,
 }
 
@@ -31,9 +30,6 @@ impl PcmFrame {
     /// Reads a binary frame: version 1, flags (1 end, 2 held, 4 echo-free), two bytes of zero, stream
     /// `u32`, time in server milliseconds `f64`, samples before `u64`, samples `i16`; all with the low
     /// byte first.
-    ///
-    /// # Errors
-    /// The frame is invalid.
     pub fn read(bytes: &[u8]) -> Result<Self, String> {
         let Some((header, sound)) = bytes.split_at_checked(HEADER) else {
             return Err(format!("expected a header of {HEADER} bytes in a frame of sound"));

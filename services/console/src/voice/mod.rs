@@ -49,9 +49,6 @@ struct Stream {
 
 impl Voice {
     /// Forwards a frame of sound.
-    ///
-    /// # Errors
-    /// It cannot be forwarded.
     pub fn frame(
         &mut self,
         client: &Client,

@@ -34,9 +34,6 @@ struct Entry {
 
 impl StreamTable {
     /// Takes in a frame of `count` samples after `before` samples of the stream.
-    ///
-    /// # Errors
-    /// Too many streams, or too large a gap.
     pub(super) fn take(
         &mut self,
         name: Name,

@@ -2,14 +2,15 @@
 
 use dialogue::ids::{InteractionId, UtteranceSeq};
 use evaluation::user_study::{
-    Design, Entry, Event, Item, Kind, Objects, Order, Participant, Protocol, Source, Stage, Status,
+    Design, Entry, Event, Item, Kind, Objects, Order, Participant, Protocol, Stage, Status,
 };
-use messages::{Ended, Outcome, PolicyView};
+use messages::{Ended, Outcome, PolicyView, Receipt};
 use scene::Scene;
 
 use crate::study::robot_state::RobotState;
 use crate::study::study_controller::{Command, StudyController, kept};
-use crate::study::trial_monitor::{DialogueLine, RobotRequest};
+use crate::study::trial_monitor::RobotRequest;
+use crate::view_model::DialogueEvent;
 
 pub(super) const FAULT_MS: f64 = 10_000.0;
 pub(super) const PAGE: &str = "0123456789abcdef0123456789abcdef";
@@ -149,9 +150,9 @@ impl SimulatedStudy {
             let last = self.view.last.as_ref().map_or(0, |last| last.interaction.0);
             self.view.interaction = last + 1;
         }
-        let (source, onset_ms) = (Source::Typed, self.ms - 500.0);
-        let said = DialogueLine::Heard { seq, source, onset_ms, words: "the bowl".to_owned() };
-        if let Some((id, event)) = self.controller.said(&said, &self.robot()) {
+        let onset_ns = ((self.ms - 500.0) * 1e6) as u64;
+        let heard = DialogueEvent::Heard(Box::new(Receipt { seq, onset_ns, ..Receipt::default() }));
+        if let Some((id, event)) = self.controller.said(&heard, &self.robot()) {
             self.write(&id, vec![event]);
         }
     }
