@@ -98,13 +98,17 @@ impl ArmNode {
     /// Returns whether the arm must rest first: no plan was found from elsewhere, or the object is still
     /// with the person, who puts it back once the arm is at rest.
     fn comes_after_rest(&self, goal: Purpose) -> bool {
-        let object = match goal {
+        let object = self.object_of(goal);
+        let with_person = object.is_some_and(|object| self.state.gone.contains(&object));
+        self.plan_failures.from_rest == Some(goal) || self.config.arm.restock && with_person
+    }
+
+    fn object_of(&self, purpose: Purpose) -> Option<ObjectId> {
+        match purpose {
             Purpose::Pick(_) => self.state.open_pick().map(|pick| pick.object),
             Purpose::Aim(object) => Some(object),
             Purpose::Return => None,
-        };
-        let with_person = object.is_some_and(|object| self.state.gone.contains(&object));
-        self.plan_failures.from_rest == Some(goal) || self.config.arm.restock && with_person
+        }
     }
 
     fn start_goal(&mut self, purpose: Purpose, now: Time, fx: &mut Fx) {
@@ -138,11 +142,7 @@ impl ArmNode {
         if purpose != Purpose::Return {
             self.plan_failures.from_rest = None;
         }
-        let object = match purpose {
-            Purpose::Pick(_) => self.state.open_pick().map(|pick| pick.object),
-            Purpose::Aim(object) => Some(object),
-            Purpose::Return => None,
-        };
+        let object = self.object_of(purpose);
         self.motion_view.begin(&program, object, &self.config);
         self.executor.start(program);
     }

@@ -48,7 +48,7 @@ impl ArmNode {
         if self.executor.is_standing() || now < self.recorded + PROGRESS_EVERY {
             return;
         }
-        if self.publisher.joints_are_due(&self.driver.measured(), now) {
+        if self.publisher.due_joints(&self.driver.measured(), now).is_some() {
             self.urgent = true;
             return;
         }

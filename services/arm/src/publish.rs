@@ -21,8 +21,9 @@ pub(crate) struct Publisher {
     sources: [Option<(Limb, usize)>; JOINT_STATE_LEN],
     /// Simulated seconds per second.
     time_scale: f64,
-    /// Period of a model's joint states; sensors have their own.
-    joints: Every,
+    /// Period of a model's joint states, and when they are due; sensors have their own.
+    joints_every: Span,
+    joints_due: Time,
     /// Sensor time of the joints published last.
     joints_at: Time,
     world_sent: Option<Time>,
@@ -45,7 +46,8 @@ impl Publisher {
         Self {
             sources: JOINT_STATE_NAMES.map(source),
             time_scale: arm.time_scale,
-            joints: Every { period: Span::from_s(1.0 / arm.joint_rate_hz), next: Time(0) },
+            joints_every: Span::from_s(1.0 / arm.joint_rate_hz),
+            joints_due: Time(0),
             joints_at: Time(0),
             world_sent: None,
             status_due: Time(0),
@@ -57,19 +59,14 @@ impl Publisher {
     /// often anyway.
     pub(crate) fn deadline(&self) -> Time {
         let world = self.world_sent.map_or(Time(0), |sent| sent + WORLD_EVERY.1);
-        self.joints.next.min(self.status_due).min(world)
-    }
-
-    /// Returns whether joint states are due.
-    pub(crate) fn joints_are_due(&self, measured: &Measured, now: Time) -> bool {
-        self.joints_due(measured, now).is_some()
+        self.joints_due.min(self.status_due).min(world)
     }
 
     /// Returns the time of the joint states that are due: a model's periodically, those of sensors when
     /// there are new ones.
-    fn joints_due(&self, measured: &Measured, now: Time) -> Option<Time> {
+    pub(crate) fn due_joints(&self, measured: &Measured, now: Time) -> Option<Time> {
         match measured.at {
-            Source::Model => (now >= self.joints.next).then_some(now),
+            Source::Model => (now >= self.joints_due).then_some(now),
             Source::Sensors(at) => (at > self.joints_at).then_some(at),
             Source::Memory => None,
         }
@@ -77,8 +74,12 @@ impl Publisher {
 
     /// Publishes what is due.
     pub(crate) fn tick(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
-        let at = self.joints_due(facts.measured, now);
-        self.joints.is_due(now);
+        let at = self.due_joints(facts.measured, now);
+        if now >= self.joints_due {
+            // A late one is not caught up with.
+            let next = self.joints_due + self.joints_every;
+            self.joints_due = if next > now { next } else { now + self.joints_every };
+        }
         if let Some(at) = at {
             self.joints_at = at;
             fx.publish(Out::Joints(Box::new(self.joint_states(facts.measured, at))));
@@ -154,28 +155,6 @@ fn source(name: &str) -> Option<(Limb, usize)> {
     Some((Limb::named(limb)?, joint))
 }
 
-/// A periodic timer.
-#[derive(Clone, Copy, Debug)]
-struct Every {
-    period: Span,
-    next: Time,
-}
-
-impl Every {
-    /// Returns whether the timer is due; the next time is a period later, or a period after now if that has
-    /// passed already.
-    fn is_due(&mut self, now: Time) -> bool {
-        if now < self.next {
-            return false;
-        }
-        self.next = self.next + self.period;
-        if self.next <= now {
-            self.next = now + self.period;
-        }
-        true
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -192,14 +171,5 @@ mod tests {
         assert_eq!(source("right_s0"), Some((Limb::Right, 0)));
         assert_eq!(source("torso_t0"), None);
         assert_eq!(sources.len(), 14);
-    }
-
-    #[test]
-    fn timer_keeps_its_rate_without_catching_up() {
-        let mut beat = Every { period: Span(10), next: Time(0) };
-        let due: Vec<u64> = (0..40).filter(|now| beat.is_due(Time(*now))).collect();
-        assert_eq!(due, [0, 10, 20, 30]);
-        assert!(beat.is_due(Time(97)));
-        assert!(!beat.is_due(Time(106)) && beat.is_due(Time(107)));
     }
 }

@@ -221,14 +221,14 @@ mod tests {
         let places = places(&scene).unwrap();
         let all: Vec<Cuboid> = places.iter().map(ObjectPose::cuboid).collect();
         let rest = &robot.neutral();
-        for i in 0..6 {
+        for (i, place) in places.iter().enumerate() {
             let mut others = all.clone();
             others.remove(i);
-            let pick = plan_pick(robot, &places[i], None, rest, &others, &settings).unwrap();
+            let pick = plan_pick(robot, place, None, rest, &others, &settings).unwrap();
             let (_, released_s) = pick.span_s(Phase::Release).unwrap();
             assert_eq!(motions.pick_s(None, i.into()), released_s);
             assert!(released_s < pick.duration_s(), "going home is not waited for");
-            let point = plan_point(robot, places[i].xyz_m, None, rest, &all, &settings).unwrap();
+            let point = plan_point(robot, place.xyz_m, None, rest, &all, &settings).unwrap();
             let (_, aimed_s) = point.span_s(Phase::Aim).unwrap();
             assert_eq!(motions.point_s(None, i.into()), Some(aimed_s));
             assert_eq!(motions.point_s(Some(i.into()), i.into()), Some(0.0));

@@ -68,11 +68,9 @@ fn published_velocities_are_the_slope_of_the_positions() {
 
 #[test]
 fn grasped_object_moves_with_the_gripper() {
-    let mut machine = Machine::new(config_at(5.0));
-    machine.act(pick(1, 4));
-    machine.run_until("held", |m| m.phase() == PickPhase::Holding);
+    let mut machine = Machine::picking(config_at(5.0), 4, PickPhase::Holding);
     let placed = machine.worlds.last().unwrap().objects[4].unwrap();
-    machine.run_until("delivered", |m| m.phase() == PickPhase::Done);
+    machine.reaches(PickPhase::Done);
     let held = machine.worlds.iter().filter(|world| world.held == Some(4));
     let poses: Vec<[f64; 7]> = held.map(|world| world.objects[4].unwrap()).collect();
     let place = machine.config.scene.object(ObjectId(4)).placement.unwrap();
@@ -98,9 +96,7 @@ fn fast_time_brings_the_same_sooner() {
 
 #[test]
 fn remaining_seconds_count_down() {
-    let mut machine = Machine::new(config_at(2.0));
-    machine.act(pick(1, 1));
-    machine.run_until("moving", |m| m.phase() == PickPhase::Moving);
+    let mut machine = Machine::picking(config_at(2.0), 1, PickPhase::Moving);
     machine.run(0.1);
     let (promised, at) = (machine.status().remaining_s, machine.now);
     machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);

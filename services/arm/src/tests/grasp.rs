@@ -25,10 +25,9 @@ fn arm_retries_a_missed_grasp_from_above() {
     let low = height(&machine);
     machine.run_until("above the object", |m| height(m) > low + 0.1);
     assert_eq!(machine.phase(), PickPhase::Closing, "no phase is taken back");
-    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+    machine.delivers(1, 3);
     machine.run_until("at rest", Machine::rests);
     assert_eq!(machine.robot.grasps(), 1);
-    machine.assert_delivered(1, 3);
 }
 
 #[test]
@@ -38,7 +37,7 @@ fn grasps_succeed_as_often_as_the_model_says_and_every_story_has_an_end() {
     for interaction in 1..=STORIES {
         let mut machine = Machine::new(inaccurate(1));
         machine.act(pick(interaction, 1));
-        machine.run_until("over", |m| m.phase() == PickPhase::Done);
+        machine.reaches(PickPhase::Done);
         match machine.outcome() {
             PickOutcome::Delivered => delivered += 1,
             other => assert_eq!(other, PickOutcome::Missed),
@@ -64,12 +63,12 @@ fn killed_arm_finds_the_object_in_the_same_place() {
             let mut machine = Machine::new(inaccurate(3));
             machine.act(pick(interaction, 1));
             if kills {
-                machine.run_until("closing", |m| m.phase() == PickPhase::Closing);
+                machine.reaches(PickPhase::Closing);
                 machine.restart_from_journal();
                 machine.run(0.05);
                 machine.restart_from_journal();
             }
-            machine.run_until("over", |m| m.phase() == PickPhase::Done);
+            machine.reaches(PickPhase::Done);
             let missed = machine.journal.iter().filter(|r| r.cause == Cause::Missed).count();
             outcomes.push((machine.outcome(), machine.node.state().misses, missed));
             machine.robot.assert_well_behaved();

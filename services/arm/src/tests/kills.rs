@@ -1,34 +1,11 @@
 //! Killed at any point, any number of times, the arm brings the ordered object once.
 
 use super::*;
-
-/// A small generator (xorshift), so that a seed has one story.
-struct Random(u64);
-
-impl Random {
-    fn new(seed: u64) -> Self {
-        Self((seed + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15))
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
-    fn below(&mut self, n: u64) -> u64 {
-        (self.next() >> 16) % n
-    }
-
-    fn one_in(&mut self, n: u64) -> bool {
-        self.below(n) == 0
-    }
-}
+use dialogue::Rng;
 
 /// A pick with up to `kills` deaths anywhere in it, and now and then a motion stop.
 fn story(seed: u64, kills: u32, restart: fn(&mut Machine)) {
-    let mut random = Random::new(seed);
+    let mut random = Rng::new(seed);
     let object = random.below(OBJECTS.into()) as u16;
     let mut machine = Machine::new(config_at(10.0));
     machine.robot.expect_only_picks();
@@ -37,13 +14,13 @@ fn story(seed: u64, kills: u32, restart: fn(&mut Machine)) {
     let until = machine.now + Span::from_s(60.0);
     while !(machine.outcome() == PickOutcome::Delivered && machine.rests()) {
         assert!(machine.now < until, "seed {seed}: stuck; {:?}", machine.node.state());
-        if random.one_in(if stopped { 30 } else { 150 }) {
+        if random.below(if stopped { 30 } else { 150 }) == 0 {
             stopped = !stopped;
             machine.motion(if stopped { MotionOrder::Stop } else { MotionOrder::Resume });
         }
-        if left > 0 && random.one_in(30) {
+        if left > 0 && random.below(30) == 0 {
             left -= 1;
-            let death = [Death::Unsynced, Death::Unseen, Death::Seen][random.below(3) as usize];
+            let death = [Death::Unsynced, Death::Unseen, Death::Seen][random.below(3)];
             machine.go(Some(death));
             // A command that was dropped with the process is given again by who gave it.
             stopped = machine.journal.last().is_some_and(|record| record.state.stopped);
@@ -83,9 +60,9 @@ fn without_a_sensor_an_interrupted_grasp_is_left_to_a_person() {
     let mut machine = Machine::new(config_at(5.0));
     machine.robot.lose_feeling();
     machine.act(pick(1, 1));
-    machine.run_until("closing", |m| m.phase() == PickPhase::Closing);
+    machine.reaches(PickPhase::Closing);
     machine.restart();
-    machine.run_until("over", |m| m.phase() == PickPhase::Done);
+    machine.reaches(PickPhase::Done);
     assert_eq!(machine.outcome(), PickOutcome::Interrupted);
     let posture = machine.robot.posture();
     machine.run(2.0);
@@ -103,8 +80,7 @@ fn without_a_sensor_an_uninterrupted_grasp_is_trusted() {
     let mut machine = Machine::new(config_at(20.0));
     machine.robot.lose_feeling();
     machine.act(pick(1, 3));
-    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
-    machine.assert_delivered(1, 3);
+    machine.delivers(1, 3);
 }
 
 #[test]
@@ -112,15 +88,14 @@ fn fingers_that_close_on_nothing_are_no_grasp() {
     let mut machine = Machine::new(config_at(20.0));
     machine.robot.miss(u32::MAX);
     machine.act(pick(1, 3));
-    machine.run_until("over", |m| m.phase() == PickPhase::Done);
+    machine.reaches(PickPhase::Done);
     assert_eq!(machine.outcome(), PickOutcome::Missed);
     assert_eq!(machine.node.state().misses, machine.config.arm.grasp.attempts);
     assert_eq!((machine.node.state().held, machine.robot.grasps()), (None, 0));
     machine.run_until("it returns to rest with an empty gripper", Machine::rests);
     machine.robot.miss(0);
     machine.act(pick(2, 3));
-    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
-    machine.assert_delivered(2, 3);
+    machine.delivers(2, 3);
 }
 
 #[test]
@@ -130,13 +105,9 @@ fn another_scene_ends_what_was_under_way() {
         (PickPhase::Closing, PickOutcome::Interrupted),
         (PickPhase::Holding, PickOutcome::Interrupted),
     ] {
-        let mut machine = Machine::new(config_at(10.0));
-        machine.act(pick(1, 2));
-        machine.run_until("under way", |m| m.phase() == phase);
+        let mut machine = Machine::picking(config_at(10.0), 2, phase);
         machine.act = None;
-        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
-        let scene = [("group.scene".to_owned(), "markers".to_owned())];
-        machine.config.scene = Settings::load(folder, None, &scene).unwrap().scene;
+        machine.config.scene = markers();
         machine.restart_from_journal();
         assert_eq!((machine.phase(), machine.outcome()), (PickPhase::Done, outcome));
         assert_eq!(machine.journal.last().unwrap().state.scene_key, machine.config.scene.key());
@@ -151,9 +122,7 @@ fn another_scene_ends_what_was_under_way() {
 #[test]
 fn arm_halts_and_journals_its_posture_on_shutdown() {
     for phase in [PickPhase::Moving, PickPhase::Closing, PickPhase::Holding] {
-        let mut machine = Machine::new(config());
-        machine.act(pick(1, 0));
-        machine.run_until("under way", |m| m.phase() == phase);
+        let mut machine = Machine::picking(config(), 0, phase);
         machine.run(0.4);
         let asked = machine.now;
         machine.pass(vec![Event::Shutdown], None);
@@ -163,7 +132,6 @@ fn arm_halts_and_journals_its_posture_on_shutdown() {
         assert!(machine.now.since(asked).s() < 0.15);
         assert_eq!(machine.journal.last().unwrap().state.posture, machine.robot.posture());
         machine.restart_from_journal();
-        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
-        machine.assert_delivered(1, 0);
+        machine.delivers(1, 0);
     }
 }

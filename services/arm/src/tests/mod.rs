@@ -30,16 +30,23 @@ use std::sync::OnceLock;
 
 const OBJECTS: u16 = 6;
 
+/// Returns the shipped configuration, with a profile and overrides.
+pub(crate) fn shipped(profile: Option<&str>, over: &[(String, String)]) -> Config {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
+    let settings = Settings::load(folder, profile, over).unwrap();
+    let setup = ArmSetup::new(&settings).unwrap();
+    Config { arm: settings.arm, setup, scene: settings.scene }
+}
+
 /// Returns the shipped configuration with its six bowls, in real time.
 fn config() -> Config {
     static SETTINGS: OnceLock<Config> = OnceLock::new();
-    let load = || {
-        let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
-        let settings = Settings::load(folder, None, &[]).unwrap();
-        let setup = ArmSetup::new(&settings).unwrap();
-        Config { arm: settings.arm, setup, scene: settings.scene }
-    };
-    SETTINGS.get_or_init(load).clone()
+    SETTINGS.get_or_init(|| shipped(None, &[])).clone()
+}
+
+/// Returns the scene of the markers.
+fn markers() -> scene::Scene {
+    shipped(None, &[("group.scene".to_owned(), "markers".to_owned())]).scene
 }
 
 /// Returns the same, `time_scale` times as fast.
@@ -202,6 +209,27 @@ impl Machine {
             assert!(self.now < until, "never: {what}; {:?}", self.node.state());
             self.go(None);
         }
+    }
+
+    /// Returns a machine whose first order, that object, is in that phase.
+    fn picking(config: Config, object: u16, phase: PickPhase) -> Self {
+        let mut machine = Self::new(config);
+        machine.act(pick(1, object));
+        machine.reaches(phase);
+        machine
+    }
+
+    fn reaches(&mut self, phase: PickPhase) {
+        self.run_until("in the phase", |m| m.phase() == phase);
+    }
+
+    /// Runs until the pick is carried out, once and as it should be.
+    fn delivers(&mut self, interaction: u64, object: u16) {
+        self.run_until("delivered", |m| {
+            m.outcome() == PickOutcome::Delivered
+                && m.node.state().pick.is_some_and(|pick| pick.id.interaction.0 == interaction)
+        });
+        self.assert_delivered(interaction, object);
     }
 
     /// The policy decides; about the arm's own scene, where `act` names none.

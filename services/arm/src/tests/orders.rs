@@ -46,12 +46,9 @@ fn pick_cancelled_before_closing_leaves_the_object() {
 #[test]
 fn pick_cancelled_too_late_is_delivered() {
     for phase in [PickPhase::Closing, PickPhase::Holding] {
-        let mut machine = Machine::new(config_at(5.0));
-        machine.act(pick(1, 4));
-        machine.run_until("far enough", |m| m.phase() == phase);
+        let mut machine = Machine::picking(config_at(5.0), 4, phase);
         machine.act(cancel(1, 4));
-        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
-        machine.assert_delivered(1, 4);
+        machine.delivers(1, 4);
     }
 }
 
@@ -133,9 +130,7 @@ fn taken_object_stays_gone_after_a_restart() {
 #[test]
 fn act_of_another_scene_waits_until_the_arm_reloads() {
     let mut machine = Machine::new(config());
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
-    let markers = [("group.scene".to_owned(), "markers".to_owned())];
-    let scene = Settings::load(folder, None, &markers).unwrap().scene;
+    let scene = markers();
     machine.act(RobotAct { scene_key: scene.key(), ..pick(1, 1) });
     machine.run(0.5);
     assert_eq!(machine.phase(), PickPhase::Idle, "object 1 of the other scene is not a bowl");

@@ -54,9 +54,8 @@ fn pick_starts_from_the_pointing_posture() {
         machine.act(point(1, pointed));
         machine.run_until("aimed", |m| m.status().aimed_at().is_some());
         machine.act(pick(1, picked));
-        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+        machine.delivers(1, picked);
         machine.run_until("at rest", Machine::rests);
-        machine.assert_delivered(1, picked);
     }
 }
 

@@ -31,16 +31,13 @@ fn other_rates_are_kept_too() {
         let count = machine.joints.len();
         assert!(count.abs_diff(in_2_s) <= 1 + in_2_s / 100, "{count} at {rate_hz} Hz");
         machine.act(pick(1, 1));
-        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
-        machine.assert_delivered(1, 1);
+        machine.delivers(1, 1);
     }
 }
 
 #[test]
 fn moving_arm_publishes_the_world_at_10_hz_and_journals_at_5_hz() {
-    let mut machine = Machine::new(config());
-    machine.act(pick(1, 0));
-    machine.run_until("moving", |m| m.phase() == PickPhase::Moving);
+    let mut machine = Machine::picking(config(), 0, PickPhase::Moving);
     machine.run(0.1);
     let (worlds, records) = (machine.worlds.len(), machine.journal.len());
     machine.run(2.0);
@@ -79,9 +76,7 @@ fn phases_are_durable_in_order_before_they_are_seen() {
 
 #[test]
 fn journal_is_compacted_only_at_rest() {
-    let mut machine = Machine::new(config_at(20.0));
-    machine.act(pick(1, 5));
-    machine.run_until("held", |m| m.phase() == PickPhase::Holding);
+    let mut machine = Machine::picking(config_at(20.0), 5, PickPhase::Holding);
     assert_eq!(machine.node.snapshot(), None);
     machine.run_until("at rest", Machine::rests);
     machine.run(0.1);

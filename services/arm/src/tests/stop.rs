@@ -17,20 +17,17 @@ fn motion_stop_halts_within_100_ms_and_the_pick_resumes() {
         assert_eq!(machine.robot.posture(), posture, "object {object} after {after_s} s");
         assert_eq!((machine.status().stopped, machine.status().moving), (1, 0));
         machine.motion(MotionOrder::Resume);
-        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
+        machine.delivers(1, object);
         machine.run_until("at rest", Machine::rests);
         assert_eq!(machine.status().stopped, 0);
         assert_eq!(machine.robot.grasps(), 1);
-        machine.assert_delivered(1, object);
     }
 }
 
 #[test]
 fn from_beside_an_object_the_gripper_goes_straight_up_first() {
     for object in 0..OBJECTS {
-        let mut machine = Machine::new(config());
-        machine.act(pick(1, object));
-        machine.run_until("at the object", |m| m.phase() == PickPhase::Closing);
+        let mut machine = Machine::picking(config(), object, PickPhase::Closing);
         machine.run(0.3);
         machine.motion(MotionOrder::Stop);
         machine.run(0.1);
@@ -45,8 +42,7 @@ fn from_beside_an_object_the_gripper_goes_straight_up_first() {
             assert!(aside_m < 0.002, "object {object}: {aside_m} m aside at {} m", now.z);
             now.z > top_m + 0.1
         });
-        machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
-        machine.assert_delivered(1, object);
+        machine.delivers(1, object);
     }
 }
 
@@ -66,8 +62,7 @@ fn motion_stop_while_idle_is_latched_and_survives_a_restart() {
     machine.run(1.0);
     assert!(machine.rests());
     machine.motion(MotionOrder::Resume);
-    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
-    machine.assert_delivered(1, 1);
+    machine.delivers(1, 1);
 }
 
 #[test]
@@ -128,6 +123,5 @@ fn arm_resumes_after_its_process_was_suspended() {
         .map(|(l, j)| (machine.robot.posture().joints[l][j] - before.joints[l][j]).abs())
         .fold(0.0, f64::max);
     assert!(moved < 0.2, "{moved} rad at once");
-    machine.run_until("delivered", |m| m.outcome() == PickOutcome::Delivered);
-    machine.assert_delivered(1, 0);
+    machine.delivers(1, 0);
 }

@@ -42,7 +42,7 @@ fn starting_arm_publishes_an_empty_trajectory() {
 fn arm_publishes_the_trajectory_of_a_pick_with_each_phase_and_an_empty_one_at_the_end() {
     let mut machine = Machine::new(config_at(10.0));
     machine.act(pick(7, 3));
-    machine.run_until("moving", |m| m.phase() == PickPhase::Moving);
+    machine.reaches(PickPhase::Moving);
     machine.run(0.01);
     let view = latest(&machine).clone();
     assert_makes_sense(&view);
@@ -58,9 +58,7 @@ fn arm_publishes_the_trajectory_of_a_pick_with_each_phase_and_an_empty_one_at_th
 
 #[test]
 fn gripper_follows_its_published_trajectory() {
-    let mut machine = Machine::new(config_at(2.0));
-    machine.act(pick(1, 0));
-    machine.run_until("moving", |m| m.phase() == PickPhase::Moving);
+    let mut machine = Machine::picking(config_at(2.0), 0, PickPhase::Moving);
     while machine.outcome() == PickOutcome::Pending {
         machine.run(0.05);
         let view = latest(&machine);
@@ -75,9 +73,7 @@ fn gripper_follows_its_published_trajectory() {
 
 #[test]
 fn stopped_arm_publishes_no_trajectory_and_a_released_one_a_new_one() {
-    let mut machine = Machine::new(config());
-    machine.act(pick(1, 2));
-    machine.run_until("moving", |m| m.phase() == PickPhase::Moving);
+    let mut machine = Machine::picking(config(), 2, PickPhase::Moving);
     machine.run(1.0);
     let before = latest(&machine).clone();
     machine.motion(MotionOrder::Stop);
@@ -94,9 +90,7 @@ fn stopped_arm_publishes_no_trajectory_and_a_released_one_a_new_one() {
 
 #[test]
 fn trajectory_is_republished_after_a_restart_of_the_arm() {
-    let mut machine = Machine::new(config());
-    machine.act(pick(1, 4));
-    machine.run_until("held", |m| m.phase() == PickPhase::Holding);
+    let mut machine = Machine::picking(config(), 4, PickPhase::Holding);
     machine.trajectories.clear();
     machine.restart();
     machine.run(0.2);

@@ -30,8 +30,8 @@ pub fn check_reachable(
                 Choices::new(&objects[i], std::slice::from_ref(scene), &mut furthest)?;
             while let Some(choice) = choices.next(&mut furthest) {
                 let carrying = choice.carrying(&objects[i]);
-                let fetched = choice.hold(&carrying).and_then(|hold| {
-                    Carry::find(&carrying, hold.above(), Search::No).map_err(|error| (6, error))
+                let fetched = choice.descent(&carrying).and_then(|_| {
+                    Carry::find(&carrying, &choice.above, Search::No).map_err(|error| (6, error))
                 });
                 match fetched {
                     Ok(_) => return Ok(scene.limb),

@@ -1,10 +1,7 @@
 //! Candidates for fetching an object, cheapest first: limb, grasp and posture.
 
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
-
 use super::error::{Furthest, PlanError};
-use super::fetch::{ABOVE, Hold, LIFT};
+use super::fetch::{ABOVE, GRASP, LIFT};
 use super::planning_scene::PlanningScene;
 use crate::kinematics::limb::Joints;
 use crate::planning::grasp::{Grasp, GraspError, ObjectPose};
@@ -14,37 +11,32 @@ use crate::planning::grasp::{Grasp, GraspError, ObjectPose};
 pub(crate) struct Choice<'a> {
     pub(crate) scene: &'a PlanningScene<'a>,
     pub(crate) grasp: Grasp,
-    above: Joints,
-    at: At,
-}
-
-/// Number of an option and of one of its postures.
-#[derive(Clone, Copy)]
-struct At {
+    /// The posture.
+    pub(crate) above: Joints,
+    /// Number of the option that it is of.
     option: usize,
-    posture: usize,
 }
 
-/// A grasp with a limb, and the postures above it, cheapest first.
+/// A grasp with a limb, and the postures above it.
 struct Choosable<'a> {
     scene: &'a PlanningScene<'a>,
     grasp: Grasp,
-    postures: Vec<(f64, Joints)>,
+    /// Those that wait, cheapest first.
+    postures: std::vec::IntoIter<(f64, Joints)>,
+    /// The one whose turn it is; none while it is tried.
+    turn: Option<Turn>,
 }
 
-/// All that can be tried, in order of cost.
-pub(crate) struct Choices<'a> {
-    options: Vec<Choosable<'a>>,
-    queue: BinaryHeap<Waiting>,
-}
-
-/// A posture that waits for its turn.
-struct Waiting {
+#[derive(Clone, Copy)]
+struct Turn {
     /// A lower bound until its surroundings are checked.
     cost_s: f64,
     looked: bool,
-    at: At,
+    above: Joints,
 }
+
+/// All that can be tried.
+pub(crate) struct Choices<'a>(Vec<Choosable<'a>>);
 
 impl<'a> Choices<'a> {
     /// Every limb of `scenes` with every grasp of `object` that it reaches; the others are
@@ -55,15 +47,15 @@ impl<'a> Choices<'a> {
         furthest: &mut Furthest,
     ) -> Result<Self, GraspError> {
         let grasps = object.grasps()?;
-        let mut choices = Self { options: Vec::new(), queue: BinaryHeap::new() };
+        let mut options = Vec::new();
         for scene in scenes {
             for grasp in &grasps {
-                let above = grasp.raised(scene.settings.hover_m);
-                match scene.postures(&above, &scene.q) {
+                match scene.postures(&grasp.raised(scene.settings.hover_m), &scene.q) {
                     Ok(postures) => {
-                        let option = choices.options.len();
-                        choices.options.push(Choosable { scene, grasp: *grasp, postures });
-                        choices.wait(At { option, posture: 0 });
+                        let postures = postures.into_iter();
+                        let mut option = Choosable { scene, grasp: *grasp, postures, turn: None };
+                        option.advance();
+                        options.push(option);
                     }
                     Err(missed) => {
                         let (limb, distance_m) = (scene.limb, missed.position_error_m);
@@ -72,84 +64,71 @@ impl<'a> Choices<'a> {
                 }
             }
         }
-        Ok(choices)
+        Ok(Self(options))
     }
 
     /// Returns the cheapest choice that has not been tried. A grasp comes back with its next
     /// posture only after [`Choices::failed`].
     pub(crate) fn next(&mut self, furthest: &mut Furthest) -> Option<Choice<'a>> {
-        while let Some(Waiting { cost_s, looked, at }) = self.queue.pop() {
-            let Choosable { scene, grasp, postures } = &self.options[at.option];
-            let (scene, above) = (*scene, postures[at.posture].1);
-            if looked {
-                return Some(Choice { scene, grasp: *grasp, above, at });
+        loop {
+            let turns = self.0.iter().enumerate().filter_map(|(i, own)| Some((i, own.turn?)));
+            let (option, turn) = turns.min_by(|a, b| a.1.cost_s.total_cmp(&b.1.cost_s))?;
+            let own = &mut self.0[option];
+            let (scene, above) = (own.scene, turn.above);
+            if turn.looked {
+                own.turn = None;
+                return Some(Choice { scene, grasp: own.grasp, above, option });
             }
             match scene.crowding_s(&above) {
                 Ok(more_s) => {
-                    self.queue.push(Waiting { cost_s: cost_s + more_s, looked: true, at });
+                    own.turn = Some(Turn { cost_s: turn.cost_s + more_s, looked: true, above });
                 }
                 Err(gap) => {
-                    let limb = scene.limb;
-                    furthest.add(1, PlanError::Blocked { at: ABOVE, limb, gap });
-                    self.wait(at.next());
+                    furthest.add(1, PlanError::Blocked { at: ABOVE, limb: scene.limb, gap });
+                    own.advance();
                 }
             }
         }
-        None
     }
 
     /// The choice led nowhere: its grasp may be tried from another posture.
     pub(crate) fn failed(&mut self, choice: &Choice<'_>) {
-        self.wait(choice.at.next());
+        self.0[choice.option].advance();
     }
+}
 
-    fn wait(&mut self, at: At) {
-        if let Some((cost_s, _)) = self.options[at.option].postures.get(at.posture) {
-            self.queue.push(Waiting { cost_s: *cost_s, looked: false, at });
-        }
+impl Choosable<'_> {
+    fn advance(&mut self) {
+        let next = self.postures.next();
+        self.turn = next.map(|(cost_s, above)| Turn { cost_s, looked: false, above });
     }
 }
 
 impl<'a> Choice<'a> {
-    /// Straight down to the grasp, and straight up again with the object: `carrying` it.
-    pub(crate) fn hold(&self, carrying: &PlanningScene<'_>) -> Result<Hold, (usize, PlanError)> {
-        let hold = Hold::down(self.scene, &self.grasp, &self.above)?;
-        match carrying.blocked_along(&hold.descent) {
-            Some(gap) => Err((4, PlanError::Blocked { at: LIFT, limb: carrying.limb, gap })),
-            None => Ok(hold),
+    /// Returns the way straight down to the grasp, which is clear, also upwards with the object:
+    /// `carrying` it. Errors with how far the attempt came.
+    pub(crate) fn descent(
+        &self,
+        carrying: &PlanningScene<'_>,
+    ) -> Result<Vec<Joints>, (usize, PlanError)> {
+        let (scene, limb) = (self.scene, self.scene.limb);
+        if let Some(gap) = scene.blocked(&self.above) {
+            return Err((1, PlanError::Blocked { at: ABOVE, limb, gap }));
+        }
+        let descent = scene.chain.line(&self.above, &self.grasp.gripper);
+        let descent = descent.map_err(|line| (2, PlanError::Line { at: GRASP, limb, line }))?;
+        if let Some(gap) = scene.blocked_along(&descent) {
+            return Err((3, PlanError::Blocked { at: GRASP, limb, gap }));
+        }
+        match carrying.blocked_along(&descent) {
+            Some(gap) => Err((4, PlanError::Blocked { at: LIFT, limb, gap })),
+            None => Ok(descent),
         }
     }
 
     /// Returns the scene once the object is held.
     pub(crate) fn carrying(&self, object: &ObjectPose) -> PlanningScene<'a> {
-        self.scene.carrying(object, &self.grasp.object_in_gripper(object))
-    }
-}
-
-impl At {
-    fn next(self) -> Self {
-        Self { posture: self.posture + 1, ..self }
-    }
-}
-
-impl PartialEq for Waiting {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Waiting {}
-
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-/// The cheapest is the greatest, so that it is the first of a heap; ties go by number.
-impl Ord for Waiting {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let number = |waiting: &Self| (waiting.at.option, waiting.at.posture);
-        other.cost_s.total_cmp(&self.cost_s).then_with(|| number(other).cmp(&number(self)))
+        let in_gripper = self.grasp.gripper.inverse() * object.isometry();
+        self.scene.carrying(object, &in_gripper)
     }
 }

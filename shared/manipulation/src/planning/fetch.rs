@@ -1,5 +1,4 @@
-//! One grasp tried with one limb: where the arm would be above it, on the way down and at the
-//! hand over.
+//! The way of a held object to where it is handed over.
 
 use std::f64::consts::PI;
 
@@ -8,14 +7,6 @@ use nalgebra::{Isometry3, UnitQuaternion, Vector3};
 use super::error::PlanError;
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::kinematics::limb::{Joints, Limb};
-use crate::planning::grasp::Grasp;
-
-/// Postures above the grasp and on the straight line down to it.
-#[derive(Clone, Debug)]
-pub(crate) struct Hold {
-    /// From above the grasp down to it.
-    pub(crate) descent: Vec<Joints>,
-}
 
 /// The carry from above the grasp to where the object is handed over.
 #[derive(Clone, Debug)]
@@ -44,38 +35,6 @@ pub(crate) const GRASP: &str = "the grasp";
 pub(crate) const LIFT: &str = "the lift";
 pub(crate) const HAND_OVER: &str = "the hand over";
 pub(crate) const HOME: &str = "the neutral posture";
-
-impl Hold {
-    /// Holds `grasp` coming straight down from `above`. Errors with how far the attempt came.
-    pub(crate) fn down(
-        scene: &PlanningScene<'_>,
-        grasp: &Grasp,
-        above: &Joints,
-    ) -> Result<Self, (usize, PlanError)> {
-        let limb = scene.limb;
-        if let Some(gap) = scene.blocked(above) {
-            return Err((1, PlanError::Blocked { at: ABOVE, limb, gap }));
-        }
-        let descent = scene
-            .chain
-            .line(above, &grasp.gripper)
-            .map_err(|line| (2, PlanError::Line { at: GRASP, limb, line }))?;
-        match scene.blocked_along(&descent) {
-            Some(gap) => Err((3, PlanError::Blocked { at: GRASP, limb, gap })),
-            None => Ok(Self { descent }),
-        }
-    }
-
-    /// Returns the posture above the grasp.
-    pub(crate) fn above(&self) -> &Joints {
-        &self.descent[0]
-    }
-
-    /// Returns the posture at the grasp.
-    pub(crate) fn grasp(&self) -> &Joints {
-        &self.descent[self.descent.len() - 1]
-    }
-}
 
 impl PlanSettings {
     /// Returns whether a gripper at `tip_m` (frame `base`) is where `limb` hands objects over: at

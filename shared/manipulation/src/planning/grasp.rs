@@ -173,11 +173,6 @@ impl ObjectPose {
 }
 
 impl Grasp {
-    /// Returns the object's pose in the gripper's frame: what stays the same while it is held.
-    pub fn object_in_gripper(&self, object: &ObjectPose) -> Isometry3<f64> {
-        self.gripper.inverse() * object.isometry()
-    }
-
     /// Returns the gripper `height_m` straight above the grasp.
     pub fn raised(&self, height_m: f64) -> Isometry3<f64> {
         Translation3::new(0.0, 0.0, height_m) * self.gripper

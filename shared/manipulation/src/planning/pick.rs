@@ -3,14 +3,14 @@
 use super::choices::{Choice, Choices};
 use super::deliver::{CORNER, deliver, fingers};
 use super::error::{Furthest, PlanError};
-use super::fetch::{ABOVE, GRASP, Hold};
+use super::fetch::{ABOVE, GRASP};
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
 use crate::gripper;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::planning::grasp::ObjectPose;
 use crate::robot::Robot;
-use crate::trajectory::{Phase, Stage, Timeline, Trajectory, refuse_outside};
+use crate::trajectory::{Phase, Stage, Timeline, refuse_outside};
 
 /// Choices that are tried.
 const TRIES: usize = 64;
@@ -119,32 +119,24 @@ impl Choice<'_> {
     fn plan(&self, object: &ObjectPose, search: Search) -> Result<Timeline, (usize, PlanError)> {
         let scene = self.scene;
         let carrying = self.carrying(object);
-        let hold = self.hold(&carrying)?;
+        let descent = self.descent(&carrying)?;
         let way = scene
-            .way(&scene.q, hold.above(), search)
-            .ok_or_else(|| (5, scene.no_path(ABOVE, &scene.q, hold.above())))?;
+            .way(&scene.q, &self.above, search)
+            .ok_or_else(|| (5, scene.no_path(ABOVE, &scene.q, &self.above)))?;
         let width_m = gripper::closed_on(self.grasp.width_m);
-        let lift: Vec<Joints> = hold.descent.iter().rev().copied().collect();
+        let lift: Vec<Joints> = descent.iter().rev().copied().collect();
+        let at_grasp = lift[0];
         let delivery = deliver(scene, &carrying, lift, width_m, search);
         let delivery = delivery.map_err(|error| (6, error))?;
-        let approach = approach(scene, &way, &hold).map_err(|error| (7, error))?;
+        // To above the grasp and straight down in one motion, with no stop between.
+        let waypoints = [&way[..], &descent[CORNER.min(descent.len() - 1)..]].concat();
+        let approach = scene.motion(GRASP, &waypoints).map_err(|error| (7, error))?;
         let open_m = scene.settings.open_width_m;
         let mut stages = vec![
             Stage { phase: Phase::Approach, motion: approach, width_m: (open_m, open_m) },
-            fingers(scene, Phase::Close, hold.grasp(), (open_m, width_m)),
+            fingers(scene, Phase::Close, &at_grasp, (open_m, width_m)),
         ];
         stages.extend(delivery);
         Ok(Timeline::new(scene.limb, stages))
     }
-}
-
-/// To above the grasp and straight down in one motion, with no stop between.
-fn approach(
-    scene: &PlanningScene<'_>,
-    way: &[Joints],
-    hold: &Hold,
-) -> Result<Trajectory, PlanError> {
-    let mut waypoints = way.to_vec();
-    waypoints.extend(hold.descent.iter().skip(CORNER.min(hold.descent.len() - 1)));
-    scene.motion(GRASP, &waypoints)
 }

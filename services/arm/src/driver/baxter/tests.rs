@@ -2,21 +2,7 @@
 
 use super::*;
 use crate::driver::Grip;
-use config::Settings;
 use messages::robot::{Command as Word, EndEffectorCommand, EndEffectorState, Tristate};
-use preflight::ArmSetup;
-use std::path::Path;
-
-fn config() -> Config {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config"));
-    let settings = Settings::load(folder, Some("baxter"), &[]).unwrap();
-    let setup = ArmSetup::new(&settings).unwrap();
-    Config { arm: settings.arm, setup, scene: settings.scene }
-}
-
-fn first(config: &Config) -> ArmState {
-    ArmState::first(&config.setup.robot, 0, 0.04)
-}
 
 fn ready_gripper(now: Time) -> EndEffectorState {
     let yes = Tristate::True.code();
@@ -36,8 +22,9 @@ struct Bench {
 
 impl Bench {
     fn new() -> Self {
-        let config = config();
-        let driver = BaxterDriver::new(&config, &first(&config));
+        let config = crate::tests::shipped(Some("baxter"), &[]);
+        let first = ArmState::first(&config.setup.robot, 0, 0.04);
+        let driver = BaxterDriver::new(&config, &first);
         let now = Time(5_000_000_000);
         let joints = Limb::BOTH.map(|limb| config.setup.robot.arm(limb).neutral);
         let assembly = AssemblyState { enabled: 1, ready: 1, ..AssemblyState::default() };

@@ -60,8 +60,6 @@ fn fingertips_stay_above_what_the_object_stands_on() {
         for grasp in object.grasps().unwrap() {
             let z = grasp.gripper.translation.z;
             assert!(z >= object.bottom_z_m() + TIP_CLEAR_M - 1e-12, "{object:?}");
-            let held = grasp.gripper * grasp.object_in_gripper(&object);
-            assert!((held.translation.vector - Vector3::from(object.xyz_m)).norm() < 1e-12);
             let raised = grasp.raised(0.2).translation.vector;
             assert!((raised.z - z - 0.2).abs() < 1e-12);
         }
