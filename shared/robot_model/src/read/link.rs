@@ -4,155 +4,110 @@ use std::collections::HashMap;
 
 use diagnostics::suggestion;
 use nalgebra::{Matrix3, Vector3};
-use roxmltree::Node;
 
 use crate::model::{Body, Inertial, Link, Rgba, Shape};
 
-use super::reader::{Reader, child, children};
+use super::element::Element;
 
 /// Colours by name; a material may also be a picture, which has none.
 pub(super) type Materials<'a> = HashMap<&'a str, Option<Rgba>>;
 
-pub(super) fn read<'a>(
-    reader: &mut Reader<'a>,
-    node: Node<'a, 'a>,
-    materials: &mut Materials<'a>,
-) -> Link {
-    let (name, element) = reader.named(node);
-    let inertial = child(node, "inertial").map(|node| inertial(reader, node, &element));
-    let collision =
-        children(node, "collision").filter_map(|node| body(reader, node, &element, None)).collect();
-    let visual = children(node, "visual")
-        .filter_map(|node| {
-            let colour = child(node, "material")
-                .and_then(|node| colour_of(reader, node, &element, materials));
-            body(reader, node, &element, colour)
-        })
-        .collect();
-    Link { name: name.to_owned(), inertial, collision, visual }
+pub(super) fn read<'a>(link: Element<'a>, materials: &mut Materials<'a>) -> (Link, Element<'a>) {
+    let (name, element) = link.named();
+    let inertial = element.child("inertial").map(|own| inertial(&own));
+    let collision = element.children("collision").filter_map(|own| body(&own, None)).collect();
+    let visual = element.children("visual").filter_map(|own| {
+        let colour = own.child("material").and_then(|material| colour_of(&material, materials));
+        body(&own, colour)
+    });
+    let visual = visual.collect();
+    (Link { name: name.to_owned(), inertial, collision, visual }, element)
 }
 
 /// Adds a material that the whole description may use.
-pub(super) fn material<'a>(
-    reader: &mut Reader<'a>,
-    node: Node<'a, 'a>,
-    materials: &mut Materials<'a>,
-) {
-    let (name, element) = reader.named(node);
-    let colour = child(node, "color").map(|colour| rgba(reader, colour, &element));
-    materials.insert(name, colour);
+pub(super) fn material<'a>(material: Element<'a>, materials: &mut Materials<'a>) {
+    let (name, element) = material.named();
+    materials.insert(name, element.child("color").map(|colour| rgba(&colour)));
 }
 
 /// The colour of a visual: its material's own, or that of an earlier material of the same name.
-fn colour_of<'a>(
-    reader: &mut Reader<'a>,
-    node: Node<'a, 'a>,
-    element: &str,
-    materials: &mut Materials<'a>,
-) -> Option<Rgba> {
-    let name = node.attribute("name").unwrap_or_default();
-    if let Some(colour) = child(node, "color") {
-        let colour = rgba(reader, colour, element);
+fn colour_of<'a>(material: &Element<'a>, materials: &mut Materials<'a>) -> Option<Rgba> {
+    let name = material.attribute("name").unwrap_or_default();
+    if let Some(colour) = material.child("color") {
+        let colour = rgba(&colour);
         materials.entry(name).or_insert(Some(colour));
         return Some(colour);
     }
-    if child(node, "texture").is_some() {
+    if material.child("texture").is_some() {
         materials.entry(name).or_insert(None);
     }
     let known = materials.get(name).copied();
     if known.is_none() {
-        let what = format!("<material> {name:?} is not defined");
         let otherwise = "give it a <color rgba=\"…\"/>, or leave it out";
         let help = suggestion(name, materials.keys().copied(), || otherwise.to_owned());
-        reader.problem(node, element, what, help);
+        material.problem(format!("<material> {name:?} is not defined"), help);
     }
     known.flatten()
 }
 
-fn rgba<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, element: &str) -> Rgba {
-    let Some(rgba) = reader.numbers_if_any::<4>(node, element, "rgba") else {
-        reader.problem(
-            node,
-            element,
-            "<color> has no rgba",
-            "write rgba=\"red green blue opacity\"",
-        );
+fn rgba(colour: &Element<'_>) -> Rgba {
+    let Some(rgba) = colour.numbers_if_any::<4>("rgba") else {
+        colour.problem("<color> has no rgba", "write rgba=\"red green blue opacity\"");
         return Rgba::default();
     };
     if rgba.iter().any(|part| !(0.0..=1.0).contains(part)) {
-        let text = node.attribute("rgba").unwrap_or_default();
-        reader.unreadable(node, element, "rgba", text, "each of its numbers must be 0 to 1");
+        colour.unreadable("rgba", "each of its numbers must be 0 to 1");
     }
     rgba
 }
 
-fn inertial<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, element: &str) -> Inertial {
-    let origin = reader.origin(node, element);
-    let mass = reader
-        .part(node, element, "mass", "write <mass value=\"…\"/> in kg into its <inertial>")
-        .map_or(0.0, |mass| reader.magnitude(mass, element, "value", true));
-    let inertia = reader
-        .part(node, element, "inertia", "write <inertia ixx=… ixy=… ixz=… iyy=… iyz=… izz=…/>")
-        .map_or_else(Matrix3::zeros, |inertia| {
-            let mut of = |key| reader.number(inertia, element, key);
-            let [xx, xy, xz] = [of("ixx"), of("ixy"), of("ixz")];
-            let [yy, yz, zz] = [of("iyy"), of("iyz"), of("izz")];
-            Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
-        });
+fn inertial(own: &Element<'_>) -> Inertial {
+    let origin = own.origin();
+    let mass = own.part("mass", "write <mass value=\"…\"/> in kg into its <inertial>");
+    let mass = mass.map_or(0.0, |mass| mass.magnitude("value", true));
+    let inertia = own.part("inertia", "write <inertia ixx=… ixy=… ixz=… iyy=… iyz=… izz=…/>");
+    let inertia = inertia.map_or_else(Matrix3::zeros, |inertia| {
+        let [xx, xy, xz, yy, yz, zz] =
+            ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"].map(|key| inertia.number(key));
+        Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+    });
     Inertial { origin, mass, inertia }
 }
 
-fn body<'a>(
-    reader: &mut Reader<'a>,
-    node: Node<'a, 'a>,
-    element: &str,
-    colour: Option<Rgba>,
-) -> Option<Body> {
-    let origin = reader.origin(node, element);
-    let kind = node.tag_name().name();
+fn body(own: &Element<'_>, colour: Option<Rgba>) -> Option<Body> {
+    let origin = own.origin();
+    let kind = own.tag();
     let help =
         format!("write what the <{kind}> is, e.g. <geometry><sphere radius=\"…\"/></geometry>");
-    let geometry = reader.part(node, element, "geometry", &help)?;
-    let Some(shape) = geometry.children().find(Node::is_element) else {
-        reader.problem(geometry, element, "<geometry> is empty", help);
+    let geometry = own.part("geometry", &help)?;
+    let Some(shape) = geometry.all_children().next() else {
+        geometry.problem("<geometry> is empty", help);
         return None;
     };
-    let shape = read_shape(reader, shape, element)?;
-    Some(Body { origin, shape, colour })
+    Some(Body { origin, shape: read_shape(&shape)?, colour })
 }
 
-fn read_shape<'a>(reader: &mut Reader<'a>, node: Node<'a, 'a>, element: &str) -> Option<Shape> {
-    Some(match node.tag_name().name() {
+fn read_shape(shape: &Element<'_>) -> Option<Shape> {
+    let radius = || shape.magnitude("radius", false);
+    let length = || shape.magnitude("length", true);
+    Some(match shape.tag() {
         "box" => {
-            let Some(size) = reader.numbers_if_any::<3>(node, element, "size") else {
-                reader.problem(
-                    node,
-                    element,
-                    "<box> has no size",
-                    "write size=\"x y z\" in metres",
-                );
+            let Some(size) = shape.numbers_if_any::<3>("size") else {
+                shape.problem("<box> has no size", "write size=\"x y z\" in metres");
                 return None;
             };
             if size.iter().any(|edge| *edge < 0.0) {
-                let text = node.attribute("size").unwrap_or_default();
-                reader.unreadable(node, element, "size", text, "each edge must be 0 or more");
+                shape.unreadable("size", "each edge must be 0 or more");
             }
             Shape::Box { size: Vector3::from(size) }
         }
-        "cylinder" => Shape::Cylinder {
-            radius: reader.magnitude(node, element, "radius", false),
-            length: reader.magnitude(node, element, "length", true),
-        },
-        "capsule" => Shape::Capsule {
-            radius: reader.magnitude(node, element, "radius", false),
-            length: reader.magnitude(node, element, "length", true),
-        },
-        "sphere" => Shape::Sphere { radius: reader.magnitude(node, element, "radius", false) },
-        "mesh" => Shape::Mesh { file: reader.text(node, element, "filename").to_owned() },
+        "cylinder" => Shape::Cylinder { radius: radius(), length: length() },
+        "capsule" => Shape::Capsule { radius: radius(), length: length() },
+        "sphere" => Shape::Sphere { radius: radius() },
+        "mesh" => Shape::Mesh { file: shape.text("filename").to_owned() },
         other => {
             let what = format!("<geometry> has the unknown shape <{other}>");
-            let help = "use <box>, <cylinder>, <capsule>, <sphere> or <mesh>";
-            reader.problem(node, element, what, help);
+            shape.problem(what, "use <box>, <cylinder>, <capsule>, <sphere> or <mesh>");
             return None;
         }
     })

@@ -1,8 +1,8 @@
 //! Reading of URDF and SRDF.
 
+mod element;
 mod joint;
 mod link;
-mod reader;
 mod semantics;
 mod spelling;
 mod tree;
@@ -14,7 +14,7 @@ use roxmltree::Node;
 
 use crate::model::Robot;
 
-use reader::{Reader, children};
+use element::{Element, Log};
 
 impl Robot {
     /// Reads texts that have no files: [`Robot::read`] with the names `URDF` and `SRDF`.
@@ -46,34 +46,27 @@ impl Robot {
 }
 
 fn described(urdf: &TextFile) -> Result<Robot, Diagnostics> {
-    let xml = reader::document(urdf)?;
-    let mut reader = Reader::new(urdf, &xml);
-    let root = reader.root();
-    if reader.count() > 0 {
-        return reader.verdict(None);
-    }
-    if let Some(macro_node) = root.descendants().find(is_xacro) {
+    let xml = element::document(urdf)?;
+    let log = Log::new(urdf, &xml);
+    let Some(root) = log.root() else { return log.verdict(None) };
+    if let Some(node) = root.node.descendants().find(is_xacro) {
         let what = "it still contains xacro macros";
         let help = "expand them first: xacro FILE.urdf.xacro > FILE.urdf";
-        reader.problem(macro_node, "robot", what, help);
-        return reader.verdict(None);
+        Element { node, ..root }.problem(what, help);
+        return log.verdict(None);
     }
-    spelling::check(&mut reader, root);
-    let name = reader.name(root, "robot").to_owned();
+    spelling::check(&root);
+    let name = root.name().to_owned();
     let mut materials = HashMap::new();
-    for node in children(root, "material") {
-        link::material(&mut reader, node, &mut materials);
+    for own in root.children("material") {
+        link::material(own, &mut materials);
     }
-    let links: Vec<_> = children(root, "link")
-        .map(|node| (link::read(&mut reader, node, &mut materials), node))
-        .collect();
-    let joints: Vec<_> =
-        children(root, "joint").map(|node| (joint::read(&mut reader, node), node)).collect();
+    let links: Vec<_> = root.children("link").map(|own| link::read(own, &mut materials)).collect();
+    let joints: Vec<_> = root.children("joint").map(joint::read).collect();
     if links.is_empty() {
-        reader.problem(root, "robot", "it has no <link>", "describe its links and joints");
+        root.problem("it has no <link>", "describe its links and joints");
     }
-    let robot = tree::build(&mut reader, name, links, joints);
-    reader.verdict(robot)
+    log.verdict(tree::build(&log, name, links, joints))
 }
 
 fn is_xacro(node: &Node<'_, '_>) -> bool {

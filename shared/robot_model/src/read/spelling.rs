@@ -1,8 +1,6 @@
 //! Misspelt elements and attributes.
 
-use roxmltree::Node;
-
-use super::reader::Reader;
+use super::element::Element;
 
 /// Known attributes and children of an element.
 type Known = (&'static str, &'static [&'static str], &'static [&'static str]);
@@ -50,29 +48,28 @@ const KNOWN: [Known; 20] = [
 
 /// Reports every element and attribute whose name is almost one that is read: ignored, it would
 /// give another robot than the one intended. All others belong to other programs.
-pub(super) fn check<'a>(reader: &mut Reader<'a>, root: Node<'a, 'a>) {
-    let mut waiting = vec![(root, "robot".to_owned())];
-    while let Some((node, element)) = waiting.pop() {
-        let kind = node.tag_name().name();
+pub(super) fn check(root: &Element<'_>) {
+    let mut waiting = vec![root.clone()];
+    while let Some(element) = waiting.pop() {
+        let kind = element.tag();
         let Some((_, attributes, children)) = KNOWN.iter().find(|(name, ..)| *name == kind) else {
             continue;
         };
-        for attribute in node.attributes().filter(|attribute| attribute.namespace().is_none()) {
-            let name = attribute.name();
+        let own = element.node.attributes().filter(|attribute| attribute.namespace().is_none());
+        for name in own.map(|attribute| attribute.name()) {
             if let Some(meant) = misspelt(name, attributes) {
-                let what = format!("<{kind}> has {name}");
-                reader.problem(node, &element, what, format!("did you mean {meant}?"));
+                element.problem(format!("<{kind}> has {name}"), format!("did you mean {meant}?"));
             }
         }
-        for child in node.children().filter(Node::is_element) {
-            let name = child.tag_name().name();
+        for child in element.all_children() {
+            let name = child.tag();
             if let Some(meant) = misspelt(name, children) {
-                let what = format!("<{kind}> has <{name}>");
-                reader.problem(child, &element, what, format!("did you mean <{meant}>?"));
+                child.problem(format!("<{kind}> has <{name}>"), format!("did you mean <{meant}>?"));
             } else if children.contains(&name) {
-                let named = child.attribute("name").filter(|_| kind == "robot");
-                let own = named.map(|own| format!("{name} {own:?}"));
-                waiting.push((child, own.unwrap_or_else(|| element.clone())));
+                waiting.push(match child.attribute("name").filter(|_| kind == "robot") {
+                    Some(own) => child.labelled(format!("{name} {own:?}")),
+                    None => child,
+                });
             }
         }
     }

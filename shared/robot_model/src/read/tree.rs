@@ -3,53 +3,44 @@
 use std::collections::HashMap;
 
 use diagnostics::suggestion;
-use roxmltree::Node;
 
 use crate::model::{Joint, JointKind, Link, Mimic, Robot};
 
+use super::element::{Element, Log};
 use super::joint::Written;
-use super::reader::Reader;
 
-type Links<'a> = Vec<(Link, Node<'a, 'a>)>;
-type Joints<'a> = Vec<(Written<'a>, Node<'a, 'a>)>;
+type Links<'a> = Vec<(Link, Element<'a>)>;
 
 /// Returns the robot, links parents first; reports a description that is not one tree.
-pub(super) fn build<'a>(
-    reader: &mut Reader<'a>,
+pub(super) fn build(
+    log: &Log<'_>,
     name: String,
-    links: Links<'a>,
-    joints: Joints<'a>,
+    links: Links<'_>,
+    joints: Vec<Written<'_>>,
 ) -> Option<Robot> {
-    let before = reader.count();
-    let places = indices(reader, links.iter().map(|(link, node)| (link.name.as_str(), *node)));
-    let names = indices(reader, joints.iter().map(|(joint, node)| (joint.name, *node)));
-    let carriers = carriers(reader, &places, links.len(), &joints);
-    let rules = rules(reader, &names, &joints);
-    let named = |(joint, _): &(Written<'_>, _)| {
-        places.contains_key(joint.parent) && places.contains_key(joint.child)
-    };
+    let before = log.count();
+    let places = indices(links.iter().map(|(link, element)| (link.name.as_str(), element)));
+    let names = indices(joints.iter().map(|joint| (joint.name, &joint.element)));
+    let carriers = carriers(&places, links.len(), &joints);
+    let rules = rules(&names, &joints);
+    let named =
+        |joint: &Written<'_>| places.contains_key(joint.parent) && places.contains_key(joint.child);
     // Unknown and missing names would be reported again as loose ends.
-    if reader.count() > before || links.is_empty() || !joints.iter().all(named) {
+    if log.count() > before || links.is_empty() || !joints.iter().all(named) {
         return None;
     }
-    let order = order(reader, &links, &joints, &carriers, &places)?;
+    let order = order(log, &links, &joints, &carriers, &places)?;
     Some(assembled(name, links, joints, &order, &rules, &places))
 }
 
 /// Returns the index of every name; reports duplicates.
 fn indices<'n, 'a: 'n>(
-    reader: &mut Reader<'a>,
-    all: impl Iterator<Item = (&'n str, Node<'a, 'a>)>,
+    all: impl Iterator<Item = (&'n str, &'n Element<'a>)>,
 ) -> HashMap<String, usize> {
     let mut places = HashMap::new();
-    for (index, (name, node)) in all.enumerate() {
-        if name.is_empty() {
-            continue;
-        }
-        if places.insert(name.to_owned(), index).is_some() {
-            let kind = node.tag_name().name();
-            let what = "its name is used twice";
-            reader.problem(node, &format!("{kind} {name:?}"), what, "rename one of them");
+    for (index, (name, element)) in all.enumerate() {
+        if !name.is_empty() && places.insert(name.to_owned(), index).is_some() {
+            element.problem("its name is used twice", "rename one of them");
         }
     }
     places
@@ -57,47 +48,42 @@ fn indices<'n, 'a: 'n>(
 
 /// The joint that carries each link.
 fn carriers(
-    reader: &mut Reader<'_>,
     places: &HashMap<String, usize>,
     links: usize,
-    joints: &Joints<'_>,
+    joints: &[Written<'_>],
 ) -> Vec<Option<usize>> {
     let mut carriers: Vec<Option<usize>> = vec![None; links];
-    for (index, (joint, node)) in joints.iter().enumerate() {
+    for (index, joint) in joints.iter().enumerate() {
         for (which, name) in [("parent", joint.parent), ("child", joint.child)] {
             if !name.is_empty() && !places.contains_key(name) {
                 let what = format!("its {which} {name:?} is not a link");
                 let otherwise = format!("describe <link name={name:?}/>, or correct the name");
                 let help =
                     suggestion(name, places.keys().map(String::as_str), || otherwise.to_owned());
-                reader.problem(*node, &joint.element, what, help);
+                joint.element.problem(what, help);
             }
         }
         let Some(&child) = places.get(joint.child) else { continue };
         if let Some(other) = carriers[child].replace(index) {
             let what = format!(
                 "its child {:?} is already carried by {}",
-                joint.child, joints[other].0.element
+                joint.child, joints[other].element.label
             );
-            reader.problem(*node, &joint.element, what, "a link has one parent: remove one joint");
+            joint.element.problem(what, "a link has one parent: remove one joint");
         }
     }
     carriers
 }
 
 /// Returns for each joint the rule by which it follows another, chained rules combined.
-fn rules(
-    reader: &mut Reader<'_>,
-    names: &HashMap<String, usize>,
-    joints: &Joints<'_>,
-) -> Vec<Option<Mimic>> {
+fn rules(names: &HashMap<String, usize>, joints: &[Written<'_>]) -> Vec<Option<Mimic>> {
     let mut rules = Vec::with_capacity(joints.len());
-    for (start, (joint, node)) in joints.iter().enumerate() {
+    for (start, joint) in joints.iter().enumerate() {
         let mut rule = Mimic { joint: start, multiplier: 1.0, offset: 0.0 };
         let mut what = None;
         let mut help = "name a joint that mimics no other".to_owned();
         for _ in 0..=joints.len() {
-            let Some(next) = joints[rule.joint].0.mimic else { break };
+            let Some(next) = joints[rule.joint].mimic else { break };
             let Some(&followed) = names.get(next.joint) else {
                 // An end that another joint names wrongly is reported at that joint.
                 if rule.joint == start && !next.joint.is_empty() {
@@ -118,12 +104,12 @@ fn rules(
                 break;
             }
         }
-        if rule.joint != start && joints[rule.joint].0.kind == JointKind::Fixed {
-            let followed = joints[rule.joint].0.name;
+        if rule.joint != start && joints[rule.joint].kind == JointKind::Fixed {
+            let followed = joints[rule.joint].name;
             what = Some(format!("it mimics {followed:?}, which does not move"));
         }
         if let Some(what) = what {
-            reader.problem(*node, &joint.element, what, help);
+            joint.element.problem(what, help);
         }
         rules.push(joint.mimic.map(|_| rule));
     }
@@ -133,24 +119,24 @@ fn rules(
 /// Returns the links from the root outwards, children in the order of the file; reports links that are
 /// not part of one tree.
 fn order(
-    reader: &mut Reader<'_>,
+    log: &Log<'_>,
     links: &Links<'_>,
-    joints: &Joints<'_>,
+    joints: &[Written<'_>],
     carriers: &[Option<usize>],
     places: &HashMap<String, usize>,
 ) -> Option<Vec<usize>> {
-    let before = reader.count();
+    let before = log.count();
     let roots: Vec<usize> = (0..links.len()).filter(|&link| carriers[link].is_none()).collect();
     if let [first, _, ..] = roots[..] {
         for &loose in &roots[1..] {
-            let (link, node) = &links[loose];
+            let element = &links[loose].1;
             let what = format!("no joint carries it, nor link {:?}", links[first].0.name);
             let help = "a robot has one root: join this link to another with a <joint>";
-            reader.problem(*node, &format!("link {:?}", link.name), what, help);
+            element.problem(what, help);
         }
     }
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); links.len()];
-    for (joint, _) in joints {
+    for joint in joints {
         children[places[joint.parent]].push(places[joint.child]);
     }
     let mut order = Vec::with_capacity(links.len());
@@ -163,17 +149,16 @@ fn order(
     }
     for start in 0..links.len() {
         if !reached[start] {
-            loop_from(reader, start, joints, carriers, places, &mut reached);
+            loop_from(start, joints, carriers, places, &mut reached);
         }
     }
-    (reader.count() == before).then_some(order)
+    (log.count() == before).then_some(order)
 }
 
 /// Reports the loop above a link without a root, once per loop.
 fn loop_from(
-    reader: &mut Reader<'_>,
     start: usize,
-    joints: &Joints<'_>,
+    joints: &[Written<'_>],
     carriers: &[Option<usize>],
     places: &HashMap<String, usize>,
     seen: &mut [bool],
@@ -184,28 +169,28 @@ fn loop_from(
         seen[at] = true;
         let Some(joint) = carriers[at] else { return };
         way.push(joint);
-        at = places[joints[joint].0.parent];
+        at = places[joints[joint].parent];
     }
     // A way that ends in a link that it did not pass leads into a reported loop.
-    let Some(first) = way.iter().position(|&joint| places[joints[joint].0.child] == at) else {
+    let Some(first) = way.iter().position(|&joint| places[joints[joint].child] == at) else {
         return;
     };
     let members = &way[first..];
-    let (joint, node) = &joints[members[0]];
+    let joint = &joints[members[0]];
     let what = match members {
         [_] => format!("it joins {:?} to itself", joint.child),
         _ => {
-            let names: Vec<&str> = members.iter().rev().map(|&m| joints[m].0.name).collect();
+            let names: Vec<&str> = members.iter().rev().map(|&m| joints[m].name).collect();
             format!("the joints {} form a loop", names.join(", "))
         }
     };
-    reader.problem(*node, &joint.element, what, "links must form a tree: give it another parent");
+    joint.element.problem(what, "links must form a tree: give it another parent");
 }
 
 fn assembled(
     name: String,
     links: Links<'_>,
-    joints: Joints<'_>,
+    joints: Vec<Written<'_>>,
     order: &[usize],
     rules: &[Option<Mimic>],
     places: &HashMap<String, usize>,
@@ -216,11 +201,11 @@ fn assembled(
     }
     let new_link = |name: &str| place[places[name]];
     // A joint's new place is that of its child, less the root.
-    let new_joint = |old: usize| new_link(joints[old].0.child) - 1;
+    let new_joint = |old: usize| new_link(joints[old].child) - 1;
     let mut ordered: Vec<Joint> = joints
         .iter()
         .zip(rules)
-        .map(|((joint, _), rule)| Joint {
+        .map(|(joint, rule)| Joint {
             name: joint.name.to_owned(),
             kind: joint.kind,
             parent: new_link(joint.parent),
