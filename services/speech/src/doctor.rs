@@ -9,7 +9,8 @@ use config::{MicrophoneMode, Recogniser, Settings, Voice};
 use service::Span;
 use service::inspection::Finding;
 
-use crate::devices::microphone::{Microphone, MicrophoneEvent, MicrophoneOptions, MicrophoneState};
+use crate::In;
+use crate::devices::microphone::{Microphone, MicrophoneOptions, MicrophoneState};
 use crate::devices::recogniser::Backend;
 use crate::devices::stream::PlaybackMask;
 use crate::devices::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
@@ -109,14 +110,14 @@ fn microphone(settings: &Settings) -> Finding {
     while failed.len() < programs {
         let timeout = until.saturating_duration_since(Instant::now());
         match events.recv_timeout(timeout) {
-            Ok(MicrophoneEvent::Status(status)) => match status.state {
+            Ok(In::Microphone(status)) => match status.state {
                 MicrophoneState::Listening => {
                     return Finding::good(WHAT, format!("{} records", status.note));
                 }
                 MicrophoneState::Broken => failed.push(status.note),
                 _ => {}
             },
-            Ok(MicrophoneEvent::Stream(_)) => {}
+            Ok(_) => {}
             Err(_) => {
                 failed.push("the program delivers no audio".to_owned());
                 break;

@@ -12,7 +12,7 @@ use crate::devices::stream::SpeechSegment;
 use crate::stream_events::StreamEvent;
 
 /// Events delivered to the reducer.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum In {
     /// An utterance or a request from a client.
     Injection(Injection),

@@ -25,6 +25,7 @@ use service::{Effects, Event, Node, NodeError, Span, Time};
 use stream_events::StreamEvent;
 use utterance_intake::UtteranceIntake;
 
+pub use devices::microphone::MicrophoneStatus;
 pub use io::{
     In, Out, PlaybackEvent, PlaybackRequest, PlaybackState, Recognised, RecognisedSegment,
     RecognitionInput,

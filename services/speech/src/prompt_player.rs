@@ -31,13 +31,6 @@ pub(crate) struct PromptPlayer {
     last_playback: u64,
 }
 
-/// A prompt with its text.
-struct Prompt {
-    /// The presentation; its times count from the first sound on.
-    presentation: Presentation,
-    text: String,
-}
-
 /// The prompt that is being spoken.
 struct Playing {
     playback: u64,
@@ -48,7 +41,9 @@ struct Playing {
 /// A prompt that waits to be spoken.
 struct Waiting {
     act: ActId,
-    prompt: Prompt,
+    /// The presentation; its times count from the first sound on.
+    presentation: Presentation,
+    text: String,
     /// Until when a pointing question waits for the arm.
     aim_until: Option<Time>,
 }
@@ -97,8 +92,8 @@ impl PromptPlayer {
             Presentation { prompt, number, question, scene, ..Presentation::default() };
         let points = kind == ActKind::Ask && matches!(question, Question::Point(_));
         let aim_until = points.then(|| now + AIM_TIMEOUT);
-        let prompt = Prompt { presentation, text: text.to_owned() };
-        self.waiting = Some(Waiting { act: ActId(act.act), prompt, aim_until });
+        let (act, text) = (ActId(act.act), text.to_owned());
+        self.waiting = Some(Waiting { act, presentation, text, aim_until });
     }
 
     /// Returns whether the presentation was spoken, is being spoken, or waits.
@@ -106,7 +101,7 @@ impl PromptPlayer {
         let is = |other: &Presentation| (other.prompt, other.number) == (prompt, number);
         self.last.is_some_and(|last| (last.prompt, last.number) >= (prompt, number))
             || self.playing.as_ref().is_some_and(|playing| is(&playing.presentation))
-            || self.waiting.as_ref().is_some_and(|waiting| is(&waiting.prompt.presentation))
+            || self.waiting.as_ref().is_some_and(|waiting| is(&waiting.presentation))
     }
 
     /// Releases a pointing question once the arm aims at its object.
@@ -125,7 +120,7 @@ impl PromptPlayer {
             return;
         }
         if let Some(waiting) = self.waiting.take() {
-            self.play(waiting.prompt, now, fx);
+            self.play(waiting.presentation, waiting.text, now, fx);
         }
     }
 
@@ -143,7 +138,7 @@ impl PromptPlayer {
         self.waiting.as_ref().and_then(|waiting| waiting.aim_until)
     }
 
-    fn play(&mut self, Prompt { presentation, text }: Prompt, now: Time, fx: &mut Fx) {
+    fn play(&mut self, presentation: Presentation, text: String, now: Time, fx: &mut Fx) {
         self.break_off(now, fx);
         self.last_playback += 1;
         let playback = self.last_playback;

@@ -13,7 +13,7 @@
 //! | tokenise | `tokens.rs` | words and the pauses between them |
 //! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
 //! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`) | the parts that are about the objects |
-//! | content | `content.rs` (`negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
+//! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs`, `intent.rs` | the response that counts, the user's intent |
 //! | readings | `parsed.rs` (`hedges.rs`) | alternative readings with weights and doubts |
 //!
@@ -29,6 +29,7 @@ mod confusion;
 mod content;
 mod disambiguate;
 mod distractors;
+mod extractor;
 mod hedges;
 mod intent;
 mod lexicon;

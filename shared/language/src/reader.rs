@@ -4,7 +4,8 @@ use scene::{Intent, Question, Reading, Scene};
 
 use crate::answer::response;
 use crate::clauses::clauses;
-use crate::content::{Content, extract};
+use crate::content::Content;
+use crate::extractor::extract;
 use crate::hedges::hedge;
 use crate::intent::{intent, is_side_talk, unknown_words};
 use crate::lexicon::Lexicon;

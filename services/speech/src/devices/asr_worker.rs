@@ -22,10 +22,8 @@ use worker::{EarlyResults, Worker};
 mod interim;
 mod worker;
 
-/// Settings of speech recognition.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AsrOptions {
-    /// The recogniser.
+pub(crate) struct AsrOptions {
     pub recogniser: Backend,
     /// Segmentation of recordings.
     pub segmenter: SegmenterOptions,
@@ -37,7 +35,7 @@ pub struct AsrOptions {
 
 impl AsrOptions {
     /// Returns the options of the configuration, with work files in `work`.
-    pub fn of(speech: &config::Speech, work: &Path) -> Self {
+    pub(crate) fn of(speech: &config::Speech, work: &Path) -> Self {
         Self {
             recogniser: Backend::of(speech, work),
             segmenter: SegmenterOptions::of(speech),
@@ -47,46 +45,35 @@ impl AsrOptions {
     }
 }
 
-/// State of the recogniser.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum AsrState {
+pub(crate) enum AsrState {
     /// Loading; input waits for it.
     Loading,
-    /// Ready.
     Ready {
         /// Words of the scene that cannot be recognised because their pronunciation is unknown.
         unpronounceable: Vec<String>,
     },
     /// Unavailable; every input fails with this reason.
-    Off {
-        /// Reason, for the operator.
-        reason: String,
-    },
+    Off { reason: String },
 }
 
-/// Events of the worker.
 #[derive(Clone, Debug, PartialEq)]
-pub enum AsrEvent {
+pub(crate) enum AsrEvent {
     /// A change of state; [`AsrState::Loading`] first.
     State(AsrState),
     /// Words of an utterance in progress. One may follow the result.
-    InterimResult {
-        /// The utterance.
-        sound: u64,
-        /// The words so far.
-        text: String,
-    },
+    InterimResult { sound: u64, text: String },
     /// The result of an input.
     Recognised(Recognised),
 }
 
 /// Inputs that may wait.
-pub const WAITING_MAX: usize = 8;
+pub(crate) const WAITING_MAX: usize = 8;
 /// Possible ends of utterances that may wait for early decoding.
 const HINTS_MAX: usize = 4;
 
 /// The worker's thread. Dropping it ends the thread after the segment that is being decoded.
-pub struct AsrWorker {
+pub(crate) struct AsrWorker {
     hints: Sender<(u64, SpeechSegment)>,
     blocks: Sender<(u64, Vec<i16>)>,
     closed: Arc<AtomicBool>,
@@ -96,7 +83,7 @@ pub struct AsrWorker {
 
 impl AsrWorker {
     /// Starts the thread, which opens the recogniser for the scene.
-    pub fn start(scene: &Scene, options: AsrOptions) -> (Self, Receiver<AsrEvent>) {
+    pub(crate) fn start(scene: &Scene, options: AsrOptions) -> (Self, Receiver<AsrEvent>) {
         let gate = Gate::new(scene, options.gate_threshold);
         let (scene, recogniser) = (scene.clone(), options.recogniser);
         let open = move || recogniser.open(&scene).map_err(|error| error.to_string());
@@ -139,22 +126,19 @@ impl AsrWorker {
 
     /// Offers a possible end of utterance `sound`. A quick recogniser decodes it while it is idle, and
     /// [`Self::submit`] of the same samples then needs no decoding.
-    pub fn decode_early(&self, sound: u64, segment: SpeechSegment) {
+    pub(crate) fn decode_early(&self, sound: u64, segment: SpeechSegment) {
         // Without room it is decoded when the end is certain.
         let _ = self.hints.try_send((sound, segment));
     }
 
     /// Offers the next samples of utterance `sound` for interim results.
-    pub fn interim_samples(&self, sound: u64, samples: Vec<i16>) {
+    pub(crate) fn interim_samples(&self, sound: u64, samples: Vec<i16>) {
         // Without room they are missing from the interim results, not from the result.
         let _ = self.blocks.try_send((sound, samples));
     }
 
     /// Queues input. `sound` identifies it in the events.
-    ///
-    /// # Errors
-    /// If [`WAITING_MAX`] inputs wait already, or the thread is gone.
-    pub fn submit(&self, sound: u64, input: RecognitionInput) -> Result<(), QueueError> {
+    pub(crate) fn submit(&self, sound: u64, input: RecognitionInput) -> Result<(), QueueError> {
         self.thread.offer((sound, input))
     }
 }

@@ -32,8 +32,8 @@ pub(crate) enum End {
 
 /// A running program. Dropping it kills and reaps it.
 pub(crate) struct ChildProcess {
-    program: String,
-    child: Child,
+    pub(crate) program: String,
+    pub(crate) child: Child,
 }
 
 /// Polling interval.
@@ -44,8 +44,13 @@ const STDERR_MAX: u64 = 500;
 impl ChildProcess {
     /// Starts a program without input and captures its standard error.
     pub(crate) fn start(mut command: Command) -> Result<Self, ProcessError> {
-        let program = command.get_program().to_string_lossy().into_owned();
         command.stdin(Stdio::null()).stderr(Stdio::piped());
+        Self::spawn(command)
+    }
+
+    /// Starts a program with the input and outputs of the command.
+    pub(crate) fn spawn(mut command: Command) -> Result<Self, ProcessError> {
+        let program = command.get_program().to_string_lossy().into_owned();
         match command.spawn() {
             Ok(child) => Ok(Self { program, child }),
             Err(error) if error.kind() == ErrorKind::NotFound => {
@@ -94,8 +99,11 @@ impl ChildProcess {
             // An unreadable part is omitted from the message.
             let _ = stderr.take(STDERR_MAX).read_to_end(&mut output);
         }
-        let message = String::from_utf8_lossy(&output).trim().replace('\n', "; ");
-        ProcessError::Failed(format!("{} failed ({status}): {message}", self.program))
+        let mut message = String::from_utf8_lossy(&output).trim().replace('\n', "; ");
+        if !message.is_empty() {
+            message.insert_str(0, ": ");
+        }
+        ProcessError::Failed(format!("{} failed ({status}){message}", self.program))
     }
 
     fn kill(&mut self) {
@@ -130,7 +138,8 @@ pub(crate) fn run(mut command: Command, deadline: Duration) -> Result<(), Proces
     ChildProcess::start(command)?.wait(deadline, sleep).map(|_| ())
 }
 
-fn sleep(time: Duration) -> bool {
+/// Waits without cancelling.
+pub(crate) fn sleep(time: Duration) -> bool {
     thread::sleep(time);
     false
 }

@@ -12,14 +12,15 @@ use messages::{AudioChunk, RequestKey, Source};
 use service::clock;
 use service::{Span, Time};
 
-use crate::devices::microphone::{EventQueue, MicrophoneEvent, Sink};
+use crate::In;
+use crate::devices::microphone::{EventQueue, Sink};
 use crate::devices::stream::{Duplex, MaskedStream, PlaybackMask, shifted};
 use crate::devices::vad::SegmenterOptions;
 use crate::devices::worker_thread::WorkerThread;
 use crate::stream_events::{Began, StreamEvent, next_sound};
 
 /// Simultaneous streams; further ones are closed before they begin.
-pub const STREAMS_MAX: usize = 8;
+pub(crate) const STREAMS_MAX: usize = 8;
 /// Chunks that may wait for the thread: more than three seconds of one stream.
 const CHUNKS_MAX: usize = 64;
 /// Longest gap that is filled with silence within an utterance, samples: half a second.
@@ -34,17 +35,17 @@ const TIMEOUT: Duration = Duration::from_secs(10);
 const OLDEST: Span = Span::from_ms(30_000);
 
 /// The thread that segments clients' streams. Dropping it ends the thread.
-pub struct ClientStreams(WorkerThread<Box<AudioChunk>>);
+pub(crate) struct ClientStreams(WorkerThread<Box<AudioChunk>>);
 
 impl ClientStreams {
     /// Starts the thread.
-    pub fn start(segmenter: SegmenterOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
+    pub(crate) fn start(segmenter: SegmenterOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
         let streams = Streams { segmenter, mask, queue: EventQueue::new(sink), open: Vec::new() };
         Self(WorkerThread::start(CHUNKS_MAX, move |chunks| streams.run(chunks)))
     }
 
     /// Queues a chunk. Without room it is lost, as in transit.
-    pub fn take(&self, chunk: &AudioChunk) {
+    pub(crate) fn take(&self, chunk: &AudioChunk) {
         // The next chunk reveals the gap.
         let _ = self.0.offer(Box::new(*chunk));
     }
@@ -133,7 +134,7 @@ impl Streams {
     }
 
     fn send(&mut self, events: impl IntoIterator<Item = StreamEvent>) {
-        events.into_iter().for_each(|event| self.queue.send(MicrophoneEvent::Stream(event)));
+        events.into_iter().for_each(|event| self.queue.send(In::Stream(event)));
     }
 
     fn check_timeouts(&mut self) {

@@ -1,7 +1,6 @@
 //! Shared test data: scenes and a synthetic voice.
 
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
 
 use messages::{RequestKey, Source};
 use scene::Scene;
@@ -32,19 +31,6 @@ pub(crate) fn began(at: Time) -> Began {
         source: Source::Microphone,
         interrupts: false,
     }
-}
-
-/// Writes samples as a WAV file of the service's own format.
-pub(crate) fn write_wav(path: &Path, samples: &[i16]) {
-    let spec = hound::WavSpec {
-        channels: 1,
-        sample_rate: RATE_HZ,
-        bits_per_sample: 16,
-        sample_format: hound::SampleFormat::Int,
-    };
-    let mut wav = hound::WavWriter::create(path, spec).unwrap();
-    samples.iter().for_each(|&sample| wav.write_sample(sample).unwrap());
-    wav.finalize().unwrap();
 }
 
 /// Returns a buzz with falling pitch and formants that glide from vowel to vowel, four syllables per

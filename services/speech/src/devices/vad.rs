@@ -204,7 +204,6 @@ fn post_roll(options: &SegmenterOptions) -> usize {
 mod tests {
     use super::*;
     use crate::devices::random::{Rng, signed};
-    use crate::devices::testing::voice;
 
     /// Processes frames written as `#` (speech) and `.` (none).
     fn track(frames: &str, options: &SegmenterOptions) -> Vec<VadEvent> {
@@ -276,54 +275,6 @@ mod tests {
             ),
         ] {
             assert_eq!(track(frames, &options), expected, "{what}");
-        }
-    }
-
-    fn speech(events: &[VadEvent]) -> Vec<Range<usize>> {
-        (events.iter())
-            .filter_map(|e| match e {
-                VadEvent::End { speech, .. } => Some(speech.clone()),
-                VadEvent::Onset { .. } | VadEvent::Pause { .. } => None,
-            })
-            .collect()
-    }
-
-    fn stream() -> Vec<i16> {
-        let mut sound = vec![0; samples(1.0)];
-        sound.extend(voice(1.0));
-        sound.extend(vec![0; samples(1.0)]);
-        sound.extend(voice(0.6));
-        sound
-    }
-
-    #[test]
-    fn vad_finds_voice_that_lasts_until_the_end_of_the_stream() {
-        let mut segmenter = Segmenter::new(SegmenterOptions::default());
-        let mut events = segmenter.push(&stream());
-        events.extend(segmenter.finish());
-        let found = speech(&events);
-        assert_eq!(found.len(), 2, "{events:?}");
-        for (found, expected) in found.iter().zip([1.0..2.0, 3.0..3.6]) {
-            let near = |sample: usize, s: f64| (sample as f64 / f64::from(RATE_HZ) - s).abs() < 0.2;
-            assert!(
-                near(found.start, expected.start) && near(found.end, expected.end),
-                "{events:?}"
-            );
-        }
-        assert!(found[1].end <= stream().len());
-    }
-
-    #[test]
-    fn vad_is_independent_of_block_lengths_and_reusable() {
-        let stream = stream();
-        let mut whole = Segmenter::new(SegmenterOptions::default());
-        let mut expected = whole.push(&stream);
-        expected.extend(whole.finish());
-        let mut segmenter = Segmenter::new(SegmenterOptions::default());
-        for len in [1, 100, 256, 999] {
-            let mut events: Vec<_> = stream.chunks(len).flat_map(|c| segmenter.push(c)).collect();
-            events.extend(segmenter.finish());
-            assert_eq!(events, expected, "blocks of {len}");
         }
     }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::In;
 use crate::devices::microphone::{
-    Microphone, MicrophoneEvent, MicrophoneOptions, MicrophoneState, MicrophoneStatus, Sink,
+    Microphone, MicrophoneOptions, MicrophoneState, MicrophoneStatus, Sink,
 };
 use crate::devices::stream::PlaybackMask;
 use config::{MicrophoneMode, Recogniser, Settings};
@@ -33,17 +33,7 @@ pub(super) fn start(
 /// Returns a sink for the events of a live source: the main loop, which may be busy.
 pub(super) fn sink(inbox: &DeviceSender<In>) -> Sink {
     let inbox = inbox.clone();
-    Box::new(move |event| {
-        let message = match event {
-            MicrophoneEvent::Stream(event) => In::Stream(event),
-            MicrophoneEvent::Status(status) => In::Microphone(status),
-        };
-        match inbox.offer(message) {
-            Err(In::Stream(event)) => Err(MicrophoneEvent::Stream(event)),
-            Err(In::Microphone(status)) => Err(MicrophoneEvent::Status(status)),
-            Ok(()) | Err(_) => Ok(()),
-        }
-    })
+    Box::new(move |event| inbox.offer(event))
 }
 
 const OFF: &str = "set mode = \"push-to-talk\" (file speech.toml, table [microphone]) and run: \

@@ -3,18 +3,8 @@
 use proptest::prelude::*;
 use scene::{Intent, Question, Reading, Response};
 
-use super::{TOOLS_READERS, fixture, scene};
+use super::{TOOLS_READERS, fixture, scene, sentences};
 use crate::{Language, Reader};
-
-/// The sentences of a table that are plain ASCII.
-fn sentences(table: &'static str) -> impl Iterator<Item = &'static str> {
-    let text = |line: &'static str| {
-        let (input, _) = line.rsplit_once("=>")?;
-        let text = input.split_once(':')?.1.trim();
-        (text.is_ascii() && !text.is_empty()).then_some(text)
-    };
-    table.lines().filter_map(text)
-}
 
 /// A name and what it does to a text.
 type Dress<'a> = (&'a str, &'a dyn Fn(&str) -> String);

@@ -1,10 +1,11 @@
 //! Readings with weights and doubts.
 
+use proptest::collection::vec;
 use proptest::prelude::*;
-use proptest::sample::select;
+use proptest::sample::{Index, select};
 use scene::{AttributeId, Doubt, Question, Reading, Response, ValueId};
 
-use super::{QUESTIONS, TOOLS_READERS, scene};
+use super::{QUESTIONS, TOOLS_READERS, scene, sentences};
 use crate::{Language, READINGS_MAX, Reader};
 
 const ASKED: Question = Question::Attribute(AttributeId(0), ValueId(0));
@@ -143,17 +144,28 @@ const WORDS: &str = "\
     isn't|you|my|was|clear|pen|any|except|maybe|think|so|wait|right|of|in|dish|-|'|?|le|\
     drop table|put|non|probably|markre|screw|driver|green|perhaps";
 
+/// Salads of words, sentences with one part replaced, and any characters at all.
+fn unlikely_text() -> impl Strategy<Value = String> {
+    let word = select(WORDS.split('|').collect::<Vec<_>>());
+    let sentence = select(sentences(include_str!("cases.txt")).collect::<Vec<_>>());
+    let mutated = (sentence, any::<[Index; 2]>(), ".{0,3}").prop_map(|(sentence, ends, part)| {
+        let [from, to] = ends.map(|end| end.index(sentence.len() + 1));
+        format!("{}{part}{}", &sentence[..from.min(to)], &sentence[from.max(to)..])
+    });
+    prop_oneof![vec(word, 0..30).prop_map(|words| words.join(" ")), mutated, any::<String>()]
+}
+
 proptest! {
-    /// For any words with any confidence: few readings of known words, weights that sum to 1, doubts
+    /// For any text with any confidence: few readings of known words, weights that sum to 1, doubts
     /// that are probabilities, no answer without a question, and the best one equals `read`.
     #[test]
     fn readings_are_a_distribution(
-        words in proptest::collection::vec(select(WORDS.split('|').collect::<Vec<_>>()), 0..30),
-        confidence in proptest::collection::vec(-0.5..1.5_f32, 0..30),
-        n in 0..QUESTIONS.len(),
+        text in unlikely_text(),
+        confidence in vec(-0.5..1.5_f32, 0..30),
+        question in select(&QUESTIONS[..]),
     ) {
-        let (text, question) = (words.join(" "), QUESTIONS[n]);
-        let (scene, [_, reader]) = &*TOOLS_READERS;
+        let (scene, [paper, reader]) = &*TOOLS_READERS;
+        paper.read(&text, question);
         let readings = reader.readings(&text, &confidence, question);
         prop_assert!((1..=READINGS_MAX).contains(&readings.len()));
         prop_assert!((readings.iter().map(|(weight, _)| weight).sum::<f64>() - 1.0).abs() < 1e-12);

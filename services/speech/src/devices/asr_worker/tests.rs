@@ -6,8 +6,9 @@ use super::worker::snr_db;
 use super::*;
 use crate::Hypothesis;
 use crate::RecognisedSegment;
+use crate::devices::audio::write_wav;
 use crate::devices::recogniser::RecogniseError;
-use crate::devices::testing::{self, bowls, write_wav};
+use crate::devices::testing::{self, bowls};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 
@@ -86,10 +87,10 @@ fn asr_worker_recognises_the_segments_of_a_file_in_order() {
     let path = folder.path().join("x.wav");
     let quiet = vec![0; 16_000];
     let (long, short) = (testing::voice(1.0), testing::voice(0.3));
-    write_wav(&path, &[&quiet[..], &long, &quiet, &short].concat());
+    write_wav(&path, &[&quiet[..], &long, &quiet, &short].concat()).unwrap();
     let (worker, events) = ready(false);
     worker.submit(5, file(&path)).unwrap();
-    write_wav(&folder.path().join("quiet.wav"), &[0; 32_000]);
+    write_wav(&folder.path().join("quiet.wav"), &[0; 32_000]).unwrap();
     worker.submit(6, file(&folder.path().join("quiet.wav"))).unwrap();
     let recognised = result(&events);
     let segments = recognised.segments.unwrap();

@@ -3,6 +3,21 @@
 mod denoise;
 mod noise_floor;
 
-pub use audio::{RATE_HZ, WavError, read_wav, seconds};
+use std::path::Path;
+
+pub use audio::{RATE_HZ, read_wav, seconds};
 pub use denoise::denoised;
 pub use noise_floor::with_noise_floor;
+
+/// Writes samples as a WAV file of the service's own format.
+pub(crate) fn write_wav(path: &Path, samples: &[i16]) -> Result<(), hound::Error> {
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: RATE_HZ,
+        bits_per_sample: 16,
+        sample_format: hound::SampleFormat::Int,
+    };
+    let mut wav = hound::WavWriter::create(path, spec)?;
+    samples.iter().try_for_each(|&sample| wav.write_sample(sample))?;
+    wav.finalize()
+}

@@ -6,7 +6,7 @@ use crate::devices::testing::voice;
 
 struct Client {
     streams: ClientStreams,
-    events: Receiver<MicrophoneEvent>,
+    events: Receiver<In>,
     number: u64,
     first_sample: u64,
     flags: u8,
@@ -71,9 +71,9 @@ impl Client {
     fn event(&self) -> StreamEvent {
         loop {
             match self.events.recv_timeout(Duration::from_secs(20)).unwrap() {
-                MicrophoneEvent::Stream(event) if event.is_optional() => {}
-                MicrophoneEvent::Stream(event) => return event,
-                MicrophoneEvent::Status(status) => panic!("{status:?}"),
+                In::Stream(event) if event.is_optional() => {}
+                In::Stream(event) => return event,
+                event => panic!("{event:?}"),
             }
         }
     }

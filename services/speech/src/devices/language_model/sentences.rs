@@ -12,7 +12,7 @@ const DRAWN: usize = 4000;
 
 /// Returns sentences about the scene, each a line of words as [`words`] writes them. Equal scenes
 /// yield equal sentences in equal order.
-pub fn scene_sentences(scene: &Scene) -> Vec<String> {
+pub(crate) fn scene_sentences(scene: &Scene) -> Vec<String> {
     let mut generator = Generator::new(scene);
     let shapes = shapes();
     let weights: u32 = shapes.iter().map(|(weight, shapes)| weight * shapes.len() as u32).sum();

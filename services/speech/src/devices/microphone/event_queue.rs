@@ -2,11 +2,11 @@
 
 use std::collections::VecDeque;
 
-use super::MicrophoneEvent;
+use crate::In;
 use crate::stream_events::StreamEvent;
 
 /// Accepts an event, or returns it where there is no room.
-pub type Sink = Box<dyn Fn(MicrophoneEvent) -> Result<(), MicrophoneEvent> + Send>;
+pub(crate) type Sink = Box<dyn Fn(In) -> Result<(), In> + Send>;
 
 /// Events that may wait; beyond it new utterances are dropped as a whole.
 const WAITING_MAX: usize = 16;
@@ -14,7 +14,7 @@ const WAITING_MAX: usize = 16;
 /// Events that wait for the sink.
 pub(crate) struct EventQueue {
     sink: Sink,
-    waiting: VecDeque<MicrophoneEvent>,
+    waiting: VecDeque<In>,
     /// An utterance whose beginning was dropped; its end is dropped as well.
     skipped: Option<u64>,
     dropped: u32,
@@ -31,26 +31,24 @@ impl EventQueue {
     }
 
     /// Sends an event as soon as there is room.
-    pub(crate) fn send(&mut self, event: MicrophoneEvent) {
+    pub(crate) fn send(&mut self, event: In) {
         self.flush();
         let full = self.waiting.len() >= WAITING_MAX;
         match &event {
             // The next one is more recent.
-            MicrophoneEvent::Status(_) if !self.waiting.is_empty() => return,
+            In::Microphone(_) if !self.waiting.is_empty() => return,
             // Useful only while it is recent.
-            MicrophoneEvent::Stream(event) if event.is_optional() && !self.waiting.is_empty() => {
+            In::Stream(event) if event.is_optional() && !self.waiting.is_empty() => {
                 return;
             }
-            MicrophoneEvent::Stream(StreamEvent::Began(began)) if full => {
+            In::Stream(StreamEvent::Began(began)) if full => {
                 self.skipped = Some(began.sound);
                 self.dropped += 1;
                 let dropped = self.dropped;
                 tracing::warn!(dropped, "service overloaded: utterance dropped");
                 return;
             }
-            MicrophoneEvent::Stream(StreamEvent::Ended { sound, .. })
-                if self.skipped == Some(*sound) =>
-            {
+            In::Stream(StreamEvent::Ended { sound, .. }) if self.skipped == Some(*sound) => {
                 self.skipped = None;
                 return;
             }
@@ -79,14 +77,14 @@ mod tests {
     use crossbeam_channel::{TrySendError, bounded};
     use service::Time;
 
-    fn began(sound: u64) -> MicrophoneEvent {
-        MicrophoneEvent::Stream(StreamEvent::Began(Began { sound, ..testing::began(Time(0)) }))
+    fn began(sound: u64) -> In {
+        In::Stream(StreamEvent::Began(Began { sound, ..testing::began(Time(0)) }))
     }
 
-    fn ended(sound: u64) -> MicrophoneEvent {
+    fn ended(sound: u64) -> In {
         let segment =
             SpeechSegment { onset: Time(0), end: Time(0), samples: Vec::new(), speech: 0..0 };
-        MicrophoneEvent::Stream(StreamEvent::Ended { sound, segment })
+        In::Stream(StreamEvent::Ended { sound, segment })
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! The microphone of the robot's computer: a recording program, on a thread of its own.
 //!
-//! Invariant: the thread never blocks on its receiver. Every [`StreamEvent::Began`] is followed by one
-//! [`StreamEvent::Ended`], even if the program dies in the middle of a word; every request to talk is
-//! answered by that or by one [`StreamEvent::Silent`]. What the receiver does not take in time is
+//! Invariant: the thread never blocks on its receiver. Every `StreamEvent::Began` is followed by one
+//! `StreamEvent::Ended`, even if the program dies in the middle of a word; every request to talk is
+//! answered by that or by one `StreamEvent::Silent`. What the receiver does not take in time is
 //! dropped and counted.
 
 mod event_queue;
@@ -16,15 +16,14 @@ use std::time::Duration;
 use crate::devices::stream::PlaybackMask;
 use crate::devices::vad::SegmenterOptions;
 use crate::devices::worker_thread::{QueueError, WorkerThread};
-use crate::stream_events::StreamEvent;
 pub(crate) use event_queue::EventQueue;
-pub use event_queue::Sink;
-pub use messages::MicrophoneState;
-pub use recorder::default_programs;
+pub(crate) use event_queue::Sink;
+pub(crate) use messages::MicrophoneState;
+pub(crate) use recorder::default_programs;
 
 /// Settings of the microphone.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MicrophoneOptions {
+pub(crate) struct MicrophoneOptions {
     /// Recording programs with their arguments, the preferred one first.
     pub programs: Vec<Vec<String>>,
     /// `true` if it is always open, `false` if only on request.
@@ -42,7 +41,7 @@ pub struct MicrophoneOptions {
 
 impl MicrophoneOptions {
     /// Returns the options of the configuration.
-    pub fn of(speech: &config::Speech) -> Self {
+    pub(crate) fn of(speech: &config::Speech) -> Self {
         let microphone = &speech.microphone;
         let defaults = Self::hands_free();
         Self {
@@ -55,7 +54,7 @@ impl MicrophoneOptions {
     }
 
     /// Returns options for a microphone that is always open, with the first program that works.
-    pub fn hands_free() -> Self {
+    pub(crate) fn hands_free() -> Self {
         Self {
             programs: default_programs(),
             hands_free: true,
@@ -67,16 +66,7 @@ impl MicrophoneOptions {
     }
 }
 
-/// An event of the microphone.
-#[derive(Clone, Debug, PartialEq)]
-pub enum MicrophoneEvent {
-    /// An event of its stream.
-    Stream(StreamEvent),
-    /// Its status, on every change and five times a second while it listens.
-    Status(MicrophoneStatus),
-}
-
-/// Status of the microphone.
+/// Status of the microphone, published on every change and five times a second while it listens.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MicrophoneStatus {
     /// Its state.
@@ -108,21 +98,18 @@ struct Talk {
 }
 
 /// The microphone's thread. Dropping it ends the thread and the recording program.
-pub struct Microphone(WorkerThread<Talk>);
+pub(crate) struct Microphone(WorkerThread<Talk>);
 
 impl Microphone {
     /// Starts the thread.
-    pub fn start(options: MicrophoneOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
+    pub(crate) fn start(options: MicrophoneOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
         let run = move |requests: &_| worker::Worker::new(options, mask, sink).run(requests);
         Self(WorkerThread::start(1, run))
     }
 
     /// Records one utterance with the number `sound`, from now on for `longest` at most. The robot's own
     /// voice is not masked: the request interrupts it.
-    ///
-    /// # Errors
-    /// If another request is in progress, or the thread is gone.
-    pub fn talk(&self, sound: u64, longest: Duration) -> Result<(), QueueError> {
+    pub(crate) fn talk(&self, sound: u64, longest: Duration) -> Result<(), QueueError> {
         self.0.offer(Talk { sound, longest })
     }
 }

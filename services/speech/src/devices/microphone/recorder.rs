@@ -1,11 +1,13 @@
 //! Recording programs.
 
 use std::io::{self, BufRead, BufReader, ErrorKind, Read as _};
-use std::process::{Child, ChildStdout, Command, Stdio};
+use std::process::{ChildStdout, Command, Stdio};
 use std::thread;
 use std::time::Duration;
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
+
+use crate::devices::child_process::{ChildProcess, sleep};
 
 /// Lines of standard error that are logged; more only repeat themselves.
 const LINES_MAX: usize = 20;
@@ -15,14 +17,13 @@ const LINE_BYTES: usize = 300;
 const READ_BYTES: usize = 1 << 16;
 /// Delay after a full read: the program is faster than any microphone.
 const THROTTLE: Duration = Duration::from_millis(20);
-/// Polling of the exit of a program that has closed its output.
-const EXIT_POLL: Duration = Duration::from_millis(5);
-const EXIT_POLLS: usize = 40;
+/// Time limit for the exit of a program that has closed its output.
+const EXIT_TIMEOUT: Duration = Duration::from_millis(200);
 
 /// Returns the command lines that write one channel of signed 16-bit samples, little-endian, at 16 kHz
 /// to their standard output: of ALSA (package alsa-utils), PipeWire (pipewire-bin) and PulseAudio
 /// (pulseaudio-utils).
-pub fn default_programs() -> Vec<Vec<String>> {
+pub(crate) fn default_programs() -> Vec<Vec<String>> {
     let command = |words: &[&str]| words.iter().map(|&word| word.to_owned()).collect();
     vec![
         command(&["arecord", "-q", "-t", "raw", "-f", "S16_LE", "-r", "16000", "-c", "1", "-"]),
@@ -33,8 +34,7 @@ pub fn default_programs() -> Vec<Vec<String>> {
 
 /// A running program. Dropping it kills and reaps it.
 pub(super) struct Recorder {
-    name: String,
-    child: Child,
+    process: ChildProcess,
     stdout: ChildStdout,
     /// First byte of an incomplete sample.
     odd: Option<u8>,
@@ -57,24 +57,19 @@ impl Recorder {
             return Err("no program is configured".to_owned());
         };
         let mut command = Command::new(name);
-        command.args(arguments);
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-        let mut child = command.spawn().map_err(|error| match error.kind() {
-            ErrorKind::NotFound => format!("the program {name} is not installed"),
-            _ => format!("{name} cannot be started: {error}"),
-        })?;
-        let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
-        if let Some(stderr) = stderr {
+        command.args(arguments).stdout(Stdio::piped());
+        let mut process = ChildProcess::start(command).map_err(|error| error.to_string())?;
+        if let Some(stderr) = process.child.stderr.take() {
             let name = name.clone();
             thread::spawn(move || log(&name, stderr));
         }
-        let Some(stdout) = stdout else { return Err(format!("{name} has no output")) };
-        Ok(Self { name: name.clone(), child, stdout, odd: None })
+        let stdout = process.child.stdout.take().ok_or_else(|| format!("{name} has no output"))?;
+        Ok(Self { process, stdout, odd: None })
     }
 
     /// Returns the name of the program.
     pub(super) fn name(&self) -> &str {
-        &self.name
+        &self.process.program
     }
 
     /// Waits for samples until the timeout.
@@ -84,7 +79,7 @@ impl Recorder {
         match poll(&mut polled, Some(&timeout)) {
             Ok(0) | Err(rustix::io::Errno::INTR) => return Read::Nothing,
             Ok(_) => {}
-            Err(error) => return Read::Ended(format!("{}: {error}", self.name)),
+            Err(error) => return Read::Ended(format!("{}: {error}", self.name())),
         }
         let mut bytes = vec![0; READ_BYTES];
         match self.stdout.read(&mut bytes) {
@@ -96,7 +91,7 @@ impl Recorder {
                 Read::Samples(self.samples(&bytes[..count]))
             }
             Err(error) if error.kind() == ErrorKind::Interrupted => Read::Nothing,
-            Err(error) => Read::Ended(format!("{}: {error}", self.name)),
+            Err(error) => Read::Ended(format!("{}: {error}", self.name())),
         }
     }
 
@@ -112,28 +107,12 @@ impl Recorder {
         samples
     }
 
+    /// Returns why the program has closed its output.
     fn end(&mut self) -> String {
-        // It has closed its output: it exits now, or is of no further use.
-        for _ in 0..EXIT_POLLS {
-            match self.child.try_wait() {
-                Ok(None) => thread::sleep(EXIT_POLL),
-                Ok(Some(_)) | Err(_) => break,
-            }
+        match self.process.wait(EXIT_TIMEOUT, sleep) {
+            Ok(_) => format!("{} exited", self.name()),
+            Err(error) => error.to_string(),
         }
-        let _ = self.child.kill();
-        match self.child.wait() {
-            Ok(status) if status.success() => format!("{} exited", self.name),
-            Ok(status) => format!("{} failed ({status})", self.name),
-            Err(error) => format!("{}: {error}", self.name),
-        }
-    }
-}
-
-impl Drop for Recorder {
-    fn drop(&mut self) {
-        // Both fail only if it has exited already.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
     }
 }
 

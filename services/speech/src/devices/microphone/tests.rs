@@ -6,15 +6,16 @@ use service::clock;
 use service::{Span, Time};
 
 use super::*;
+use crate::In;
 use crate::devices::stream::SpeechSegment;
 use crate::devices::testing::voice;
-use crate::stream_events::Began;
+use crate::stream_events::{Began, StreamEvent};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 
 struct Listening {
     microphone: Microphone,
-    events: Receiver<MicrophoneEvent>,
+    events: Receiver<In>,
     mask: Arc<PlaybackMask>,
 }
 
@@ -57,7 +58,7 @@ fn raw(folder: &Path, quiet_after_s: f64) -> String {
 }
 
 impl Listening {
-    fn next<T>(&self, what: &str, mut wanted: impl FnMut(MicrophoneEvent) -> Option<T>) -> T {
+    fn next<T>(&self, what: &str, mut wanted: impl FnMut(In) -> Option<T>) -> T {
         let start = Instant::now();
         while start.elapsed() < PATIENCE {
             let event = self.events.recv_timeout(PATIENCE).expect("an event in time");
@@ -70,8 +71,8 @@ impl Listening {
 
     fn event(&self) -> StreamEvent {
         self.next("an utterance", |event| match event {
-            MicrophoneEvent::Stream(event) if !event.is_optional() => Some(event),
-            MicrophoneEvent::Stream(_) | MicrophoneEvent::Status(_) => None,
+            In::Stream(event) if !event.is_optional() => Some(event),
+            _ => None,
         })
     }
 
@@ -85,7 +86,7 @@ impl Listening {
 
     fn status(&self, wanted: impl Fn(&MicrophoneStatus) -> bool) -> MicrophoneStatus {
         self.next("the status", |event| match event {
-            MicrophoneEvent::Status(status) if wanted(&status) => Some(status),
+            In::Microphone(status) if wanted(&status) => Some(status),
             _ => None,
         })
     }
@@ -146,8 +147,8 @@ fn microphone_mutes_the_robots_own_voice() {
     );
     let heard = listen_behind(options(&[script]), |mask| mask.begins(Time(0)));
     heard.next("the first sound", |event| match event {
-        MicrophoneEvent::Status(status) => (status.state == MicrophoneState::Muted).then_some(()),
-        MicrophoneEvent::Stream(event) => panic!("the robot heard itself: {event:?}"),
+        In::Microphone(status) => (status.state == MicrophoneState::Muted).then_some(()),
+        event => panic!("the robot heard itself: {event:?}"),
     });
     heard.mask.ends(Time(1));
     std::fs::write(go, "").unwrap();

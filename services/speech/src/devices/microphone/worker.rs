@@ -11,7 +11,8 @@ use service::clock;
 use super::event_queue::{EventQueue, Sink};
 use super::level::{Level, QUIETEST_DB};
 use super::recorder::{Read, Recorder};
-use super::{MicrophoneEvent, MicrophoneOptions, MicrophoneStatus, Talk};
+use super::{MicrophoneOptions, MicrophoneStatus, Talk};
+use crate::In;
 use crate::devices::stream::{Duplex, MaskedStream, PlaybackMask, SampleClock};
 use crate::stream_events::{Began, StreamEvent, next_sound};
 
@@ -261,10 +262,10 @@ impl Worker {
 
     fn publish_status(&mut self) {
         self.status.dropped = self.queue.dropped();
-        self.queue.send(MicrophoneEvent::Status(self.status.clone()));
+        self.queue.send(In::Microphone(self.status.clone()));
     }
 
     fn send(&mut self, event: StreamEvent) {
-        self.queue.send(MicrophoneEvent::Stream(event));
+        self.queue.send(In::Stream(event));
     }
 }

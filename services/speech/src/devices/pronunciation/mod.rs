@@ -13,15 +13,12 @@ use std::time::Duration;
 
 use crate::devices::child_process;
 
-/// A source of pronunciations for words that are not in the dictionary.
-pub trait LetterToSound {
-    /// Returns the phones of a word, separated by blanks, if they are known.
-    fn phones_of(&self, word: &str) -> Option<String>;
-}
+/// Returns the phones of a word that is not in the dictionary, separated by blanks, if they are known.
+type LetterToSound = dyn Fn(&str) -> Option<String>;
 
 /// Words with their pronunciations, each a list of phones separated by blanks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Pronunciations {
+pub(crate) struct Pronunciations {
     entries: BTreeMap<String, Vec<String>>,
     missing: Vec<String>,
 }
@@ -31,10 +28,10 @@ impl Pronunciations {
     /// pronunciation, further ones of a word marked `word(2)`). Missing words are composed of the parts
     /// of a hyphenated word ("see-through") or of a compound ("worktop"), otherwise looked up in
     /// `letter_to_sound`. Regular variants of English are added.
-    pub fn collect<'w>(
+    pub(crate) fn collect<'w>(
         words: impl IntoIterator<Item = &'w str>,
         dictionary: &str,
-        letter_to_sound: &dyn LetterToSound,
+        letter_to_sound: &LetterToSound,
     ) -> Self {
         let words: BTreeSet<&str> = words.into_iter().collect();
         let mut entries = look_up(dictionary, &words.iter().copied().collect());
@@ -44,7 +41,7 @@ impl Pronunciations {
         for word in lacking {
             let phones = hyphenated(word, &known, letter_to_sound)
                 .or_else(|| compound(word, &known))
-                .or_else(|| letter_to_sound.phones_of(word));
+                .or_else(|| letter_to_sound(word));
             match phones {
                 Some(phones) => {
                     entries.insert(word.to_owned(), vec![phones]);
@@ -65,17 +62,18 @@ impl Pronunciations {
     }
 
     /// Returns the words without a pronunciation, which cannot be recognised.
-    pub fn missing(&self) -> &[String] {
+    pub(crate) fn missing(&self) -> &[String] {
         &self.missing
     }
 
     /// Returns the pronunciations of a word.
-    pub fn of(&self, word: &str) -> &[String] {
+    #[cfg(test)]
+    fn of(&self, word: &str) -> &[String] {
         self.entries.get(word).map_or(&[], Vec::as_slice)
     }
 
     /// Returns the dictionary in the CMU format.
-    pub fn to_text(&self) -> String {
+    pub(crate) fn to_text(&self) -> String {
         let mut text = String::new();
         for (word, pronunciations) in &self.entries {
             for (n, phones) in (1..).zip(pronunciations) {
@@ -128,13 +126,13 @@ fn splits(word: &str) -> impl Iterator<Item = (&str, &str)> {
 fn hyphenated(
     word: &str,
     known: &BTreeMap<String, Vec<String>>,
-    letter_to_sound: &dyn LetterToSound,
+    letter_to_sound: &LetterToSound,
 ) -> Option<String> {
     if !word.contains('-') {
         return None;
     }
     let phones: Option<Vec<String>> = (word.split('-').filter(|part| !part.is_empty()))
-        .map(|part| first(part, known).or_else(|| letter_to_sound.phones_of(part)))
+        .map(|part| first(part, known).or_else(|| letter_to_sound(part)))
         .collect();
     phones.map(|phones| phones.join(" "))
 }
@@ -148,21 +146,15 @@ fn first(word: &str, known: &BTreeMap<String, Vec<String>>) -> Option<String> {
     known.get(word).and_then(|all| all.first()).cloned()
 }
 
-/// The pronunciations of espeak-ng.
-pub struct EspeakLetterToSound;
+/// espeak-ng takes about 5 ms.
+const DEADLINE: Duration = Duration::from_secs(2);
 
-impl EspeakLetterToSound {
-    /// espeak-ng takes about 5 ms.
-    const DEADLINE: Duration = Duration::from_secs(2);
-}
-
-impl LetterToSound for EspeakLetterToSound {
-    fn phones_of(&self, word: &str) -> Option<String> {
-        let mut command = Command::new("espeak-ng");
-        command.args(["-q", "-x", "--sep= ", "-v", "en-us", "--", word]);
-        let said = child_process::output(command, Self::DEADLINE).ok()?;
-        phones::phones(&String::from_utf8_lossy(&said))
-    }
+/// Returns the phones of a word by espeak-ng.
+pub(crate) fn espeak_phones(word: &str) -> Option<String> {
+    let mut command = Command::new("espeak-ng");
+    command.args(["-q", "-x", "--sep= ", "-v", "en-us", "--", word]);
+    let said = child_process::output(command, DEADLINE).ok()?;
+    phones::phones(&String::from_utf8_lossy(&said))
 }
 
 #[cfg(test)]
@@ -181,16 +173,9 @@ wor W AO R
 ktop K T AA P
 ";
 
-    struct Letters;
-
-    impl LetterToSound for Letters {
-        fn phones_of(&self, word: &str) -> Option<String> {
-            (word == "hex").then(|| "HH EH K S".to_owned())
-        }
-    }
-
     fn collect(words: &[&str]) -> Pronunciations {
-        Pronunciations::collect(words.iter().copied(), DICTIONARY, &Letters)
+        let letters = |word: &str| (word == "hex").then(|| "HH EH K S".to_owned());
+        Pronunciations::collect(words.iter().copied(), DICTIONARY, &letters)
     }
 
     #[test]

@@ -7,16 +7,17 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::ops::Range;
-use std::process::{Child, Command as Process, Stdio};
+use std::process::{Command as Process, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use serde::Deserialize;
 
-use super::{RecogniseError, Recogniser, RecogniserUnavailable};
+use super::{N_BEST_MAX, RecogniseError, Recogniser, RecogniserUnavailable};
 use crate::Hypothesis;
 use crate::devices::audio::RATE_HZ;
+use crate::devices::child_process::ChildProcess;
 use crate::devices::language_model;
 
 /// Program and limits.
@@ -27,14 +28,12 @@ pub struct CommandOptions {
     /// Time limit from the last sample to the answer; doubled for the first answer, because the
     /// program loads its model meanwhile.
     pub deadline: Duration,
-    /// Hypotheses used per answer.
-    pub n_best_max: usize,
 }
 
 impl CommandOptions {
     /// Returns options for the program with the default limits.
     pub fn new(command: Vec<String>) -> Self {
-        Self { command, deadline: Duration::from_secs(10), n_best_max: 5 }
+        Self { command, deadline: Duration::from_secs(10) }
     }
 }
 
@@ -86,7 +85,7 @@ impl Recogniser for Command {
         })?;
         match answer.error {
             Some(reason) => Err(RecogniseError(reason)),
-            None => Ok(hypotheses(answer.hypotheses, self.options.n_best_max)),
+            None => Ok(hypotheses(answer.hypotheses)),
         }
     }
 }
@@ -111,7 +110,7 @@ struct AnswerHypothesis {
 
 /// Returns the answer as hypotheses, heaviest first, with weights that sum to one. Without word
 /// confidences the weight of the hypothesis is used.
-fn hypotheses(answers: Vec<AnswerHypothesis>, at_most: usize) -> Vec<Hypothesis> {
+fn hypotheses(answers: Vec<AnswerHypothesis>) -> Vec<Hypothesis> {
     let weight =
         |answer: &AnswerHypothesis| answer.weight.filter(|w| w.is_finite()).unwrap_or(1.0).max(0.0);
     let total: f64 = answers.iter().map(weight).sum::<f64>().max(f64::MIN_POSITIVE);
@@ -127,13 +126,14 @@ fn hypotheses(answers: Vec<AnswerHypothesis>, at_most: usize) -> Vec<Hypothesis>
     let mut found: Vec<Hypothesis> = answers.into_iter().map(hypothesis).collect();
     found.retain(|hypothesis| !hypothesis.text.is_empty());
     found.sort_by(|a, b| b.weight.total_cmp(&a.weight));
-    found.truncate(at_most);
+    found.truncate(N_BEST_MAX);
     found
 }
 
-/// The running program; dropping it kills and reaps it.
+/// The running program.
 struct Program {
-    child: Child,
+    /// Killed when it is dropped.
+    _process: ChildProcess,
     samples: Sender<Vec<u8>>,
     lines: Receiver<std::io::Result<String>>,
 }
@@ -143,14 +143,14 @@ impl Program {
         let [name, arguments @ ..] = command else {
             return Err("no program is configured (speech.recogniser_command)".to_owned());
         };
-        let mut process = Process::new(name);
-        process.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped());
-        let mut child = process.spawn().map_err(|e| format!("{name} cannot be started: {e}"))?;
+        let mut command = Process::new(name);
+        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut process = ChildProcess::spawn(command).map_err(|error| error.to_string())?;
         // Each end has a thread of its own, so that a program that neither reads nor writes blocks
         // nothing. The threads end with the pipes.
         let (samples, to_write) = bounded::<Vec<u8>>(1);
         let (read, lines) = bounded(1);
-        let (stdin, stdout) = (child.stdin.take(), child.stdout.take());
+        let (stdin, stdout) = (process.child.stdin.take(), process.child.stdout.take());
         thread::spawn(move || {
             let Some(mut stdin) = stdin else { return };
             while let Ok(bytes) = to_write.recv() {
@@ -169,7 +169,7 @@ impl Program {
                 }
             }
         });
-        Ok(Self { child, samples, lines })
+        Ok(Self { _process: process, samples, lines })
     }
 
     fn ask(&mut self, pcm: &[i16], deadline: Duration) -> Result<String, String> {
@@ -203,14 +203,6 @@ fn next_line(from: &mut impl BufRead) -> std::io::Result<String> {
     let mut line = String::new();
     from.take(LINE_MAX).read_line(&mut line)?;
     Ok(line)
-}
-
-impl Drop for Program {
-    fn drop(&mut self) {
-        // Both fail only if it exited already.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
 }
 
 #[cfg(test)]
@@ -257,7 +249,7 @@ mod tests {
             (" ", &[], None),
         ] {
             let (text, confidence) = (text.to_owned(), confidence.to_vec());
-            let found = hypotheses(vec![AnswerHypothesis { text, weight: None, confidence }], 5);
+            let found = hypotheses(vec![AnswerHypothesis { text, weight: None, confidence }]);
             assert_eq!(found.first().map(|h| &h.word_confidence[..]), expected);
         }
     }

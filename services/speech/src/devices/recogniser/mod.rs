@@ -97,6 +97,9 @@ pub trait InterimDecoder: Send {
     fn decode(&mut self, pcm: &[i16]) -> Result<String, RecogniseError>;
 }
 
+/// Hypotheses per utterance.
+const N_BEST_MAX: usize = 5;
+
 /// A choice of recogniser.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Backend {

@@ -15,7 +15,6 @@ use super::{
 };
 use crate::Hypothesis;
 use crate::devices::audio::{denoised, with_noise_floor};
-use crate::devices::language_model::Weights;
 
 /// Files and settings of the recogniser.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,10 +25,6 @@ pub struct PocketSphinxOptions {
     pub model: PathBuf,
     /// Private folder for the scene's dictionary and language model.
     pub work: PathBuf,
-    /// Weights of the language model.
-    pub weights: Weights,
-    /// Largest number of hypotheses.
-    pub n_best_max: usize,
 }
 
 impl PocketSphinxOptions {
@@ -39,8 +34,6 @@ impl PocketSphinxOptions {
             library: "libpocketsphinx.so.3".into(),
             model: "/usr/share/pocketsphinx/model/en-us".into(),
             work: work.into(),
-            weights: Weights::default(),
-            n_best_max: 5,
         }
     }
 }
@@ -48,7 +41,6 @@ impl PocketSphinxOptions {
 /// A recogniser for the words of one scene.
 pub struct PocketSphinx {
     decoder: Decoder,
-    n_best_max: usize,
     unpronounceable: Vec<String>,
     opener: Opener,
 }
@@ -110,7 +102,7 @@ impl PocketSphinx {
                 .map_err(|error| RecogniserUnavailable::unreadable(&file, &error))?;
         }
         let pronouncing = options.model.join("cmudict-en-us.dict");
-        let scene = SceneFiles::get(scene, options.weights, &pronouncing, &options.work)?;
+        let scene = SceneFiles::get(scene, &pronouncing, &options.work)?;
         let (dictionary, language_model) = (scene.dictionary.clone(), scene.language_model.clone());
         let opener = Opener {
             library: options.library.clone(),
@@ -123,7 +115,7 @@ impl PocketSphinx {
         }
         let decoder = opener.open(Passes::All).inspect_err(|_| scene.invalidate())?;
         let unpronounceable = scene.unpronounceable;
-        Ok(Self { decoder, n_best_max: options.n_best_max, unpronounceable, opener })
+        Ok(Self { decoder, unpronounceable, opener })
     }
 
     /// Returns the words of the scene that cannot be recognised because their pronunciation is unknown.
@@ -144,7 +136,7 @@ impl Recogniser for PocketSphinx {
         let clear = denoised(pcm, &speech);
         let pcm = with_noise_floor(&clear);
         let decoded = self.decoder.decode(&pcm, PATHS_MAX).ok_or_else(failed)?;
-        Ok(weighed(&decoded, self.n_best_max))
+        Ok(weighed(&decoded))
     }
 
     fn is_quick(&self) -> bool {
@@ -196,7 +188,7 @@ impl InterimDecoder for FirstPass {
 /// confidences are calibrated.
 const SCORE_SCALE: f64 = 20.0;
 
-fn weighed(decoded: &Decoded, at_most: usize) -> Vec<Hypothesis> {
+fn weighed(decoded: &Decoded) -> Vec<Hypothesis> {
     let mut paths: Vec<(String, f64)> =
         decoded.n_best.iter().map(|(text, score)| (plain(text), *score)).collect();
     // The best path may lie outside the paths that were examined; it is the best all the same.
@@ -205,7 +197,7 @@ fn weighed(decoded: &Decoded, at_most: usize) -> Vec<Hypothesis> {
         let top = paths.iter().map(|(_, score)| *score).reduce(f64::max).unwrap_or(0.0);
         paths.insert(0, (best, top));
     }
-    hypotheses(&paths, SCORE_SCALE, at_most)
+    hypotheses(&paths, SCORE_SCALE)
 }
 
 /// Returns the words without markers and fillers.

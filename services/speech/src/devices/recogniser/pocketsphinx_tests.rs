@@ -20,16 +20,16 @@ fn decoded(best: &str, n_best: &[(&str, f64)]) -> Decoded {
 fn pocketsphinx_hypotheses_omit_markers_and_silence() {
     let paths =
         [("<s> the white one", -100.0), ("the one", -120.0), ("the white(2) <sil> one", -100.0)];
-    let found = weighed(&decoded("<s> the white(2) <sil> one </s>", &paths), 5);
+    let found = weighed(&decoded("<s> the white(2) <sil> one </s>", &paths));
     let texts: Vec<&str> = found.iter().map(|h| h.text.as_str()).collect();
     assert_eq!(texts, ["the white one", "the one"]);
     let other = (-20.0 / SCORE_SCALE).exp();
     assert!((found[0].weight - 2.0 / (2.0 + other)).abs() < 1e-6);
     assert!((f64::from(found[0].word_confidence[1]) - found[0].weight).abs() < 1e-6);
     assert!((found[1].word_confidence[1] - 1.0).abs() < 1e-6);
-    assert_eq!(weighed(&decoded("<sil>", &[]), 5), []);
+    assert_eq!(weighed(&decoded("<sil>", &[])), []);
     for (paths, weight) in [(&[][..], 1.0), (&[("no", -9.0)], 0.5)] {
-        let best = weighed(&decoded("yes", paths), 5);
+        let best = weighed(&decoded("yes", paths));
         assert_eq!((best[0].text.as_str(), best[0].weight), ("yes", weight), "best path alone");
     }
 }

@@ -1,6 +1,6 @@
 //! The recogniser's files of a scene, made once and cached.
 //!
-//! Invariant: a file is used only if it is byte for byte the one made from the same scene, weights,
+//! Invariant: a file is used only if it is byte for byte the one made from the same scene,
 //! pronouncing dictionary and program.
 
 use std::fs;
@@ -10,8 +10,8 @@ use std::time::UNIX_EPOCH;
 use scene::{Scene, StableHash};
 
 use super::RecogniserUnavailable;
-use crate::devices::language_model::{Trigram, Weights, common_words, scene_sentences};
-use crate::devices::pronunciation::{EspeakLetterToSound, Pronunciations};
+use crate::devices::language_model::{Trigram, common_words, scene_sentences};
+use crate::devices::pronunciation::{Pronunciations, espeak_phones};
 
 /// Files of a scene.
 pub(super) struct SceneFiles {
@@ -26,11 +26,10 @@ impl SceneFiles {
     /// Returns the files in `work` where they are still valid, otherwise makes them.
     pub(super) fn get(
         scene: &Scene,
-        weights: Weights,
         pronouncing: &Path,
         work: &Path,
     ) -> Result<Self, RecogniserUnavailable> {
-        let origin = origin(scene, weights, pronouncing);
+        let origin = origin(scene, pronouncing);
         let mut files = Self {
             dictionary: work.join("scene.dict"),
             language_model: work.join("scene.lm"),
@@ -38,7 +37,7 @@ impl SceneFiles {
             mark: work.join("scene.mark"),
         };
         if !files.are_of(origin) {
-            files.make(scene, weights, pronouncing, work, origin)?;
+            files.make(scene, pronouncing, work, origin)?;
         }
         Ok(files)
     }
@@ -59,15 +58,14 @@ impl SceneFiles {
     fn make(
         &mut self,
         scene: &Scene,
-        weights: Weights,
         pronouncing: &Path,
         work: &Path,
         origin: u64,
     ) -> Result<(), RecogniserUnavailable> {
         let dictionary = fs::read_to_string(pronouncing)
             .map_err(|error| RecogniserUnavailable::unreadable(pronouncing, &error))?;
-        let model = Trigram::train(&scene_sentences(scene), common_words(), weights);
-        let spoken = Pronunciations::collect(model.vocabulary(), &dictionary, &EspeakLetterToSound);
+        let model = Trigram::train(&scene_sentences(scene), common_words());
+        let spoken = Pronunciations::collect(model.vocabulary(), &dictionary, &espeak_phones);
         let (dictionary, model) = (spoken.to_text(), model.to_arpa());
         self.unpronounceable = spoken.missing().to_vec();
         write(work, &self.dictionary, &dictionary)?;
@@ -81,11 +79,11 @@ impl SceneFiles {
 }
 
 /// Returns a hash of everything that the files depend on.
-fn origin(scene: &Scene, weights: Weights, pronouncing: &Path) -> u64 {
+fn origin(scene: &Scene, pronouncing: &Path) -> u64 {
     let program = std::env::current_exe().unwrap_or_default();
     let scene = (scene.name(), scene.noun(), scene.objects(), scene.attributes(), scene.words());
     let mut hash = StableHash::default();
-    hash.text(&format!("{scene:?} {weights:?} {} {}", version(pronouncing), version(&program)));
+    hash.text(&format!("{scene:?} {} {}", version(pronouncing), version(&program)));
     hash.value()
 }
 
@@ -127,23 +125,23 @@ mod tests {
         let work = tempfile::tempdir().unwrap();
         let pronouncing = work.path().join("words.dict");
         fs::copy("/usr/share/pocketsphinx/model/en-us/cmudict-en-us.dict", &pronouncing).unwrap();
-        let get = |scene: &Scene, weights| {
-            SceneFiles::get(scene, weights, &pronouncing, &work.path().join("made")).unwrap()
+        let get = |scene: &Scene| {
+            SceneFiles::get(scene, &pronouncing, &work.path().join("made")).unwrap()
         };
-        let first = get(&bowls(), Weights::default());
+        let first = get(&bowls());
         let made = changed(&first);
-        let again = get(&bowls(), Weights::default());
+        let again = get(&bowls());
         assert_eq!(first.unpronounceable, Vec::<String>::new());
         assert_eq!(changed(&again), made);
         assert_eq!((&again.unpronounceable, first.unpronounceable.len()), (&Vec::new(), 0));
         fs::write(&first.dictionary, "cut short").unwrap();
-        let mended = get(&bowls(), Weights::default());
+        let mended = get(&bowls());
         assert!(fs::read_to_string(&mended.dictionary).unwrap().contains("B OW L"));
         let bowls_model = fs::read_to_string(&first.language_model).unwrap();
-        let tools = get(&tools(), Weights::default());
+        let tools = get(&tools());
         assert_ne!(fs::read_to_string(&tools.language_model).unwrap(), bowls_model);
         let made = changed(&tools);
         tools.invalidate();
-        assert_ne!(changed(&get(&self::tools(), Weights::default())), made);
+        assert_ne!(changed(&get(&self::tools())), made);
     }
 }

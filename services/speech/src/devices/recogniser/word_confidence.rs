@@ -6,15 +6,16 @@
 
 use std::collections::BTreeMap;
 
+use super::N_BEST_MAX;
 use crate::Hypothesis;
 
 /// Hypotheses that support words. The lighter ones weigh nothing.
 const SUPPORTERS_MAX: usize = 50;
 
-/// Returns the `at_most` heaviest texts in order of weight, then of appearance. `paths` are texts with
+/// Returns the [`N_BEST_MAX`] heaviest texts in order of weight, then of appearance. `paths` are texts with
 /// the logarithm of their score; a text may appear more than once, and texts without words are
 /// ignored. A weight falls by `e` every `scale`.
-pub(super) fn hypotheses(paths: &[(String, f64)], scale: f64, at_most: usize) -> Vec<Hypothesis> {
+pub(super) fn hypotheses(paths: &[(String, f64)], scale: f64) -> Vec<Hypothesis> {
     let top = paths.iter().map(|(_, score)| *score).fold(f64::NEG_INFINITY, f64::max);
     let mut place: BTreeMap<&str, usize> = BTreeMap::new();
     let mut texts: Vec<(&str, f64)> = Vec::new();
@@ -27,7 +28,7 @@ pub(super) fn hypotheses(paths: &[(String, f64)], scale: f64, at_most: usize) ->
         }
     }
     texts.sort_by(|a, b| b.1.total_cmp(&a.1));
-    texts.truncate(SUPPORTERS_MAX.max(at_most));
+    texts.truncate(SUPPORTERS_MAX);
     let total: f64 = texts.iter().map(|(_, weight)| weight).sum();
     let supporters: Vec<(Vec<&str>, f64)> =
         (texts.iter()).map(|(text, weight)| (text.split(' ').collect(), weight / total)).collect();
@@ -36,7 +37,7 @@ pub(super) fn hypotheses(paths: &[(String, f64)], scale: f64, at_most: usize) ->
         let words = words.iter().zip(confidence).map(|(word, c)| ((*word).to_owned(), c as f32));
         Hypothesis::of_words(words, *weight)
     };
-    supporters.iter().take(at_most).map(hypothesis).collect()
+    supporters.iter().take(N_BEST_MAX).map(hypothesis).collect()
 }
 
 /// Returns the weight of the supporters that have each of the words in its place.
@@ -101,7 +102,6 @@ mod tests {
                 ("the wide one", -10.0),
             ]),
             20.0,
-            5,
         );
         let expected = [
             ("the white one", 0.5, vec![0.75, 0.75, 1.0]),
@@ -116,17 +116,17 @@ mod tests {
 
     #[test]
     fn word_confidence_weights_fall_by_e_every_scale() {
-        let found = hypotheses(&paths(&[("no", -30.0), ("yes", -10.0)]), 20.0, 5);
+        let found = hypotheses(&paths(&[("no", -30.0), ("yes", -10.0)]), 20.0);
         assert_eq!(found[0].text, "yes");
         assert!((found[0].weight / found[1].weight - 1_f64.exp()).abs() < 1e-5);
     }
 
     #[test]
     fn word_confidence_ignores_silence_and_limits_the_hypotheses() {
-        assert_eq!(hypotheses(&paths(&[("", -1.0)]), 20.0, 5), []);
-        assert_eq!(hypotheses(&[], 20.0, 5), []);
+        assert_eq!(hypotheses(&paths(&[("", -1.0)]), 20.0), []);
+        assert_eq!(hypotheses(&[], 20.0), []);
         let many: Vec<_> = (0..90).map(|n| (format!("word{n}"), -f64::from(n))).collect();
-        let found = hypotheses(&many, 20.0, 5);
+        let found = hypotheses(&many, 20.0);
         assert_eq!(found.len(), 5);
         assert!(found.iter().map(|h| h.weight).sum::<f64>() < 1.0);
     }

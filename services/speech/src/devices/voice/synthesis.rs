@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::program::Program;
 use super::{VoiceOptions, trim};
-use crate::devices::audio::{RATE_HZ, read_wav};
+use crate::devices::audio::{RATE_HZ, read_wav, write_wav};
 use crate::devices::child_process::{ChildProcess, End, ProcessError};
 
 /// Error of synthesis.
@@ -130,17 +130,8 @@ impl Synthesiser {
     /// Writes a WAV file with a twentieth of a second of silence.
     pub(super) fn silence(&self) -> Result<PathBuf, SynthesisError> {
         let file = self.file("silence.wav")?;
-        let spec = hound::WavSpec {
-            channels: 1,
-            sample_rate: RATE_HZ,
-            bits_per_sample: 16,
-            sample_format: hound::SampleFormat::Int,
-        };
-        let written = hound::WavWriter::create(&file, spec).and_then(|mut wav| {
-            (0..RATE_HZ / 20).try_for_each(|_| wav.write_sample(0_i16))?;
-            wav.finalize()
-        });
-        written.map_err(|error| trim::unwritten(&file, &error))?;
+        write_wav(&file, &[0; RATE_HZ as usize / 20])
+            .map_err(|error| trim::unwritten(&file, &error))?;
         Ok(file)
     }
 
