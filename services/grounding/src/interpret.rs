@@ -92,8 +92,12 @@ mod tests {
     use language::{Language, Reader};
     use scene::{Response, Scene};
 
-    const BOWLS: &str =
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml"));
+    fn config() -> Config {
+        let bowls = include_str!("../../../config/scenes/bowls.toml");
+        let scene = Scene::from_toml("bowls", bowls).unwrap();
+        let reader = Reader::new(&scene, Language::Careful);
+        Config { scene, reader }
+    }
 
     fn heard(text: &str, weight: f64, confidence: &[f32]) -> Hypothesis {
         Hypothesis { weight, word_confidence: confidence.to_vec(), ..Hypothesis::certain(text) }
@@ -101,9 +105,7 @@ mod tests {
 
     #[test]
     fn grounding_merges_hypotheses_with_one_meaning() {
-        let scene = Scene::from_toml("bowls", BOWLS).unwrap();
-        let reader = Reader::new(&scene, Language::Careful);
-        let config = Config { scene, reader };
+        let config = config();
         let hypotheses = [
             heard("the white bowl", 0.6, &[1.0, 0.5, 1.0]),
             heard("a white ball", 0.3, &[1.0, 0.2, 1.0]),
@@ -121,10 +123,7 @@ mod tests {
 
     #[test]
     fn grounding_doubts_a_hedged_answer() {
-        let scene = Scene::from_toml("bowls", BOWLS).unwrap();
-        let asked = Question::Point(scene::ObjectId(0));
-        let reader = Reader::new(&scene, Language::Careful);
-        let config = Config { scene, reader };
+        let (config, asked) = (config(), Question::Point(scene::ObjectId(0)));
         let doubt = |text| {
             let (_, reading) = readings(&config, &[heard(text, 1.0, &[])], asked, 8).remove(0);
             assert_eq!(reading.response, Response::Yes);

@@ -58,6 +58,9 @@ impl StreamEvent {
     }
 }
 
+/// Numbers an utterance by the time of its onset.
+pub(crate) type Begin<'a> = &'a mut dyn FnMut(Time) -> Began;
+
 /// The beginning of an utterance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Began {

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use serde::Deserialize;
 
-use super::{N_BEST_MAX, RecogniseError, Recogniser, RecogniserUnavailable};
+use super::{N_BEST_MAX, RecogniseError, Recogniser, RecogniserUnavailable, Recognition};
 use crate::Hypothesis;
 use crate::devices::audio::RATE_HZ;
 use crate::devices::child_process::ChildProcess;
@@ -72,11 +72,7 @@ impl Command {
 }
 
 impl Recogniser for Command {
-    fn recognise(
-        &mut self,
-        pcm: &[i16],
-        _: Range<usize>,
-    ) -> Result<Vec<Hypothesis>, RecogniseError> {
+    fn recognise(&mut self, pcm: &[i16], _: Range<usize>) -> Recognition {
         let answer = self.ask(pcm).map_err(|reason| {
             // Further output belongs to this utterance; the next one gets a new program.
             self.program = None;
@@ -221,7 +217,7 @@ mod tests {
         Command::open(CommandOptions { deadline, ..CommandOptions::new(command) }).unwrap()
     }
 
-    fn recognise(command: &mut Command, samples: usize) -> Result<Vec<Hypothesis>, RecogniseError> {
+    fn recognise(command: &mut Command, samples: usize) -> Recognition {
         command.recognise(&vec![1; samples], 0..samples)
     }
 

@@ -53,19 +53,17 @@ impl RecogniserUnavailable {
     }
 }
 
+/// Hypotheses with different texts, best first; none if nothing was recognised.
+pub type Recognition = Result<Vec<Hypothesis>, RecogniseError>;
+
 /// A recogniser of whole utterances.
 pub trait Recogniser: Send {
     /// Decodes one whole utterance, 16 kHz mono, in which `speech` are the samples of the voice; the
-    /// noise is estimated around it. Returns hypotheses with different texts, best first; none if
-    /// nothing was recognised.
+    /// noise is estimated around it.
     ///
     /// # Errors
     /// If the backend fails on these samples.
-    fn recognise(
-        &mut self,
-        pcm: &[i16],
-        speech: Range<usize>,
-    ) -> Result<Vec<Hypothesis>, RecogniseError>;
+    fn recognise(&mut self, pcm: &[i16], speech: Range<usize>) -> Recognition;
 
     /// Returns whether decoding is cheap enough to begin before the end of the utterance is certain.
     fn is_quick(&self) -> bool {

@@ -12,6 +12,7 @@ use super::scene_files::SceneFiles;
 use super::word_confidence::hypotheses;
 use super::{
     InterimDecoder, InterimDecoderOpener, RecogniseError, Recogniser, RecogniserUnavailable,
+    Recognition,
 };
 use crate::Hypothesis;
 use crate::devices::audio::{denoised, with_noise_floor};
@@ -128,11 +129,7 @@ impl PocketSphinx {
 const PATHS_MAX: usize = 100;
 
 impl Recogniser for PocketSphinx {
-    fn recognise(
-        &mut self,
-        pcm: &[i16],
-        speech: Range<usize>,
-    ) -> Result<Vec<Hypothesis>, RecogniseError> {
+    fn recognise(&mut self, pcm: &[i16], speech: Range<usize>) -> Recognition {
         let clear = denoised(pcm, &speech);
         let pcm = with_noise_floor(&clear);
         let decoded = self.decoder.decode(&pcm, PATHS_MAX).ok_or_else(failed)?;

@@ -6,7 +6,7 @@ use service::Time;
 
 use super::{PlaybackMask, Stream, shifted};
 use crate::devices::vad::SegmenterOptions;
-use crate::stream_events::{Began, StreamEvent};
+use crate::stream_events::{Begin, StreamEvent};
 
 /// Samples per decision: 16 ms.
 const BLOCK: usize = 256;
@@ -40,7 +40,7 @@ impl MaskedStream {
         at: Time,
         samples: &[i16],
         duplex: Duplex,
-        began: &mut dyn FnMut(Time) -> Began,
+        began: Begin<'_>,
     ) -> Vec<StreamEvent> {
         let mut events = Vec::new();
         for (n, block) in samples.chunks(BLOCK).enumerate() {

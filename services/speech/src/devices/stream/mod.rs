@@ -19,7 +19,7 @@ pub use playback_mask::PlaybackMask;
 
 use crate::devices::audio::RATE_HZ;
 use crate::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
-use crate::stream_events::{Began, StreamEvent};
+use crate::stream_events::{Begin, StreamEvent};
 
 /// Samples beyond the pre-roll that are kept between utterances: the detector decides on the third
 /// frame of speech, and a frame may be incomplete.
@@ -75,12 +75,7 @@ impl Stream {
 
     /// Processes the next samples, the first of which was recorded at `at`. `began` numbers an
     /// utterance by the time of its onset.
-    pub fn push(
-        &mut self,
-        at: Time,
-        samples: &[i16],
-        began: &mut dyn FnMut(Time) -> Began,
-    ) -> Vec<StreamEvent> {
+    pub fn push(&mut self, at: Time, samples: &[i16], began: Begin<'_>) -> Vec<StreamEvent> {
         self.anchor = (self.first + self.buffer.len(), at);
         self.buffer.extend_from_slice(samples);
         let found = self.segmenter.push(samples).into_iter();
@@ -115,11 +110,7 @@ impl Stream {
         events
     }
 
-    fn event(
-        &mut self,
-        event: VadEvent,
-        began: &mut dyn FnMut(Time) -> Began,
-    ) -> Option<StreamEvent> {
+    fn event(&mut self, event: VadEvent, began: Begin<'_>) -> Option<StreamEvent> {
         Some(match event {
             VadEvent::Onset { at_sample } => {
                 let began = began(self.time(at_sample));
@@ -162,6 +153,7 @@ impl Stream {
 mod tests {
     use super::*;
     use crate::devices::testing::{began, voice};
+    use crate::stream_events::Began;
 
     const MS: u64 = 1_000_000;
     const BEGAN: u64 = 50_000;

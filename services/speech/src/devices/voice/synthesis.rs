@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-use super::program::Program;
 use super::{VoiceOptions, trim};
 use crate::devices::audio::{RATE_HZ, read_wav, write_wav};
 use crate::devices::child_process::{ChildProcess, End, ProcessError};
@@ -32,10 +31,7 @@ pub(super) struct Sound {
 
 /// Synthesises prompts, each once while it is cached.
 pub struct Synthesiser {
-    program: Program,
-    voice: String,
-    words_per_minute: u16,
-    work: PathBuf,
+    options: VoiceOptions,
     /// Texts and their audio, the latest last.
     cache: VecDeque<(String, Sound)>,
     /// Number of synthesised prompts: numbers the files.
@@ -54,8 +50,7 @@ const CACHED_MAX: usize = 64;
 impl Synthesiser {
     /// Returns a synthesiser with program, voice, pace and folder of the options.
     pub fn new(options: &VoiceOptions) -> Self {
-        let VoiceOptions { program, voice, words_per_minute, work, .. } = options.clone();
-        Self { program, voice, words_per_minute, work, cache: VecDeque::new(), count: 0 }
+        Self { options: options.clone(), cache: VecDeque::new(), count: 0 }
     }
 
     /// Synthesises a text as samples at [`RATE_HZ`].
@@ -84,7 +79,8 @@ impl Synthesiser {
             return Ok(Some(known));
         }
         let file = self.file(&format!("sentence-{:02}.wav", self.count % (CACHED_MAX + 1)))?;
-        let command = self.program.speak(&text, &self.voice, self.words_per_minute, &file);
+        let VoiceOptions { program, voice, words_per_minute, .. } = &self.options;
+        let command = program.speak(&text, voice, *words_per_minute, &file);
         self.run(command, is_cancelled)?;
         let seconds = trim::trim(&file)?;
         let sound = Sound { file, seconds };
@@ -108,7 +104,7 @@ impl Synthesiser {
         is_cancelled: impl Fn() -> bool,
     ) -> Result<(), SynthesisError> {
         let failed = |error: ProcessError| {
-            SynthesisError::Failed(format!("{error}{}", self.program.hint(&error)))
+            SynthesisError::Failed(format!("{error}{}", self.options.program.hint(&error)))
         };
         command.stdout(std::process::Stdio::null());
         let mut running = ChildProcess::start(command).map_err(failed)?;
@@ -136,10 +132,10 @@ impl Synthesiser {
     }
 
     fn file(&self, name: &str) -> Result<PathBuf, SynthesisError> {
-        match fs::create_dir_all(&self.work) {
-            Ok(()) => Ok(self.work.join(name)),
+        match fs::create_dir_all(&self.options.work) {
+            Ok(()) => Ok(self.options.work.join(name)),
             Err(error) => {
-                let folder = self.work.display();
+                let folder = self.options.work.display();
                 Err(SynthesisError::Failed(format!("{folder} cannot be written: {error}")))
             }
         }

@@ -15,7 +15,7 @@ use super::WhisperOptions;
 use crate::Hypothesis;
 use crate::devices::audio::RATE_HZ;
 use crate::devices::language_model;
-use crate::devices::recogniser::{RecogniseError, Recogniser};
+use crate::devices::recogniser::{RecogniseError, Recogniser, Recognition};
 
 /// More threads hardly help the small models that answer in time, and other services need some.
 const THREADS_MAX: usize = 4;
@@ -78,11 +78,7 @@ impl Engine {
 }
 
 impl Recogniser for Engine {
-    fn recognise(
-        &mut self,
-        pcm: &[i16],
-        _: Range<usize>,
-    ) -> Result<Vec<Hypothesis>, RecogniseError> {
+    fn recognise(&mut self, pcm: &[i16], _: Range<usize>) -> Recognition {
         let mut samples: Vec<f32> = pcm.iter().map(|&s| f32::from(s) / 32_768.0).collect();
         samples.resize(samples.len().max(SAMPLES_MIN), 0.0);
         let due = Instant::now() + self.deadline;
