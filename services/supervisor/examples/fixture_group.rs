@@ -12,8 +12,7 @@ use config::{Log, Restart, RestartLimits};
 use serde::Deserialize;
 use service::group::{GroupName, GroupPaths};
 use supervisor::Supervisor;
-use supervisor::configuration::Configuration;
-use supervisor::spec::{GroupSpec, ServiceSpec};
+use supervisor::configuration::{Configuration, GroupSpec, ServiceSpec};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]

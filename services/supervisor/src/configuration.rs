@@ -1,14 +1,15 @@
-//! The supervisor's configuration.
+//! The supervisor's configuration: the group, its services in order, and their limits.
 
-use std::fmt;
+use std::env;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
-use crate::spec::GroupSpec;
+use config::{Section, ServiceConfig, Settings};
+use messages::Service;
+use service::launch::Options;
 
-pub use from_settings::from_settings;
-
-mod from_settings;
+pub use config::{Log, Restart, RestartLimits};
 
 /// Loads the configuration: at the start and on reload. On failure,
 /// every problem, one line each.
@@ -33,13 +34,107 @@ pub struct Configuration {
     pub publish: Publish,
 }
 
-impl fmt::Debug for Configuration {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Configuration")
-            .field("spec", &self.spec)
-            .field("scene", &self.scene)
-            .field("profile", &self.profile)
-            .field("directory", &self.directory)
-            .finish_non_exhaustive()
+/// A group as configured, checked: names are unique, `after` names exist and form no cycle
+/// (see [`Schedule::new`](crate::schedule::Schedule::new)).
+#[derive(Clone, Debug, PartialEq)]
+pub struct GroupSpec {
+    /// Services in the order of the configuration.
+    pub services: Vec<ServiceSpec>,
+    /// Limits and backoff of restarts.
+    pub restart: RestartLimits,
+    /// Logs of the services.
+    pub log: Log,
+}
+
+/// One service as configured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ServiceSpec {
+    /// Unique name, e.g. `grounding`.
+    pub name: String,
+    /// Program and arguments. A program without a slash is looked for in `PATH`.
+    pub command: Vec<String>,
+    /// Services that must be ready before this one is started for the first time.
+    pub after: Vec<String>,
+    /// True if the whole group stops in order when this service is given up.
+    pub critical: bool,
+    /// Time from start to `READY=1`.
+    pub start_deadline: Duration,
+    /// Maximum time between two heartbeats once ready; `None` disables the watchdog.
+    pub watchdog: Option<Duration>,
+    /// Time from the request to stop to the kill.
+    pub stop_deadline: Duration,
+    /// Scheduling niceness, −20 … 19.
+    pub nice: i32,
+    /// Exits that are followed by a restart.
+    pub restart: Restart,
+    /// Everything of the configuration that this service reads, in a form that differs exactly
+    /// when it has to be restarted to take notice.
+    pub fingerprint: String,
+}
+
+/// Reads the configuration folder that `options` name.
+pub fn from_settings(options: Options) -> Load {
+    Box::new(move || {
+        let loaded = preflight::load(&options.config, options.profile.as_deref(), &options.set);
+        match loaded {
+            Ok(settings) => Ok(configuration(settings, &options)),
+            Err(problems) => Err(problems.iter().map(ToString::to_string).collect()),
+        }
+    })
+}
+
+fn configuration(settings: Settings, options: &Options) -> Configuration {
+    let group = &settings.group;
+    Configuration {
+        spec: GroupSpec {
+            services: group.services.iter().map(|one| service(one, &settings)).collect(),
+            restart: group.restart,
+            log: group.log.clone(),
+        },
+        scene: group.scene.clone(),
+        profile: options.profile.clone(),
+        directory: options.config.clone(),
+        shared_memory_free_min_mib: group.shared_memory_free_min_mib.into(),
+        publish: Box::new(move |run| settings.write_snapshot(run)),
     }
+}
+
+fn service(service: &ServiceConfig, settings: &Settings) -> ServiceSpec {
+    ServiceSpec {
+        name: service.name.clone(),
+        command: service.command.clone().unwrap_or_else(|| vec![beside(&service.name)]),
+        after: service.after.clone(),
+        critical: service.critical,
+        start_deadline: service.start_deadline,
+        watchdog: service.watchdog,
+        stop_deadline: service.stop_deadline,
+        nice: service.nice,
+        restart: service.restart,
+        fingerprint: fingerprint(&service.name, settings),
+    }
+}
+
+/// A built-in service's program lies beside the supervisor's own.
+fn beside(name: &str) -> String {
+    let program = format!("whichone-{name}");
+    let own = env::current_exe().ok();
+    let path = own.and_then(|own| Some(own.parent()?.join(&program).display().to_string()));
+    path.unwrap_or(program)
+}
+
+/// Returns the text of everything that a service reads: its own section, and the scene, which all read.
+/// Speech rejects utterances that the dialogue would not understand, so it reads that section too. A
+/// service that is not built in may read all of them. Decisions depend on the robot's durations.
+fn fingerprint(name: &str, settings: &Settings) -> String {
+    let (sections, decides): (&[Section], bool) = match Service::from_name(name) {
+        Some(Service::Speech) => (&[Section::Speech, Section::Dialogue], false),
+        Some(Service::Grounding) => (&[Section::Dialogue], false),
+        Some(Service::Policy) => (&[Section::Dialogue], true),
+        Some(Service::Arm) => (&[Section::Arm], false),
+        Some(Service::Console) => (&Section::ALL[1..], false),
+        Some(Service::Robot) | None => (&[Section::Speech, Section::Dialogue, Section::Arm], true),
+    };
+    let texts = sections.iter().map(|&section| settings.section_text(section));
+    let durations = decides.then(|| settings.durations_text());
+    texts.chain([settings.scene_file().text.clone()]).chain(durations).collect()
 }

@@ -11,9 +11,6 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use service::group::GroupPaths;
 
 /// Returns the current epoch; a new one if there is none or `fresh` is set.
-///
-/// # Errors
-/// The file cannot be read or written, or holds no number.
 pub(crate) fn open(paths: &GroupPaths, fresh: bool) -> io::Result<u64> {
     let found = match read(paths) {
         // A fresh start replaces an invalid file.

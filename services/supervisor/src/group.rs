@@ -7,9 +7,9 @@
 use service::status::GroupState;
 
 use crate::Time;
+use crate::configuration::GroupSpec;
 use crate::machine::{Actual, Effect, Event, HeldBecause, Limits, Machine, Wanted};
 use crate::schedule::{Schedule, ScheduleError};
-use crate::spec::GroupSpec;
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -13,7 +13,6 @@ pub mod configuration;
 pub mod group;
 pub mod machine;
 pub mod schedule;
-pub mod spec;
 pub mod swap;
 
 mod before_exec;

@@ -8,8 +8,8 @@
 use std::time::Duration;
 
 use crate::Time;
+use crate::configuration::Restart;
 use crate::restart_limiter::{RestartLimiter, Verdict};
-use crate::spec::Restart;
 use service::exit::ProcessExit;
 
 pub use service::status::{Actual, Failure, Wanted};

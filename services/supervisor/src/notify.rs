@@ -45,9 +45,6 @@ pub(crate) struct NotifySocket {
 
 impl NotifySocket {
     /// Creates a socket at `path`; a stale file there is removed.
-    ///
-    /// # Errors
-    /// The socket cannot be created.
     pub(crate) fn bind(path: &Path) -> io::Result<Self> {
         match fs::remove_file(path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),

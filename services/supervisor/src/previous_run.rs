@@ -50,9 +50,6 @@ fn with_pid(pid: &Option<u32>) -> String {
 }
 
 /// Locks the group for this process, for as long as the file is kept open.
-///
-/// # Errors
-/// Another supervisor has it.
 pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, PreviousRunError> {
     let path = paths.supervisor_lock();
     let failed = |error| PreviousRunError::Io { path: path.clone(), error };
@@ -77,9 +74,6 @@ pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, PreviousRunError> {
 
 /// Waits until every process of an earlier supervisor has ended, and kills those that take longer
 /// than `patience`. Returns the lock that the services of this one are to share.
-///
-/// # Errors
-/// Some process survives even that.
 pub(crate) fn await_end(paths: &GroupPaths, patience: Duration) -> Result<File, PreviousRunError> {
     let path = paths.alive_lock();
     let failed = |error| PreviousRunError::Io { path: path.clone(), error };

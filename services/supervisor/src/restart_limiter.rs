@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use crate::Time;
-use crate::spec::RestartLimits;
+use crate::configuration::RestartLimits;
 
 /// The unrequested exits of one service.
 #[derive(Clone, Debug, Default)]

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::spec::ServiceSpec;
+use crate::configuration::ServiceSpec;
 
 /// The order of a group: for every service, by index, its neighbours in the `after` relation.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -56,17 +56,11 @@ enum Stage {
 
 impl Server {
     /// Listens at `path`, in place of a supervisor that was killed, if any.
-    ///
-    /// # Errors
-    /// The socket cannot be made.
     pub(crate) fn bind(path: &Path) -> io::Result<Self> {
         Ok(Self { listener: listen(path)?, connections: BTreeMap::new(), next: 0 })
     }
 
     /// Listens at `path` again; connections stay open.
-    ///
-    /// # Errors
-    /// The socket cannot be made.
     pub(crate) fn rebind(&mut self, path: &Path) -> io::Result<()> {
         self.listener = listen(path)?;
         Ok(())
@@ -218,9 +212,6 @@ fn listen(path: &Path) -> io::Result<UnixListener> {
 
 /// Reads what has arrived; `true` once the line is complete (a closed sending side completes it,
 /// too).
-///
-/// # Errors
-/// There will be no request: the client left, or sent too much.
 fn read_line(stream: &mut UnixStream, line: &mut Vec<u8>) -> io::Result<bool> {
     let mut bytes = [0; 4096];
     loop {

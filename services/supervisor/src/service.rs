@@ -9,11 +9,11 @@ use service::shm_cleanup::NoRoom;
 
 use crate::Time;
 use crate::child::Child;
+use crate::configuration::{Log, ServiceSpec};
 use crate::lifeline::Lifeline;
 use crate::machine::{Effect, Event, Failure};
 use crate::notify::{Notification, NotifySocket};
 use crate::spawn::{self, Launch, SpawnError};
-use crate::spec::{Log, ServiceSpec};
 use service::exit::ProcessExit;
 use service::log_file;
 
@@ -79,9 +79,6 @@ impl Service {
     }
 
     /// Starts incarnation `incarnation`, if there is room for it.
-    ///
-    /// # Errors
-    /// It could not be started; this is recorded as its exit.
     pub(crate) fn spawn(
         &mut self,
         incarnation: u32,

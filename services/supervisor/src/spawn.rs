@@ -99,9 +99,6 @@ pub(crate) fn spawn(launch: Launch<'_>) -> Result<Child, SpawnError> {
 
 /// The path of a command's program: searched for in `PATH` where it has no slash, else taken as
 /// seen from `directory`.
-///
-/// # Errors
-/// Program not found or not executable.
 pub(crate) fn find_program(command: &[String], directory: &Path) -> Result<PathBuf, SpawnError> {
     let program = command.first().filter(|name| !name.is_empty()).ok_or(SpawnError::Empty)?;
     if program.contains('/') {

@@ -5,7 +5,6 @@
 
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use rustix::process::Pid;
@@ -14,7 +13,7 @@ use service::group::GroupPaths;
 use service::shm_cleanup::{Admin, NoRoom, check_room};
 
 use crate::Time;
-use crate::configuration::{Configuration, Load, Publish};
+use crate::configuration::{Configuration, Load};
 use crate::group::Group;
 use crate::machine::{Effect, Event};
 use crate::server::Server;
@@ -46,12 +45,11 @@ const TICK: Duration = Duration::from_secs(1);
 const STANDSTILL: Duration = Duration::from_millis(500);
 
 /// The supervisor of one group.
-#[derive(Debug)]
 pub struct Supervisor {
     started: Instant,
     around: Surroundings,
-    about: About,
-    load: LoadBox,
+    configuration: Configuration,
+    load: Load,
     group: Group,
     services: Vec<Service>,
     admin: Option<Admin>,
@@ -71,17 +69,6 @@ pub struct Supervisor {
     reported_ready: bool,
     taken: File,
 }
-
-/// Configuration of the group as a whole.
-struct About {
-    scene: String,
-    profile: Option<String>,
-    config: PathBuf,
-    shared_memory_free_min_mib: u64,
-    publish: Publish,
-}
-
-struct LoadBox(Load);
 
 impl Supervisor {
     /// Locks the group, creates its folders and shared memory, and requests its services up.
@@ -214,7 +201,7 @@ impl Supervisor {
     /// SIGBUS without a message.
     fn room_for_one(&self) -> Result<(), NoRoom> {
         let services = self.services.len().max(1) as u64;
-        check_room(self.about.shared_memory_free_min_mib.div_ceil(services))
+        check_room(self.configuration.shared_memory_free_min_mib.div_ceil(services))
     }
 
     /// Reaps a service's ended process, cleans up after it, and only then starts its successor.
@@ -251,29 +238,5 @@ impl Supervisor {
 
     fn name(&self, service: usize) -> &str {
         &self.services[service].spec.name
-    }
-}
-
-impl About {
-    fn of(configuration: Configuration) -> Self {
-        Self {
-            scene: configuration.scene,
-            profile: configuration.profile,
-            config: configuration.directory,
-            shared_memory_free_min_mib: configuration.shared_memory_free_min_mib,
-            publish: configuration.publish,
-        }
-    }
-}
-
-impl std::fmt::Debug for About {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("About").field("config", &self.config).finish_non_exhaustive()
-    }
-}
-
-impl std::fmt::Debug for LoadBox {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str("Load")
     }
 }

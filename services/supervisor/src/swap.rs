@@ -93,26 +93,6 @@ mod tests {
     const REFUSED: Event = Event::Exited(ProcessExit::Code(78));
 
     #[test]
-    fn swap_keeps_a_command_that_becomes_ready() {
-        let mut machine = running();
-        let mut swap = Swap::new(&machine);
-        let found = moves(&mut swap, &mut machine, &[Event::Restart, STOPPED, Event::Ready]);
-        assert_eq!(found, [Move::Wait, Move::Wait, Move::Kept]);
-    }
-
-    #[test]
-    fn swap_rolls_back_a_rejected_command() {
-        let mut machine = running();
-        let mut swap = Swap::new(&machine);
-        let found = moves(
-            &mut swap,
-            &mut machine,
-            &[Event::Restart, STOPPED, REFUSED, Event::Restart, Event::Ready],
-        );
-        assert_eq!(found, [Move::Wait, Move::Wait, Move::Restore, Move::Wait, Move::Restored]);
-    }
-
-    #[test]
     fn swap_reports_a_failed_rollback() {
         let mut machine = running();
         let mut swap = Swap::new(&machine);

@@ -1,5 +1,7 @@
 //! The verbs, a file each or a family a file.
 
+use clap::CommandFactory;
+use clap_complete::{Shell, generate};
 use messages::MotionOrder;
 use service::control::Request;
 use service::group::GroupPaths;
@@ -9,20 +11,18 @@ use crate::cli::{ArmArgs, Awaited, Cli, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
 use crate::{batch, scene_file};
-use service::exit::Failure;
+use service::exit::{Exit, Failure};
 
 mod arm;
 mod await_pick;
 mod chat;
 mod check;
-mod completions;
-mod console;
 mod conversation;
 mod doctor;
 mod export;
 mod hearing;
+mod inspection;
 mod interrupt;
-mod journal;
 mod leftovers;
 mod listen;
 mod logs;
@@ -30,7 +30,6 @@ mod motion;
 mod operate;
 mod paths;
 mod planning;
-mod service_program;
 mod speak;
 mod status;
 mod study;
@@ -82,8 +81,8 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::ResumeMotion(args) => {
             motion::motion(&paths()?, MotionOrder::Resume, args.timeout, out)
         }
-        Verb::Journal(args) => journal::journal(&paths()?, &args, out),
-        Verb::Completions(args) => completions::completions(args.shell, out),
+        Verb::Journal(args) => inspection::journal(&paths()?, &args, out),
+        Verb::Completions(args) => completions(args.shell, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
         Verb::Belief(args) => batch::belief(batch::open(&args.input)?, out),
         Verb::Ground(args) => {
@@ -106,6 +105,14 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
             batch::ik(&chain, batch::open(&args.input)?, out)
         }
     }
+}
+
+/// Prints the script that completes command lines in a shell.
+fn completions(shell: Shell, out: &mut Output<'_>) -> Outcome {
+    let mut script = Vec::new();
+    generate(shell, &mut Cli::command(), "whichone", &mut script);
+    out.text(&String::from_utf8_lossy(&script))?;
+    Ok(Exit::Ok)
 }
 
 fn described_arm(args: &ArmArgs) -> Result<DescribedArm, Failure> {

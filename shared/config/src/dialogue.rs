@@ -1,12 +1,11 @@
 //! `dialogue.toml`: understanding, belief and decisions.
 
+use diagnostics::{Fields, Report, Table};
+use dialogue::gesture::{Direction, Gestures};
 use dialogue::user_model::Reaction;
-use dialogue::{Actions, Attribution, Costs, Fault, Mode, Params, Prior, TurnTaking};
+use dialogue::{Actions, Attribution, Costs, Fault, Mode, Params, Prior, PriorObjects, TurnTaking};
 use language::Language;
-
-use crate::gesture::{self, Gesture};
-use crate::prior;
-use diagnostics::Fields;
+use scene::Scene;
 
 /// The dialogue.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +40,17 @@ pub enum CostsFrom {
     Robot,
 }
 
+/// Pointing gestures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gesture {
+    /// Accept gestures.
+    pub enabled: bool,
+    /// Parameters of the observation model.
+    pub model: Gestures,
+    /// Origin of the pointing ray, metres, frame `base`.
+    pub person_xyz_m: [f64; 3],
+}
+
 pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
     let planner = f.text("planner");
     if !f.is_wrong("planner") && !dialogue::registry::names().contains(&planner.as_str()) {
@@ -60,8 +70,8 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
         costs,
         costs_from,
         turns: f.table("turns", turns),
-        prior: f.table("prior", prior::read),
-        gesture: f.table("gesture", gesture::read),
+        prior: f.table("prior", prior),
+        gesture: f.table("gesture", gesture),
     }
 }
 
@@ -111,6 +121,52 @@ fn turns(f: &mut Fields<'_>) -> TurnTaking {
 
 fn reaction(f: &mut Fields<'_>, median_s: &'static str, log_sd: &'static str) -> Reaction {
     Reaction::new(f.number(median_s, 0.05..=60.0), f.number(log_sd, 0.05..=2.0))
+}
+
+fn prior(f: &mut Fields<'_>) -> Prior {
+    let objects = [("uniform", PriorObjects::Uniform), ("history", PriorObjects::History)];
+    Prior {
+        objects: f.choice("objects", &objects),
+        smoothing: f.number("smoothing", 0.01..=1e6),
+        absent: f.number("absent", 0.0..=0.9),
+    }
+}
+
+/// Maximum coordinate of the user, metres.
+const PERSON_MAX_M: f64 = 20.0;
+
+fn gesture(f: &mut Fields<'_>) -> Gesture {
+    let enabled = f.flag("enabled");
+    let model = Gestures {
+        p_g: f.any_number("p_g"),
+        std_theta_rad: f.any_number("std_theta_rad"),
+        stray: f.any_number("stray"),
+    };
+    report(model.check(), f);
+    let person_xyz_m = f.triple("person_xyz");
+    if !f.is_wrong("person_xyz") && person_xyz_m.iter().any(|x| x.abs() > PERSON_MAX_M) {
+        let what = format!("expected -{PERSON_MAX_M} to {PERSON_MAX_M} m, found {person_xyz_m:?}");
+        f.problem("person_xyz", what, "");
+    }
+    Gesture { enabled, model, person_xyz_m }
+}
+
+/// Reports an object at the position of the user, at which a ray cannot point.
+pub(crate) fn check_person(scene: &Scene, gesture: &Gesture, tree: &Table, report: &mut Report) {
+    if !gesture.enabled {
+        return;
+    }
+    let directions = Direction::to_objects(gesture.person_xyz_m, scene);
+    let objects = scene.objects().iter().zip(directions);
+    let inside = |(object, direction): &(&scene::Object, Option<Direction>)| {
+        object.placement.is_some() && direction.is_none()
+    };
+    for (object, _) in objects.filter(inside) {
+        let path = ["dialogue", "gesture", "person_xyz"];
+        let what = format!("the person stands where `{}` does", object.name);
+        let help = "use a place from which people see the objects, e.g. [1.6, 0.0, 0.45]";
+        report.add(tree.source_of(&path).diagnostic(&path.map(str::to_owned), what, help));
+    }
 }
 
 /// Reports the faults that a model finds in its parameters, except for values that are not numbers.

@@ -12,13 +12,10 @@
 mod arm;
 mod console;
 mod dialogue;
-mod durations;
 mod files;
-mod gesture;
 mod group;
 mod load;
 mod manager;
-mod prior;
 mod resolved;
 mod services;
 mod snapshot;
@@ -37,9 +34,8 @@ use scene::Scene;
 
 pub use crate::arm::{Arm, Baxter, Driver, Grasps, Limb, Motion, Simulated};
 pub use crate::console::Console;
-pub use crate::dialogue::{CostsFrom, Dialogue};
+pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
 pub use crate::files::RobotFiles;
-pub use crate::gesture::Gesture;
 pub use crate::group::{Group, Log, RestartLimits};
 pub use crate::manager::ManagerError;
 pub use crate::resolved::{Origin, Section};

@@ -8,7 +8,7 @@ use toml::Value;
 
 use crate::files::{Files, names, one_of, read_text};
 use crate::resolved::{self, Resolved, Section};
-use crate::{Settings, arm, console, dialogue, durations, gesture, group, services, speech, study};
+use crate::{Settings, arm, console, dialogue, group, services, snapshot, speech, study};
 
 pub(crate) fn load(
     dir: &Path,
@@ -60,12 +60,12 @@ pub(crate) fn check(
     let read = file.as_ref().map(|file| Scene::from_toml(&file.label, &file.text));
     let scene = read.and_then(|read| read.map_err(|found| report.extend(found)).ok());
     if let Some(scene) = &scene {
-        gesture::check(scene, &dialogue.gesture, &tree, &mut report);
+        dialogue::check_person(scene, &dialogue.gesture, &tree, &mut report);
     }
     let settings = file.zip(scene).zip(robot).map(|((file, scene), robot)| {
         // Other problems would be reported again as missing durations.
         let durations = measured.filter(|_| report.count() == 0).and_then(|(node, source)| {
-            durations::read(node, &dialogue, &scene, &source, &mut report)
+            snapshot::read_durations(node, &dialogue, &scene, &source, &mut report)
         });
         let resolved = Resolved { tree, scene: file, robot };
         Settings { group, dialogue, speech, arm, study, console, scene, durations, resolved }

@@ -1,9 +1,8 @@
 //! The merged layers behind the settings.
 
+use diagnostics::{Node, Report, Source, Table, TextFile};
+
 use crate::files::RobotFiles;
-use diagnostics::Report;
-use diagnostics::TextFile;
-use diagnostics::{Node, Source, Table};
 
 /// A part of the settings with a file of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

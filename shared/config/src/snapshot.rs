@@ -4,15 +4,15 @@
 use std::io;
 use std::path::Path;
 
-use diagnostics::Diagnostic;
+use diagnostics::{Diagnostic, Diagnostics, Node, Report, Source, Table, TextFile};
+use dialogue::{Durations, Model};
+use scene::Scene;
+use toml::Value;
 
+use crate::dialogue::CostsFrom;
 use crate::files::{Files, RobotFiles, read_text};
-use crate::load;
 use crate::resolved::{self, Resolved, to_toml};
-use crate::{Settings, durations};
-use diagnostics::TextFile;
-use diagnostics::{Diagnostics, Report};
-use diagnostics::{Node, Source, Table};
+use crate::{Dialogue, Settings, load};
 
 /// Name of the snapshot in a group's run folder.
 pub const SNAPSHOT_FILE: &str = "settings.toml";
@@ -21,6 +21,10 @@ pub const SNAPSHOT_FILE: &str = "settings.toml";
 const SCENE: &str = "scene";
 const URDF: &str = "robot_urdf";
 const SRDF: &str = "robot_srdf";
+/// The table of the durations of every question and pick: measured once by `preflight`, so that no
+/// service plans motions before it is ready, and a journal can be read again with the numbers by
+/// which its decisions were made.
+const DURATIONS: &str = "durations";
 
 impl Settings {
     /// The snapshot's text: every value of every section, the scene's and the robot's files as
@@ -33,7 +37,7 @@ impl Settings {
         if let Some(srdf) = &robot.srdf {
             put_file(&mut tree, SRDF, srdf);
         }
-        self.durations.iter().for_each(|durations| durations::write(durations, &mut tree));
+        self.durations.iter().for_each(|durations| put_durations(durations, &mut tree));
         to_toml(&tree)
     }
 
@@ -65,7 +69,7 @@ impl Settings {
         let Some(mut layer) = Table::parse(&text, &source, &mut report) else {
             return report.verdict(None);
         };
-        let measured = layer.take(durations::TABLE);
+        let measured = layer.take(DURATIONS);
         let scene = take_file(&mut layer, SCENE);
         let urdf = take_file(&mut layer, URDF);
         let srdf = take_file(&mut layer, SRDF);
@@ -79,6 +83,13 @@ impl Settings {
         let mut tree = resolved::defaults();
         tree.merge(layer, &mut Vec::new(), &mut report);
         load::check(tree, report, files, Some((measured, source)))
+    }
+
+    /// The durations in force as TOML, a dependency of every service that decides. Empty if the
+    /// costs of questions are configured.
+    pub fn durations_text(&self) -> String {
+        let written = self.durations.as_ref().map(toml::to_string);
+        written.transpose().ok().flatten().unwrap_or_default()
     }
 }
 
@@ -94,4 +105,33 @@ fn take_file(layer: &mut Table, key: &str) -> Option<TextFile> {
     let node = layer.take(key)?;
     let text = |key| node.as_table()?.get(key)?.as_text().map(str::to_owned);
     Some(TextFile { label: text("file")?, text: text("text")? })
+}
+
+/// Reads the durations from a snapshot.
+pub(crate) fn read_durations(
+    node: Option<Node>,
+    dialogue: &Dialogue,
+    scene: &Scene,
+    source: &Source,
+    report: &mut Report,
+) -> Option<Durations> {
+    if dialogue.costs_from == CostsFrom::Config {
+        return None;
+    }
+    let text = node.as_ref().and_then(Node::as_table).map(to_toml);
+    let read = text.and_then(|text| toml::from_str::<Durations>(&text).ok());
+    let model = Model::new(scene, dialogue.params);
+    let fits = read.filter(|durations| durations.check(&model).is_empty());
+    if fits.is_none() {
+        let what = "the durations of this scene are missing";
+        let help = "stop the group and start it again";
+        report.add(source.diagnostic(&[DURATIONS.to_owned()], what.to_owned(), help));
+    }
+    fits
+}
+
+/// Adds the durations to a snapshot.
+fn put_durations(durations: &Durations, tree: &mut Table) {
+    let Ok(values) = Value::try_from(durations) else { return };
+    tree.entries.push((DURATIONS.to_owned(), Node::from_toml(values, &tree.source)));
 }

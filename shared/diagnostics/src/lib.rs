@@ -10,13 +10,15 @@
 //! |---|---|
 //! | one diagnostic, a list of them, and their collection | `diagnostic.rs` |
 //! | values with the place that they were read from | `source.rs` |
-//! | reading a table key by key, with types and ranges | `fields.rs` |
+//! | conversion of TOML and JSON | `text.rs` |
+//! | reading a table key by key, with types and ranges | `fields.rs`, `fields/nested.rs` |
 //! | "did you mean" | `spelling.rs` |
 
 mod diagnostic;
 mod fields;
 mod source;
 mod spelling;
+mod text;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Report};
 pub use fields::Fields;

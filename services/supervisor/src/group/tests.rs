@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::*;
-use crate::spec::{Log, Restart, RestartLimits, ServiceSpec};
+use crate::configuration::{Log, Restart, RestartLimits, ServiceSpec};
 use service::exit::ProcessExit;
 
 /// The same cases in every run, and no files.
@@ -70,22 +70,6 @@ const CHAIN: &[(&str, &[&str])] = &[("c", &["b"]), ("a", &[]), ("b", &["a"])];
 const CRASH: Event = Event::Exited(ProcessExit::Signal(9));
 
 #[test]
-fn services_start_when_those_before_them_are_ready() {
-    let mut group = group(CHAIN);
-    group.start(NOW);
-    assert_eq!(settle(&mut group), [(1, Effect::Spawn)]);
-    assert_eq!(group.waits_for(2), [1]);
-    group.on(1, Event::Ready, NOW);
-    assert_eq!(settle(&mut group), [(2, Effect::Spawn)]);
-    group.on(2, Event::Ready, NOW);
-    assert_eq!(settle(&mut group), [(0, Effect::Spawn)]);
-    assert_eq!(group.state(), GroupState::Starting);
-    group.on(0, Event::Ready, NOW);
-    assert_eq!(settle(&mut group), []);
-    assert_eq!(group.state(), GroupState::Ready);
-}
-
-#[test]
 fn restart_does_not_affect_dependent_services() {
     let mut group = group(CHAIN);
     up(&mut group);
@@ -94,20 +78,6 @@ fn restart_does_not_affect_dependent_services() {
     assert_eq!(group.state(), GroupState::Degraded);
     group.on(1, Event::Ready, NOW);
     assert_eq!(group.state(), GroupState::Ready);
-}
-
-#[test]
-fn services_stop_when_those_behind_them_are_at_rest() {
-    let mut group = group(CHAIN);
-    up(&mut group);
-    group.stop(NOW);
-    for service in [0, 2, 1] {
-        assert_eq!(settle(&mut group), [(service, Effect::Terminate)]);
-        assert!(!group.is_stopped());
-        assert_eq!(group.on(service, Event::Exited(ProcessExit::Code(0)), NOW), None);
-    }
-    assert_eq!(settle(&mut group), []);
-    assert!(group.is_stopped());
 }
 
 #[test]

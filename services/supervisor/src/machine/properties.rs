@@ -5,8 +5,8 @@ use std::time::Duration;
 use proptest::prelude::*;
 
 use super::*;
+use crate::configuration::RestartLimits;
 use crate::group::tests::{seeded, service};
-use crate::spec::RestartLimits;
 
 const RESTART_LIMITS: RestartLimits = RestartLimits {
     exits_max: 4,

@@ -49,18 +49,6 @@ impl Bench {
 }
 
 #[test]
-fn machine_starts_becomes_ready_and_stops() {
-    let mut bench = Bench::ready();
-    bench.is(Wanted::Up, Actual::Ready);
-    assert_eq!(bench.on(Event::Stop), Some(Effect::Terminate));
-    bench.is(Wanted::Down, Actual::Stopping);
-    assert_eq!(bench.on(STOPPED), None);
-    bench.is(Wanted::Down, Actual::Down);
-    assert_eq!(bench.machine.deadline(), None);
-    assert_eq!(bench.machine.incarnation(), 1);
-}
-
-#[test]
 fn machine_waits_for_admission() {
     let mut bench = Bench::new();
     assert_eq!(bench.on(Event::Admit), None, "not wanted yet");
@@ -107,33 +95,6 @@ fn silence_is_answered_with_abort_then_kill() {
 }
 
 #[test]
-fn first_restart_after_a_kill_has_no_backoff() {
-    let mut bench = Bench::ready();
-    assert_eq!(bench.on(CRASH), Some(Effect::Spawn));
-    bench.on(Event::Ready);
-    assert_eq!(bench.on(CRASH), None);
-    bench.is(Wanted::Up, Actual::Backoff);
-    assert_eq!(bench.after_ms(100), Some(Effect::Spawn));
-}
-
-#[test]
-fn too_many_exits_hold_it_until_released() {
-    let mut bench = Bench::starting();
-    for _ in 0..4 {
-        bench.on(CRASH);
-        bench.is(Wanted::Up, Actual::Backoff);
-        assert_eq!(bench.after_ms(5_000), Some(Effect::Spawn));
-    }
-    bench.on(CRASH);
-    assert_eq!(bench.machine.held_because(), Some(HeldBecause::TooOften(5)));
-    assert_eq!(bench.after_ms(3_600_000), None);
-    bench.on(Event::Release);
-    assert_eq!(bench.on(Event::Admit), Some(Effect::Spawn));
-    bench.on(CRASH);
-    bench.is(Wanted::Up, Actual::Backoff);
-}
-
-#[test]
 fn permanent_exit_holds_the_service() {
     for exit in [ProcessExit::Code(78), ProcessExit::Code(64), ProcessExit::NotStartable] {
         let mut bench = Bench::starting();
@@ -169,18 +130,6 @@ fn requested_restart_does_not_count_as_a_failure() {
     }
     bench.is(Wanted::Up, Actual::Ready);
     assert_eq!(bench.on(CRASH), Some(Effect::Spawn));
-}
-
-#[test]
-fn hold_stops_the_service_and_persists() {
-    let mut bench = Bench::ready();
-    assert_eq!(bench.on(Event::Hold), Some(Effect::Terminate));
-    assert_eq!(bench.on(STOPPED), None);
-    assert_eq!(bench.machine.held_because(), Some(HeldBecause::Operator));
-    assert_eq!(bench.on(Event::Admit), None);
-    bench.on(Event::Release);
-    bench.is(Wanted::Up, Actual::Down);
-    assert_eq!(bench.on(Event::Admit), Some(Effect::Spawn));
 }
 
 #[test]
@@ -232,15 +181,6 @@ fn time_can_be_asked_for_but_not_for_ever() {
     bench.on(Event::Extend(Duration::from_secs(3_600)));
     assert_eq!(bench.after_ms(8_000), None);
     assert_eq!(bench.after_ms(1), Some(Effect::Kill));
-}
-
-#[test]
-fn suspension_of_the_supervisor_does_not_count_as_a_missed_deadline() {
-    let mut bench = Bench::ready();
-    bench.now += Duration::from_secs(10);
-    bench.machine.postpone(Duration::from_secs(10));
-    assert_eq!(bench.after_ms(2_999), None);
-    assert_eq!(bench.after_ms(1), Some(Effect::Abort));
 }
 
 #[test]

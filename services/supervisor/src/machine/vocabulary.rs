@@ -3,7 +3,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use crate::spec::{Restart, RestartLimits, ServiceSpec};
+use crate::configuration::{Restart, RestartLimits, ServiceSpec};
 use service::exit::ProcessExit;
 
 /// Input of the machine.

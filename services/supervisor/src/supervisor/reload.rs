@@ -1,12 +1,12 @@
 //! Taking notice of a changed configuration.
 
+use super::Supervisor;
 use super::waits::Goal;
-use super::{About, Supervisor};
 use crate::Time;
 use crate::configuration::Configuration;
+use crate::configuration::ServiceSpec;
 use crate::machine::{Event, HeldBecause, Wanted};
 use crate::server::Client;
-use crate::spec::ServiceSpec;
 use service::control::{Refusal, RefusalKind, Reply};
 
 impl Supervisor {
@@ -26,7 +26,7 @@ impl Supervisor {
             let message = "invalid configuration; nothing was changed".to_owned();
             Refusal { kind: RefusalKind::Config, message, details }
         };
-        let configuration = (self.load.0)().map_err(wrong)?;
+        let configuration = (self.load)().map_err(wrong)?;
         self.check_same_services(&configuration.spec.services)?;
         let adopted = self.group.adopt(&configuration.spec);
         adopted.map_err(|error| wrong(vec![error.to_string()]))?;
@@ -69,7 +69,7 @@ impl Supervisor {
             entry.spec = spec;
         }
         self.around.log = configuration.spec.log.clone();
-        self.about = About::of(configuration);
+        self.configuration = configuration;
         changed
     }
 

@@ -14,7 +14,8 @@ use service::group::GroupPaths;
 use service::shm_cleanup::{Admin, NoRoom, check_room};
 use thiserror::Error;
 
-use super::{About, LoadBox, Supervisor, TICK};
+use super::{Supervisor, TICK};
+use crate::configuration::GroupSpec;
 use crate::configuration::{Configuration, Load};
 use crate::epoch;
 use crate::group::Group;
@@ -24,7 +25,6 @@ use crate::schedule::ScheduleError;
 use crate::server::Server;
 use crate::service::{Service, Surroundings};
 use crate::signals::Signals;
-use crate::spec::GroupSpec;
 use crate::systemd::Systemd;
 
 /// A group cannot be started.
@@ -90,8 +90,8 @@ pub(super) fn start(
     let mut supervisor = Supervisor {
         started,
         around,
-        about: About::of(configuration),
-        load: LoadBox(load),
+        configuration,
+        load,
         group,
         services,
         admin: Some(admin),

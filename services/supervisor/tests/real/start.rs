@@ -4,7 +4,7 @@ use service::control::{RefusalKind, Request};
 use service::status::GroupState;
 use service::status::{Actual, Wanted};
 
-use crate::harness::{Group, WAIT_MS, fixture, service, wait_for, with};
+use crate::harness::{Group, fixture, service, wait_for, with};
 
 #[test]
 fn services_start_in_order_and_status_lists_them() {
@@ -69,19 +69,6 @@ fn service_that_is_never_ready_delays_dependents_and_is_restarted() {
 }
 
 #[test]
-fn second_supervisor_is_rejected_with_the_pid_of_the_first() {
-    let group = Group::ready(vec![service("arm", &[])]);
-    let mut second = group.command();
-    let log = tempfile::NamedTempFile::new().unwrap();
-    let status = second.stderr(log.reopen().unwrap()).status().unwrap();
-    assert_eq!(status.code(), Some(1));
-    let log = std::fs::read_to_string(log.path()).unwrap();
-    let pid = group.supervisor_pid();
-    assert!(log.contains(&format!("already running (supervisor {pid})")), "{log}");
-    group.done(&Request::WaitReady { wait_ms: WAIT_MS });
-}
-
-#[test]
 fn groups_of_different_homes_do_not_meet() {
     let one = Group::ready(vec![service("arm", &[])]);
     let mut two = Group::ready(vec![service("arm", &[])]);
@@ -138,29 +125,6 @@ fn services_inherit_what_ties_them_to_the_supervisor_and_nothing_else() {
     assert_eq!(null, "/dev/null");
     assert_eq!([a, b, c], [&lock, &log, &log]);
     assert!(pipe.starts_with("pipe:"));
-}
-
-#[test]
-fn fresh_start_begins_a_new_epoch() {
-    let mut group = Group::ready(vec![service("arm", &[])]);
-    let first = group.status().epoch;
-    group.ask(&Request::Down);
-    group.wait_end();
-    group.run();
-    assert_eq!(group.status().epoch, first);
-    group.ask(&Request::Down);
-    group.wait_end();
-    std::fs::write(group.paths.journal_file("arm"), "facts").unwrap();
-    let mut fresh = group.command().arg("--fresh").spawn().unwrap();
-    let second = wait_for("a new epoch", || {
-        let text = std::fs::read_to_string(group.paths.epoch_file()).ok()?;
-        text.trim().parse::<u64>().ok().filter(|&epoch| epoch != first)
-    });
-    assert!(second > first);
-    assert!(!group.paths.journal_file("arm").exists());
-    wait_for("the supervisor to listen", || group.paths.control_socket().exists().then_some(()));
-    group.ask(&Request::Down);
-    fresh.wait().unwrap();
 }
 
 #[test]

@@ -50,9 +50,6 @@ pub(super) struct Conversation {
 
 impl Conversation {
     /// Joins a running group.
-    ///
-    /// # Errors
-    /// It does not run, or is of another build.
     pub(super) fn join(paths: &GroupPaths) -> Result<Self, Failure> {
         let client = Client::join(paths)?;
         let settings = Settings::load_snapshot(&paths.run())?;
@@ -93,9 +90,6 @@ impl Conversation {
 
     /// Submits an utterance after those that are pending. It is resent under one key until it is
     /// answered, so that a restart neither loses nor duplicates it.
-    ///
-    /// # Errors
-    /// The topic cannot be opened.
     pub(super) fn say(&mut self, text: &str) -> Result<(), Failure> {
         if self.injections.is_none() {
             self.injections = Some(self.client.bus().encoded_writer(&topics::INJECTION)?);
@@ -110,9 +104,6 @@ impl Conversation {
 
     /// Polls until the policy has published or a timeout has passed: the first utterance needs
     /// the state before it.
-    ///
-    /// # Errors
-    /// The group has ended.
     pub(super) fn first_look(&mut self) -> Result<(), Failure> {
         let until = Instant::now() + FIRST_PATIENCE;
         while Instant::now() < until && self.latest.view.is_none() {
@@ -133,18 +124,12 @@ impl Conversation {
     }
 
     /// Latches or releases the motion stop.
-    ///
-    /// # Errors
-    /// The arm does not answer.
     pub(super) fn motion(&self, order: messages::MotionOrder) -> Result<(), Failure> {
         Ok(self.client.motion(order, Span::from_ms(5_000))?)
     }
 
     /// Processes all messages since the last poll. Returns the receipts among them,
     /// of any user's utterance.
-    ///
-    /// # Errors
-    /// The group has ended.
     pub(super) fn look(&mut self) -> Result<Vec<Receipt>, Failure> {
         if self.checked.elapsed() >= CHECK_EVERY {
             self.check()?;

@@ -13,7 +13,8 @@ use service::group::{GroupName, GroupPaths};
 use service::inspection::{Condition, Finding};
 use service::shm_cleanup;
 
-use super::{console, leftovers, paths as locations, service_program, up, words};
+use super::status::console_url;
+use super::{inspection, leftovers, paths as locations, up, words};
 use crate::Outcome;
 use crate::cli::ConfigArgs;
 use crate::output::{Ink, Output, Style};
@@ -50,8 +51,8 @@ pub(super) fn doctor(paths: &GroupPaths, args: &ConfigArgs, out: &mut Output<'_>
 
 /// Checks the devices of the speech service by its own program.
 fn devices(settings: &Settings) -> Result<Vec<Finding>, Failure> {
-    let snapshot = service_program::Settings::write(settings)?;
-    let mut command = service_program::command(Service::Speech.name(), "doctor");
+    let snapshot = inspection::Settings::write(settings)?;
+    let mut command = inspection::command(Service::Speech.name(), "doctor");
     command.arg("--settings").arg(snapshot.folder()).stderr(Stdio::inherit());
     let Ok(output) = command.output() else { return Ok(Vec::new()) };
     let lines = output.stdout.split(|&byte| byte == b'\n');
@@ -85,7 +86,7 @@ fn programs() -> Finding {
 /// Checks the page: its address, or else its port.
 fn page(paths: &GroupPaths, settings: &Settings) -> Finding {
     const WHAT: &str = Service::Console.name();
-    if let Some(url) = console::url(paths) {
+    if let Some(url) = console_url(paths) {
         return Finding::good(WHAT, format!("served at {url}"));
     }
     let wanted = settings.console.listen;

@@ -12,9 +12,6 @@ pub(super) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
     /// Handles INT and TERM.
-    ///
-    /// # Errors
-    /// A signal handler cannot be installed.
     pub(super) fn listen() -> Result<Self, Failure> {
         let requested = Arc::new(AtomicBool::new(false));
         for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {

@@ -15,9 +15,6 @@ const LOOK_EVERY: Duration = Duration::from_millis(50);
 
 /// Removes what is left of a group that has no supervisor, once its last service has ended; they
 /// shut down when their supervisor is gone. Returns the removed paths.
-///
-/// # Errors
-/// A service still runs at the timeout.
 pub(super) fn remove(paths: &GroupPaths, timeout: Duration) -> Result<Vec<PathBuf>, Failure> {
     let until = Instant::now() + timeout;
     while some_service_lives(paths) {

@@ -13,18 +13,12 @@ use crate::cli::ConfigArgs;
 const MARK: &str = "group.toml";
 
 /// Loads the settings that the command line names.
-///
-/// # Errors
-/// No configuration is found, or every problem of it.
 pub(super) fn settings(args: &ConfigArgs) -> Result<Settings, Failure> {
     let folder = config_folder(args)?;
     Ok(preflight::load(&folder, args.profile.as_deref(), &args.set)?)
 }
 
 /// Loads the settings of a running group, else those that the command line names.
-///
-/// # Errors
-/// As [`settings`].
 pub(super) fn settings_in_force(
     paths: &GroupPaths,
     args: &ConfigArgs,
@@ -38,9 +32,6 @@ pub(super) fn settings_in_force(
 
 /// Returns the absolute folder of the configuration: the named one, else `./config`, else `config`
 /// beside the program or one of the folders above it.
-///
-/// # Errors
-/// None of them exists.
 pub(super) fn config_folder(args: &ConfigArgs) -> Result<PathBuf, Failure> {
     if let Some(named) = args.config.as_ref().filter(|path| !path.as_os_str().is_empty()) {
         return Ok(absolute(named));

@@ -22,9 +22,6 @@ pub(super) fn planner_of(problem: &Problem) -> &str {
 }
 
 /// The planner and its problem.
-///
-/// # Errors
-/// An invalid scene or configuration.
 pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Failure> {
     let scene = scene_file::load(&args.scene)?;
     let problem = problem(scene, &args.problem)?;
@@ -34,9 +31,6 @@ pub(super) fn decider(args: &PlanArgs) -> Result<Decider, Failure> {
 }
 
 /// The problem of a scene given by its file or by its name in the configuration.
-///
-/// # Errors
-/// An invalid scene or configuration.
 pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, Failure> {
     problem(scene_file::load(&scene_path(scene, &args.config)?)?, args)
 }

@@ -8,7 +8,7 @@ use service::status::{Actual, GroupState, GroupStatus, ServiceStatus, Wanted};
 use service::view::HearingView;
 
 use super::operate::status_of;
-use super::{console, hearing, words};
+use super::{hearing, words};
 use crate::Outcome;
 use crate::output::{Ink, Output, Style, table};
 
@@ -23,18 +23,25 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     if out.is_json() {
         out.json(&Printed {
             status: &status,
-            console: console::url(paths),
+            console: console_url(paths),
             hearing: hearing.as_ref().map(HearingView::new),
         })?;
     } else {
         let mut lines = lines(&status, out.style());
-        lines.extend(console::url(paths).map(|url| format!("console {url}")));
+        lines.extend(console_url(paths).map(|url| format!("console {url}")));
         lines.extend(hearing.map(|hearing| hearing::line(&hearing, out.style())));
         for line in lines {
             out.line(line)?;
         }
     }
     Ok(if status.state == GroupState::Ready { Exit::Ok } else { Exit::NotReached })
+}
+
+/// Returns the address of the console's page, while one is served.
+pub(super) fn console_url(paths: &GroupPaths) -> Option<String> {
+    let text = std::fs::read_to_string(paths.console_url()).ok()?;
+    let url = text.trim();
+    (!url.is_empty()).then(|| url.to_owned())
 }
 
 /// A running group with `--json`.

@@ -9,7 +9,8 @@ use service::group::GroupPaths;
 use service::launch::{self, Options};
 use service::status::GroupStatus;
 
-use super::{console, operate, paths};
+use super::status::console_url;
+use super::{operate, paths};
 use crate::Outcome;
 use crate::cli::{ConfigArgs, UpArgs, WaitFor};
 use crate::output::{Output, note};
@@ -41,11 +42,11 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
     };
     let status = operate::status_of(paths)?;
     if out.is_json() {
-        out.json(&Started { status, console: console::url(paths) })?;
+        out.json(&Started { status, console: console_url(paths) })?;
     } else {
         let pid = status.supervisor_pid;
         out.line(format_args!("group {name} is up (supervisor {pid}): {ready}"))?;
-        if let Some(url) = console::url(paths) {
+        if let Some(url) = console_url(paths) {
             out.line(format_args!("console: {url}"))?;
         }
     }

@@ -126,7 +126,11 @@ fn services_can_be_added_and_keep_their_order() {
          [services.camera]\ncommand = ['camera']\nrestart = 'never'\nnice = -3\n\
          [services.grounding]\ncommand = ['python3', 'grounding.py']\n",
     )]);
-    let services = folder.load(None, &[]).unwrap().group.services;
+    let settings = folder.load(None, &[]).unwrap();
+    settings.write_snapshot(folder.path()).unwrap();
+    let read = Settings::load_snapshot(folder.path()).unwrap();
+    assert_eq!(read.group, settings.group);
+    let services = settings.group.services;
     let names: Vec<_> = services.iter().map(|service| service.name.as_str()).collect();
     assert_eq!(names, ["speech", "grounding", "policy", "arm", "console", "zoom", "camera"]);
     assert_eq!(services[1].command, Some(vec!["python3".into(), "grounding.py".into()]));

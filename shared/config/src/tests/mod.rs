@@ -1,11 +1,9 @@
 //! Configuration folders as people write them, right and wrong.
 
-mod console;
 mod invalid;
 mod layering;
-mod robots;
+mod sections;
 mod snapshot;
-mod study;
 
 use std::fs;
 use std::path::{Path, PathBuf};

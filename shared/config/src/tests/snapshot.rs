@@ -41,19 +41,6 @@ fn editing_the_files_changes_nothing_until_the_next_snapshot() {
 }
 
 #[test]
-fn the_order_of_services_survives() {
-    let folder = Folder::new(&[(
-        "group.toml",
-        "[services.zoom]\ncommand = ['zoom']\n[services.camera]\ncommand = ['camera']\n",
-    )]);
-    let settings = folder.load(None, &[]).unwrap();
-    let run = tempfile::tempdir().unwrap();
-    settings.write_snapshot(run.path()).unwrap();
-    let read = Settings::load_snapshot(run.path()).unwrap();
-    assert_eq!(read.group.services, settings.group.services);
-}
-
-#[test]
 fn a_section_differs_exactly_when_its_values_do() {
     let folder = Folder::new(&[]);
     let before = folder.load(None, &[]).unwrap();

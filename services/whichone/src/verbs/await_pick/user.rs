@@ -20,9 +20,6 @@ pub(super) struct TruthfulUser {
 impl TruthfulUser {
     /// A user who wants the object of that name. With `may_be_absent`, where the robot considers
     /// that the wanted object is not here, the scene need not have it.
-    ///
-    /// # Errors
-    /// The scene has no such object, and absence is not considered.
     pub(super) fn new(scene: &Scene, name: &str, may_be_absent: bool) -> Result<Self, String> {
         if scene.object_named(name).is_none() && !may_be_absent {
             let names: Vec<&str> = scene.objects().iter().map(|o| o.name.as_str()).collect();

@@ -62,9 +62,6 @@ const TIMED: [(&str, TimedKind); 2] =
 
 /// Returns the rows that are asked for. In real time the policy is `planner` where it is among
 /// those asked for, else the first of them.
-///
-/// # Errors
-/// Rules that are none.
 pub(super) fn rows(args: &StudyArgs, planner: &str) -> Result<Vec<Row>, Failure> {
     let policies = listed(&args.policies, &registry::names());
     let kinds: Vec<UserKind> =

@@ -14,9 +14,6 @@ use crate::output::{Output, note, table};
 use crate::verbs::{paths, words};
 
 /// Reads the data and prints the results.
-///
-/// # Errors
-/// The data cannot be read, or there is none; a file cannot be written.
 pub(crate) fn report(paths: &GroupPaths, args: &ReportArgs, out: &mut Output<'_>) -> Outcome {
     let folder = folder(paths, args)?;
     let people = read(&folder)?;

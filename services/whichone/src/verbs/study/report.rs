@@ -4,13 +4,13 @@ use evaluation::simulation::Tally;
 use serde_json::{Map, Value as Json, json};
 
 use super::design::Row;
-use super::house::House;
 use super::seconds;
+use super::setup::Setup;
 use crate::cli::StudyArgs;
 
 /// Returns the whole study.
-pub(super) fn to_json(args: &StudyArgs, house: &House, results: &[(&Row, Tally)]) -> Json {
-    let room = house.room();
+pub(super) fn to_json(args: &StudyArgs, setup: &Setup, results: &[(&Row, Tally)]) -> Json {
+    let room = setup.room();
     let row = |(row, tally): &(&Row, Tally)| {
         let named = columns(row, tally).into_iter().map(|(name, value)| (name.to_owned(), value));
         let mut json: Map<String, Json> = named.collect();
@@ -22,12 +22,12 @@ pub(super) fn to_json(args: &StudyArgs, house: &House, results: &[(&Row, Tally)]
         "seed": args.seed,
         "interactions": args.interactions,
         "request": room.request,
-        "arm_moves": house.moves(),
+        "arm_moves": setup.moves(),
         "actions": room.problem.actions,
         "params": room.problem.model.params(),
         "costs": room.problem.costs,
         "costs_measured": room.problem.durations.is_some(),
-        "durations": seconds::to_json(house),
+        "durations": seconds::to_json(setup),
         "rows": results.iter().map(row).collect::<Vec<_>>(),
     })
 }

@@ -5,19 +5,18 @@
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, mpsc};
+use std::sync::{Arc, PoisonError, RwLock, mpsc};
 use std::thread;
 
 use dialogue::manager::Manager;
-use dialogue::{Attribution, TurnTaking, registry};
+use dialogue::{Attribution, Decision, TurnTaking, registry};
 use evaluation::simulation::{
-    CHUNK, CachedPlanner, Room, SharedDecisions, Tally, interactions, turns,
+    CHUNK, CachedPlanner, Room, SharedDecisions, Situation, Tally, interactions, turns,
 };
 
-use super::board::Board;
 use super::design::{People, Row};
-use super::house::House;
 use super::progress::Progress;
+use super::setup::Setup;
 
 /// A piece of work: a row, and which of its pieces.
 #[derive(Clone, Copy)]
@@ -28,7 +27,7 @@ struct Piece {
 
 /// Counts `count` interactions of every row.
 pub(super) fn run(
-    house: &House,
+    setup: &Setup,
     rows: &[Row],
     count: u64,
     seed: u64,
@@ -48,7 +47,7 @@ pub(super) fn run(
             let (counted, next, pieces, boards) = (counted.clone(), &next, &pieces, &boards);
             scope.spawn(move || {
                 let managers = HashMap::new();
-                let mut worker = Worker { room: house.room(), rows, count, seed, boards, managers };
+                let mut worker = Worker { room: setup.room(), rows, count, seed, boards, managers };
                 while let Some((at, piece)) = take(next, pieces) {
                     // The receiver is gone.
                     if counted.send((at, worker.count(piece))).is_err() {
@@ -120,6 +119,28 @@ impl Worker<'_> {
             People::RealTime { rules, kind, .. } => {
                 turns::dialogues(&self.room, manager, rules, kind, self.seed, numbers)
             }
+        }
+    }
+}
+
+/// Decisions of one planner, shared by all threads. Each thread looks into its own cache first, so locks are rarely
+/// contended.
+#[derive(Default)]
+pub(super) struct Board(RwLock<HashMap<Situation, Arc<Decision>>>);
+
+/// Most decisions that are kept; the first ones stay, as they are the most frequent.
+const DECISIONS_MAX: usize = 1 << 19;
+
+impl SharedDecisions for Board {
+    fn find(&self, situation: &Situation) -> Option<Arc<Decision>> {
+        // Every entry is whole, also where a thread has panicked.
+        self.0.read().unwrap_or_else(PoisonError::into_inner).get(situation).cloned()
+    }
+
+    fn add(&self, situation: &Situation, decision: &Arc<Decision>) {
+        let mut decisions = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        if decisions.len() < DECISIONS_MAX {
+            decisions.insert(situation.clone(), Arc::clone(decision));
         }
     }
 }

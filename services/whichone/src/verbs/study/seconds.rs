@@ -4,16 +4,16 @@ use dialogue::Action;
 use scene::{ObjectId, Question};
 use serde_json::{Value as Json, json};
 
-use super::house::House;
+use super::setup::Setup;
 use crate::output::table;
 
 /// Most rows of a table for people; the data has all.
 const ROWS_MAX: usize = 24;
 
 /// Tables of questions and objects, below a line on what questions cost in this study.
-pub(super) fn lines(house: &House) -> Vec<String> {
-    let durations = house.durations();
-    let room = house.room();
+pub(super) fn lines(setup: &Setup) -> Vec<String> {
+    let durations = setup.durations();
+    let room = setup.room();
     let says = if room.problem.durations.is_some() {
         "Questions cost what was measured: the robot's own seconds, each its own."
     } else {
@@ -21,7 +21,7 @@ pub(super) fn lines(house: &House) -> Vec<String> {
     };
     let mut lines = vec![String::new(), says.to_owned()];
     let said_s = |question| room.voice.seconds(&room.scene.phrase(question));
-    let questions: Vec<Question> = spoken(house).collect();
+    let questions: Vec<Question> = spoken(setup).collect();
     let rows: Vec<_> = questions
         .iter()
         .map(|question| {
@@ -34,7 +34,7 @@ pub(super) fn lines(house: &House) -> Vec<String> {
     lines.extend(capped(&["QUESTION", "SAY s", "TO THE ANSWER s", "COST s"], rows));
     let seconds = |found: Option<f64>| found.map_or_else(|| "-".to_owned(), two_digits);
     let rows = (0..room.scene.objects().len()).map(ObjectId::from).map(|i| {
-        let aim_s = house.motions().and_then(|motions| motions.point_s(None, i));
+        let aim_s = setup.motions().and_then(|motions| motions.point_s(None, i));
         let question = Question::Point(i);
         let cost = aim_s.map(|_| room.problem.cost(Action::Ask(question)));
         let name = room.scene.object(i).name.clone();
@@ -48,9 +48,9 @@ pub(super) fn lines(house: &House) -> Vec<String> {
 }
 
 /// Returns the same with names: where the arm's motions are not known, its seconds are null.
-pub(super) fn to_json(house: &House) -> Json {
-    let durations = house.durations();
-    let room = house.room();
+pub(super) fn to_json(setup: &Setup) -> Json {
+    let durations = setup.durations();
+    let room = setup.room();
     let question = |question: Question| {
         let text = room.scene.phrase(question);
         json!({
@@ -63,22 +63,22 @@ pub(super) fn to_json(house: &House) -> Json {
     let object = |i: ObjectId| {
         json!({
             "object": room.scene.object(i).name,
-            "aim_s": house.motions().and_then(|motions| motions.point_s(None, i)),
+            "aim_s": setup.motions().and_then(|motions| motions.point_s(None, i)),
             "point_s": durations.question_s(Question::Point(i)),
             "pick_s": durations.pick_s(i),
         })
     };
     let objects = (0..room.scene.objects().len()).map(ObjectId::from);
     json!({
-        "answer_s": house.answer_s(),
-        "questions": spoken(house).map(question).collect::<Vec<_>>(),
+        "answer_s": setup.answer_s(),
+        "questions": spoken(setup).map(question).collect::<Vec<_>>(),
         "objects": objects.map(object).collect::<Vec<_>>(),
     })
 }
 
 /// Returns the questions in words alone.
-fn spoken(house: &House) -> impl Iterator<Item = Question> {
-    let problem = house.room().problem;
+fn spoken(setup: &Setup) -> impl Iterator<Item = Question> {
+    let problem = setup.room().problem;
     let questions = problem.actions.questions(problem.model).into_iter();
     questions.filter(|question| !matches!(question, Question::Point(_)))
 }

@@ -3,16 +3,16 @@
 use evaluation::simulation::{Interval, Mean, Tally};
 
 use super::design::Row;
-use super::house::House;
+use super::setup::Setup;
 use crate::output::table;
 
 /// Returns the lines of the tables: dialogues in turns, then those in real time.
-pub(super) fn lines(house: &House, results: &[(&Row, Tally)]) -> Vec<String> {
+pub(super) fn lines(setup: &Setup, results: &[(&Row, Tally)]) -> Vec<String> {
     let (real_time, in_turns): (Vec<_>, Vec<_>) =
         results.iter().partition(|(row, _)| row.people.in_real_time());
     let mut lines = Vec::new();
     if !in_turns.is_empty() {
-        let seconds = if house.moves() { "SECONDS" } else { "SECONDS (NO ARM)" };
+        let seconds = if setup.moves() { "SECONDS" } else { "SECONDS (NO ARM)" };
         let heads =
             ["POLICY", "PEOPLE", "SUCCESS %", "95 %", "QUESTIONS", seconds, "RETURN", "95 %"];
         let rows: Vec<_> = in_turns.iter().map(|(row, tally)| cells(row, tally)).collect();

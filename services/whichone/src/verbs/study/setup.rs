@@ -15,7 +15,7 @@ use crate::output::note;
 use crate::verbs::planning::{of_scene, planner_of};
 
 /// Everything that the interactions of a study share.
-pub(super) struct House {
+pub(super) struct Setup {
     reader: Reader,
     problem: Problem,
     turns: TurnTaking,
@@ -28,11 +28,8 @@ pub(super) struct House {
 /// The scene of the paper's evaluations.
 const PAPER_SCENE: &str = "bowls";
 
-impl House {
+impl Setup {
     /// Prepares what is asked for: reads the files, and plans every motion of the arm.
-    ///
-    /// # Errors
-    /// A file that is wrong, or an object that the arm cannot reach.
     pub(super) fn new(args: &StudyArgs) -> Result<Self, Failure> {
         let scene = args.scene.as_deref().unwrap_or(Path::new(PAPER_SCENE));
         let problem = of_scene(scene, &preset(args))?;
@@ -44,11 +41,11 @@ impl House {
         let language = settings.map_or(Language::default(), |s| s.dialogue.language);
         let (reader, request) = (Reader::new(&problem.scene, language), !args.no_request);
         let (motions, pace) = (motions(&problem)?, Pace::default());
-        let mut house = Self { reader, problem, turns, voice, pace, motions, request };
+        let mut setup = Self { reader, problem, turns, voice, pace, motions, request };
         if args.measured_costs {
-            house.problem.durations = Some(house.durations());
+            setup.problem.durations = Some(setup.durations());
         }
-        Ok(house)
+        Ok(setup)
     }
 
     /// Returns the room that interactions take place in.
@@ -109,10 +106,10 @@ fn motions(problem: &Problem) -> Result<Option<Motions>, Failure> {
         note("the scene gives no places: the arm is taken to need no time");
         return Ok(None);
     }
-    let setup = problem.settings.as_ref().map(ArmSetup::new).transpose()?;
-    let plan = setup.as_ref().map(|setup| setup.plan).unwrap_or_default();
-    let limb = setup.as_ref().and_then(|setup| setup.limb);
-    let robot = setup.as_ref().map_or(Robot::baxter(), |setup| &setup.robot);
+    let arm = problem.settings.as_ref().map(ArmSetup::new).transpose()?;
+    let plan = arm.as_ref().map(|arm| arm.plan).unwrap_or_default();
+    let limb = arm.as_ref().and_then(|arm| arm.limb);
+    let robot = arm.as_ref().map_or(Robot::baxter(), |arm| &arm.robot);
     let pointing = problem.actions.mode == Mode::Present;
     let extent = if pointing { Extent::Pairs } else { Extent::Picks };
     Motions::plan(robot, scene, limb, &plan, extent)

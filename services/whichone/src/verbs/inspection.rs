@@ -1,11 +1,42 @@
-//! The services' own programs, run to inspect a journal or the machine.
+//! Inspection of a journal or the machine by the services' own programs: `journal`, and a part of
+//! `doctor`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
 
 use service::exit::{Exit, Failure};
+use service::group::GroupPaths;
 use service::launch;
+
+use super::paths as locations;
+use crate::Outcome;
+use crate::cli::JournalArgs;
+use crate::output::Output;
+
+/// Prints a service's records, or verifies them.
+pub(super) fn journal(paths: &GroupPaths, args: &JournalArgs, out: &mut Output<'_>) -> Outcome {
+    let file = paths.journal_file(&args.service);
+    if !file.is_file() {
+        let what = format!("group {} has no journal of {} yet", paths.name(), args.service);
+        let help = "help: start the group with `whichone up`";
+        return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
+    }
+    let mut command = command(&args.service, "journal");
+    command.arg(&file).args(out.is_json().then_some("--json"));
+    // A listing does without settings, with fewer words.
+    let settings = match locations::settings_in_force(paths, &args.config) {
+        Err(error) if args.verify => return Err(error),
+        settings => settings.ok(),
+    };
+    let settings = settings.map(|it| Settings::write(&it)).transpose()?;
+    command.args(args.verify.then_some("--verify"));
+    if let Some(settings) = &settings {
+        command.arg("--settings").arg(settings.folder());
+    }
+    let status = command.status().map_err(|error| failed(&command, &error))?;
+    Ok(Exit::of_process(status.code()))
+}
 
 /// A snapshot of settings in a temporary folder.
 #[derive(Debug)]
@@ -13,9 +44,6 @@ pub(super) struct Settings(PathBuf);
 
 impl Settings {
     /// Writes the snapshot.
-    ///
-    /// # Errors
-    /// It cannot be written.
     pub(super) fn write(settings: &config::Settings) -> Result<Self, Failure> {
         let folder = env::temp_dir().join(format!("whichone-settings-{}", std::process::id()));
         let written = fs::create_dir_all(&folder).and_then(|()| settings.write_snapshot(&folder));
