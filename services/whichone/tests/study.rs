@@ -111,6 +111,31 @@ fn study_prints_durations_that_can_be_the_costs() {
     assert!(text.contains("Is it in the dishwasher?"), "{text}");
 }
 
+/// `dialogue.open_questions` and `dialogue.attribute_questions` hold as for the running robot; options
+/// and presets restrict them further.
+#[test]
+fn study_asks_the_questions_that_the_configuration_allows() {
+    let actions = |words: &[&str]| -> [bool; 2] {
+        let few = ["--interactions", "1", "--policies", "lookahead", "--users", "model", "--json"];
+        let ended = study(&[&BOWLS[..], &few, words].concat());
+        assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+        let json: Value = serde_json::from_slice(&ended.stdout).unwrap();
+        ["attribute", "which"].map(|kind| json["actions"][kind].as_bool().unwrap())
+    };
+    let open = ["--set", "dialogue.open_questions=true"];
+    let silent = ["--set", "dialogue.attribute_questions=false"];
+    let cases: [(&[&str], [bool; 2]); 5] = [
+        (&[], [true, false]),
+        (&open, [true, true]),
+        (&[&open[..], &["--no-which"]].concat(), [true, false]),
+        (&[&open[..], &silent].concat(), [false, true]),
+        (&[&silent[..], &["--preset", "paper-remote"]].concat(), [true, false]),
+    ];
+    for (words, expected) in cases {
+        assert_eq!(actions(words), expected, "{words:?}");
+    }
+}
+
 #[test]
 fn evaluations_of_the_publication_are_presets() {
     let present = study(&["--preset", "paper-present", "--json"]);

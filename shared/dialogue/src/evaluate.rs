@@ -119,4 +119,41 @@ impl Walk<'_> {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use crate::testing::{bowls, markers};
+    use crate::{Actions, Costs, Lookahead, Mode, Model, Params, registry};
+
+    const YES_NO: Actions = Actions { mode: Mode::Remote, attribute: true, which: false };
+
+    fn problem(model: &Model) -> DecisionProblem<'_> {
+        DecisionProblem::new(model, Costs::SECONDS, YES_NO)
+    }
+
+    /// Asking until answered, then picking: `V = −4 + 0.99 (0.95 (0.99·50 − 0.01·100) + 0.05 V)`.
+    #[test]
+    fn two_markers_by_hand() {
+        let model = Model::new(&markers(), Params::default());
+        let found =
+            evaluate(&mut Lookahead::default(), &problem(&model), &Belief::uniform(2), 1e-9);
+        let value = (-4.0 + 0.99 * 0.95 * 48.5) / (1.0 - 0.99 * 0.05);
+        assert!((found.value - value).abs() < 1e-6, "{found:?} not {value}");
+        assert!((found.success - 0.99).abs() < 1e-9, "{found:?}");
+        assert!((found.questions - 1.0 / 0.95).abs() < 1e-6, "{found:?}");
+        assert!(found.cut < 1e-8 && found.waiting == 0.0);
+    }
+
+    #[test]
+    fn guessing_and_waiting_by_hand() {
+        let model = Model::new(&bowls(), Params::default());
+        let mut never = registry::planner("never-ask").unwrap();
+        let guess = evaluate(&mut *never, &problem(&model), &Belief::uniform(6), 0.0);
+        assert!(
+            (guess.value + 75.0).abs() < 1e-9 && guess.questions == 0.0 && guess.decisions == 1
+        );
+        let costs = Costs::PREDECESSOR;
+        let wait = DecisionProblem { costs, ..problem(&model) };
+        let waited = evaluate(&mut *never, &wait, &Belief::uniform(6), 0.0);
+        assert!((waited.value + 10.0).abs() < 1e-9 && waited.waiting == 1.0);
+    }
+}

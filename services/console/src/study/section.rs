@@ -108,8 +108,8 @@ impl<'a> TrialView<'a> {
         let is_drawn = person.stage == Stage::Drawn;
         let waits_for = is_drawn.then(|| robot.not_ready(&trial.step.policy)).flatten();
         let (outcome, fault, picked) = match &trial.end {
-            Some(End::Verdict { verdict, object, .. }) => {
-                (Some(verdict.name()), None, object.as_deref())
+            Some(End::Verdict(ending)) => {
+                (Some(ending.verdict.name()), None, ending.object.as_deref())
             }
             Some(End::Fault(_, why)) => (Some("fault"), Some(why.as_str()), None),
             None => (None, None, None),

@@ -2,7 +2,9 @@
 //! observes. Pure.
 
 use evaluation::Verdict;
-use evaluation::user_study::{Event, Fault, Participant, Source, Stage, Trial};
+use evaluation::user_study::{
+    Asked, Ending, Event, Fault, Heard, Participant, Source, Stage, Trial,
+};
 use messages::{ActKind, Ended, PolicyView, Source as Way};
 use service::Time;
 
@@ -44,16 +46,16 @@ impl StudyController {
         }
         let kept = |words: &str| person.begun.protocol.keep_words.then(|| words.to_owned());
         let event = match said {
-            DialogueEvent::Heard(receipt) => Event::Heard {
+            DialogueEvent::Heard(receipt) => Event::Heard(Heard {
                 seq: receipt.seq,
                 source: if receipt.source == Way::Text { Source::Typed } else { Source::Voice },
                 onset_ms: if receipt.onset_ns > 0 { ms(Time(receipt.onset_ns)) } else { robot.ms },
                 accepted_ms: robot.ms,
                 words: kept(receipt.note.as_str().unwrap_or_default()),
-            },
+            }),
             DialogueEvent::Asked { prompt, presentation, words } => {
                 let (prompt, presentation) = (*prompt, *presentation);
-                Event::Asked { prompt, presentation, words: kept(words) }
+                Event::Asked(Asked { prompt, presentation, words: kept(words) })
             }
         };
         Some((person.id().to_owned(), event))
@@ -145,7 +147,7 @@ fn ended(trial: &Trial, robot: &RobotState<'_>) -> Option<Event> {
         let why = "the scene was changed".to_owned();
         return Some(Event::Faulted { fault: Fault::Scene, why });
     };
-    Some(Event::Ended {
+    Some(Event::Ended(Ending {
         verdict,
         interaction: last.interaction.0,
         object: last.name.clone(),
@@ -153,7 +155,7 @@ fn ended(trial: &Trial, robot: &RobotState<'_>) -> Option<Event> {
         utterances: utterances(last),
         seconds: Some(last.seconds),
         ended_ms: robot.ms,
-    })
+    }))
 }
 
 fn utterances(last: &Ended) -> u32 {
@@ -168,14 +170,16 @@ fn too_long(trial: &Trial, robot: &RobotState<'_>, seconds_max: f64) -> Option<E
         None => robot.at.saturating_sub(trial.started_at?) as f64,
     };
     let view = robot.view.filter(|view| view.interaction == trial.after + 1);
-    (waited_ms > 1e3 * seconds_max).then(|| Event::Ended {
-        verdict: Verdict::TooLong,
-        interaction: view.map_or(0, |view| view.interaction),
-        object: None,
-        questions: view.map_or(0, |view| view.questions),
-        utterances: 0,
-        seconds: None,
-        ended_ms: robot.ms,
+    (waited_ms > 1e3 * seconds_max).then(|| {
+        Event::Ended(Ending {
+            verdict: Verdict::TooLong,
+            interaction: view.map_or(0, |view| view.interaction),
+            object: None,
+            questions: view.map_or(0, |view| view.questions),
+            utterances: 0,
+            seconds: None,
+            ended_ms: robot.ms,
+        })
     })
 }
 

@@ -48,7 +48,7 @@ impl Manager {
         } else {
             state.last_prompt = state.last_prompt.next();
             let named = match self.recall {
-                true => NamedQuestion::new(&self.scene, question),
+                true => NamedQuestion::new(&self.setup.scene, question),
                 false => NamedQuestion::None,
             };
             open.prompts.push(Prompt { id: state.last_prompt, question, named, answered: None });
@@ -66,7 +66,7 @@ impl Manager {
         let id = PickId { interaction: open.id, attempt: open.picks };
         let pick = Some((id, object));
         open.pick = pick;
-        open.picked.clone_from(&self.scene.object(object).name);
+        open.picked.clone_from(&self.setup.scene.object(object).name);
         state.last_prompt = state.last_prompt.next();
         let line = Content::Fetching(self.description(object)).into();
         let prompt = state.last_prompt;

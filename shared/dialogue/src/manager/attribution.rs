@@ -57,14 +57,14 @@ impl Manager {
 
     fn shares(&self, state: &State, utterance: &Utterance, candidates: &[Candidate]) -> Shares {
         let onset_s = seconds(utterance.onset);
-        match self.turns.attribution {
+        match self.setup.turns.attribution {
             Attribution::Naive => {
                 let stands = matches!(state.act.kind, ActKind::Ask | ActKind::Pick);
                 Shares::only(stands.then_some(0), candidates.len())
             }
             Attribution::Onset => Shares::latest_said(candidates, onset_s),
             Attribution::Mixture => {
-                let answered = self.model.params().p_l;
+                let answered = self.setup.model.params().p_l;
                 let reaction = self.reaction(state, utterance.typed);
                 let rate = |seconds: f64| reaction.rate(seconds, answered);
                 let divide = if utterance.typed { Shares::typed } else { Shares::spoken };
@@ -76,9 +76,9 @@ impl Manager {
     /// Returns how soon this user answers.
     fn reaction(&self, state: &State, typed: bool) -> Reaction {
         let (known, configured) = if typed {
-            (state.timing.typed, self.turns.typed)
+            (state.timing.typed, self.setup.turns.typed)
         } else {
-            (state.timing.spoken, self.turns.spoken)
+            (state.timing.spoken, self.setup.turns.spoken)
         };
         known.unwrap_or(configured)
     }
@@ -117,7 +117,7 @@ impl Manager {
         question: Question,
         reading: &Reading,
     ) -> (f64, NamedQuestion, NamedReading) {
-        let scene = &self.scene;
+        let scene = &self.setup.scene;
         (weight, NamedQuestion::new(scene, question), NamedReading::new(scene, reading))
     }
 

@@ -10,20 +10,20 @@ use crate::{Belief, Posterior, PriorObjects};
 impl Manager {
     /// Returns the belief of an interaction in which nothing was said.
     pub fn prior(&self, state: &State) -> Belief {
-        let objects = self.scene.objects();
-        let mut weights = match self.prior.objects {
-            PriorObjects::Uniform if self.model.absent().is_none() => {
+        let objects = self.setup.scene.objects();
+        let mut weights = match self.setup.prior.objects {
+            PriorObjects::Uniform if self.setup.model.absent().is_none() => {
                 return Belief::uniform(objects.len());
             }
             PriorObjects::Uniform => vec![1.0 / objects.len() as f64; objects.len()],
             PriorObjects::History => {
                 let names = objects.iter().map(|object| object.name.as_str());
-                state.history.prior(names, self.prior.smoothing)
+                state.history.prior(names, self.setup.prior.smoothing)
             }
         };
-        if self.model.absent().is_some() {
-            weights.iter_mut().for_each(|p| *p *= 1.0 - self.prior.absent);
-            weights.push(self.prior.absent);
+        if self.setup.model.absent().is_some() {
+            weights.iter_mut().for_each(|p| *p *= 1.0 - self.setup.prior.absent);
+            weights.push(self.setup.prior.absent);
         }
         Belief::from_probabilities(&weights).expect("settings are checked: each weight is positive")
     }
@@ -31,14 +31,15 @@ impl Manager {
     /// Returns the user as known before the open interaction, apart from the share of questions
     /// answered: that says nothing about the object, so it counts at once.
     fn person(&self, state: &State) -> Option<Person> {
-        let known = || state.person.clone().unwrap_or_else(|| Person::new(self.model.params()));
+        let known =
+            || state.person.clone().unwrap_or_else(|| Person::new(self.setup.model.params()));
         self.planner.uses_user_model().then(known)
     }
 
     /// Returns the expected `p_l` and `ε` of the user, where they are learned.
     pub fn user_params(&self, state: &State) -> Option<(f64, f64)> {
         let open = state.open.as_ref().and_then(|open| open.posterior.person().cloned());
-        let params = open.or_else(|| self.person(state))?.params(self.model.params());
+        let params = open.or_else(|| self.person(state))?.params(self.setup.model.params());
         Some((params.p_l, params.epsilon))
     }
 
@@ -54,9 +55,9 @@ impl Manager {
         interpretations: &[(f64, Question, Reading)],
         gesture: Option<[f64; 3]>,
     ) {
-        posterior.update_mixture(&self.model, interpretations);
+        posterior.update_mixture(&self.setup.model, interpretations);
         if let (Some(pointing), Some(at)) = (&self.pointing, gesture)
-            && let Some(log) = pointing.log_likelihood(at, self.model.hypotheses())
+            && let Some(log) = pointing.log_likelihood(at, self.setup.model.hypotheses())
         {
             posterior.weigh(&log);
         }
@@ -66,7 +67,7 @@ impl Manager {
     pub(super) fn fold(&self, state: &State, open: &Interaction) -> Posterior {
         let mut posterior = self.beginning(state);
         for evidence in &open.evidence {
-            self.update(&mut posterior, &evidence.in_scene(&self.scene), evidence.gesture);
+            self.update(&mut posterior, &evidence.in_scene(&self.setup.scene), evidence.gesture);
         }
         posterior
     }

@@ -55,7 +55,7 @@ impl Manager {
 
     /// Returns whether every one of the words is true of the object.
     fn describes(&self, words: &[WordId], object: ObjectId) -> bool {
-        !words.is_empty() && words.iter().all(|word| self.model.has_word(object, *word))
+        !words.is_empty() && words.iter().all(|word| self.setup.model.has_word(object, *word))
     }
 
     /// Decides again once the arm has left the object that was not wanted.

@@ -34,7 +34,7 @@ impl Manager {
     /// Returns whether more is coming than the utterance at hand: the user is speaking, or more
     /// speech is being recognised.
     pub fn more_is_coming(&self, floor: &Floor, now: Time) -> bool {
-        self.turns.defers && (floor.is_speaking(now) || floor.pending > 1)
+        self.setup.turns.defers && (floor.is_speaking(now) || floor.pending > 1)
     }
 
     /// Returns whether [`Quiet`](super::Cause::Quiet) is due: a deferred decision can be made.
@@ -52,7 +52,7 @@ impl Manager {
         let window = Span::from_s(self.response_window_s(state));
         asked
             && said
-            && !(self.turns.defers && floor.is_taken(now))
+            && !(self.setup.turns.defers && floor.is_taken(now))
             && put.ended.is_some_and(|ended| now >= ended + window)
             && now >= act.decided + window
     }
@@ -64,7 +64,7 @@ impl Manager {
         const ACQUAINTED: u32 = 5;
         /// Range of the adapted window, as shares of the one configured.
         const RANGE: (f64, f64) = (0.25, 2.0);
-        let configured = self.turns.response_window_s;
+        let configured = self.setup.turns.response_window_s;
         // A user who was seen to type may type the next answer, too.
         let known = state.timing.typed.or(state.timing.spoken);
         known.filter(|reaction| reaction.seen() >= ACQUAINTED).map_or(configured, |reaction| {

@@ -74,16 +74,19 @@ pub struct Setup {
     pub turns: TurnTaking,
 }
 
+impl Setup {
+    /// Returns the decision problem for planners.
+    fn problem(&self) -> DecisionProblem<'_> {
+        let Self { model, costs, durations, actions, .. } = self;
+        let durations = durations.as_ref();
+        DecisionProblem { model, costs: *costs, actions: *actions, durations }
+    }
+}
+
 /// The dialogue manager of one scene and one decision problem.
 pub struct Manager {
-    scene: Scene,
-    model: Model,
-    costs: Costs,
-    durations: Option<Durations>,
-    actions: Actions,
-    prior: Prior,
+    setup: Setup,
     pointing: Option<Pointing>,
-    turns: TurnTaking,
     planner: Box<dyn Planner + Send>,
     /// Descriptions of the objects, as far as they were needed.
     descriptions: Vec<Option<String>>,
@@ -93,25 +96,14 @@ pub struct Manager {
 
 impl Manager {
     /// Returns the manager of a setup; `key` identifies setup and planner.
-    pub fn new(setup: Setup, planner: Box<dyn Planner + Send>, key: u64) -> Self {
-        let Setup { scene, model, costs, durations, actions, prior, gestures, turns } = setup;
-        let model = if prior.absent > 0.0 { model.with_absent() } else { model };
-        let pointing = gestures.map(|(model, user_m)| Pointing::new(model, user_m, &scene));
-        let descriptions = vec![None; scene.objects().len()];
-        Self {
-            scene,
-            model,
-            costs,
-            durations,
-            actions,
-            prior,
-            pointing,
-            turns,
-            planner,
-            descriptions,
-            recall: true,
-            key,
+    pub fn new(mut setup: Setup, planner: Box<dyn Planner + Send>, key: u64) -> Self {
+        if setup.prior.absent > 0.0 {
+            setup.model = setup.model.with_absent();
         }
+        let pointing =
+            setup.gestures.map(|(model, user_m)| Pointing::new(model, user_m, &setup.scene));
+        let descriptions = vec![None; setup.scene.objects().len()];
+        Self { setup, pointing, planner, descriptions, recall: true, key }
     }
 
     /// Keeps no evidence by name in the state: for simulations, whose scene never changes. It
@@ -123,12 +115,12 @@ impl Manager {
 
     /// Returns the scene.
     pub fn scene(&self) -> &Scene {
-        &self.scene
+        &self.setup.scene
     }
 
     /// Returns the observation model.
     pub fn model(&self) -> &Model {
-        &self.model
+        &self.setup.model
     }
 
     /// Returns the planner's name.
@@ -138,12 +130,12 @@ impl Manager {
 
     /// Returns the settings of turn-taking.
     pub fn turns(&self) -> &TurnTaking {
-        &self.turns
+        &self.setup.turns
     }
 
     /// Replaces the settings of turn-taking: studies compare several.
     pub fn set_turns(&mut self, turns: TurnTaking) {
-        self.turns = turns;
+        self.setup.turns = turns;
     }
 
     /// Returns the identity of setup and planner.
@@ -153,7 +145,7 @@ impl Manager {
 
     /// Returns the state before anything was said.
     pub fn first(&self) -> State {
-        let (scene_key, settings_key) = (self.scene.key(), self.key);
+        let (scene_key, settings_key) = (self.setup.scene.key(), self.key);
         State { scene_key, settings_key, ..State::default() }
     }
 
@@ -178,9 +170,7 @@ impl Manager {
 
     /// Returns the decision problem that the planner is asked about.
     pub fn problem(&self) -> DecisionProblem<'_> {
-        let Self { model, costs, durations, actions, .. } = self;
-        let durations = durations.as_ref();
-        DecisionProblem { model, costs: *costs, actions: *actions, durations }
+        self.setup.problem()
     }
 
     /// Lets the planner precompute decisions from the prior of a first interaction, and returns them
@@ -188,11 +178,8 @@ impl Manager {
     pub fn precompute(&mut self) -> Option<&PolicyTable> {
         self.planner.table()?;
         let prior = self.prior(&State::default());
-        let Self { model, costs, durations, actions, planner, .. } = self;
-        let durations = durations.as_ref();
-        let problem = DecisionProblem { model, costs: *costs, actions: *actions, durations };
-        planner.prepare(&problem, &prior);
-        planner.table().filter(|table| !table.is_empty())
+        self.planner.prepare(&self.setup.problem(), &prior);
+        self.planner.table().filter(|table| !table.is_empty())
     }
 
     /// Gives the planner decisions precomputed earlier; returns whether they are of its problem.
@@ -234,10 +221,7 @@ impl Manager {
         let open = state.open.as_mut()?;
         let step = Step { interaction: open.id.0, step: open.step };
         open.step += 1;
-        let Self { model, costs, durations, actions, planner, .. } = self;
-        let durations = durations.as_ref();
-        let problem = DecisionProblem { model, costs: *costs, actions: *actions, durations };
-        Some(open.posterior.decide(&mut **planner, &problem, step))
+        Some(open.posterior.decide(&mut *self.planner, &self.setup.problem(), step))
     }
 
     fn carry_out(
@@ -249,7 +233,7 @@ impl Manager {
         at: Time,
     ) {
         let Some(open) = &state.open else { return };
-        let exhausted = open.presentations >= self.turns.questions_max;
+        let exhausted = open.presentations >= self.setup.turns.questions_max;
         let action = match action {
             Action::Ask(_) if exhausted => Action::Pick(open.belief().most_likely()),
             action => action,
@@ -269,7 +253,7 @@ impl Manager {
         match action {
             Action::Wait => set(state, reasons),
             Action::Ask(question) => self.ask(state, question, basis, reasons),
-            Action::Pick(object) if self.model.absent() == Some(object) => {
+            Action::Pick(object) if self.setup.model.absent() == Some(object) => {
                 self.close(state, Outcome::NotHere, at, Content::NotHere);
                 set_reasons(state, reasons);
             }
@@ -285,10 +269,10 @@ impl Manager {
         self.see_answer(state, false);
         let Some(open) = &mut state.open else { return };
         open.silences += 1;
-        let out_of_questions = open.presentations >= self.turns.questions_max;
-        if open.silences > self.turns.repeats_max || out_of_questions {
+        let out_of_questions = open.presentations >= self.setup.turns.questions_max;
+        if open.silences > self.setup.turns.repeats_max || out_of_questions {
             self.close(state, Outcome::Abandoned, at, Content::Abandoned);
-        } else if self.turns.repeats_same {
+        } else if self.setup.turns.repeats_same {
             repeat(state, at);
         } else {
             let (heard, utterance) = (state.act.prompt, state.applied);
@@ -339,6 +323,6 @@ impl Manager {
     /// Returns the description of an object, unique in the scene.
     fn description(&mut self, object: ObjectId) -> String {
         let known = &mut self.descriptions[object.index()];
-        known.get_or_insert_with(|| rendering::object(&self.scene, object)).clone()
+        known.get_or_insert_with(|| rendering::object(&self.setup.scene, object)).clone()
     }
 }

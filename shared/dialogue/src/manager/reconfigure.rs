@@ -19,8 +19,8 @@ const KNOWN_MAX: usize = 64;
 impl Manager {
     /// Continues under the present settings.
     pub(super) fn reconfigure(&mut self, state: &mut State, at: Time) {
-        let same_scene = state.scene_key == self.scene.key();
-        (state.scene_key, state.settings_key) = (self.scene.key(), self.key);
+        let same_scene = state.scene_key == self.setup.scene.key();
+        (state.scene_key, state.settings_key) = (self.setup.scene.key(), self.key);
         if !same_scene {
             // Their numbers belong to the former scene.
             state.act.alternatives.clear();
@@ -59,7 +59,7 @@ impl Manager {
     /// Returns whether the ordered object, or every object that there was, is gone.
     fn nothing_is_left(&self, state: &State) -> bool {
         let Some(open) = &state.open else { return true };
-        let is_gone = |name: &String| self.scene.object_named(name).is_none();
+        let is_gone = |name: &String| self.setup.scene.object_named(name).is_none();
         if open.pick.is_some() {
             return is_gone(&open.picked);
         }
@@ -68,10 +68,10 @@ impl Manager {
 
     /// Replaces the former scene's numbers by those of the present one.
     fn translate(&self, state: &mut State, mut open: Interaction) {
-        let picked = self.scene.object_named(&open.picked);
+        let picked = self.setup.scene.object_named(&open.picked);
         open.pick = open.pick.zip(picked).map(|((id, _), object)| (id, object));
         for prompt in &mut open.prompts {
-            prompt.question = prompt.named.question(&self.scene);
+            prompt.question = prompt.named.question(&self.setup.scene);
         }
         let asked = open.prompt(state.act.prompt);
         state.act.question = asked.map_or(Question::None, |prompt| prompt.question);
@@ -86,13 +86,13 @@ impl Manager {
 
     /// Returns the scene's objects by name, unless they are too many or never needed.
     pub(super) fn known_objects(&mut self) -> Vec<KnownObject> {
-        let objects = self.scene.objects().len();
+        let objects = self.setup.scene.objects().len();
         if objects > KNOWN_MAX || !self.recall {
             return Vec::new();
         }
         let known = |object: ObjectId| KnownObject {
             description: self.description(object),
-            name: self.scene.object(object).name.clone(),
+            name: self.setup.scene.object(object).name.clone(),
         };
         (0..objects).map(ObjectId::from).map(known).collect()
     }

@@ -1,22 +1,34 @@
 //! Planner that remembers its decisions by belief.
 
 use std::collections::HashMap;
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError, RwLock};
 
 use dialogue::user_model::Joint;
 use dialogue::{Belief, Decision, DecisionProblem, Planner, Posterior, Step};
 
 /// The inputs of a decision: whether it is the interaction's first, and the posterior's key.
-pub type Situation = (bool, Vec<i64>);
+type Situation = (bool, Vec<i64>);
 
-/// Decisions that several caches of one planner share. It may forget, and must never return another
-/// situation's decision.
-pub trait SharedDecisions: Send + Sync {
-    /// Returns the decision, if it is known.
-    fn find(&self, situation: &Situation) -> Option<Arc<Decision>>;
+/// Decisions that several caches of one planner share, in several threads: a slow planner is not
+/// asked twice. Each cache looks into its own memory first, so locks are rarely contended.
+#[derive(Debug, Default)]
+pub struct SharedDecisions(RwLock<HashMap<Situation, Arc<Decision>>>);
 
-    /// Adds a decision.
-    fn add(&self, situation: &Situation, decision: &Arc<Decision>);
+/// Most decisions that are shared; the first ones stay, as they are the most frequent.
+const SHARED_MAX: usize = 1 << 19;
+
+impl SharedDecisions {
+    fn find(&self, situation: &Situation) -> Option<Arc<Decision>> {
+        // Every entry is whole, also where a thread has panicked.
+        self.0.read().unwrap_or_else(PoisonError::into_inner).get(situation).cloned()
+    }
+
+    fn add(&self, situation: &Situation, decision: &Arc<Decision>) {
+        let mut decisions = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        if decisions.len() < SHARED_MAX {
+            decisions.insert(situation.clone(), Arc::clone(decision));
+        }
+    }
 }
 
 /// A planner that is asked once per belief.
@@ -26,7 +38,7 @@ pub trait SharedDecisions: Send + Sync {
 /// [`dialogue::evaluate`] does: one that draws random numbers is studied for these draws.
 pub struct CachedPlanner {
     planner: Box<dyn Planner + Send>,
-    shared: Option<Arc<dyn SharedDecisions>>,
+    shared: Option<Arc<SharedDecisions>>,
     known: HashMap<Situation, Arc<Decision>>,
     situation: Situation,
 }
@@ -43,7 +55,7 @@ impl CachedPlanner {
 
     /// Adds the decisions of other caches of the same planner on the same problem.
     #[must_use]
-    pub fn sharing(self, shared: Arc<dyn SharedDecisions>) -> Self {
+    pub fn sharing(self, shared: Arc<SharedDecisions>) -> Self {
         Self { shared: Some(shared), ..self }
     }
 
@@ -105,20 +117,6 @@ mod tests {
     use super::*;
     use crate::simulation::testing::{bowls, yes_no};
     use dialogue::{Model, Params, registry};
-    use std::sync::Mutex;
-
-    #[derive(Default)]
-    struct Board(Mutex<HashMap<Situation, Arc<Decision>>>);
-
-    impl SharedDecisions for Board {
-        fn find(&self, situation: &Situation) -> Option<Arc<Decision>> {
-            self.0.lock().unwrap().get(situation).cloned()
-        }
-
-        fn add(&self, situation: &Situation, decision: &Arc<Decision>) {
-            self.0.lock().unwrap().insert(situation.clone(), Arc::clone(decision));
-        }
-    }
 
     #[test]
     fn cached_planner_decides_like_its_planner_and_shares_its_decisions() {
@@ -127,10 +125,10 @@ mod tests {
         let problem = yes_no(&model);
         let belief = Belief::uniform(6);
         for name in registry::names() {
-            let board = Arc::new(Board::default());
+            let shared = Arc::new(SharedDecisions::default());
             let cache = || {
-                let shared: Arc<dyn SharedDecisions> = board.clone();
-                CachedPlanner::new(registry::planner(name).unwrap()).sharing(shared)
+                let planner = registry::planner(name).unwrap();
+                CachedPlanner::new(planner).sharing(Arc::clone(&shared))
             };
             let (mut one, mut other) = (cache(), cache());
             for step in [0, 1] {
@@ -142,7 +140,7 @@ mod tests {
                 let later = Step { interaction: 9, step: 7 * step.step };
                 assert_eq!(other.decide(&problem, &belief, later), direct, "{name}");
             }
-            assert_eq!(board.0.lock().unwrap().len(), 2, "{name}: asked once per situation");
+            assert_eq!(shared.0.read().unwrap().len(), 2, "{name}: asked once per situation");
         }
     }
 }

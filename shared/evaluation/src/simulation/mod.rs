@@ -28,7 +28,7 @@ pub mod users;
 use dialogue::manager::Manager;
 pub use interaction::{Room, SimulatedInteraction, interact};
 
-pub use cached_planner::{CachedPlanner, SharedDecisions, Situation};
+pub use cached_planner::{CachedPlanner, SharedDecisions};
 pub use stats::{Interval, Mean, wilson};
 pub use tally::{HISTOGRAM, Tally};
 pub use users::{SimulatedUser, UserKind};

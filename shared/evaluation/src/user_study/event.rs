@@ -49,54 +49,16 @@ pub enum Event {
         after: u64,
     },
     /// The participant said something.
-    Heard {
-        /// The utterance's number.
-        seq: u64,
-        /// By which way.
-        source: Source,
-        /// Onset.
-        onset_ms: f64,
-        /// Acceptance of the whole.
-        accepted_ms: f64,
-        /// The words, where they are kept.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        words: Option<String>,
-    },
+    Heard(Heard),
     /// The robot asked something, or asked it again.
-    Asked {
-        /// The question's number.
-        prompt: u64,
-        /// Number of this presentation, from 1.
-        presentation: u32,
-        /// Its words, where they are kept.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        words: Option<String>,
-    },
+    Asked(Asked),
     /// The robot decided which object to fetch.
     Decided {
         /// When.
         decided_ms: f64,
     },
     /// The interaction ended, and counts unless it is practice.
-    Ended {
-        /// How the interaction ended.
-        verdict: Verdict,
-        /// The robot's number of it, 0 where nothing was said.
-        interaction: u64,
-        /// The object that was handed over or tried.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        object: Option<String>,
-        /// Questions asked, repetitions not counted, by the robot's count.
-        questions: u32,
-        /// Utterances, by the robot's count.
-        utterances: u32,
-        /// From the first utterance's acceptance to the end, by the robot's clock, seconds; none
-        /// where the robot did not end it.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        seconds: Option<f64>,
-        /// Time of its detection.
-        ended_ms: f64,
-    },
+    Ended(Ending),
     /// The interaction was spoilt by something technical; it does not count, and is repeated.
     Faulted {
         /// Cause.
@@ -162,6 +124,56 @@ pub struct Drawn {
     pub scene_key: String,
     /// The names of all objects there were to draw from.
     pub among: Vec<String>,
+}
+
+/// Something that the participant said.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Heard {
+    /// The utterance's number.
+    pub seq: u64,
+    /// By which way.
+    pub source: Source,
+    /// Onset.
+    pub onset_ms: f64,
+    /// Acceptance of the whole.
+    pub accepted_ms: f64,
+    /// The words, where they are kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub words: Option<String>,
+}
+
+/// A question that the robot asked.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Asked {
+    /// The question's number.
+    pub prompt: u64,
+    /// Number of this presentation, from 1.
+    pub presentation: u32,
+    /// Its words, where they are kept.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub words: Option<String>,
+}
+
+/// How an interaction ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ending {
+    /// Verdict.
+    pub verdict: Verdict,
+    /// The robot's number of it, 0 where nothing was said.
+    pub interaction: u64,
+    /// The object that was handed over or tried.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub object: Option<String>,
+    /// Questions asked, repetitions not counted, by the robot's count.
+    pub questions: u32,
+    /// Utterances, by the robot's count.
+    pub utterances: u32,
+    /// From the first utterance's acceptance to the end, by the robot's clock, seconds; none where
+    /// the robot did not end it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<f64>,
+    /// Time of its detection.
+    pub ended_ms: f64,
 }
 
 /// By which way something was said.

@@ -34,7 +34,8 @@ mod trial;
 pub use config::study::{Design, Item, Kind, Objects, Order, Protocol};
 pub use dictionary::{Column, INTERACTIONS, PARTICIPANTS, dictionary};
 pub use event::{
-    Begun, Drawn, Entry, Event, FILE_ENDING, Fault, FormatError, Source, VERSION, parse,
+    Asked, Begun, Drawn, Ending, Entry, Event, FILE_ENDING, Fault, FormatError, Heard, Source,
+    VERSION, parse,
 };
 pub use paired::{Paired, paired};
 pub use participant::{Participant, Stage, Status, people};

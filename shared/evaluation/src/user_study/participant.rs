@@ -166,7 +166,7 @@ impl Participant {
             Event::Switched { planner } => self.switched = Some(planner.clone()),
             Event::Restored => self.switched = None,
             Event::Started { .. } => self.stage = Stage::Running,
-            Event::Ended { .. } | Event::Faulted { .. } => self.stage = Stage::Over,
+            Event::Ended(_) | Event::Faulted { .. } => self.stage = Stage::Over,
             Event::Questioned => self.stage = Stage::Questionnaire,
             Event::Answered { answers } => self.answers.clone_from(answers),
             Event::Finished => self.stage = Stage::Thanks,
@@ -174,7 +174,7 @@ impl Participant {
             Event::Left => self.stage = Stage::Left,
             Event::Withdrawn => self.stage = Stage::Withdrawn,
             Event::Deleted => (self.stage, self.deleted) = (Stage::Withdrawn, true),
-            Event::Heard { .. } | Event::Asked { .. } | Event::Decided { .. } => {}
+            Event::Heard(_) | Event::Asked(_) | Event::Decided { .. } => {}
         }
         if let Some(trial) = self.trials.last_mut().filter(|trial| trial.end.is_none()) {
             trial.apply(entry.at, &entry.event);
@@ -208,7 +208,7 @@ impl Participant {
         let next = match self.trials.last() {
             None => 0,
             Some(trial) => match trial.end {
-                Some(End::Verdict { .. }) => trial.drawn.step + 1,
+                Some(End::Verdict(_)) => trial.drawn.step + 1,
                 Some(End::Fault(..)) | None => trial.drawn.step,
             },
         };

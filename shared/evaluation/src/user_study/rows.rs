@@ -79,16 +79,13 @@ fn object<'a>(pairs: impl Iterator<Item = (&'a str, Json)>) -> Map<String, Json>
 }
 
 fn said(trial: &Trial) -> Json {
-    let said = trial.said.iter().map(|said| {
-        let source = if said.source == Source::Typed { "typed" } else { "voice" };
-        json!({ "seq": said.seq, "source": source, "words": said.words })
-    });
-    said.collect()
+    let said = trial.said.iter();
+    said.map(|it| json!({ "seq": it.seq, "source": it.source, "words": it.words })).collect()
 }
 
 fn asked(trial: &Trial) -> Json {
     let asked = trial.asked.iter().map(|question| {
-        json!({ "prompt": question.prompt, "times": question.presentations, "words": question.words })
+        json!({ "prompt": question.prompt, "times": question.presentation, "words": question.words })
     });
     asked.collect()
 }
@@ -106,14 +103,10 @@ fn trials(person: &Participant) -> Vec<Vec<Json>> {
 /// Returns the values in the order of [`INTERACTIONS`].
 fn row(person: &Participant, n: usize, number: Option<u32>, trial: &Trial) -> Vec<Json> {
     let counts = trial.counts() && person.status().counts();
-    let (interaction, picked) = match &trial.end {
-        Some(End::Verdict { interaction, object, .. }) => {
-            (Some(*interaction).filter(|n| *n > 0), object.clone())
-        }
-        _ => (None, None),
-    };
+    let ending = trial.ending();
+    let interaction = ending.map(|ending| ending.interaction).filter(|n| *n > 0);
     let (outcome, fault) = match &trial.end {
-        Some(End::Verdict { verdict, .. }) => (verdict.name(), None),
+        Some(End::Verdict(ending)) => (ending.verdict.name(), None),
         Some(End::Fault(_, why)) => ("fault", Some(why)),
         None => ("unfinished", None),
     };
@@ -130,7 +123,7 @@ fn row(person: &Participant, n: usize, number: Option<u32>, trial: &Trial) -> Ve
         json!(trial.drawn.scene),
         json!(trial.drawn.scene_key),
         json!(trial.drawn.object),
-        json!(picked),
+        json!(ending.and_then(|ending| ending.object.as_ref())),
         json!(outcome),
         json!(success),
         json!(trial.seconds().map(thousandths)),

@@ -3,7 +3,7 @@
 use serde_json::{Map, json};
 
 use crate::Verdict;
-use crate::user_study::event::{Begun, Drawn, Entry, Event, Source, VERSION};
+use crate::user_study::event::{Asked, Begun, Drawn, Ending, Entry, Event, Heard, Source, VERSION};
 use crate::user_study::participant::Participant;
 use crate::user_study::plan::{Counts, plan};
 use config::study::{Design, Objects, Order, Protocol};
@@ -80,16 +80,16 @@ pub(crate) fn interaction(n: usize, verdict: Verdict) -> [Event; 6] {
             among: vec!["white".to_owned(), "clear".to_owned()],
         }),
         Event::Started { after: n as u64 },
-        Event::Heard {
+        Event::Heard(Heard {
             seq: n as u64 + 1,
             source: Source::Voice,
             onset_ms: began,
             accepted_ms: began + 2e3,
             words: None,
-        },
-        Event::Asked { prompt: n as u64 + 1, presentation: 2, words: None },
+        }),
+        Event::Asked(Asked { prompt: n as u64 + 1, presentation: 2, words: None }),
         Event::Decided { decided_ms: began + 5e3 },
-        Event::Ended {
+        Event::Ended(Ending {
             verdict,
             interaction: n as u64 + 1,
             object: Some(picked.to_owned()),
@@ -97,7 +97,7 @@ pub(crate) fn interaction(n: usize, verdict: Verdict) -> [Event; 6] {
             utterances: 1,
             seconds: Some(8.0 + n as f64),
             ended_ms: began + 11e3,
-        },
+        }),
     ]
 }
 

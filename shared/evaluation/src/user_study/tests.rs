@@ -52,19 +52,19 @@ fn trial_seconds_count_from_the_first_sound_to_the_end() {
     // The robot did not end it: what the console saw counts.
     let mut entries = journal("A", &protocol(), 3);
     for entry in &mut entries {
-        if let Event::Ended { seconds, .. } = &mut entry.event {
-            *seconds = None;
+        if let Event::Ended(ending) = &mut entry.event {
+            ending.seconds = None;
         }
     }
     assert_eq!(Participant::fold(&entries).unwrap().trials[1].seconds(), Some(11.0));
-    entries.retain(|entry| !matches!(entry.event, Event::Heard { .. }));
+    entries.retain(|entry| !matches!(entry.event, Event::Heard(_)));
     assert_eq!(Participant::fold(&entries).unwrap().trials[1].seconds(), None);
 }
 
 #[test]
 fn trial_with_a_fault_is_repeated_and_does_not_count() {
     let mut entries = journal("A", &protocol(), 3);
-    let at = entries.iter().position(|e| matches!(e.event, Event::Ended { .. })).unwrap();
+    let at = entries.iter().position(|e| matches!(e.event, Event::Ended(_))).unwrap();
     let fault = Event::Faulted { fault: Fault::Service, why: "arm, gone".to_owned() };
     entries.truncate(at);
     entries.push(Entry { at: 1, event: fault });

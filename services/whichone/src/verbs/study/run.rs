@@ -37,17 +37,17 @@ pub(super) fn run(
     let pieces: Vec<Piece> = (0..rows.len())
         .flat_map(|row| (0..chunks).map(move |chunk| Piece { row, chunk }))
         .collect();
-    let boards: HashMap<&str, Arc<Board>> =
+    let shared: HashMap<&str, Arc<SharedDecisions>> =
         rows.iter().map(|row| (row.policy.as_str(), Arc::default())).collect();
     let next = AtomicUsize::new(0);
     let (counted, arrived) = mpsc::channel();
     let mut done: Vec<Option<Tally>> = vec![None; pieces.len()];
     thread::scope(|scope| {
         for _ in 0..threads.min(pieces.len()) {
-            let (counted, next, pieces, boards) = (counted.clone(), &next, &pieces, &boards);
+            let (counted, next, pieces, shared) = (counted.clone(), &next, &pieces, &shared);
             scope.spawn(move || {
                 let managers = HashMap::new();
-                let mut worker = Worker { room: setup.room(), rows, count, seed, boards, managers };
+                let mut worker = Worker { room: setup.room(), rows, count, seed, shared, managers };
                 while let Some((at, piece)) = take(next, pieces) {
                     // The receiver is gone.
                     if counted.send((at, worker.count(piece))).is_err() {
@@ -87,7 +87,7 @@ struct Worker<'a> {
     rows: &'a [Row],
     count: u64,
     seed: u64,
-    boards: &'a HashMap<&'a str, Arc<Board>>,
+    shared: &'a HashMap<&'a str, Arc<SharedDecisions>>,
     managers: HashMap<&'a str, Manager>,
 }
 
@@ -98,9 +98,8 @@ impl Worker<'_> {
             // The command line has accepted only known names.
             let Ok(planner) = registry::planner(policy) else { return Tally::default() };
             let mut planner = CachedPlanner::new(planner);
-            if let Some(board) = self.boards.get(policy.as_str()) {
-                let board: Arc<dyn SharedDecisions> = board.clone();
-                planner = planner.sharing(board);
+            if let Some(shared) = self.shared.get(policy.as_str()) {
+                planner = planner.sharing(Arc::clone(shared));
             }
             self.managers.insert(policy, self.room.manager(planner));
         }

@@ -32,7 +32,13 @@ impl Setup {
     /// Prepares what is asked for: reads the files, and plans every motion of the arm.
     pub(super) fn new(args: &StudyArgs) -> Result<Self, Failure> {
         let scene = args.scene.as_deref().unwrap_or(Path::new(PAPER_SCENE));
-        let problem = of_scene(scene, &preset(args))?;
+        let mut problem = of_scene(scene, &preset(args))?;
+        if let (None, Some(settings)) = (args.preset, &problem.settings) {
+            // A study compares planners of the robot that runs.
+            let configured = settings.dialogue.actions;
+            problem.actions.attribute &= configured.attribute;
+            problem.actions.which &= configured.which;
+        }
         let settings = problem.settings.as_ref();
         let turns = settings.map_or_else(TurnTaking::default, |it| it.dialogue.turns);
         let voice = settings.map_or_else(Voice::default, |settings| Voice {
