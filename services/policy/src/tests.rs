@@ -17,8 +17,8 @@ use dialogue::{ActKind, Interpretation, Outcome, PickOutcome, PickPhase, Present
 use dialogue::{Answer, Belief, Model, Posterior, Rng};
 use messages::WireCode;
 use messages::{
-    ArmStatus, AskedQuestion, FixedText, Observation, PresentationState, Presented, PromptId,
-    UtteranceSeq, WireReading,
+    ArmStatus, AskedQuestion, FixedText, Observation, PickId, PresentationState, Presented,
+    PromptId, UtteranceSeq, WireReading,
 };
 use scene::{Intent, ObjectId, Question, Reading, Response};
 use service::{Effects, Event, Node, Span, Time};
@@ -89,9 +89,38 @@ fn at(seconds: u64) -> Time {
     Time(seconds * 1_000_000_000)
 }
 
+/// A reading of the scene's words.
+fn words(words: &[&str]) -> Reading {
+    let scene = settings().scene;
+    let base = words.iter().map(|word| scene.word_named(word).expect("a word of the scene"));
+    Reading { base: base.collect(), ..Reading::default() }
+}
+
+/// The state after the first utterance.
+fn first(manager: &mut Manager, reading: Reading) -> State {
+    let nothing_said = manager.first();
+    remark(manager, &nothing_said, reading)
+}
+
+/// The state after an utterance that answers the standing prompt, typed a second per utterance.
+fn reply(manager: &mut Manager, state: &State, reading: Reading) -> State {
+    let seq = state.applied.0 + 1;
+    manager.next(state, &heard(seq, state.act.prompt, reading), at(seq))
+}
+
+/// The state after an utterance that answers no prompt.
+fn remark(manager: &mut Manager, state: &State, reading: Reading) -> State {
+    let seq = state.applied.0 + 1;
+    manager.next(state, &heard(seq, PromptId(0), reading), at(seq))
+}
+
+fn delivered(pick: PickId) -> Cause {
+    Cause::PickEnded { pick, outcome: PickOutcome::Delivered }
+}
+
 /// A dialogue after the first request, with a question standing.
 fn asked(manager: &mut Manager) -> State {
-    let state = manager.next(&manager.first(), &heard(1, PromptId(0), Reading::default()), at(1));
+    let state = first(manager, Reading::default());
     assert_eq!(state.act.kind, ActKind::Ask);
     state
 }
@@ -109,7 +138,7 @@ fn belief(state: &State) -> Vec<f64> {
 fn a_late_answer_is_scored_against_the_question_that_was_heard() {
     let mut manager = manager();
     let first = asked(&mut manager);
-    let second = manager.next(&first, &heard(2, first.act.prompt, answer(Response::Yes)), at(2));
+    let second = reply(&mut manager, &first, answer(Response::Yes));
     assert_ne!(second.act.question, first.act.question, "another question stands now");
     // Said before the second question was heard: it can only be meant for the first.
     let late = manager.next(&second, &heard(3, first.act.prompt, answer(Response::Yes)), at(3));
@@ -158,9 +187,9 @@ fn silence_repeats_the_same_question_and_then_ends_the_interaction() {
 fn starting_over_forgets_what_was_said() {
     let mut manager = manager();
     let state = asked(&mut manager);
-    let informed = manager.next(&state, &heard(2, state.act.prompt, answer(Response::Yes)), at(2));
+    let informed = reply(&mut manager, &state, answer(Response::Yes));
     let over = Reading { intent: Intent::StartOver, ..Reading::default() };
-    let over = manager.next(&informed, &heard(3, informed.act.prompt, over), at(3));
+    let over = reply(&mut manager, &informed, over);
     assert_eq!(belief(&over), belief(&state));
 }
 
@@ -241,22 +270,34 @@ fn silence_counts_from_the_end_of_the_spoken_question() {
 }
 
 /// Whole dialogues with a person who sometimes lies, falls silent, speaks late or starts over: the
-/// journal folds again to the same states, and recovery from any prefix gives its last state.
+/// journal folds again to the same states, and recovery from any prefix gives its last state. So it is
+/// with gestures, and where deliveries, the user or the robot's own seconds count.
 #[test]
 fn journals_fold_again_bit_for_bit() {
-    for seed in 0..40 {
-        let records = random_dialogue(seed);
-        refold(&mut manager(), &records).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
-        for cut in 0..records.len() {
-            let node = PolicyNode::recover(manager(), records[..=cut].to_vec()).unwrap();
-            assert_eq!(node.state(), &records[cut].state, "seed {seed}, record {cut}");
+    let cases: [(&[(&str, &str)], u64); 5] = [
+        (&[], 40),
+        (&pointing::GESTURES, 8),
+        (&prior::HISTORY, 8),
+        (&person::LEARNING, 3),
+        (&seconds::POINTING, 3),
+    ];
+    for (over, seeds) in cases {
+        let settings = settings_with(over);
+        let manager = || settings.manager().unwrap();
+        for seed in 0..seeds {
+            let records = random_dialogue(&settings, seed);
+            refold(&mut manager(), &records).unwrap_or_else(|e| panic!("{over:?}, {seed}: {e}"));
+            for cut in 0..records.len() {
+                let node = PolicyNode::recover(manager(), records[..=cut].to_vec()).unwrap();
+                assert_eq!(node.state(), &records[cut].state, "{over:?}, seed {seed}, {cut}");
+            }
         }
     }
 }
 
 #[test]
 fn a_journal_that_was_tampered_with_is_told() {
-    let mut records = random_dialogue(3);
+    let mut records = random_dialogue(&settings(), 3);
     let open = records.iter_mut().find_map(|r| r.state.open.as_mut()).expect("a dialogue");
     shift(open, 1e-15);
     assert!(refold(&mut manager(), &records).is_err());
@@ -269,14 +310,17 @@ fn shift(open: &mut Interaction, by: f64) {
     open.posterior = Posterior::Object(Belief::from_log(log).unwrap());
 }
 
-fn random_dialogue(seed: u64) -> Vec<Record> {
-    let (mut rng, mut manager) = (Rng::new(seed), manager());
-    let settings = settings();
+fn random_dialogue(settings: &Settings, seed: u64) -> Vec<Record> {
+    let (mut rng, mut manager) = (Rng::new(seed), settings.manager().unwrap());
     let model = Model::new(&settings.scene, settings.dialogue.params);
     let wanted = ObjectId::from(rng.below(6));
     let (mut state, mut records, mut seq) = (manager.first(), Vec::new(), 0);
     for turn in 1..25 {
-        let cause = random_cause(&mut rng, &model, &state, wanted, &mut seq);
+        let mut cause = random_cause(&mut rng, &model, &state, wanted, &mut seq);
+        if let (true, Cause::Utterance(heard)) = (settings.dialogue.gesture.enabled, &mut cause) {
+            let shown = settings.scene.objects()[rng.below(6)].placement.unwrap();
+            heard.gesture = (rng.below(2) == 0).then_some(shown.xyz);
+        }
         state = manager.next(&state, &cause, at(turn));
         records.push(Record { cause, at: at(turn), state: state.clone() });
     }
@@ -330,10 +374,8 @@ fn decisions_of_a_planner_swapped_in_fold_again_with_it() {
 #[test]
 fn only_the_ordered_pick_s_end_ends_the_interaction() {
     let mut node = PolicyNode::recover(manager(), Vec::new()).unwrap();
-    let sure = settings().scene;
-    let words = ["small", "white", "plastic", "dishwasher", "dishwasher", "dishwasher"];
-    let base = words.iter().filter_map(|word| sure.word_named(word)).collect();
-    tell(&mut node, observation(1, 0, &Reading { base, ..Reading::default() }), at(1));
+    let sure = words(&["small", "white", "plastic", "dishwasher", "dishwasher", "dishwasher"]);
+    tell(&mut node, observation(1, 0, &sure), at(1));
     let (pick, object) = node.state().act.pick.expect("sure enough to pick");
     let done = |interaction| ArmStatus {
         interaction,

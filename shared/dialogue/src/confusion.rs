@@ -151,8 +151,9 @@ mod tests {
         let log = log_likelihood(&confused, Question::None, &doubted(&scene, "metal", 0.9));
         let material = scene.attribute_named("material").unwrap();
         let is = |i: usize, word| {
-            scene.objects()[i].values[material.index()]
-                .is_some_and(|v| scene.word_of(material, v) == word)
+            scene.objects()[i].values[material.index()].is_some_and(|v| {
+                scene.attributes()[material.index()].values[v.index()].word == word
+            })
         };
         for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
             assert!(!(is(i, plastic) && is(j, metal)) || log[i] > log[j], "{i} {j} {log:?}");

@@ -336,7 +336,7 @@ mod tests {
                 assert_eq!(model.values(k), attribute.values.len());
                 for v in (0..attribute.values.len()).map(ValueId::from) {
                     assert_eq!(model.has(i, k, v), scene.has(i, k, v));
-                    assert_eq!(model.word(k, v), scene.word_of(k, v));
+                    assert_eq!(model.word(k, v), attribute.values[v.index()].word);
                 }
             }
             for w in (0..scene.words().len()).map(WordId::from) {

@@ -19,11 +19,6 @@ pub struct Span(pub u64);
 
 impl Time {
     /// Nanoseconds of the monotonic clock.
-    pub fn from_ns(ns: u64) -> Self {
-        Self(ns)
-    }
-
-    /// Nanoseconds of the monotonic clock.
     pub fn ns(self) -> u64 {
         self.0
     }

@@ -3,7 +3,7 @@
 use std::io;
 
 /// Way out for a journal that another version wrote.
-const FRESH: &str = "help: start the version that wrote it, or start over with `whichone up \
+pub(crate) const FRESH: &str = "help: start the version that wrote it, or start over with `whichone up \
                      --fresh`, which keeps the old file";
 
 /// Failure to open or read a journal.
@@ -18,44 +18,9 @@ pub enum JournalOpenError {
     /// The file does not begin like a journal.
     #[error("not a journal; help: move the file away, or run `whichone up --fresh`")]
     NotAJournal,
-    /// Another version of the file format.
-    #[error("expected journal format {expected}, found {found}; {FRESH}")]
-    Format {
-        /// Format number of the file.
-        found: u32,
-        /// Format number of this version, [`FORMAT`](crate::FORMAT).
-        expected: u32,
-    },
-    /// Records of another kind.
-    #[error("expected records of kind `{expected}`, found `{found}`; {FRESH}")]
-    Record {
-        /// Kind of record in the file.
-        found: String,
-        /// Kind of record of the caller.
-        expected: String,
-    },
-    /// Belongs to another group.
-    #[error(
-        "expected a journal of group `{expected}`, found one of group `{found}`; \
-         help: give each group its own state folder"
-    )]
-    Group {
-        /// Group of the file.
-        found: String,
-        /// Group of the caller.
-        expected: String,
-    },
-    /// Written in another epoch of the group.
-    #[error(
-        "expected epoch {expected}, found a journal of epoch {found}; \
-         help: start a new epoch with `whichone up --fresh`, which keeps the old file"
-    )]
-    Epoch {
-        /// Epoch of the file.
-        found: u64,
-        /// Epoch of the caller.
-        expected: u64,
-    },
+    /// Another owner, epoch, kind of record or version of the format.
+    #[error("{0}")]
+    Foreign(String),
     /// Damage to acknowledged records.
     #[error(
         "corrupt at byte {at}, before record {seq}, with valid records after it; help: inspect the \

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::JournalOpenError;
+use crate::error::FRESH;
 use crate::frame::words;
 
 /// Format number of the file layout that this version writes.
@@ -54,7 +55,7 @@ pub(crate) fn encode(header: &Header, first_seq: u64) -> Result<(Vec<u8>, u32), 
 /// Reads the header at the start of a file.
 ///
 /// # Errors
-/// `NotAJournal`, `Format`, or `Corrupt { at: 0 }` where the checksum does not match.
+/// `NotAJournal`, `Foreign`, or `Corrupt { at: 0 }` where the checksum does not match.
 pub(crate) fn decode(bytes: &[u8]) -> Result<StoredHeader, JournalOpenError> {
     let corrupt = || JournalOpenError::Corrupt { at: 0, seq: 1 };
     if !bytes.starts_with(&MAGIC) {
@@ -62,7 +63,8 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<StoredHeader, JournalOpenError> {
     }
     let [format, len, crc] = words(&bytes[MAGIC.len()..]).ok_or_else(corrupt)?;
     if format != FORMAT {
-        return Err(JournalOpenError::Format { found: format, expected: FORMAT });
+        let what = format!("expected journal format {FORMAT}, found {format}; {FRESH}");
+        return Err(JournalOpenError::Foreign(what));
     }
     let len = len as usize;
     let body = bytes.get(PREFIX_BYTES..PREFIX_BYTES + len);
@@ -74,22 +76,25 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<StoredHeader, JournalOpenError> {
 
 /// Rejects a journal of another owner or kind.
 pub(crate) fn check(found: &Header, expected: &Header) -> Result<(), JournalOpenError> {
-    if found.group != expected.group {
-        return Err(JournalOpenError::Group {
-            found: found.group.clone(),
-            expected: expected.group.clone(),
-        });
-    }
-    if found.record != expected.record {
-        return Err(JournalOpenError::Record {
-            found: found.record.clone(),
-            expected: expected.record.clone(),
-        });
-    }
-    if found.epoch != expected.epoch {
-        return Err(JournalOpenError::Epoch { found: found.epoch, expected: expected.epoch });
-    }
-    Ok(())
+    let what = if found.group != expected.group {
+        let (ours, theirs) = (&expected.group, &found.group);
+        format!(
+            "expected a journal of group `{ours}`, found one of group `{theirs}`; help: give each \
+             group its own state folder"
+        )
+    } else if found.record != expected.record {
+        let (ours, theirs) = (&expected.record, &found.record);
+        format!("expected records of kind `{ours}`, found `{theirs}`; {FRESH}")
+    } else if found.epoch != expected.epoch {
+        let (ours, theirs) = (expected.epoch, found.epoch);
+        format!(
+            "expected epoch {ours}, found a journal of epoch {theirs}; help: start a new epoch with \
+             `whichone up --fresh`, which keeps the old file"
+        )
+    } else {
+        return Ok(());
+    };
+    Err(JournalOpenError::Foreign(what))
 }
 
 fn checksum(format: u32, body: &[u8]) -> u32 {

@@ -9,7 +9,6 @@ mod check;
 mod describe;
 mod ids;
 mod json;
-mod key;
 mod model;
 mod question;
 mod question_json;

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use crate::wording::Asks;
-use crate::{AttributeId, ObjectId, Question, ValueId, WordId, key};
+use crate::{AttributeId, ObjectId, Question, StableHash, ValueId, WordId};
 
 /// A scene: objects `I`, attributes `K`, values `V_k` (section 3.1 of the paper).
 #[derive(Clone, Debug, PartialEq)]
@@ -130,7 +130,7 @@ impl Scene {
             words: index(words.iter()),
         };
         let vocabularies = vocabularies(&objects, &attributes);
-        let key = key::of(&objects, &attributes);
+        let key = key(&objects, &attributes);
         Self { name, noun, asks, objects, attributes, words, key, names, vocabularies }
     }
 
@@ -188,11 +188,6 @@ impl Scene {
     /// The word of `V` with that spelling.
     pub fn word_named(&self, word: &str) -> Option<WordId> {
         self.names.words.get(word).copied()
-    }
-
-    /// The word of `V` that value `v` of attribute `k` is.
-    pub fn word_of(&self, k: AttributeId, v: ValueId) -> WordId {
-        self.attributes[k.index()].values[v.index()].word
     }
 
     /// The object `i`.
@@ -258,4 +253,26 @@ fn vocabularies(objects: &[Object], attributes: &[Attribute]) -> Vocabularies {
         ends.push(words.len());
     }
     Vocabularies { words, ends }
+}
+
+/// Hash of objects, attributes and values in order. Every text is preceded by its length and
+/// every list by its count, so that no two problems share a canonical form.
+fn key(objects: &[Object], attributes: &[Attribute]) -> u64 {
+    let mut hash = StableHash::default();
+    hash.count(attributes.len());
+    for attribute in attributes {
+        hash.text(&attribute.name);
+        hash.count(attribute.values.len());
+        for value in &attribute.values {
+            hash.text(&value.name);
+        }
+    }
+    hash.count(objects.len());
+    for object in objects {
+        hash.text(&object.name);
+        for value in &object.values {
+            hash.count(value.map_or(0, |v| v.index() + 1));
+        }
+    }
+    hash.value()
 }

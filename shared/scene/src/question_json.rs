@@ -4,33 +4,10 @@ use serde_json::{Value as Json, json};
 
 use crate::{AttributeId, Question, Reading, Scene};
 
-/// An invalid question in JSON.
+/// An invalid question in JSON, in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum QuestionError {
-    /// Neither `null` nor an object with a string `type`.
-    #[error("a question is an object with a \"type\"")]
-    Shape,
-    /// The type is none of the four.
-    #[error("unknown question type \"{0}\"; the types are none, point, attr and which")]
-    Type(String),
-    /// A key of this type of question is missing or not a string.
-    #[error("\"{0}\" is missing or not a string")]
-    Missing(&'static str),
-    /// The scene has no such object.
-    #[error("the scene has no object \"{0}\"")]
-    Object(String),
-    /// The scene has no such attribute.
-    #[error("the scene has no attribute \"{0}\"")]
-    Attribute(String),
-    /// The attribute has no such value.
-    #[error("attribute \"{attribute}\" has no value \"{value}\"")]
-    Value {
-        /// The attribute asked about.
-        attribute: String,
-        /// The value that it lacks.
-        value: String,
-    },
-}
+#[error("{0}")]
+pub struct QuestionError(String);
 
 /// Reads `{"type":"none"}` (or `null`), `{"type":"point","object":ID}`,
 /// `{"type":"attr","attribute":K,"value":V}` or `{"type":"which","attribute":K}`.
@@ -41,24 +18,28 @@ pub fn question_from_json(scene: &Scene, json: &Json) -> Result<Question, Questi
     if json.is_null() {
         return Ok(Question::None);
     }
-    match json.get("type").and_then(Json::as_str).ok_or(QuestionError::Shape)? {
+    let shape = || QuestionError("a question is an object with a \"type\"".to_owned());
+    match json.get("type").and_then(Json::as_str).ok_or_else(shape)? {
         "none" => Ok(Question::None),
         "point" => {
             let name = field(json, "object")?;
             let object = scene.object_named(name);
-            object.map(Question::Point).ok_or_else(|| QuestionError::Object(name.to_owned()))
+            object.map(Question::Point).ok_or_else(|| none("object", name))
         }
         "attr" => {
             let k = attribute(scene, json)?;
             let name = field(json, "value")?;
-            let v = scene.value_named(k, name).ok_or_else(|| QuestionError::Value {
-                attribute: scene.attributes()[k.index()].name.clone(),
-                value: name.to_owned(),
+            let v = scene.value_named(k, name).ok_or_else(|| {
+                let attribute = &scene.attributes()[k.index()].name;
+                QuestionError(format!("attribute \"{attribute}\" has no value \"{name}\""))
             })?;
             Ok(Question::Attribute(k, v))
         }
         "which" => Ok(Question::Which(attribute(scene, json)?)),
-        other => Err(QuestionError::Type(other.to_owned())),
+        other => {
+            let known = "the types are none, point, attr and which";
+            Err(QuestionError(format!("unknown question type \"{other}\"; {known}")))
+        }
     }
 }
 
@@ -100,9 +81,14 @@ pub fn reading_to_json(scene: &Scene, reading: &Reading) -> Json {
 
 fn attribute(scene: &Scene, json: &Json) -> Result<AttributeId, QuestionError> {
     let name = field(json, "attribute")?;
-    scene.attribute_named(name).ok_or_else(|| QuestionError::Attribute(name.to_owned()))
+    scene.attribute_named(name).ok_or_else(|| none("attribute", name))
 }
 
-fn field<'a>(json: &'a Json, name: &'static str) -> Result<&'a str, QuestionError> {
-    json.get(name).and_then(Json::as_str).ok_or(QuestionError::Missing(name))
+fn none(what: &str, name: &str) -> QuestionError {
+    QuestionError(format!("the scene has no {what} \"{name}\""))
+}
+
+fn field<'a>(json: &'a Json, name: &str) -> Result<&'a str, QuestionError> {
+    let missing = || QuestionError(format!("\"{name}\" is missing or not a string"));
+    json.get(name).and_then(Json::as_str).ok_or_else(missing)
 }

@@ -1,20 +1,14 @@
 //! What is said while the arm fetches.
 
-use super::{answer, at, belief, heard, manager, settings, typed};
+use super::{answer, at, belief, delivered, first, manager, remark, reply, settings, typed, words};
 use dialogue::manager::{Cause, Manager, State};
-use messages::{ActKind, Outcome, PickId, PickOutcome, PromptId};
+use messages::{ActKind, Outcome, PickId, PickOutcome};
 use scene::{Intent, ObjectId, Reading, Response};
-
-fn words(words: &[&str]) -> Reading {
-    let scene = settings().scene;
-    let base = words.iter().map(|word| scene.word_named(word).expect("a word of the scene"));
-    Reading { base: base.collect(), ..Reading::default() }
-}
 
 /// A state in which an object is fetched, and which.
 fn fetching(manager: &mut Manager) -> (State, PickId, ObjectId) {
     let request = words(&["small", "white", "plastic", "dishwasher", "dishwasher", "dishwasher"]);
-    let state = manager.next(&manager.first(), &heard(1, PromptId(0), request), at(1));
+    let state = first(manager, request);
     let (pick, object) = state.act.pick.expect("sure enough to pick");
     (state, pick, object)
 }
@@ -27,7 +21,7 @@ fn left(pick: PickId) -> Cause {
 fn a_denial_calls_the_pick_off_and_what_was_said_before_still_counts() {
     let mut manager = manager();
     let (state, pick, object) = fetching(&mut manager);
-    let denied = manager.next(&state, &heard(2, state.act.prompt, answer(Response::No)), at(2));
+    let denied = reply(&mut manager, &state, answer(Response::No));
     assert_eq!((denied.act.kind, denied.act.pick), (ActKind::Cancel, Some((pick, object))));
     let after = manager.next(&denied, &left(pick), at(3));
     let open = after.open.as_ref().expect("the interaction goes on");
@@ -46,16 +40,15 @@ fn the_next_pick_has_a_key_of_its_own() {
     let mut manager = manager();
     let (state, pick, object) = fetching(&mut manager);
     let wanted = Reading { response: Response::No, ..words(&["clear", "clear", "big", "clear"]) };
-    let denied = manager.next(&state, &heard(2, state.act.prompt, wanted), at(2));
+    let denied = reply(&mut manager, &state, wanted);
     let mut after = manager.next(&denied, &left(pick), at(3));
     assert_eq!(after.act.kind, ActKind::Ask);
     let more = words(&["clear", "clear", "counter", "big"]);
-    after = manager.next(&after, &heard(3, PromptId(0), more), at(4));
+    after = remark(&mut manager, &after, more);
     let (next, other) = after.act.pick.expect("sure again");
     assert_eq!((next.interaction, next.attempt), (pick.interaction, 2));
     assert_ne!(other, object);
-    let delivered = Cause::PickEnded { pick: next, outcome: PickOutcome::Delivered };
-    let ended = manager.next(&after, &delivered, at(5)).ended.expect("it has ended");
+    let ended = manager.next(&after, &delivered(next), at(5)).ended.expect("it has ended");
     assert_eq!((ended.object, ended.outcome), (Some(other), Outcome::Delivered));
 }
 
@@ -65,11 +58,11 @@ fn an_object_ruled_out_in_words_is_denied_too() {
     let (state, ..) = fetching(&mut manager);
     let group = words(&["small", "white"]).base;
     let not_this = Reading { excluded: vec![group], ..Reading::default() };
-    let denied = manager.next(&state, &heard(2, PromptId(0), not_this), at(2));
+    let denied = remark(&mut manager, &state, not_this);
     assert_eq!(denied.act.kind, ActKind::Cancel);
     let group = words(&["clear"]).base;
     let not_another = Reading { excluded: vec![group], ..Reading::default() };
-    let goes_on = manager.next(&state, &heard(2, PromptId(0), not_another), at(2));
+    let goes_on = remark(&mut manager, &state, not_another);
     assert_eq!(goes_on.act, state.act);
 }
 
@@ -85,7 +78,7 @@ fn what_fits_and_what_is_about_something_else_leaves_the_arm_alone() {
         Reading { intent: Intent::None, ..Reading::default() },
     ];
     for reading in readings {
-        let after = manager.next(&state, &heard(2, PromptId(0), reading), at(2));
+        let after = remark(&mut manager, &state, reading);
         assert_eq!(after.act, state.act);
         assert!(belief(&after).iter().zip(belief(&state)).all(|(a, b)| (a - b).abs() < 0.05));
     }
@@ -97,7 +90,7 @@ fn words_that_make_it_unlikely_call_it_off_without_a_no() {
     let (state, ..) = fetching(&mut manager);
     let other =
         words(&["clear", "clear", "clear", "counter", "counter", "counter", "big", "clear"]);
-    let after = manager.next(&state, &heard(2, PromptId(0), other), at(2));
+    let after = remark(&mut manager, &state, other);
     assert_eq!(after.act.kind, ActKind::Cancel);
 }
 
@@ -118,9 +111,8 @@ fn a_late_no_to_the_question_before_denies_nothing() {
 fn what_the_arm_holds_already_is_handed_over() {
     let mut manager = manager();
     let (state, pick, object) = fetching(&mut manager);
-    let denied = manager.next(&state, &heard(2, state.act.prompt, answer(Response::No)), at(2));
-    let delivered = Cause::PickEnded { pick, outcome: PickOutcome::Delivered };
-    let ended = manager.next(&denied, &delivered, at(3)).ended.expect("it has ended");
+    let denied = reply(&mut manager, &state, answer(Response::No));
+    let ended = manager.next(&denied, &delivered(pick), at(3)).ended.expect("it has ended");
     assert_eq!((ended.object, ended.outcome), (Some(object), Outcome::Delivered));
 }
 
@@ -128,9 +120,9 @@ fn what_the_arm_holds_already_is_handed_over() {
 fn who_wants_nothing_any_more_after_a_denial_gets_nothing() {
     let mut manager = manager();
     let (state, pick, _) = fetching(&mut manager);
-    let denied = manager.next(&state, &heard(2, state.act.prompt, answer(Response::No)), at(2));
+    let denied = reply(&mut manager, &state, answer(Response::No));
     let never_mind = Reading { intent: Intent::Cancel, ..Reading::default() };
-    let withdrawn = manager.next(&denied, &heard(3, PromptId(0), never_mind), at(3));
+    let withdrawn = remark(&mut manager, &denied, never_mind);
     assert_eq!(withdrawn.act, denied.act);
     let ended = manager.next(&withdrawn, &left(pick), at(4));
     assert!(ended.open.is_none());

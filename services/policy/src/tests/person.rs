@@ -2,17 +2,19 @@
 
 use super::*;
 
+pub(super) const LEARNING: [(&str, &str); 1] = [("dialogue.planner", "information-seeking")];
+
 fn learning_manager() -> Manager {
-    settings_with(&[("dialogue.planner", "information-seeking")]).manager().unwrap()
+    settings_with(&LEARNING).manager().unwrap()
 }
 
-/// The records of one interaction with a user who answers wrongly with that probability.
-fn talk(manager: &mut Manager, state: &State, errs: f64, seed: u64) -> Vec<Record> {
+/// The state after one interaction with a user who answers wrongly with that probability.
+fn talk(manager: &mut Manager, state: &State, errs: f64, seed: u64) -> State {
     let settings = settings();
     let model = Model::new(&settings.scene, settings.dialogue.params);
     let mut rng = Rng::new(seed);
     let wanted = ObjectId::from(rng.below(6));
-    let (mut state, mut records) = (state.clone(), Vec::new());
+    let mut state = state.clone();
     let mut seq = state.applied.0;
     let mut say = |state: &State, reading| {
         seq += 1;
@@ -22,9 +24,7 @@ fn talk(manager: &mut Manager, state: &State, errs: f64, seed: u64) -> Vec<Recor
         let cause = match (&state.open, state.act.pick) {
             (None, _) if turn > 0 => break,
             (None, _) => say(&state, Reading::default()),
-            (Some(_), Some((pick, _))) => {
-                Cause::PickEnded { pick, outcome: PickOutcome::Delivered }
-            }
+            (Some(_), Some((pick, _))) => delivered(pick),
             (Some(_), None) => {
                 let truth = Answer::truthful(&model, state.act.question, wanted);
                 let wrong = rng.uniform() < errs;
@@ -36,38 +36,23 @@ fn talk(manager: &mut Manager, state: &State, errs: f64, seed: u64) -> Vec<Recor
                 say(&state, said.reading(&model))
             }
         };
-        let when = at(state.applied.0 + 1);
-        state = manager.next(&state, &cause, when);
-        records.push(Record { cause, at: when, state: state.clone() });
+        state = manager.next(&state, &cause, at(state.applied.0 + 1));
     }
     assert_eq!(state.open, None, "seed {seed}: it comes to an end");
-    records
-}
-
-fn acquainted(manager: &mut Manager, errs: f64, interactions: u64) -> Vec<Record> {
-    let mut records: Vec<Record> = Vec::new();
-    for seed in 0..interactions {
-        let state = records.last().map_or_else(|| manager.first(), |record| record.state.clone());
-        records.extend(talk(manager, &state, errs, seed));
-    }
-    records
+    state
 }
 
 #[test]
 fn who_errs_is_expected_to_err_in_the_next_interaction_too() {
     let mut manager = learning_manager();
-    let expected = |records: &[Record], manager: &Manager| {
-        manager.user_params(&records.last().unwrap().state).expect("it learns")
-    };
     let (_, at_first) = manager.user_params(&manager.first()).unwrap();
-    let (_, careful) = {
-        let records = acquainted(&mut manager, 0.0, 12);
-        expected(&records, &manager)
+    let mut expected = |errs: f64| {
+        let mut state = manager.first();
+        (0..12).for_each(|seed| state = talk(&mut manager, &state, errs, seed));
+        manager.user_params(&state).expect("it learns").1
     };
-    let (_, careless) = {
-        let records = acquainted(&mut manager, 0.3, 12);
-        expected(&records, &manager)
-    };
+    let careful = expected(0.0);
+    let careless = expected(0.3);
     assert!(careful < at_first && careless > 3.0 * at_first, "{careful} {at_first} {careless}");
 }
 
@@ -88,27 +73,13 @@ fn silence_and_answers_are_counted_once_each() {
     assert_eq!(p_l(&manager, &murmur), first, "no answer, and no silence");
 }
 
-#[test]
-fn what_is_learned_folds_again_and_survives_a_restart() {
-    let records = acquainted(&mut learning_manager(), 0.2, 3);
-    refold(&mut learning_manager(), &records).unwrap();
-    for cut in [1, records.len() / 2, records.len()] {
-        let node = PolicyNode::recover(learning_manager(), records[..cut].to_vec()).unwrap();
-        assert_eq!(node.state(), &records[cut - 1].state);
-    }
-    let mut tampered = records;
-    let last = tampered.last_mut().unwrap();
-    last.state.person = None;
-    assert!(refold(&mut learning_manager(), &tampered).is_err());
-}
-
 /// A restart with other settings scores the interaction again, and counts nothing twice.
 #[test]
 fn looking_anew_learns_nothing_twice() {
     let mut manager = learning_manager();
     let mut state = asked(&mut manager);
     for seq in 2..5 {
-        state = manager.next(&state, &heard(seq, state.act.prompt, answer(Response::No)), at(seq));
+        state = reply(&mut manager, &state, answer(Response::No));
         let again = manager.next(&state, &Cause::Reconfigured, at(seq));
         assert_eq!(again.open.as_ref().unwrap().posterior, state.open.as_ref().unwrap().posterior);
         assert_eq!(again.person, state.person);

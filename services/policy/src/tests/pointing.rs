@@ -1,10 +1,11 @@
 //! Gestures: evidence about the object, and nothing else.
 
 use super::*;
-use scene::WordId;
+
+pub(super) const GESTURES: [(&str, &str); 1] = [("dialogue.gesture.enabled", "true")];
 
 fn pointing_manager() -> Manager {
-    settings_with(&[("dialogue.gesture.enabled", "true")]).manager().unwrap()
+    settings_with(&GESTURES).manager().unwrap()
 }
 
 fn place(bowl: &str) -> [f64; 3] {
@@ -15,10 +16,6 @@ fn place(bowl: &str) -> [f64; 3] {
 /// An utterance with a gesture towards a bowl.
 fn shown(seq: u64, prompt: PromptId, reading: Reading, bowl: &str) -> Cause {
     Cause::Utterance(Utterance { gesture: Some(place(bowl)), ..typed(seq, prompt, reading) })
-}
-
-fn word(name: &str) -> WordId {
-    settings().scene.word_named(name).unwrap()
 }
 
 #[test]
@@ -63,9 +60,7 @@ fn a_far_off_gesture_is_outvoted() {
     let mut manager = pointing_manager();
     let cause = shown(1, PromptId(0), Reading::default(), "white");
     let state = manager.next(&manager.first(), &cause, at(1));
-    let base = ["metallic", "big", "counter"].map(word).to_vec();
-    let cause = heard(2, PromptId(0), Reading { base, ..Reading::default() });
-    let state = manager.next(&state, &cause, at(2));
+    let state = remark(&mut manager, &state, words(&["metallic", "big", "counter"]));
     let metal2 = settings().scene.object_named("metal2").unwrap();
     assert_eq!(state.open.unwrap().belief().most_likely(), metal2);
 }
@@ -76,21 +71,8 @@ fn where_gestures_do_not_count_they_change_nothing_and_words_with_them_do() {
     let alone = shown(1, PromptId(0), Reading::default(), "clear");
     let state = manager.next(&manager.first(), &alone, at(1));
     assert_eq!((&state.open, state.applied), (&None, UtteranceSeq(1)));
-    let said = Reading { base: vec![word("white")], ..Reading::default() };
+    let said = words(&["white"]);
     let with = manager.next(&state, &shown(2, PromptId(0), said.clone(), "clear"), at(2));
-    let without = manager.next(&state, &heard(2, PromptId(0), said), at(2));
+    let without = remark(&mut manager, &state, said);
     assert_eq!(belief(&with), belief(&without));
-}
-
-#[test]
-fn journals_with_gestures_fold_again_bit_for_bit() {
-    let mut manager = pointing_manager();
-    let (mut state, mut records) = (manager.first(), Vec::new());
-    for (n, bowl) in ["clear", "metal", "clear", "white2"].into_iter().enumerate() {
-        let cause = shown(n as u64 + 1, state.act.prompt, answer(Response::No), bowl);
-        state = manager.next(&state, &cause, at(n as u64));
-        records.push(Record { cause, at: at(n as u64), state: state.clone() });
-    }
-    refold(&mut pointing_manager(), &records).unwrap();
-    assert!(refold(&mut super::manager(), &records).is_err());
 }

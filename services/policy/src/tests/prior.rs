@@ -6,67 +6,46 @@ fn manager_with(over: &[(&str, &str)]) -> Manager {
     settings_with(over).manager().unwrap()
 }
 
-const HISTORY: [(&str, &str); 1] = [("dialogue.prior.objects", "history")];
+pub(super) const HISTORY: [(&str, &str); 1] = [("dialogue.prior.objects", "history")];
 const ABSENT: [(&str, &str); 1] = [("dialogue.prior.absent", "0.1")];
 
 /// Has `name` asked for with every word that it has, and delivered.
-fn deliver(manager: &mut Manager, state: &State, name: &str, seq: &mut u64) -> State {
+fn deliver(manager: &mut Manager, state: &State, name: &str) -> State {
     let scene = settings().scene;
     let wanted = scene.object_named(name).unwrap();
     let base: Vec<_> = scene.vocabulary(wanted).flat_map(|word| [word; 4]).collect();
-    *seq += 1;
-    let cause = heard(*seq, PromptId(0), Reading { base, ..Reading::default() });
-    let state = manager.next(state, &cause, at(*seq));
+    let state = remark(manager, state, Reading { base, ..Reading::default() });
     let (pick, object) = state.act.pick.expect("sure enough");
     assert_eq!(object, wanted);
-    manager.next(&state, &Cause::PickEnded { pick, outcome: PickOutcome::Delivered }, at(*seq))
-}
-
-fn first_belief(manager: &mut Manager, state: &State, seq: u64) -> Vec<f64> {
-    belief(&manager.next(state, &heard(seq + 1, PromptId(0), Reading::default()), at(seq + 1)))
+    manager.next(&state, &delivered(pick), at(state.applied.0))
 }
 
 #[test]
-fn what_was_fetched_often_is_believed_first_only_where_that_is_chosen() {
-    let (mut seq, mut manager) = (0, manager_with(&HISTORY));
+fn history_raises_the_prior_only_where_that_is_configured() {
+    let mut manager = manager_with(&HISTORY);
     let mut state = manager.first();
     for name in ["clear", "clear", "metal", "clear"] {
-        state = deliver(&mut manager, &state, name, &mut seq);
+        state = deliver(&mut manager, &state, name);
     }
     assert_eq!((state.history.of("clear"), state.history.of("metal")), (3, 1));
+    let next = |manager: &mut Manager| belief(&remark(manager, &state, Reading::default()));
     let expected = [1.0, 1.0, 1.0, 2.0, 1.0, 4.0].map(|n| n / 10.0);
-    for (p, expected) in first_belief(&mut manager, &state, seq).iter().zip(expected) {
+    for (p, expected) in next(&mut manager).iter().zip(expected) {
         assert!((p - expected).abs() < 1e-12, "{p} {expected}");
     }
-    let uniform = first_belief(&mut super::manager(), &state, seq);
+    let uniform = next(&mut super::manager());
     assert!(uniform.iter().all(|p| (p - 1.0 / 6.0).abs() < 1e-12), "{uniform:?}");
 }
 
 #[test]
-fn history_survives_a_restart_and_another_scene_and_folds_again() {
-    let (mut seq, mut manager) = (0, manager_with(&HISTORY));
-    let (mut state, mut records) = (manager.first(), Vec::new());
-    for _ in 0..3 {
-        seq += 1;
-        let base = [settings().scene.word_named("clear").unwrap(); 6].to_vec();
-        let cause = heard(seq, PromptId(0), Reading { base, ..Reading::default() });
-        for step in 0..2 {
-            let cause = match (step, state.act.pick) {
-                (1, Some((pick, _))) => Cause::PickEnded { pick, outcome: PickOutcome::Delivered },
-                _ => cause.clone(),
-            };
-            state = manager.next(&state, &cause, at(seq));
-            records.push(Record { cause, at: at(seq), state: state.clone() });
-        }
-    }
-    assert_eq!(state.history.of("clear"), 3);
-    refold(&mut manager_with(&HISTORY), &records).unwrap();
-    let node = PolicyNode::recover(manager_with(&HISTORY), records).unwrap();
-    assert_eq!(node.state().history, state.history);
+fn history_survives_another_scene() {
+    let mut manager = manager_with(&HISTORY);
+    let first = manager.first();
+    let state = deliver(&mut manager, &first, "clear");
     let markers = settings_with(&[("group.scene", "markers")]);
     let there = markers.manager().unwrap().next(&state, &Cause::Reconfigured, at(99));
     let back = manager.next(&there, &Cause::Reconfigured, at(100));
-    assert_eq!(back.history, state.history);
+    assert_eq!((back.history.of("clear"), back.history), (1, state.history));
 }
 
 #[test]
@@ -74,9 +53,8 @@ fn who_denies_everything_is_told_that_it_is_not_here() {
     let mut manager = manager_with(&ABSENT);
     let mut state = asked(&mut manager);
     assert_eq!(belief(&state).len(), 7);
-    for seq in 2..40 {
-        let prompt = state.act.prompt;
-        state = manager.next(&state, &heard(seq, prompt, answer(Response::No)), at(seq));
+    for _ in 2..40 {
+        state = reply(&mut manager, &state, answer(Response::No));
         if state.open.is_none() {
             break;
         }
@@ -96,9 +74,9 @@ fn whoever_wants_what_is_here_gets_it_though_it_might_not_be() {
     for wanted in (0..6).map(ObjectId::from) {
         let mut manager = manager_with(&ABSENT);
         let mut state = asked(&mut manager);
-        for seq in 2..30 {
+        for _ in 2..30 {
             let truth = Answer::truthful(&model, state.act.question, wanted).reading(&model);
-            state = manager.next(&state, &heard(seq, state.act.prompt, truth), at(seq));
+            state = reply(&mut manager, &state, truth);
             if state.act.kind != ActKind::Ask {
                 break;
             }

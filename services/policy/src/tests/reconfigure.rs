@@ -2,7 +2,6 @@
 
 use super::*;
 use dialogue::manager::NAMES_MAX;
-use messages::PickId;
 
 /// The shipped bowls without those in `gone`, and with these TOML lines behind them.
 fn bowls(gone: &[&str], more: &str) -> Settings {
@@ -37,26 +36,16 @@ fn manager_of(settings: &Settings) -> Manager {
     settings.manager().unwrap()
 }
 
-fn word(name: &str) -> scene::WordId {
-    settings().scene.word_named(name).unwrap()
-}
-
 /// After "the white one", with a question standing.
 fn white_asked(manager: &mut Manager) -> State {
-    let base = vec![word("white")];
-    let state = manager.next(
-        &manager.first(),
-        &heard(1, PromptId(0), Reading { base, ..Reading::default() }),
-        at(1),
-    );
+    let state = first(manager, words(&["white"]));
     assert_eq!(state.act.kind, ActKind::Ask);
     state
 }
 
 /// Enough to order `metal2` at once.
 fn all_about_metal2() -> Reading {
-    let words = ["metallic", "metal", "big", "counter"].map(word);
-    Reading { base: words.into_iter().flat_map(|word| [word; 4]).collect(), ..Reading::default() }
+    words(&["metallic", "metal", "big", "counter"].repeat(4))
 }
 
 fn probability(settings: &Settings, state: &State, name: &str) -> f64 {
@@ -85,7 +74,7 @@ fn a_bowl_that_is_gone_drops_out_and_a_new_one_counts_with_what_was_said() {
 #[test]
 fn the_same_scene_gives_the_same_belief_bit_for_bit() {
     for seed in 0..40 {
-        for record in random_dialogue(seed) {
+        for record in random_dialogue(&settings(), seed) {
             let state = record.state;
             if state.open.is_none() {
                 continue;
@@ -119,7 +108,7 @@ fn an_answer_to_a_question_from_before_still_counts() {
 
 #[test]
 fn a_change_of_the_scene_folds_again_bit_for_bit_from_the_record_before() {
-    let mut records = random_dialogue(5);
+    let mut records = random_dialogue(&settings(), 5);
     records.truncate(6);
     let before = records.last().unwrap().state.clone();
     let changed = bowls(&["metal"], SEVENTH);
@@ -146,8 +135,7 @@ fn a_change_of_the_scene_folds_again_bit_for_bit_from_the_record_before() {
 #[test]
 fn a_pick_whose_object_is_gone_ends_the_interaction_and_another_goes_on() {
     let mut manager = manager();
-    let sure = heard(1, PromptId(0), all_about_metal2());
-    let state = manager.next(&manager.first(), &sure, at(1));
+    let state = first(&mut manager, all_about_metal2());
     let (pick, _) = state.act.pick.expect("sure enough");
     let gone = manager_of(&bowls(&["metal2"], "")).next(&state, &Cause::Reconfigured, at(2));
     assert_eq!(gone.ended.map(|ended| ended.outcome), Some(Outcome::SceneChanged));
@@ -163,8 +151,7 @@ fn a_pick_whose_object_is_gone_ends_the_interaction_and_another_goes_on() {
     let second = PickId { attempt: pick.attempt + 1, ..pick };
     assert_eq!(again.act.pick, Some((second, metal2)));
     assert!(again.act.id > moved.act.id);
-    let done = Cause::PickEnded { pick: second, outcome: PickOutcome::Delivered };
-    let done = manager.next(&again, &done, at(4));
+    let done = manager.next(&again, &delivered(second), at(4));
     assert_eq!(done.ended.and_then(|ended| ended.name).as_deref(), Some("metal2"));
     assert_eq!(done.history.of("metal2"), 1);
 }
@@ -172,11 +159,10 @@ fn a_pick_whose_object_is_gone_ends_the_interaction_and_another_goes_on() {
 #[test]
 fn a_pick_that_the_person_gave_up_is_not_ordered_again() {
     let mut manager = manager();
-    let sure = heard(1, PromptId(0), all_about_metal2());
-    let state = manager.next(&manager.first(), &sure, at(1));
+    let state = first(&mut manager, all_about_metal2());
     let (pick, _) = state.act.pick.expect("sure enough");
     let cancel = Reading { intent: Intent::Cancel, ..Reading::default() };
-    let state = manager.next(&state, &heard(2, PromptId(0), cancel), at(2));
+    let state = remark(&mut manager, &state, cancel);
     let left = Cause::PickEnded { pick, outcome: PickOutcome::Cancelled };
     let state = manager.next(&state, &left, at(3));
     assert_eq!(state.ended.map(|ended| ended.outcome), Some(Outcome::Cancelled));
@@ -217,11 +203,9 @@ fn a_word_that_nothing_had_counts_for_what_has_it_now() {
 fn what_is_remembered_is_bounded() {
     let mut manager = settings_with(&[("dialogue.turns.questions_max", "1000")]).manager().unwrap();
     let mut state = asked(&mut manager);
-    for n in 2..600 {
-        let base = vec![word("white"), word("metallic")];
-        let prompt = state.act.prompt;
-        state =
-            manager.next(&state, &heard(n, prompt, Reading { base, ..Reading::default() }), at(n));
+    let said = words(&["white", "metallic"]);
+    for _ in 2..600 {
+        state = reply(&mut manager, &state, said.clone());
     }
     let open = state.open.as_ref().expect("nothing was decided by this");
     assert!(open.forgotten > 0 && open.evidence.len() <= NAMES_MAX / 4, "{}", open.evidence.len());

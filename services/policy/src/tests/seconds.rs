@@ -1,48 +1,30 @@
 //! Questions that cost the robot's own seconds.
 
-use super::{answer, at, heard, settings_with};
-use dialogue::manager::Record;
-use dialogue::manager::{Manager, refold};
-
+use super::{answer, first, reply, settings_with};
 use config::Settings;
 use dialogue::Answer;
-use messages::{ActKind, PromptId};
+use messages::ActKind;
 use scene::{ObjectId, Question, Reading, Response};
 
 const ROBOT: (&str, &str) = ("dialogue.costs.from", "robot");
-const POINTING: [(&str, &str); 3] =
+pub(super) const POINTING: [(&str, &str); 3] =
     [ROBOT, ("dialogue.mode", "present"), ("dialogue.planner", "no-attribute")];
-
-/// A dialogue with a truthful user, until the pick.
-fn dialogue(manager: &mut Manager, wanted: ObjectId) -> Vec<Record> {
-    let (mut state, mut records) = (manager.first(), Vec::new());
-    let mut cause = heard(1, PromptId(0), Reading::default());
-    for turn in 1..20 {
-        state = manager.next(&state, &cause, at(turn));
-        records.push(Record { cause, at: at(turn), state: state.clone() });
-        if state.act.kind != ActKind::Ask {
-            break;
-        }
-        let problem = manager.problem();
-        let said = Answer::truthful(problem.model, state.act.question, wanted);
-        cause = heard(turn + 1, state.act.prompt, said.reading(problem.model));
-    }
-    records
-}
 
 /// The promises that hold with the written costs hold with the robot's own.
 #[test]
-fn everybody_is_understood_in_as_few_questions() {
+fn truthful_users_are_asked_as_few_questions() {
     for (over, questions_max) in [(&[ROBOT][..], 3), (&POINTING[..], 5)] {
-        let settings = settings_with(over);
-        let mut manager = settings.manager().unwrap();
+        let mut manager = settings_with(over).manager().unwrap();
+        let model = manager.model().clone();
         for wanted in (0..6).map(ObjectId::from) {
-            let records = dialogue(&mut manager, wanted);
-            let open = records.last().unwrap().state.open.as_ref().unwrap();
+            let mut state = first(&mut manager, Reading::default());
+            while state.act.kind == ActKind::Ask {
+                let said = Answer::truthful(&model, state.act.question, wanted);
+                state = reply(&mut manager, &state, said.reading(&model));
+            }
+            let open = state.open.as_ref().unwrap();
             assert_eq!(open.pick.map(|(_, object)| object), Some(wanted));
             assert!(open.questions() <= questions_max, "{wanted:?}: {}", open.questions());
-            let again = &mut settings.manager().unwrap();
-            refold(again, &records).unwrap_or_else(|e| panic!("{wanted:?}: {e}"));
         }
     }
 }
@@ -54,12 +36,10 @@ fn the_nearest_is_pointed_at_first() {
     let seconds = &settings.durations.as_ref().unwrap().point;
     let mut left: Vec<usize> = (0..6).collect();
     left.sort_by(|a, b| seconds[*a].total_cmp(&seconds[*b]));
-    let mut state =
-        manager.next(&manager.first(), &heard(1, PromptId(0), Reading::default()), at(1));
-    for (n, object) in left.iter().take(4).enumerate() {
+    let mut state = first(&mut manager, Reading::default());
+    for object in left.iter().take(4) {
         assert_eq!(state.act.question, Question::Point(ObjectId::from(*object)), "{seconds:?}");
-        let no = heard(n as u64 + 2, state.act.prompt, answer(Response::No));
-        state = manager.next(&state, &no, at(n as u64 + 2));
+        state = reply(&mut manager, &state, answer(Response::No));
     }
 }
 

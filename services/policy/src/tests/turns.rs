@@ -154,18 +154,15 @@ fn while_the_person_speaks_on_nothing_is_decided() {
     let request = Utterance { more: true, ..typed(1, PromptId(0), Reading::default()) };
     let held = manager.next(&manager.first(), &Cause::Utterance(request), at(1));
     assert_eq!(held.act, manager.first().act, "no question yet");
-    let clear = settings().scene.word_named("clear").unwrap();
-    let more = Reading { base: vec![clear], ..Reading::default() };
-    let more = Utterance { more: true, ..typed(2, PromptId(0), more) };
+    let more = Utterance { more: true, ..typed(2, PromptId(0), words(&["clear"])) };
     let held = manager.next(&held, &Cause::Utterance(more), at(2));
     assert_eq!(held.act, manager.first().act);
     let decided = manager.next(&held, &Cause::Quiet, at(3));
     assert_ne!(decided.act, held.act);
     assert_eq!(decided.act.utterance, UtteranceSeq(2));
     assert_eq!(decided.open.as_ref().unwrap().deferred, None);
-    let both = manager.next(&manager.first(), &heard(1, PromptId(0), Reading::default()), at(1));
-    let clear = Reading { base: vec![clear], ..Reading::default() };
-    let both = manager.next(&both, &heard(2, PromptId(0), clear), at(2));
+    let both = first(&mut manager, Reading::default());
+    let both = remark(&mut manager, &both, words(&["clear"]));
     assert_eq!(belief(&decided), belief(&both), "the belief took in both");
 }
 

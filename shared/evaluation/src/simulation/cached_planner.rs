@@ -115,21 +115,17 @@ impl Planner for CachedPlanner {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::simulation::testing::{bowls, yes_no};
-    use dialogue::{Model, Params, registry};
+    use crate::simulation::testing::{House, planner};
+    use dialogue::registry;
 
     #[test]
     fn cached_planner_decides_like_its_planner_and_shares_its_decisions() {
-        let scene = bowls();
-        let model = Model::new(&scene, Params::default());
-        let problem = yes_no(&model);
+        let house = House::new();
+        let problem = house.problem();
         let belief = Belief::uniform(6);
         for name in registry::names() {
             let shared = Arc::new(SharedDecisions::default());
-            let cache = || {
-                let planner = registry::planner(name).unwrap();
-                CachedPlanner::new(planner).sharing(Arc::clone(&shared))
-            };
+            let cache = || planner(name).sharing(Arc::clone(&shared));
             let (mut one, mut other) = (cache(), cache());
             for step in [0, 1] {
                 let step = Step { interaction: 0, step };

@@ -1,21 +1,22 @@
 //! Files cut short and bytes flipped, at every test.
 
-use proptest::prelude::*;
-
 use super::{Entry, TestJournal, entry, header};
 use crate::{Ending, Journal, JournalOpenError, read};
 
+/// What was acknowledged before the cut is there, and what the cut tore is removed.
 #[test]
-fn journal_cut_at_any_byte_of_the_last_batch_loses_only_that_batch() {
+fn journal_cut_at_any_byte_keeps_the_batches_that_are_whole() {
     let test = TestJournal::new();
-    let lens = test.write(&[&[entry(1)], &[entry(2)], &[entry(3), entry(4)]]);
+    let batches = [vec![entry(1)], vec![entry(2)], vec![entry(3), entry(4)], vec![entry(7)]];
+    let lens = test.write(&batches.each_ref().map(Vec::as_slice));
     let whole = test.bytes();
-    for cut in lens[2]..lens[3] {
+    for cut in lens[0]..=lens[4] {
         test.overwrite(&whole[..cut as usize]);
         let recovered = test.recover();
-        assert_eq!(recovered.records, [entry(1), entry(2)], "cut at {cut}");
-        assert_eq!(recovered.truncated_bytes, cut - lens[2], "cut at {cut}");
-        assert_eq!(test.bytes(), whole[..lens[2] as usize], "cut at {cut}");
+        let kept = lens.iter().filter(|&&len| len <= cut).count() - 1;
+        assert_eq!(recovered.records, batches[..kept].concat(), "cut at {cut}");
+        assert_eq!(recovered.truncated_bytes, cut - lens[kept], "cut at {cut}");
+        assert_eq!(test.bytes(), whole[..lens[kept] as usize], "cut at {cut}");
     }
 }
 
@@ -86,14 +87,12 @@ fn journal_rejects_a_moved_frame() {
 fn journal_rejects_a_frame_of_another_journal() {
     let (test, other) = (TestJournal::new(), TestJournal::new());
     let lens = test.write(&[&[entry(1)]]);
-    other.write(&[&[entry(2)]]);
     let elsewhere = crate::Header { epoch: 9, ..header() };
-    let third = TestJournal::new();
-    let (mut journal, _) = Journal::open(&third.path, &elsewhere).unwrap();
+    let (mut journal, _) = Journal::open(&other.path, &elsewhere).unwrap();
     journal.append(&entry(3)).unwrap();
     journal.sync().unwrap();
     let start = &test.bytes()[..lens[0] as usize];
-    test.overwrite(&[start, &third.bytes()[lens[0] as usize..]].concat());
+    test.overwrite(&[start, &other.bytes()[lens[0] as usize..]].concat());
     let error = Journal::<Entry>::open(&test.path, &header()).unwrap_err();
     assert!(matches!(error, JournalOpenError::Corrupt { seq: 1, .. }), "{error}");
 }
@@ -117,33 +116,4 @@ fn journal_treats_a_hole_in_an_unacknowledged_batch_as_a_torn_tail() {
     bytes[lens[1] as usize..][..4096].fill(0);
     test.overwrite(&bytes);
     assert_eq!(test.recover().records, [entry(1)]);
-}
-
-fn record() -> impl Strategy<Value = Entry> {
-    let belief = prop::collection::vec(any::<f64>().prop_filter("", |p| !p.is_nan()), 0..9);
-    (any::<u32>(), "\\PC{0,40}", belief).prop_map(|(number, text, belief)| Entry {
-        number,
-        text,
-        belief,
-    })
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 64, ..ProptestConfig::default() })]
-
-    /// Whatever is written, a cut anywhere leaves the batches that were whole before it.
-    #[test]
-    fn a_cut_leaves_a_prefix_of_the_batches(
-        batches in prop::collection::vec(prop::collection::vec(record(), 1..4), 1..6),
-        cut in 0.0..=1.0f64,
-    ) {
-        let test = TestJournal::new();
-        let slices: Vec<&[Entry]> = batches.iter().map(Vec::as_slice).collect();
-        let lens = test.write(&slices);
-        let whole = test.bytes();
-        let cut = lens[0] + ((whole.len() as u64 - lens[0]) as f64 * cut) as u64;
-        test.overwrite(&whole[..cut as usize]);
-        let kept = lens.iter().filter(|&&len| len <= cut).count() - 1;
-        prop_assert_eq!(test.recover().records, batches[..kept].concat());
-    }
 }

@@ -1,40 +1,10 @@
 use super::*;
-use crate::simulation::testing::{bowls, yes_no};
+use crate::simulation::testing::{House, planner as planner_of};
 use crate::simulation::{UserKind, interactions};
-use dialogue::{Actions, Belief, Costs, Mode, Model, Params, evaluate, registry};
-use language::Language;
-
-struct House {
-    scene: Scene,
-    reader: Reader,
-    model: Model,
-    pace: Pace,
-}
-
-impl House {
-    fn new() -> Self {
-        let scene = bowls();
-        let reader = Reader::new(&scene, Language::Careful);
-        let model = Model::new(&scene, Params::default());
-        Self { scene, reader, model, pace: Pace::default() }
-    }
-
-    fn room(&self) -> Room<'_> {
-        Room {
-            scene: &self.scene,
-            reader: &self.reader,
-            problem: yes_no(&self.model),
-            turns: TurnTaking::default(),
-            voice: Voice::default(),
-            pace: &self.pace,
-            motions: None,
-            request: true,
-        }
-    }
-}
+use dialogue::{Actions, Belief, Costs, Mode, evaluate, registry};
 
 fn play(house: &House, planner: &str, wanted: &str, turns: Vec<Turn>) -> SimulatedInteraction {
-    let mut manager = house.room().manager(CachedPlanner::new(registry::planner(planner).unwrap()));
+    let mut manager = house.room().manager(planner_of(planner));
     let wanted = house.scene.object_named(wanted).unwrap();
     interact(
         &house.room(),
@@ -58,7 +28,7 @@ fn simulation_average_matches_the_exact_evaluation() {
             if planner.uses_user_model() {
                 continue;
             }
-            let mut manager = room.manager(CachedPlanner::new(registry::planner(name).unwrap()));
+            let mut manager = room.manager(planner_of(name));
             let tally = interactions(room, &mut manager, UserKind::Model, seed, 0..n);
             let exact = evaluate(&mut *planner, &room.problem, &Belief::uniform(6), 1e-9);
             let case = format!("seed {seed}, {name}: {exact:?}");
@@ -123,7 +93,7 @@ fn interaction_without_an_end_has_the_value_of_waiting() {
     let house = House::new();
     let mut room = house.room();
     room.problem.costs = Costs::PREDECESSOR;
-    let mut manager = room.manager(CachedPlanner::new(registry::planner("never-ask").unwrap()));
+    let mut manager = room.manager(planner_of("never-ask"));
     let wanted = ObjectId(0);
     let mut silent = SimulatedUser::scripted(wanted, vec![]);
     let outcome = interact(&room, &mut manager, &mut silent, &mut Rng::new(1));

@@ -1,27 +1,11 @@
 use super::*;
-use crate::simulation::CachedPlanner;
-use crate::simulation::testing::{bowls, yes_no};
+use crate::simulation::testing::{House, planner};
 use crate::simulation::users::TimedKind;
-use dialogue::{Model, Params, TurnTaking, registry};
-use language::{Language, Reader};
-use preflight::{Pace, Voice};
 
 fn run(rules: &str, talker: &TimedKind, n: u64) -> Tally {
-    let scene = bowls();
-    let reader = Reader::new(&scene, Language::Careful);
-    let model = Model::new(&scene, Params::default());
-    let pace = Pace::default();
-    let room = Room {
-        scene: &scene,
-        reader: &reader,
-        problem: yes_no(&model),
-        turns: TurnTaking::default(),
-        voice: Voice::default(),
-        pace: &pace,
-        motions: None,
-        request: true,
-    };
-    let mut manager = room.manager(CachedPlanner::new(registry::planner("lookahead").unwrap()));
+    let house = House::new();
+    let room = house.room();
+    let mut manager = room.manager(planner("lookahead"));
     dialogues(&room, &mut manager, &Rules::parse(rules).unwrap(), talker, 1, 0..n)
 }
 

@@ -1,33 +1,13 @@
 use super::*;
-use crate::simulation::testing::bowls;
-use dialogue::{Actions, Mode, Params};
-use language::{Language, Reader};
+use crate::simulation::testing::House;
+use dialogue::{Actions, Mode};
 use preflight::Pace;
-use scene::{AttributeId, Scene};
+use scene::AttributeId;
 
-struct House {
-    scene: Scene,
-    reader: Reader,
-    model: dialogue::Model,
-}
-
-impl House {
-    fn new() -> Self {
-        let scene = bowls();
-        let reader = Reader::new(&scene, Language::Careful);
-        let model = dialogue::Model::new(&scene, Params::default());
-        Self { scene, reader, model }
-    }
-
-    fn domain(&self) -> Domain<'_> {
-        Domain { scene: &self.scene, model: &self.model }
-    }
-
-    /// Every question that can be asked.
-    fn questions(&self) -> Vec<Question> {
-        let actions = Actions { mode: Mode::Present, attribute: true, which: true };
-        actions.questions(&self.model)
-    }
+/// Every question that can be asked.
+fn questions(house: &House) -> Vec<Question> {
+    let actions = Actions { mode: Mode::Present, attribute: true, which: true };
+    actions.questions(&house.model)
 }
 
 /// The probability of the wanted object after a turn, from a uniform belief.
@@ -70,14 +50,14 @@ fn user_number_fixes_the_wanted_object_and_the_replies() {
 #[test]
 fn replies_are_read_in_favour_of_the_wanted_object() {
     let house = House::new();
-    let questions = house.questions();
+    let all_questions = questions(&house);
     for (kind, least) in
         [(UserKind::Truthful, 1.0), (UserKind::Noisy, 0.80), (UserKind::Human, 0.93)]
     {
         let (mut for_it, mut all, mut silent) = (0, 0, 0);
         for number in 0..400 {
             let mut user = kind.user(house.domain(), 17, number);
-            for question in &questions {
+            for question in &all_questions {
                 let turn = user.answer(house.domain(), *question);
                 let Some(p) = believed(&house, *question, &user, &turn) else {
                     silent += 1;
@@ -119,7 +99,7 @@ fn user_slip_gives_another_answer_if_one_exists() {
     let house = House::new();
     let mut rng = Rng::new(1);
     let shape = house.scene.attribute_named("shape").unwrap();
-    for question in house.questions() {
+    for question in questions(&house) {
         for wanted in (0..6).map(ObjectId::from) {
             let truth = Answer::truthful(&house.model, question, wanted);
             let wrong = answer_or_slip(&house.model, question, wanted, 1.0, &mut rng);
@@ -132,7 +112,7 @@ fn user_slip_gives_another_answer_if_one_exists() {
 fn user_denies_an_absent_object_and_never_describes_it() {
     let house = House::new();
     let mut user = SimulatedUser::truthful(None);
-    for question in house.questions() {
+    for question in questions(&house) {
         let reply = user.answer(house.domain(), question).reply;
         let denied = matches!(question, Question::Point(_) | Question::Attribute(..));
         assert_eq!(reply.text(), denied.then_some("no"), "{question:?}");
