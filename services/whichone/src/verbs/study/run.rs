@@ -5,13 +5,13 @@
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, PoisonError, RwLock, mpsc};
+use std::sync::{Arc, mpsc};
 use std::thread;
 
 use dialogue::manager::Manager;
-use dialogue::{Attribution, Decision, TurnTaking, registry};
+use dialogue::{Attribution, TurnTaking, registry};
 use evaluation::simulation::{
-    CHUNK, CachedPlanner, Room, SharedDecisions, Situation, Tally, interactions, turns,
+    CHUNK, CachedPlanner, Room, SharedDecisions, Tally, interactions, turns,
 };
 
 use super::design::{People, Row};
@@ -118,28 +118,6 @@ impl Worker<'_> {
             People::RealTime { rules, kind, .. } => {
                 turns::dialogues(&self.room, manager, rules, kind, self.seed, numbers)
             }
-        }
-    }
-}
-
-/// Decisions of one planner, shared by all threads. Each thread looks into its own cache first, so locks are rarely
-/// contended.
-#[derive(Default)]
-pub(super) struct Board(RwLock<HashMap<Situation, Arc<Decision>>>);
-
-/// Most decisions that are kept; the first ones stay, as they are the most frequent.
-const DECISIONS_MAX: usize = 1 << 19;
-
-impl SharedDecisions for Board {
-    fn find(&self, situation: &Situation) -> Option<Arc<Decision>> {
-        // Every entry is whole, also where a thread has panicked.
-        self.0.read().unwrap_or_else(PoisonError::into_inner).get(situation).cloned()
-    }
-
-    fn add(&self, situation: &Situation, decision: &Arc<Decision>) {
-        let mut decisions = self.0.write().unwrap_or_else(PoisonError::into_inner);
-        if decisions.len() < DECISIONS_MAX {
-            decisions.insert(situation.clone(), Arc::clone(decision));
         }
     }
 }
