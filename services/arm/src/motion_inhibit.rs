@@ -51,43 +51,33 @@ impl ArmNode {
     }
 }
 
+/// Logs the reason, and the remedy for the operator.
 fn log(inhibit: MotionInhibit) {
-    match inhibit {
-        MotionInhibit::None => tracing::info!("the robot can move"),
-        MotionInhibit::Calibrating => tracing::info!("a gripper is not calibrated yet"),
-        _ => tracing::warn!(help = help(inhibit), "{}", description(inhibit)),
-    }
-}
-
-fn description(inhibit: MotionInhibit) -> &'static str {
-    match inhibit {
-        MotionInhibit::None | MotionInhibit::Calibrating => "",
-        MotionInhibit::Stopped => "the robot's emergency stop holds; the motion stop is latched",
-        MotionInhibit::Error => "the robot has a fault",
-        MotionInhibit::Disabled => "the robot is disabled",
-        MotionInhibit::Unheard => "no messages from the robot, or from a part of it",
-        MotionInhibit::Stale => "joint states are stale; halting",
-        MotionInhibit::Gripper => "a gripper has a fault, or is not the electric one",
-    }
-}
-
-/// Remedy for the operator.
-fn help(inhibit: MotionInhibit) -> &'static str {
-    match inhibit {
-        MotionInhibit::None | MotionInhibit::Calibrating => "",
-        MotionInhibit::Stopped => {
-            "release the button, reset and enable the robot, then: whichone resume-motion"
+    let (what, help) = match inhibit {
+        MotionInhibit::None => return tracing::info!("the robot can move"),
+        MotionInhibit::Calibrating => return tracing::info!("a gripper is not calibrated yet"),
+        MotionInhibit::Stopped => (
+            "the robot's emergency stop holds; the motion stop is latched",
+            "release the button, reset and enable the robot, then: whichone resume-motion",
+        ),
+        MotionInhibit::Error => {
+            ("the robot has a fault", "check the robot, then reset and enable it")
         }
-        MotionInhibit::Error => "check the robot, then reset and enable it",
-        MotionInhibit::Disabled => "enable the robot; the arm then resumes",
-        MotionInhibit::Unheard => {
-            "start the robot's bridge or whichone-baxter; with one gripper only, set arm.limb"
+        MotionInhibit::Disabled => {
+            ("the robot is disabled", "enable the robot; the arm then resumes")
         }
-        MotionInhibit::Stale => {
-            "check the robot's bridge and network; the arm resumes with fresh joint states"
-        }
-        MotionInhibit::Gripper => {
-            "reset the gripper, or set arm.limb to the limb with a working one"
-        }
-    }
+        MotionInhibit::Unheard => (
+            "no messages from the robot, or from a part of it",
+            "start the robot's bridge or whichone-baxter; with one gripper only, set arm.limb",
+        ),
+        MotionInhibit::Stale => (
+            "joint states are stale; halting",
+            "check the robot's bridge and network; the arm resumes with fresh joint states",
+        ),
+        MotionInhibit::Gripper => (
+            "a gripper has a fault, or is not the electric one",
+            "reset the gripper, or set arm.limb to the limb with a working one",
+        ),
+    };
+    tracing::warn!(help, "{what}");
 }

@@ -36,20 +36,6 @@ pub enum Event {
 }
 
 impl Fingers {
-    /// Open fingers without calibration.
-    pub fn new() -> Self {
-        Self {
-            width_m: STROKE_M,
-            goals: Vec::new(),
-            calibrated: false,
-            calibrating: false,
-            object_m: None,
-            gripping: false,
-            missed: false,
-            handled: Default::default(),
-        }
-    }
-
     /// Handles a command. A repeated one, or one that needs calibration that is missing,
     /// changes nothing.
     pub fn command(&mut self, message: &EndEffectorCommand) -> Option<Event> {
@@ -156,8 +142,18 @@ impl Fingers {
 }
 
 impl Default for Fingers {
+    /// Open fingers without calibration.
     fn default() -> Self {
-        Self::new()
+        Self {
+            width_m: STROKE_M,
+            goals: Vec::new(),
+            calibrated: false,
+            calibrating: false,
+            object_m: None,
+            gripping: false,
+            missed: false,
+            handled: Default::default(),
+        }
     }
 }
 
@@ -170,7 +166,7 @@ mod tests {
     }
 
     fn calibrated() -> Fingers {
-        let mut fingers = Fingers::new();
+        let mut fingers = Fingers::default();
         assert_eq!(say(&mut fingers, Command::Go(50.0), 1), None);
         assert_eq!(
             fingers.state(0, true).moving,

@@ -102,7 +102,7 @@ impl Robot {
         }
     }
 
-    /// Number of successful grasps.
+    /// The objects around it.
     pub fn objects(&self) -> &ObjectWorld {
         &self.objects
     }

@@ -94,8 +94,8 @@ fn clearance(report: &mut Report) {
     let (mut worst, mut verdicts, mut count) = (0.0_f64, 0, 0);
     for row in rows("clearance_reference.csv") {
         let n = numbers(&row[..23]);
-        let found = Clearance::of(robot, &seven(&n[..7]), &seven(&n[7..14]), &[TABLE]);
-        let groups = [found.left_right, found.left_body, found.right_body, found.left_self];
+        let found = Clearance::of(robot, &[seven(&n[..7]), seven(&n[7..14])], &[TABLE]);
+        let groups = [found.arms, found.body[0], found.body[1], found.own[0]];
         for (group, expected) in groups.iter().zip(&n[14..18]) {
             worst = worst.max((group.distance_m - expected).abs());
         }
@@ -106,7 +106,7 @@ fn clearance(report: &mut Report) {
     let micros: Vec<f64> = left
         .iter()
         .zip(right.iter().rev())
-        .map(|(left, right)| timed(|| Clearance::of(robot, left, right, &[TABLE])).1)
+        .map(|(left, right)| timed(|| Clearance::of(robot, &[*left, *right], &[TABLE])).1)
         .collect();
     let note = format!(
         "all distances of both arms, 603 pairs; {verdicts} of {count} reference verdicts, \

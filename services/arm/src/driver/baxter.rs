@@ -159,19 +159,14 @@ impl BaxterDriver {
         if stale || now.since(*heard) > STALE {
             return MotionInhibit::Stale;
         }
-        let conditions = self.used_grippers().map(|gripper| gripper.condition(now));
-        let worst = conditions.map(|condition| match condition {
-            Condition::Ready => (0, MotionInhibit::None),
-            Condition::Uncalibrated => (1, MotionInhibit::Calibrating),
-            Condition::Faulty => (2, MotionInhibit::Gripper),
-            Condition::Stale => (3, MotionInhibit::Stale),
-            Condition::Unheard => (4, MotionInhibit::Unheard),
-        });
-        worst.max_by_key(|(rank, _)| *rank).map_or(MotionInhibit::None, |(_, inhibit)| inhibit)
-    }
-
-    fn used_grippers(&self) -> impl Iterator<Item = &Gripper> {
-        self.grippers.iter().zip(self.used).filter_map(|(gripper, used)| used.then_some(gripper))
+        let used = self.grippers.iter().zip(self.used).filter(|(_, used)| *used);
+        match used.map(|(gripper, _)| gripper.condition(now)).max() {
+            None | Some(Condition::Ready) => MotionInhibit::None,
+            Some(Condition::Uncalibrated) => MotionInhibit::Calibrating,
+            Some(Condition::Faulty) => MotionInhibit::Gripper,
+            Some(Condition::Stale) => MotionInhibit::Stale,
+            Some(Condition::Unheard) => MotionInhibit::Unheard,
+        }
     }
 
     /// Returns whether the robot accepts commands.

@@ -167,50 +167,38 @@ impl<'a> ArmShape<'a> {
     }
 }
 
-/// Both arms' clearances by group, metres, negative where shapes overlap.
+/// Both arms' clearances by group, metres, negative where shapes overlap; pairs are left and right.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
     /// Arm to arm.
-    pub left_right: Gap,
-    /// Left arm to torso, pedestal and head.
-    pub left_body: Gap,
-    /// Right arm to torso, pedestal and head.
-    pub right_body: Gap,
-    /// Left arm to itself.
-    pub left_self: Gap,
-    /// Right arm to itself.
-    pub right_self: Gap,
-    /// Left arm to the nearest of the surroundings.
-    pub left_surroundings: Gap,
-    /// Right arm to the nearest of the surroundings.
-    pub right_surroundings: Gap,
+    pub arms: Gap,
+    /// Each arm to torso, pedestal and head.
+    pub body: [Gap; 2],
+    /// Each arm to itself.
+    pub own: [Gap; 2],
+    /// Each arm to the nearest of the surroundings.
+    pub surroundings: [Gap; 2],
 }
 
 impl Clearance {
-    /// Clearances with the arms at `left` and `right` among `surroundings`.
-    pub fn of(robot: &Robot, left: &Joints, right: &Joints, surroundings: &[Cuboid]) -> Self {
-        let left = ArmShape::at(robot.arm(Limb::Left), left);
-        let right = ArmShape::at(robot.arm(Limb::Right), right);
+    /// Clearances with the arms at `q` among `surroundings`.
+    pub fn of(robot: &Robot, q: &[Joints; 2], surroundings: &[Cuboid]) -> Self {
+        let arms = Limb::BOTH.map(|limb| ArmShape::at(robot.arm(limb), &q[limb]));
         let around = |arm: &ArmShape<'_>| {
             surroundings.iter().fold(Gap::none(f64::INFINITY), |gap, cuboid| {
                 gap.min(arm.to_cuboid("surroundings", cuboid, gap.distance_m))
             })
         };
         Self {
-            left_right: left.to_arm(&right, f64::INFINITY),
-            left_body: left.to_trunk(f64::INFINITY),
-            right_body: right.to_trunk(f64::INFINITY),
-            left_self: left.to_itself(f64::INFINITY),
-            right_self: right.to_itself(f64::INFINITY),
-            left_surroundings: around(&left),
-            right_surroundings: around(&right),
+            arms: arms[0].to_arm(&arms[1], f64::INFINITY),
+            body: arms.each_ref().map(|arm| arm.to_trunk(f64::INFINITY)),
+            own: arms.each_ref().map(|arm| arm.to_itself(f64::INFINITY)),
+            surroundings: arms.each_ref().map(around),
         }
     }
 
     /// Returns the smallest gap within the robot.
     pub fn robot(&self) -> Gap {
-        [self.left_body, self.right_body, self.left_self, self.right_self]
-            .into_iter()
-            .fold(self.left_right, Gap::min)
+        self.body.into_iter().chain(self.own).fold(self.arms, Gap::min)
     }
 }

@@ -10,17 +10,10 @@ fn clearances_equal_the_reference() {
     assert_eq!(rows.len(), 100);
     for row in rows {
         let n = numbers(&row[..23]);
-        let found = Clearance::of(robot(), &joints(&n[..7]), &joints(&n[7..14]), &[TABLE]);
-        let groups = [
-            found.left_right,
-            found.left_body,
-            found.right_body,
-            found.left_self,
-            found.right_self,
-            found.left_surroundings,
-            found.right_surroundings,
-        ];
-        for (group, expected) in groups.iter().zip(&n[14..21]) {
+        let found = Clearance::of(robot(), &[joints(&n[..7]), joints(&n[7..14])], &[TABLE]);
+        let pairs = [found.body, found.own, found.surroundings];
+        let groups = std::iter::once(found.arms).chain(pairs.into_iter().flatten());
+        for (group, expected) in groups.zip(&n[14..21]) {
             assert!((group.distance_m - expected).abs() < 1e-6, "{group:?} {expected}");
         }
         if found.robot().distance_m.abs() > 1e-4 {
@@ -72,11 +65,8 @@ fn clearance_bound_is_exact_below_and_truncates_above() {
 
 #[test]
 fn named_postures_are_clear_except_the_tuck() {
-    let clear =
-        |left: &Joints, right: &Joints| Clearance::of(robot(), left, right, &[]).robot().distance_m;
-    assert!(clear(&neutral(), &neutral()) > 0.06);
-    let untuck = Limb::BOTH.map(|limb| named(limb, "untuck"));
-    assert!(clear(&untuck[0], &untuck[1]) > 0.02);
-    let tuck = Limb::BOTH.map(|limb| named(limb, "tuck"));
-    assert!(clear(&tuck[0], &tuck[1]) < -0.07);
+    let clear = |q: [Joints; 2]| Clearance::of(robot(), &q, &[]).robot().distance_m;
+    assert!(clear([neutral(); 2]) > 0.06);
+    assert!(clear(Limb::BOTH.map(|limb| named(limb, "untuck"))) > 0.02);
+    assert!(clear(Limb::BOTH.map(|limb| named(limb, "tuck"))) < -0.07);
 }

@@ -11,7 +11,7 @@ use crate::gripper;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::planning::grasp::ObjectPose;
 use crate::robot::Robot;
-use crate::trajectory::{Phase, Stage, Timeline, Trajectory, refuse_outside};
+use crate::trajectory::{Phase, Stage, Timeline, Trajectory};
 
 /// Waypoints of a straight line left out at its upper end, so that the corner there has room: 3 cm.
 pub(crate) const CORNER: usize = 6;
@@ -77,11 +77,10 @@ pub fn plan_return(
     settings: &PlanSettings,
 ) -> Result<Timeline, PlanError> {
     let chain = &robot.arm(limb).chain;
-    refuse_outside(chain.limits(), &arms[limb])?;
     let at = chain.forward(&arms[limb]).translation;
     // Whatever the arm is over now it has reached down to without touching.
     let place = ([at.x, at.y, at.z], at.z - BELOW_TIP_M);
-    let scene = PlanningScene::new(robot, limb, arms, others, place, settings);
+    let scene = PlanningScene::new(robot, limb, arms, others, place, settings)?;
     let way = home(&scene, &scene.q, Search::Yes)?;
     let stage = Stage {
         phase: Phase::Return,

@@ -10,7 +10,7 @@ use crate::gripper;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::planning::grasp::ObjectPose;
 use crate::robot::Robot;
-use crate::trajectory::{Phase, Stage, Timeline, refuse_outside};
+use crate::trajectory::{Phase, Stage, Timeline};
 
 /// Choices that are tried.
 const TRIES: usize = 64;
@@ -109,9 +109,8 @@ pub(crate) fn planning_scene<'a>(
     others: &[Cuboid],
     settings: &'a PlanSettings,
 ) -> Result<PlanningScene<'a>, PlanError> {
-    refuse_outside(robot.arm(limb).chain.limits(), &arms[limb])?;
     let bottom = object.bottom_z_m();
-    let scene = PlanningScene::new(robot, limb, arms, others, (object.xyz_m, bottom), settings);
+    let scene = PlanningScene::new(robot, limb, arms, others, (object.xyz_m, bottom), settings)?;
     Ok(scene.with_board_under(&object.cuboid()))
 }
 

@@ -13,8 +13,8 @@ use crate::kinematics::limb::{Joints, Limb};
 use crate::kinematics::limits::MotionLimits;
 use crate::planning::grasp::ObjectPose;
 use crate::robot::{Arm, Robot};
-use crate::trajectory::Trajectory;
 use crate::trajectory::joint_path::{blocking, largest_change, searched, simple};
+use crate::trajectory::{Trajectory, refuse_outside};
 
 /// Settings of plans. Lengths in metres, frame `base`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,6 +84,9 @@ pub(crate) struct PlanningScene<'a> {
 
 impl<'a> PlanningScene<'a> {
     /// `place_m` is where the arm is to work, and `lowest_z_m` how far down it reaches there.
+    ///
+    /// # Errors
+    /// [`PlanError::Start`] for an arm outside its joint limits.
     pub(crate) fn new(
         robot: &'a Robot,
         limb: Limb,
@@ -91,11 +94,12 @@ impl<'a> PlanningScene<'a> {
         others: &[Cuboid],
         (place_m, lowest_z_m): ([f64; 3], f64),
         settings: &'a PlanSettings,
-    ) -> Self {
+    ) -> Result<Self, PlanError> {
+        refuse_outside(robot.arm(limb).chain.limits(), &arms[limb])?;
         let mut surroundings = static_obstacles::table(settings.table_z_m, place_m, lowest_z_m);
         surroundings.extend(static_obstacles::objects(others, settings.table_z_m));
         let arm = robot.arm(limb);
-        Self {
+        Ok(Self {
             limb,
             arm,
             chain: &arm.chain,
@@ -107,7 +111,7 @@ impl<'a> PlanningScene<'a> {
             surroundings,
             board: None,
             held: None,
-        }
+        })
     }
 
     /// Adds the board that the object to be fetched stands on, as wide as the hand.

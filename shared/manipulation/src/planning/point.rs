@@ -11,7 +11,7 @@ use crate::collision::Cuboid;
 use crate::kinematics::chain::positive;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::robot::Robot;
-use crate::trajectory::{Phase, Stage, Timeline, Trajectory, refuse_outside};
+use crate::trajectory::{Phase, Stage, Timeline, Trajectory};
 
 /// Pitch of the gripper towards the object, radians from the horizontal, best first.
 const ELEVATIONS: [f64; 4] = [0.9, 0.6, 1.2, PI / 2.0];
@@ -50,12 +50,9 @@ pub fn plan_point(
     let mut furthest = Furthest::default();
     let mut choices = Vec::new();
     let sides = Limb::BOTH.into_iter().filter(|side| limb.is_none_or(|limb| limb == *side));
+    let place = (target_m, target_m[2] - LOWER_M);
     let scenes: Vec<_> = sides
-        .map(|side| {
-            refuse_outside(robot.arm(side).chain.limits(), &arms[side])?;
-            let place = (target_m, target_m[2] - LOWER_M);
-            Ok(PlanningScene::new(robot, side, arms, others, place, settings))
-        })
+        .map(|side| PlanningScene::new(robot, side, arms, others, place, settings))
         .collect::<Result<_, PlanError>>()?;
     for scene in &scenes {
         for (rank, gripper) in looks(scene, &Vector3::from(target_m)) {

@@ -33,8 +33,8 @@ const STEPS_MAX: usize = 16 * STEPS;
 const INSTANT_S: f64 = 1e-6;
 
 impl TimeScaling {
-    /// Stops `smoothed trajectory` at its time `at_s` as soon as the limits' stop decelerations allow; none if it
-    /// stands there already.
+    /// Stops `smoothed` at its time `at_s` as soon as the limits' stop decelerations allow; none if
+    /// it stands there already.
     pub(crate) fn stopping(smoothed: &SmoothedTrajectory, at_s: f64) -> Option<Self> {
         let even_s = even_stop_s(smoothed, at_s);
         if even_s < INSTANT_S {

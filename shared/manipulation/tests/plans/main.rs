@@ -47,10 +47,9 @@ fn assert_sound(plan: &Timeline, others: &[Cuboid], what: &str) {
     for k in 0..=(plan.duration_s() / 0.02).ceil() as usize {
         let now = plan.at(k as f64 * 0.02);
         assert!((0.0..=STROKE_M).contains(&now.width_m), "{what}: {now:?}");
-        let [left, right] = arms_with(limb, now.q);
-        let clearance = Clearance::of(robot(), &left, &right, others);
+        let clearance = Clearance::of(robot(), &arms_with(limb, now.q), others);
         assert!(clearance.robot().distance_m > 0.008, "{what}: {now:?} {clearance:?}");
-        let around = [clearance.left_surroundings, clearance.right_surroundings][limb];
+        let around = clearance.surroundings[limb];
         assert!(others.is_empty() || around.distance_m > -1e-4, "{what}: {now:?} {around:?}");
     }
     let end = plan.at(1e9);

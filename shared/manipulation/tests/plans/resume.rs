@@ -34,8 +34,8 @@ fn a_pick_may_start_anywhere() {
     while planned < 3 {
         let limits = &robot().arm(Limb::Right).limits.position;
         let arms = arms_with(Limb::Right, limits.at(&std::array::from_fn(|_| random.unit())));
-        let clear = Clearance::of(robot(), &arms[0], &arms[1], &table);
-        if clear.robot().distance_m < 0.03 || clear.right_surroundings.distance_m < 0.01 {
+        let clear = Clearance::of(robot(), &arms, &table);
+        if clear.robot().distance_m < 0.03 || clear.surroundings[1].distance_m < 0.01 {
             continue;
         }
         let what = format!("seed {seed}: {arms:?}");

@@ -34,19 +34,17 @@ pub(super) struct Gripper {
     sequence: u32,
 }
 
-/// Condition of a gripper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Condition of a gripper, from the best to the worst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Condition {
-    /// Ready.
     Ready,
-    /// No report yet.
-    Unheard,
-    /// No report for a while.
-    Stale,
+    Uncalibrated,
     /// A fault, or not the electric gripper.
     Faulty,
-    /// Needs calibration.
-    Uncalibrated,
+    /// No report for a while.
+    Stale,
+    /// No report yet.
+    Unheard,
 }
 
 impl Gripper {
