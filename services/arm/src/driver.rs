@@ -113,7 +113,8 @@ pub enum Source {
 impl Measured {
     /// Returns whether the limb is in its neutral posture.
     pub fn is_at_rest(&self, robot: &Robot, limb: Limb) -> bool {
-        self.posture.is_at_rest(robot, limb, self.accuracy_rad)
+        let rest = self.posture.joints[limb].iter().zip(&robot.arm(limb).neutral);
+        rest.into_iter().all(|(q, neutral)| (q - neutral).abs() < self.accuracy_rad)
     }
 
     /// Returns whether the limb's fingers hold something, if known.

@@ -117,11 +117,3 @@ impl ArmState {
         self.pick.as_ref().filter(|pick| pick.phase != PickPhase::Done)
     }
 }
-
-impl Posture {
-    /// Returns whether the limb is in its neutral posture, each joint to `accuracy_rad`.
-    pub fn is_at_rest(&self, robot: &Robot, limb: Limb, accuracy_rad: f64) -> bool {
-        let (joints, neutral) = (&self.joints[limb], &robot.arm(limb).neutral);
-        joints.iter().zip(neutral).all(|(q, rest)| (q - rest).abs() < accuracy_rad)
-    }
-}

@@ -1,6 +1,5 @@
 //! Plans with a purpose: fetching an object, pointing at one, returning to rest.
 
-mod check;
 mod choices;
 mod deliver;
 mod error;
@@ -13,11 +12,10 @@ mod point;
 mod posture;
 mod static_obstacles;
 
-pub use check::check_reachable;
 pub use deliver::{plan_delivery, plan_return};
 pub use error::PlanError;
 pub use grasp::{Grasp, GraspError, ObjectPose};
-pub use pick::plan_pick;
+pub use pick::{check_reachable, plan_pick};
 pub use planning_scene::PlanSettings;
 pub use point::plan_point;
 pub(crate) use static_obstacles::Obstacle;

@@ -3,7 +3,7 @@
 use super::choices::{Choice, Choices};
 use super::deliver::{CORNER, deliver, fingers};
 use super::error::{Furthest, PlanError};
-use super::fetch::{ABOVE, GRASP};
+use super::fetch::{ABOVE, Carry, GRASP};
 use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
 use crate::gripper;
@@ -83,7 +83,42 @@ pub fn plan_pick(
 /// Progress from which on a longer search may help: the grasp itself and its lift are possible.
 const BEYOND_HOLD: usize = 5;
 
-pub(crate) fn planning_scenes<'a>(
+/// For each object, the limb that can fetch it from the neutral posture among the others, or why
+/// none can: what a scene is checked for before anything moves. Ways between are not searched.
+pub fn check_reachable(
+    robot: &Robot,
+    objects: &[ObjectPose],
+    limb: Option<Limb>,
+    settings: &PlanSettings,
+) -> Vec<Result<Limb, PlanError>> {
+    let cuboids: Vec<Cuboid> = objects.iter().map(ObjectPose::cuboid).collect();
+    let check = |i: usize| {
+        let mut others = cuboids.clone();
+        others.remove(i);
+        let scenes =
+            planning_scenes(robot, &objects[i], limb, &robot.neutral(), &others, settings)?;
+        let mut furthest = Furthest::default();
+        for scene in &scenes {
+            let mut choices =
+                Choices::new(&objects[i], std::slice::from_ref(scene), &mut furthest)?;
+            while let Some(choice) = choices.next(&mut furthest) {
+                let carrying = choice.carrying(&objects[i]);
+                let fetched = choice.descent(&carrying).and_then(|_| {
+                    Carry::find(&carrying, &choice.above, Search::No).map_err(|error| (6, error))
+                });
+                match fetched {
+                    Ok(_) => return Ok(scene.limb),
+                    Err((progress, error)) => furthest.add(progress, error),
+                }
+                choices.failed(&choice);
+            }
+        }
+        Err(furthest.report())
+    };
+    (0..objects.len()).map(check).collect()
+}
+
+fn planning_scenes<'a>(
     robot: &'a Robot,
     object: &ObjectPose,
     limb: Option<Limb>,

@@ -2,10 +2,9 @@
 //! refinement.
 
 use super::IkSolution;
-use super::crossing;
-use super::fold;
 use super::goal::Aim;
-use super::golden;
+use super::hidden;
+use super::line_search;
 use super::posture::{Branch, Posture};
 use super::refine::{Refined, refine};
 use super::slice::{NARROW_RAD, Slice};
@@ -102,13 +101,13 @@ impl Nearly {
             let seen = &self.seen[i];
             let before = i.checked_sub(1).map(|i| &self.seen[i]).filter(|b| beside(seen, b));
             let after = self.seen.get(i + 1).filter(|b| beside(seen, b));
-            let crossed =
-                after.and_then(|b| crossing::between(aim, seen.branch, &seen.posture, &b.posture));
+            let crossed = after
+                .and_then(|b| hidden::at_crossing(aim, seen.branch, &seen.posture, &b.posture));
             let fold = |neighbour: Option<&Seen>, side: f64| {
                 let goes_on = neighbour.is_some_and(|b| b.posture.lack == 0.0);
                 let end = seen.posture.q[0] + side * self.cell_rad;
                 (seen.posture.lack == 0.0 && !goes_on)
-                    .then(|| fold::beside(aim, seen.branch, &seen.posture, end))
+                    .then(|| hidden::beside_fold(aim, seen.branch, &seen.posture, end))
                     .flatten()
             };
             let found = crossed.or_else(|| fold(before, -1.0)).or_else(|| fold(after, 1.0))?;
@@ -175,7 +174,7 @@ fn least_violation(aim: &Aim<'_>, cell_rad: f64, branch: Branch, from: Posture) 
     let (lower, upper) = aim.limits(0);
     let mut best = from;
     let range = ((from.q[0] - cell_rad).max(lower), (from.q[0] + cell_rad).min(upper));
-    golden::narrow(range, LOOKS, STEEPEST, |s0| {
+    line_search::narrow(range, LOOKS, STEEPEST, |s0| {
         let Some(posture) = Slice::roughly(aim, s0).posture(branch) else { return f64::INFINITY };
         if posture.violation < best.violation || posture.is_solution() {
             best = posture;

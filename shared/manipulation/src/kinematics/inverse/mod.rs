@@ -5,17 +5,14 @@
 //! within [`TOLERANCE_M`] and [`TOLERANCE_RAD`] of the target and inside every joint limit to the
 //! last bit, or it is an [`Unreachable`].
 
-mod angles;
 mod closer;
-mod crossing;
-mod fold;
 mod goal;
-mod golden;
+mod hidden;
+mod line_search;
 mod nearest;
 mod posture;
 mod refine;
 mod restarts;
-mod secant;
 mod slice;
 mod solve;
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The solution nearest to a given posture.
 
 use super::goal::Aim;
-use super::golden;
+use super::line_search;
 use super::posture::{Branch, Posture};
 use super::refine::{Refined, drift, refine};
 use super::slice::{NARROW_RAD, Slice};
@@ -113,7 +113,7 @@ fn follow(aim: &Aim<'_>, seed: &Joints, from: &Near) -> Near {
         _ => 1e3 + (at - s0).abs(),
     };
     look(s0);
-    golden::narrow(
+    line_search::narrow(
         ((s0 - SAMPLE_RAD).max(lower), (s0 + SAMPLE_RAD).min(upper)),
         LOOKS,
         f64::INFINITY,

@@ -12,10 +12,9 @@ use std::f64::consts::{PI, TAU};
 
 use nalgebra::Vector3;
 
-use super::angles::{ArmAngles, Elbow, root};
 use super::goal::Aim;
-use super::posture::{Branch, Posture};
-use super::secant::Secant;
+use super::line_search::Secant;
+use super::posture::{ArmAngles, Branch, Elbow, Posture, root};
 use crate::kinematics::chain::Alternating;
 use crate::kinematics::limits::PositionLimits;
 

@@ -70,7 +70,6 @@ pub(crate) fn all_but(objects: &[ObjectPose], i: usize) -> Vec<Cuboid> {
 /// Results on many tables.
 #[derive(Debug, Default)]
 pub(crate) struct Tally {
-    pub(crate) tables: usize,
     pub(crate) objects: usize,
     pub(crate) picked: usize,
     pub(crate) by_the_nearer_arm: usize,
@@ -90,7 +89,6 @@ pub(crate) struct Tally {
 
 impl Tally {
     pub(crate) fn add(&mut self, other: Self) {
-        self.tables += other.tables;
         self.objects += other.objects;
         self.picked += other.picked;
         self.by_the_nearer_arm += other.by_the_nearer_arm;
@@ -109,7 +107,7 @@ impl Tally {
 pub(crate) fn try_table(robot: &Robot, checker: &Checker<'_>, seed: u64) -> Tally {
     let objects = random_table(&mut Random::seeded(seed));
     let settings = settings();
-    let mut tally = Tally { tables: 1, objects: objects.len(), ..Tally::default() };
+    let mut tally = Tally { objects: objects.len(), ..Tally::default() };
     for (i, object) in objects.iter().enumerate() {
         let others = all_but(&objects, i);
         let clock = std::time::Instant::now();

@@ -1,6 +1,6 @@
-//! Golden-section search.
+//! Golden-section search, and the secant method for a wrist that is nearly straight.
 
-/// Narrows `(a, b)` towards the least value of `f` with `looks` evaluations; ends early where it
+/// Golden section: narrows `(a, b)` towards the least value of `f` with `looks` evaluations; ends early where it
 /// is 0, or where it cannot become 0 any more because it falls by at most `steepest` per unit. The
 /// caller keeps what `f` saw.
 pub(crate) fn narrow(
@@ -26,6 +26,31 @@ pub(crate) fn narrow(
             d = a + SHARE * (b - a);
             at_d = f(d);
         }
+    }
+}
+
+/// The secant method on the angle between a wrist offset and the one that it leads to.
+#[derive(Default)]
+pub(crate) struct Secant {
+    /// The last turn of the offset and the angle before it, radians; 0 at first.
+    turned: f64,
+    before: f64,
+}
+
+impl Secant {
+    /// The greatest turn of the offset in one round, radians.
+    const TURN_MAX: f64 = 0.7;
+
+    /// Returns a better offset than `offset`, which leads to `next`.
+    pub(crate) fn improve(&mut self, offset: (f64, f64), next: (f64, f64)) -> (f64, f64) {
+        let (x, y) = offset;
+        let ahead = (x * next.1 - y * next.0).atan2(x * next.0 + y * next.1);
+        let slope = (ahead - self.before) / self.turned;
+        let turn = if self.turned != 0.0 && slope.abs() > 1e-2 { -ahead / slope } else { ahead };
+        self.turned = turn.clamp(-Self::TURN_MAX, Self::TURN_MAX);
+        self.before = ahead;
+        let (s, c) = self.turned.sin_cos();
+        (c * x - s * y, s * x + c * y)
     }
 }
 
