@@ -1,7 +1,7 @@
 //! Executes one program at a time: the current step and the time within it.
 
 use crate::driver::{ArmDriver, Command, Fault, Fingers};
-use manipulation::{Limb, Trajectory};
+use manipulation::{Limb, State, Trajectory};
 use messages::{MotionInhibit, MotionPhase, PickId, PickPhase};
 use scene::ObjectId;
 use std::collections::VecDeque;
@@ -189,8 +189,7 @@ fn follow(
     let remaining_s = motion.duration_s() - *t_s;
     let passed_s = seconds.min(remaining_s).max(0.0);
     *t_s += passed_s;
-    let (q, qd) = motion.sample(*t_s);
-    let qdd = motion.acceleration(*t_s);
+    let State { q, qd, qdd } = motion.state(*t_s);
     let command = Command { limb, q, qd, qdd, t_s: *t_s, fingers };
     driver.command(&command, passed_s);
     if seconds < remaining_s {

@@ -30,10 +30,10 @@ mod samples;
 mod trajectory;
 
 pub use collision::{ArmShape, Capsule, Clearance, Cuboid, Gap};
-pub use kinematics::chain::{Axis, Chain, Frame, Jacobian, LineError, ZeroPosture};
+pub use kinematics::chain::{Chain, Frame, Jacobian, LineError};
 pub use kinematics::inverse::{IkSolution, TOLERANCE_M, TOLERANCE_RAD, Unreachable};
 pub use kinematics::limb::{JOINTS, Joints, Limb};
-pub use kinematics::limits::{self, MotionLimits, PositionLimits};
+pub use kinematics::limits::{MotionLimits, PositionLimits};
 pub use planning::{
     Grasp, GraspError, ObjectPose, PlanError, PlanSettings, check_reachable, plan_delivery,
     plan_pick, plan_point, plan_return,

@@ -83,7 +83,7 @@ pub struct MotionLimits {
 }
 
 /// Duration of a motion stop from a joint's greatest velocity, seconds.
-pub const STOP_S: f64 = 0.1;
+const STOP_S: f64 = 0.1;
 
 impl MotionLimits {
     /// Returns the limits of joints with these bounds; the stop follows from the velocities.

@@ -3,4 +3,4 @@
 pub(crate) mod chain;
 pub(crate) mod inverse;
 pub(crate) mod limb;
-pub mod limits;
+pub(crate) mod limits;

@@ -75,8 +75,8 @@ pub(crate) struct PlanningScene<'a> {
     pub(crate) q: Joints,
     pub(crate) settings: &'a PlanSettings,
     other_arm: &'a Arm,
-    other: ArmShape<'a>,
-    surroundings: Vec<Obstacle>,
+    pub(crate) other: ArmShape<'a>,
+    pub(crate) surroundings: Vec<Obstacle>,
     /// Number of the board under the object to fetch.
     board: Option<usize>,
     held: Option<Held>,
@@ -164,13 +164,13 @@ impl<'a> PlanningScene<'a> {
     }
 
     /// Returns the arm and what it holds at one posture.
-    fn look(&self, q: &Joints) -> Look<'a> {
+    pub(crate) fn look(&self, q: &Joints) -> Look<'a> {
         let block = self.held.as_ref().map(|held| held.block(&self.chain.forward(q)));
         Look { arm: ArmShape::at(self.arm, q), block }
     }
 
     /// Returns the obstacle too near if the next check is only after a motion of `moved_m`.
-    fn blocked_at(&self, Look { arm, block }: &Look<'_>, moved_m: f64) -> Option<Gap> {
+    pub(crate) fn blocked_at(&self, Look { arm, block }: &Look<'_>, moved_m: f64) -> Option<Gap> {
         let near_m = 0.5 * moved_m;
         let margin_m = self.settings.margin_m.max(near_m);
         let held = || {
@@ -188,35 +188,6 @@ impl<'a> PlanningScene<'a> {
             .chain(std::iter::once_with(|| arm.to_arm(&self.other, margin_m)))
             .find(Gap::is_some)
             .or_else(held)
-    }
-
-    /// Returns how much nearer than [`ROOMY_M`] the arm at `q` is to anything, as a share of it; or what it
-    /// would touch.
-    pub(crate) fn crowding(&self, q: &Joints) -> Result<f64, Gap> {
-        let look = self.look(q);
-        if let Some(gap) = self.blocked_at(&look, 0.0) {
-            return Err(gap);
-        }
-        let arm = &look.arm;
-        let around = self.surroundings.iter();
-        let gap = around
-            .map(|(name, cuboid)| arm.to_cuboid(name, cuboid, ROOMY_M))
-            .chain([arm.to_itself(ROOMY_M), arm.to_trunk(ROOMY_M)])
-            .fold(arm.to_arm(&self.other, ROOMY_M), Gap::min);
-        Ok((ROOMY_M - gap.distance_m) / ROOMY_M)
-    }
-
-    /// Height of the elbow's lowest point above the table's top, metres.
-    pub(crate) fn elbow_m(&self, q: &Joints) -> f64 {
-        let frames = self.chain.frames(q);
-        let elbow = self.arm.enclosures.iter().filter(|e| ELBOW.contains(&e.joint));
-        let lowest = elbow
-            .map(|e| {
-                let z = |end| frames[e.joint].point(end).z;
-                z(&e.capsule.a).min(z(&e.capsule.b)) - e.capsule.radius
-            })
-            .fold(f64::INFINITY, f64::min);
-        lowest - self.settings.table_z_m
     }
 
     /// Returns the first of `waypoints` that would touch something.
@@ -302,8 +273,8 @@ impl<'a> PlanningScene<'a> {
 }
 
 /// The arm and what it holds at one posture.
-struct Look<'a> {
-    arm: ArmShape<'a>,
+pub(crate) struct Look<'a> {
+    pub(crate) arm: ArmShape<'a>,
     block: Option<Block>,
 }
 
@@ -317,12 +288,6 @@ impl Look<'_> {
         arm.chain(held).fold(0.0, f64::max)
     }
 }
-
-/// Clearance beyond which more of it is worth nothing, metres.
-const ROOMY_M: f64 = 0.05;
-
-/// The joints whose links are the elbow: the upper arm's turn and the elbow's own.
-const ELBOW: std::ops::RangeInclusive<usize> = 2..=3;
 
 /// Variants of a motion: distance of a corner's ends from its waypoint, radians of
 /// joint distance, at so large a share of the speed. Wide ones are passed without a stop; at sharp

@@ -21,12 +21,18 @@ const FREE_RAD: f64 = 0.2;
 /// Seconds that a posture that all but touches something is worse than one with room around it.
 const CROWDED_S: f64 = 1.0;
 
+/// Clearance beyond which more of it is worth nothing, metres.
+const ROOMY_M: f64 = 0.05;
+
 /// Seconds that an elbow on the table would be worse than one [`LOW_M`] above it. More than any way
 /// over which it can be avoided takes.
 const ELBOW_S: f64 = 6.0;
 
+/// The joints whose links are the elbow: the upper arm's turn and the elbow's own.
+const ELBOW: std::ops::RangeInclusive<usize> = 2..=3;
+
 /// Height above the table from which an elbow is not low, metres.
-pub(crate) const LOW_M: f64 = 0.1;
+const LOW_M: f64 = 0.1;
 
 /// Number of postures considered for one pose, and their least distance, radians: neighbours
 /// fare alike.
@@ -41,14 +47,37 @@ impl PlanningScene<'_> {
         self.seconds_between(from, q) + LIMIT_S * confined + self.lowness_s(q)
     }
 
-    /// Returns the cost of the surroundings of `q`, seconds, or the collision.
+    /// Returns the cost of the surroundings of `q`, seconds, or what the arm would touch there.
     pub(crate) fn crowding_s(&self, q: &Joints) -> Result<f64, Gap> {
-        self.crowding(q).map(|share| CROWDED_S * share)
+        let look = self.look(q);
+        if let Some(gap) = self.blocked_at(&look, 0.0) {
+            return Err(gap);
+        }
+        let arm = &look.arm;
+        let around = self.surroundings.iter();
+        let gap = around
+            .map(|(name, cuboid)| arm.to_cuboid(name, cuboid, ROOMY_M))
+            .chain([arm.to_itself(ROOMY_M), arm.to_trunk(ROOMY_M)])
+            .fold(arm.to_arm(&self.other, ROOMY_M), Gap::min);
+        Ok(CROWDED_S * ((ROOMY_M - gap.distance_m) / ROOMY_M))
     }
 
     /// Returns the cost of the elbow's height at `q`, seconds.
     fn lowness_s(&self, q: &Joints) -> f64 {
         ELBOW_S * ((LOW_M - self.elbow_m(q)) / LOW_M).clamp(0.0, 1.0)
+    }
+
+    /// Height of the elbow's lowest point above the table's top, metres.
+    fn elbow_m(&self, q: &Joints) -> f64 {
+        let frames = self.chain.frames(q);
+        let elbow = self.arm.enclosures.iter().filter(|e| ELBOW.contains(&e.joint));
+        let lowest = elbow
+            .map(|e| {
+                let z = |end| frames[e.joint].point(end).z;
+                z(&e.capsule.a).min(z(&e.capsule.b)) - e.capsule.radius
+            })
+            .fold(f64::INFINITY, f64::min);
+        lowest - self.settings.table_z_m
     }
 
     /// Returns the cost of the lowest elbow of a whole plan, seconds.

@@ -157,12 +157,7 @@ impl Trajectory {
         (q, qd)
     }
 
-    /// Accelerations at `t_s`, rad/s². Those of a motion stop jump.
-    pub fn acceleration(&self, t_s: f64) -> Joints {
-        self.state(t_s).qdd
-    }
-
-    /// Positions, velocities and accelerations at `t_s`.
+    /// Positions, velocities and accelerations at `t_s`; accelerations of a motion stop jump.
     pub fn state(&self, t_s: f64) -> State {
         let time = self.time(t_s);
         let [q, qd, qdd] = match &self.time_scaling {

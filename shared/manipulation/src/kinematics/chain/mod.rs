@@ -14,7 +14,7 @@ pub use frame::Frame;
 pub(crate) use frame::positive;
 use general::General;
 pub use line::LineError;
-pub use zero::{Axis, ZeroPosture};
+pub(crate) use zero::{Axis, ZeroPosture};
 
 use crate::kinematics::limb::Joints;
 use crate::kinematics::limits::PositionLimits;
@@ -45,7 +45,7 @@ pub(crate) enum Geometry {
 
 impl Chain {
     /// Returns the chain of a limb with these axes, tool and position limits.
-    pub fn new(posture: &ZeroPosture, limits: PositionLimits) -> Self {
+    pub(crate) fn new(posture: &ZeroPosture, limits: PositionLimits) -> Self {
         let geometry = match Alternating::of(posture) {
             Some(alternating) => Geometry::Alternating(alternating),
             None => Geometry::General(General::of(posture)),

@@ -6,20 +6,20 @@ use nalgebra::{Isometry3, Vector3};
 /// of seven turning joints is described by this, whatever frames its description gives its links
 /// (the product of exponentials, Brockett 1984).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ZeroPosture {
+pub(crate) struct ZeroPosture {
     /// The axes, from the shoulder to the wrist.
-    pub axes: [Axis; 7],
+    pub(crate) axes: [Axis; 7],
     /// Pose of the tool frame, `<limb>_gripper`.
-    pub tool: Isometry3<f64>,
+    pub(crate) tool: Isometry3<f64>,
 }
 
 /// The axis of a turning joint.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
+pub(crate) struct Axis {
     /// Any point on it, metres.
-    pub point: Vector3<f64>,
+    pub(crate) point: Vector3<f64>,
     /// Its direction, of unit length: the joint turns about it by the right hand's rule.
-    pub direction: Vector3<f64>,
+    pub(crate) direction: Vector3<f64>,
 }
 
 impl Axis {
