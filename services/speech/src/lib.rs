@@ -94,11 +94,11 @@ impl Node for SpeechNode {
     }
 
     fn pending_since(&self) -> Option<Time> {
-        self.intake.pending_since()
+        self.intake.accepted.pending_since()
     }
 
     fn snapshot(&self) -> Option<Vec<Record>> {
-        let accepted = self.intake.snapshot()?.into_iter().map(Record::Accepted);
+        let accepted = self.intake.accepted.snapshot()?.into_iter().map(Record::Accepted);
         Some(accepted.chain(self.player.snapshot().map(Record::Presented)).collect())
     }
 }
@@ -126,7 +126,7 @@ impl SpeechNode {
             In::Microphone(status) => self.intake.set_microphone(&status, fx),
             In::RecogniserState(state) => self.intake.set_recogniser(state, fx),
             In::Mark(mark) => {
-                if self.intake.acknowledge(mark) {
+                if self.intake.accepted.acknowledge(mark) {
                     self.send(now, fx);
                 }
             }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::stream_events::Began;
-use messages::{RequestKey, Source};
+use messages::{FixedText, Partial, RequestKey, Source};
 use service::Time;
 
 /// A sound that may become an utterance.
@@ -20,6 +20,21 @@ pub(crate) struct PendingSound {
     pub(crate) onset: Time,
     /// When a live one ended; none while it lasts.
     pub(crate) end: Option<Time>,
+}
+
+impl PendingSound {
+    /// Returns interim result `number`: the words so far; `over`: the sound has its result.
+    pub(crate) fn partial(&self, number: u64, text: &str, over: bool) -> Partial {
+        Partial {
+            stream: self.key.0,
+            onset_ns: self.onset.ns(),
+            number,
+            segment: self.segment.map_or(0, |(segment, _)| segment),
+            over: u8::from(over),
+            text: FixedText::truncated(text),
+            ..Partial::default()
+        }
+    }
 }
 
 /// A client's stream that has ended.

@@ -1,6 +1,7 @@
 //! Content of one utterance, and its validation.
 
 use messages::{HYPOTHESES_MAX, POINTED_AT_MAX_M, is_somewhere};
+use scene::{Intent, Question};
 
 use crate::{Config, Hypothesis};
 
@@ -52,6 +53,13 @@ impl UtteranceContent {
         hypotheses.sort_by(|a, b| b.weight.total_cmp(&a.weight));
         hypotheses.truncate(HYPOTHESES_MAX);
         Ok(Self::words(hypotheses))
+    }
+
+    /// Returns whether the words tell the robot to stop.
+    pub(crate) fn is_stop(&self, config: &Config) -> bool {
+        self.hypotheses.first().is_some_and(|best| {
+            config.reader.read(&best.text, Question::None).intent == Intent::Stop
+        })
     }
 
     /// Returns the content if the configuration admits it.

@@ -11,15 +11,11 @@ use crate::prompt_player::PromptPlayer;
 use crate::record::{Accepted, Record};
 use crate::stream_events::StreamEvent;
 use crate::utterance_content::UtteranceContent;
-use crate::{Config, Fx, Hypothesis, Out, Recognised, RecognisedSegment, RecognitionInput};
+use crate::{Config, Fx, Hypothesis, Out, Recognised, RecognitionInput};
 use accepted::{AcceptedUtterances, Receipts};
 use hearing_status::HearingStatus;
-use messages::{
-    AppliedMark, EarState, FixedText, Injection, MotionCommand, MotionOrder, Partial,
-    ReceiptStatus, Sound, Source,
-};
+use messages::{EarState, Injection, MotionCommand, MotionOrder, ReceiptStatus, Sound, Source};
 use origin::Origin;
-use scene::{Intent, Question};
 use service::{Span, Time};
 use std::ops::RangeInclusive;
 
@@ -31,7 +27,7 @@ const TALK_S: RangeInclusive<f64> = 1.0..=60.0;
 /// The hearing half of the reducer.
 pub(crate) struct UtteranceIntake {
     config: Config,
-    accepted: AcceptedUtterances,
+    pub(crate) accepted: AcceptedUtterances,
     receipts: Receipts,
     pending: PendingSounds,
     status: HearingStatus,
@@ -66,12 +62,12 @@ impl UtteranceIntake {
         now: Time,
         fx: &mut Fx,
     ) -> bool {
-        let (key, span) = (injection.key, span(&injection, now));
+        let key = injection.key;
         let is_pending = self.pending.contains(key);
         if is_pending || self.receipts.repeat(key, fx) || !self.accepted.is_marked() {
             return false;
         }
-        let origin = |source| Origin { key, segment: (0, 1), source, span, snr_db: 0.0 };
+        let origin = Origin::of_injection(&injection, now);
         let (source, content) = match injection.sound {
             Sound::Text(text) => {
                 (Source::Text, Ok(UtteranceContent::words(vec![Hypothesis::certain(text)])))
@@ -83,15 +79,16 @@ impl UtteranceIntake {
                 (Source::Browser, UtteranceContent::transcript(hypotheses))
             }
             Sound::Wav(path) => {
-                let sound = self.pending.add(key, Source::Wav, span.0);
+                let sound = self.pending.add(key, Source::Wav, origin.span.0);
                 fx.publish(Out::Recognise(sound, RecognitionInput::File(path)));
                 return false;
             }
             Sound::Talk { longest_s } => {
-                return self.talk(origin(Source::Microphone), longest_s, now, fx);
+                let origin = Origin { source: Source::Microphone, ..origin };
+                return self.talk(origin, longest_s, now, fx);
             }
         };
-        self.accept(origin(source), content, player, now, fx)
+        self.accept(Origin { source, ..origin }, content, player, now, fx)
     }
 
     fn talk(&mut self, origin: Origin, longest_s: f64, now: Time, fx: &mut Fx) -> bool {
@@ -165,15 +162,8 @@ impl UtteranceIntake {
     /// Publishes the words of a sound so far; `over`: it has its result.
     fn publish_partial(&mut self, sound: &PendingSound, text: &str, over: bool, fx: &mut Fx) {
         self.last_partial += 1;
-        fx.publish(Out::Partial(Box::new(Partial {
-            stream: sound.key.0,
-            onset_ns: sound.onset.ns(),
-            number: self.last_partial,
-            segment: sound.segment.map_or(0, |(segment, _)| segment),
-            over: u8::from(over),
-            text: FixedText::truncated(text),
-            ..Partial::default()
-        })));
+        let partial = sound.partial(self.last_partial, text, over);
+        fx.publish(Out::Partial(Box::new(partial)));
     }
 
     pub(crate) fn set_microphone(&mut self, status: &MicrophoneStatus, fx: &mut Fx) {
@@ -208,41 +198,27 @@ impl UtteranceIntake {
         if sound.source == Source::Microphone {
             self.publish_partial(&sound, "", true, fx);
         }
-        let whole = Origin::of(&sound, 0, 1);
-        match recognised.segments {
-            Ok(segments) if segments.is_empty() => {
-                self.reject(whole, "no speech found", fx);
-            }
-            Ok(segments) => {
-                let count = segments.len() as u32;
-                for (number, segment) in (0..).zip(segments) {
-                    let origin = Origin::of(&sound, number, count).measured(&segment, now);
-                    self.recognised_segment(origin, segment, player, now, fx);
+        let segments = match recognised.segments {
+            Ok(segments) if segments.is_empty() => Err("no speech found".to_owned()),
+            segments => segments,
+        };
+        let segments = segments.unwrap_or_else(|reason| {
+            self.reject(Origin::of(&sound, 0, 1), &reason, fx);
+            Vec::new()
+        });
+        let count = segments.len() as u32;
+        for (number, segment) in (0..).zip(segments) {
+            let origin = Origin::of(&sound, number, count).measured(&segment, now);
+            self.status.set_measured(origin.span.0, segment.snr_db);
+            match segment.hypotheses {
+                Ok(hypotheses) => {
+                    self.accept(origin, Ok(UtteranceContent::words(hypotheses)), player, now, fx);
                 }
-            }
-            Err(reason) => {
-                self.reject(whole, &reason, fx);
+                Err(text) => self.report(origin, ReceiptStatus::NotForMe, &text, fx),
             }
         }
         self.report_closed_streams(fx);
         self.publish(fx);
-    }
-
-    fn recognised_segment(
-        &mut self,
-        origin: Origin,
-        segment: RecognisedSegment,
-        player: &PromptPlayer,
-        now: Time,
-        fx: &mut Fx,
-    ) {
-        self.status.set_measured(origin.span.0, segment.snr_db);
-        match segment.hypotheses {
-            Ok(hypotheses) => {
-                self.accept(origin, Ok(UtteranceContent::words(hypotheses)), player, now, fx);
-            }
-            Err(text) => self.report(origin, ReceiptStatus::NotForMe, &text, fx),
-        }
     }
 
     /// Accepts an utterance unless its content is invalid. Returns whether it is new.
@@ -265,36 +241,18 @@ impl UtteranceIntake {
             Ok(numbered) => numbered,
             Err(reason) => return self.reject(origin, &reason, fx),
         };
-        if self.is_stop(&content.hypotheses) {
+        if content.is_stop(&self.config) {
             let order = MotionOrder::Stop.code();
             let command = MotionCommand { given_ns: now.ns(), order, ..MotionCommand::default() };
             fx.publish(Out::Motion(command));
         }
-        let accepted = Accepted {
-            seq,
-            key: origin.key,
-            segment: origin.segment,
-            hypotheses: content.hypotheses,
-            gesture: content.gesture,
-            source: origin.source,
-            asked: player.asked(),
-            onset: origin.span.0,
-            end: origin.span.1,
-            snr_db: origin.snr_db,
-            accepted: now,
-        };
+        let accepted = origin.accepted(seq, content, player.asked(), now);
         fx.append(Record::Accepted(accepted.clone()));
         fx.publish(Out::Receipt(Box::new(accepted.receipt())));
         fx.publish(Out::Utterance(Box::new(accepted.utterance())));
         self.restore(accepted);
         self.publish_activity(fx);
         true
-    }
-
-    fn is_stop(&self, hypotheses: &[Hypothesis]) -> bool {
-        hypotheses.first().is_some_and(|best| {
-            self.config.reader.read(&best.text, Question::None).intent == Intent::Stop
-        })
     }
 
     /// Reports why there is no new utterance. Returns `false`.
@@ -307,15 +265,6 @@ impl UtteranceIntake {
         let receipt = origin.rejection(status, note);
         fx.publish(Out::Receipt(Box::new(receipt)));
         self.receipts.record(receipt);
-    }
-
-    /// Handles the policy's mark. Returns whether it is new.
-    pub(crate) fn acknowledge(&mut self, mark: AppliedMark) -> bool {
-        self.accepted.acknowledge(mark)
-    }
-
-    pub(crate) fn pending_since(&self) -> Option<Time> {
-        self.accepted.pending_since()
     }
 
     /// Sends the utterances that are not applied yet, and the status.
@@ -332,16 +281,4 @@ impl UtteranceIntake {
         let since = self.pending.since().into_iter().chain(self.accepted.oldest()).min();
         since.is_some_and(|since| now < since + BUSY_MAX)
     }
-
-    /// Returns the utterances that a new journal must begin with; none while some are not applied yet.
-    pub(crate) fn snapshot(&self) -> Option<Vec<Accepted>> {
-        self.accepted.snapshot()
-    }
-}
-
-/// Returns when an injection was spoken: as its client reports, otherwise now.
-fn span(injection: &Injection, now: Time) -> (Time, Time) {
-    let reported = |ns: u64| if ns == 0 { now } else { Time(ns).min(now) };
-    let onset = reported(injection.onset_ns);
-    (onset, reported(injection.end_ns).max(onset))
 }

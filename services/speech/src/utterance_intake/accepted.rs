@@ -13,7 +13,7 @@ use crate::{Fx, Out};
 const WAITING_MAX: usize = 256;
 
 /// Accepted utterances.
-pub(super) struct AcceptedUtterances {
+pub(crate) struct AcceptedUtterances {
     outbox: Outbox<Accepted>,
     /// The latest ones, applied or not.
     recent: VecDeque<Accepted>,
@@ -48,7 +48,7 @@ impl AcceptedUtterances {
     }
 
     /// Handles the policy's mark. Returns whether it is new.
-    pub(super) fn acknowledge(&mut self, mark: AppliedMark) -> bool {
+    pub(crate) fn acknowledge(&mut self, mark: AppliedMark) -> bool {
         let (before, was_marked) = (self.outbox.len(), self.is_marked);
         self.outbox.acknowledge(UtteranceSeq(mark.seq));
         self.is_marked = true;
@@ -66,7 +66,7 @@ impl AcceptedUtterances {
     }
 
     /// Returns when the utterance at the head of the queue was accepted.
-    pub(super) fn pending_since(&self) -> Option<Time> {
+    pub(crate) fn pending_since(&self) -> Option<Time> {
         self.outbox.window().next().map(|(_, accepted)| accepted.accepted)
     }
 
@@ -80,8 +80,8 @@ impl AcceptedUtterances {
         self.outbox.len()
     }
 
-    /// Returns the latest utterances, unless some are not applied yet.
-    pub(super) fn snapshot(&self) -> Option<Vec<Accepted>> {
+    /// Returns the utterances that a new journal must begin with; none while some are not applied yet.
+    pub(crate) fn snapshot(&self) -> Option<Vec<Accepted>> {
         self.outbox.is_empty().then(|| self.recent.iter().cloned().collect())
     }
 }

@@ -2,7 +2,10 @@
 
 use crate::RecognisedSegment;
 use crate::pending_sounds::PendingSound;
-use messages::{FixedText, Receipt, ReceiptStatus, RequestKey, Source};
+use crate::record::Accepted;
+use crate::utterance_content::UtteranceContent;
+use dialogue::Presentation;
+use messages::{FixedText, Injection, Receipt, ReceiptStatus, RequestKey, Source, UtteranceSeq};
 use service::{Span, Time};
 
 /// Origin of an utterance.
@@ -19,6 +22,14 @@ pub(super) struct Origin {
 }
 
 impl Origin {
+    /// Returns the origin of an injected text: it was typed when its client reports, otherwise now.
+    pub(super) fn of_injection(injection: &Injection, now: Time) -> Self {
+        let reported = |ns: u64| if ns == 0 { now } else { Time(ns).min(now) };
+        let onset = reported(injection.onset_ns);
+        let span = (onset, reported(injection.end_ns).max(onset));
+        Self { key: injection.key, segment: (0, 1), source: Source::Text, span, snr_db: 0.0 }
+    }
+
     /// Returns the origin for the end of a client's stream.
     pub(super) fn closed(key: RequestKey, utterances: u32) -> Self {
         let (segment, span) = ((u32::MAX, utterances), (Time(0), Time(0)));
@@ -39,6 +50,31 @@ impl Origin {
         let recorded = (at(segment.span_s.0), at(segment.span_s.1));
         let span = if self.span.1 == Time(0) { recorded } else { self.span };
         Self { span, snr_db: segment.snr_db, ..self }
+    }
+
+    /// Returns the utterance with its content, and the questions that it may answer.
+    pub(super) fn accepted(
+        self,
+        seq: UtteranceSeq,
+        UtteranceContent { hypotheses, gesture }: UtteranceContent,
+        asked: Vec<Presentation>,
+        now: Time,
+    ) -> Accepted {
+        let Self { key, segment, source, span: (onset, end), snr_db } = self;
+        let accepted = now;
+        Accepted {
+            seq,
+            key,
+            segment,
+            hypotheses,
+            gesture,
+            source,
+            asked,
+            onset,
+            end,
+            snr_db,
+            accepted,
+        }
     }
 
     /// Returns the receipt for a request or sound without a new utterance.
