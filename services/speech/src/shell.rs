@@ -1,5 +1,6 @@
 //! The speech service's topics and devices.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -18,8 +19,8 @@ use config::Settings;
 use crossbeam_channel::Receiver;
 use language::{Language, Reader as TextReader};
 use messages::{
-    Activity, AppliedMark, ArmStatus, AudioChunk, Hearing, Injection, MotionCommand, Partial,
-    Presented, Receipt, RobotAct, Service, Utterance, topics,
+    Activity, AppliedMark, ArmStatus, AudioChunk, EarState, Hearing, Injection, MotionCommand,
+    Partial, Presented, Receipt, RobotAct, Service, Utterance, topics,
 };
 use service::Span;
 use service::bus::{EncodedReader, PortError, Reader, Writer};
@@ -30,7 +31,6 @@ use service::service_loop::{Context, Program, Shell};
 use service::worker_channel::DeviceSender;
 
 mod microphone;
-mod recogniser;
 mod voice;
 
 /// Speech as a program.
@@ -140,7 +140,7 @@ impl Shell<SpeechNode> for SpeechShell {
             motion: bus.writer(&topics::MOTION)?,
             hearing: bus.writer(&topics::HEARING)?,
             partials: bus.writer(&topics::PARTIAL)?,
-            recogniser: recogniser::start(settings, &work, inbox),
+            recogniser: start_recogniser(settings, &work, inbox),
             microphone: microphone::start(settings, &playback_mask, inbox),
             streams: ClientStreams::start(
                 SegmenterOptions::of(&settings.speech),
@@ -200,6 +200,22 @@ impl Shell<SpeechNode> for SpeechShell {
         }
         Ok(())
     }
+}
+
+/// Starts the recogniser, or returns why it is off.
+fn start_recogniser(
+    settings: &Settings,
+    work: &Path,
+    inbox: &DeviceSender<In>,
+) -> Result<AsrWorker, String> {
+    if settings.speech.recogniser == config::Recogniser::None {
+        inbox.send(In::RecogniserState(EarState::Off));
+        return Err("speech recognition is switched off (speech.recogniser)".to_owned());
+    }
+    let (worker, events) = AsrWorker::start(settings, &work.join("recogniser"));
+    let inbox = inbox.clone();
+    forward("recogniser", events, move |event| inbox.send(event));
+    Ok(worker)
 }
 
 /// Forwards a device's events to the main loop until either ends.

@@ -9,63 +9,19 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 
+use config::Settings;
 use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
-use scene::Scene;
+use messages::EarState;
 
 use crate::devices::recogniser::{Backend, Gate, Recogniser};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::SegmenterOptions;
 use crate::devices::worker_thread::{QueueError, WorkerThread};
-use crate::{Recognised, RecognitionInput};
+use crate::{In, RecognitionInput};
 use worker::{EarlyResults, Worker};
 
 mod interim;
 mod worker;
-
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct AsrOptions {
-    pub recogniser: Backend,
-    /// Segmentation of recordings.
-    pub segmenter: SegmenterOptions,
-    /// Threshold of the [`Gate`], 0 to 1.
-    pub gate_threshold: f32,
-    /// Longest recording, seconds.
-    pub longest_s: f64,
-}
-
-impl AsrOptions {
-    /// Returns the options of the configuration, with work files in `work`.
-    pub(crate) fn of(speech: &config::Speech, work: &Path) -> Self {
-        Self {
-            recogniser: Backend::of(speech, work),
-            segmenter: SegmenterOptions::of(speech),
-            gate_threshold: speech.accept_score_min as f32,
-            longest_s: speech.recording_max.as_secs_f64(),
-        }
-    }
-}
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum AsrState {
-    /// Loading; input waits for it.
-    Loading,
-    Ready {
-        /// Words of the scene that cannot be recognised because their pronunciation is unknown.
-        unpronounceable: Vec<String>,
-    },
-    /// Unavailable; every input fails with this reason.
-    Off { reason: String },
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum AsrEvent {
-    /// A change of state; [`AsrState::Loading`] first.
-    State(AsrState),
-    /// Words of an utterance in progress. One may follow the result.
-    InterimResult { sound: u64, text: String },
-    /// The result of an input.
-    Recognised(Recognised),
-}
 
 /// Inputs that may wait.
 pub(crate) const WAITING_MAX: usize = 8;
@@ -82,12 +38,15 @@ pub(crate) struct AsrWorker {
 }
 
 impl AsrWorker {
-    /// Starts the thread, which opens the recogniser for the scene.
-    pub(crate) fn start(scene: &Scene, options: AsrOptions) -> (Self, Receiver<AsrEvent>) {
-        let gate = Gate::new(scene, options.gate_threshold);
-        let (scene, recogniser) = (scene.clone(), options.recogniser);
-        let open = move || recogniser.open(&scene).map_err(|error| error.to_string());
-        Self::with(open, gate, options.segmenter, options.longest_s)
+    /// Starts the thread, which opens the recogniser of the configuration with work files in `work`.
+    /// Its events are the state of the recogniser, interim results and results.
+    pub(crate) fn start(settings: &Settings, work: &Path) -> (Self, Receiver<In>) {
+        let (scene, speech) = (settings.scene.clone(), &settings.speech);
+        let gate = Gate::new(&scene, speech.accept_score_min as f32);
+        let backend = Backend::of(speech, work);
+        let open = move || backend.open(&scene).map_err(|error| error.to_string());
+        let longest_s = speech.recording_max.as_secs_f64();
+        Self::with(open, gate, SegmenterOptions::of(speech), longest_s)
     }
 
     fn with(
@@ -95,7 +54,7 @@ impl AsrWorker {
         gate: Gate,
         segmenter: SegmenterOptions,
         longest_s: f64,
-    ) -> (Self, Receiver<AsrEvent>) {
+    ) -> (Self, Receiver<In>) {
         let (hints, hinted) = bounded(HINTS_MAX);
         let (blocks, spoken) = bounded(interim::BLOCKS_MAX);
         let (events, happened) = unbounded();
@@ -103,14 +62,10 @@ impl AsrWorker {
         let worker_closed = Arc::clone(&closed);
         let thread = WorkerThread::start(WAITING_MAX, move |inputs| {
             // Without a receiver of its events the worker has no more to do.
-            let _ = events.send(AsrEvent::State(AsrState::Loading));
-            let (recogniser, state) = match open() {
-                Ok((recogniser, unpronounceable)) => {
-                    (Ok(recogniser), AsrState::Ready { unpronounceable })
-                }
-                Err(reason) => (Err(reason.clone()), AsrState::Off { reason }),
-            };
-            let _ = events.send(AsrEvent::State(state));
+            let publish = |state| drop(events.send(In::RecogniserState(state)));
+            publish(EarState::Loading);
+            let recogniser = opened(open());
+            publish(if recogniser.is_ok() { EarState::Ready } else { EarState::Off });
             let opener = recogniser.as_ref().ok().and_then(|it| it.interim_decoder());
             let results = events.clone();
             let interim =
@@ -151,6 +106,22 @@ impl Drop for AsrWorker {
 
 /// A recogniser and the words that it cannot recognise, or why it is unavailable.
 type Opened = Result<(Box<dyn Recogniser>, Vec<String>), String>;
+
+/// Returns the recogniser after a warning of what is missing.
+fn opened(opened: Opened) -> Result<Box<dyn Recogniser>, String> {
+    match opened {
+        Ok((recogniser, unpronounceable)) => {
+            if !unpronounceable.is_empty() {
+                tracing::warn!(?unpronounceable, "words of the scene that cannot be recognised");
+            }
+            Ok(recogniser)
+        }
+        Err(reason) => {
+            tracing::warn!(reason, "speech cannot be recognised; typed text works");
+            Err(reason)
+        }
+    }
+}
 
 #[cfg(test)]
 mod tests;

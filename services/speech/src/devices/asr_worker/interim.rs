@@ -5,7 +5,7 @@
 
 use crossbeam_channel::{Receiver, Sender};
 
-use super::AsrEvent;
+use crate::In;
 use crate::devices::recogniser::{InterimDecoder, InterimDecoderOpener};
 
 /// Blocks of samples that may wait: more than a second.
@@ -17,7 +17,7 @@ const NICENESS: i32 = 10;
 pub(super) fn run(
     open: InterimDecoderOpener,
     blocks: &Receiver<(u64, Vec<i16>)>,
-    events: &Sender<AsrEvent>,
+    events: &Sender<In>,
 ) {
     // Without the permission it runs at normal priority.
     let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), NICENESS);
@@ -25,7 +25,7 @@ pub(super) fn run(
     let mut utterance = OngoingUtterance { decoder, sound: 0, text: String::new() };
     for (sound, samples) in blocks {
         if let Some(text) = utterance.decode(sound, &samples)
-            && events.send(AsrEvent::InterimResult { sound, text }).is_err()
+            && events.send(In::InterimResult { sound, text }).is_err()
         {
             return;
         }
@@ -89,7 +89,7 @@ mod tests {
         drop(give);
         run(Box::new(|| Some(Box::new(Stub(0)))), &blocks, &events);
         drop(events);
-        let result = |sound, text: &str| AsrEvent::InterimResult { sound, text: text.to_owned() };
+        let result = |sound, text: &str| In::InterimResult { sound, text: text.to_owned() };
         let expected = [result(5, "the"), result(5, "the white"), result(7, "the")];
         assert_eq!(published.iter().collect::<Vec<_>>(), expected);
     }

@@ -5,10 +5,10 @@ use std::time::{Duration, Instant};
 use super::worker::snr_db;
 use super::*;
 use crate::Hypothesis;
-use crate::RecognisedSegment;
 use crate::devices::audio::write_wav;
 use crate::devices::recogniser::{RecogniseError, Recognition};
 use crate::devices::testing::{self, bowls};
+use crate::{Recognised, RecognisedSegment};
 
 const PATIENCE: Duration = Duration::from_secs(20);
 
@@ -40,28 +40,27 @@ impl Recogniser for Stub {
     }
 }
 
-fn worker(open: impl FnOnce() -> Opened + Send + 'static) -> (AsrWorker, Receiver<AsrEvent>) {
+fn worker(open: impl FnOnce() -> Opened + Send + 'static) -> (AsrWorker, Receiver<In>) {
     let gate = Gate::new(&bowls(), Gate::THRESHOLD);
     let (worker, events) = AsrWorker::with(open, gate, SegmenterOptions::default(), 10.0);
-    assert_eq!(next(&events), AsrEvent::State(AsrState::Loading));
+    assert_eq!(next(&events), In::RecogniserState(EarState::Loading));
     (worker, events)
 }
 
-fn ready(fails: bool) -> (AsrWorker, Receiver<AsrEvent>) {
+fn ready(fails: bool) -> (AsrWorker, Receiver<In>) {
     let stub = Stub { calls: unbounded().0, permission: None, is_quick: false, fails };
     let (worker, events) = worker(move || Ok((Box::new(stub), vec!["qwz".to_owned()])));
-    let unpronounceable = vec!["qwz".to_owned()];
-    assert_eq!(next(&events), AsrEvent::State(AsrState::Ready { unpronounceable }));
+    assert_eq!(next(&events), In::RecogniserState(EarState::Ready));
     (worker, events)
 }
 
-fn next(events: &Receiver<AsrEvent>) -> AsrEvent {
+fn next(events: &Receiver<In>) -> In {
     events.recv_timeout(PATIENCE).expect("an event in time")
 }
 
-fn result(events: &Receiver<AsrEvent>) -> Recognised {
+fn result(events: &Receiver<In>) -> Recognised {
     match next(events) {
-        AsrEvent::Recognised(recognised) => recognised,
+        In::Recognised(recognised) => recognised,
         event => panic!("expected a result, found {event:?}"),
     }
 }
@@ -117,7 +116,7 @@ fn asr_worker_reports_failures_with_their_reason() {
     assert!(result(&events).segments.unwrap_err().contains("x.wav"));
     assert!(result(&events).segments.unwrap_err().contains("failed"));
     let (off, events) = worker(|| Err("install the package libpocketsphinx3".to_owned()));
-    assert!(matches!(next(&events), AsrEvent::State(AsrState::Off { .. })));
+    assert!(matches!(next(&events), In::RecogniserState(EarState::Off)));
     off.submit(3, RecognitionInput::Speech(segment(1_000))).unwrap();
     let recognised = result(&events);
     assert_eq!(recognised.sound, 3);
@@ -138,7 +137,7 @@ fn asr_worker_bounds_its_queue_while_the_recogniser_loads() {
     }
     assert_eq!(worker.submit(99, input()), Err(QueueError::Full));
     go.send(()).unwrap();
-    assert!(matches!(next(&events), AsrEvent::State(AsrState::Ready { .. })));
+    assert!(matches!(next(&events), In::RecogniserState(EarState::Ready)));
     for sound in 0..WAITING_MAX as u64 {
         assert_eq!(result(&events).sound, sound);
     }
@@ -172,7 +171,7 @@ fn asr_worker_measures_noise_around_the_speech() {
 }
 
 /// Starts a worker whose decoding waits for permission.
-fn waiting(is_quick: bool) -> (AsrWorker, Receiver<AsrEvent>, Receiver<usize>, Sender<()>) {
+fn waiting(is_quick: bool) -> (AsrWorker, Receiver<In>, Receiver<usize>, Sender<()>) {
     let ((calls, called), (go, permission)) = (unbounded(), unbounded());
     let stub = Stub { calls, permission: Some(permission), is_quick, fails: false };
     let (worker, events) = worker(move || Ok((Box::new(stub), Vec::new())));
@@ -196,7 +195,7 @@ fn asr_worker_reuses_an_early_result_of_the_very_same_samples() {
     assert_eq!(called.recv_timeout(PATIENCE), Ok(1_000));
     submit(&worker, 1, 1_000);
     go.send(()).unwrap();
-    let interim = AsrEvent::InterimResult { sound: 1, text: "white".to_owned() };
+    let interim = In::InterimResult { sound: 1, text: "white".to_owned() };
     assert_eq!(next(&events), interim);
     assert_eq!(result(&events).sound, 1);
     assert!(called.is_empty());
@@ -211,7 +210,7 @@ fn asr_worker_reuses_an_early_result_of_the_very_same_samples() {
     other.samples[500] = 8;
     worker.submit(3, RecognitionInput::Speech(other)).unwrap();
     (0..2).for_each(|_| go.send(()).unwrap());
-    assert!(matches!(next(&events), AsrEvent::InterimResult { sound: 3, .. }));
+    assert!(matches!(next(&events), In::InterimResult { sound: 3, .. }));
     assert_eq!(result(&events).sound, 3);
     assert_eq!(called.try_iter().count(), 1, "one sample differs");
 }
@@ -226,7 +225,7 @@ fn asr_worker_prefers_inputs_to_hints() {
     submit(&worker, 3, 4_000);
     (0..3).for_each(|_| go.send(()).unwrap());
     assert_eq!((result(&events).sound, result(&events).sound), (1, 3));
-    assert!(matches!(next(&events), AsrEvent::InterimResult { sound: 2, .. }));
+    assert!(matches!(next(&events), In::InterimResult { sound: 2, .. }));
     assert_eq!(called.try_iter().collect::<Vec<_>>(), [4_000, 3_000], "the newest hint");
 }
 

@@ -10,12 +10,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use crossbeam_channel::{Receiver, Sender, TryRecvError, select};
 
-use super::AsrEvent;
 use crate::devices::audio::{read_wav, seconds};
 use crate::devices::recogniser::{Gate, RecogniseError, Recogniser};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
-use crate::{Recognised, RecognisedSegment, RecognitionInput};
+use crate::{In, Recognised, RecognisedSegment, RecognitionInput};
 
 /// Early results that are kept: one for each speaker, and one that turned out to be too early.
 const EARLY_MAX: usize = 4;
@@ -60,7 +59,7 @@ impl Worker {
         mut self,
         inputs: &Receiver<(u64, RecognitionInput)>,
         hints: &Receiver<(u64, SpeechSegment)>,
-        events: &Sender<AsrEvent>,
+        events: &Sender<In>,
     ) {
         loop {
             // Inputs have priority over hints.
@@ -85,14 +84,19 @@ impl Worker {
                 return;
             }
             let segments = self.recognise(input);
+            for snr_db in segments.iter().flatten().map(|segment| segment.snr_db) {
+                if snr_db < SNR_MIN_DB {
+                    tracing::warn!(snr_db, "loud background noise; help: speak closer, or type");
+                }
+            }
             push(&mut self.early.answered, sound);
-            if events.send(AsrEvent::Recognised(Recognised { sound, segments })).is_err() {
+            if events.send(In::Recognised(Recognised { sound, segments })).is_err() {
                 return;
             }
         }
     }
 
-    fn decode_early(&mut self, sound: u64, segment: SpeechSegment, events: &Sender<AsrEvent>) {
+    fn decode_early(&mut self, sound: u64, segment: SpeechSegment, events: &Sender<In>) {
         let Ok(recogniser) = &mut self.recogniser else { return };
         if !recogniser.is_quick() || self.early.answered.contains(&sound) {
             return;
@@ -107,7 +111,7 @@ impl Worker {
         };
         push(&mut self.early.results, (segment, result));
         // Without a receiver of its events the worker ends with the next input.
-        let _ = text.map(|text| events.send(AsrEvent::InterimResult { sound, text }));
+        let _ = text.map(|text| events.send(In::InterimResult { sound, text }));
     }
 
     fn recognise(&mut self, input: RecognitionInput) -> Result<Vec<RecognisedSegment>, String> {
@@ -154,6 +158,8 @@ fn recognise_segment(
     recognise_range(recogniser, gate, samples, 0..samples.len(), speech)
 }
 
+/// Signal-to-noise ratio, decibels, below which hardly half of the speech is understood.
+const SNR_MIN_DB: f32 = 15.0;
 /// Smallest weight of a hypothesis that is handed on.
 const WEIGHT_MIN: f64 = 1e-3;
 
