@@ -173,11 +173,7 @@ mod tests {
     use scene::Scene;
 
     use super::{confusion, edits, sounds};
-
-    const BOWLS: &str =
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml"));
-    const TOOLS: &str =
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/tools.toml"));
+    use crate::tests::scene;
 
     fn nearest(scene: &Scene, heard: &str) -> String {
         let row = &confusion(scene)[scene.word_named(heard).expect("a word").index()];
@@ -187,8 +183,7 @@ mod tests {
 
     #[test]
     fn confusion_rows_are_distributions_over_the_other_words() {
-        for (name, text) in [("bowls", BOWLS), ("tools", TOOLS)] {
-            let scene = Scene::from_toml(name, text).expect("a scene");
+        for scene in ["bowls", "tools"].map(scene) {
             let rows = confusion(&scene);
             assert_eq!(rows.len(), scene.words().len());
             let floor = 0.1 / (rows.len() - 1) as f64;
@@ -204,8 +199,7 @@ mod tests {
 
     #[test]
     fn confusion_is_largest_between_similar_sounds() {
-        let bowls = Scene::from_toml("bowls", BOWLS).expect("a scene");
-        let tools = Scene::from_toml("tools", TOOLS).expect("a scene");
+        let (bowls, tools) = (scene("bowls"), scene("tools"));
         for (scene, heard, said) in
             [(&bowls, "metal", "metallic"), (&bowls, "metallic", "metal"), (&tools, "pen", "green")]
         {

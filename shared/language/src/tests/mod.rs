@@ -12,29 +12,20 @@ use serde_json::Value as Json;
 
 use crate::{Language, Reader};
 
-const BOWLS: &str =
-    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/bowls.toml"));
-const TOOLS: &str =
-    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../config/scenes/tools.toml"));
-
 /// A file of the utterance fixtures.
 macro_rules! fixture {
     ($file:literal) => {
-        include_str!(concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/../../tests/fixtures/utterances/",
-            $file
-        ))
+        include_str!(concat!("../../../../tests/fixtures/utterances/", $file))
     };
 }
 use fixture;
 
 const PUBLIC: &str = fixture!("public.jsonl");
 
-fn scene(name: &str) -> Scene {
+pub(crate) fn scene(name: &str) -> Scene {
     let text = match name {
-        "bowls" => BOWLS,
-        "tools" => TOOLS,
+        "bowls" => include_str!("../../../../config/scenes/bowls.toml"),
+        "tools" => include_str!("../../../../config/scenes/tools.toml"),
         "garments" => fixture!("garments.toml"),
         "pantry" => fixture!("pantry.toml"),
         other => panic!("no scene {other}"),
