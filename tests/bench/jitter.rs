@@ -6,9 +6,7 @@ use crate::report::{Report, percentile};
 use messages::{JointStates, topics};
 use service::bus::Reader;
 use service::client::Client;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use whichone_tests::Group;
 
@@ -41,19 +39,24 @@ struct Samples {
 
 impl Samples {
     fn take(joints: &Reader<JointStates>) -> Self {
-        let peer = Peer::start();
         let (mut sent_ns, mut moved) = (Vec::new(), false);
-        joints.latest().expect("a topic that can be read");
-        let until = Instant::now() + WATCHED;
-        while Instant::now() < until {
-            let read = joints.drain_stamped(|states, stamp| {
-                sent_ns.push(stamp.sent_ns);
-                moved |= states.velocity.iter().any(|v| v.abs() > 0.01);
-            });
-            read.expect("a topic that can be read");
-            std::thread::sleep(LOOK_EVERY);
-        }
-        Self { sent_ns, moved, beside_ms: peer.stop() }
+        let stop = AtomicBool::new(false);
+        let beside_ms = std::thread::scope(|scope| {
+            let peer = scope.spawn(|| sleep_regularly(&stop));
+            joints.latest().expect("a topic that can be read");
+            let until = Instant::now() + WATCHED;
+            while Instant::now() < until {
+                let read = joints.drain_stamped(|states, stamp| {
+                    sent_ns.push(stamp.sent_ns);
+                    moved |= states.velocity.iter().any(|v| v.abs() > 0.01);
+                });
+                read.expect("a topic that can be read");
+                std::thread::sleep(LOOK_EVERY);
+            }
+            stop.store(true, Ordering::Relaxed);
+            peer.join().expect("a thread of ours")
+        });
+        Self { sent_ns, moved, beside_ms }
     }
 
     fn add(&self, report: &mut Report, what: &str) {
@@ -80,33 +83,16 @@ fn add(report: &mut Report, what: &str, intervals_ms: &[f64], beside: Option<(&s
     }
 }
 
-/// A thread that notes when it wakes, a hundred times a second.
-struct Peer {
-    ends: Arc<AtomicBool>,
-    thread: JoinHandle<Vec<f64>>,
-}
-
-impl Peer {
-    fn start() -> Self {
-        let ends = Arc::new(AtomicBool::new(false));
-        let stop = Arc::clone(&ends);
-        let thread = std::thread::spawn(move || {
-            let period = Duration::from_secs_f64(NOMINAL_MS / 1e3);
-            let (mut next, mut last) = (Instant::now() + period, Instant::now());
-            let mut intervals_ms = Vec::new();
-            while !stop.load(Ordering::Relaxed) {
-                std::thread::sleep(next.saturating_duration_since(Instant::now()));
-                let now = Instant::now();
-                intervals_ms.push((now - last).as_secs_f64() * 1e3);
-                (last, next) = (now, next + period);
-            }
-            intervals_ms
-        });
-        Self { ends, thread }
+/// Notes when it wakes, a hundred times a second; the intervals in milliseconds.
+fn sleep_regularly(stop: &AtomicBool) -> Vec<f64> {
+    let period = Duration::from_secs_f64(NOMINAL_MS / 1e3);
+    let (mut next, mut last) = (Instant::now() + period, Instant::now());
+    let mut intervals_ms = Vec::new();
+    while !stop.load(Ordering::Relaxed) {
+        std::thread::sleep(next.saturating_duration_since(Instant::now()));
+        let now = Instant::now();
+        intervals_ms.push((now - last).as_secs_f64() * 1e3);
+        (last, next) = (now, next + period);
     }
-
-    fn stop(self) -> Vec<f64> {
-        self.ends.store(true, Ordering::Relaxed);
-        self.thread.join().expect("a thread of ours")
-    }
+    intervals_ms
 }

@@ -38,12 +38,13 @@ fn simulated_user_may_want_an_absent_object() {
 }
 
 #[test]
-fn absent_objects_are_refused_unless_the_prior_considers_them() {
+fn absence_and_error_rates_are_left_out_unless_configured() {
     let group = Group::up(&[]);
     let refused = group.call(&["await", "pick", "--answer-as", "teapot"]);
     assert_eq!(refused.code, Some(64), "{refused:?}");
     assert!(refused.stderr.contains("dialogue.prior.absent"), "{refused:?}");
-    assert_eq!(group.dialogue()["absent"], 0.0);
+    let dialogue = group.dialogue();
+    assert_eq!((&dialogue["absent"], &dialogue["person"]), (&0.0.into(), &().into()));
     group.down();
 }
 

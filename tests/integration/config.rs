@@ -59,29 +59,12 @@ fn check_and_up_report_every_problem() {
     assert_refused(&folder, &["dialogue.toml", "epsilon", "p_el", "bowls.toml", "white"]);
 }
 
-#[test]
-fn check_and_up_refuse_a_duplicate_value() {
-    let folder = edited("scenes/markers.toml", |text| {
-        let values = text.find("values").expect("a list of values");
-        let (before, list) = text.split_at(values);
-        format!("{before}{}", list.replacen("\"blue\"", "\"red\"", 1))
-    });
-    let group =
-        edited("group.toml", |text| text.replace("scene = \"bowls\"", "scene = \"markers\""));
-    std::fs::copy(
-        folder.path().join("scenes/markers.toml"),
-        group.path().join("scenes/markers.toml"),
-    )
-    .unwrap();
-    assert_refused(&group, &["markers.toml", "red"]);
-}
-
 /// An edit of a file's text.
 type Edit = fn(String) -> String;
 
 #[test]
 fn check_and_up_name_file_and_key_of_a_fault() {
-    let cases: [(&str, Edit, &[&str]); 4] = [
+    let cases: [(&str, Edit, &[&str]); 5] = [
         (
             "scenes/bowls.toml",
             |text| text.replacen("xyz = [0.", "xyz = [4.", 1),
@@ -93,6 +76,13 @@ fn check_and_up_name_file_and_key_of_a_fault() {
             &["bowls.toml", "objects"],
         ),
         (
+            "scenes/bowls.toml",
+            |text| {
+                text.replacen("[{ name = \"round\"", "[{ name = \"round\" }, { name = \"round\"", 1)
+            },
+            &["bowls.toml", "round", "listed twice"],
+        ),
+        (
             "group.toml",
             |text| text.replace("scene = \"bowls\"", "scene = \"plates\""),
             &["group.toml", "scene", "plates"],
@@ -101,6 +91,21 @@ fn check_and_up_name_file_and_key_of_a_fault() {
     ];
     for (file, edit, words) in cases {
         assert_refused(&edited(file, edit), words);
+    }
+}
+
+#[test]
+fn up_refuses_settings_with_the_key_and_a_fix() {
+    for (setting, words) in [
+        ("dialogue.planner=oracle", &dialogue::registry::names()[..]),
+        ("arm.driver=baxter", &["time_scale", "real time"]),
+        ("console.listen=0.0.0.0:0", &["console.listen", "token", "127.0.0.1"]),
+    ] {
+        let refused = Group::new().start(&[setting]);
+        assert_eq!(refused.code, Some(78), "{refused:?}");
+        for word in words {
+            assert!(refused.stderr.contains(word), "no {word} in: {}", refused.stderr);
+        }
     }
 }
 

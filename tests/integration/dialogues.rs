@@ -26,36 +26,30 @@ fn remote_mode_delivers_in_a_hundred_dialogues() {
 }
 
 #[test]
-fn present_mode_delivers_every_bowl_by_pointing() {
-    let group = Group::up(&["dialogue.planner=no-attribute", "dialogue.mode=present"]);
-    fetch_all(&group, 6, 5);
-    group.verify_journals();
-    group.down();
+fn every_kind_of_question_delivers_every_bowl() {
+    let pointing = ["dialogue.planner=no-attribute", "dialogue.mode=present"];
+    let measured = [&pointing[..], &["dialogue.costs.from=robot"]].concat();
+    let open = ["dialogue.open_questions=true"];
+    for (settings, questions_max) in [(&pointing[..], 5), (&measured, 5), (&open, 3)] {
+        let group = Group::up(settings);
+        fetch_all(&group, 6, questions_max);
+        group.verify_journals();
+        group.down();
+    }
 }
 
 /// Questions cost the seconds of this robot's voice and arm: the promises are the same, and a policy
 /// that is restarted keeps the costs that it had.
 #[test]
 fn measured_costs_deliver_every_bowl() {
-    let own = "dialogue.costs.from=robot";
-    let group = Group::up(&[own, "dialogue.mode=present", "dialogue.planner=optimal"]);
+    let own = ["dialogue.costs.from=robot", "dialogue.mode=present", "dialogue.planner=optimal"];
+    let group = Group::up(&own);
     fetch_all(&group, 3, 3);
     let before = group.incarnation("policy");
     group.must(&["restart", "policy"]);
     group.wait_for_restart("policy", before);
     fetch_all(&group, 6, 3);
     group.verify_journals();
-    group.down();
-    let group = Group::up(&[own, "dialogue.mode=present", "dialogue.planner=no-attribute"]);
-    fetch_all(&group, 6, 5);
-    group.verify_journals();
-    group.down();
-}
-
-#[test]
-fn open_questions_need_no_more_turns() {
-    let group = Group::up(&["dialogue.open_questions=true"]);
-    fetch_all(&group, 6, 3);
     group.down();
 }
 

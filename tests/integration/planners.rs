@@ -40,13 +40,3 @@ fn optimal_policy_cache_survives_a_restart() {
     group.verify_journals();
     group.down();
 }
-
-#[test]
-fn unknown_planner_is_refused_with_the_known_ones() {
-    let mut group = Group::new();
-    let ended = group.start(&["dialogue.planner=oracle"]);
-    assert_eq!(ended.code, Some(78), "{ended:?}");
-    for name in dialogue::registry::names() {
-        assert!(ended.stderr.contains(name), "{name}: {ended:?}");
-    }
-}

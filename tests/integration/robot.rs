@@ -40,21 +40,6 @@ fn dialogue_ends_with_a_pick_by_the_robot() {
 }
 
 #[test]
-fn arm_killed_during_a_motion_picks_once() {
-    let group = group();
-    let outcome = group.fetch_while("the clear bowl", "clear", || {
-        for phase in ["moving", "holding"] {
-            wait_for_arm(&group, phase, |arm| arm["phase"] == phase && arm["moving"] == true);
-            let before = group.incarnation("arm");
-            group.signal("arm", Signal::KILL);
-            group.wait_for_restart("arm", before);
-        }
-    });
-    assert_delivered(&group, &outcome);
-    group.down();
-}
-
-#[test]
 fn killed_robot_process_resumes_the_pick() {
     let group = group();
     let outcome = group.fetch_while("the clear bowl", "clear", || {
@@ -100,12 +85,4 @@ fn missed_grasp_is_announced() {
     drill(&group, &["miss", "0"]);
     assert_delivered(&group, &group.fetch("the clear bowl", "clear"));
     group.down();
-}
-
-#[test]
-fn unsynchronised_clock_is_refused_with_a_fix() {
-    let mut group = Group::new();
-    let ended = group.start(&["arm.driver=baxter"]);
-    assert_eq!(ended.code, Some(78), "{ended:?}");
-    assert!(ended.stderr.contains("time_scale") && ended.stderr.contains("real time"), "{ended:?}");
 }

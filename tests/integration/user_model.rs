@@ -31,10 +31,3 @@ fn error_rate_is_learned_and_survives_a_restart() {
     group.verify_journals();
     group.down();
 }
-
-#[test]
-fn error_rate_is_hidden_unless_learned() {
-    let group = Group::up(&[]);
-    assert!(group.dialogue()["person"].is_null());
-    group.down();
-}

@@ -63,21 +63,12 @@ fn group_with_kills_and_losses_delivers_the_right_object_once() {
 #[test]
 fn group_repeats_its_story_with_its_seed() {
     let story = |seed| {
-        let mut group =
-            SimulatedGroup::new(settings(&[]), GroupUser::typing(3), Faults::everything(seed));
+        let faults = Faults::everything(seed);
+        let mut group = SimulatedGroup::new(settings(&[]), GroupUser::typing(3), faults);
         group.run();
         group.story()
     };
     assert_eq!(story(42), story(42));
-}
-
-#[test]
-fn pointing_gets_the_right_object_once_under_faults() {
-    for seed in seeds(SEEDS / 2) {
-        let settings = settings(&[("dialogue.gesture.enabled", "true")]);
-        let user = GroupUser::pointing((seed % 6) as usize);
-        run_with(seed, SimulatedGroup::new(settings, user, Faults::everything(seed)));
-    }
 }
 
 /// The shipped bowls without `gone`, and with one more that stands in its place.
@@ -112,19 +103,18 @@ fn reload_under_faults_keeps_the_right_object() {
 }
 
 #[test]
-fn absence_prior_still_delivers_what_is_there() {
-    let over = [("dialogue.prior.absent", "0.05"), ("dialogue.prior.objects", "history")];
-    for seed in seeds(SEEDS / 8) {
-        let user = GroupUser::typing((seed % 6) as usize);
-        run_with(seed, SimulatedGroup::new(settings(&over), user, Faults::everything(seed)));
-    }
-}
-
-#[test]
-fn information_seeking_planner_delivers_the_right_object_once() {
-    let over = [("dialogue.planner", "information-seeking"), ("dialogue.prior.absent", "0.02")];
-    for seed in seeds(SEEDS / 8) {
-        let user = GroupUser::typing((seed % 6) as usize);
-        run_with(seed, SimulatedGroup::new(settings(&over), user, Faults::everything(seed)));
+fn every_kind_of_dialogue_delivers_the_right_object_once_under_faults() {
+    let pointing = [("dialogue.gesture.enabled", "true")];
+    let absence = [("dialogue.prior.absent", "0.05"), ("dialogue.prior.objects", "history")];
+    let seeking = [("dialogue.planner", "information-seeking"), ("dialogue.prior.absent", "0.02")];
+    for (over, user, count) in [
+        (&pointing[..], GroupUser::pointing as fn(usize) -> GroupUser, SEEDS / 2),
+        (&absence, GroupUser::typing, SEEDS / 8),
+        (&seeking, GroupUser::typing, SEEDS / 8),
+    ] {
+        for seed in seeds(count) {
+            let user = user((seed % 6) as usize);
+            run_with(seed, SimulatedGroup::new(settings(over), user, Faults::everything(seed)));
+        }
     }
 }

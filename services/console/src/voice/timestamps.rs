@@ -72,25 +72,20 @@ mod tests {
     }
 
     #[test]
-    fn timestamps_follow_a_right_clock() {
-        assert_eq!(times(&[100_000, 100_101, 100_199]), [100_000, 100_101, 100_199]);
-    }
-
-    #[test]
-    fn timestamps_replace_implausible_times_by_the_arrival() {
-        assert_eq!(times(&[200_000, 200_100]), [100_050, 100_150]);
-        assert_eq!(times(&[5, 96_000]), [100_050, 100_150]);
-    }
-
-    #[test]
-    fn timestamps_replace_jumps_by_the_samples_before() {
-        let jumps = [100_000, 98_500, 98_600, 100_300, 99_000_000];
-        assert_eq!(times(&jumps), [100_000, 100_100, 100_200, 100_300, 100_400]);
-    }
-
-    #[test]
-    fn timestamps_follow_a_corrected_clock() {
-        assert_eq!(times(&[0, 100_090, 100_190]), [100_050, 100_090, 100_190]);
+    fn timestamps_follow_plausible_clocks_only() {
+        for (clock, claimed, taken) in [
+            ("right", &[100_000, 100_101, 100_199][..], &[100_000, 100_101, 100_199][..]),
+            ("ahead: the arrival counts", &[200_000, 200_100], &[100_050, 100_150]),
+            ("behind: the arrival counts", &[5, 96_000], &[100_050, 100_150]),
+            ("corrected", &[0, 100_090, 100_190], &[100_050, 100_090, 100_190]),
+            (
+                "jumping: the samples before count",
+                &[100_000, 98_500, 98_600, 100_300, 99_000_000],
+                &[100_000, 100_100, 100_200, 100_300, 100_400],
+            ),
+        ] {
+            assert_eq!(times(claimed), taken, "{clock}");
+        }
     }
 
     #[test]
