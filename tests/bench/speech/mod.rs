@@ -6,7 +6,6 @@
 
 mod corpus;
 mod listener;
-mod meaning;
 mod score;
 mod tables;
 mod voices;

@@ -1,12 +1,13 @@
-//! One clip's outcome, and shares over many.
+//! One clip's outcome: the intended meaning beside the understood one, and the latencies.
 
 use super::corpus::{Clip, Sentence};
 use super::listener::Heard;
-use super::meaning::{meaning, said_too, weightiest};
 use ::speech::Hypothesis;
 use ::speech::devices::audio::seconds;
 use ::speech::devices::language_model::words;
 use language::Reader;
+use scene::{Intent, Reading, Response, WordId};
+use std::collections::BTreeSet;
 
 /// Score of a clip.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +44,8 @@ impl Score {
         heard: &[Heard],
         pause_s: f64,
     ) -> Self {
+        // What the robot reacts to.
+        let is_acted_on = |meant: &Meaning| *meant != Meaning::default();
         let truth = meaning(reader, sentence, &sentence.text);
         let all = together(heard.iter());
         let passed = together(heard.iter().filter(|heard| heard.accepted));
@@ -58,8 +61,8 @@ impl Score {
             weighed: weighed == truth,
             oracle: right("") || all.iter().any(|h| right(&h.text)),
             passed: accepted && acted == truth,
-            wrong_action: acted.is_acted_on() && acted != truth,
-            acted_on: acted.is_acted_on(),
+            wrong_action: is_acted_on(&acted) && acted != truth,
+            acted_on: is_acted_on(&acted),
             delay_s: timing.delay_s,
             cpu_s: heard.iter().map(|heard| heard.took_s.1).sum(),
             sound_s: seconds(clip.samples.len()),
@@ -123,4 +126,65 @@ impl Timing {
             delay_s: release_s.max(decoded_s - pause_s),
         }
     }
+}
+
+/// The meaning of an utterance, as far as it affects the robot.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Meaning {
+    base: BTreeSet<WordId>,
+    excluded: BTreeSet<BTreeSet<WordId>>,
+    answer: Response,
+    /// The robot's task; a statement is none.
+    order: Intent,
+}
+
+fn meaning(reader: &Reader, sentence: &Sentence, text: &str) -> Meaning {
+    let Reading { base, excluded, response, intent, .. } = reader.read(text, sentence.question);
+    Meaning {
+        base: base.into_iter().collect(),
+        excluded: excluded.into_iter().map(BTreeSet::from_iter).collect(),
+        answer: response,
+        order: if intent == Intent::None { Intent::Inform } else { intent },
+    }
+}
+
+/// The meaning with the largest sum of weights. The earlier hypothesis decides a tie.
+fn weightiest(reader: &Reader, sentence: &Sentence, heard: &[Hypothesis]) -> Meaning {
+    let mut sums: Vec<(Meaning, f64)> = Vec::new();
+    for hypothesis in heard {
+        let meant = meaning(reader, sentence, &hypothesis.text);
+        match sums.iter_mut().find(|(known, _)| *known == meant) {
+            Some((_, sum)) => *sum += hypothesis.weight,
+            None => sums.push((meant, hypothesis.weight)),
+        }
+    }
+    // The last of equals is the maximum.
+    let best = sums.into_iter().rev().max_by(|(_, a), (_, b)| a.total_cmp(b));
+    best.map(|(meant, _)| meant).unwrap_or_default()
+}
+
+/// Marks the words of `heard` that were said: those of the longest sequence of words that both texts
+/// have in common.
+fn said_too(heard: &[&str], said: &[&str]) -> Vec<bool> {
+    let width = said.len() + 1;
+    let mut common = vec![0_usize; (heard.len() + 1) * width];
+    for (i, j) in (0..heard.len()).rev().flat_map(|i| (0..said.len()).rev().map(move |j| (i, j))) {
+        common[i * width + j] = match heard[i] == said[j] {
+            true => common[(i + 1) * width + j + 1] + 1,
+            false => common[(i + 1) * width + j].max(common[i * width + j + 1]),
+        };
+    }
+    let (mut i, mut j) = (0, 0);
+    let mut right = vec![false; heard.len()];
+    while i < heard.len() && j < said.len() {
+        if heard[i] == said[j] {
+            right[i] = true;
+            (i, j) = (i + 1, j + 1);
+        } else if common[(i + 1) * width + j] >= common[i * width + j + 1] {
+            i += 1;
+        } else {
+            j += 1;
+        }
+    }
+    right
 }

@@ -5,7 +5,6 @@ mod corrections;
 mod motion;
 mod submissions;
 pub(crate) mod supervisor;
-mod topics;
 mod transcript_store;
 
 use std::path::PathBuf;
@@ -13,14 +12,16 @@ use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use config::Settings;
-use messages::topics::{INJECTION, MOTION};
-use messages::{Injection, JointStates, MotionCommand};
-use service::bus::{EncodedWriter, Writer};
+use messages::{
+    Injection, JointStates, MotionCommand, Observation, Partial, RobotAct, TrajectoryView,
+    WorldView, topics,
+};
+use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, Reader, Writer};
 use service::client::Client;
 use service::clock;
 use service::exit::Failure;
 use service::group::GroupPaths;
-use service::view::{drain, quiet};
+use service::view::{LatestTopics, drain, quiet};
 use service::worker_channel::DeviceReceiver;
 use service::{Span, Time};
 
@@ -34,7 +35,6 @@ use crate::view_model::{Now, Transcript, ViewModel};
 use crate::voice::Voice;
 use motion::Motions;
 use submissions::Submissions;
-use topics::Topics;
 use transcript_store::TranscriptStore;
 
 /// Most commands of one pass; the rest waits for the next.
@@ -46,7 +46,6 @@ const STILL: f64 = 1e-4;
 
 const NO_STUDY: &str = "no study is running; help: set study.enabled, and reload the group";
 
-/// Everything that the main loop owns.
 #[derive(Debug)]
 pub struct Bridge {
     app: Arc<App>,
@@ -74,6 +73,32 @@ pub struct Inbox {
     pub motions: DeviceReceiver<Motion>,
 }
 
+/// Every topic that is shown.
+#[derive(Debug)]
+struct Topics {
+    latest: LatestTopics,
+    acts: Reader<RobotAct>,
+    partials: Reader<Partial>,
+    observations: Reader<Observation>,
+    worlds: EncodedReader<WorldView>,
+    trajectories: EncodedReader<TrajectoryView>,
+    joints: Reader<JointStates>,
+}
+
+impl Topics {
+    fn open(bus: &Bus) -> Result<Self, BusError> {
+        Ok(Self {
+            latest: LatestTopics::open(bus)?,
+            acts: bus.reader(&topics::ACT)?,
+            partials: bus.reader(&topics::PARTIAL)?,
+            observations: bus.reader(&topics::OBSERVATION)?,
+            worlds: bus.encoded_reader(&topics::WORLD)?,
+            trajectories: bus.encoded_reader(&topics::TRAJECTORY)?,
+            joints: bus.reader(&topics::JOINTS)?,
+        })
+    }
+}
+
 impl Bridge {
     pub fn open(
         app: Arc<App>,
@@ -87,8 +112,8 @@ impl Bridge {
         let transcript = Transcript::after(store.read(), now().unix_ms);
         Ok(Self {
             topics: Topics::open(bus)?,
-            injections: bus.encoded_writer(&INJECTION)?,
-            motion: bus.writer(&MOTION)?,
+            injections: bus.encoded_writer(&topics::INJECTION)?,
+            motion: bus.writer(&topics::MOTION)?,
             model: ViewModel::new(settings.scene.clone(), transcript),
             voice: Voice::default(),
             study,
@@ -268,7 +293,6 @@ impl Bridge {
     }
 }
 
-/// Reads both clocks.
 pub(crate) fn now() -> Now {
     let unix = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     Now { at: clock::now(), unix_ms: unix.as_millis() as u64 }

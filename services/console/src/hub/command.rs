@@ -30,7 +30,6 @@ pub enum Verb {
     Study(String, Json),
 }
 
-/// Words for the robot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Words {
     pub text: String,

@@ -34,7 +34,6 @@ struct Asked {
 /// The result of a request for control.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taken {
-    /// It has control.
     Granted,
     /// The operator is asked; it gets control then, if it is not kept.
     Asked(Time),
@@ -56,7 +55,6 @@ impl Lease {
         self.asked.map(|asked| (asked.by, asked.until))
     }
 
-    /// Returns whether the viewer is in control.
     pub fn holds(&self, viewer: ViewerId) -> bool {
         self.operator() == Some(viewer)
     }
@@ -83,7 +81,6 @@ impl Lease {
         }
     }
 
-    /// Requests control for a viewer.
     pub fn take(
         &mut self,
         viewer: ViewerId,
@@ -134,7 +131,6 @@ impl Lease {
         true
     }
 
-    /// Gives control to a viewer.
     pub fn grant(&mut self, viewer: ViewerId, session: &str) {
         self.holder = Some(Holder { viewer, session: session.to_owned(), away: None });
         self.asked = None;

@@ -55,7 +55,6 @@ pub struct Channels {
     pub restarts: crossbeam_channel::Sender<(ViewerId, u64, String)>,
 }
 
-/// The section `control`.
 #[derive(Debug, Serialize)]
 struct ControlSection<'a> {
     operator: Option<String>,
@@ -87,7 +86,6 @@ struct Control {
 }
 
 impl Hub {
-    /// A hub without viewers.
     pub fn new(channels: Channels, viewers_max: usize, handover: Span) -> Self {
         let control = Control { viewers: Viewers::default(), lease: Lease::new(handover) };
         let hub = Self {
@@ -159,7 +157,6 @@ impl Hub {
         }
     }
 
-    /// Answers a command of a viewer.
     pub fn answer(&self, viewer: ViewerId, id: u64, outcome: Result<Option<Answer>, String>) {
         let (answer, error) = match &outcome {
             Ok(answer) => (answer.clone(), None),
@@ -201,7 +198,6 @@ impl Hub {
         sent.map_err(|_| "the supervisor is busy; help: try again".to_owned())
     }
 
-    /// Passes on sound of the operator.
     pub fn sound(&self, viewer: ViewerId, frame: crate::voice::PcmFrame) -> Result<(), String> {
         self.must_hold(viewer)?;
         let offered = self.channels.commands.offer(Command::Sound(viewer, frame));

@@ -9,7 +9,6 @@ use super::ViewerId;
 /// A frame for one viewer alone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum OutboundFrame {
-    /// A text frame for its page.
     Text(String),
     /// The same page is open elsewhere; this one ends.
     Replaced,

@@ -4,10 +4,8 @@
 
 use axum::http::{HeaderMap, header};
 
-/// Name of the cookie that a login sets.
 const COOKIE: &str = "whichone_console";
 
-/// The rules of one console.
 #[derive(Clone, Debug)]
 pub struct Access {
     token: Option<String>,
@@ -51,7 +49,6 @@ impl Access {
         place.is_some_and(|place| place.eq_ignore_ascii_case(host))
     }
 
-    /// Returns the cookie for a visitor with the right token.
     pub fn cookie_for(&self, said: &str) -> Option<String> {
         let token = self.token.as_ref().filter(|token| same(said, token))?;
         Some(format!("{COOKIE}={}; Path=/; HttpOnly; SameSite=Strict", hex(token)))

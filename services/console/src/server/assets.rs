@@ -3,7 +3,6 @@
 use axum::body::Body;
 use axum::http::{HeaderMap, Response, StatusCode, header};
 
-/// A file of the page's.
 #[derive(Debug)]
 pub(super) struct Asset {
     /// Its path without the first `/`.

@@ -15,7 +15,6 @@ const ALTERNATIVES_MAX: usize = 5;
 /// Longest time since an utterance, milliseconds.
 const OLDEST_MS: f64 = 120_000.0;
 
-/// The first message of a page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hello {
     /// Kept by the page through its reloads.
@@ -25,13 +24,10 @@ pub struct Hello {
     pub role: Role,
 }
 
-/// A later message of a page.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
     Ping(Json),
-    /// A command, under a number.
     Do(u64, Do),
-    /// An invalid command, under a number.
     Wrong(u64, String),
 }
 
@@ -46,7 +42,6 @@ pub enum Do {
     Restart(String),
 }
 
-/// Reads the first message.
 pub fn hello(text: &str) -> Result<Hello, String> {
     let json = object(text)?;
     if json["t"] != "hello" {

@@ -6,7 +6,6 @@ use prometheus_client::metrics::gauge::Gauge;
 use prometheus_client::metrics::histogram::{Histogram, exponential_buckets};
 use prometheus_client::registry::Registry;
 
-/// The console's metrics.
 #[derive(Clone, Debug)]
 pub struct Metrics {
     pub viewers: Gauge,

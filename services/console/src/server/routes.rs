@@ -20,7 +20,6 @@ const WELL: Span = Span::from_ms(3_000);
 /// Largest sound of a line, bytes.
 const SOUND_MAX: u64 = 16 << 20;
 
-/// Longest form, bytes.
 const FORM_MAX: usize = 2_048;
 /// Delay after a wrong token, against guessing.
 const PAUSE: Duration = Duration::from_secs(1);
@@ -63,7 +62,6 @@ pub(super) async fn urdf(State(app): State<Arc<App>>) -> Response<Body> {
     (kind, app.urdf.clone()).into_response()
 }
 
-/// Serves the sound of a line of the robot.
 pub(super) async fn voice(State(app): State<Arc<App>>, Path(line): Path<String>) -> Response<Body> {
     let none = || (StatusCode::NOT_FOUND, "sound not found\n").into_response();
     let Some(file) = app.voice_dir.as_deref().and_then(|folder| sound_file(folder, &line)) else {
@@ -114,7 +112,6 @@ fn missing(headers: &HeaderMap) -> Response<Body> {
     })
 }
 
-/// Sets the cookie for the right token.
 pub(super) async fn login(
     State(app): State<Arc<App>>,
     headers: HeaderMap,
@@ -136,7 +133,6 @@ pub(super) async fn login(
     }
 }
 
-/// Returns a field of a URL-encoded form.
 fn field(form: &str, name: &str) -> Option<String> {
     let mut pairs = form.split('&').filter_map(|pair| pair.split_once('='));
     let (_, value) = pairs.find(|(key, _)| *key == name)?;

@@ -17,7 +17,6 @@ use super::{App, serve};
 
 /// Ports that are tried from the configured one on.
 const PORTS: u16 = 16;
-/// Threads of the web server.
 const WORKERS: usize = 2;
 /// Longest standstill of the web server's tasks.
 const STANDSTILL: Span = Span::from_ms(2_000);
@@ -26,7 +25,6 @@ const BIND_EVERY: Span = Span::from_ms(2_000);
 /// Grace period for pages to close their sockets.
 const CLOSE: Duration = Duration::from_secs(2);
 
-/// The web server and its address.
 #[derive(Debug)]
 pub struct Web {
     /// None once the server was shut down.
@@ -68,7 +66,6 @@ impl Web {
         !self.listening || now.since(self.progress.1) < STANDSTILL
     }
 
-    /// Listens as soon as a port is free.
     pub fn try_to_listen(&mut self, now: Time) {
         if self.listening || self.tried.is_some_and(|tried| now < tried + BIND_EVERY) {
             return;
@@ -111,7 +108,6 @@ impl Web {
         (self.listening, self.progress) = (true, (0, now));
     }
 
-    /// Closes every page's socket and ends the server.
     pub fn shut_down(&mut self) {
         let Some(runtime) = self.runtime.take() else { return };
         self.app.hub.end();

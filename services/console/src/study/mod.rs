@@ -13,7 +13,6 @@ mod command;
 mod files;
 mod http;
 mod planner_switch;
-mod robot_state;
 mod section;
 mod study_controller;
 #[cfg(test)]
@@ -35,10 +34,9 @@ use crate::hub::outbound::Answer;
 use crate::view_model::{DialogueEvent, Now, ViewModel, missing};
 use files::Files;
 use planner_switch::PlannerSwitch;
-use robot_state::RobotState;
 use section::StudySection;
 use study_controller::StudyController;
-use trial_monitor::RobotRequest;
+use trial_monitor::{RobotRequest, RobotState};
 
 pub use http::routes;
 
@@ -62,7 +60,6 @@ pub struct Study {
     trouble: Option<String>,
 }
 
-/// Returns the folder of the study's data.
 pub fn folder(settings: &Settings, paths: &GroupPaths) -> PathBuf {
     settings.study.data_dir.clone().unwrap_or_else(|| paths.study())
 }
@@ -90,7 +87,6 @@ impl Study {
         }))
     }
 
-    /// Takes in an event of the dialogue.
     pub fn on_event(&mut self, event: &DialogueEvent, model: &ViewModel, now: Now) {
         if let Some((id, event)) = self.controller.said(event, &self.robot(model, now)) {
             self.note(&id, vec![event], now.unix_ms);
@@ -107,7 +103,6 @@ impl Study {
         self.request(&robot, now)
     }
 
-    /// Returns the section `study` as JSON text.
     pub fn section(&self, model: &ViewModel, now: Now) -> Option<String> {
         let robot = self.robot(model, now);
         let section = StudySection::new(&self.controller, &robot, self.trouble.as_deref());
@@ -121,12 +116,11 @@ impl Study {
             scene: model.scene(),
             view: model.latest().view.as_ref(),
             missing: model.group().and_then(missing).map(|service| service.name.as_str()),
-            arm_is_busy: robot_state::arm_is_busy(model.latest().arm.as_ref()),
+            arm_is_busy: trial_monitor::arm_is_busy(model.latest().arm.as_ref()),
             is_switching: self.switch.is_busy() || self.controller.owing().is_some(),
         }
     }
 
-    /// Carries out a command of a page.
     pub fn command(
         &mut self,
         verb: &str,

@@ -14,10 +14,8 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// Deadline for the policy to become ready after a restart.
 const READY_MS: u64 = 30_000;
 
-/// A request and its result.
 pub(super) type Done = (RobotRequest, Result<(), String>);
 
-/// The connection to the supervisor.
 #[derive(Debug)]
 pub(super) struct PlannerSwitch {
     orders: Sender<RobotRequest>,
@@ -42,7 +40,6 @@ impl PlannerSwitch {
         Ok(Self { orders, results, is_busy: false })
     }
 
-    /// Returns whether a request is under way.
     pub(super) fn is_busy(&self) -> bool {
         self.is_busy
     }
@@ -52,7 +49,6 @@ impl PlannerSwitch {
         self.is_busy = self.orders.try_send(request).is_ok();
     }
 
-    /// Takes the result of the request.
     pub(super) fn result(&mut self) -> Option<Done> {
         let result = self.results.try_recv().ok();
         self.is_busy &= result.is_none();

@@ -3,8 +3,8 @@
 use evaluation::user_study::{End, Item, Participant, Protocol, Stage, Status, Trial};
 use serde::Serialize;
 
-use super::robot_state::{NotReady, RobotState};
 use super::study_controller::StudyController;
+use super::trial_monitor::{NotReady, RobotState};
 
 /// The section. A page finds its participant by the code that it was given at its beginning.
 #[derive(Debug, Serialize)]

@@ -9,9 +9,8 @@ use evaluation::user_study::{
 use scene::ObjectId;
 use serde_json::{Map, Value as Json};
 
-use super::robot_state::RobotState;
+use super::trial_monitor::RobotState;
 
-/// The study.
 #[derive(Debug)]
 pub(super) struct StudyController {
     protocol: Protocol,
@@ -25,17 +24,12 @@ pub(super) struct StudyController {
 /// Requests of a participant's page (which has a secret of its own) or of the experimenter.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Command {
-    /// A participant begins.
     Begin,
-    /// A participant resumes by code.
     Resume(String),
-    /// The participant agrees.
     Consent,
     /// The participant has read what is shown.
     Next,
-    /// The participant begins the interaction.
     Start,
-    /// The participant answers the questionnaire.
     Answer(Map<String, Json>),
     /// The participant withdraws; the data is deleted if it is true.
     Withdraw(bool),
@@ -51,7 +45,6 @@ pub(super) enum Command {
 pub(super) type Outcome = Result<(String, Vec<Event>), String>;
 
 impl StudyController {
-    /// Makes the controller of a study with these participants.
     pub(super) fn new(protocol: Protocol, group: String, people: Vec<Participant>) -> Self {
         Self { protocol, group, people, missing_since: None }
     }
@@ -66,7 +59,6 @@ impl StudyController {
         &self.people
     }
 
-    /// Returns the current participant.
     pub(super) fn active(&self) -> Option<&Participant> {
         self.people.iter().rev().find(|person| !person.stage.is_final())
     }

@@ -66,21 +66,18 @@ struct Open {
 }
 
 impl Latency {
-    /// Takes in that an utterance was accepted.
     pub(super) fn on_receipt(&mut self, receipt: &Receipt) {
         if receipt.seq > 0 && receipt.end_ns > 0 {
             self.open(receipt.seq).into_iter().for_each(|open| open.end = receipt.end_ns);
         }
     }
 
-    /// Takes in that it was understood.
     pub(super) fn on_observation(&mut self, observation: &Observation) {
         if let Some(open) = self.open(observation.seq) {
             (open.accepted, open.grounded) = (observation.accepted_ns, observation.grounded_ns);
         }
     }
 
-    /// Takes in the decision about it.
     pub(super) fn on_act(&mut self, act: &RobotAct) {
         let open = self.open.iter_mut().find(|open| open.seq == act.utterance);
         if let Some(open) = open.filter(|open| open.prompt == 0 && act.presentation == 1) {
@@ -88,7 +85,6 @@ impl Latency {
         }
     }
 
-    /// Takes in that the robot speaks.
     pub(super) fn on_presented(&mut self, presented: &Presented) {
         if presented.prompt == 0 || presented.presentation != 1 {
             return;
@@ -135,7 +131,6 @@ impl Latency {
         self.open.back_mut()
     }
 
-    /// Returns the section.
     pub(super) fn section(&self) -> LatencySection {
         LatencySection {
             last: self.done.back().map(|stages| (*stages).into()),

@@ -52,8 +52,11 @@ pub struct Now {
 #[derive(Clone, Debug, PartialEq)]
 pub enum DialogueEvent {
     /// A question of the robot has begun.
-    Asked { prompt: u64, presentation: u32, words: String },
-    /// An utterance was accepted.
+    Asked {
+        prompt: u64,
+        presentation: u32,
+        words: String,
+    },
     Heard(Box<Receipt>),
 }
 
@@ -70,7 +73,6 @@ pub struct ViewModel {
     /// `true` if the sound of the presented line can be fetched.
     has_sound: bool,
     prompts: prompts::Prompts,
-    /// Readings of the latest utterances.
     readings: VecDeque<understood::Readings>,
     transcript: Transcript,
     latency: Latency,
@@ -108,12 +110,10 @@ impl ViewModel {
         &self.scene
     }
 
-    /// Returns the latest message of every topic.
     pub fn latest(&self) -> &Latest {
         &self.latest
     }
 
-    /// Returns the supervisor's latest status of the group.
     pub fn group(&self) -> Option<&GroupStatus> {
         self.group.as_ref()
     }
@@ -137,7 +137,6 @@ impl ViewModel {
         (self.is_changed, self.is_scene_changed) = (true, true);
     }
 
-    /// Takes in what the policy believes and decides.
     pub fn on_view(&mut self, view: PolicyView, now: Now) {
         self.is_changed = true;
         if let Some(ended) = &view.last {
@@ -147,7 +146,6 @@ impl ViewModel {
         self.attribute();
     }
 
-    /// Takes in what the policy has decided.
     pub fn on_act(&mut self, act: &RobotAct) {
         self.is_changed = true;
         self.latency.on_act(act);
@@ -170,7 +168,6 @@ impl ViewModel {
         }
     }
 
-    /// Takes in the receipt of an utterance.
     pub fn on_receipt(&mut self, receipt: &Receipt, now: Now) {
         self.is_changed = true;
         self.latency.on_receipt(receipt);
@@ -180,7 +177,6 @@ impl ViewModel {
         }
     }
 
-    /// Takes in what an utterance was understood to mean.
     pub fn on_observation(&mut self, observation: &Observation) {
         self.is_changed = true;
         self.latency.on_observation(observation);
@@ -205,19 +201,16 @@ impl ViewModel {
         }
     }
 
-    /// Takes in whether a user is speaking.
     pub fn on_activity(&mut self, activity: Activity) {
         self.is_changed = true;
         self.latest.activity = Some(activity);
     }
 
-    /// Takes in how well the robot hears.
     pub fn on_hearing(&mut self, hearing: Hearing) {
         self.is_changed = true;
         self.latest.hearing = Some(hearing);
     }
 
-    /// Takes in what the arm does.
     pub fn on_arm(&mut self, arm: ArmStatus, now: Now) {
         self.is_changed = true;
         let was_stopped = self.latest.arm.is_some_and(|arm| arm.stopped != 0);
@@ -228,19 +221,16 @@ impl ViewModel {
         self.latest.arm = Some(arm);
     }
 
-    /// Takes in where the objects are.
     pub fn on_world(&mut self, world: WorldView) {
         self.is_changed = true;
         self.world = Some(world);
     }
 
-    /// Takes in the planned trajectory of the gripper.
     pub fn on_trajectory(&mut self, trajectory: TrajectoryView) {
         self.is_changed = true;
         self.trajectory = trajectory;
     }
 
-    /// Takes in the supervisor's status of the group.
     pub fn on_group(&mut self, group: GroupStatus, now: Now) {
         self.is_changed = true;
         for (service, is_back) in services::transitions(self.group.as_ref(), &group) {

@@ -5,10 +5,8 @@ use std::collections::VecDeque;
 use messages::{ActKind, Presented, RobotAct};
 use scene::Question;
 
-/// Prompts that are remembered.
 const PROMPTS_MAX: usize = 32;
 
-/// The latest prompts.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Prompts(VecDeque<Prompt>);
 

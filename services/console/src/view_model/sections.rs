@@ -10,7 +10,6 @@ use super::prompts::Prompt;
 use super::turn::{Actor, Turn, TurnState};
 use crate::hub::ms;
 
-/// The section `scene`.
 #[derive(Debug, Serialize)]
 pub(super) struct SceneSection<'a> {
     key: String,
@@ -175,7 +174,6 @@ impl<'a> SpeakingSection<'a> {
     }
 }
 
-/// The section `turn`.
 #[derive(Debug, Serialize)]
 pub(super) struct TurnSection {
     who: Actor,

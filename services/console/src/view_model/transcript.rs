@@ -18,7 +18,6 @@ use crate::hub::ms;
 /// Utterances whose meaning has come before their receipt.
 const EARLY_MAX: usize = 16;
 
-/// The latest lines.
 #[derive(Debug)]
 pub struct Transcript {
     lines: VecDeque<Line>,
@@ -44,7 +43,6 @@ impl Transcript {
         }
     }
 
-    /// Returns all lines.
     pub fn lines(&self) -> impl Iterator<Item = &Line> {
         self.lines.iter()
     }
@@ -92,7 +90,6 @@ impl Transcript {
         true
     }
 
-    /// Takes in what an utterance was understood to mean.
     pub(super) fn on_understood(&mut self, seq: u64, understood: Understood) {
         let Some(line) = self.lines.iter_mut().rfind(|line| line.seq == Some(seq)) else {
             if self.early.len() == EARLY_MAX {
@@ -126,7 +123,6 @@ impl Transcript {
         true
     }
 
-    /// Takes in the end of an interaction.
     pub(super) fn on_end(&mut self, scene: &Scene, labels: &[String], ended: &Ended, now: Now) {
         let is_first = self.ended == 0;
         if ended.interaction.0 <= self.ended {
@@ -158,12 +154,10 @@ impl Transcript {
         self.push(Line { outcome: Some(ended.outcome), ..line });
     }
 
-    /// Takes in that the motion stop was latched or released.
     pub(super) fn on_motion_stop(&mut self, stopped: bool, now: Now) {
         self.note(if stopped { "The arm was stopped" } else { "The arm may move again" }, now);
     }
 
-    /// Takes in that a service was lost or is back.
     pub(super) fn on_service(&mut self, service: &ServiceStatus, is_back: bool, now: Now) {
         let name = &service.name;
         let exit = service.last_exit.as_ref().filter(|_| is_back);
@@ -172,7 +166,6 @@ impl Transcript {
         self.note(&format!("{name} {what}{}", how.unwrap_or_default()), now);
     }
 
-    /// Adds a note about an event.
     fn note(&mut self, text: &str, now: Now) {
         let line = self.blank(Speaker::System, text, now);
         self.push(line);
@@ -205,7 +198,6 @@ impl Transcript {
     }
 }
 
-/// Returns the name of an utterance's source.
 fn source(receipt: &Receipt) -> &'static str {
     match receipt.source.get() {
         Source::Text => "typed",

@@ -14,14 +14,11 @@ pub enum Actor {
     Person,
     /// The robot thinks or speaks.
     Robot,
-    /// The arm moves.
     Arm,
-    /// No one.
     #[serde(rename = "nobody")]
     NoOne,
 }
 
-/// The state of the turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TurnState {
@@ -29,11 +26,9 @@ pub enum TurnState {
     Idle,
     /// As idle, with a microphone open.
     Listening,
-    /// A user is speaking.
     Hearing,
     /// An utterance is being recognised and understood.
     Understanding,
-    /// The robot speaks.
     Speaking,
     /// A question waits for its answer.
     Asked,

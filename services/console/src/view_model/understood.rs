@@ -89,7 +89,6 @@ fn rounded(weight: f64) -> f64 {
     (weight * 1e3).round() / 1e3
 }
 
-/// A reading in words.
 fn words(scene: &Scene, reading: &Reading) -> String {
     let word = |id: &scene::WordId| scene.words().get(id.index()).map_or("?", String::as_str);
     let intent = match reading.intent {

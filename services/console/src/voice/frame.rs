@@ -11,7 +11,6 @@ const SAMPLES_MAX: usize = 1_600;
 /// A frame of a viewer's audio stream: one channel, 16 000 samples a second.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PcmFrame {
-    /// The stream ends with this frame.
     pub end: bool,
     /// The user holds a key while speaking.
     pub held: bool,

@@ -28,7 +28,6 @@ const AGAIN: Span = Span::from_ms(250);
 /// Deadline for the robot to confirm the end of a stream.
 const PATIENCE: Span = Span::from_ms(20_000);
 
-/// The streams of all viewers.
 #[derive(Debug, Default)]
 pub struct Voice {
     table: StreamTable,
@@ -48,7 +47,6 @@ struct Stream {
 }
 
 impl Voice {
-    /// Forwards a frame of sound.
     pub fn frame(
         &mut self,
         client: &Client,

@@ -65,7 +65,6 @@ impl StreamTable {
         self.0.iter().filter(other).map(|entry| entry.name).collect()
     }
 
-    /// Returns the open streams of a viewer.
     pub(super) fn of(&self, viewer: ViewerId) -> Vec<Name> {
         let own = |entry: &&Entry| !entry.ends && entry.name.0 == viewer;
         self.0.iter().filter(own).map(|entry| entry.name).collect()

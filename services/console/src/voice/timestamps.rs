@@ -2,14 +2,12 @@
 
 use service::{Span, Time};
 
-/// Nanoseconds of one sample.
 const SAMPLE_NS: u64 = 62_500;
 /// Longest time that sound may take to arrive.
 const OLDEST: Span = Span::from_ms(3_000);
 /// A clock that deviates more from the samples before has jumped.
 const JUMP: Span = Span::from_ms(100);
 
-/// The times of one stream.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Timestamps {
     /// The number of a sample, its time, and whether the viewer claimed that time.

@@ -7,9 +7,8 @@ use evaluation::user_study::{
 use messages::{Ended, Outcome, PolicyView, Receipt};
 use scene::Scene;
 
-use crate::study::robot_state::RobotState;
 use crate::study::study_controller::{Command, StudyController, kept};
-use crate::study::trial_monitor::RobotRequest;
+use crate::study::trial_monitor::{RobotRequest, RobotState};
 use crate::view_model::DialogueEvent;
 
 pub(super) const FAULT_MS: f64 = 10_000.0;
