@@ -12,8 +12,8 @@ use messages::Service;
 use service::client::Client;
 use service::clock;
 use service::exit::{Exit, Failure};
-use service::lifecycle::{Environment, Lifecycle};
-use service::service_loop::{self, Cycle, Health};
+use service::lifecycle::{Cycle, Environment, Health, Lifecycle, drive};
+use service::service_loop;
 use service::worker_channel;
 use service::{Span, Time};
 
@@ -42,7 +42,7 @@ fn serve(arguments: Vec<String>) -> Result<(), Failure> {
     let settings = Settings::load_snapshot(&environment.paths.run())?;
     let mut console = Console::open(&environment, &settings)?;
     console.web.try_to_listen(clock::now());
-    service_loop::drive(lifecycle, &mut console)
+    drive(lifecycle, &mut console)
 }
 
 /// Bridge and web server, driven by the main loop.

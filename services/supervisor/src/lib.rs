@@ -28,7 +28,6 @@ mod service;
 mod signals;
 mod spawn;
 mod supervisor;
-mod systemd;
 
 pub use previous_run::PreviousRunError;
 pub use supervisor::{StartError, Supervisor};

@@ -13,7 +13,7 @@ use crate::configuration::{Log, ServiceSpec};
 use crate::lifeline::Lifeline;
 use crate::machine::{Effect, Event, Failure};
 use crate::notify::{Notification, NotifySocket};
-use crate::spawn::{self, Launch, SpawnError};
+use crate::spawn::{self, SpawnError};
 use service::exit::ProcessExit;
 use service::log_file;
 
@@ -130,14 +130,9 @@ impl Service {
             Some(command) => (&command.words, &command.directory),
             None => (&self.spec.command, &around.directory),
         };
-        let child = spawn::spawn(Launch {
-            command: words,
-            directory,
-            environment: self.environment(incarnation, around),
-            log,
-            nice: self.spec.nice,
-            lifeline: &around.lifeline,
-        })?;
+        let environment = self.environment(incarnation, around);
+        let nice = self.spec.nice;
+        let child = spawn::spawn(words, directory, environment, log, nice, &around.lifeline)?;
         Ok(Running {
             child,
             notify,

@@ -17,19 +17,6 @@ use crate::child::Child;
 use crate::lifeline::Lifeline;
 use service::exit::ProcessExit;
 
-/// Command and environment of a new process.
-#[derive(Debug)]
-pub(crate) struct Launch<'a> {
-    pub(crate) command: &'a [String],
-    /// The working folder of the command.
-    pub(crate) directory: &'a Path,
-    pub(crate) environment: Vec<(&'static str, OsString)>,
-    /// Receives the process's standard output and error.
-    pub(crate) log: File,
-    pub(crate) nice: i32,
-    pub(crate) lifeline: &'a Lifeline,
-}
-
 /// A program could not be started.
 #[derive(Debug, Error)]
 pub(crate) enum SpawnError {
@@ -72,28 +59,35 @@ impl SpawnError {
     }
 }
 
-/// Starts a process that leads its own process group.
-pub(crate) fn spawn(launch: Launch<'_>) -> Result<Child, SpawnError> {
-    let program = find_program(launch.command, launch.directory)?;
+/// Starts a process that leads its own process group; `log` receives its standard output and error.
+pub(crate) fn spawn(
+    words: &[String],
+    directory: &Path,
+    environment: Vec<(&str, OsString)>,
+    log: File,
+    nice: i32,
+    lifeline: &Lifeline,
+) -> Result<Child, SpawnError> {
+    let program = find_program(words, directory)?;
     let failed = |error| SpawnError::Io { program: program.display().to_string(), error };
     let mut command = Command::new(&program);
     command
-        .args(&launch.command[1..])
-        .current_dir(launch.directory)
+        .args(&words[1..])
+        .current_dir(directory)
         // Meant for the supervisor itself, where an init system has started it.
         .env_remove("WATCHDOG_PID")
         .env_remove("WATCHDOG_USEC")
-        .envs(launch.environment)
+        .envs(environment)
         .stdin(Stdio::null())
-        .stdout(launch.log.try_clone().map_err(failed)?)
-        .stderr(launch.log)
+        .stdout(log.try_clone().map_err(failed)?)
+        .stderr(log)
         .process_group(0);
-    before_exec::prepare(&mut command, launch.lifeline.inherited(), launch.nice);
+    before_exec::prepare(&mut command, lifeline.inherited(), nice);
     let started = command.spawn().map_err(failed)?;
     // The handle is dropped without a wait: the child is reaped through its pidfd.
     let pid = Pid::from_child(&started);
     let child = Child::new(pid).map_err(failed)?;
-    set_niceness(pid, launch.nice);
+    set_niceness(pid, nice);
     Ok(child)
 }
 

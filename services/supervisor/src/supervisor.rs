@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use rustix::process::Pid;
 use service::exit::Exit;
 use service::group::GroupPaths;
+use service::notify::Notifier;
 use service::shm_cleanup::{Admin, NoRoom, check_room};
 
 use crate::Time;
@@ -19,7 +20,6 @@ use crate::machine::{Effect, Event};
 use crate::server::Server;
 use crate::service::{Service, Surroundings};
 use crate::signals::Signals;
-use crate::systemd::Systemd;
 
 pub use start::StartError;
 
@@ -55,7 +55,7 @@ pub struct Supervisor {
     admin: Option<Admin>,
     server: Server,
     signals: Signals,
-    systemd: Systemd,
+    init_system: Notifier,
     waits: Vec<Wait>,
     replacements: BTreeMap<usize, Replacement>,
     orphans: Vec<String>,
@@ -160,12 +160,12 @@ impl Supervisor {
         if !self.reported_ready && self.group.state() == service::status::GroupState::Ready {
             self.reported_ready = true;
             tracing::info!(ms = now.as_millis(), "every service is ready");
-            self.systemd.notify("READY=1");
+            self.init_system.say("READY=1");
         }
     }
 
     fn tick(&mut self, now: Time) {
-        self.systemd.notify("WATCHDOG=1");
+        self.init_system.beat("WATCHDOG=1");
         self.server.drop_slow(now);
         self.bound_logs();
         self.check_topics(now);

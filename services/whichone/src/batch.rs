@@ -15,15 +15,13 @@ use crate::cli::InputArgs;
 use crate::output::Output;
 
 mod belief;
-mod fk;
 mod ground;
-mod ik;
+mod kinematics;
 mod plan;
 
 pub use belief::belief;
-pub use fk::fk;
 pub use ground::{Grounder, ground};
-pub use ik::ik;
+pub use kinematics::{fk, ik};
 pub use plan::{Decider, Problem, plan};
 
 /// Bytes read at a time.

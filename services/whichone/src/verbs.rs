@@ -118,3 +118,11 @@ fn completions(shell: Shell, out: &mut Output<'_>) -> Outcome {
 fn described_arm(args: &ArmArgs) -> Result<DescribedArm, Failure> {
     DescribedArm::load(args.robot.as_deref(), &args.which)
 }
+
+/// A group called lab, for tests, in a home of its own.
+#[cfg(test)]
+fn lab() -> (tempfile::TempDir, GroupPaths) {
+    let home = tempfile::tempdir().expect("a temporary folder");
+    let paths = GroupPaths::in_home(home.path(), &"lab".parse().expect("a name"));
+    (home, paths.expect("a short path"))
+}

@@ -13,7 +13,7 @@ pub mod launch;
 pub mod lifecycle;
 pub mod log_file;
 pub mod logging;
-mod notify;
+pub mod notify;
 mod reducer;
 pub mod service_loop;
 pub mod shm_cleanup;

@@ -7,12 +7,12 @@
 use crate::exit::{Exit, Failure};
 use crate::group::{self, GroupName, GroupPaths};
 use crate::notify::Notifier;
-use crate::{Span, Time};
+use crate::{Span, Time, clock};
 use messages::{Epoch, Incarnation};
 use rustix::event::{PollFd, PollFlags, poll};
 use rustix::fs::{FlockOperation, flock};
-use sd_notify::NotifyState;
 use std::fs::File;
+use std::ops::ControlFlow;
 use std::os::fd::{AsFd, BorrowedFd, FromRawFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::time::Duration;
@@ -145,13 +145,12 @@ impl Lifecycle {
 
     /// Notifies the supervisor that the service is ready.
     pub fn ready(&mut self) {
-        let version = concat!("X_VERSION=", env!("CARGO_PKG_VERSION"));
-        self.notifier.say(&[NotifyState::Custom(version), NotifyState::Ready]);
+        self.notifier.say(concat!("X_VERSION=", env!("CARGO_PKG_VERSION"), "\nREADY=1"));
     }
 
     /// Notifies the supervisor that the service is shutting down.
     pub fn stopping(&mut self) {
-        self.notifier.say(&[NotifyState::Stopping]);
+        self.notifier.say("STOPPING=1");
     }
 
     /// Sends a heartbeat if one is due. Called only by the main loop after a full pass, so that a
@@ -162,13 +161,68 @@ impl Lifecycle {
         }
         self.last_beat = Some(now);
         let age_ms = pending_since.map_or(0, |since| now.since(since).0 / 1_000_000);
-        let age = format!("X_INPUT_AGE_MS={age_ms}");
-        self.notifier.beat(&[NotifyState::Watchdog, NotifyState::Custom(&age)]);
+        self.notifier.beat(&format!("WATCHDOG=1\nX_INPUT_AGE_MS={age_ms}"));
     }
 
     /// Time of the next heartbeat.
     pub fn next_beat(&self, now: Time) -> Time {
         self.last_beat.map_or(now, |last| last + self.beat_every)
+    }
+}
+
+/// A service as the main loop drives it: one pass after another until it has shut down.
+pub trait Cycle {
+    /// Returns the descriptors that end the sleep, and when it ends at the latest.
+    fn wake(&self, now: Time) -> (Vec<BorrowedFd<'_>>, Time);
+
+    /// Starts the shutdown; further passes follow until one breaks the loop.
+    fn shut_down(&mut self);
+
+    /// Processes pending inputs, decides and publishes; breaks once the service has shut down.
+    ///
+    /// # Errors
+    /// A resource that the service requires is lost.
+    fn pass(&mut self) -> Result<ControlFlow<()>, Failure>;
+
+    /// Returns the health of the service: without heartbeats the supervisor restarts it.
+    fn health(&mut self, now: Time) -> Health;
+}
+
+/// Health of a service.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Health {
+    /// Working; the arrival of its oldest unprocessed input.
+    Working(Option<Time>),
+    /// A part of it is unresponsive.
+    Stuck,
+}
+
+/// Drives a service until it has shut down.
+///
+/// # Errors
+/// As [`Cycle::pass`].
+pub fn drive(mut lifecycle: Lifecycle, cycle: &mut impl Cycle) -> Result<(), Failure> {
+    lifecycle.ready();
+    tracing::info!("ready");
+    let mut is_ending = false;
+    loop {
+        let now = clock::now();
+        let (fds, until) = cycle.wake(now);
+        lifecycle.wait(&fds, until.min(lifecycle.next_beat(now)).since(now));
+        if !is_ending && lifecycle.shutdown_requested() {
+            is_ending = true;
+            lifecycle.stopping();
+            cycle.shut_down();
+        }
+        let flow = cycle.pass()?;
+        let now = clock::now();
+        if let Health::Working(pending_since) = cycle.health(now) {
+            lifecycle.beat(now, pending_since);
+        }
+        if flow.is_break() {
+            tracing::info!("shut down on request");
+            return Ok(());
+        }
     }
 }
 

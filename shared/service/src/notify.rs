@@ -1,68 +1,64 @@
-//! Notifications to the supervisor: `sd_notify` datagrams, sent without blocking.
+//! Notifications of a service to its supervisor, and of the supervisor to an init system: `sd_notify`
+//! datagrams, sent without blocking.
 //!
 //! A receiver that has stopped reading has a full queue. Its service keeps working: a beat
 //! that finds no room is dropped, and the next one follows. What is said only once (that the
 //! service is ready, or ending) is said again with the next datagram that finds room.
 
-use sd_notify::NotifyState;
-use std::fmt::Write;
+use std::ffi::OsStr;
 use std::io;
-use std::os::unix::net::UnixDatagram;
-use std::path::PathBuf;
+use std::os::linux::net::SocketAddrExt;
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::net::{SocketAddr, UnixDatagram};
 
 /// The sender.
-#[derive(Debug)]
-pub(crate) struct Notifier {
-    to: Option<(UnixDatagram, PathBuf)>,
+#[derive(Debug, Default)]
+pub struct Notifier {
+    to: Option<(UnixDatagram, SocketAddr)>,
     /// States that are sent once and not delivered yet.
     owed: String,
 }
 
 impl Notifier {
-    /// To `$NOTIFY_SOCKET`; disabled where that is not set.
+    /// To `$NOTIFY_SOCKET`, a path or an abstract name after `@`; disabled where that is not set.
     ///
     /// # Errors
-    /// The operating system gives no socket.
-    pub(crate) fn from_environment() -> io::Result<Self> {
-        match std::env::var_os("NOTIFY_SOCKET") {
-            Some(path) => Self::to(PathBuf::from(path)),
-            None => Ok(Self { to: None, owed: String::new() }),
-        }
+    /// The operating system gives no socket, or the name cannot be one's.
+    pub fn from_environment() -> io::Result<Self> {
+        let name = std::env::var_os("NOTIFY_SOCKET").filter(|name| !name.is_empty());
+        name.map_or_else(|| Ok(Self::default()), |name| Self::to(&name))
     }
 
-    fn to(path: PathBuf) -> io::Result<Self> {
+    fn to(name: &OsStr) -> io::Result<Self> {
+        let address = match name.as_bytes() {
+            [b'@', name @ ..] => SocketAddr::from_abstract_name(name)?,
+            _ => SocketAddr::from_pathname(name)?,
+        };
         let socket = UnixDatagram::unbound()?;
         socket.set_nonblocking(true)?;
-        Ok(Self { to: Some((socket, path)), owed: String::new() })
+        Ok(Self { to: Some((socket, address)), owed: String::new() })
     }
 
-    /// Sends states that are reported once; they are kept until delivered.
-    pub(crate) fn say(&mut self, states: &[NotifyState<'_>]) {
-        self.owed += &lines(states);
+    /// Sends a state that is reported once, e.g. `READY=1`; it is kept until delivered.
+    pub fn say(&mut self, state: &str) {
+        self.owed += state;
+        self.owed.push('\n');
         self.send("");
     }
 
-    /// Sends states that are repeated soon; they are dropped if the socket's buffer is full.
-    pub(crate) fn beat(&mut self, states: &[NotifyState<'_>]) {
-        self.send(&lines(states));
+    /// Sends a state that is repeated soon; it is dropped if the socket's buffer is full.
+    pub fn beat(&mut self, state: &str) {
+        self.send(state);
     }
 
     fn send(&mut self, more: &str) {
-        let Some((socket, path)) = &self.to else { return self.owed.clear() };
+        let Some((socket, address)) = &self.to else { return self.owed.clear() };
         let text = format!("{}{more}", self.owed);
-        match socket.send_to(text.as_bytes(), path) {
+        match socket.send_to_addr(text.trim_end().as_bytes(), address) {
             Ok(_) => self.owed.clear(),
             Err(error) => tracing::debug!(%error, "notification not delivered"),
         }
     }
-}
-
-fn lines(states: &[NotifyState<'_>]) -> String {
-    states.iter().fold(String::new(), |mut text, state| {
-        // Writing into a string cannot fail.
-        let _ = writeln!(text, "{state}");
-        text
-    })
 }
 
 #[cfg(test)]
@@ -87,34 +83,34 @@ mod tests {
         let path = folder.path().join("notify");
         let receiver = UnixDatagram::bind(&path).unwrap();
         receiver.set_nonblocking(true).unwrap();
-        let mut notifier = Notifier::to(path).unwrap();
+        let mut notifier = Notifier::to(path.as_os_str()).unwrap();
         let (done, ended) = mpsc::channel();
         std::thread::spawn(move || {
-            (0..MANY).for_each(|_| notifier.beat(&[NotifyState::Watchdog]));
-            notifier.say(&[NotifyState::Ready]);
-            (0..MANY).for_each(|_| notifier.beat(&[NotifyState::Watchdog]));
+            (0..MANY).for_each(|_| notifier.beat("WATCHDOG=1"));
+            notifier.say("READY=1");
+            (0..MANY).for_each(|_| notifier.beat("WATCHDOG=1"));
             done.send(notifier).unwrap();
         });
         let mut notifier = ended.recv_timeout(Duration::from_secs(60)).expect("it never waits");
         let heard: Vec<String> = std::iter::from_fn(|| receive(&receiver)).collect();
         assert!(!heard.is_empty() && heard.len() < MANY, "{} were let in", heard.len());
-        assert!(heard.iter().all(|text| text == "WATCHDOG=1\n"), "{:?}", heard.last());
-        notifier.beat(&[NotifyState::Watchdog]);
-        assert_eq!(receive(&receiver).as_deref(), Some("READY=1\nWATCHDOG=1\n"));
-        notifier.beat(&[NotifyState::Watchdog]);
-        assert_eq!(receive(&receiver).as_deref(), Some("WATCHDOG=1\n"));
+        assert!(heard.iter().all(|text| text == "WATCHDOG=1"), "{:?}", heard.last());
+        notifier.beat("WATCHDOG=1");
+        assert_eq!(receive(&receiver).as_deref(), Some("READY=1\nWATCHDOG=1"));
+        notifier.beat("WATCHDOG=1");
+        assert_eq!(receive(&receiver).as_deref(), Some("WATCHDOG=1"));
     }
 
     #[test]
     fn missing_notification_receiver_is_not_an_error() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("notify");
-        let mut notifier = Notifier::to(path.clone()).unwrap();
-        notifier.say(&[NotifyState::Ready]);
+        let mut notifier = Notifier::to(path.as_os_str()).unwrap();
+        notifier.say("READY=1");
         let receiver = UnixDatagram::bind(&path).unwrap();
-        notifier.say(&[NotifyState::Stopping]);
-        assert_eq!(receive(&receiver).as_deref(), Some("READY=1\nSTOPPING=1\n"));
+        notifier.say("STOPPING=1");
+        assert_eq!(receive(&receiver).as_deref(), Some("READY=1\nSTOPPING=1"));
         drop(receiver);
-        notifier.beat(&[NotifyState::Watchdog]);
+        notifier.beat("WATCHDOG=1");
     }
 }

@@ -8,7 +8,7 @@ use crate::bus::{Bus, Identity, PortError, WakeListener};
 use crate::clock;
 use crate::exit::{Exit, Failure};
 use crate::inspection::{self, Finding, Part};
-use crate::lifecycle::{Environment, Lifecycle};
+use crate::lifecycle::{Cycle, Environment, Health, Lifecycle, drive};
 use crate::logging;
 use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
 use crate::{Effects, Event, Node, Span, Time};
@@ -204,62 +204,6 @@ fn open_journal<P: Program>(environment: &Environment) -> Result<Recovered<P>, F
                 };
                 return Err(Failure::new(exit, format!("{}: {error}", path.display())));
             }
-        }
-    }
-}
-
-/// A service as the main loop drives it: one pass after another until it has shut down.
-pub trait Cycle {
-    /// Returns the descriptors that end the sleep, and when it ends at the latest.
-    fn wake(&self, now: Time) -> (Vec<BorrowedFd<'_>>, Time);
-
-    /// Starts the shutdown; further passes follow until one breaks the loop.
-    fn shut_down(&mut self);
-
-    /// Processes pending inputs, decides and publishes; breaks once the service has shut down.
-    ///
-    /// # Errors
-    /// A resource that the service requires is lost.
-    fn pass(&mut self) -> Result<ControlFlow<()>, Failure>;
-
-    /// Returns the health of the service: without heartbeats the supervisor restarts it.
-    fn health(&mut self, now: Time) -> Health;
-}
-
-/// Health of a service.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Health {
-    /// Working; the arrival of its oldest unprocessed input.
-    Working(Option<Time>),
-    /// A part of it is unresponsive.
-    Stuck,
-}
-
-/// Drives a service until it has shut down.
-///
-/// # Errors
-/// As [`Cycle::pass`].
-pub fn drive(mut lifecycle: Lifecycle, cycle: &mut impl Cycle) -> Result<(), Failure> {
-    lifecycle.ready();
-    tracing::info!("ready");
-    let mut is_ending = false;
-    loop {
-        let now = clock::now();
-        let (fds, until) = cycle.wake(now);
-        lifecycle.wait(&fds, until.min(lifecycle.next_beat(now)).since(now));
-        if !is_ending && lifecycle.shutdown_requested() {
-            is_ending = true;
-            lifecycle.stopping();
-            cycle.shut_down();
-        }
-        let flow = cycle.pass()?;
-        let now = clock::now();
-        if let Health::Working(pending_since) = cycle.health(now) {
-            lifecycle.beat(now, pending_since);
-        }
-        if flow.is_break() {
-            tracing::info!("shut down on request");
-            return Ok(());
         }
     }
 }

@@ -8,7 +8,7 @@ use service::exit::Exit;
 use service::shm_cleanup::{Admin, remove_leftovers};
 
 use super::Supervisor;
-use super::start::{Folder, StartError, make_folder};
+use super::start::{StartError, make_folders};
 use super::waits::Goal;
 use crate::Time;
 use crate::machine::HeldBecause;
@@ -48,7 +48,7 @@ impl Supervisor {
             Some(_) => {}
             None => {
                 tracing::info!(?cause, "the group stops");
-                self.systemd.notify("STOPPING=1");
+                self.init_system.say("STOPPING=1");
                 self.ending = Some(Ending { cause, since: now });
                 self.group.stop(now);
             }
@@ -135,7 +135,7 @@ impl Supervisor {
         let paths = &self.around.paths;
         self.admin = None;
         remove_leftovers(paths);
-        make_folder(paths, Folder::Others)?;
+        make_folders(&[&paths.run(), &paths.log(), &paths.journal()])?;
         (self.configuration.publish)(&paths.run()).map_err(failed("settings for the services"))?;
         self.admin = Some(Admin::open(paths, Epoch(self.around.epoch))?);
         if !paths.control_socket().exists() {

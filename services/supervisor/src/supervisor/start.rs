@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io;
 use std::os::unix::fs::DirBuilderExt;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use messages::Epoch;
@@ -11,6 +12,7 @@ use rustix::process::{Resource, Rlimit, getpid, set_child_subreaper, setrlimit};
 use service::bus::BusError;
 use service::exit::Exit;
 use service::group::GroupPaths;
+use service::notify::Notifier;
 use service::shm_cleanup::{Admin, NoRoom, check_room};
 use thiserror::Error;
 
@@ -25,7 +27,6 @@ use crate::schedule::ScheduleError;
 use crate::server::Server;
 use crate::service::{Service, Surroundings};
 use crate::signals::Signals;
-use crate::systemd::Systemd;
 
 /// A group cannot be started.
 #[derive(Debug, Error)]
@@ -75,16 +76,20 @@ pub(super) fn start(
     let started = Instant::now();
     let configuration = load().map_err(StartError::Config)?;
     let group = Group::new(&configuration.spec)?;
-    make_folder(&paths, Folder::Root)?;
+    // It holds the lock that the other folders wait for.
+    make_folders(&[paths.root()])?;
     let taken = previous_run::take_group(&paths)?;
     let alive = previous_run::await_end(&paths, longest_stop(&configuration.spec))?;
     let raised = raise(&paths, &configuration, alive, fresh);
-    let raised = raised.inspect_err(|_| {
+    let (admin, signals, server, around) = raised.inspect_err(|_| {
         // The folder says that a group runs. What cannot be removed is removed at the next start.
         let _ = fs::remove_dir_all(paths.run());
     })?;
-    let Raised { admin, signals, server, around } = raised;
     tracing::info!(group = %around.paths.name(), epoch = around.epoch, "supervisor started");
+    let init_system = Notifier::from_environment().unwrap_or_else(|error| {
+        tracing::warn!(%error, "NOTIFY_SOCKET cannot be used");
+        Notifier::default()
+    });
     let services = configuration.spec.services.iter().cloned().map(Service::new).collect();
     let now = started.elapsed();
     let mut supervisor = Supervisor {
@@ -97,7 +102,7 @@ pub(super) fn start(
         admin: Some(admin),
         server,
         signals,
-        systemd: Systemd::from_env(),
+        init_system,
         waits: Vec::new(),
         replacements: BTreeMap::new(),
         orphans: Vec::new(),
@@ -114,22 +119,15 @@ pub(super) fn start(
     Ok(supervisor)
 }
 
-/// Resources that exist before the first service starts.
-struct Raised {
-    admin: Admin,
-    signals: Signals,
-    server: Server,
-    around: Surroundings,
-}
-
+/// Creates the resources that exist before the first service starts.
 fn raise(
     paths: &GroupPaths,
     configuration: &Configuration,
     alive: File,
     fresh: bool,
-) -> Result<Raised, StartError> {
+) -> Result<(Admin, Signals, Server, Surroundings), StartError> {
     check_room(configuration.shared_memory_free_min_mib)?;
-    make_folder(paths, Folder::Others)?;
+    make_folders(&[&paths.run(), &paths.log(), &paths.journal()])?;
     let epoch = epoch::open(paths, fresh).map_err(failed("epoch"))?;
     (configuration.publish)(&paths.run()).map_err(failed("settings for the services"))?;
     let admin = Admin::open(paths, Epoch(epoch))?;
@@ -143,7 +141,7 @@ fn raise(
         directory: std::env::current_dir().map_err(failed("current folder"))?,
         paths: paths.clone(),
     };
-    Ok(Raised { admin, signals, server, around })
+    Ok((admin, signals, server, around))
 }
 
 /// Services of a killed supervisor shut down on their own (an arm comes to rest first) within the
@@ -153,18 +151,8 @@ fn longest_stop(spec: &GroupSpec) -> Duration {
     deadlines.max().unwrap_or_default()
 }
 
-/// Folders of a group. The root comes first, since it holds the lock that the others wait for.
-pub(super) enum Folder {
-    Root,
-    Others,
-}
-
 /// Creates folders that only their owner can read.
-pub(super) fn make_folder(paths: &GroupPaths, which: Folder) -> Result<(), StartError> {
-    let folders = match which {
-        Folder::Root => vec![paths.root().to_owned()],
-        Folder::Others => vec![paths.run(), paths.log(), paths.journal()],
-    };
+pub(super) fn make_folders(folders: &[&Path]) -> Result<(), StartError> {
     let mut builder = fs::DirBuilder::new();
     builder.recursive(true).mode(0o700);
     folders.iter().try_for_each(|folder| builder.create(folder)).map_err(failed("folders"))

@@ -4,7 +4,7 @@ use std::thread;
 use std::time::Instant;
 
 use messages::{Ended, Outcome as How};
-use serde_json::json;
+use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
@@ -50,19 +50,23 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
 }
 
 fn report(ended: &Ended, out: &mut Output<'_>) -> Outcome {
-    let object = ended.name.as_deref();
     if out.is_json() {
-        out.json(&json!({
-            "object": object,
-            "questions": ended.questions,
-            "seconds": ended.seconds,
-            "outcome": ended.outcome,
-        }))?;
+        out.json(&to_json(ended))?;
     } else {
         out.line(sentence(ended))?;
     }
     let delivered = ended.outcome == How::Delivered;
     Ok(if delivered { Exit::Ok } else { Exit::NotReached })
+}
+
+/// The outcome for programs.
+pub(super) fn to_json(ended: &Ended) -> Json {
+    json!({
+        "object": ended.name,
+        "questions": ended.questions,
+        "seconds": ended.seconds,
+        "outcome": ended.outcome,
+    })
 }
 
 /// The outcome for people, e.g. `delivered clear after 2 questions and 14.2 s`.
@@ -127,8 +131,7 @@ mod tests {
 
     #[test]
     fn await_remembers_what_it_reported_while_the_group_runs() {
-        let home = tempfile::tempdir().unwrap();
-        let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
+        let (_home, paths) = super::super::lab();
         assert_eq!(reported_before(&paths), 0);
         std::fs::create_dir_all(paths.run()).unwrap();
         remember(&paths, 41).unwrap();

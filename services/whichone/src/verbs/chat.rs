@@ -156,10 +156,7 @@ impl<'a, 'b> Chat<'a, 'b> {
             return Ok(());
         };
         if self.out.is_json() {
-            return self.out.json(&json!({
-                "object": last.name, "questions": last.questions, "seconds": last.seconds,
-                "outcome": last.outcome,
-            }));
+            return self.out.json(&await_pick::to_json(&last));
         }
         let sentence = await_pick::sentence(&last);
         self.out.line(self.out.style().paint(Ink::Dim, format!("({sentence})")))

@@ -158,13 +158,8 @@ fn groups(home: &Path) -> Vec<GroupPaths> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::lab;
     use super::*;
-
-    fn lab() -> (tempfile::TempDir, GroupPaths) {
-        let home = tempfile::tempdir().unwrap();
-        let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
-        (home, paths)
-    }
 
     #[test]
     fn doctor_finds_the_leftovers_of_a_killed_group() {

@@ -47,8 +47,7 @@ mod tests {
     use super::*;
 
     fn paths() -> (tempfile::TempDir, GroupPaths) {
-        let home = tempfile::tempdir().unwrap();
-        let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
+        let (home, paths) = super::super::lab();
         std::fs::create_dir_all(paths.run()).unwrap();
         (home, paths)
     }

@@ -106,9 +106,7 @@ mod tests {
 
     #[test]
     fn group_that_was_never_started_is_not_running() {
-        let home = tempfile::tempdir().unwrap();
-        let name = "lab".parse().unwrap();
-        let paths = GroupPaths::in_home(home.path(), &name).unwrap();
+        let (_home, paths) = super::super::lab();
         assert!(!is_running(&paths).unwrap());
         refuse_twice(&paths).unwrap();
     }

@@ -5,11 +5,10 @@ use super::*;
 use ::dialogue::Action;
 use ::dialogue::{Attributed, QuestionShare};
 use messages::{
-    ActKind, Activity, ArmStatus, Ended, FixedText, Hearing, InteractionId, MicrophoneState,
-    MotionInhibit, Outcome, PickPhase, PolicyView, PresentationState, Presented, PromptId, Receipt,
-    ReceiptStatus, UtteranceSeq,
+    ActKind, Activity, Ended, FixedText, InteractionId, Outcome, PolicyView, PresentationState,
+    Presented, PromptId, Receipt, ReceiptStatus, UtteranceSeq,
 };
-use scene::{AttributeId, Question, Scene, ValueId};
+use scene::{AttributeId, Question, ValueId};
 
 const BOWLS: &str = include_str!("../../../../config/scenes/bowls.toml");
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/view.json");

@@ -3,8 +3,7 @@ use std::io::Write;
 use super::*;
 
 fn group() -> (tempfile::TempDir, GroupPaths) {
-    let home = tempfile::tempdir().unwrap();
-    let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
+    let (home, paths) = crate::verbs::lab();
     fs::create_dir_all(paths.log()).unwrap();
     (home, paths)
 }

@@ -12,8 +12,7 @@ fn run(
     json: bool,
     verb: impl FnOnce(&GroupPaths, &mut Output<'_>) -> Outcome,
 ) -> (Json, String, Result<Exit, (Exit, String)>) {
-    let home = tempfile::tempdir().unwrap();
-    let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
+    let (_home, paths) = crate::verbs::lab();
     std::fs::create_dir_all(paths.run()).unwrap();
     let listener = UnixListener::bind(paths.control_socket()).unwrap();
     let supervisor = thread::spawn(move || {

@@ -1,4 +1,4 @@
-//! `whichone ik`: how to reach a pose.
+//! `whichone fk` and `whichone ik`: where every link is, and how to reach a pose.
 
 use std::io::Read;
 use std::time::Instant;
@@ -6,14 +6,49 @@ use std::time::Instant;
 use manipulation::{Chain, Joints};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
 use serde::Deserialize;
-use serde_json::{Value as Json, json};
+use serde_json::{Map, Value as Json, json};
 
 use super::{parse, run};
 use crate::Outcome;
+use crate::described_arm::DescribedArm;
 use crate::output::Output;
 
 #[derive(Deserialize)]
-struct Line {
+struct Posture {
+    #[serde(default)]
+    id: Json,
+    q: Joints,
+}
+
+/// Answers each posture with `{"id","links":{name:{"xyz","xyzw"}}}`: metres in the frame of the
+/// robot's root, and unit quaternions with w ≥ 0. Postures beyond the joint limits are answered,
+/// too.
+///
+/// # Errors
+/// See [`run`].
+pub fn fk(arm: &DescribedArm, input: impl Read, out: &mut Output<'_>) -> Outcome {
+    run(input, out, |line| {
+        let line: Posture = parse(line)?;
+        if let Some(q) = line.q.iter().find(|q| q.abs() > POSITION_MAX) {
+            return Err(format!("q: {q} rad is no position of a joint"));
+        }
+        let links: Map<_, _> =
+            arm.links(&line.q).map(|(name, pose)| (name.to_owned(), pose_to_json(&pose))).collect();
+        Ok(json!({ "id": line.id, "links": links }))
+    })
+}
+
+/// Beyond this an angle says nothing about a direction any more.
+const POSITION_MAX: f64 = 1e6;
+
+fn pose_to_json(pose: &Isometry3<f64>) -> Json {
+    let (xyz, xyzw): ([f64; 3], [f64; 4]) =
+        (pose.translation.vector.into(), pose.rotation.coords.into());
+    json!({ "xyz": xyz, "xyzw": xyzw })
+}
+
+#[derive(Deserialize)]
+struct Pose {
     #[serde(default)]
     id: Json,
     xyz: [f64; 3],
@@ -33,7 +68,7 @@ pub fn ik(chain: &Chain, input: impl Read, out: &mut Output<'_>) -> Outcome {
     run(input, out, |line| answer(chain, &parse(line)?))
 }
 
-fn answer(chain: &Chain, line: &Line) -> Result<Json, String> {
+fn answer(chain: &Chain, line: &Pose) -> Result<Json, String> {
     let target = pose(line)?;
     let started = Instant::now();
     let solved = chain.inverse(&target, line.q_seed.as_ref());
@@ -52,7 +87,7 @@ fn answer(chain: &Chain, line: &Line) -> Result<Json, String> {
     }))
 }
 
-fn pose(line: &Line) -> Result<Isometry3<f64>, String> {
+fn pose(line: &Pose) -> Result<Isometry3<f64>, String> {
     let [x, y, z, w] = line.xyzw;
     let quaternion = Quaternion::new(w, x, y, z);
     let length = quaternion.norm();
