@@ -24,25 +24,16 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 /// Failure to take over the group.
 #[derive(Debug, Error)]
 pub enum PreviousRunError {
-    /// Another supervisor is running it.
-    #[error("group {group} is already running{}", with_pid(.pid))]
-    Running {
-        /// The group's name.
-        group: String,
-        /// The other supervisor's process, if it has written it down yet.
-        pid: Option<u32>,
-    },
+    /// Another supervisor is running the group of this name; its process, if it has written it down
+    /// yet.
+    #[error("group {} is already running{}", .0, with_pid(.1))]
+    Running(String, Option<u32>),
     /// Processes of a previous run survive SIGKILL.
     #[error("processes of a previous run of the group do not end: {}", .0.join(", "))]
     Undying(Vec<String>),
     /// A lock file cannot be used.
-    #[error("{}: {error}", .path.display())]
-    Io {
-        /// The lock file.
-        path: PathBuf,
-        /// Cause.
-        error: io::Error,
-    },
+    #[error("{}: {}", .0.display(), .1)]
+    Io(PathBuf, io::Error),
 }
 
 fn with_pid(pid: &Option<u32>) -> String {
@@ -52,14 +43,14 @@ fn with_pid(pid: &Option<u32>) -> String {
 /// Locks the group for this process, for as long as the file is kept open.
 pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, PreviousRunError> {
     let path = paths.supervisor_lock();
-    let failed = |error| PreviousRunError::Io { path: path.clone(), error };
+    let failed = |error| PreviousRunError::Io(path.clone(), error);
     let mut file = open_lock(&path).map_err(failed)?;
     match flock(&file, FlockOperation::NonBlockingLockExclusive) {
         Err(Errno::WOULDBLOCK) => {
             let mut text = String::new();
             let read = file.read_to_string(&mut text);
             let pid = read.ok().and_then(|_| text.trim().parse().ok());
-            return Err(PreviousRunError::Running { group: paths.name().to_string(), pid });
+            return Err(PreviousRunError::Running(paths.name().to_string(), pid));
         }
         taken => taken.map_err(|error| failed(error.into()))?,
     }
@@ -76,7 +67,7 @@ pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, PreviousRunError> {
 /// than `patience`. Returns the lock that the services of this one are to share.
 pub(crate) fn await_end(paths: &GroupPaths, patience: Duration) -> Result<File, PreviousRunError> {
     let path = paths.alive_lock();
-    let failed = |error| PreviousRunError::Io { path: path.clone(), error };
+    let failed = |error| PreviousRunError::Io(path.clone(), error);
     let alive = open_lock(&path).map_err(failed)?;
     if is_free(&alive) {
         return Ok(alive);

@@ -19,13 +19,8 @@ pub enum ScheduleError {
     #[error("two services are called {0}")]
     Twice(String),
     /// A service comes after one that does not exist.
-    #[error("{service} comes after {missing}, which is not a service of the group")]
-    Unknown {
-        /// The service whose `after` is wrong.
-        service: String,
-        /// The unknown name.
-        missing: String,
-    },
+    #[error("{0} comes after {1}, which is not a service of the group")]
+    Unknown(String, String),
     /// Services that wait for each other.
     #[error("these services wait for each other: {}", .0.join(", "))]
     Cycle(Vec<String>),
@@ -43,10 +38,8 @@ impl Schedule {
             }
             let mut earlier = Vec::with_capacity(service.after.len());
             for name in &service.after {
-                let other = position(name).ok_or_else(|| ScheduleError::Unknown {
-                    service: service.name.clone(),
-                    missing: name.clone(),
-                })?;
+                let other = position(name)
+                    .ok_or_else(|| ScheduleError::Unknown(service.name.clone(), name.clone()))?;
                 if !earlier.contains(&other) {
                     earlier.push(other);
                     behind[other].push(index);
@@ -115,10 +108,7 @@ mod tests {
             Err(ScheduleError::Cycle(vec!["a".into(), "b".into()]))
         );
         assert_eq!(schedule(&[("a", &["a"])]), Err(ScheduleError::Cycle(vec!["a".into()])));
-        assert_eq!(
-            schedule(&[("a", &["x"])]),
-            Err(ScheduleError::Unknown { service: "a".into(), missing: "x".into() })
-        );
+        assert_eq!(schedule(&[("a", &["x"])]), Err(ScheduleError::Unknown("a".into(), "x".into())));
         assert_eq!(schedule(&[("a", &[]), ("a", &[])]), Err(ScheduleError::Twice("a".into())));
     }
 }

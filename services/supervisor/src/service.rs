@@ -1,7 +1,7 @@
 //! One service under the supervisor: its successive processes and their notifications.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use service::group::{self, GroupPaths};
@@ -121,11 +121,11 @@ impl Service {
     ) -> Result<Running, SpawnError> {
         let path = around.paths.log_file(&self.spec.name);
         let socket = around.paths.notify_socket(&self.spec.name, incarnation);
-        let failed =
-            |path: &Path, error| SpawnError::Io { program: path.display().to_string(), error };
-        let log = log_file::open(&path, &around.log).map_err(|error| failed(&path, error))?;
+        let log = log_file::open(&path, &around.log)
+            .map_err(|error| SpawnError::Io(path.clone(), error))?;
         self.log_from = log_file::size(&path);
-        let notify = NotifySocket::bind(&socket).map_err(|error| failed(&socket, error))?;
+        let notify =
+            NotifySocket::bind(&socket).map_err(|error| SpawnError::Io(socket.clone(), error))?;
         let (words, directory) = match &self.swapped {
             Some(command) => (&command.words, &command.directory),
             None => (&self.spec.command, &around.directory),

@@ -32,21 +32,16 @@ pub(crate) enum SpawnError {
     /// Shared memory is short.
     #[error(transparent)]
     Room(#[from] NoRoom),
-    /// Error of the operating system.
-    #[error("{program}: {error}")]
-    Io {
-        /// The program's path.
-        program: String,
-        /// Cause.
-        error: io::Error,
-    },
+    /// Error of the operating system with a file.
+    #[error("{}: {}", .0.display(), .1)]
+    Io(PathBuf, io::Error),
 }
 
 impl SpawnError {
     /// Converts the error to an exit of the service, which determines if a retry may succeed.
     pub(crate) fn as_exit(&self) -> ProcessExit {
         match self {
-            Self::Io { error, .. } => match error.kind() {
+            Self::Io(_, error) => match error.kind() {
                 ErrorKind::NotFound | ErrorKind::PermissionDenied => ProcessExit::NotStartable,
                 ErrorKind::InvalidInput | ErrorKind::ArgumentListTooLong => {
                     ProcessExit::NotStartable
@@ -69,7 +64,7 @@ pub(crate) fn spawn(
     lifeline: &Lifeline,
 ) -> Result<Child, SpawnError> {
     let program = find_program(words, directory)?;
-    let failed = |error| SpawnError::Io { program: program.display().to_string(), error };
+    let failed = |error| SpawnError::Io(program.clone(), error);
     let mut command = Command::new(&program);
     command
         .args(&words[1..])

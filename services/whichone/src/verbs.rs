@@ -47,23 +47,11 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Up(args) => up::up(&paths()?, &args, out),
         Verb::Down(args) => operate::down(&paths()?, args.timeout, out),
         Verb::Status => status::status(&paths()?, out),
-        Verb::Start(args) => {
-            let request = |service, wait_ms| Request::Start { service, wait_ms };
-            operate::on_service(&paths()?, request, args, out)
-        }
-        Verb::Stop(args) => {
-            let request = |service, wait_ms| Request::Stop { service, wait_ms };
-            operate::on_service(&paths()?, request, args, out)
-        }
+        Verb::Start(args) => operate::on_service(&paths()?, Request::Start, args, out),
+        Verb::Stop(args) => operate::on_service(&paths()?, Request::Stop, args, out),
         Verb::Restart(args) => operate::restart(&paths()?, args, out),
-        Verb::Hold(args) => {
-            let request = |service, wait_ms| Request::Hold { service, wait_ms };
-            operate::on_service(&paths()?, request, args, out)
-        }
-        Verb::Release(args) => {
-            let request = |service, wait_ms| Request::Release { service, wait_ms };
-            operate::on_service(&paths()?, request, args, out)
-        }
+        Verb::Hold(args) => operate::on_service(&paths()?, Request::Hold, args, out),
+        Verb::Release(args) => operate::on_service(&paths()?, Request::Release, args, out),
         Verb::Logs(args) => logs::logs(&paths()?, &args, out),
         Verb::Reload(args) => operate::reload(&paths()?, args.timeout, out),
         Verb::Check(args) => check::check(&args, out),

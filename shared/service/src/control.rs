@@ -32,19 +32,9 @@ pub enum Request {
         wait_ms: u64,
     },
     /// Wants a service up; lifts a hold.
-    Start {
-        /// Its name.
-        service: String,
-        /// Timeout for its readiness, milliseconds.
-        wait_ms: u64,
-    },
+    Start(Target),
     /// Wants a service down.
-    Stop {
-        /// Its name.
-        service: String,
-        /// Timeout for its end, milliseconds.
-        wait_ms: u64,
-    },
+    Stop(Target),
     /// Stops a service, if it runs, and starts it.
     Restart {
         /// Its name.
@@ -56,19 +46,9 @@ pub enum Request {
         wait_ms: u64,
     },
     /// Stops a service and keeps it from running until it is released.
-    Hold {
-        /// Its name.
-        service: String,
-        /// Timeout for its end, milliseconds.
-        wait_ms: u64,
-    },
+    Hold(Target),
     /// Lifts a hold, an operator's or the supervisor's own.
-    Release {
-        /// Its name.
-        service: String,
-        /// Timeout for its readiness if it is wanted up, milliseconds.
-        wait_ms: u64,
-    },
+    Release(Target),
     /// Replaces a service's program; the old one is put back if the new one does not become ready
     /// within the service's start deadline. Answered when that is decided.
     Swap {
@@ -87,6 +67,23 @@ pub enum Request {
     },
     /// Stops the group in order. Answered by [`Reply::Down`] when nothing of it is left.
     Down,
+}
+
+/// The service that a request is about.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Target {
+    /// Its name.
+    pub service: String,
+    /// Timeout for its end, or for its readiness if it is wanted up, milliseconds.
+    pub wait_ms: u64,
+}
+
+impl Target {
+    /// A service by its name, and the timeout.
+    pub fn new(service: &str, wait_ms: u64) -> Self {
+        Self { service: service.to_owned(), wait_ms }
+    }
 }
 
 /// An answer of the supervisor.
@@ -179,6 +176,8 @@ mod tests {
     fn control_requests_are_plain_json_lines() {
         check_line(Request::Ping, r#"{"verb":"ping"}"#);
         check_line(Request::WaitReady { wait_ms: 5000 }, r#"{"verb":"wait-ready","wait_ms":5000}"#);
+        let line = r#"{"verb":"hold","service":"arm","wait_ms":0}"#;
+        check_line(Request::Hold(Target::new("arm", 0)), line);
         check_line(
             Request::Swap {
                 service: "grounding".into(),
@@ -191,7 +190,12 @@ mod tests {
 
     #[test]
     fn control_requests_with_spelling_errors_are_rejected() {
-        let wrong = [r#"{"verb":"strat"}"#, r#"{"verb":"stop"}"#, "{"];
+        let wrong = [
+            r#"{"verb":"strat"}"#,
+            r#"{"verb":"stop"}"#,
+            "{",
+            r#"{"verb":"stop","service":"arm","wait_ms":0,"now":1}"#,
+        ];
         for line in wrong {
             let error = serde_json::from_str::<Request>(line).unwrap_err().to_string();
             assert!(!error.is_empty(), "{line}");

@@ -46,30 +46,15 @@ pub struct Options {
 /// Failure to start a supervisor.
 #[derive(Debug, Error)]
 pub enum LaunchError {
-    /// The supervisor could not be started, or its log could not be created.
-    #[error("{}: {error}", .path.display())]
-    Io {
-        /// The program or file.
-        path: PathBuf,
-        /// Cause.
-        error: io::Error,
-    },
-    /// It ended before it listened.
-    #[error("the supervisor ended with {status}{}", indented(.log))]
-    Ended {
-        /// Its exit status.
-        status: ExitStatus,
-        /// The end of its log.
-        log: Vec<String>,
-    },
-    /// It did not listen in time.
-    #[error("the supervisor is not up after {} s; see {}", .after.as_secs_f64(), .log.display())]
-    Late {
-        /// The timeout.
-        after: Duration,
-        /// Its log.
-        log: PathBuf,
-    },
+    /// The supervisor's program could not be started, or its log could not be created.
+    #[error("{}: {}", .0.display(), .1)]
+    Io(PathBuf, io::Error),
+    /// It ended before it listened; its exit status and the end of its log.
+    #[error("the supervisor ended with {}{}", .0, indented(.1))]
+    Ended(ExitStatus, Vec<String>),
+    /// It did not listen within the timeout; its log.
+    #[error("the supervisor is not up after {} s; see {}", .0.as_secs_f64(), .1.display())]
+    Late(Duration, PathBuf),
     /// The supervisor did not answer, or the group did not become ready.
     #[error(transparent)]
     Call(#[from] CallError),
@@ -79,12 +64,12 @@ impl LaunchError {
     /// The exit code that a command line ends with.
     pub fn exit(&self) -> Exit {
         match self {
-            Self::Ended { status, .. } => match Exit::of_process(status.code()) {
+            Self::Ended(status, _) => match Exit::of_process(status.code()) {
                 Exit::Ok => Exit::NotReached,
                 exit => exit,
             },
-            Self::Io { .. } => Exit::Storage,
-            Self::Late { .. } | Self::Call(_) => Exit::NotReached,
+            Self::Io(..) => Exit::Storage,
+            Self::Late(..) | Self::Call(_) => Exit::NotReached,
         }
     }
 }
@@ -135,7 +120,7 @@ pub fn program_of(service: &str) -> PathBuf {
 /// fails.
 pub fn foreground(program: &Path, options: &Options, paths: &GroupPaths) -> LaunchError {
     let error = command(program, options, paths).exec();
-    LaunchError::Io { path: program.to_owned(), error }
+    LaunchError::Io(program.to_owned(), error)
 }
 
 /// Starts a supervisor in its own session, with its log in `log/supervisor.log`.
@@ -148,14 +133,14 @@ pub fn detached(
     paths: &GroupPaths,
 ) -> Result<Launched, LaunchError> {
     let path = paths.log_file(SUPERVISOR);
-    let (log, log_from) = open_log(paths).map_err(|error| LaunchError::Io { path, error })?;
+    let (log, log_from) = open_log(paths).map_err(|error| LaunchError::Io(path, error))?;
     let process = command(program, options, paths)
         .arg("--detached")
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(log)
         .spawn()
-        .map_err(|error| LaunchError::Io { path: program.to_owned(), error })?;
+        .map_err(|error| LaunchError::Io(program.to_owned(), error))?;
     Ok(Launched { process, paths: paths.clone(), log_from })
 }
 
@@ -193,11 +178,11 @@ impl Launched {
             }
             if let Ok(Some(status)) = self.process.try_wait() {
                 let log = log_file::tail(&self.paths.log_file(SUPERVISOR), self.log_from);
-                return Err(LaunchError::Ended { status, log });
+                return Err(LaunchError::Ended(status, log));
             }
             if Instant::now() > until {
                 let log = self.paths.log_file(SUPERVISOR);
-                return Err(LaunchError::Late { after: timeout, log });
+                return Err(LaunchError::Late(timeout, log));
             }
             thread::sleep(ASK_EVERY);
         }

@@ -131,7 +131,7 @@ impl Supervisor {
 
     /// Recreates the run folder and starts the group.
     fn renew(&mut self) -> Result<(), StartError> {
-        let failed = |what| move |error| StartError::Io { what, error };
+        let failed = |what| move |error| StartError::Io(what, error);
         let paths = &self.around.paths;
         self.admin = None;
         remove_leftovers(paths);

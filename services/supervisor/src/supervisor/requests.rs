@@ -6,7 +6,7 @@ use super::waits::{Goal, Wait};
 use crate::Time;
 use crate::machine::{Event, Wanted};
 use crate::server::Client;
-use service::control::{Refusal, RefusalKind, Reply, Request};
+use service::control::{Refusal, RefusalKind, Reply, Request, Target};
 
 impl Supervisor {
     /// Answers a request, or begins what it asks for and answers when that is done.
@@ -41,12 +41,12 @@ impl Supervisor {
                 let service = self.find(&service)?;
                 self.replace(client, service, command, directory, now)?;
             }
-            Request::Start { service, wait_ms } => {
+            Request::Start(Target { service, wait_ms }) => {
                 let service = self.find(&service)?;
                 self.give(service, Event::Start, now);
                 self.await_ready(client, service, 0, wait_ms, now);
             }
-            Request::Release { service, wait_ms } => {
+            Request::Release(Target { service, wait_ms }) => {
                 let service = self.find(&service)?;
                 self.give(service, Event::Release, now);
                 self.await_release(client, service, wait_ms, now);
@@ -60,10 +60,10 @@ impl Supervisor {
                 self.give(service, Event::Restart, now);
                 self.await_ready(client, service, before, wait_ms, now);
             }
-            Request::Stop { service, wait_ms } => {
+            Request::Stop(Target { service, wait_ms }) => {
                 self.put_down(client, &service, Event::Stop, wait_ms, now)?;
             }
-            Request::Hold { service, wait_ms } => {
+            Request::Hold(Target { service, wait_ms }) => {
                 self.put_down(client, &service, Event::Hold, wait_ms, now)?;
             }
         }

@@ -47,13 +47,8 @@ pub enum StartError {
     #[error("shared memory: {0}")]
     SharedMemory(#[from] BusError),
     /// A folder, file, socket or setting is refused by the operating system.
-    #[error("{what}: {error}")]
-    Io {
-        /// Operation that failed.
-        what: &'static str,
-        /// Cause.
-        error: io::Error,
-    },
+    #[error("{0}: {1}")]
+    Io(&'static str, io::Error),
 }
 
 impl StartError {
@@ -62,7 +57,7 @@ impl StartError {
         match self {
             Self::Config(_) | Self::Order(_) => Exit::Config,
             Self::PreviousRun(_) | Self::Room(_) | Self::SharedMemory(_) => Exit::NotReached,
-            Self::Io { .. } => Exit::Storage,
+            Self::Io(..) => Exit::Storage,
         }
     }
 }
@@ -167,5 +162,5 @@ fn adopt_orphans() -> io::Result<()> {
 }
 
 fn failed(what: &'static str) -> impl Fn(io::Error) -> StartError {
-    move |error| StartError::Io { what, error }
+    move |error| StartError::Io(what, error)
 }

@@ -2,7 +2,7 @@ use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
 use serde_json::json;
-use service::control::{DownReport, Reply, Request};
+use service::control::{DownReport, Reply, Request, Target};
 use service::status::Actual;
 
 use crate::harness::{Group, WAIT_MS, send, service, wait_for, with};
@@ -75,7 +75,7 @@ fn orphans_outside_the_process_group_are_killed_when_their_service_ends() {
     send(group.pid("policy"), Signal::KILL);
     group.until_ready("policy", 2);
     assert!(crate::harness::is_alive(left), "its own service still runs");
-    group.done(&Request::Stop { service: "arm".into(), wait_ms: WAIT_MS });
+    group.done(&Request::Stop(Target::new("arm", WAIT_MS)));
     wait_for("the daemon to be killed", || (!crate::harness::is_alive(left)).then_some(()));
     assert_eq!(group.status().orphans_killed, 1);
 }
@@ -85,7 +85,7 @@ fn group_that_is_stopping_rejects_requests() {
     let mut group = Group::ready(vec![service("arm", &["ends-slowly", "1000"])]);
     send(group.supervisor_pid(), Signal::TERM);
     group.until("arm", Actual::Stopping);
-    let refusal = group.refused(&Request::Start { service: "arm".into(), wait_ms: 0 });
+    let refusal = group.refused(&Request::Start(Target::new("arm", 0)));
     assert_eq!(refusal.message, "the group is stopping");
     assert_eq!(down(&mut group).killed, [""; 0]);
 }

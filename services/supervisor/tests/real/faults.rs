@@ -2,7 +2,7 @@ use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
 use serde_json::json;
-use service::control::{RefusalKind, Request};
+use service::control::{RefusalKind, Request, Target};
 use service::exit::ProcessExit;
 use service::status::GroupState;
 use supervisor::machine::{Actual, Failure};
@@ -51,7 +51,7 @@ fn crash_loop_backs_off_and_is_held_with_the_log() {
     let pauses = Duration::from_millis(100 + 200 + 400 + 800);
     assert!(begun.elapsed() >= pauses, "{:?}", begun.elapsed());
     group.until("policy", Actual::Ready);
-    group.done(&Request::Release { service: "arm".into(), wait_ms: 0 });
+    group.done(&Request::Release(Target::new("arm", 0)));
     wait_for("a sixth start", || Some(group.service("arm")).filter(|s| s.incarnation > 5));
 }
 
@@ -104,7 +104,7 @@ fn flooded_log_is_bounded_and_blocks_no_service() {
     let kept = wait_for("the log to be cut", || aside.metadata().ok().map(|meta| meta.len()));
     assert!(kept <= bytes_max, "{kept}");
     group.until("policy", Actual::Ready);
-    group.done(&Request::Stop { service: "arm".into(), wait_ms: WAIT_MS });
+    group.done(&Request::Stop(Target::new("arm", WAIT_MS)));
 }
 
 #[test]

@@ -112,7 +112,7 @@ fn invalid_configuration_is_reported_in_full() {
     home.write("dialogue.toml", "epsilon = 2.0\n");
     let error = home.launch().wait_listening(PATIENCE).unwrap_err();
     assert_eq!(error.exit(), Exit::Config);
-    assert!(matches!(error, LaunchError::Ended { .. }));
+    assert!(matches!(error, LaunchError::Ended(..)));
     let error = error.to_string();
     assert!(error.contains("arm.toml") && error.contains("dialogue.toml"), "{error}");
 }

@@ -1,15 +1,15 @@
 use serde_json::json;
-use service::control::{RefusalKind, Reply, Request};
+use service::control::{RefusalKind, Reply, Request, Target};
 use service::status::{Actual, Wanted};
 
 use crate::harness::{Group, WAIT_MS, service, with};
 
 fn start(service: &str) -> Request {
-    Request::Start { service: service.into(), wait_ms: WAIT_MS }
+    Request::Start(Target::new(service, WAIT_MS))
 }
 
 fn stop(service: &str) -> Request {
-    Request::Stop { service: service.into(), wait_ms: WAIT_MS }
+    Request::Stop(Target::new(service, WAIT_MS))
 }
 
 fn restart(service: &str) -> Request {
@@ -34,12 +34,12 @@ fn services_are_stopped_started_and_restarted_one_by_one() {
 #[test]
 fn held_service_stays_down_until_released() {
     let group = Group::ready(vec![service("arm", &[])]);
-    let hold = Request::Hold { service: "arm".into(), wait_ms: WAIT_MS };
+    let hold = Request::Hold(Target::new("arm", WAIT_MS));
     assert_eq!(group.done(&hold), "arm is held");
     let held = group.service("arm");
     assert_eq!((held.wanted, held.actual), (Wanted::Up, Actual::Held));
     assert_eq!(held.why.as_deref(), Some("held by the operator"));
-    let release = Request::Release { service: "arm".into(), wait_ms: WAIT_MS };
+    let release = Request::Release(Target::new("arm", WAIT_MS));
     assert_eq!(group.done(&release), "arm is ready");
 }
 

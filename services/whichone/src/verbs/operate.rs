@@ -7,7 +7,7 @@ use rustix::event::{PollFd, PollFlags, poll};
 use rustix::process::{Pid, PidfdFlags, pidfd_open};
 use rustix::time::Timespec;
 use serde::Serialize;
-use service::control::{CallError, DownReport, Reply, Request, call};
+use service::control::{CallError, DownReport, Reply, Request, Target, call};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::status::GroupStatus;
@@ -37,14 +37,14 @@ pub(super) fn status_of(paths: &GroupPaths) -> Result<GroupStatus, CallError> {
     }
 }
 
-/// Sends a request about one service, made of its name and the wait in milliseconds.
+/// Sends a request about one service.
 pub(super) fn on_service(
     paths: &GroupPaths,
-    request: impl FnOnce(String, u64) -> Request,
+    request: impl FnOnce(Target) -> Request,
     ServiceArgs { service, timeout }: ServiceArgs,
     out: &mut Output<'_>,
 ) -> Outcome {
-    order(paths, &request(service, ms(timeout)), timeout, out)
+    order(paths, &request(Target { service, wait_ms: ms(timeout) }), timeout, out)
 }
 
 /// Stops a service and starts it again.
@@ -72,7 +72,7 @@ pub(super) fn down(paths: &GroupPaths, timeout: Duration, out: &mut Output<'_>) 
     let report = match ask(paths, &Request::Down, timeout) {
         Ok(Reply::Down(report)) => report,
         Ok(other) => return Err(unintelligible(paths, &other).into()),
-        Err(CallError::NoGroup { .. }) => return not_running(paths, timeout, out),
+        Err(CallError::NoGroup(_)) => return not_running(paths, timeout, out),
         Err(other) => return Err(other.into()),
     };
     supervisor.iter().for_each(await_end);

@@ -16,7 +16,7 @@ use crate::output::{Ink, Output, Style, table};
 pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     let status = match status_of(paths) {
         Ok(status) => status,
-        Err(CallError::NoGroup { .. }) => return down(paths, out),
+        Err(CallError::NoGroup(_)) => return down(paths, out),
         Err(other) => return Err(other.into()),
     };
     let hearing = hearing::look(paths);

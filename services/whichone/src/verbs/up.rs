@@ -63,7 +63,7 @@ pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<(), Fa
 pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, Failure> {
     match operate::ask(paths, &Request::Ping, Duration::ZERO) {
         Ok(_) => Ok(true),
-        Err(CallError::NoGroup { .. }) => Ok(false),
+        Err(CallError::NoGroup(_)) => Ok(false),
         Err(other) => Err(other.into()),
     }
 }

@@ -12,53 +12,32 @@ use super::{Refusal, Reply, Request};
 /// Failure to get a reply.
 #[derive(Debug, Error)]
 pub enum CallError {
-    /// The group is not running.
-    #[error("group {group} is not running; help: start it with `whichone up{}`", of(.group))]
-    NoGroup {
-        /// The group's name.
-        group: String,
-    },
-    /// No answer in time.
-    #[error("the supervisor of group {group} did not answer within {} s", .timeout.as_secs_f64())]
-    TimedOut {
-        /// The group's name.
-        group: String,
-        /// The timeout.
-        timeout: Duration,
-    },
+    /// The group of this name is not running.
+    #[error("group {} is not running; help: start it with `whichone up{}`", .0, of(.0))]
+    NoGroup(String),
+    /// No answer within the timeout.
+    #[error("the supervisor of group {} did not answer within {} s", .0, .1.as_secs_f64())]
+    TimedOut(String, Duration),
     /// The supervisor ended before its answer.
-    #[error("the supervisor of group {group} ended before it answered")]
-    Closed {
-        /// The group's name.
-        group: String,
-    },
-    /// An invalid answer, e.g. of a supervisor of another version.
+    #[error("the supervisor of group {0} ended before it answered")]
+    Closed(String),
+    /// An invalid answer, e.g. of a supervisor of another version, and what is wrong with it.
     #[error(
-        "invalid answer of the supervisor of group {group}: {why}; help: use one version of all programs"
+        "invalid answer of the supervisor of group {0}: {1}; help: use one version of all programs"
     )]
-    Unintelligible {
-        /// The group's name.
-        group: String,
-        /// The parser's error.
-        why: String,
-    },
+    Unintelligible(String, String),
     /// The supervisor rejects the request.
     #[error("{}", .0.message)]
     Refused(Refusal),
-    /// Failure of the socket.
-    #[error("{}: {error}", .path.display())]
-    Io {
-        /// The control socket.
-        path: PathBuf,
-        /// Cause.
-        error: io::Error,
-    },
+    /// Failure of the control socket.
+    #[error("{}: {}", .0.display(), .1)]
+    Io(PathBuf, io::Error),
 }
 
 impl CallError {
     /// An answer that is not one to the request, from the supervisor at control socket `path`.
     pub fn unintelligible(path: &Path, why: impl ToString) -> Self {
-        Self::Unintelligible { group: group_of(path), why: why.to_string() }
+        Self::Unintelligible(group_of(path), why.to_string())
     }
 }
 
@@ -88,7 +67,7 @@ pub fn call(path: &Path, request: &Request, timeout: Duration) -> Result<Reply, 
     let mut answer = String::new();
     BufReader::new(stream).read_line(&mut answer).map_err(failed)?;
     if !answer.ends_with('\n') {
-        return Err(CallError::Closed { group: group_of(path) });
+        return Err(CallError::Closed(group_of(path)));
     }
     match serde_json::from_str(&answer) {
         Ok(Reply::Refused(refusal)) => Err(CallError::Refused(refusal)),
@@ -100,10 +79,10 @@ pub fn call(path: &Path, request: &Request, timeout: Duration) -> Result<Reply, 
 fn explain(error: io::Error, path: &Path, timeout: Duration) -> CallError {
     let group = group_of(path);
     match error.kind() {
-        ErrorKind::NotFound | ErrorKind::ConnectionRefused => CallError::NoGroup { group },
-        ErrorKind::WouldBlock | ErrorKind::TimedOut => CallError::TimedOut { group, timeout },
-        ErrorKind::ConnectionReset | ErrorKind::BrokenPipe => CallError::Closed { group },
-        _ => CallError::Io { path: path.to_owned(), error },
+        ErrorKind::NotFound | ErrorKind::ConnectionRefused => CallError::NoGroup(group),
+        ErrorKind::WouldBlock | ErrorKind::TimedOut => CallError::TimedOut(group, timeout),
+        ErrorKind::ConnectionReset | ErrorKind::BrokenPipe => CallError::Closed(group),
+        _ => CallError::Io(path.to_owned(), error),
     }
 }
 
@@ -154,7 +133,7 @@ mod tests {
         );
         drop(UnixListener::bind(&path).unwrap());
         let error = call(&path, &Request::Ping, SHORT).unwrap_err();
-        assert!(matches!(error, CallError::NoGroup { .. }), "a stale socket: {error}");
+        assert!(matches!(error, CallError::NoGroup(..)), "a stale socket: {error}");
         let (_home, path) = socket("whichone");
         let error = call(&path, &Request::Ping, SHORT).unwrap_err().to_string();
         assert_eq!(error, "group whichone is not running; help: start it with `whichone up`");
@@ -162,13 +141,13 @@ mod tests {
 
     #[test]
     fn control_client_distinguishes_missing_answers() {
-        assert!(matches!(answered_with(""), Err(CallError::Closed { .. })));
-        assert!(matches!(answered_with("{\"reply\":"), Err(CallError::Closed { .. })));
-        assert!(matches!(answered_with("?\n"), Err(CallError::Unintelligible { .. })));
+        assert!(matches!(answered_with(""), Err(CallError::Closed(..))));
+        assert!(matches!(answered_with("{\"reply\":"), Err(CallError::Closed(..))));
+        assert!(matches!(answered_with("?\n"), Err(CallError::Unintelligible(..))));
         let (_home, path) = socket("lab");
         let _silent = UnixListener::bind(&path).unwrap();
         let error = call(&path, &Request::Ping, SHORT).unwrap_err();
-        assert!(matches!(error, CallError::TimedOut { .. }), "{error}");
+        assert!(matches!(error, CallError::TimedOut(..)), "{error}");
     }
 
     #[test]

@@ -43,14 +43,12 @@ fn arm() -> ServiceArgs {
 #[test]
 fn verbs_send_their_requests() {
     let done = || json!({"reply": "done", "message": "arm is so"});
-    let (asked, printed, ended) = run(done(), false, |paths, out| {
-        on_service(paths, |service, wait_ms| Request::Hold { service, wait_ms }, arm(), out)
-    });
+    let (asked, printed, ended) =
+        run(done(), false, |paths, out| on_service(paths, Request::Hold, arm(), out));
     assert_eq!(asked, json!({"verb": "hold", "service": "arm", "wait_ms": 1500}));
     assert_eq!((printed.as_str(), ended), ("arm is so\n", Ok(Exit::Ok)));
-    let (asked, printed, _) = run(done(), true, |paths, out| {
-        on_service(paths, |service, wait_ms| Request::Start { service, wait_ms }, arm(), out)
-    });
+    let (asked, printed, _) =
+        run(done(), true, |paths, out| on_service(paths, Request::Start, arm(), out));
     assert_eq!(asked["verb"], "start");
     assert_eq!(printed, "{\"message\":\"arm is so\"}\n");
     let (asked, ..) = run(done(), false, |paths, out| {
@@ -68,9 +66,8 @@ fn refusal_is_printed_with_details_and_kind() {
     for (kind, exit) in kinds {
         let refused =
             json!({"reply": "refused", "kind": kind, "message": "no", "details": ["why"]});
-        let (_, printed, ended) = run(refused, false, |paths, out| {
-            on_service(paths, |service, wait_ms| Request::Release { service, wait_ms }, arm(), out)
-        });
+        let (_, printed, ended) =
+            run(refused, false, |paths, out| on_service(paths, Request::Release, arm(), out));
         assert_eq!((printed.as_str(), ended), ("", Err((exit, "no\n  why".to_owned()))));
     }
 }
