@@ -1,6 +1,7 @@
 //! The command surface: every verb, its arguments and their help.
 
 use clap::{Parser, Subcommand};
+use clap_complete::Shell;
 use service::group::{ENV_GROUP, GroupName};
 
 mod arm;
@@ -9,17 +10,16 @@ mod group;
 mod study;
 mod talk;
 
-pub use arm::{AnyLimb, ArmPlotArgs, ArmVerb, ArmVerbArgs};
+pub use arm::{AnyLimb, ArmPlotArgs, ArmVerb};
 pub use batch::{
-    ArmArgs, BeliefArgs, ExportArgs, Exported, GroundArgs, InputArgs, PlanArgs, ProblemArgs,
-    WhichArm,
+    ArmArgs, ExportArgs, Exported, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm,
 };
 pub use group::{
     CheckArgs, ConfigArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, SwapArgs,
     UpArgs, WaitFor,
 };
 pub use study::{ALL as STUDY_ALL, Preset, ReportArgs, StudyArgs, StudyVerb};
-pub use talk::{AwaitArgs, Awaited, ChatArgs, CompletionsArgs, JournalArgs, ListenArgs};
+pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
 
 /// A robot that asks which one you mean before it fetches it.
@@ -116,14 +116,18 @@ pub enum Verb {
     /// List or verify the journal of a service.
     Journal(JournalArgs),
     /// Print a completion script for a shell.
-    Completions(CompletionsArgs),
+    Completions {
+        /// The shell.
+        #[arg(value_enum)]
+        shell: Shell,
+    },
     /// Check this machine for missing dependencies and suggest fixes.
     ///
     /// Checks programs, configuration, folders, shared memory, leftovers of killed groups, the
     /// recogniser, the voice and the microphone.
     Doctor(ConfigArgs),
     /// Read test cases, one JSON object per line, and print the belief after each.
-    Belief(BeliefArgs),
+    Belief(InputArgs),
     /// Read utterances, one JSON object per line, and print the meaning of each in the scene.
     ///
     /// Input: `id`, `text`, and optionally `last_question`, the question that the utterance may
@@ -141,7 +145,11 @@ pub enum Verb {
     /// The same seed gives the same table, byte for byte, on any number of threads.
     Study(StudyArgs),
     /// Show the arm's motions without a group.
-    Arm(ArmVerbArgs),
+    Arm {
+        /// Action.
+        #[command(subcommand)]
+        what: ArmVerb,
+    },
     /// Read joint positions, one JSON object per line, and print the pose of every link.
     Fk(ArmArgs),
     /// Read poses of an arm's last link, one JSON object per line, and print joint positions.

@@ -7,7 +7,7 @@ use service::control::Request;
 use service::group::GroupPaths;
 
 use crate::Outcome;
-use crate::cli::{ArmArgs, Awaited, Cli, StudyVerb, Verb};
+use crate::cli::{ArmArgs, ArmVerb, Awaited, Cli, StudyVerb, Verb};
 use crate::described_arm::DescribedArm;
 use crate::output::Output;
 use crate::{batch, scene_file};
@@ -70,9 +70,9 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
             motion::motion(&paths()?, MotionOrder::Resume, args.timeout, out)
         }
         Verb::Journal(args) => inspection::journal(&paths()?, &args, out),
-        Verb::Completions(args) => completions(args.shell, out),
+        Verb::Completions { shell } => completions(shell, out),
         Verb::Doctor(args) => doctor::doctor(&paths()?, &args, out),
-        Verb::Belief(args) => batch::belief(batch::open(&args.input)?, out),
+        Verb::Belief(args) => batch::belief(batch::open(&args)?, out),
         Verb::Ground(args) => {
             let scene = scene_file::load(&args.scene)?;
             let grounder = batch::Grounder::new(scene, args.language);
@@ -86,7 +86,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
             Some(StudyVerb::Report(report)) => study::report(&paths()?, report, out),
             None => study::study(&args, out),
         },
-        Verb::Arm(args) => arm::arm(&args, out),
+        Verb::Arm { what: ArmVerb::Plot(args) } => arm::plot(&args, out),
         Verb::Fk(args) => batch::fk(&described_arm(&args)?, batch::open(&args.input)?, out),
         Verb::Ik(args) => {
             let chain = described_arm(&args)?.chain()?;

@@ -8,14 +8,6 @@ use manipulation::Limb;
 use super::ConfigArgs;
 use super::batch::{Choice, one_of};
 
-/// Arguments of `arm`.
-#[derive(Debug, Args)]
-pub struct ArmVerbArgs {
-    /// Action.
-    #[command(subcommand)]
-    pub what: ArmVerb,
-}
-
 /// Actions of the arm that need no group.
 #[derive(Debug, Subcommand)]
 pub enum ArmVerb {

@@ -18,14 +18,6 @@ pub struct InputArgs {
     pub input: Option<PathBuf>,
 }
 
-/// Arguments of `belief`.
-#[derive(Debug, Args)]
-pub struct BeliefArgs {
-    /// The lines.
-    #[command(flatten)]
-    pub input: InputArgs,
-}
-
 /// Arguments of `ground`.
 #[derive(Debug, Args)]
 pub struct GroundArgs {

@@ -21,6 +21,13 @@ pub struct ConfigArgs {
     pub set: Vec<(String, String)>,
 }
 
+impl ConfigArgs {
+    /// Returns true if any of them is given.
+    pub fn is_given(&self) -> bool {
+        self.config.is_some() || self.profile.is_some() || !self.set.is_empty()
+    }
+}
+
 /// Arguments of `up`.
 #[derive(Debug, Args)]
 pub struct UpArgs {

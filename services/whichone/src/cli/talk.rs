@@ -4,7 +4,6 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
-use clap_complete::Shell;
 use messages::Service;
 
 use super::ConfigArgs;
@@ -145,14 +144,6 @@ pub struct JournalArgs {
     /// The configuration of the journal, if the group is not running.
     #[command(flatten)]
     pub config: ConfigArgs,
-}
-
-/// Arguments of `completions`.
-#[derive(Debug, Args)]
-pub struct CompletionsArgs {
-    /// The shell.
-    #[arg(value_enum)]
-    pub shell: Shell,
 }
 
 /// Parses a timeout.

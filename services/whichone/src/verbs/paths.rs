@@ -23,8 +23,7 @@ pub(super) fn settings_in_force(
     paths: &GroupPaths,
     args: &ConfigArgs,
 ) -> Result<Settings, Failure> {
-    let named = args.config.is_some() || args.profile.is_some() || !args.set.is_empty();
-    if !named && paths.run().join(config::SNAPSHOT_FILE).is_file() {
+    if !args.is_given() && paths.run().join(config::SNAPSHOT_FILE).is_file() {
         return Ok(Settings::load_snapshot(&paths.run())?);
     }
     settings(args)

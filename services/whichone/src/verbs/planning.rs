@@ -39,9 +39,8 @@ pub(super) fn of_scene(scene: &Path, args: &ProblemArgs) -> Result<Problem, Fail
 /// found, the defaults.
 fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Failure> {
     let config = &args.config;
-    let named = config.config.is_some() || config.profile.is_some() || !config.set.is_empty();
     let settings = match paths::config_folder(config) {
-        Err(_) if !named => None,
+        Err(_) if !config.is_given() => None,
         _ => Some(paths::settings(config)?),
     };
     let configured = settings.as_ref().map(|settings| &settings.dialogue);

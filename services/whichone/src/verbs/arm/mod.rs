@@ -10,7 +10,7 @@ use service::exit::{Exit, Failure};
 
 use super::{paths, planning};
 use crate::Outcome;
-use crate::cli::{ArmPlotArgs, ArmVerb, ArmVerbArgs};
+use crate::cli::ArmPlotArgs;
 use crate::output::Output;
 use crate::scene_file;
 
@@ -28,14 +28,8 @@ struct Pick<'a> {
     plan: Timeline,
 }
 
-/// Runs the verb.
-pub(super) fn arm(args: &ArmVerbArgs, out: &mut Output<'_>) -> Outcome {
-    let ArmVerb::Plot(args) = &args.what;
-    plot(args, out)
-}
-
 /// Draws the motion that fetches an object.
-fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
+pub(super) fn plot(args: &ArmPlotArgs, out: &mut Output<'_>) -> Outcome {
     let ending = args.out.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if !["png", "svg"].contains(&ending) {
         let help = "end its name with .png or .svg";
