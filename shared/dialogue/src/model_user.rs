@@ -31,14 +31,10 @@ impl ModelUser {
 
     /// Draws an answer.
     pub fn answer(&mut self, model: &Model, question: Question) -> Answer {
-        let mut left = self.rng.uniform();
-        for answer in Answer::possible(model, question) {
-            left -= answer.probability(model, question, self.wanted);
-            if left < 0.0 {
-                return answer;
-            }
-        }
-        Answer::Silence
+        let answers = Answer::possible(model, question);
+        let probability = |answer: &Answer| answer.probability(model, question, self.wanted);
+        let drawn = self.rng.index(answers.iter().map(probability));
+        drawn.map_or(Answer::Silence, |index| answers[index])
     }
 }
 

@@ -54,6 +54,15 @@ impl Rng {
         assert!(bound > 0, "nothing to draw from");
         ((u128::from(self.next_u64()) * bound as u128) >> 64) as usize
     }
+
+    /// An index with these probabilities; none with what they fall short of 1.
+    pub fn index(&mut self, probabilities: impl IntoIterator<Item = f64>) -> Option<usize> {
+        let mut left = self.uniform();
+        probabilities.into_iter().position(|probability| {
+            left -= probability;
+            left < 0.0
+        })
+    }
 }
 
 #[cfg(test)]
@@ -68,6 +77,17 @@ mod tests {
             first,
             [6_457_827_717_110_365_317, 3_203_168_211_198_807_973, 9_817_491_932_198_370_423]
         );
+    }
+
+    #[test]
+    fn index_has_the_probabilities_given() {
+        let mut rng = Rng::new(9);
+        let mut seen = [0_u32; 4];
+        for _ in 0..10_000 {
+            seen[rng.index([0.5, 0.0, 0.3]).unwrap_or(3)] += 1;
+        }
+        assert!(seen[1] == 0 && (4_800..5_200).contains(&seen[0]), "{seen:?}");
+        assert!((2_800..3_200).contains(&seen[2]), "{seen:?}");
     }
 
     #[test]

@@ -1,13 +1,13 @@
 //! `information-seeking`: asks under uncertainty about the person who answers.
 
-use crate::planning::{Bound, Choice, Effort, OneStepEvaluator, Reduced};
+use crate::planning::{Choice, Effort};
 use crate::user_model::{Joint, Person};
 use crate::{Action, Answer, Belief, Decision, DecisionProblem, Model, Planner, Step};
 
 use scene::Question;
 
 use super::searched::{affordable, searched};
-use super::{Entry, alternatives};
+use super::{Entry, Outlook, alternatives};
 
 /// The registry's entry.
 pub(super) const ENTRY: Entry = Entry {
@@ -90,9 +90,8 @@ fn stopping(problem: &DecisionProblem<'_>, belief: &Belief) -> (Action, f64) {
 
 /// The questions that look best from one step ahead.
 fn promising(problem: &DecisionProblem<'_>, belief: &Belief) -> Vec<Question> {
-    let reduced = Reduced::new(problem, belief);
-    let bound = Bound::new(&reduced, &problem.costs);
-    let mut choices = OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass).choices;
+    let Outlook { reduced, one_step } = Outlook::new(problem, belief);
+    let mut choices = one_step.choices;
     let by_estimate = |a: &Choice, b: &Choice| b.value.estimate.total_cmp(&a.value.estimate);
     choices.sort_by(by_estimate);
     choices.truncate(WEIGHED_MAX);

@@ -1,9 +1,9 @@
 //! `sparse-sampling`: the predecessor's planner (Kearns, Mansour and Ng 2002, over beliefs).
 
-use crate::planning::{Bound, OneStepEvaluator, Query, Reduced, outcomes};
+use crate::planning::{Query, Reduced, outcomes};
 use crate::{Action, Belief, Decision, DecisionProblem, Planner, Rng, Step};
 
-use super::{Entry, alternatives, stop};
+use super::{Entry, Outlook, alternatives};
 
 /// The registry's entry.
 pub(super) const ENTRY: Entry = Entry {
@@ -46,18 +46,17 @@ impl Planner for SparseSampling {
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
-        let reduced = Reduced::new(problem, belief);
-        let bound = Bound::new(&reduced, &problem.costs);
-        let one_step = OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass);
+        let outlook = Outlook::new(problem, belief);
+        let Outlook { reduced, one_step } = &outlook;
         let queries = reduced.all_queries();
         let rng = Rng::new(step.interaction.wrapping_mul(0x1_0000_0001) ^ u64::from(step.step));
-        let mut tree = Tree { reduced: &reduced, problem, queries, width: self.width, rng };
+        let mut tree = Tree { reduced, problem, queries, width: self.width, rng };
         let asked = tree.ask(&reduced.mass, self.horizon);
         let best = asked.iter().copied().reduce(|a, b| if b.1 > a.1 { b } else { a });
         let best = best.filter(|(_, value)| *value > one_step.stop.lower);
         let asks = |query| Action::Ask(reduced.question(query));
         let (action, value) = best.map_or_else(
-            || (stop(problem, &reduced, one_step.class, one_step.stop.lower), one_step.stop.lower),
+            || (outlook.stop(problem), one_step.stop.lower),
             |(query, value)| (asks(query), value),
         );
         let expected_questions =
@@ -79,7 +78,8 @@ impl Tree<'_> {
         let answers = outcomes(self.reduced, query, mass);
         let mut drawn = vec![0_usize; answers.len()];
         for _ in 0..self.width {
-            drawn[draw(&answers, self.rng.uniform())] += 1;
+            let index = self.rng.index(answers.iter().map(|(probability, _)| *probability));
+            drawn[index.unwrap_or(answers.len() - 1)] += 1;
         }
         let mut sum = 0.0;
         for (times, (_, after)) in drawn.into_iter().zip(&answers).filter(|(times, _)| *times > 0) {
@@ -97,16 +97,4 @@ impl Tree<'_> {
         }
         self.ask(mass, horizon).into_iter().fold(stop, |best, (_, value)| best.max(value))
     }
-}
-
-/// Which answer a uniform number in `[0, 1)` draws.
-fn draw(answers: &[(f64, Vec<f64>)], uniform: f64) -> usize {
-    let mut left = uniform;
-    for (index, (probability, _)) in answers.iter().enumerate() {
-        left -= probability;
-        if left < 0.0 {
-            return index;
-        }
-    }
-    answers.len() - 1
 }

@@ -21,7 +21,10 @@ fn random_belief(rng: &mut Rng, objects: usize) -> Belief {
 
 /// Problems with identical objects, lacking attributes, values that no object has, where the wanted
 /// object may not be here, and where every question has a cost of its own.
-fn for_many_problems(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Belief, &str)) {
+fn for_many_problems(seed: u64, check: impl Fn(&DecisionProblem<'_>, &Belief, &Reduced, &str)) {
+    let check = |problem: &DecisionProblem<'_>, belief: &Belief, label: &str| {
+        check(problem, belief, &Reduced::new(problem, belief), label);
+    };
     let mut rng = Rng::new(seed);
     let mut scenes: Vec<Scene> = vec![bowls()];
     for lacking in [0, 3, 3] {
@@ -172,10 +175,9 @@ fn ask_once(problem: &DecisionProblem<'_>, belief: &Belief, question: Question) 
 /// The one-step lookahead works on sums over blocks of merged objects; this works on objects.
 #[test]
 fn one_step_lookahead_agrees_with_the_observation_model() {
-    for_many_problems(71, |problem, belief, label| {
-        let reduced = Reduced::new(problem, belief);
-        let bound = Bound::new(&reduced, &problem.costs);
-        let one_step = OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass);
+    for_many_problems(71, |problem, belief, reduced, label| {
+        let bound = Bound::new(reduced, &problem.costs);
+        let one_step = OneStepEvaluator::new(reduced, &bound).look_ahead(&reduced.mass);
         assert!((one_step.stop.lower - stop_value(problem, belief)).abs() < 1e-6, "{label}");
         for choice in &one_step.choices {
             let question = reduced.question(choice.query);
@@ -189,10 +191,9 @@ fn one_step_lookahead_agrees_with_the_observation_model() {
 /// Questions that were dropped as doubles or as telling nothing are not better than those kept.
 #[test]
 fn nothing_better_is_dropped() {
-    for_many_problems(72, |problem, belief, label| {
-        let reduced = Reduced::new(problem, belief);
-        let bound = Bound::new(&reduced, &problem.costs);
-        let one_step = OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass);
+    for_many_problems(72, |problem, belief, reduced, label| {
+        let bound = Bound::new(reduced, &problem.costs);
+        let one_step = OneStepEvaluator::new(reduced, &bound).look_ahead(&reduced.mass);
         let kept = one_step.choices.iter().map(|choice| choice.value.lower);
         let best = kept.fold(one_step.stop.lower, f64::max);
         for question in problem.actions.questions(problem.model) {
@@ -205,13 +206,12 @@ fn nothing_better_is_dropped() {
 
 #[test]
 fn outcomes_agree_with_the_one_step_lookahead() {
-    for_many_problems(73, |problem, belief, label| {
-        let reduced = Reduced::new(problem, belief);
-        let bound = Bound::new(&reduced, &problem.costs);
-        for choice in OneStepEvaluator::new(&reduced, &bound).look_ahead(&reduced.mass).choices {
+    for_many_problems(73, |problem, _, reduced, label| {
+        let bound = Bound::new(reduced, &problem.costs);
+        for choice in OneStepEvaluator::new(reduced, &bound).look_ahead(&reduced.mass).choices {
             let mut total = 0.0;
             let mut left = 0.0;
-            for (probability, mass) in outcomes(&reduced, choice.query, &reduced.mass) {
+            for (probability, mass) in outcomes(reduced, choice.query, &reduced.mass) {
                 assert!((mass.iter().sum::<f64>() - 1.0).abs() < 1e-12, "{label}");
                 total += probability;
                 left += probability * entropy(&mass);
@@ -238,9 +238,8 @@ fn upper(reduced: &Reduced, bound: &Bound, mass: &[f64]) -> f64 {
 /// and no question, at any belief. So it is checked at random beliefs far from the first one.
 #[test]
 fn no_action_beats_the_upper_bound() {
-    for_many_problems(74, |problem, belief, label| {
-        let reduced = Reduced::new(problem, belief);
-        let bound = Bound::new(&reduced, &problem.costs);
+    for_many_problems(74, |problem, _, reduced, label| {
+        let bound = Bound::new(reduced, &problem.costs);
         let mut rng = Rng::new(75);
         for _ in 0..8 {
             let power = 1 + rng.below(12) as i32;
@@ -248,13 +247,13 @@ fn no_action_beats_the_upper_bound() {
                 reduced.mass.iter().map(|_| rng.uniform().powi(power) + 1e-15).collect();
             let sum: f64 = mass.iter().sum();
             mass.iter_mut().for_each(|m| *m /= sum);
-            let here = upper(&reduced, &bound, &mass);
+            let here = upper(reduced, &bound, &mass);
             let top = mass.iter().zip(&reduced.share).map(|(m, s)| m * s).fold(0.0, f64::max);
             assert!(problem.costs.pick_value(top) <= here + 1e-9, "{label} pick");
             assert!(problem.costs.wait_value() <= here + 1e-9, "{label} wait");
             for query in reduced.all_queries() {
-                let after: f64 = (outcomes(&reduced, query, &mass).iter())
-                    .map(|(p, mass)| p * upper(&reduced, &bound, mass))
+                let after: f64 = (outcomes(reduced, query, &mass).iter())
+                    .map(|(p, mass)| p * upper(reduced, &bound, mass))
                     .sum();
                 let asked = reduced.channel(query).price.pay(after);
                 assert!(asked <= here + 1e-6, "{label} {query:?}: {asked} above {here}");
@@ -265,10 +264,9 @@ fn no_action_beats_the_upper_bound() {
 
 #[test]
 fn searching_only_tightens_the_bounds() {
-    for_many_problems(76, |problem, belief, label| {
-        let reduced = Reduced::new(problem, belief);
-        let bound = Bound::new(&reduced, &problem.costs);
-        let mut search = Search::new(&reduced, &bound);
+    for_many_problems(76, |problem, _, reduced, label| {
+        let bound = Bound::new(reduced, &problem.costs);
+        let mut search = Search::new(reduced, &bound);
         let mut before = search.root().value;
         let tolerance = 1e-6 * problem.costs.correct;
         for beliefs_max in [2, 8, 32, 128] {

@@ -311,19 +311,8 @@ impl TimedUser {
 
 impl Habits {
     fn draw(&self, rng: &mut Rng) -> Habit {
-        let habits = [
-            (Habit::Late, self.late),
-            (Habit::Early, self.early),
-            (Habit::Overlapping, self.overlapping),
-            (Habit::Doubled, self.doubled),
-        ];
-        let mut left = rng.uniform();
-        for (habit, probability) in habits {
-            left -= probability;
-            if left < 0.0 {
-                return habit;
-            }
-        }
-        Habit::Usual
+        const HABITS: [Habit; 4] = [Habit::Late, Habit::Early, Habit::Overlapping, Habit::Doubled];
+        let drawn = rng.index([self.late, self.early, self.overlapping, self.doubled]);
+        drawn.map_or(Habit::Usual, |index| HABITS[index])
     }
 }

@@ -74,14 +74,8 @@ pub(super) fn own_values(
 
 /// Draws an index with these probabilities; the last one where they fall short of 1.
 pub(super) fn number(probabilities: &[f64], rng: &mut Rng) -> usize {
-    let mut left = rng.uniform();
-    for (n, p) in probabilities.iter().enumerate() {
-        left -= p;
-        if left < 0.0 {
-            return n;
-        }
-    }
-    probabilities.len().saturating_sub(1)
+    let drawn = rng.index(probabilities.iter().copied());
+    drawn.unwrap_or(probabilities.len().saturating_sub(1))
 }
 
 #[cfg(test)]
