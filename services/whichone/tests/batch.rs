@@ -73,7 +73,7 @@ fn two(turns: Json) -> Json {
 }
 
 #[test]
-fn what_is_not_given_is_read_as_the_paper_reads() {
+fn missing_readings_are_read_in_the_mode_of_the_paper() {
     let given = two(json!([{"question": null, "utterance": "ignored", "l_b": ["blue"],
                             "l_r": "none"}]));
     let read = two(json!([{"question": {"type": "none"}, "utterance": "the blue one, please"}]));
@@ -99,7 +99,7 @@ fn repeated_words_count_as_often_as_they_are_heard() {
 }
 
 #[test]
-fn priors_may_leave_objects_out_and_are_proportions() {
+fn prior_is_normalised_and_may_omit_objects() {
     let with = |prior: Json| {
         let mut case = two(json!([]));
         case["prior"] = prior;
@@ -123,7 +123,7 @@ fn priors_may_leave_objects_out_and_are_proportions() {
 }
 
 #[test]
-fn open_questions_are_asked_too() {
+fn answers_to_open_questions_update_the_belief() {
     let which = json!({"type": "which", "attribute": "color"});
     let (found, exit) = beliefs(&[two(json!([{"question": which, "utterance": "blue"}]))]);
     assert_eq!(exit, Exit::Ok);
@@ -131,7 +131,7 @@ fn open_questions_are_asked_too() {
 }
 
 #[test]
-fn a_case_that_makes_no_sense_says_why() {
+fn invalid_case_is_reported_with_its_reason() {
     let question = |question: Json| two(json!([{"question": question, "utterance": "yes"}]));
     let mut params = two(json!([]));
     params["params"] = json!({"p_l": 2.0, "epsilon": 0.0, "alpha": 0.2});
@@ -177,7 +177,7 @@ fn utterances_are_read_with_the_scenes_words() {
 
 /// A file with lines for two scenes can be read with either.
 #[test]
-fn lines_of_another_scene_are_read_all_the_same() {
+fn lines_of_another_scene_are_read_without_their_question() {
     let utterances = fixture("utterances/public.jsonl");
     let (found, exit) = grounded(&utterances);
     assert_eq!((found.len(), exit), (utterances.lines().count(), Exit::Ok));
@@ -285,7 +285,7 @@ fn poses_become_joint_positions_that_reach_them() {
 }
 
 #[test]
-fn what_the_arm_cannot_do_is_answered_and_what_makes_no_sense_refused() {
+fn unreachable_pose_is_answered_and_invalid_input_rejected() {
     let far = json!({"id": "far", "xyz": [9.0, 0.0, 0.0], "xyzw": [0, 0, 0, 2]});
     let huge = json!({"id": "huge", "xyz": [1e308, -1e308, 1e308], "xyzw": [0, 0, 1e-9, 0]});
     let wrong = json!({"id": "wrong", "xyz": [0, 0, 0], "xyzw": [0, 0, 0, 0]});

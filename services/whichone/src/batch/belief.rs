@@ -26,7 +26,7 @@ struct Case {
     turns: Vec<Turn>,
 }
 
-/// What was asked, and what was said after it.
+/// A question and the utterance that followed it.
 #[derive(Deserialize)]
 struct Turn {
     #[serde(default)]
@@ -71,8 +71,8 @@ fn answer(case: Case) -> Result<Json, String> {
     Ok(json!({ "id": case.id, "belief": belief }))
 }
 
-/// `"uniform"` (also where nothing is said), or `{object:probability}`: an object that is not named
-/// has none, and proportions count in place of probabilities.
+/// Parses a prior: `"uniform"`, the default, or `{object:weight}`, where objects that are not named
+/// have weight 0.
 fn prior(scene: &Scene, json: &Json) -> Result<Belief, String> {
     let objects = scene.objects().len();
     let weights = match json {
@@ -91,14 +91,14 @@ fn prior(scene: &Scene, json: &Json) -> Result<Belief, String> {
     Belief::from_probabilities(&probabilities).map_err(|error| error.to_string())
 }
 
-/// Reads as the paper does; made when the first turn needs it.
+/// Reader in the paper's mode, created when the first turn needs it.
 struct PaperReader<'a> {
     scene: &'a Scene,
     reader: Option<Reader>,
 }
 
 impl PaperReader<'_> {
-    /// What was asked and what was heard: what the turn itself says of it, else the words.
+    /// Returns the question and the reading of a turn: as given, else read from the utterance.
     fn understand(&mut self, turn: &Turn) -> Result<(Question, Reading), String> {
         let question =
             question_from_json(self.scene, &turn.question).map_err(|error| error.to_string())?;

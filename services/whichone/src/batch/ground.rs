@@ -1,4 +1,4 @@
-//! `whichone ground`: what an utterance says about a scene.
+//! `whichone ground`: the meaning of an utterance in a scene.
 
 use std::io::Read;
 

@@ -1,4 +1,4 @@
-//! `whichone fk` and `whichone ik`: where every link is, and how to reach a pose.
+//! `whichone fk` and `whichone ik`: forward and inverse kinematics.
 
 use std::io::Read;
 use std::time::Instant;
@@ -38,7 +38,7 @@ pub fn fk(arm: &DescribedArm, input: impl Read, out: &mut Output<'_>) -> Outcome
     })
 }
 
-/// Beyond this an angle says nothing about a direction any more.
+/// Largest angle whose direction a floating-point number still resolves, radians.
 const POSITION_MAX: f64 = 1e6;
 
 fn pose_to_json(pose: &Isometry3<f64>) -> Json {

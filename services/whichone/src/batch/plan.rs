@@ -1,4 +1,4 @@
-//! `whichone plan`: what the robot does at a belief.
+//! `whichone plan`: the robot's next action at a belief.
 
 use std::io::Read;
 use std::time::Instant;

@@ -17,24 +17,24 @@ pub struct StudyArgs {
     /// Action other than a study with simulated users.
     #[command(subcommand)]
     pub verb: Option<StudyVerb>,
-    /// The scene: a file, TOML or JSON, or the name of one of the configuration's. A preset brings
-    /// its own.
+    /// The scene: a TOML or JSON file, or the name of a scene of the configuration. A preset has its
+    /// own.
     #[arg(long, value_name = "FILE", required_unless_present = "preset")]
     pub scene: Option<PathBuf>,
-    /// The policies, by name, or all.
+    /// Policies to compare.
     #[arg(
         long, value_name = "NAME,…", value_delimiter = ',', value_parser = planner_names(&[PossibleValue::new(ALL).help("Every planner")]),
         default_value = ALL, default_value_if("preset", "paper-present", "lookahead,no-attribute")
     )]
     pub policies: Vec<String>,
-    /// The kinds of people.
+    /// Models of the simulated users.
     #[arg(
         long, value_name = "NAME,…", value_delimiter = ',', value_parser = users(),
         default_value = "model,noisy,human",
         default_value_if("preset", "paper-present", "truthful,noisy,human")
     )]
     pub users: Vec<String>,
-    /// Interactions per policy and kind of people.
+    /// Interactions per policy and user model.
     #[arg(
         long, value_name = "N", default_value = "1000",
         default_value_ifs([("preset", "paper-present", "3"), ("preset", "paper-remote", "45")])
@@ -43,7 +43,7 @@ pub struct StudyArgs {
     /// Seed of all randomness.
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub seed: u64,
-    /// Also talk in real time, under these rules of turn-taking, or all: naive, onset or mixture,
+    /// Also simulate dialogues in real time under these rules of turn-taking, or all: naive, onset or mixture,
     /// joined by + with same, hold, open, fast and wSECONDS.
     #[arg(
         long,
@@ -52,19 +52,19 @@ pub struct StudyArgs {
         default_value_if("preset", "paper-remote", ALL)
     )]
     pub turns: Vec<String>,
-    /// People do not begin with a request: the robot begins, knowing nothing.
+    /// Start without a request: the robot begins, knowing nothing.
     #[arg(long, default_value_if("preset", "paper-present", "true"))]
     pub no_request: bool,
     /// Write study.csv, study.json and plots into this folder.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// One of the paper's evaluations; what is said besides counts more.
+    /// One of the paper's evaluations; other arguments override its values.
     #[arg(long, value_enum)]
     pub preset: Option<Preset>,
-    /// Threads; as many as there are cores where nothing is said.
+    /// Threads [default: one per core].
     #[arg(long, value_name = "N")]
     pub threads: Option<NonZeroUsize>,
-    /// Take as costs of the questions the seconds of the robot's own voice and arm.
+    /// Use the durations of the robot's voice and arm as the costs of the questions.
     #[arg(long)]
     pub measured_costs: bool,
     /// Decision problem.
@@ -72,7 +72,7 @@ pub struct StudyArgs {
     pub problem: ProblemArgs,
 }
 
-/// The word for everything in a list of names.
+/// Name that stands for all names of a list.
 pub const ALL: &str = "all";
 
 /// The paper's evaluations.
@@ -91,18 +91,18 @@ fn users() -> PossibleValuesParser {
 /// Actions other than a simulated study.
 #[derive(Clone, Debug, Subcommand)]
 pub enum StudyVerb {
-    /// Tell what a study with people has given.
+    /// Report the results of a study with people.
     ///
-    /// People take part on the console's page /study. Per policy it prints how often the desired
-    /// object was handed over, in how many seconds, and with how many questions, each with its 95 %
-    /// interval; and the differences within those who met several.
+    /// People take part on the console's page /study. Prints the success rate, the duration in seconds
+    /// and the number of questions of each policy, each with its 95 % interval, and the differences
+    /// between policies within participants who met several.
     Report(ReportArgs),
 }
 
 /// Arguments of `study report`.
 #[derive(Clone, Debug, Args)]
 pub struct ReportArgs {
-    /// Folder of the data; that of the group where none is named.
+    /// Folder of the data [default: the group's].
     pub folder: Option<PathBuf>,
     /// Write interactions.csv, participants.csv, dictionary.csv, study.json, report.json and plots into
     /// this folder.

@@ -1,4 +1,4 @@
-//! `study report`: what a study with people has given.
+//! `study report`: results of a study with people.
 
 use std::path::{Path, PathBuf};
 
