@@ -4,31 +4,19 @@ use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 
-use crate::charts::PlotError;
-
-/// Division of an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
-    /// Equal steps are equally long.
-    Linear,
-    /// Equal factors are equally long; for values above 0.
-    Logarithmic,
-    /// For shares near 1: logarithm of the share missing to 1, so that 0.99 is as far from 0.9 as
-    /// 0.9 is from 0.
-    Missing,
-}
-
 /// An axis with its label and its ticks.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
-    scale: Scale,
+    /// True for shares near 1: divided by the logarithm of the share missing to 1, so that 0.99 is as far
+    /// from 0.9 as 0.9 is from 0.
+    is_of_shares: bool,
     ends: (f64, f64),
     ticks: Vec<(f64, String)>,
 }
 
-/// Shares at which an axis of [`Scale::Missing`] has ticks.
+/// Shares at which an axis of shares has ticks.
 const SHARES: [f64; 11] = [0.0, 0.5, 0.8, 0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9999];
 
 impl Axis {
@@ -46,27 +34,16 @@ impl Axis {
         let step = round.unwrap_or(10.0) * power;
         let (first, last) = ((least / step).floor() as i64, (largest / step).ceil() as i64);
         let ticks = (first..=last).map(|k| k as f64 * step).collect();
-        Self::new(label, Scale::Linear, (first as f64 * step, last as f64 * step), ticks)
+        Self::new(label, (first as f64 * step, last as f64 * step), ticks)
     }
 
-    /// A logarithmic axis over values above 0, with ticks at powers of ten, and where these are
-    /// few, at two and five times them as well.
-    pub fn logarithmic(label: &str, least: f64, largest: f64) -> Self {
-        let (low, high) = (least / 1.3, largest * 1.3);
-        let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
-        let factors: &[f64] = if high / low > 300.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-        let all = powers.flat_map(|power| factors.iter().map(move |f| f * 10.0_f64.powi(power)));
-        let ticks = all.filter(|tick| (low..=high).contains(tick)).collect();
-        Self::new(label, Scale::Logarithmic, (low, high), ticks)
-    }
-
-    /// An axis of [`Scale::Missing`] on which these shares differ, in per cent; those of 1 lie at
-    /// its end.
+    /// An axis on which these shares near 1 differ, in per cent; those of 1 lie at its end.
     pub fn missing(label: &str, shares: impl Iterator<Item = f64>) -> Self {
         let missing = shares.map(|share| 1.0 - share).filter(|missing| *missing > 1e-5);
         let least = 0.6 * missing.fold(0.02, f64::min);
         let ticks = SHARES.into_iter().filter(|share| 1.0 - share > 1.3 * least).chain([1.0]);
-        let mut axis = Self::new(label, Scale::Missing, (0.0, 1.0 - least), ticks.collect());
+        let axis = Self::new(label, (0.0, 1.0 - least), ticks.collect());
+        let mut axis = Self { is_of_shares: true, ..axis };
         axis.ticks.iter_mut().for_each(|(share, text)| *text = short(100.0 * *share));
         axis
     }
@@ -75,39 +52,12 @@ impl Axis {
     pub fn named(label: &str, names: Vec<String>) -> Self {
         let end = names.len() as f64;
         let ticks = names.into_iter().enumerate().map(|(n, name)| (n as f64 + 0.5, name)).collect();
-        Self { label: label.to_owned(), scale: Scale::Linear, ends: (0.0, end), ticks }
+        Self { label: label.to_owned(), is_of_shares: false, ends: (0.0, end), ticks }
     }
 
-    /// An axis of this scale that holds all values; linear ones start at 0.
-    ///
-    /// # Errors
-    /// There are no values, or one is negative, not finite, or 0 on a logarithmic axis.
-    pub fn holding(
-        label: &str,
-        scale: Scale,
-        values: impl Iterator<Item = f64> + Clone,
-    ) -> Result<Self, PlotError> {
-        let valid = |value: &f64| match scale {
-            Scale::Logarithmic => value.is_finite() && *value > 0.0,
-            Scale::Linear | Scale::Missing => value.is_finite() && *value >= 0.0,
-        };
-        if let Some(value) = values.clone().find(|value| !valid(value)) {
-            return Err(PlotError(format!("invalid value on a {scale:?} axis: {value}")));
-        }
-        let low = values.clone().reduce(f64::min);
-        let (low, high) = low
-            .zip(values.clone().reduce(f64::max))
-            .ok_or_else(|| PlotError("expected at least one point, found none".to_owned()))?;
-        Ok(match scale {
-            Scale::Linear => Self::up_to(label, high),
-            Scale::Logarithmic => Self::logarithmic(label, low, high),
-            Scale::Missing => Self::missing(label, values),
-        })
-    }
-
-    fn new(label: &str, scale: Scale, ends: (f64, f64), ticks: Vec<f64>) -> Self {
+    fn new(label: &str, ends: (f64, f64), ticks: Vec<f64>) -> Self {
         let ticks = ticks.into_iter().map(|tick| (tick, short(tick))).collect();
-        Self { label: label.to_owned(), scale, ends, ticks }
+        Self { label: label.to_owned(), is_of_shares: false, ends, ticks }
     }
 
     /// Returns the end values.
@@ -123,11 +73,7 @@ impl Axis {
     /// Returns the position of a value, 0 to 1.
     pub fn position(&self, value: f64) -> f64 {
         let (low, high) = self.ends;
-        let scaled = |value: f64| match self.scale {
-            Scale::Linear => value,
-            Scale::Logarithmic => value.ln(),
-            Scale::Missing => -(1.0 - value).ln(),
-        };
+        let scaled = |value: f64| if self.is_of_shares { -(1.0 - value).ln() } else { value };
         let value = scaled(value.clamp(low, high));
         ((value - scaled(low)) / (scaled(high) - scaled(low))).clamp(0.0, 1.0)
     }

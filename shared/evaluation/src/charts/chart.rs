@@ -1,7 +1,6 @@
 //! A chart as data.
 
-use crate::charts::PlotError;
-use crate::charts::axis::{Axis, Scale};
+use crate::charts::axis::Axis;
 
 /// A point on the axes, x and y.
 pub type Point = (f64, f64);
@@ -54,15 +53,6 @@ pub enum Shape {
     Text(Point, String),
 }
 
-/// Named points.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Series {
-    /// Name in the legend.
-    pub name: String,
-    /// Points, from left to right.
-    pub points: Vec<Point>,
-}
-
 /// Colours that people with any colour vision can distinguish (Okabe and Ito 2008), the yellow
 /// darkened for a white background.
 const COLOURS: [Colour; 8] = [
@@ -79,37 +69,4 @@ const COLOURS: [Colour; 8] = [
 /// Returns the colour of a series.
 pub fn colour(series: usize) -> Colour {
     COLOURS[series % COLOURS.len()]
-}
-
-impl Chart {
-    /// A chart of lines over one pair of axes, with a legend. `x` and `y` are the axes' labels.
-    ///
-    /// # Errors
-    /// No points, or a value that the scale cannot show.
-    pub fn lines(
-        title: &str,
-        (x, y): (&str, &str),
-        scale: Scale,
-        series: &[Series],
-    ) -> Result<Self, PlotError> {
-        let points = || series.iter().flat_map(|series| &series.points);
-        let shapes = series.iter().enumerate().flat_map(|(number, series)| {
-            let points = || series.points.clone();
-            [(number, Shape::Line(points())), (number, Shape::Marks(points()))]
-        });
-        let panel = Panel {
-            heading: String::new(),
-            x: Axis::holding(x, scale, points().map(|point| point.0))?,
-            y: Axis::holding(y, scale, points().map(|point| point.1))?,
-            shapes: shapes.collect(),
-        };
-        Ok(Self {
-            title: title.to_owned(),
-            note: String::new(),
-            panels: vec![panel],
-            columns: 1,
-            panel_size: (1200, 840),
-            legend: series.iter().map(|series| series.name.clone()).collect(),
-        })
-    }
 }

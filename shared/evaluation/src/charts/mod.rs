@@ -10,8 +10,8 @@ mod chart;
 mod draw;
 mod pixels;
 
-pub use axis::{Axis, Scale};
-pub use chart::{Chart, Colour, Panel, Point, Series, Shape, colour};
+pub use axis::Axis;
+pub use chart::{Chart, Colour, Panel, Point, Shape, colour};
 pub use draw::{files, png, svg};
 
 /// A chart that cannot be drawn.
