@@ -56,7 +56,7 @@ fn measure(options: &Options, report: &mut Report) {
     if all || options.kinematics {
         arm::measure(report, options.quick);
     }
-    if all {
+    if all || options.processes {
         start::measure(report);
         latency::measure(report);
         idle::measure(report);

@@ -6,7 +6,7 @@ use clap::Parser;
 #[derive(Parser)]
 #[command(name = "bench")]
 pub(crate) struct Options {
-    /// Fewer repetitions and smaller series: a minute in place of several
+    /// Fewer repetitions and smaller series
     #[arg(long)]
     pub(crate) quick: bool,
     /// Only the decision core, without starting a group
@@ -15,6 +15,9 @@ pub(crate) struct Options {
     /// Only the arm: inverse kinematics, motions and clearances beside other solvers
     #[arg(long)]
     pub(crate) kinematics: bool,
+    /// Only the running group: start, recovery, latency through all processes, idle load
+    #[arg(long)]
+    pub(crate) processes: bool,
     /// Only how steadily joint states come
     #[arg(long)]
     pub(crate) joints: bool,
@@ -50,7 +53,8 @@ pub(crate) struct Options {
 impl Options {
     /// Returns whether all parts are selected.
     pub(crate) fn wants_all(&self) -> bool {
-        let Self { core, kinematics, joints, speech, turns, console, spoken, .. } = *self;
-        !(core || kinematics || joints || speech || turns || console || spoken)
+        let Self { core, kinematics, processes, joints, speech, turns, console, spoken, .. } =
+            *self;
+        !(core || kinematics || processes || joints || speech || turns || console || spoken)
     }
 }
