@@ -21,8 +21,10 @@ use crate::lexicon::Sense;
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
+use std::collections::HashMap;
+use std::sync::LazyLock;
 
-/// Confidences and the words that express them; the first row that has a word of a phrase counts.
+/// Confidences and the words that express them; of a phrase the highest counts.
 const SURENESS: &[(f64, &str)] = &[
     (0.9, "almost nearly pretty fairly quite very highly most certain"),
     (
@@ -54,9 +56,14 @@ pub(crate) const MAYBE: f64 = 0.6;
 
 /// Returns the confidence that a phrase expresses, 1 for a phrase that is not a hedge.
 pub(crate) fn sureness(class: Class, phrase: &str) -> f64 {
+    static BY_WORD: LazyLock<HashMap<&str, f64>> = LazyLock::new(|| {
+        let rows = SURENESS.iter();
+        rows.flat_map(|(sure, words)| words.split_ascii_whitespace().map(|word| (word, *sure)))
+            .collect()
+    });
     let listed = || {
-        let said = |words: &str| words.split(' ').any(|word| phrase.split(' ').any(|w| w == word));
-        SURENESS.iter().find(|(_, words)| said(words)).map(|(sure, _)| *sure)
+        let listed = phrase.split(' ').filter_map(|word| BY_WORD.get(word).copied());
+        listed.reduce(f64::max)
     };
     match class {
         Class::Hedge | Class::Likely | Class::Unsure => listed().unwrap_or(SURE_LEAST),

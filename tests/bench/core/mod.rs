@@ -5,6 +5,7 @@
 mod decide;
 mod gap;
 mod quality;
+mod reading;
 pub(crate) mod scenes;
 mod update;
 
@@ -37,6 +38,7 @@ impl Effort {
 pub(crate) fn measure(report: &mut Report, effort: Effort) {
     decide::measure(report, effort);
     update::measure(report, effort);
+    reading::measure(report);
     gap::measure(report, effort);
     quality::measure(report, effort);
 }
