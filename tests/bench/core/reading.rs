@@ -13,18 +13,16 @@ const REPETITIONS: u32 = 200;
 
 pub(super) fn measure(report: &mut Report) {
     let reader = Reader::new(&configured("bowls"), Language::Careful);
-    let rows: [(&str, &dyn Fn(&str)); 2] = [
-        ("reading an utterance", &|text| {
-            black_box(reader.read(text, Question::None));
-        }),
-        ("reading an utterance, with weights and doubts", &|text| {
-            black_box(reader.readings(text, &[], Question::None));
-        }),
-    ];
-    for (what, read) in rows {
+    let mut add = |what: &str, read: &dyn Fn(&str)| {
         let samples: Vec<f64> = UTTERANCES.lines().map(|line| micros(&text(line), read)).collect();
         report.add(what, "µs", &samples, "the 60 public utterances; one sample each");
-    }
+    };
+    add("reading an utterance", &|text| {
+        black_box(reader.read(text, Question::None));
+    });
+    add("reading an utterance, with weights and doubts", &|text| {
+        black_box(reader.readings(text, &[], Question::None));
+    });
 }
 
 fn text(line: &str) -> String {
