@@ -1,23 +1,5 @@
-//! The console: a page in a browser from which a user talks to the robot and sees what it believes.
-//!
-//! Two halves that never wait for each other. The [`bridge`] is the main thread: it owns every topic,
-//! folds what arrives into a [`view_model`] and carries out the commands of viewers. The [`server`] is
-//! a small asynchronous runtime that serves pages and sockets. Between them is the [`hub`]: the bridge
-//! puts the newest text of each section on a board, from which every viewer takes what it has not seen
-//! yet; a slow viewer skips versions, and no queue grows.
+//! The console's program.
 
-#![allow(unreachable_pub, reason = "a program has no interface in Rust")]
-
-mod bridge;
-mod hub;
-mod server;
-mod service;
-mod study;
-mod view_model;
-mod voice;
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    service::run()
+fn main() -> std::process::ExitCode {
+    console::run()
 }

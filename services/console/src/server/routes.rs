@@ -121,7 +121,7 @@ pub(super) async fn login(
         return (StatusCode::FORBIDDEN, "log in from the console's own page\n").into_response();
     }
     let form = std::str::from_utf8(&form).ok().filter(|form| form.len() <= FORM_MAX);
-    let token = form.and_then(|form| field(form, "token")).unwrap_or_default();
+    let token = form.and_then(|form| form_field(form, "token")).unwrap_or_default();
     match app.access.cookie_for(&token) {
         Some(cookie) => {
             (AppendHeaders([(header::SET_COOKIE, cookie)]), Redirect::to("/")).into_response()
@@ -133,7 +133,7 @@ pub(super) async fn login(
     }
 }
 
-fn field(form: &str, name: &str) -> Option<String> {
+pub fn form_field(form: &str, name: &str) -> Option<String> {
     let mut pairs = form.split('&').filter_map(|pair| pair.split_once('='));
     let (_, value) = pairs.find(|(key, _)| *key == name)?;
     let bytes = value.as_bytes();
@@ -174,8 +174,8 @@ mod tests {
     #[test]
     fn login_reads_a_url_encoded_form() {
         let form = "a=b&token=p%26a+b%25%C3%A9%zz";
-        assert_eq!(field(form, "token").as_deref(), Some("p&a b%é%zz"));
-        assert_eq!(field("token=%ff", "token"), None);
-        assert_eq!(field("", "token"), None);
+        assert_eq!(form_field(form, "token").as_deref(), Some("p&a b%é%zz"));
+        assert_eq!(form_field("token=%ff", "token"), None);
+        assert_eq!(form_field("", "token"), None);
     }
 }

@@ -17,7 +17,7 @@ pub(super) fn page(arguments: &Json) -> Result<String, String> {
 }
 
 /// Reads a command.
-pub(super) fn read(verb: &str, arguments: &Json) -> Result<Command, String> {
+pub fn read(verb: &str, arguments: &Json) -> Result<Command, String> {
     let text = |key: &str| {
         let text = arguments[key].as_str().filter(|text| !text.trim().is_empty());
         text.map(str::to_owned).ok_or_else(|| format!("{key}: expected a text"))

@@ -19,6 +19,8 @@ mod study_controller;
 mod tests;
 mod trial_monitor;
 
+pub use command::read as read_command;
+
 use std::path::PathBuf;
 
 use config::Settings;

@@ -23,7 +23,7 @@ pub(super) struct StudyController {
 
 /// Requests of a participant's page (which has a secret of its own) or of the experimenter.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Command {
+pub enum Command {
     Begin,
     Resume(String),
     Consent,

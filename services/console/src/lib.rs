@@ -1,0 +1,25 @@
+//! The console: a page in a browser from which a user talks to the robot and sees what it believes.
+//!
+//! Two halves that never wait for each other. The [`bridge`] is the main thread: it owns every topic,
+//! folds what arrives into a [`view_model`] and carries out the commands of viewers. The [`server`] is
+//! a small asynchronous runtime that serves pages and sockets. Between them is the [`hub`]: the bridge
+//! puts the newest text of each section on a board, from which every viewer takes what it has not seen
+//! yet; a slow viewer skips versions, and no queue grows.
+
+#![allow(
+    unreachable_pub,
+    missing_docs,
+    reason = "a program has no interface in Rust; `inputs` is for its tests"
+)]
+
+mod bridge;
+mod hub;
+mod server;
+mod service;
+mod study;
+mod view_model;
+mod voice;
+
+pub mod inputs;
+
+pub use self::service::run;
