@@ -11,6 +11,7 @@ mod console_study;
 mod console_voice;
 mod dialogues;
 mod export;
+mod full_log;
 mod hearing;
 mod isolation;
 mod journal_format;

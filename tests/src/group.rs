@@ -202,7 +202,7 @@ impl Group {
             let end = lines[lines.len().saturating_sub(25)..].join("\n");
             format!("--- {}\n{end}\n", path.display())
         };
-        files.map(tail).collect()
+        files.filter(|path| path.is_file()).map(tail).collect()
     }
 
     /// Stops the group and checks that it leaves no process, no shared memory, no socket.

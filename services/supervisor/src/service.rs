@@ -1,7 +1,8 @@
 //! One service under the supervisor: its successive processes and their notifications.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::fs::File;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use service::group::{self, GroupPaths};
@@ -121,8 +122,7 @@ impl Service {
     ) -> Result<Running, SpawnError> {
         let path = around.paths.log_file(&self.spec.name);
         let socket = around.paths.notify_socket(&self.spec.name, incarnation);
-        let log = log_file::open(&path, &around.log)
-            .map_err(|error| SpawnError::Io(path.clone(), error))?;
+        let log = self.open_log(&path, &around.log)?;
         self.log_from = log_file::size(&path);
         let notify =
             NotifySocket::bind(&socket).map_err(|error| SpawnError::Io(socket.clone(), error))?;
@@ -143,6 +143,16 @@ impl Service {
             version: None,
             says: None,
             killed: false,
+        })
+    }
+
+    /// A service without a log is better than none.
+    fn open_log(&self, path: &Path, limits: &Log) -> Result<File, SpawnError> {
+        log_file::open(path, limits).or_else(|error| {
+            tracing::error!(service = self.spec.name, %error, "it runs without a log");
+            let nowhere = Path::new("/dev/null");
+            let opened = File::options().append(true).open(nowhere);
+            opened.map_err(|error| SpawnError::Io(nowhere.to_owned(), error))
         })
     }
 

@@ -1,3 +1,6 @@
+use std::fs::File;
+use std::io::Write;
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
@@ -105,6 +108,50 @@ fn flooded_log_is_bounded_and_blocks_no_service() {
     assert!(kept <= bytes_max, "{kept}");
     group.until("policy", Actual::Ready);
     group.done(&Request::Stop(Target::new("arm", WAIT_MS)));
+}
+
+/// The life of a group whose supervisor logs to `stderr`.
+fn check_life_with_log(stderr: impl Into<Stdio>) {
+    let mut group = Group::ready(vec![service("arm", &[])]);
+    group.ask(&Request::Down);
+    group.wait_end();
+    let mut command = group.command();
+    command.stderr(stderr);
+    group.run_as(command);
+    group.until_ready("arm", 1);
+    send(group.pid("arm"), Signal::KILL);
+    group.until_ready("arm", 2);
+    group.ask(&Request::Down);
+    assert_eq!(group.wait_end().code(), Some(0));
+    group.check_nothing_left();
+}
+
+#[test]
+fn full_log_disk_does_not_end_the_supervisor() {
+    check_life_with_log(File::options().write(true).open("/dev/full").unwrap());
+}
+
+#[test]
+fn log_pipe_that_nobody_reads_does_not_delay_the_supervisor() {
+    let (reader, writer) = std::io::pipe().unwrap();
+    rustix::io::ioctl_fionbio(&writer, true).unwrap();
+    while (&writer).write(&[b'x'; 4096]).is_ok() {}
+    rustix::io::ioctl_fionbio(&writer, false).unwrap();
+    check_life_with_log(writer);
+    drop(reader);
+}
+
+#[test]
+fn service_without_a_place_for_its_log_is_started_nevertheless() {
+    let mut group = Group::ready(vec![service("arm", &[])]);
+    group.ask(&Request::Down);
+    group.wait_end();
+    let log = group.paths.log_file("arm");
+    std::fs::remove_file(&log).unwrap();
+    std::fs::create_dir(&log).unwrap();
+    group.run();
+    group.until_ready("arm", 1);
+    assert!(group.log().contains("it runs without a log"));
 }
 
 #[test]

@@ -105,7 +105,13 @@ impl Group {
 
     /// Starts a supervisor for the group and waits until it listens.
     pub(crate) fn run(&mut self) {
-        let supervisor = self.command().spawn().unwrap();
+        let command = self.command();
+        self.run_as(command);
+    }
+
+    /// Starts this supervisor for the group, which has been stopped, and waits until it listens.
+    pub(crate) fn run_as(&mut self, mut command: Command) {
+        let supervisor = command.spawn().unwrap();
         self.earlier.extend(self.supervisor.replace(supervisor));
         wait_for("the supervisor to listen", || self.call(&Request::Ping).ok());
     }
