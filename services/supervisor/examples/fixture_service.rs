@@ -27,6 +27,10 @@ fn main() -> ExitCode {
             let ms = Duration::from_millis(ms.parse().unwrap());
             serve(move |since| (since > ms).then_some(3), Ending::Prompt)
         }
+        ["short-of", what] => {
+            notify(&format!("X_SHORTAGE={what}"));
+            serve(|since| (since > PASS * 5).then_some(1), Ending::Prompt)
+        }
         ["ignores-term"] => serve(|_| None, Ending::Never),
         ["ends-slowly", ms] => {
             serve(|_| None, Ending::After(Duration::from_millis(ms.parse().unwrap())))

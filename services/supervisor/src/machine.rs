@@ -12,7 +12,7 @@ use crate::configuration::Restart;
 use crate::restart_limiter::{RestartLimiter, Verdict};
 use service::exit::ProcessExit;
 
-pub use service::status::{Actual, Failure, Wanted};
+pub use service::status::{Actual, Failure, ServiceState, Wanted};
 pub use vocabulary::{Effect, Event, HeldBecause, Limits};
 
 use state::{State, Step, Why};
@@ -47,6 +47,8 @@ pub struct Machine {
     deadline: Option<Time>,
     restart_limiter: RestartLimiter,
     failure: Option<Failure>,
+    /// True if the current or last incarnation has said that it is short of a resource.
+    short: bool,
 }
 
 impl Machine {
@@ -60,6 +62,7 @@ impl Machine {
             deadline: None,
             restart_limiter: RestartLimiter::default(),
             failure: None,
+            short: false,
         }
     }
 
@@ -78,6 +81,10 @@ impl Machine {
             Event::Ready => self.ready(now),
             Event::Beat => self.beat(now),
             Event::Extend(by) => self.extend(by, now),
+            Event::Short(short) => {
+                self.short = short;
+                None
+            }
             Event::Exited(exit) => self.exited(exit, now),
             Event::Clock => self.clock(now),
         }
@@ -96,6 +103,21 @@ impl Machine {
     /// Returns true if a process of it exists.
     pub fn is_live(&self) -> bool {
         matches!(self.actual(), Actual::Starting | Actual::Ready | Actual::Stopping)
+    }
+
+    /// Returns the state in one word.
+    pub fn state(&self) -> ServiceState {
+        match self.state {
+            State::Down if self.wanted == Wanted::Up => ServiceState::Waiting,
+            State::Down => ServiceState::Down,
+            State::Starting { .. } => ServiceState::Starting,
+            State::Ready { .. } => ServiceState::Ready,
+            State::Stopping { .. } => ServiceState::Stopping,
+            State::Backoff { short: true } => ServiceState::Short,
+            State::Backoff { short: false } => ServiceState::Restarting,
+            State::Held(HeldBecause::Operator) => ServiceState::Held,
+            State::Held(_) => ServiceState::Failed,
+        }
     }
 
     /// Returns the reason for holding it, if it is held.
@@ -132,7 +154,7 @@ impl Machine {
     fn start(&mut self) -> Option<Effect> {
         self.wanted = Wanted::Up;
         match self.state {
-            State::Held(_) | State::Backoff => self.rest(),
+            State::Held(_) | State::Backoff { .. } => self.rest(),
             State::Stopping { ref mut why, .. } if *why == Why::Hold => *why = Why::Asked,
             _ => {}
         }
@@ -216,13 +238,15 @@ impl Machine {
             State::Starting { .. } => (None, None),
             State::Ready { since } => (None, Some(now.saturating_sub(since))),
             State::Stopping { why, ready_for, .. } => (Some(why), ready_for),
-            State::Down | State::Backoff | State::Held(_) => return None,
+            State::Down | State::Backoff { .. } | State::Held(_) => return None,
         };
+        let lacks = self.short || exit.is_shortage();
         (self.state, self.deadline) = (State::Down, None);
         match why {
             Some(Why::Hold) => self.keep_held(HeldBecause::Operator),
             _ if self.wanted == Wanted::Down => self.rest(),
             Some(Why::Asked) => return Some(self.spawn(now)),
+            _ if lacks && self.limits.restart != Restart::Never => self.retry(ready_for, now),
             None if exit.is_permanent() => self.keep_held(HeldBecause::Permanent(exit)),
             Some(Why::Failed) => return self.again(false, ready_for, now),
             None => return self.again(exit.is_clean(), ready_for, now),
@@ -247,12 +271,19 @@ impl Machine {
         match self.restart_limiter.count(&self.limits.restart_limits, ready_for, now) {
             Verdict::Again => return Some(self.spawn(now)),
             Verdict::After(pause) => {
-                self.state = State::Backoff;
+                self.state = State::Backoff { short: false };
                 self.deadline = Some(now + pause);
             }
             Verdict::GiveUp { exits } => self.keep_held(HeldBecause::TooOften(exits)),
         }
         None
+    }
+
+    /// Waits for the end of a shortage.
+    fn retry(&mut self, ready_for: Option<Duration>, now: Time) {
+        let pause = self.restart_limiter.pause(&self.limits.restart_limits, ready_for);
+        self.state = State::Backoff { short: true };
+        self.deadline = Some(now + pause);
     }
 
     fn clock(&mut self, now: Time) -> Option<Effect> {
@@ -267,7 +298,7 @@ impl Machine {
                 self.deadline = Some(now + KILL_AGAIN);
                 Some(Effect::Kill)
             }
-            State::Backoff => Some(self.spawn(now)),
+            State::Backoff { .. } => Some(self.spawn(now)),
             State::Down | State::Held(_) => None,
         }
     }
@@ -295,7 +326,7 @@ impl Machine {
                 return Some(Effect::Terminate);
             }
             State::Stopping { ref mut why, .. } => *why = reason,
-            State::Down | State::Backoff | State::Held(_) => self.rest(),
+            State::Down | State::Backoff { .. } | State::Held(_) => self.rest(),
         }
         None
     }
@@ -303,7 +334,7 @@ impl Machine {
     fn spawn(&mut self, now: Time) -> Effect {
         assert!(!self.is_live(), "an incarnation lives: {:?}", self.state);
         self.incarnation += 1;
-        self.failure = None;
+        (self.failure, self.short) = (None, false);
         self.state = State::Starting { since: now };
         self.deadline = Some(now + self.limits.start);
         Effect::Spawn

@@ -9,6 +9,8 @@ use std::os::unix::net::UnixDatagram;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use service::printable::one_line;
+
 /// Maximum size of a datagram, bytes; systemd's own limit is of the same size.
 const DATAGRAM_BYTES_MAX: usize = 4096;
 
@@ -34,6 +36,10 @@ pub(crate) enum Notification {
     Version(String),
     /// `X_INPUT_AGE_MS=n`: age of its oldest input that it has not dealt with.
     InputAge(Duration),
+    /// `X_SHORTAGE=text`: the resource that it is short of; empty: none any more.
+    Shortage(Option<String>),
+    /// `X_REJECTED=n`: messages of others that it has rejected so far.
+    Rejected(u64),
 }
 
 /// The socket of one incarnation; its file goes with it.
@@ -98,13 +104,15 @@ fn line(line: &str) -> Option<Notification> {
         "X_INPUT_AGE_MS" => Notification::InputAge(Duration::from_millis(number()?)),
         "STATUS" => Notification::Status(text(value)),
         "X_VERSION" => Notification::Version(text(value)),
+        "X_SHORTAGE" => Notification::Shortage(Some(text(value)).filter(|text| !text.is_empty())),
+        "X_REJECTED" => Notification::Rejected(number()?),
         _ => return None,
     })
 }
 
 /// Text that is safe to print on an operator's terminal.
 fn text(value: &str) -> String {
-    value.chars().filter(|c| !c.is_control()).take(TEXT_CHARS_MAX).collect()
+    one_line(value).chars().take(TEXT_CHARS_MAX).collect()
 }
 
 #[cfg(test)]
@@ -119,9 +127,17 @@ mod tests {
             said,
             [
                 Notification::Ready,
-                Notification::Status("all [31mwell".into()),
+                Notification::Status("all \\u{1b}[31mwell".into()),
                 Notification::Version("0.1.0".into()),
                 Notification::Beat,
+            ]
+        );
+        assert_eq!(
+            parse(b"X_SHORTAGE=disk\nX_REJECTED=3\nX_SHORTAGE="),
+            [
+                Notification::Shortage(Some("disk".into())),
+                Notification::Rejected(3),
+                Notification::Shortage(None),
             ]
         );
         assert_eq!(

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use rustix::fs::{FlockOperation, flock};
 use rustix::io::Errno;
 use rustix::process::{Pid, PidfdFlags, Signal, getpid, pidfd_open, pidfd_send_signal};
+use service::control::{Request, call};
 use service::group::{ENV_GROUP, ENV_HOME, ENV_INCARNATION, GroupPaths};
 use thiserror::Error;
 
@@ -17,6 +18,10 @@ use crate::procfs::{self, Process};
 
 /// Timeout for the end of killed processes.
 const KILL_PATIENCE: Duration = Duration::from_secs(5);
+
+/// Timeout for the end of a supervisor that was killed: the kernel releases what it held only
+/// some time after the signal. It is also how long one that is stopped may take to answer.
+const RELEASE_PATIENCE: Duration = Duration::from_secs(3);
 
 /// Polling interval.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
@@ -45,14 +50,23 @@ pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, PreviousRunError> {
     let path = paths.supervisor_lock();
     let failed = |error| PreviousRunError::Io(path.clone(), error);
     let mut file = open_lock(&path).map_err(failed)?;
-    match flock(&file, FlockOperation::NonBlockingLockExclusive) {
-        Err(Errno::WOULDBLOCK) => {
-            let mut text = String::new();
-            let read = file.read_to_string(&mut text);
-            let pid = read.ok().and_then(|_| text.trim().parse().ok());
-            return Err(PreviousRunError::Running(paths.name().to_string(), pid));
+    let until = Instant::now() + RELEASE_PATIENCE;
+    loop {
+        match flock(&file, FlockOperation::NonBlockingLockExclusive) {
+            Err(Errno::WOULDBLOCK) if Instant::now() < until && !answers(paths) => {
+                thread::sleep(LOOK_EVERY);
+            }
+            Err(Errno::WOULDBLOCK) => {
+                let mut text = String::new();
+                let read = file.read_to_string(&mut text);
+                let pid = read.ok().and_then(|_| text.trim().parse().ok());
+                return Err(PreviousRunError::Running(paths.name().to_string(), pid));
+            }
+            taken => {
+                taken.map_err(|error| failed(error.into()))?;
+                break;
+            }
         }
-        taken => taken.map_err(|error| failed(error.into()))?,
     }
     let write = |file: &mut File| -> io::Result<()> {
         file.set_len(0)?;
@@ -61,6 +75,11 @@ pub(crate) fn take_group(paths: &GroupPaths) -> Result<File, PreviousRunError> {
     };
     write(&mut file).map_err(failed)?;
     Ok(file)
+}
+
+/// Returns true if a supervisor of the group answers: it is alive, and holds the lock for good.
+fn answers(paths: &GroupPaths) -> bool {
+    call(&paths.control_socket(), &Request::Ping, RELEASE_PATIENCE).is_ok()
 }
 
 /// Waits until every process of an earlier supervisor has ended, and kills those that take longer

@@ -44,10 +44,7 @@ impl RestartLimiter {
         ready_for: Option<Duration>,
         now: Time,
     ) -> Verdict {
-        if ready_for.is_some_and(|time| time >= limits.backoff_reset) {
-            self.pauses = 0;
-            self.spared = false;
-        }
+        self.reset_after(limits, ready_for);
         while self.exits.front().is_some_and(|&exit| now.saturating_sub(exit) >= limits.window) {
             self.exits.pop_front();
         }
@@ -60,9 +57,31 @@ impl RestartLimiter {
             self.spared = true;
             return Verdict::Again;
         }
+        Verdict::After(self.next_pause(limits))
+    }
+
+    /// Returns the pause after an exit for want of a resource, which does not count: the service is
+    /// retried for as long as the shortage lasts.
+    pub(crate) fn pause(
+        &mut self,
+        limits: &RestartLimits,
+        ready_for: Option<Duration>,
+    ) -> Duration {
+        self.reset_after(limits, ready_for);
+        self.next_pause(limits)
+    }
+
+    fn reset_after(&mut self, limits: &RestartLimits, ready_for: Option<Duration>) {
+        if ready_for.is_some_and(|time| time >= limits.backoff_reset) {
+            self.pauses = 0;
+            self.spared = false;
+        }
+    }
+
+    fn next_pause(&mut self, limits: &RestartLimits) -> Duration {
         let pause = limits.backoff_first.saturating_mul(1u32 << self.pauses.min(16));
         self.pauses = self.pauses.saturating_add(1);
-        Verdict::After(pause.min(limits.backoff_max))
+        pause.min(limits.backoff_max)
     }
 
     /// Resets everything on a request of the operator.

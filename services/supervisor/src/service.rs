@@ -18,6 +18,10 @@ use crate::spawn::{self, SpawnError};
 use service::exit::ProcessExit;
 use service::log_file;
 
+/// Resources that a service may be short of, as it names them; their figures are added.
+pub(crate) const STORAGE: &str = "disk";
+pub(crate) const SHARED_MEMORY: &str = "shared memory";
+
 /// A service, whether or not a process of it runs.
 #[derive(Debug)]
 pub(crate) struct Service {
@@ -48,6 +52,9 @@ pub(crate) struct Running {
     pub(crate) input: Option<(Duration, Time)>,
     pub(crate) version: Option<String>,
     pub(crate) says: Option<String>,
+    /// The resource that it says it is short of.
+    pub(crate) shortage: Option<String>,
+    pub(crate) rejected: u64,
     pub(crate) killed: bool,
 }
 
@@ -61,6 +68,8 @@ pub(crate) struct Ended {
     pub(crate) at: Time,
     /// Error of the operating system if it could not be started.
     pub(crate) error: Option<String>,
+    /// The resource that it was short of, where that was said.
+    pub(crate) shortage: Option<String>,
 }
 
 /// Environment shared by all services of a group.
@@ -107,6 +116,7 @@ impl Service {
                     killed: false,
                     at: now,
                     error: Some(error),
+                    shortage: None,
                 };
                 self.ended = Some(ended);
                 Err(exit)
@@ -142,6 +152,8 @@ impl Service {
             input: None,
             version: None,
             says: None,
+            shortage: None,
+            rejected: 0,
             killed: false,
         })
     }
@@ -215,6 +227,16 @@ impl Service {
                 Notification::InputAge(age) => running.input = Some((age, now)),
                 Notification::Version(version) => running.version = Some(version),
                 Notification::Status(text) => running.says = Some(text),
+                Notification::Rejected(count) => running.rejected = count,
+                Notification::Shortage(shortage) => {
+                    if running.shortage != shortage {
+                        let (service, incarnation) = (&self.spec.name, running.incarnation);
+                        let what = shortage.as_deref().unwrap_or("nothing any more");
+                        tracing::warn!(service, incarnation, "short of {what}");
+                    }
+                    events.push(Event::Short(shortage.is_some()));
+                    running.shortage = shortage;
+                }
             }
         }
         events
@@ -227,9 +249,9 @@ impl Service {
 
     /// Reaps the ended process, with whatever is left of its group, and notes how it ended.
     pub(crate) fn reap(&mut self, failure: Option<Failure>, now: Time) -> Option<ProcessExit> {
-        let Running { child, incarnation, killed, .. } = self.running.take()?;
+        let Running { child, incarnation, killed, shortage, .. } = self.running.take()?;
         let exit = child.reap();
-        let ended = Ended { incarnation, exit, failure, killed, at: now, error: None };
+        let ended = Ended { incarnation, exit, failure, killed, at: now, error: None, shortage };
         tracing::info!(service = self.spec.name, incarnation, "ended: {}", ended.text());
         self.ended = Some(ended);
         Some(exit)
@@ -238,6 +260,19 @@ impl Service {
     /// The last lines of the last incarnation's log.
     pub(crate) fn log_tail(&self, paths: &GroupPaths) -> Vec<String> {
         log_file::tail(&paths.log_file(&self.spec.name), self.log_from)
+    }
+
+    /// Returns the resource that it is short of, or was at its end.
+    pub(crate) fn shortage(&self) -> Option<&str> {
+        if let Some(running) = &self.running {
+            return running.shortage.as_deref();
+        }
+        let ended = self.ended.as_ref()?;
+        let said = ended.shortage.as_deref().or(ended.error.as_deref());
+        said.or(match ended.exit {
+            ProcessExit::Signal(_) => Some(SHARED_MEMORY),
+            _ => Some(STORAGE),
+        })
     }
 
     /// Replaces the current command; `None` restores the configured one.

@@ -16,7 +16,7 @@ use service::shm_cleanup::{Admin, NoRoom, check_room};
 use crate::Time;
 use crate::configuration::{Configuration, Load};
 use crate::group::Group;
-use crate::machine::{Effect, Event};
+use crate::machine::{Effect, Event, ServiceState};
 use crate::server::Server;
 use crate::service::{Service, Surroundings};
 use crate::signals::Signals;
@@ -194,6 +194,7 @@ impl Supervisor {
             // A start that failed is never followed by another one at once.
             let effect = self.group.on(service, Event::Exited(exit), now);
             debug_assert_eq!(effect, None);
+            self.report_rest(service);
         }
     }
 
@@ -216,6 +217,20 @@ impl Supervisor {
         }
         self.clear_orphans();
         self.give(service, Event::Exited(exit), self.now());
+        self.report_rest(service);
+    }
+
+    /// Logs why an ended service is not started again at once.
+    fn report_rest(&self, service: usize) {
+        let (name, why) = (self.name(service), self.why(service).unwrap_or_default());
+        match self.group.machine(service).state() {
+            ServiceState::Short => tracing::warn!(service = name, "{why}; it is retried"),
+            ServiceState::Failed => {
+                tracing::error!(service = name, "given up: {why}; help: whichone start {name}");
+            }
+            ServiceState::Held => tracing::info!(service = name, "{why}"),
+            _ => {}
+        }
     }
 
     fn bound_logs(&self) {

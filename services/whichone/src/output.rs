@@ -1,9 +1,12 @@
 //! Output of the verbs.
 //!
 //! Invariant: results go to standard output, as text or as JSON; progress and errors go to standard
-//! error. Colour appears on terminals only, and never where `NO_COLOR` is set.
+//! error. Colour appears on terminals only, and never where `NO_COLOR` is set. Whatever is printed
+//! passes [`printable`], so that no foreign text steers the terminal.
 
 use service::exit::Failure;
+use service::printable::{printable, printable_json};
+use std::borrow::Cow;
 use std::fmt::{self, Display};
 use std::io::{self, BufWriter, IsTerminal, Write};
 
@@ -92,7 +95,8 @@ impl<'a> Output<'a> {
     /// # Errors
     /// The output is closed or full.
     pub fn queue_line(&mut self, text: impl Display) -> Result<(), Failure> {
-        writeln!(self.sink, "{text}").map_err(Failure::output)
+        let text = text.to_string();
+        writeln!(self.sink, "{}", self.style.clean(&text)).map_err(Failure::output)
     }
 
     /// Prints a value as one line of JSON, at once.
@@ -109,11 +113,11 @@ impl<'a> Output<'a> {
     /// # Errors
     /// The output is closed or full.
     pub fn queue_json(&mut self, value: &impl Serialize) -> Result<(), Failure> {
-        serde_json::to_writer(&mut self.sink, value).map_err(|e| Failure::output(e.into()))?;
-        self.sink.write_all(b"\n").map_err(Failure::output)
+        let json = serde_json::to_string(value).map_err(|e| Failure::output(e.into()))?;
+        writeln!(self.sink, "{}", printable_json(&json)).map_err(Failure::output)
     }
 
-    /// Prints text as it is, at once.
+    /// Prints text of this program's own as it is, at once.
     ///
     /// # Errors
     /// The output is closed or full.
@@ -136,27 +140,49 @@ impl Style {
     pub fn paint<T: Display>(self, ink: Ink, text: T) -> Painted<T> {
         Painted { text, ink: self.colour.then_some(ink) }
     }
+
+    /// Returns the text with nothing left that steers a terminal, except for its own inks.
+    pub fn clean(self, text: &str) -> Cow<'_, str> {
+        let mut kept = Ink::ALL.map(Ink::sequence).to_vec();
+        kept.push(Ink::END);
+        printable(text, if self.colour { &kept } else { &[] })
+    }
 }
 
 impl<T: Display> Display for Painted<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Some(ink) = self.ink else { return self.text.fmt(f) };
-        let code = match ink {
-            Ink::Bold => 1,
-            Ink::Dim => 2,
-            Ink::Red => 31,
-            Ink::Green => 32,
-            Ink::Yellow => 33,
-            Ink::Cyan => 36,
-        };
-        write!(f, "\x1b[{code}m{}\x1b[0m", self.text)
+        match self.ink {
+            None => self.text.fmt(f),
+            Some(ink) => write!(f, "{}{}{}", ink.sequence(), self.text, Ink::END),
+        }
+    }
+}
+
+impl Ink {
+    const ALL: [Self; 6] =
+        [Self::Bold, Self::Dim, Self::Green, Self::Yellow, Self::Red, Self::Cyan];
+    const END: &'static str = "\x1b[0m";
+
+    const fn sequence(self) -> &'static str {
+        match self {
+            Self::Bold => "\x1b[1m",
+            Self::Dim => "\x1b[2m",
+            Self::Green => "\x1b[32m",
+            Self::Yellow => "\x1b[33m",
+            Self::Red => "\x1b[31m",
+            Self::Cyan => "\x1b[36m",
+        }
     }
 }
 
 /// Prints a note beside the verb's result, on standard error.
 pub fn note(text: impl Display) {
+    note_in(Style::default(), &text.to_string());
+}
+
+fn note_in(style: Style, text: &str) {
     // Nothing to do if standard error is closed.
-    let _ = writeln!(io::stderr(), "{text}");
+    let _ = writeln!(io::stderr(), "{}", style.clean(text));
 }
 
 /// Prints the message of a failure, if it has one, on standard error.
@@ -165,7 +191,7 @@ pub fn print_error(failure: &Failure) {
         return;
     }
     let style = Style { colour: io::stderr().is_terminal() && colour_is_welcome() };
-    note(format_args!("{} {failure}", style.paint(Ink::Red, "error:")));
+    note_in(style, &format!("{} {failure}", style.paint(Ink::Red, "error:")));
 }
 
 fn colour_is_welcome() -> bool {
@@ -202,6 +228,22 @@ mod tests {
     fn colour_is_put_only_where_it_is_understood() {
         assert_eq!(Style { colour: false }.paint(Ink::Red, "no").to_string(), "no");
         assert_eq!(Style { colour: true }.paint(Ink::Red, "no").to_string(), "\x1b[31mno\x1b[0m");
+    }
+
+    #[test]
+    fn foreign_text_does_not_steer_the_terminal() {
+        let mut bytes = Vec::new();
+        let mut out = Output::to(&mut bytes, false);
+        out.line("he said \x1b[2J\x1b]52;c;eA==\x07 and \u{9b}H").unwrap();
+        out.json(&"\u{9b}H \u{202e}").unwrap();
+        drop(out);
+        assert_eq!(
+            String::from_utf8(bytes).unwrap(),
+            "he said \\u{1b}[2J\\u{1b}]52;c;eA==\\u{7} and \\u{9b}H\n\"\\u009bH \\u202e\"\n"
+        );
+        let style = Style { colour: true };
+        let painted = style.paint(Ink::Red, "no \x1b[H").to_string();
+        assert_eq!(style.clean(&painted), "\x1b[31mno \\u{1b}[H\x1b[0m");
     }
 
     #[test]

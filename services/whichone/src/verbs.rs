@@ -14,6 +14,7 @@ use crate::{batch, scene_file};
 use service::exit::{Exit, Failure};
 
 mod arm;
+mod availability;
 mod await_pick;
 mod chat;
 mod check;

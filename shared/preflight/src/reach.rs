@@ -7,9 +7,22 @@ use scene::Placement;
 
 use crate::ArmSetup;
 
+/// Most objects with a place. The plans that are tried grow with the square of their number: this
+/// many take seconds.
+const PLACED_MAX: usize = 256;
+
 /// Reports every object without a place, and every one that the arm cannot bring.
 pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) {
     let placed = placed(settings, report);
+    if placed.len() > PLACED_MAX {
+        let what =
+            format!("expected at most {PLACED_MAX} objects with a place, found {}", placed.len());
+        let help = "divide them between scenes; `whichone reload` changes the scene";
+        return report.add(settings.scene_diagnostic("objects", what, help));
+    }
+    if !check_apart(&placed, settings, report) {
+        return;
+    }
     check_widths(&placed, settings, setup, report);
     let poses: Vec<ObjectPose> = placed.iter().map(|(_, pose)| *pose).collect();
     let found = check_reachable(&setup.robot, &poses, setup.limb, &setup.plan);
@@ -37,6 +50,26 @@ pub(crate) fn check(settings: &Settings, setup: &ArmSetup, report: &mut Report) 
 fn of_object(settings: &Settings, n: usize, key: &str, what: &str, help: &str) -> Diagnostic {
     let what = format!("`{}` {what}", settings.scene.objects()[n].name);
     settings.scene_diagnostic(format!("objects[{n}].{key}"), what, help)
+}
+
+/// Reports every object that stands where an earlier one does, which no plan can mend: their centres
+/// are nearer in each direction than a quarter of the smaller one. Returns whether there is none.
+fn check_apart(placed: &[(usize, ObjectPose)], settings: &Settings, report: &mut Report) -> bool {
+    let is_at = |a: &ObjectPose, b: &ObjectPose| {
+        (0..3).all(|axis| {
+            let least_m = a.size_m[axis].min(b.size_m[axis]) / 4.0;
+            (a.xyz_m[axis] - b.xyz_m[axis]).abs() < least_m
+        })
+    };
+    let mut all_apart = true;
+    for (i, (n, pose)) in placed.iter().enumerate() {
+        let earlier = placed[..i].iter().find(|(_, earlier)| is_at(pose, earlier));
+        let Some((earlier, _)) = earlier else { continue };
+        let what = format!("stands where `{}` does", settings.scene.objects()[*earlier].name);
+        report.add(of_object(settings, *n, "xyz", &what, "move one of them"));
+        all_apart = false;
+    }
+    all_apart
 }
 
 /// Reports every object that the gripper could hold but not with these settings: the fingers do not

@@ -120,6 +120,26 @@ fn preflight_reports_an_object_out_of_reach() {
     assert!(narrow.contains("`red_one` is wider than the fingers open: 12.5 mm"), "{narrow}");
 }
 
+/// A scene with the bowl and `more` others at its place.
+fn crowd(more: usize) -> String {
+    let (_, bowl) = ONE_BOWL.split_once("[[objects]]").unwrap();
+    let others =
+        (0..more).map(|n| format!("[[objects]]{}", bowl.replace("red_one", &format!("red_{n}"))));
+    others.fold(ONE_BOWL.to_owned(), |text, object| text + &object)
+}
+
+#[test]
+fn preflight_refuses_objects_at_one_place_and_too_many_before_it_plans() {
+    let two = complaints(&[("scenes/bowls.toml", &crowd(1))], &[]);
+    assert_eq!(two.len(), 2, "the object and the count: {two:?}");
+    assert!(two[0].contains("`red_0` stands where `red_one` does; help: move one"), "{two:?}");
+    let many = complaints(&[("scenes/bowls.toml", &crowd(599))], &[]);
+    let expected = "expected at most 256 objects with a place, found 600; help: divide";
+    assert!(many[0].contains(expected), "{many:?}");
+    let full = complaints(&[("scenes/bowls.toml", &crowd(255))], &[]);
+    assert_eq!(full.iter().filter(|line| line.contains("stands where")).count(), 255);
+}
+
 #[test]
 fn preflight_reports_a_hand_over_out_of_reach() {
     let second = ONE_BOWL.split("[[objects]]").nth(1).unwrap();

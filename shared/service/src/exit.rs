@@ -177,6 +177,17 @@ impl ProcessExit {
         }
     }
 
+    /// Returns true if it ended for want of a resource: storage, shared memory (a page that cannot
+    /// be had kills with SIGBUS), descriptors, process slots. Nothing is wrong with the service then.
+    pub fn is_shortage(self) -> bool {
+        match self {
+            Self::Code(code) => Exit::of_process(Some(code)) == Exit::Storage,
+            Self::Signal(signal) => signal == SIGBUS,
+            Self::NotStarted => true,
+            Self::NotStartable => false,
+        }
+    }
+
     /// Returns true if it ended with exit code 0.
     pub fn is_clean(self) -> bool {
         self == Self::Code(0)
@@ -188,6 +199,8 @@ impl fmt::Display for ProcessExit {
         match *self {
             Self::Code(78) => write!(f, "exit 78 (configuration or schema refused)"),
             Self::Code(64) => write!(f, "exit 64 (command line refused)"),
+            Self::Code(74) => write!(f, "exit 74 (storage)"),
+            Self::Signal(SIGBUS) => write!(f, "signal BUS (shared memory is full)"),
             Self::Code(code) => write!(f, "exit {code}"),
             Self::Signal(signal) => match signal_name(signal) {
                 Some(name) => write!(f, "signal {name}"),
@@ -198,6 +211,9 @@ impl fmt::Display for ProcessExit {
     }
 }
 
+/// Ends a process that touches a page of a file or of shared memory which cannot be had.
+const SIGBUS: i32 = 7;
+
 /// Names of the signals that end services in practice; the same numbers on every Linux this runs on.
 fn signal_name(signal: i32) -> Option<&'static str> {
     Some(match signal {
@@ -206,7 +222,6 @@ fn signal_name(signal: i32) -> Option<&'static str> {
         3 => "QUIT",
         4 => "ILL",
         6 => "ABRT",
-        7 => "BUS",
         8 => "FPE",
         9 => "KILL",
         11 => "SEGV",
@@ -233,6 +248,22 @@ mod tests {
             ProcessExit::NotStarted,
         ] {
             assert!(!exit.is_permanent(), "{exit}");
+        }
+    }
+
+    #[test]
+    fn only_want_of_a_resource_is_a_shortage() {
+        for exit in [ProcessExit::Code(74), ProcessExit::Signal(7), ProcessExit::NotStarted] {
+            assert!(exit.is_shortage() && !exit.is_permanent(), "{exit}");
+        }
+        for exit in [
+            ProcessExit::Code(0),
+            ProcessExit::Code(70),
+            ProcessExit::Code(78),
+            ProcessExit::Signal(9),
+            ProcessExit::NotStartable,
+        ] {
+            assert!(!exit.is_shortage(), "{exit}");
         }
     }
 

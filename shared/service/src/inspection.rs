@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::exit::{Exit, Failure};
 use crate::log_file;
+use crate::printable::{one_line, printable_json};
 use crate::service_loop::{Program, Record};
 
 /// One file of a journal.
@@ -250,10 +251,10 @@ fn verify<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fai
 }
 
 fn json_line(out: &mut impl Write, value: &impl Serialize) -> Result<(), Failure> {
-    serde_json::to_writer(&mut *out, value).map_err(|error| Failure::output(error.into()))?;
-    line(out, "")
+    let json = serde_json::to_string(value).map_err(|error| Failure::output(error.into()))?;
+    line(out, printable_json(&json))
 }
 
 fn line(out: &mut impl Write, text: impl std::fmt::Display) -> Result<(), Failure> {
-    writeln!(out, "{text}").map_err(Failure::output)
+    writeln!(out, "{}", one_line(&text.to_string())).map_err(Failure::output)
 }

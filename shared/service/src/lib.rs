@@ -14,6 +14,7 @@ pub mod lifecycle;
 pub mod log_file;
 pub mod logging;
 pub mod notify;
+pub mod printable;
 mod reducer;
 pub mod service_loop;
 pub mod shm_cleanup;

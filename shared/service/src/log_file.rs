@@ -8,6 +8,8 @@ use std::path::{Path, PathBuf};
 
 use config::Log;
 
+use crate::printable::one_line;
+
 /// Lines and bytes of a log's tail that is shown to an operator.
 const TAIL_LINES_MAX: usize = 12;
 const TAIL_BYTES_MAX: u64 = 4096;
@@ -62,17 +64,13 @@ pub fn tail(path: &Path, from: u64) -> Vec<String> {
     };
     let text = read().unwrap_or_default();
     let lines: Vec<&str> = text.lines().collect();
-    lines[lines.len().saturating_sub(TAIL_LINES_MAX)..].iter().map(|line| plain(line)).collect()
+    let last = &lines[lines.len().saturating_sub(TAIL_LINES_MAX)..];
+    last.iter().map(|line| one_line(line).into_owned()).collect()
 }
 
 /// Returns the size of a log, bytes; 0 if it does not exist.
 pub fn size(path: &Path) -> u64 {
     path.metadata().map_or(0, |meta| meta.len())
-}
-
-/// Returns a line without control characters.
-fn plain(line: &str) -> String {
-    line.chars().filter(|&c| !c.is_control() || c == '\t').collect()
 }
 
 fn copy_end(path: &Path, bytes: u64, bytes_max: u64) -> io::Result<()> {
@@ -161,7 +159,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("arm.log");
         fs::write(&path, "before\nafter\n\x1b[1mlast\n").unwrap();
-        assert_eq!(tail(&path, 7), ["after", "[1mlast"]);
+        assert_eq!(tail(&path, 7), ["after", "\\u{1b}[1mlast"]);
         let many: String = (0..1000).map(|line| format!("line {line}\n")).collect();
         fs::write(&path, many).unwrap();
         let lines = tail(&path, 0);

@@ -47,7 +47,10 @@ pub struct ServiceStatus {
     pub wanted: Wanted,
     /// Actual state.
     pub actual: Actual,
-    /// Reason for a difference between the two: awaited services, cause of a hold.
+    /// The state in one word, for a person.
+    #[serde(default)]
+    pub state: ServiceState,
+    /// Reason for a difference between the two: awaited services, a shortage, cause of a hold.
     pub why: Option<String>,
     /// Its process.
     pub pid: Option<u32>,
@@ -65,6 +68,9 @@ pub struct ServiceStatus {
     pub version: Option<String>,
     /// Its reported activity.
     pub says: Option<String>,
+    /// Messages of other processes that it has rejected as impossible since its start.
+    #[serde(default)]
+    pub rejected: u64,
     /// The command that has replaced the configured one.
     pub swapped: Option<Vec<String>>,
     /// End of the previous incarnation.
@@ -79,16 +85,76 @@ pub struct ServiceStatus {
 }
 
 impl ServiceStatus {
-    /// One word for the state.
-    pub fn state(&self) -> &'static str {
-        match self.actual {
-            Actual::Down if self.wanted == Wanted::Up => "waiting",
-            Actual::Down => "down",
-            Actual::Starting => "starting",
-            Actual::Ready => "ready",
-            Actual::Stopping => "stopping",
-            Actual::Backoff => "backoff",
-            Actual::Held => "held",
+    /// Returns what a person can do about the state; none where it passes by itself.
+    pub fn help(&self) -> Option<String> {
+        let name = &self.name;
+        match self.state {
+            ServiceState::Held => Some(format!("whichone release {name}")),
+            ServiceState::Failed => Some(format!("whichone logs {name}, then start {name}")),
+            ServiceState::Short => Some("free some; it is retried by itself".to_owned()),
+            ServiceState::Down => Some(format!("whichone start {name}")),
+            ServiceState::Waiting
+            | ServiceState::Starting
+            | ServiceState::Ready
+            | ServiceState::Stopping
+            | ServiceState::Restarting => None,
+        }
+    }
+
+    /// Returns why it does nothing for anyone until a person acts or a shortage ends, in a
+    /// sentence with the way out; none where it works or soon will.
+    pub fn unavailable(&self) -> Option<String> {
+        let (name, help) = (&self.name, self.help()?);
+        let why = self.why.as_deref();
+        Some(match self.state {
+            ServiceState::Held => format!("{name} is held by the operator; help: {help}"),
+            ServiceState::Short => format!("{name} {}; help: {help}", why.unwrap_or("is short")),
+            ServiceState::Failed => {
+                format!("{name} has failed: {}; help: {help}", why.unwrap_or("not restarted"))
+            }
+            _ => format!("{name} is stopped; help: {help}"),
+        })
+    }
+}
+
+/// State of a service in one word: being held is not a failure, nor is waiting.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ServiceState {
+    /// Not running and not wanted.
+    #[default]
+    Down,
+    /// Waiting for the services that it comes after.
+    Waiting,
+    /// Running, not ready yet.
+    Starting,
+    /// Running and ready.
+    Ready,
+    /// Asked to shut down.
+    Stopping,
+    /// Ended unexpectedly; restarted in a moment.
+    Restarting,
+    /// Short of a resource (disk, shared memory, descriptors); retried until there is some.
+    Short,
+    /// Held by the operator.
+    Held,
+    /// Given up: it failed too often, or a restart cannot help.
+    Failed,
+}
+
+impl ServiceState {
+    /// The word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Down => "down",
+            Self::Waiting => "waiting",
+            Self::Starting => "starting",
+            Self::Ready => "ready",
+            Self::Stopping => "stopping",
+            Self::Restarting => "restarting",
+            Self::Short => "short",
+            Self::Held => "held",
+            Self::Failed => "failed",
         }
     }
 }

@@ -43,8 +43,18 @@ fn any_deed() -> impl Strategy<Value = Event> {
         1 => (0u64..20_000).prop_map(|ms| Event::Extend(Duration::from_millis(ms))),
         3 => (0i32..3).prop_map(|code| Event::Exited(ProcessExit::Code(code))),
         1 => Just(Event::Exited(ProcessExit::Code(78))),
+        2 => any_shortage().prop_map(Event::Exited),
+        1 => any::<bool>().prop_map(Event::Short),
         2 => Just(Event::Exited(ProcessExit::Signal(9))),
         4 => Just(Event::Clock),
+    ]
+}
+
+fn any_shortage() -> impl Strategy<Value = ProcessExit> {
+    prop_oneof![
+        Just(ProcessExit::Code(74)),
+        Just(ProcessExit::Signal(7)),
+        Just(ProcessExit::NotStarted),
     ]
 }
 
@@ -53,7 +63,8 @@ struct World {
     machine: Machine,
     now: Time,
     lives: bool,
-    starts: Vec<Time>,
+    /// When it was started, and whether a shortage had been waited out.
+    starts: Vec<(Time, bool)>,
 }
 
 impl World {
@@ -64,7 +75,9 @@ impl World {
     /// One event, if it can happen: a process that does not live does nothing.
     fn give(&mut self, event: Event, after_ms: u64) -> Result<(), TestCaseError> {
         self.now += Duration::from_millis(after_ms);
-        let is_deed = matches!(event, Event::Ready | Event::Beat | Event::Extend(_));
+        let is_deed =
+            matches!(event, Event::Ready | Event::Beat | Event::Extend(_) | Event::Short(_));
+        let was_short = self.machine.state() == ServiceState::Short;
         if !self.lives && (is_deed || matches!(event, Event::Exited(_))) {
             return Ok(());
         }
@@ -75,7 +88,7 @@ impl World {
             Some(Effect::Spawn) => {
                 prop_assert!(!self.lives, "two incarnations at once");
                 self.lives = true;
-                self.starts.push(self.now);
+                self.starts.push((self.now, was_short));
             }
             Some(Effect::Terminate | Effect::Abort | Effect::Kill) => {
                 prop_assert!(self.lives, "a signal without a process");
@@ -122,8 +135,11 @@ proptest! {
         for (event, after_ms) in events {
             world.give(event, after_ms)?;
         }
-        for (first, &from) in world.starts.iter().enumerate() {
-            let within = world.starts[first..].iter().filter(|&&at| at - from < RESTART_LIMITS.window);
+        // A shortage does not count: only its pauses bound the starts after it.
+        let starts: Vec<Time> =
+            world.starts.iter().filter(|(_, was_short)| !was_short).map(|&(at, _)| at).collect();
+        for (first, &from) in starts.iter().enumerate() {
+            let within = starts[first..].iter().filter(|&&at| at - from < RESTART_LIMITS.window);
             prop_assert!(within.count() <= RESTART_LIMITS.exits_max as usize, "{:?}", world.starts);
         }
     }
@@ -152,6 +168,40 @@ proptest! {
         prop_assert_eq!(world.machine.actual(), Actual::Down);
         world.give(Event::Clock, 3_600_000)?;
         prop_assert!(!world.lives);
+    }
+
+    /// However often a service ends for want of a resource, it is never given up: it is started
+    /// again after a pause that is neither shorter than the first nor longer than the longest, and
+    /// the exits that count are as if the shortage had not been.
+    #[test]
+    fn a_shortage_is_waited_out(
+        exits in prop::collection::vec((any_shortage(), any::<bool>(), 0u64..8_000), 1..60),
+    ) {
+        let mut world = World::new();
+        world.give(Event::Start, 0)?;
+        world.give(Event::Admit, 0)?;
+        for (exit, becomes_ready, ready_ms) in exits {
+            if becomes_ready {
+                world.give(Event::Ready, 10)?;
+                for _ in 0..ready_ms / 2_000 {
+                    world.give(Event::Beat, 2_000)?;
+                }
+            }
+            world.give(Event::Exited(exit), 10)?;
+            prop_assert_eq!(world.machine.state(), ServiceState::Short);
+            let due = world.machine.deadline().expect("it is retried");
+            let pause = due - world.now;
+            prop_assert!(pause >= RESTART_LIMITS.backoff_first);
+            prop_assert!(pause <= RESTART_LIMITS.backoff_max);
+            world.give(Event::Clock, u64::try_from(pause.as_millis()).expect("short"))?;
+            prop_assert!(world.lives);
+        }
+        for exit in 1..=RESTART_LIMITS.exits_max {
+            world.give(Event::Exited(ProcessExit::Code(1)), 10)?;
+            let is_last = exit == RESTART_LIMITS.exits_max;
+            prop_assert_eq!(world.machine.state() == ServiceState::Failed, is_last);
+            world.give(Event::Clock, 2_000)?;
+        }
     }
 
     /// A pause is waited out before a service that never became ready is started again.

@@ -9,10 +9,22 @@ use crate::Time;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum State {
     Down,
-    Starting { since: Time },
-    Ready { since: Time },
-    Stopping { since: Time, step: Step, why: Why, ready_for: Option<Duration> },
-    Backoff,
+    Starting {
+        since: Time,
+    },
+    Ready {
+        since: Time,
+    },
+    Stopping {
+        since: Time,
+        step: Step,
+        why: Why,
+        ready_for: Option<Duration>,
+    },
+    /// `short`: for want of a resource.
+    Backoff {
+        short: bool,
+    },
     Held(HeldBecause),
 }
 
@@ -38,7 +50,7 @@ impl State {
             Self::Starting { .. } => Actual::Starting,
             Self::Ready { .. } => Actual::Ready,
             Self::Stopping { .. } => Actual::Stopping,
-            Self::Backoff => Actual::Backoff,
+            Self::Backoff { .. } => Actual::Backoff,
             Self::Held(_) => Actual::Held,
         }
     }

@@ -105,6 +105,34 @@ fn permanent_exit_holds_the_service() {
 }
 
 #[test]
+fn reported_shortage_turns_any_exit_into_a_wait() {
+    for exit in [CRASH, STOPPED, REFUSED] {
+        let mut bench = Bench::ready();
+        assert_eq!(bench.on(Event::Short(true)), None);
+        bench.is(Wanted::Up, Actual::Ready);
+        assert_eq!(bench.on(exit), None);
+        assert_eq!(bench.machine.state(), ServiceState::Short);
+        assert_eq!(bench.after_ms(100), Some(Effect::Spawn));
+        bench.on(Event::Ready);
+        assert_eq!(bench.on(REFUSED), None, "the successor has not said so");
+        assert_eq!(bench.machine.state(), ServiceState::Failed);
+    }
+    let mut bench = Bench::ready();
+    bench.on(Event::Short(true));
+    bench.on(Event::Short(false));
+    bench.on(REFUSED);
+    assert_eq!(bench.machine.state(), ServiceState::Failed);
+}
+
+#[test]
+fn service_that_is_never_restarted_is_not_retried_after_a_shortage_either() {
+    let mut bench = Bench::ready();
+    bench.machine.limits.restart = Restart::Never;
+    bench.on(Event::Exited(ProcessExit::Code(74)));
+    assert_eq!(bench.machine.state(), ServiceState::Failed);
+}
+
+#[test]
 fn restart_policies_differ_in_what_follows_an_exit() {
     let after = |restart, exit| {
         let mut bench = Bench::ready();

@@ -29,6 +29,8 @@ pub enum Event {
     Beat,
     /// It asks for this much more time for what it does.
     Extend(Duration),
+    /// It says that it is short of a resource, or no longer is.
+    Short(bool),
     /// Its process has been reaped (or could not be made).
     Exited(ProcessExit),
     /// Time has passed.
@@ -67,7 +69,7 @@ impl fmt::Display for HeldBecause {
             Self::Operator => write!(f, "held by the operator"),
             Self::Permanent(exit) => write!(f, "{exit}"),
             Self::TooOften(exits) => write!(f, "{exits} exits in a short time"),
-            Self::Policy => write!(f, "failed, and is never restarted"),
+            Self::Policy => write!(f, "its restart policy is never"),
         }
     }
 }

@@ -1,14 +1,15 @@
 //! Status reports.
 
+use std::path::Path;
 use std::time::Duration;
 
 use rustix::process::getpid;
 
 use super::Supervisor;
 use crate::Time;
-use crate::machine::Actual;
+use crate::machine::ServiceState;
 use crate::procfs;
-use crate::service::Ended;
+use crate::service::{Ended, SHARED_MEMORY, STORAGE};
 use service::status::{GroupStatus, LastExit, ServiceStatus};
 
 impl Supervisor {
@@ -37,14 +38,15 @@ impl Supervisor {
         let machine = self.group.machine(service);
         let running = entry.running.as_ref();
         let pid = running.map(|running| running.child.pid());
-        let log_tail = match machine.actual() {
-            Actual::Held => entry.log_tail(&self.around.paths),
+        let log_tail = match machine.state() {
+            ServiceState::Failed | ServiceState::Short => entry.log_tail(&self.around.paths),
             _ => Vec::new(),
         };
         ServiceStatus {
             name: entry.spec.name.clone(),
             wanted: machine.wanted(),
             actual: machine.actual(),
+            state: machine.state(),
             why: self.why(service),
             pid: pid.map(|pid| pid.as_raw_nonzero().get().unsigned_abs()),
             incarnation: machine.incarnation(),
@@ -54,6 +56,7 @@ impl Supervisor {
             input_age_ms: running.and_then(|running| running.input_age(now)).map(ms),
             version: running.and_then(|running| running.version.clone()),
             says: running.and_then(|running| running.says.clone()),
+            rejected: running.map_or(0, |running| running.rejected),
             swapped: entry.swapped.as_ref().map(|command| command.words.clone()),
             last_exit: entry.ended.as_ref().map(|ended| last_exit(ended, now)),
             log_tail,
@@ -63,13 +66,33 @@ impl Supervisor {
     }
 
     /// Returns the reason why a service is not in its wanted state.
-    fn why(&self, service: usize) -> Option<String> {
-        if let Some(because) = self.group.machine(service).held_because() {
+    pub(super) fn why(&self, service: usize) -> Option<String> {
+        let (machine, entry) = (self.group.machine(service), &self.services[service]);
+        if let Some(because) = machine.held_because() {
             return Some(because.to_string());
+        }
+        // One that runs may be short, too.
+        if machine.state() == ServiceState::Short || entry.running.is_some() {
+            let shortage = entry.shortage().map(|what| self.with_figures(what));
+            return shortage.map(|what| format!("waits for {what}"));
         }
         let missing = self.group.waits_for(service);
         let names: Vec<&str> = missing.iter().map(|&other| self.name(other)).collect();
         (!names.is_empty()).then(|| format!("waits for {}", names.join(" and ")))
+    }
+}
+
+/// Adds what is left of a resource.
+impl Supervisor {
+    fn with_figures(&self, what: &str) -> String {
+        let folder = match what {
+            STORAGE => &self.around.paths.journal(),
+            SHARED_MEMORY => Path::new("/dev/shm"),
+            _ => return what.to_owned(),
+        };
+        let Ok(stat) = rustix::fs::statvfs(folder) else { return what.to_owned() };
+        let (free, folder) = ((stat.f_bavail * stat.f_frsize) >> 20, folder.display());
+        format!("{what}: {free} MiB free in {folder}")
     }
 }
 

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::Supervisor;
 use crate::Time;
-use crate::machine::{Actual, Wanted};
+use crate::machine::{Actual, HeldBecause, ServiceState, Wanted};
 use crate::server::Client;
 use service::control::{Refusal, RefusalKind, Reply};
 
@@ -107,7 +107,8 @@ impl Supervisor {
     fn why_not_ready(&self, service: usize) -> Refusal {
         let name = self.name(service);
         let why = match self.group.machine(service).held_because() {
-            Some(because) => format!("{name} is held: {because}"),
+            Some(HeldBecause::Operator) => format!("{name} is held by the operator"),
+            Some(because) => format!("{name} has failed: {because}"),
             None => format!("{name} is not wanted up"),
         };
         let ended = self.services[service].ended.as_ref();
@@ -137,19 +138,11 @@ impl Supervisor {
     /// A service and what it does, e.g. `speech waits for policy`.
     fn in_words(&self, service: usize) -> String {
         let name = self.name(service);
-        let missing = self.group.waits_for(service);
-        if !missing.is_empty() {
-            let missing: Vec<&str> = missing.iter().map(|&other| self.name(other)).collect();
-            return format!("{name} waits for {}", missing.join(" and "));
+        match (self.group.machine(service).state(), self.why(service)) {
+            (ServiceState::Waiting | ServiceState::Short, Some(why)) => format!("{name} {why}"),
+            (ServiceState::Restarting, _) => format!("{name} pauses before its next start"),
+            (ServiceState::Failed, _) => format!("{name} has failed"),
+            (state, _) => format!("{name} is {}", state.word()),
         }
-        let does = match self.group.machine(service).actual() {
-            Actual::Down => "is down",
-            Actual::Starting => "is starting",
-            Actual::Ready => "is ready",
-            Actual::Stopping => "is stopping",
-            Actual::Backoff => "pauses before its next start",
-            Actual::Held => "is held",
-        };
-        format!("{name} {does}")
     }
 }

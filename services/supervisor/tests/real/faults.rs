@@ -7,10 +7,10 @@ use rustix::process::Signal;
 use serde_json::json;
 use service::control::{RefusalKind, Request, Target};
 use service::exit::ProcessExit;
-use service::status::GroupState;
+use service::status::{GroupState, ServiceState};
 use supervisor::machine::{Actual, Failure};
 
-use crate::harness::{Group, WAIT_MS, send, service, wait_for, with};
+use crate::harness::{Group, WAIT_MS, fixture, send, service, wait_for, with};
 
 #[test]
 fn killed_service_is_restarted_without_affecting_others() {
@@ -38,7 +38,7 @@ fn service_that_rejects_its_configuration_is_held() {
     assert_eq!(group.status().state, GroupState::Degraded);
     let refused = group.refused(&Request::WaitReady { wait_ms: WAIT_MS });
     assert_eq!(refused.kind, RefusalKind::NotReached);
-    assert!(refused.message.starts_with("arm is held"), "{}", refused.message);
+    assert!(refused.message.starts_with("arm has failed"), "{}", refused.message);
 }
 
 #[test]
@@ -56,6 +56,55 @@ fn crash_loop_backs_off_and_is_held_with_the_log() {
     group.until("policy", Actual::Ready);
     group.done(&Request::Release(Target::new("arm", 0)));
     wait_for("a sixth start", || Some(group.service("arm")).filter(|s| s.incarnation > 5));
+}
+
+#[test]
+fn shortage_is_waited_out_without_limit_and_without_a_person() {
+    let home = tempfile::tempdir().unwrap();
+    let room = home.path().join("room");
+    let script = format!(
+        "[ -e {0} ] || {{ echo disk full >&2; exit 74; }}; exec {1}",
+        room.display(),
+        fixture("fixture_service").display()
+    );
+    let short = json!({ "name": "arm", "command": ["sh", "-c", script] });
+    let group = Group::start_with(json!({
+        "services": [short, with(service("policy", &[]), "after", json!(["arm"]))],
+        "exits_max": 3,
+    }));
+    let waiting = wait_for("a fifth start", || {
+        Some(group.service("arm")).filter(|arm| arm.incarnation > 4 && arm.pid.is_none())
+    });
+    assert_eq!(waiting.state, ServiceState::Short);
+    assert_eq!(waiting.log_tail.last().map(String::as_str), Some("disk full"));
+    let why = waiting.why.unwrap();
+    assert!(why.starts_with("waits for disk: ") && why.contains("MiB free"), "{why}");
+    let refused = group.refused(&Request::WaitReady { wait_ms: 100 });
+    assert!(refused.message.contains("arm waits for disk: "), "{}", refused.message);
+    assert!(refused.message.contains("policy waits for arm"), "{}", refused.message);
+    std::fs::write(&room, "").unwrap();
+    group.done(&Request::WaitReady { wait_ms: WAIT_MS });
+}
+
+#[test]
+fn bus_error_and_a_reported_shortage_are_waits_and_a_hold_is_neither() {
+    let bus = json!({ "name": "arm", "command": ["sh", "-c", "kill -BUS $$"] });
+    let group = Group::start_with(json!({
+        "services": [bus, service("policy", &["short-of", "room"]), service("speech", &[])],
+        "exits_max": 2,
+    }));
+    let arm = wait_for("a fourth start", || {
+        Some(group.service("arm")).filter(|arm| arm.incarnation > 3 && arm.pid.is_none())
+    });
+    assert_eq!(arm.state, ServiceState::Short);
+    assert!(arm.why.unwrap().starts_with("waits for shared memory: "));
+    group.until("policy", Actual::Backoff);
+    let policy = group.service("policy");
+    assert_eq!(policy.why.as_deref(), Some("waits for room"));
+    group.done(&Request::Hold(Target::new("speech", WAIT_MS)));
+    let held = group.service("speech");
+    assert_eq!((held.state, held.log_tail.len()), (ServiceState::Held, 0));
+    assert!(held.unavailable().unwrap().contains("held by the operator; help: whichone release"));
 }
 
 #[test]

@@ -8,6 +8,7 @@ use serde_json::{Value as Json, json};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
+use super::availability::Lookout;
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::words;
 use crate::Outcome;
@@ -29,6 +30,7 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
     let user = wanted.map(|name| TruthfulUser::new(conversation.scene(), name, may_be_absent));
     let mut user = user.transpose().map_err(|what| Failure::new(Exit::Usage, what))?;
     let mut waiting = Waiting::new(reported_before(paths));
+    let mut lookout = Lookout::new();
     loop {
         conversation.look()?;
         if let Some(ended) = waiting.look(conversation.latest()) {
@@ -41,6 +43,9 @@ pub(super) fn await_pick(paths: &GroupPaths, args: &AwaitArgs, out: &mut Output<
         };
         if let Some(answer) = user.as_mut().and_then(answer) {
             conversation.say(&answer)?;
+        }
+        if let Some(why) = lookout.news(paths) {
+            return Err(Failure::new(Exit::NotReached, why));
         }
         if started.elapsed() >= args.timeout {
             return report_timeout(&conversation, started, out);

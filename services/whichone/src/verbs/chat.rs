@@ -9,7 +9,9 @@ use messages::{MotionOrder, Receipt, ReceiptStatus};
 use serde_json::json;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
+use service::printable::one_line;
 
+use super::availability::Lookout;
 use super::conversation::{Conversation, LOOK_EVERY};
 use super::interrupt::Interrupt;
 use super::{await_pick, operate, up};
@@ -42,9 +44,12 @@ fn talk(paths: &GroupPaths, interrupt: &Interrupt, out: &mut Output<'_>) -> Outc
     let mut chat = Chat::new(Conversation::join(paths)?, out);
     chat.conversation.first_look()?;
     chat.greet()?;
-    let lines = typed_lines();
+    let (lines, mut lookout) = (typed_lines(), Lookout::new());
     while !interrupt.is_requested() {
         chat.look()?;
+        if let Some(why) = lookout.news(paths) {
+            note(why);
+        }
         match lines.try_recv() {
             Ok(line) => match line.trim() {
                 "" => {}
@@ -131,7 +136,7 @@ impl<'a, 'b> Chat<'a, 'b> {
             return self.out.json(&json!({ "robot": text }));
         }
         let robot = self.out.style().paint(Ink::Cyan, "robot:");
-        self.out.line(format_args!("{robot} {text}"))
+        self.out.line(format_args!("{robot} {}", one_line(text)))
     }
 
     /// Prints the reason of a rejected utterance; accepted ones are in the terminal already.
@@ -143,7 +148,7 @@ impl<'a, 'b> Chat<'a, 'b> {
         if self.out.is_json() {
             return self.out.json(&json!({ "refused": why }));
         }
-        let line = format!("not accepted: {why}");
+        let line = format!("not accepted: {}", one_line(why));
         self.out.line(self.out.style().paint(Ink::Red, line))
     }
 

@@ -7,14 +7,14 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use audio::{RATE_HZ, SampleClock, read_wav};
-use messages::{AudioChunk, Receipt, ReceiptStatus, Sound};
+use messages::{AudioChunk, Receipt, ReceiptStatus, Service, Sound};
 use service::audio::AudioStream;
 use service::client::Client;
 use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
-use super::speak;
+use super::{availability, speak};
 use crate::Outcome;
 use crate::cli::ListenArgs;
 use crate::output::Output;
@@ -52,6 +52,7 @@ type Blocks = Receiver<Result<Vec<i16>, String>>;
 
 /// Streams blocks in real time and prints receipts as they arrive.
 fn stream(paths: &GroupPaths, args: &ListenArgs, blocks: Blocks, out: &mut Output<'_>) -> Outcome {
+    availability::require(paths, Service::Speech)?;
     let client = Client::join(paths)?;
     let flags = if args.echo_free { AudioChunk::ECHO_FREE } else { 0 };
     let mut stream = AudioStream::open(&client, flags)?;

@@ -9,6 +9,7 @@ use std::time::Duration;
 use serde::Serialize;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
+use service::printable::one_line;
 
 use crate::Outcome;
 use crate::cli::LogsArgs;
@@ -78,7 +79,7 @@ fn print(several: bool, service: &str, line: &str, out: &mut Output<'_>) -> Resu
     if out.is_json() {
         return out.json(&Line { service, line });
     }
-    let line: String = line.chars().filter(|&c| !c.is_control() || c == '\t').collect();
+    let line = one_line(line);
     if !several {
         return out.line(line);
     }

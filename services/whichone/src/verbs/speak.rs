@@ -2,15 +2,16 @@
 
 use std::time::Duration;
 
-use messages::{Hypothesis, Receipt, ReceiptStatus, Sound, Source};
+use messages::{Hypothesis, Receipt, ReceiptStatus, Service, Sound, Source};
 use serde::Serialize;
 use service::client::Client;
 use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
+use service::printable::one_line;
 use service::{Span, Time};
 
-use super::hearing;
+use super::{availability, hearing};
 use crate::Outcome;
 use crate::cli::{PointArgs, SayArgs, TalkArgs};
 use crate::output::{Ink, Output, note};
@@ -24,10 +25,11 @@ pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> O
     if !spoken {
         return give(paths, Sound::Text(args.text.join(" ")), args.timeout, out);
     }
+    availability::require(paths, Service::Speech)?;
     let client = Client::join(paths)?;
     let patience = Span::from_s(args.timeout.as_secs_f64());
     let (sound, said) = (transcript(args)?, when(args)?);
-    print_all(&client.inject_said(sound, said, patience)?, out)
+    print_all(paths, &client.inject_said(sound, said, patience)?, out)
 }
 
 /// When it was said.
@@ -79,17 +81,24 @@ pub(super) fn give(
     timeout: Duration,
     out: &mut Output<'_>,
 ) -> Outcome {
+    availability::require(paths, Service::Speech)?;
     let client = Client::join(paths)?;
     let receipts = client.inject(sound, Span::from_s(timeout.as_secs_f64()))?;
-    print_all(&receipts, out)
+    print_all(paths, &receipts, out)
 }
 
-fn print_all(receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
+fn print_all(paths: &GroupPaths, receipts: &[Receipt], out: &mut Output<'_>) -> Outcome {
     for receipt in receipts {
         print(receipt, out)?;
     }
     let accepted = |receipt: &Receipt| receipt.status == ReceiptStatus::Accepted;
-    Ok(if receipts.iter().any(accepted) { Exit::Ok } else { Exit::NotReached })
+    if !receipts.iter().any(accepted) {
+        return Ok(Exit::NotReached);
+    }
+    if let Some(why) = availability::unavailable(paths, availability::AFTER_SPEECH, |_| true) {
+        note(format_args!("it is kept, but nothing follows yet: {why}"));
+    }
+    Ok(Exit::Ok)
 }
 
 /// A receipt with `--json`.
@@ -124,7 +133,7 @@ pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Failu
             end_ns: receipt.end_ns,
         });
     }
-    let style = out.style();
+    let (style, note) = (out.style(), &*one_line(note));
     let spoken = matches!(source, Source::Wav | Source::Microphone);
     match (status, utterance) {
         (ReceiptStatus::Accepted, seq) => {

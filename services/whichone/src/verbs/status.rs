@@ -4,7 +4,7 @@ use serde::Serialize;
 use service::control::CallError;
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
-use service::status::{Actual, GroupState, GroupStatus, ServiceStatus, Wanted};
+use service::status::{GroupState, GroupStatus, ServiceState, ServiceStatus};
 use service::view::HearingView;
 
 use super::operate::status_of;
@@ -116,7 +116,7 @@ fn row(service: &ServiceStatus) -> Vec<String> {
     let age = |ms: Option<u64>| or_dash(ms.map(|ms| words::time(ms as f64 / 1e3)));
     vec![
         service.name.clone(),
-        service.state().to_owned(),
+        service.state.word().to_owned(),
         or_dash(service.pid.map(|pid| pid.to_string())),
         or_dash(service.uptime_s.map(words::time)),
         service.incarnation.to_string(),
@@ -133,19 +133,34 @@ fn remarks(service: &ServiceStatus) -> String {
         .last_exit
         .as_ref()
         .map(|exit| format!("last ended {} ago with {}", words::time(exit.age_s), exit.text));
-    let remarks = [service.why.clone(), service.says.clone(), swapped, exit];
+    let rejected = (service.rejected > 0)
+        .then(|| format!("{} rejected", words::count(service.rejected, "message")));
+    let help = service.help().map(|help| format!("help: {help}"));
+    let remarks = [service.why.clone(), service.says.clone(), swapped, rejected, exit, help];
     remarks.into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 /// Only services that are not in their wanted state are coloured.
 fn coloured(service: &ServiceStatus, line: String, style: Style) -> String {
-    let ink = match (service.actual, service.wanted) {
-        (Actual::Ready, Wanted::Up) => return line,
-        (Actual::Held | Actual::Backoff, _) => Ink::Red,
-        (Actual::Down, Wanted::Down) => Ink::Dim,
-        _ => Ink::Yellow,
-    };
-    style.paint(ink, line).to_string()
+    match state_ink(service.state) {
+        Ink::Green => line,
+        ink => style.paint(ink, line).to_string(),
+    }
+}
+
+/// Colour of a state: red is for failures only.
+pub(super) fn state_ink(state: ServiceState) -> Ink {
+    match state {
+        ServiceState::Ready => Ink::Green,
+        ServiceState::Failed => Ink::Red,
+        ServiceState::Down => Ink::Dim,
+        ServiceState::Held => Ink::Cyan,
+        ServiceState::Waiting
+        | ServiceState::Starting
+        | ServiceState::Stopping
+        | ServiceState::Restarting
+        | ServiceState::Short => Ink::Yellow,
+    }
 }
 
 #[cfg(test)]
@@ -155,9 +170,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn status_shows_the_reason_for_a_held_service() {
+    fn status_shows_the_reason_for_a_failed_service_and_the_way_out() {
         let service = json!({
-            "name": "policy", "wanted": "up", "actual": "held", "why": "5 exits in a short time",
+            "name": "policy", "wanted": "up", "actual": "held", "state": "failed", "why": "5 exits in a short time",
             "incarnation": 5, "restarts": 4, "log_tail": ["it broke"],
             "last_exit": {"incarnation": 5, "exit": {"code": 1}, "failure": null, "killed": false,
                           "age_s": 2.0, "text": "exit 1"},
@@ -174,9 +189,9 @@ mod tests {
             [
                 "group lab is degraded: scene bowls, up 1 min 1 s, supervisor 7, configuration /c \
                  with profile ci, 1 orphan killed",
-                "SERVICE  STATE  PID  UP  STARTS  BEAT  INPUT  MEMORY  NOTE",
-                "policy   held   -    -   5       -     -      -       5 exits in a short time; \
-                 last ended 2.0 s ago with exit 1",
+                "SERVICE  STATE   PID  UP  STARTS  BEAT  INPUT  MEMORY  NOTE",
+                "policy   failed  -    -   5       -     -      -       5 exits in a short time; \
+                 last ended 2.0 s ago with exit 1; help: whichone logs policy, then start policy",
                 "    it broke",
             ]
         );

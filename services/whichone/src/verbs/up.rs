@@ -63,7 +63,8 @@ pub(super) fn bring_up(paths: &GroupPaths, config: &ConfigArgs) -> Result<(), Fa
 pub(super) fn is_running(paths: &GroupPaths) -> Result<bool, Failure> {
     match operate::ask(paths, &Request::Ping, Duration::ZERO) {
         Ok(_) => Ok(true),
-        Err(CallError::NoGroup(_)) => Ok(false),
+        // One that ends while it is asked was just killed or stopped.
+        Err(CallError::NoGroup(_) | CallError::Closed(_)) => Ok(false),
         Err(other) => Err(other.into()),
     }
 }
@@ -73,8 +74,8 @@ fn refuse_twice(paths: &GroupPaths) -> Result<(), Failure> {
         return Ok(());
     }
     let name = paths.name();
-    let pid = operate::status_of(paths)?.supervisor_pid;
-    let what = format!("group {name} is already running (supervisor {pid})");
+    let Ok(status) = operate::status_of(paths) else { return Ok(()) };
+    let what = format!("group {name} is already running (supervisor {})", status.supervisor_pid);
     Err(Failure::new(Exit::NotReached, format!("{what}; another --group may run beside it")))
 }
 

@@ -63,7 +63,10 @@ fn follow(
         }
         if drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME_EVERY) {
             if screen {
-                out.text(&frame::redraw(&frame::lines(model, out.style(), columns())))?;
+                out.text(&frame::redraw(
+                    &frame::lines(model, out.style(), columns()),
+                    out.style(),
+                ))?;
             } else {
                 draw_once(model, out)?;
             }

@@ -48,7 +48,7 @@ fn logs_of_an_unknown_service_list_the_known_ones() {
 fn log_lines_are_sanitised_for_the_terminal() {
     let (_home, paths) = group();
     append(&paths, "arm", "\x1b[2Jgone\r\n");
-    assert_eq!(printed(&paths, Some("arm"), 5), ["[2Jgone"]);
+    assert_eq!(printed(&paths, Some("arm"), 5), ["\\u{1b}[2Jgone"]);
 }
 
 #[test]

@@ -4,12 +4,12 @@ use ::dialogue::rendering;
 use messages::{ArmStatus, PickOutcome, PickPhase, PolicyView};
 use scene::Scene;
 use service::status::GroupState;
-use service::status::{Actual, Wanted};
 use service::status::{GroupStatus, ServiceStatus};
 use service::view::Speaker;
 
 use super::model::{WatchModel, object_name};
 use crate::output::{Ink, Style};
+use crate::verbs::status::state_ink;
 use crate::verbs::{await_pick, hearing, words};
 
 /// Starts drawing on an alternate screen without a cursor.
@@ -23,8 +23,9 @@ const OBJECTS_MAX: usize = 12;
 const BAR_MAX: usize = 40;
 
 /// Draws `lines` over the current screen.
-pub(super) fn redraw(lines: &[String]) -> String {
-    let lines: String = lines.iter().map(|line| format!("{line}\x1b[K\r\n")).collect();
+pub(super) fn redraw(lines: &[String], style: Style) -> String {
+    let lines: String =
+        lines.iter().map(|line| format!("{}\x1b[K\r\n", style.clean(line))).collect();
     format!("\x1b[H{lines}\x1b[J")
 }
 
@@ -68,18 +69,12 @@ fn head(scene: &Scene, status: Option<&GroupStatus>, style: Style) -> Vec<String
 }
 
 fn service(service: &ServiceStatus, style: Style) -> String {
-    let ink = match (service.actual, service.wanted) {
-        (Actual::Ready, _) => Ink::Green,
-        (Actual::Down, Wanted::Down) => Ink::Dim,
-        (Actual::Held | Actual::Backoff, _) => Ink::Red,
-        _ => Ink::Yellow,
-    };
     let starts = match service.restarts {
         0 => String::new(),
         restarts => format!(" (restarted {restarts})"),
     };
-    let state = format!("{:?}", service.actual).to_lowercase();
-    format!("{} {}{starts}", service.name, style.paint(ink, state))
+    let state = style.paint(state_ink(service.state), service.state.word());
+    format!("{} {state}{starts}", service.name)
 }
 
 fn dialogue(scene: &Scene, view: &PolicyView, style: Style, columns: usize) -> Vec<String> {

@@ -73,5 +73,5 @@ fn watch_frame_shows_a_stopped_arm_in_every_phase() {
 fn watch_frame_lines_fit_the_screen_and_are_sanitised() {
     assert_eq!(cut("abcdef", 4), "abc…");
     assert_eq!(cut("ab\x1b[2J", 10), "ab [2J");
-    assert_eq!(redraw(&["a".into()]), "\x1b[Ha\x1b[K\r\n\x1b[J");
+    assert_eq!(redraw(&["a\x07".into()], Style::default()), "\x1b[Ha\\u{7}\x1b[K\r\n\x1b[J");
 }

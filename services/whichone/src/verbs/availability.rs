@@ -1,0 +1,113 @@
+//! Services that do nothing for anyone for now: held, failed, stopped, or short of a resource. A verb
+//! that needs one says so at once instead of waiting for an answer.
+
+use std::time::{Duration, Instant};
+
+use messages::Service;
+use service::control::{Reply, Request, call};
+use service::exit::{Exit, Failure};
+use service::group::GroupPaths;
+use service::status::{GroupStatus, ServiceState};
+
+/// Timeout of the status. A supervisor that hangs keeps no client from the services.
+const STATUS_PATIENCE: Duration = Duration::from_millis(500);
+/// Delay of a waiting verb's first look: what has ended already is reported before.
+const FIRST_LOOK: Duration = Duration::from_millis(300);
+/// Interval at which it looks again.
+const LOOK_EVERY: Duration = Duration::from_secs(1);
+
+/// Services that an accepted utterance still needs.
+pub(super) const AFTER_SPEECH: &[Service] = &[Service::Grounding, Service::Policy, Service::Arm];
+
+/// Fails where the service does nothing for now.
+pub(super) fn require(paths: &GroupPaths, service: Service) -> Result<(), Failure> {
+    match unavailable(paths, &[service], |_| true) {
+        Some(why) => Err(Failure::new(Exit::NotReached, why)),
+        None => Ok(()),
+    }
+}
+
+/// Returns why the first of the services that is in such a state does nothing for now.
+pub(super) fn unavailable(
+    paths: &GroupPaths,
+    services: &[Service],
+    counts: impl Fn(ServiceState) -> bool,
+) -> Option<String> {
+    let status = match call(&paths.control_socket(), &Request::Status, STATUS_PATIENCE) {
+        Ok(Reply::Status(status)) => status,
+        _ => return None,
+    };
+    first(&status, services, counts)
+}
+
+fn first(
+    status: &GroupStatus,
+    services: &[Service],
+    counts: impl Fn(ServiceState) -> bool,
+) -> Option<String> {
+    let named = |name: &str| services.iter().any(|service| service.name() == name);
+    let mut needed = status.services.iter().filter(|service| named(&service.name));
+    needed.find_map(|service| service.unavailable().filter(|_| counts(service.state)))
+}
+
+/// Looks now and then whether a dialogue can go on without a person's help.
+#[derive(Debug)]
+pub(super) struct Lookout {
+    due: Instant,
+    /// What was reported last.
+    told: Option<String>,
+}
+
+impl Lookout {
+    pub(super) fn new() -> Self {
+        Self { due: Instant::now() + FIRST_LOOK, told: None }
+    }
+
+    /// Returns why the dialogue stands still, where that is news. A shortage may pass, and is left
+    /// to the patience of the one who waits.
+    pub(super) fn news(&mut self, paths: &GroupPaths) -> Option<String> {
+        if Instant::now() < self.due {
+            return None;
+        }
+        self.due = Instant::now() + LOOK_EVERY;
+        let needs_help = |state| state != ServiceState::Short;
+        let why = unavailable(paths, &Service::DIALOGUE, needs_help);
+        let is_news = why != self.told;
+        self.told.clone_from(&why);
+        why.filter(|_| is_news)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn only_what_does_not_pass_by_itself_is_unavailable() {
+        let service = |name: &str, state: &str, why: &str| {
+            json!({ "name": name, "wanted": "up", "actual": "down", "state": state, "why": why,
+                    "incarnation": 1, "restarts": 0 })
+        };
+        let found = |state: &str| {
+            let status = json!({
+                "name": "lab", "state": "degraded", "supervisor_pid": 7, "version": "0",
+                "epoch": 1, "uptime_s": 1.0, "scene": "bowls", "config": "/c", "strays_killed": 0,
+                "services": [service("console", "failed", ""), service("arm", state, "so")],
+            });
+            first(&serde_json::from_value(status).unwrap(), &Service::DIALOGUE, |_| true)
+        };
+        for state in ["ready", "starting", "waiting", "restarting", "stopping"] {
+            assert_eq!(found(state), None, "{state}");
+        }
+        let held = "arm is held by the operator; help: whichone release arm";
+        assert_eq!(found("held").as_deref(), Some(held));
+        let failed = "arm has failed: so; help: whichone logs arm, then start arm";
+        assert_eq!(found("failed").as_deref(), Some(failed));
+        let down = "arm is stopped; help: whichone start arm";
+        assert_eq!(found("down").as_deref(), Some(down));
+        let short = "arm so; help: free some; it is retried by itself";
+        assert_eq!(found("short").as_deref(), Some(short));
+    }
+}
