@@ -174,7 +174,7 @@ impl World {
                     self.orders.push((self.now, order.clone()));
                     commands.push(to_robot(order));
                 }
-                Out::Joints(_) | Out::World(_) | Out::Trajectory(_) => {}
+                Out::Joints(_) | Out::World(_) | Out::Trajectory(_) | Out::StopState(..) => {}
             }
         }
         self.pass_robot(commands);

@@ -92,6 +92,11 @@ impl Executor {
         matches!(self, Self::Standing)
     }
 
+    /// Returns whether the next step of the program has not begun.
+    pub(crate) fn begins_step(&self) -> bool {
+        matches!(self, Self::Running { t_s: 0.0, .. })
+    }
+
     /// Changes the purpose of the rest of the program.
     pub(crate) fn change_purpose(&mut self, to: Purpose) {
         if let Self::Running { program, .. } = self {

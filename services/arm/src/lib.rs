@@ -2,9 +2,9 @@
 //!
 //! [`ArmNode`] is the reducer. Invariant: a motion that belongs to a phase of a pick is commanded
 //! only once that phase is durable, and the next action depends on durable facts and
-//! sensors alone, so the arm can be killed at any instant and resumes from there. The service loop
-//! commits between two ticks and calls at most one tick between two commits; that is what "once
-//! durable" rests on: a phase is recorded in one tick and its motion begins in a later one.
+//! sensors alone, so the arm can be killed at any instant and resumes from there: a phase is recorded
+//! in one tick, and its motion begins in a tick after [`Node::on_durable`]. A motion that has begun
+//! and a halt wait for no disk.
 
 mod driver;
 mod executor;
@@ -38,6 +38,7 @@ use orders::StandingAct;
 use preflight::ArmSetup;
 use publish::{Facts, Publisher};
 use scene::{ObjectId, Scene};
+use service::stop_socket::{Caller, StopState};
 use service::{Effects, Event, Node, NodeError, Span, Time};
 use state::{ArmState, Cause, Record};
 use trajectory_view::MotionView;
@@ -50,6 +51,8 @@ pub enum In {
     Act(Box<RobotAct>),
     /// Stop or resume, from speech and clients.
     Motion(MotionCommand),
+    /// The same from a client that is answered.
+    StopOrder(MotionCommand, Caller),
     /// Report of a real robot.
     Robot(Report),
 }
@@ -67,6 +70,8 @@ pub enum Out {
     Trajectory(Box<TrajectoryView>),
     /// Command to a real robot.
     Robot(Order),
+    /// Answer to an order to the motion stop.
+    StopState(Caller, StopState),
 }
 
 type Fx = Effects<Out, Record>;
@@ -104,6 +109,12 @@ pub struct ArmNode {
     /// Reason why the robot could not move in the previous pass.
     inhibit: MotionInhibit,
     ending: bool,
+    /// True if a record is not durable yet.
+    unsynced: bool,
+    /// True if one of them begins or ends a phase: no step begins before it is durable.
+    phase_unsynced: bool,
+    /// Clients that wait for the state of the motion stop, with their orders' times.
+    callers: Vec<(Caller, u64)>,
 }
 
 /// Longest time between two steps of a motion.
@@ -128,6 +139,11 @@ impl Node for ArmNode {
         match event {
             Event::Started => self.begin(now, fx),
             Event::Message(In::Motion(command)) => self.on_motion_command(&command, now, fx),
+            Event::Message(In::StopOrder(command, caller)) => {
+                self.on_motion_command(&command, now, fx);
+                self.callers.push((caller, command.given_ns));
+                self.urgent = true;
+            }
             Event::Message(In::Act(act)) => self.on_act(&act, now, fx),
             Event::Message(In::Robot(report)) => self.driver.on_report(&report, now),
             Event::Tick => self.tick(now, fx),
@@ -139,8 +155,14 @@ impl Node for ArmNode {
         }
     }
 
+    fn on_durable(&mut self) {
+        // What waited for the records happens in the next tick.
+        self.urgent |= self.unsynced;
+        (self.unsynced, self.phase_unsynced) = (false, false);
+    }
+
     fn deadline(&self) -> Option<Time> {
-        let due = self.publisher.deadline();
+        let due = self.publisher.deadline(self.unsynced);
         if self.urgent || self.driver.is_fresh() {
             return Some(Time(0));
         }
@@ -179,6 +201,9 @@ impl ArmNode {
             scene_changed,
             inhibit: MotionInhibit::None,
             ending: false,
+            unsynced: false,
+            phase_unsynced: false,
+            callers: Vec::new(),
             config,
         }
     }
@@ -216,8 +241,27 @@ impl ArmNode {
             self.record(Cause::Shutdown, now, fx);
             fx.exit();
         }
-        self.driver.end_pass(now).into_iter().for_each(|order| fx.publish(Out::Robot(order)));
+        // Set-points depend on durable records alone, so they wait for none.
+        self.driver
+            .end_pass(now)
+            .into_iter()
+            .for_each(|order| fx.publish_urgent(Out::Robot(order)));
+        self.answer_callers(fx);
         self.publish(now, fx);
+    }
+
+    fn answer_callers(&mut self, fx: &mut Fx) {
+        for (caller, given_ns) in std::mem::take(&mut self.callers) {
+            let state = StopState {
+                given_ns,
+                in_force_ns: self.state.obeyed.ns(),
+                stopped: self.state.stopped,
+                at_rest: self.executor.is_standing(),
+                durable: !self.unsynced,
+                inhibit: self.driver.inhibit(),
+            };
+            fx.publish_urgent(Out::StopState(caller, state));
+        }
     }
 
     fn publish(&mut self, now: Time, fx: &mut Fx) {
@@ -231,6 +275,11 @@ impl ArmNode {
             aimed: aims.then_some(self.act.id),
             inhibit: self.driver.inhibit(),
         };
+        self.publisher.publish_joints(facts.measured, now, fx);
+        // What tells of a record waits until it is durable.
+        if self.unsynced {
+            return;
+        }
         self.publisher.tick(&facts, now, fx);
         if let Some(view) = self.motion_view.update(&self.executor, now) {
             fx.publish(Out::Trajectory(Box::new(view)));
@@ -240,7 +289,12 @@ impl ArmNode {
     /// Appends the state to the journal, with the present joint positions.
     fn record(&mut self, cause: Cause, at: Time, fx: &mut Fx) {
         self.state.posture = self.driver.measured().posture;
-        self.recorded = at;
-        fx.append(Record { cause, at, state: self.state.clone() });
+        (self.recorded, self.unsynced) = (at, true);
+        self.phase_unsynced |= cause.is_of_phase();
+        let record = Record { cause, at, state: self.state.clone() };
+        match cause {
+            Cause::Motion(_) => fx.append_vital(record),
+            _ => fx.append(record),
+        }
     }
 }

@@ -26,7 +26,7 @@ impl ArmNode {
     /// not durable yet.
     pub(crate) fn step(&mut self, mut seconds: f64, now: Time, fx: &mut Fx) {
         loop {
-            if self.enters_phase(now, fx) {
+            if self.enters_phase(now, fx) || self.phase_unsynced && self.executor.begins_step() {
                 return;
             }
             let purpose = self.executor.purpose();
@@ -46,6 +46,10 @@ impl ArmNode {
     /// for the disk.
     pub(crate) fn record_progress(&mut self, now: Time, fx: &mut Fx) {
         if self.executor.is_standing() || now < self.recorded + PROGRESS_EVERY {
+            return;
+        }
+        // On a slow or full disk they would only queue.
+        if self.unsynced {
             return;
         }
         if self.publisher.due_joints(&self.driver.measured(), now).is_some() {

@@ -55,9 +55,12 @@ impl Publisher {
         }
     }
 
-    /// Returns the next publication time of a standing arm. A moving one is stepped more
-    /// often anyway.
-    pub(crate) fn deadline(&self) -> Time {
+    /// Returns the next publication time of a standing arm, of its joints alone where the rest waits for
+    /// the disk. A moving one is stepped more often anyway.
+    pub(crate) fn deadline(&self, only_joints: bool) -> Time {
+        if only_joints {
+            return self.joints_due;
+        }
         let world = self.world_sent.map_or(Time(0), |sent| sent + WORLD_EVERY.1);
         self.joints_due.min(self.status_due).min(world)
     }
@@ -72,9 +75,9 @@ impl Publisher {
         }
     }
 
-    /// Publishes what is due.
-    pub(crate) fn tick(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
-        let at = self.due_joints(facts.measured, now);
+    /// Publishes the joint states when they are due: measurements, which wait for no record.
+    pub(crate) fn publish_joints(&mut self, measured: &Measured, now: Time, fx: &mut Fx) {
+        let at = self.due_joints(measured, now);
         if now >= self.joints_due {
             // A late one is not caught up with.
             let next = self.joints_due + self.joints_every;
@@ -82,8 +85,12 @@ impl Publisher {
         }
         if let Some(at) = at {
             self.joints_at = at;
-            fx.publish(Out::Joints(Box::new(self.joint_states(facts.measured, at))));
+            fx.publish_urgent(Out::Joints(Box::new(self.joint_states(measured, at))));
         }
+    }
+
+    /// Publishes world and status when they are due.
+    pub(crate) fn tick(&mut self, facts: &Facts<'_>, now: Time, fx: &mut Fx) {
         let (moving, standing) = WORLD_EVERY;
         let world_every = if facts.executor.is_standing() { standing } else { moving };
         if self.world_sent.is_none_or(|sent| now >= sent + world_every) {

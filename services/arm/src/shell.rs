@@ -14,6 +14,8 @@ use service::exit::{Exit, Failure};
 use service::inspection::Part;
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
+use service::stop_socket::StopListener;
+use std::os::fd::BorrowedFd;
 
 mod robot;
 
@@ -52,13 +54,14 @@ pub struct ArmShell {
     joints: Writer<JointStates>,
     world: EncodedWriter<WorldView>,
     trajectory: EncodedWriter<TrajectoryView>,
+    stop: StopListener,
     /// Topics of a real robot.
     robot: Option<RobotTopics>,
 }
 
 impl Shell<ArmNode> for ArmShell {
     fn open(context: &Context<'_, In>) -> Result<Self, Failure> {
-        let bus = context.bus;
+        let (bus, paths) = (context.bus, &context.environment.paths);
         let robot = (context.settings.arm.driver == Driver::Baxter).then(|| RobotTopics::open(bus));
         Ok(Self {
             motion: bus.reader(&topics::MOTION)?,
@@ -67,12 +70,22 @@ impl Shell<ArmNode> for ArmShell {
             joints: bus.writer(&topics::JOINTS)?,
             world: bus.encoded_writer(&topics::WORLD)?,
             trajectory: bus.encoded_writer(&topics::TRAJECTORY)?,
+            stop: StopListener::bind(paths)
+                .map_err(|error| Failure::file(&paths.stop_socket(), &error))?,
             robot: robot.transpose()?,
         })
     }
 
+    fn drain_urgent(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
+        self.stop.drain(|command, caller| take(In::StopOrder(command, caller)));
+        self.motion.drain(|message| take(In::Motion(*message)))
+    }
+
+    fn urgent_fd(&self) -> Option<BorrowedFd<'_>> {
+        Some(self.stop.fd())
+    }
+
     fn drain(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
-        self.motion.drain(|message| take(In::Motion(*message)))?;
         self.acts.drain(|message| take(In::Act(Box::new(*message))))?;
         self.robot.iter().try_for_each(|robot| robot.drain(|report| take(In::Robot(report))))
     }
@@ -83,6 +96,10 @@ impl Shell<ArmNode> for ArmShell {
             Out::Joints(joints) => self.joints.send(&joints),
             Out::World(world) => self.world.send(&world),
             Out::Trajectory(trajectory) => self.trajectory.send(&trajectory),
+            Out::StopState(caller, state) => {
+                self.stop.answer(&caller, &state);
+                Ok(())
+            }
             Out::Robot(order) => self.robot.iter().try_for_each(|robot| robot.send(&order)),
         }
     }

@@ -82,6 +82,17 @@ pub enum Cause {
     Shutdown,
 }
 
+impl Cause {
+    /// Returns whether the record begins or ends a phase of a pick, so that the next step waits for it.
+    pub(crate) fn is_of_phase(self) -> bool {
+        match self {
+            Self::Ordered | Self::Phase | Self::Missed | Self::Ended | Self::Rested => true,
+            Self::Snapshot | Self::SceneChanged | Self::Blocked => true,
+            Self::Motion(_) | Self::Moved | Self::Shutdown => false,
+        }
+    }
+}
+
 /// A journal record: why the state changed, when, and the state after it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {

@@ -244,7 +244,8 @@ impl UtteranceIntake {
         if content.is_stop(&self.config) {
             let order = MotionOrder::Stop.code();
             let command = MotionCommand { given_ns: now.ns(), order, ..MotionCommand::default() };
-            fx.publish(Out::Motion(command));
+            // A stop waits for no disk.
+            fx.publish_urgent(Out::Motion(command));
         }
         let accepted = origin.accepted(seq, content, player.asked(), now);
         fx.append(Record::Accepted(accepted.clone()));

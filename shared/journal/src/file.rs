@@ -84,7 +84,15 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
     /// # Errors
     /// See [`AppendError`]; the record is not queued.
     pub fn append(&mut self, record: &R) -> Result<(), AppendError> {
-        self.tail.append(record)
+        self.append_all(std::slice::from_ref(record))
+    }
+
+    /// As [`Journal::append`], all of them or none.
+    ///
+    /// # Errors
+    /// See [`AppendError`]; no record is queued.
+    pub fn append_all(&mut self, records: &[R]) -> Result<(), AppendError> {
+        self.tail.append_all(records)
     }
 
     /// Makes everything appended so far durable, with one write and one `fdatasync`, as a whole.
@@ -93,7 +101,16 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
     /// # Errors
     /// See [`SyncError`]; none of the records may be acted on.
     pub fn sync(&mut self) -> Result<(), SyncError> {
-        self.tail.sync()
+        self.tail.sync(false)
+    }
+
+    /// As [`Journal::sync`], on a full disk with the space that the journal keeps in reserve: for
+    /// records that protect people.
+    ///
+    /// # Errors
+    /// As [`Journal::sync`].
+    pub fn sync_with_reserve(&mut self) -> Result<(), SyncError> {
+        self.tail.sync(true)
     }
 
     /// Continues in a new file that starts with `snapshot`; the old one is kept as `<name>.1`.
@@ -111,7 +128,7 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
         snapshot: &[R],
         before: impl FnMut(Step) -> io::Result<()>,
     ) -> Result<(), RotateError> {
-        self.tail.sync()?;
+        self.tail.sync(false)?;
         let (bytes, position) = compose(&self.header, self.next_seq(), snapshot)?;
         match rotate::replace(&self.path, &bytes, KEPT, before) {
             Ok(file) => self.tail = Tail::new(file, position),

@@ -4,17 +4,24 @@ use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
 
+use rustix::fs::{FallocateFlags, fallocate};
+use rustix::io::Errno;
 use serde::Serialize;
 
 use crate::frame::{self, BODY_BYTES_MAX};
 use crate::scan::Position;
 use crate::{AppendError, SyncError};
 
+/// Space that a journal keeps after its end for vital records, bytes.
+const RESERVE_BYTES: u64 = 32 << 10;
+
 /// File operations of the journal; tests inject disk faults here.
 pub(crate) trait Storage {
     fn write_at(&mut self, bytes: &[u8], at: u64) -> io::Result<()>;
     fn truncate(&mut self, len: u64) -> io::Result<()>;
     fn sync(&mut self) -> io::Result<()>;
+    /// Takes space for the bytes from `at` to `until`, beyond the end of the file.
+    fn reserve(&mut self, at: u64, until: u64) -> io::Result<()>;
 }
 
 impl Storage for File {
@@ -29,6 +36,14 @@ impl Storage for File {
     fn sync(&mut self) -> io::Result<()> {
         self.sync_data()
     }
+
+    fn reserve(&mut self, at: u64, until: u64) -> io::Result<()> {
+        match fallocate(&*self, FallocateFlags::KEEP_SIZE, at, until - at) {
+            // A file system that cannot reserve: a write shows whether there is space.
+            Err(Errno::OPNOTSUPP | Errno::NOSYS | Errno::INVAL) => Ok(()),
+            result => Ok(result?),
+        }
+    }
 }
 
 /// The end of a file that is being written.
@@ -37,12 +52,18 @@ pub(crate) struct Tail<S> {
     storage: S,
     position: Position,
     waiting: Batch,
+    /// Offset up to which the file system has given space.
+    reserved: u64,
     poisoned: bool,
 }
 
 impl<S: Storage> Tail<S> {
     pub(crate) fn new(storage: S, position: Position) -> Self {
-        Self { storage, position, waiting: Batch::default(), poisoned: false }
+        let waiting = Batch::default();
+        let mut tail = Self { storage, position, waiting, reserved: 0, poisoned: false };
+        // On a full disk what is there can be read all the same, and the next sync says what is short.
+        let _ = tail.reserve(position.end);
+        tail
     }
 
     /// The end of a file that was there before, cut to `position`. A killed writer may have written
@@ -59,8 +80,13 @@ impl<S: Storage> Tail<S> {
         self.position
     }
 
-    pub(crate) fn append<R: Serialize>(&mut self, record: &R) -> Result<(), AppendError> {
-        self.waiting.push(record)
+    /// Queues all records or none.
+    pub(crate) fn append_all<R: Serialize>(&mut self, records: &[R]) -> Result<(), AppendError> {
+        let before = (self.waiting.count, self.waiting.records.len());
+        records.iter().try_for_each(|record| self.waiting.push(record)).inspect_err(|_| {
+            self.waiting.count = before.0;
+            self.waiting.records.truncate(before.1);
+        })
     }
 
     /// Rejects further records: the content of the disk is unknown.
@@ -71,7 +97,9 @@ impl<S: Storage> Tail<S> {
     /// One write, one sync. On a failed write the file is cut back to what it was; on a failed sync
     /// it is cut back too, because a second sync would report success for pages that the first one
     /// already gave up, and then no more records are accepted.
-    pub(crate) fn sync(&mut self) -> Result<(), SyncError> {
+    ///
+    /// Without `vital`, nothing is written unless the reserve stays whole.
+    pub(crate) fn sync(&mut self, vital: bool) -> Result<(), SyncError> {
         if self.poisoned {
             return Err(SyncError::Poisoned);
         }
@@ -80,6 +108,12 @@ impl<S: Storage> Tail<S> {
         }
         let Position { end, next_seq, prev_crc } = self.position;
         let (bytes, crc) = frame::seal(next_seq, prev_crc, &self.waiting.body());
+        let after = end + bytes.len() as u64;
+        if let Err(error) = self.reserve(after)
+            && !(vital && after <= self.reserved)
+        {
+            return Err(SyncError::of_write(error));
+        }
         if let Err(error) = self.storage.write_at(&bytes, end) {
             return Err(self.cut_back(end, SyncError::of_write(error)));
         }
@@ -87,16 +121,26 @@ impl<S: Storage> Tail<S> {
             self.poisoned = true;
             return Err(self.cut_back(end, SyncError::Unknown(error)));
         }
-        self.position = Position {
-            end: end + bytes.len() as u64,
-            next_seq: next_seq + self.waiting.count as u64,
-            prev_crc: crc,
-        };
+        self.position =
+            Position { end: after, next_seq: next_seq + self.waiting.count as u64, prev_crc: crc };
         self.waiting = Batch::default();
         Ok(())
     }
 
+    /// Keeps [`RESERVE_BYTES`] of space after `end`.
+    fn reserve(&mut self, end: u64) -> io::Result<()> {
+        if end + RESERVE_BYTES > self.reserved {
+            // In larger steps than frames, which need not ask every time.
+            let until = end + 2 * RESERVE_BYTES;
+            self.storage.reserve(self.position.end, until)?;
+            self.reserved = until;
+        }
+        Ok(())
+    }
+
     fn cut_back(&mut self, end: u64, error: SyncError) -> SyncError {
+        // A file that is cut gives up the space after its end.
+        self.reserved = 0;
         match self.storage.truncate(end) {
             Ok(()) => error,
             Err(truncate) => {

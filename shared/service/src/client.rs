@@ -1,20 +1,18 @@
-//! A client of a running group: submits utterances and motion orders and reads its topics.
+//! A client of a running group: submits utterances and reads its topics. Orders to the motion stop have
+//! a path of their own, [`crate::stop_socket`].
 //!
 //! Clients poll; they are few, short-lived, and must not cost the services anything.
 
-use crate::bus::{Bus, BusError, EncodedWriter, Identity, PortError, Reader, Writer};
+use crate::bus::{Bus, BusError, EncodedWriter, Identity, PortError, Reader};
 use crate::clock;
 use crate::group::GroupPaths;
 use crate::lifecycle::Environment;
+use crate::storage;
 use crate::submission::Submission;
 use crate::{Span, Time};
-use messages::{
-    ArmStatus, Epoch, Injection, MotionCommand, MotionOrder, Receipt, RequestKey, Sound, topics,
-};
+use messages::{Epoch, Injection, Receipt, RequestKey, Sound, topics};
 use std::time::Duration;
 
-/// Time between two transmissions of an unconfirmed motion order.
-const RESEND_EVERY: Span = Span::from_ms(250);
 /// Polling interval of the topics.
 const POLL_EVERY: Duration = Duration::from_millis(2);
 
@@ -33,6 +31,9 @@ pub enum ClientError {
     /// Its shared memory cannot be opened.
     #[error(transparent)]
     Bus(#[from] BusError),
+    /// The group's disk is full.
+    #[error("no access to the group, so nothing was accepted: {0}")]
+    Full(String),
     /// A topic failed.
     #[error(transparent)]
     Port(#[from] PortError),
@@ -58,8 +59,12 @@ impl Client {
         }
         let epoch = std::fs::read_to_string(paths.epoch_file()).map_err(|_| none())?;
         let epoch = Epoch(epoch.trim().parse().map_err(|_| none())?);
-        let bus = Bus::open(paths, "client", Identity { epoch, ..Identity::default() })?;
-        Ok(Self { bus })
+        let bus = Bus::open(paths, "client", Identity { epoch, ..Identity::default() });
+        // A new process makes files in the group's folder.
+        bus.map(|bus| Self { bus }).map_err(|error| match storage::shortage(&paths.ipc()) {
+            Some(shortage) => ClientError::Full(shortage),
+            None => error.into(),
+        })
     }
 
     /// Joins the group as one of its services that writes no topic of its own: the console.
@@ -99,36 +104,6 @@ impl Client {
         let receipts = self.bus.reader::<Receipt>(&topics::RECEIPT)?;
         let writer = self.bus.encoded_writer::<Injection>(&topics::INJECTION)?;
         deliver(&writer, &receipts, sound, said, patience)
-    }
-
-    /// Latches or releases the motion stop and waits for the arm's confirmation.
-    ///
-    /// # Errors
-    /// No answer within `patience`.
-    pub fn motion(&self, order: MotionOrder, patience: Span) -> Result<(), ClientError> {
-        let statuses = self.bus.reader::<ArmStatus>(&topics::STATUS)?;
-        let writer: Writer<MotionCommand> = self.bus.writer(&topics::MOTION)?;
-        let started = clock::now();
-        let command = MotionCommand {
-            given_ns: started.ns(),
-            order: order.code(),
-            ..MotionCommand::default()
-        };
-        let wanted = u8::from(order == MotionOrder::Stop);
-        let mut sent: Option<Time> = None;
-        // A status from before the command is not an answer to it.
-        statuses.latest()?;
-        while clock::now() < started + patience {
-            if sent.is_none_or(|at| clock::now() >= at + RESEND_EVERY) {
-                writer.send(&command)?;
-                sent = Some(clock::now());
-            }
-            if statuses.latest()?.is_some_and(|status| status.stopped == wanted) {
-                return Ok(());
-            }
-            std::thread::sleep(POLL_EVERY);
-        }
-        Err(ClientError::Timeout { what: "arm", seconds: patience.s() })
     }
 }
 

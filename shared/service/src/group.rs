@@ -205,6 +205,11 @@ impl GroupPaths {
         self.run().join("control.sock")
     }
 
+    /// The arm's socket for orders to the motion stop.
+    pub fn stop_socket(&self) -> PathBuf {
+        self.run().join("stop.sock")
+    }
+
     /// The address of the console, while it serves one.
     pub fn console_url(&self) -> PathBuf {
         self.run().join("console.url")

@@ -84,6 +84,8 @@ pub struct Lifecycle {
     _alive: File,
     beat_every: Span,
     last_beat: Option<Time>,
+    /// What the last beat said to be short.
+    shortage: String,
     notifier: Notifier,
 }
 
@@ -114,7 +116,15 @@ impl Lifecycle {
             sd_notify::watchdog_enabled().map(|period| Span::from_s(period.as_secs_f64()));
         let beat_every = watchdog.map_or(BEAT_MAX, |period| Span(period.0 / 3).min(BEAT_MAX));
         let notifier = Notifier::from_environment().map_err(failed("notification socket"))?;
-        Ok(Self { signals, lifeline, _alive: alive, beat_every, last_beat: None, notifier })
+        Ok(Self {
+            signals,
+            lifeline,
+            _alive: alive,
+            beat_every,
+            last_beat: None,
+            shortage: String::new(),
+            notifier,
+        })
     }
 
     /// Descriptors to be polled: signals, and the lifeline where there is one.
@@ -153,15 +163,19 @@ impl Lifecycle {
         self.notifier.say("STOPPING=1");
     }
 
-    /// Sends a heartbeat if one is due. Called only by the main loop after a full pass, so that a
-    /// heartbeat proves progress.
-    pub fn beat(&mut self, now: Time, pending_since: Option<Time>) {
-        if self.last_beat.is_some_and(|last| now < last + self.beat_every) {
+    /// Sends a heartbeat if one is due, or if what the service is short of has changed. Called only by
+    /// the main loop after a full pass, so that a heartbeat proves progress.
+    pub fn beat(&mut self, now: Time, pending_since: Option<Time>, shortage: Option<&str>) {
+        let shortage = shortage.unwrap_or_default();
+        let has_changed = self.shortage.is_empty() != shortage.is_empty();
+        if !has_changed && self.last_beat.is_some_and(|last| now < last + self.beat_every) {
             return;
         }
         self.last_beat = Some(now);
+        self.shortage = shortage.replace('\n', " ");
         let age_ms = pending_since.map_or(0, |since| now.since(since).0 / 1_000_000);
-        self.notifier.beat(&format!("WATCHDOG=1\nX_INPUT_AGE_MS={age_ms}"));
+        let shortage = &self.shortage;
+        self.notifier.beat(&format!("WATCHDOG=1\nX_INPUT_AGE_MS={age_ms}\nX_SHORTAGE={shortage}"));
     }
 
     /// Time of the next heartbeat.
@@ -186,6 +200,12 @@ pub trait Cycle {
 
     /// Returns the health of the service: without heartbeats the supervisor restarts it.
     fn health(&mut self, now: Time) -> Health;
+
+    /// Returns what the service waits for to go on, e.g. space on a disk: it is healthy, and a restart
+    /// would not help.
+    fn shortage(&self) -> Option<&str> {
+        None
+    }
 }
 
 /// Health of a service.
@@ -217,7 +237,7 @@ pub fn drive(mut lifecycle: Lifecycle, cycle: &mut impl Cycle) -> Result<(), Fai
         let flow = cycle.pass()?;
         let now = clock::now();
         if let Health::Working(pending_since) = cycle.health(now) {
-            lifecycle.beat(now, pending_since);
+            lifecycle.beat(now, pending_since, cycle.shortage());
         }
         if flow.is_break() {
             tracing::info!("shut down on request");

@@ -3,7 +3,8 @@
 //! A node does no IO, reads no clock and starts no threads; it states its outputs and records
 //! as [`Effects`], and the runtime carries them out in one fixed order: append all records, sync
 //! once, and only then publish. So a node can be killed at any point, and a simulation can run all
-//! of them in one thread.
+//! of them in one thread. Urgent outputs alone do not wait for records: a node that has some may
+//! handle further events before the records of an earlier one are durable.
 
 use crate::Time;
 
@@ -29,7 +30,7 @@ pub trait Node: Sized {
     /// Messages that it publishes, and requests to its devices.
     type Out;
     /// Records of its journal. A stateless node uses [`Never`].
-    type Record;
+    type Record: Send + 'static;
 
     /// Restores the node from its journal; empty at the first start. There is no other way
     /// to make one, so that first start and restart share one path.
@@ -40,6 +41,9 @@ pub trait Node: Sized {
 
     /// Handles one event. Must be deterministic in `(self, event, now)`.
     fn on(&mut self, event: Event<Self::In>, now: Time, fx: &mut Effects<Self::Out, Self::Record>);
+
+    /// Learns that every record stated so far is durable.
+    fn on_durable(&mut self) {}
 
     /// Returns the time of the next [`Event::Tick`].
     fn deadline(&self) -> Option<Time>;
@@ -60,13 +64,16 @@ pub trait Node: Sized {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Effects<Out, Record> {
     records: Vec<Record>,
+    vital: bool,
+    urgent: Vec<Out>,
     outputs: Vec<Out>,
     exit: bool,
 }
 
 impl<Out, Record> Default for Effects<Out, Record> {
     fn default() -> Self {
-        Self { records: Vec::new(), outputs: Vec::new(), exit: false }
+        let (urgent, outputs) = (Vec::new(), Vec::new());
+        Self { records: Vec::new(), vital: false, urgent, outputs, exit: false }
     }
 }
 
@@ -76,9 +83,21 @@ impl<Out, Record> Effects<Out, Record> {
         self.records.push(record);
     }
 
+    /// As [`Effects::append`], for a record that protects people: on a full disk it takes the space
+    /// that the journal keeps in reserve.
+    pub fn append_vital(&mut self, record: Record) {
+        self.vital = true;
+        self.append(record);
+    }
+
     /// Publishes `output` once every record of this batch is durable.
     pub fn publish(&mut self, output: Out) {
         self.outputs.push(output);
+    }
+
+    /// Publishes `output` at once: it depends on no record that is not durable yet.
+    pub fn publish_urgent(&mut self, output: Out) {
+        self.urgent.push(output);
     }
 
     /// Ends the service after this batch.
@@ -96,9 +115,21 @@ impl<Out, Record> Effects<Out, Record> {
         std::mem::take(&mut self.records)
     }
 
-    /// Takes the outputs, leaving none.
+    /// Returns whether one of the records since the last call is vital.
+    pub fn take_vital(&mut self) -> bool {
+        std::mem::take(&mut self.vital)
+    }
+
+    /// Takes the outputs that wait for no record, leaving none.
+    pub fn take_urgent(&mut self) -> Vec<Out> {
+        std::mem::take(&mut self.urgent)
+    }
+
+    /// Takes the outputs, urgent ones first, leaving none.
     pub fn take_outputs(&mut self) -> Vec<Out> {
-        std::mem::take(&mut self.outputs)
+        let mut outputs = self.take_urgent();
+        outputs.append(&mut self.outputs);
+        outputs
     }
 }
 

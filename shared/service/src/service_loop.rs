@@ -1,11 +1,13 @@
 //! The main loop of every service, the same for first start and restart:
 //! recover → open topics → ready → (wait, drain everything, decide, commit, beat)*.
 //!
-//! Durability comes before visibility: all records of a pass are appended and synced once, and only
-//! then are its outputs published.
+//! Durability comes before visibility: the records of a pass are durable before its outputs are
+//! published ([`crate::commit`]). The loop does not wait for the disk: meanwhile it publishes urgent
+//! outputs and takes in further passes, as far as their number is bounded.
 
 use crate::bus::{Bus, Identity, PortError, WakeListener};
 use crate::clock;
+use crate::commit::Commit;
 use crate::exit::{Exit, Failure};
 use crate::inspection::{self, Finding, Part};
 use crate::lifecycle::{Cycle, Environment, Health, Lifecycle, drive};
@@ -25,8 +27,8 @@ use std::process::ExitCode;
 const PASS_EVENTS_MAX: usize = 256;
 /// Maximum sleep: inputs are polled this often even if a wake-up was lost.
 const LOOK_EVERY: Span = Span::from_ms(500);
-/// Size at which journals are compacted, if the node offers a snapshot.
-const JOURNAL_BYTES: u64 = 1 << 20;
+/// Time that a topic may fail without a break before the service gives up: a restart may help then.
+const PORT_PATIENCE: Span = Span::from_ms(10_000);
 /// Timeout for the previous incarnation to release its journal.
 const LOCK_PATIENCE: Span = Span::from_ms(3_000);
 
@@ -81,7 +83,21 @@ pub trait Shell<N: Node>: Sized {
     /// A topic of another schema, or a device that is needed and missing.
     fn open(context: &Context<'_, N::In>) -> Result<Self, Failure>;
 
-    /// Hands every waiting message to `take`.
+    /// Hands every waiting urgent message to `take`: inputs that come before all others, and are taken
+    /// even while the service waits for storage.
+    ///
+    /// # Errors
+    /// A topic cannot be read.
+    fn drain_urgent(&mut self, _take: &mut dyn FnMut(N::In)) -> Result<(), PortError> {
+        Ok(())
+    }
+
+    /// Returns the descriptor that is readable while an urgent message waits, beside the topics.
+    fn urgent_fd(&self) -> Option<BorrowedFd<'_>> {
+        None
+    }
+
+    /// Hands every other waiting message to `take`.
     ///
     /// # Errors
     /// A topic cannot be read.
@@ -155,18 +171,38 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
     let config = P::config(&environment, &settings)?;
     let (journal, records) = open_journal::<P>(&environment)?;
     let node = P::Node::recover(config, records)?;
+    let failed = |e: std::io::Error| Failure::new(Exit::NotReached, e.to_string());
+    let commit = Commit::start(journal, environment.paths.journal()).map_err(failed)?;
     let identity = Identity { epoch: environment.epoch, incarnation: environment.incarnation };
-    let bus = Bus::open(&environment.paths, P::SERVICE.name(), identity)?;
-    let wake_listener = bus.wake_listener(P::SERVICE)?;
-    let (devices, inbox) =
-        worker_channel::channel().map_err(|e| Failure::new(Exit::NotReached, e.to_string()))?;
-    let context = Context { bus: &bus, settings: &settings, devices, environment: &environment };
-    let shell = P::Shell::open(&context)?;
-    let mut service =
-        Loop::<P> { node, shell, journal, inbox, wake_listener, effects: Effects::default() };
+    let (devices, inbox) = worker_channel::channel().map_err(failed)?;
+    let (bus, shell, wake_listener) = open_topics::<P>(&environment, identity, &settings, devices)
+        .map_err(|failure| failure.or_shortage(&environment.paths.ipc()))?;
+    let mut service = Loop::<P> {
+        node,
+        shell,
+        commit,
+        inbox,
+        wake_listener,
+        effects: Effects::default(),
+        port_error: None,
+        port_failure: None,
+        _bus: bus,
+    };
     service.node.on(Event::Started, clock::now(), &mut service.effects);
     service.commit()?;
     drive(lifecycle, &mut service)
+}
+
+fn open_topics<P: Program>(
+    environment: &Environment,
+    identity: Identity,
+    settings: &Settings,
+    devices: DeviceSender<In<P>>,
+) -> Result<(Bus, P::Shell, WakeListener), Failure> {
+    let bus = Bus::open(&environment.paths, P::SERVICE.name(), identity)?;
+    let wake_listener = bus.wake_listener(P::SERVICE)?;
+    let shell = P::Shell::open(&Context { bus: &bus, settings, devices, environment })?;
+    Ok((bus, shell, wake_listener))
 }
 
 /// Journal record of a program's node.
@@ -211,17 +247,24 @@ fn open_journal<P: Program>(environment: &Environment) -> Result<Recovered<P>, F
 struct Loop<P: Program> {
     node: P::Node,
     shell: P::Shell,
-    journal: Option<Journal<Record<P>>>,
+    commit: Commit<Out<P>, Record<P>>,
     inbox: DeviceReceiver<In<P>>,
     wake_listener: WakeListener,
     effects: Effects<Out<P>, Record<P>>,
+    /// Failure of a topic in this pass.
+    port_error: Option<PortError>,
+    /// Failure of a topic in the last pass, and since when passes have had one.
+    port_failure: Option<(String, Time)>,
+    _bus: Bus,
 }
 
 impl<P: Program> Cycle for Loop<P> {
     fn wake(&self, now: Time) -> (Vec<BorrowedFd<'_>>, Time) {
         let latest = now + LOOK_EVERY;
-        let until = self.node.deadline().map_or(latest, |deadline| deadline.min(latest));
-        (vec![self.wake_listener.fd(), self.inbox.fd()], until)
+        let deadline = self.node.deadline().filter(|_| self.takes_ticks());
+        let until = deadline.map_or(latest, |deadline| deadline.min(latest));
+        let fds = [self.commit.fd(), self.wake_listener.fd(), self.inbox.fd()];
+        (self.shell.urgent_fd().into_iter().chain(fds).collect(), until)
     }
 
     fn shut_down(&mut self) {
@@ -229,64 +272,104 @@ impl<P: Program> Cycle for Loop<P> {
     }
 
     fn pass(&mut self) -> Result<ControlFlow<()>, Failure> {
-        self.take_in()?;
+        self.port_error = self.take_in().err();
         self.commit()?;
-        Ok(if self.effects.exits() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+        self.judge_ports()?;
+        // What waits for a full disk was never acknowledged, and is given up as by a kill.
+        let is_done = self.commit.is_settled() || self.commit.shortage().is_some();
+        let ends = self.effects.exits() && is_done;
+        Ok(if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
 
     fn health(&mut self, _now: Time) -> Health {
         Health::Working(self.node.pending_since())
     }
+
+    fn shortage(&self) -> Option<&str> {
+        let port_failure = self.port_failure.as_ref().map(|(what, _)| what.as_str());
+        self.commit.shortage().or(port_failure)
+    }
 }
 
 impl<P: Program> Loop<P> {
+    /// Returns whether new inputs are taken, beside urgent ones.
+    fn takes_inputs(&self) -> bool {
+        !self.commit.is_behind() && !self.effects.exits()
+    }
+
+    /// Returns whether time passes for the node. What moves is brought to rest whatever waits.
+    fn takes_ticks(&self) -> bool {
+        let is_urgent = self.shell.urgent_fd().is_some();
+        (is_urgent || !self.commit.is_behind()) && !self.effects.exits()
+    }
+
     /// Feeds everything that waits to the node.
-    fn take_in(&mut self) -> Result<(), Failure> {
+    fn take_in(&mut self) -> Result<(), PortError> {
         self.wake_listener.clear();
         self.inbox.clear();
         let mut arrived = Vec::new();
-        self.shell.drain(&mut |message| arrived.push(message))?;
-        while arrived.len() < PASS_EVENTS_MAX
-            && let Some(message) = self.inbox.take()
-        {
-            arrived.push(message);
+        let mut result = self.shell.drain_urgent(&mut |message| arrived.push(message));
+        if self.takes_inputs() {
+            let ordinary = self.shell.drain(&mut |message| arrived.push(message));
+            result = result.and(ordinary);
+            while arrived.len() < PASS_EVENTS_MAX
+                && let Some(message) = self.inbox.take()
+            {
+                arrived.push(message);
+            }
         }
         for message in arrived {
             self.node.on(Event::Message(message), clock::now(), &mut self.effects);
         }
-        if self.node.deadline().is_some_and(|deadline| deadline <= clock::now()) {
+        if self.takes_ticks() && self.node.deadline().is_some_and(|due| due <= clock::now()) {
             self.node.on(Event::Tick, clock::now(), &mut self.effects);
         }
+        result
+    }
+
+    /// Publishes what waits for no record, hands over the records of the pass, and publishes what is
+    /// backed by durable ones. Never the other way round.
+    fn commit(&mut self) -> Result<(), Failure> {
+        let urgent = self.effects.take_urgent();
+        self.publish(urgent);
+        let settled = self.commit.settle()?;
+        self.publish(settled);
+        let now_durable = self.commit.state(&mut self.effects)?;
+        self.publish(now_durable);
+        if self.commit.is_settled() {
+            self.node.on_durable();
+        }
+        if self.commit.wants_snapshot()
+            && let Some(snapshot) = self.node.snapshot()
+        {
+            self.commit.rotate(snapshot)?;
+        }
         Ok(())
     }
 
-    /// Makes the pass durable, then visible. Never the other way round.
-    fn commit(&mut self) -> Result<(), Failure> {
-        let records = self.effects.take_records();
-        if let Some(journal) = &mut self.journal
-            && !records.is_empty()
-        {
-            let storage = |e: String| Failure::new(Exit::Storage, e);
-            for record in &records {
-                journal.append(record).map_err(|e| storage(e.to_string()))?;
-            }
-            journal.sync().map_err(|e| storage(e.to_string()))?;
+    /// A topic that cannot be written loses a message, as one does whose reader is slow.
+    fn publish(&mut self, outputs: Vec<Out<P>>) {
+        for output in outputs {
+            let failure = self.shell.publish(output).err();
+            self.port_error = self.port_error.take().or(failure);
         }
-        for output in self.effects.take_outputs() {
-            self.shell.publish(output)?;
-        }
-        self.shorten()
     }
 
-    /// Cuts a long journal short where nothing is in progress.
-    fn shorten(&mut self) -> Result<(), Failure> {
-        let Some(journal) = &mut self.journal else { return Ok(()) };
-        if journal.bytes() < JOURNAL_BYTES {
+    /// Bears with a failing topic for a while: shared memory or descriptors may be short, and what
+    /// moves has to be stopped all the same.
+    fn judge_ports(&mut self) -> Result<(), Failure> {
+        let Some(error) = self.port_error.take() else {
+            self.port_failure = None;
+            return Ok(());
+        };
+        let now = clock::now();
+        let (what, since) = self.port_failure.get_or_insert_with(|| {
+            tracing::error!(%error, "a topic fails; trying again");
+            (error.to_string(), now)
+        });
+        if now.since(*since) < PORT_PATIENCE {
             return Ok(());
         }
-        let Some(snapshot) = self.node.snapshot() else { return Ok(()) };
-        journal.rotate(&snapshot).map_err(|e| Failure::new(Exit::Storage, e.to_string()))?;
-        tracing::info!(records = snapshot.len(), "journal rotated with a snapshot");
-        Ok(())
+        Err(Failure::new(Exit::NotReached, std::mem::take(what)))
     }
 }

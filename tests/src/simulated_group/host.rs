@@ -92,8 +92,8 @@ where
         self.pass(events, now, crash)
     }
 
-    /// One pass of the main loop: the events, then the sync, then the outputs, in the order of the
-    /// real driver. Returns the outputs that became visible.
+    /// One pass of the main loop: the events and their urgent outputs, then the sync, then the other
+    /// outputs, in the order of the real driver. Returns the outputs that became visible.
     pub fn pass(
         &mut self,
         events: Vec<Event<N::In>>,
@@ -105,9 +105,10 @@ where
         events.into_iter().for_each(|event| node.on(event, now, &mut effects));
         if crash == Some(Crash::BeforeSync) {
             self.node = None;
-            return Vec::new();
+            return effects.take_urgent();
         }
         self.journal.extend(effects.take_records());
+        node.on_durable();
         let mut outputs = effects.take_outputs();
         if let Some(Crash::AfterOutputs(count)) = crash {
             self.node = None;

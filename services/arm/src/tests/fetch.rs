@@ -71,6 +71,8 @@ fn grasped_object_moves_with_the_gripper() {
     let mut machine = Machine::picking(config_at(5.0), 4, PickPhase::Holding);
     let placed = machine.worlds.last().unwrap().objects[4].unwrap();
     machine.reaches(PickPhase::Done);
+    // What is durable is seen with the next pass.
+    machine.go(None);
     let held = machine.worlds.iter().filter(|world| world.held == Some(4));
     let poses: Vec<[f64; 7]> = held.map(|world| world.objects[4].unwrap()).collect();
     let place = machine.config.scene.object(ObjectId(4)).placement.unwrap();
@@ -103,6 +105,7 @@ fn remaining_seconds_count_down() {
     let took = machine.now.since(at).s();
     // The status is up to 250 ms old, and every phase may wait for one more pass.
     assert!((promised - took).abs() < 0.3, "promised {promised} s, took {took} s");
+    machine.go(None);
     assert_eq!(machine.status().remaining_s, 0.0);
 }
 

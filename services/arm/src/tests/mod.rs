@@ -1,6 +1,7 @@
 //! The arm in a simulated process on a robot that outlives it.
 
 mod fetch;
+mod full_disk;
 mod grasp;
 mod kills;
 mod orders;
@@ -24,6 +25,7 @@ use messages::{
 use preflight::ArmSetup;
 use robot::Robot;
 use scene::{ObjectId, Question};
+use service::stop_socket::{Caller, StopState};
 use service::{Effects, Event, Node, Span, Time};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -112,6 +114,9 @@ struct Machine {
     statuses: Vec<ArmStatus>,
     worlds: Vec<WorldView>,
     trajectories: Vec<TrajectoryView>,
+    stop_states: Vec<StopState>,
+    /// Records and outputs that wait for a disk that is slow or full, from its first pass on.
+    waiting_for_disk: Option<(Vec<Record>, Vec<Out>)>,
 }
 
 impl Machine {
@@ -133,6 +138,8 @@ impl Machine {
             statuses: Vec::new(),
             worlds: Vec::new(),
             trajectories: Vec::new(),
+            stop_states: Vec::new(),
+            waiting_for_disk: None,
         };
         machine.pass(vec![Event::Started], None);
         machine
@@ -140,6 +147,7 @@ impl Machine {
 
     /// The process starts again, on the robot as it stands now.
     fn restart(&mut self) {
+        self.waiting_for_disk = None;
         self.robot.stand_still();
         let state = recover::state(&self.config, self.journal.clone()).unwrap();
         let driver = Box::new(self.robot.clone());
@@ -155,6 +163,24 @@ impl Machine {
         self.restart();
     }
 
+    /// From here on nothing becomes durable, until the disk is back.
+    fn disk_fails(&mut self) {
+        self.waiting_for_disk.get_or_insert_default();
+    }
+
+    /// What has waited becomes durable, and then visible.
+    fn disk_is_back(&mut self) {
+        let Some((records, outputs)) = self.waiting_for_disk.take() else { return };
+        self.becomes_durable(records);
+        self.publish(outputs);
+    }
+
+    fn becomes_durable(&mut self, records: Vec<Record>) {
+        self.journal.extend(records);
+        self.robot.set_durable(self.journal.last().and_then(|record| record.state.pick));
+        self.node.on_durable();
+    }
+
     /// One pass of the main loop, in the order of the runtime.
     fn pass(&mut self, events: Vec<Event<In>>, death: Option<Death>) {
         let mut effects = Effects::default();
@@ -165,20 +191,30 @@ impl Machine {
             self.node.on(Event::Tick, self.now, &mut effects);
         }
         self.exited |= effects.exits();
+        self.publish(effects.take_urgent());
         if death == Some(Death::Unsynced) {
             return;
         }
-        self.journal.extend(effects.take_records());
-        self.robot.set_durable(self.journal.last().and_then(|record| record.state.pick));
-        if death == Some(Death::Unseen) {
+        let (records, outputs) = (effects.take_records(), effects.take_outputs());
+        if let Some((all_records, all_outputs)) = &mut self.waiting_for_disk {
+            all_records.extend(records);
+            all_outputs.extend(outputs);
             return;
         }
-        for output in effects.take_outputs() {
+        self.becomes_durable(records);
+        if death != Some(Death::Unseen) {
+            self.publish(outputs);
+        }
+    }
+
+    fn publish(&mut self, outputs: Vec<Out>) {
+        for output in outputs {
             match output {
                 Out::Status(status) => self.statuses.push(status),
                 Out::Joints(joints) => self.joints.push(*joints),
                 Out::World(world) => self.worlds.push(*world),
                 Out::Trajectory(view) => self.trajectories.push(*view),
+                Out::StopState(_, state) => self.stop_states.push(state),
                 Out::Robot(order) => panic!("a model gets no orders: {order:?}"),
             }
         }

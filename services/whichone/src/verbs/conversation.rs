@@ -16,6 +16,7 @@ use service::client::Client;
 use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
+use service::stop_socket;
 use service::submission::Submission;
 use service::view::{Latest, LatestTopics, quiet};
 use service::{Span, Time};
@@ -125,7 +126,8 @@ impl Conversation {
 
     /// Latches or releases the motion stop.
     pub(super) fn motion(&self, order: messages::MotionOrder) -> Result<(), Failure> {
-        Ok(self.client.motion(order, Span::from_ms(5_000))?)
+        let patience = Span::from_ms(5_000);
+        Ok(stop_socket::give(&self.paths, order, patience, &mut |_| {}).map(drop)?)
     }
 
     /// Processes all messages since the last poll. Returns the receipts among them,

@@ -1,6 +1,8 @@
 //! A disk that fails: nothing half written stays, nothing unacknowledged is believed.
 
+use std::cell::Cell;
 use std::io::{self, ErrorKind};
+use std::rc::Rc;
 
 use super::{Entry, entry, header};
 use crate::SyncError;
@@ -16,6 +18,8 @@ struct Disk {
     write_fault: Option<(usize, ErrorKind)>,
     sync_fault: bool,
     truncate_fault: bool,
+    /// True if no more space is given.
+    full: Rc<Cell<bool>>,
     syncs: usize,
 }
 
@@ -39,6 +43,10 @@ impl Storage for &mut Disk {
     fn sync(&mut self) -> io::Result<()> {
         self.syncs += 1;
         if std::mem::take(&mut self.sync_fault) { Err(ErrorKind::Other.into()) } else { Ok(()) }
+    }
+
+    fn reserve(&mut self, _: u64, _: u64) -> io::Result<()> {
+        if self.full.get() { Err(ErrorKind::StorageFull.into()) } else { Ok(()) }
     }
 }
 
@@ -65,16 +73,16 @@ impl Disk {
 
 /// Appends and syncs one record.
 fn put(tail: &mut Tail<&mut Disk>, record: &Entry) -> Result<(), SyncError> {
-    tail.append(record).unwrap();
-    tail.sync()
+    tail.append_all(std::slice::from_ref(record)).unwrap();
+    tail.sync(false)
 }
 
 #[test]
 fn journal_sync_writes_once() {
     let mut disk = Disk::new();
     let mut tail = disk.tail();
-    (1..=9).for_each(|n| tail.append(&entry(n)).unwrap());
-    tail.sync().unwrap();
+    (1..=9).for_each(|n| tail.append_all(&[entry(n)]).unwrap());
+    tail.sync(false).unwrap();
     assert_eq!(disk.syncs, 1);
     assert_eq!(disk.records(), (1..=9).map(entry).collect::<Vec<_>>());
 }
@@ -87,8 +95,8 @@ fn journal_on_a_full_disk_stays_valid_and_keeps_its_records() {
         disk.write_fault = Some((written, ErrorKind::StorageFull));
         let mut tail = disk.tail();
         assert!(matches!(put(&mut tail, &entry(2)), Err(SyncError::Full(_))));
-        tail.append(&entry(3)).unwrap();
-        tail.sync().unwrap();
+        tail.append_all(&[entry(3)]).unwrap();
+        tail.sync(false).unwrap();
         assert_eq!(disk.records(), [entry(1), entry(2), entry(3)], "after {written} bytes");
     }
 }
@@ -109,7 +117,7 @@ fn journal_is_poisoned_after_a_failed_sync() {
     disk.sync_fault = true;
     let mut tail = disk.tail();
     assert!(matches!(put(&mut tail, &entry(2)), Err(SyncError::Unknown(_))));
-    assert!(matches!(tail.sync(), Err(SyncError::Poisoned)));
+    assert!(matches!(tail.sync(false), Err(SyncError::Poisoned)));
     assert!(matches!(put(&mut tail, &entry(3)), Err(SyncError::Poisoned)));
     assert_eq!(disk.records(), [entry(1)], "the record was not acknowledged");
 }
@@ -122,7 +130,7 @@ fn journal_is_poisoned_by_a_partial_write_that_cannot_be_truncated() {
     disk.truncate_fault = true;
     let mut tail = disk.tail();
     assert!(matches!(put(&mut tail, &entry(2)), Err(SyncError::Unknown(_))));
-    assert!(matches!(tail.sync(), Err(SyncError::Poisoned)));
+    assert!(matches!(tail.sync(false), Err(SyncError::Poisoned)));
     let Scan { records, ending, position: Position { end, .. } } = disk.scan();
     assert_eq!(records, [entry(1)]);
     assert_eq!(ending, Ending::Torn { at: end, bytes: 30 });
@@ -147,4 +155,40 @@ fn journal_syncs_found_records_before_returning_them() {
         "once for what was found, once for the record"
     );
     assert_eq!(disk.records(), [entry(1), entry(2)]);
+}
+
+#[test]
+fn reserve_is_kept_for_vital_records() {
+    let mut disk = Disk::new();
+    let is_full = Rc::clone(&disk.full);
+    let mut tail = disk.tail();
+    is_full.set(true);
+    let mut count = 0;
+    let full = loop {
+        count += 1;
+        tail.append_all(&[entry(count)]).unwrap();
+        if let Err(error) = tail.sync(false) {
+            break error;
+        }
+    };
+    assert!(matches!(full, SyncError::Full(_)), "{full}");
+    // The record that waits becomes durable with the vital one after it.
+    tail.append_all(&[entry(count + 1)]).unwrap();
+    tail.sync(true).unwrap();
+    tail.append_all(&[entry(count + 2)]).unwrap();
+    assert!(matches!(tail.sync(false), Err(SyncError::Full(_))));
+    drop(tail);
+    assert_eq!(disk.records(), (1..=count + 1).map(entry).collect::<Vec<_>>());
+}
+
+#[test]
+fn records_of_one_pass_are_queued_as_a_whole_or_not_at_all() {
+    let mut disk = Disk::new();
+    let mut tail = disk.tail();
+    let huge = Entry { text: "x".repeat(crate::BODY_BYTES_MAX), ..entry(2) };
+    assert!(tail.append_all(&[entry(1), huge]).is_err());
+    tail.append_all(&[entry(1)]).unwrap();
+    tail.sync(false).unwrap();
+    drop(tail);
+    assert_eq!(disk.records(), [entry(1)]);
 }
