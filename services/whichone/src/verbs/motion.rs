@@ -2,13 +2,14 @@
 
 use std::time::Duration;
 
-use messages::{MotionInhibit, MotionOrder};
+use messages::{MotionInhibit, MotionOrder, Service};
 use serde::Serialize;
 use service::Span;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
-use service::stop_socket::{self, StopState};
+use service::stop_socket::{self, StopError, StopState};
 
+use super::availability;
 use crate::Outcome;
 use crate::output::{Output, note};
 
@@ -30,7 +31,8 @@ pub(super) fn motion(
     let patience = Span::from_s(timeout.as_secs_f64());
     let state = stop_socket::give(paths, order, patience, &mut |trouble| {
         note(&format!("{trouble}; trying again"));
-    })?;
+    });
+    let state = state.map_err(|error| with_reason(error, paths))?;
     if order == MotionOrder::Stop {
         believe(&state)?;
     }
@@ -49,6 +51,16 @@ pub(super) fn motion(
         );
     }
     Ok(Exit::Ok)
+}
+
+/// Adds why the arm's service does not run, where the supervisor says so at once.
+fn with_reason(error: StopError, paths: &GroupPaths) -> Failure {
+    let reason = match error {
+        StopError::Absent => availability::unavailable(paths, &[Service::Arm], |_| true),
+        _ => None,
+    };
+    let reason = reason.map_or(String::new(), |reason| format!(" ({reason})"));
+    Failure::new(Exit::NotReached, format!("{error}{reason}"))
 }
 
 /// Refuses to call an arm stopped whose robot is not heard.
