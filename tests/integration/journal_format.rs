@@ -26,7 +26,7 @@ fn journal_of_format_1_stops_the_start_until_a_fresh_start_keeps_it_aside() {
 
     let rejected = group.start(&[]);
     assert_ne!(rejected.code, Some(0), "{rejected:?}");
-    assert!(rejected.stderr.contains("expected journal format 2, found 1"), "{rejected:?}");
+    assert!(rejected.stderr.contains("expected journal format 3, found 1"), "{rejected:?}");
     assert!(
         rejected.stderr.contains("`whichone up --fresh`, which keeps the old file"),
         "{rejected:?}"

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use messages::pick::Pick;
 use messages::{PickId, PickOutcome, PickPhase};
 use service::exit::Failure;
-use service::inspection::{Part, at, count};
+use service::inspection::{Part, SharedFacts, at, count};
 
 use crate::state::Record;
 
@@ -22,6 +22,14 @@ pub(crate) fn line(record: &Record) -> String {
     });
     let stopped = if record.state.stopped { ", motion stopped" } else { "" };
     format!("{}  {:<12}  {pick}{stopped}", at(record.at), format!("{:?}", record.cause))
+}
+
+/// The picks taken on, with their objects.
+pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
+    let records = parts.iter().flat_map(|part| part.records());
+    let picks = records.filter_map(|record| record.state.pick);
+    let picks = picks.map(|pick| (pick.id.interaction.0, pick.id.attempt, pick.object.0));
+    SharedFacts { picks: picks.collect(), ..SharedFacts::default() }
 }
 
 /// Results of one interaction.

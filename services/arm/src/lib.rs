@@ -31,15 +31,17 @@ pub use driver::{
 
 use executor::Executor;
 use goal::PlanFailures;
+use messages::pick::Pick;
 use messages::{
-    ArmStatus, JointStates, MotionCommand, MotionInhibit, RobotAct, TrajectoryView, WorldView,
+    ArmStatus, JointStates, MotionCommand, MotionInhibit, MotionOrder, PickOutcome, PickPhase,
+    RobotAct, TrajectoryView, WorldView,
 };
 use orders::StandingAct;
 use preflight::ArmSetup;
 use publish::{Facts, Publisher};
 use scene::{ObjectId, Scene};
 use service::stop_socket::{Caller, StopState};
-use service::{Effects, Event, Node, NodeError, Span, Time};
+use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use state::{ArmState, Cause, Record};
 use trajectory_view::MotionView;
 use world::World;
@@ -137,6 +139,7 @@ impl Node for ArmNode {
 
     fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
         match event {
+            Event::SetAside(set_aside) => self.set_aside(set_aside, now, fx),
             Event::Started => self.begin(now, fx),
             Event::Message(In::Motion(command)) => self.on_motion_command(&command, now, fx),
             Event::Message(In::StopOrder(command, caller)) => {
@@ -228,6 +231,21 @@ impl ArmNode {
             tracing::info!(pick = ?pick.id, phase = ?pick.phase, "resuming an open pick");
         }
         self.publish(now, fx);
+    }
+
+    /// Handles a journal that was set aside: an object that is not grasped yet is left, and an arm
+    /// without its own memory, which may hold one or have been stopped, waits for a person.
+    fn set_aside(&mut self, SetAside { over, is_own }: SetAside, now: Time, fx: &mut Fx) {
+        if is_own {
+            tracing::warn!("the arm's journal is new: look, then `whichone resume-motion`");
+            (self.state.stopped, self.state.obeyed) = (true, now);
+            self.record(Cause::Motion(MotionOrder::Stop), now, fx);
+        }
+        let is_over = |pick: &&Pick| pick.id.interaction.0 <= over;
+        let phase = self.state.open_pick().filter(is_over).map(|pick| pick.phase);
+        if matches!(phase, Some(PickPhase::Accepted | PickPhase::Moving)) {
+            self.end(PickOutcome::Cancelled, now, fx);
+        }
     }
 
     fn tick(&mut self, now: Time, fx: &mut Fx) {

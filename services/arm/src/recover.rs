@@ -53,7 +53,7 @@ pub fn state(config: &Config, mut records: Vec<Record>) -> Result<ArmState, Node
         None => Ok(state),
         Some(q) => Err(NodeError {
             what: format!("the journal has an arm at {q:?} rad, outside its joint limits"),
-            help: "start a new journal with `whichone up --fresh`".to_owned(),
+            help: "set it aside with `whichone journal set-aside arm`".to_owned(),
         }),
     }
 }

@@ -11,7 +11,7 @@ use preflight::ArmSetup;
 use robot::RobotTopics;
 use service::bus::{EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
-use service::inspection::Part;
+use service::inspection::{Part, SharedFacts};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 use service::stop_socket::StopListener;
@@ -40,8 +40,12 @@ impl Program for ArmProgram {
         inspection::line(record)
     }
 
-    fn verify(_: Settings, parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
+    fn verify(_: &[Settings], parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
         inspection::verify(parts)
+    }
+
+    fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
+        inspection::shared_facts(parts)
     }
 }
 

@@ -100,6 +100,7 @@ impl Node for BaxterNode {
 
     fn on(&mut self, event: Event<In>, now: Time, fx: &mut Effects<Out, Body>) {
         match event {
+            Event::SetAside(_) => {}
             Event::Started => self.next = now,
             Event::Message(message) => self.robot.on_message(&message, now),
             Event::Tick => self.tick(now, fx),

@@ -52,7 +52,7 @@ impl Node for GroundingNode {
                 Err(error) => tracing::warn!(seq = utterance.seq, %error, "utterance refused"),
             },
             Event::Shutdown => fx.exit(),
-            Event::Started | Event::Tick => {}
+            Event::SetAside(_) | Event::Started | Event::Tick => {}
         }
     }
 

@@ -7,7 +7,8 @@ use dialogue::manager::{Act, Cause, Manager, Record, refold_since};
 use dialogue::{ActKind, Action, PickOutcome, rendering};
 use scene::Scene;
 use service::exit::{Exit, Failure};
-use service::inspection::{Part, at, count};
+use service::inspection::{Part, SharedFacts, at, count};
+use service::journal_set::NUMBERS_SKIPPED;
 
 /// Renders a record as one line. Without the scene that it is about, the robot's words are left out.
 pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
@@ -23,6 +24,7 @@ pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
             format!("pick {}.{} {outcome:?}", pick.interaction, pick.attempt).to_lowercase()
         }
         Cause::Reconfigured => "reconfigured".to_owned(),
+        Cause::SetAside(over) => format!("set aside, {over} over"),
     };
     let does = match state.act.kind {
         ActKind::Wait => "wait".to_owned(),
@@ -60,10 +62,19 @@ fn reasons(scene: Option<&Scene>, act: &Act) -> String {
 
 /// Every utterance applied once and in order, every belief a distribution, no interaction with two
 /// deliveries, and every state the one that follows, bit for bit.
-pub(crate) fn verify(settings: &Settings, parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
+pub(crate) fn verify(
+    settings: &[Settings],
+    parts: &[Part<Record>],
+) -> Result<Vec<String>, Failure> {
     let newest = parts.last().and_then(|part| part.records().last());
-    // The given settings are taken to be those at the journal's end.
     let settings_key = newest.map_or(0, |record| record.state.settings_key);
+    let known = settings.iter().find(|settings| settings.makes_key(settings_key));
+    // Where there are none of that key, the newest are taken to be those at the journal's end.
+    let Some(settings) = known.or(settings.first()) else {
+        let what =
+            "no settings are kept beside the journal; help: start the group with `whichone up`";
+        return Err(Failure::new(Exit::Config, what));
+    };
     let manager = settings.manager_of_key(settings_key);
     let mut manager = manager.map_err(|e| Failure::new(Exit::Config, e.to_string()))?;
     let mut delivered: BTreeMap<u64, u32> = BTreeMap::new();
@@ -77,7 +88,7 @@ pub(crate) fn verify(settings: &Settings, parts: &[Part<Record>]) -> Result<Vec<
     let refolded: usize =
         parts.iter().map(|part| fold(&mut manager, part, settings_key)).sum::<Result<_, _>>()?;
     let mut facts = vec![
-        format!("{} applied once and in order", count(applied.unwrap_or(0), "utterance")),
+        format!("{} applied once and in order", count(since_set_aside(applied), "utterance")),
         format!("delivered in {}, at most once each", count(delivered.len() as u64, "interaction")),
         format!("{} reproduced bit for bit from the one before", count(refolded as u64, "state")),
     ];
@@ -86,6 +97,32 @@ pub(crate) fn verify(settings: &Settings, parts: &[Part<Record>]) -> Result<Vec<
         facts.push(format!("{skipped} of other settings skipped"));
     }
     Ok(facts)
+}
+
+/// Number of utterances since the last setting aside.
+fn since_set_aside(applied: Option<u64>) -> u64 {
+    applied.unwrap_or(0) % NUMBERS_SKIPPED
+}
+
+/// The last utterance applied, and the orders.
+pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
+    let records = || parts.iter().flat_map(|part| part.records());
+    let order = |record: &Record| {
+        let (id, object) = record.state.open.as_ref()?.pick?;
+        Some((id.interaction.0, id.attempt, object.0))
+    };
+    let is_complete = |record: &&Record| {
+        parts.first().is_some_and(|part| part.first_seq() == 1)
+            && !matches!(record.cause, Cause::SetAside(_))
+    };
+    SharedFacts {
+        utterance: records().last().map_or(0, |record| record.state.applied.0),
+        picks: records().filter_map(order).collect(),
+        since: match records().next() {
+            Some(first) if is_complete(&first) => 0,
+            first => first.map_or(0, |record| record.state.last_interaction.0),
+        },
+    }
 }
 
 fn step(
@@ -105,7 +142,7 @@ fn step(
         (Cause::Utterance(heard), _) if heard.seq.0 != now => {
             return Err(format!("utterance {} applied, {now} marked", heard.seq));
         }
-        (Cause::Utterance(_) | Cause::Snapshot, _) | (_, None) => {}
+        (Cause::Utterance(_) | Cause::Snapshot | Cause::SetAside(_), _) | (_, None) => {}
         (_, Some(before)) if before != now => {
             return Err(format!("{now} marked without an utterance, {before} before"));
         }

@@ -14,13 +14,13 @@ mod tests;
 
 use dialogue::ids::{PromptId, UtteranceSeq};
 use dialogue::manager::{Cause, Floor, Manager, Record, State, Utterance};
-use dialogue::{PickPhase, Presentation};
+use dialogue::{PickOutcome, PickPhase, Presentation};
 use messages::inbox::{Inbox, Verdict};
 use messages::{
     Activity, AppliedMark, ArmStatus, Observation, PolicyView, PresentationState, Presented,
     RobotAct, Source,
 };
-use service::{Effects, Event, Node, NodeError, Span, Time};
+use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 
 /// Interval at which the standing decision is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);
@@ -56,7 +56,7 @@ pub struct PolicyNode {
     manager: Manager,
     state: State,
     floor: Floor,
-    /// Observations rejected as invalid.
+    /// Messages rejected as invalid or contradictory.
     rejected: u64,
     /// Since when an earlier observation is missing.
     waiting_since: Option<Time>,
@@ -83,6 +83,11 @@ impl Node for PolicyNode {
 
     fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
         match event {
+            Event::SetAside(SetAside { over, .. }) if self.state.applied.0 < over => {
+                tracing::warn!(over, "a journal was set aside: what was in progress has ended");
+                self.apply(Cause::SetAside(over), now, fx);
+            }
+            Event::SetAside(_) => {}
             Event::Started => self.start(now, fx),
             Event::Message(In::Observation(observation)) => self.observe(&observation, now, fx),
             Event::Message(In::Presented(it)) => self.floor.presented = presentation(&it),
@@ -174,11 +179,18 @@ impl PolicyNode {
     /// Ends the interaction when the arm has ended its pick.
     fn watch_arm(&mut self, status: &ArmStatus, now: Time, fx: &mut Fx) {
         let ordered = self.state.open.as_ref().and_then(|open| open.pick);
-        let Some((pick, _)) = ordered else { return };
-        if status.phase.get() == PickPhase::Done && status.pick() == pick {
-            let outcome = status.outcome.get();
-            self.apply(Cause::PickEnded { pick, outcome }, now, fx);
+        let Some((pick, object)) = ordered else { return };
+        if status.phase.get() != PickPhase::Done || status.pick() != pick {
+            return;
         }
+        let mut outcome = status.outcome.get();
+        if outcome == PickOutcome::Delivered && status.object != u32::from(object.0) {
+            // The order has two parts. Whatever the arm delivered, it was not what this one names.
+            self.rejected += 1;
+            tracing::error!(?pick, ordered = object.0, found = status.object, "another object");
+            outcome = PickOutcome::Interrupted;
+        }
+        self.apply(Cause::PickEnded { pick, outcome }, now, fx);
     }
 
     fn tick(&mut self, now: Time, fx: &mut Fx) {

@@ -9,7 +9,7 @@ use messages::{
 };
 use service::bus::{EncodedWriter, PortError, Reader, Writer};
 use service::exit::{Exit, Failure};
-use service::inspection::Part;
+use service::inspection::{Part, SharedFacts};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 
@@ -20,7 +20,7 @@ pub struct PolicyProgram;
 
 impl Program for PolicyProgram {
     const SERVICE: Service = Service::Policy;
-    const RECORD: Option<&'static str> = Some("policy/5");
+    const RECORD: Option<&'static str> = Some("policy/6");
     const ABOUT: &'static str = "maintains the belief over the objects and decides what to ask or do \
                                  [--planner NAME]";
     type Node = PolicyNode;
@@ -46,8 +46,12 @@ impl Program for PolicyProgram {
         inspection::line(settings.map(|settings| &settings.scene), record)
     }
 
-    fn verify(settings: Settings, parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
-        inspection::verify(&settings, parts)
+    fn verify(settings: &[Settings], parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
+        inspection::verify(settings, parts)
+    }
+
+    fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
+        inspection::shared_facts(parts)
     }
 }
 

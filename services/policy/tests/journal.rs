@@ -23,8 +23,9 @@ impl Lab {
     fn with(records: &[Record]) -> Self {
         let lab = Self(tempfile::tempdir().expect("a folder"));
         shipped().write_snapshot(lab.0.path()).expect("a disk");
-        let header = Header { record: "policy".into(), group: "lab".into(), epoch: 1 };
-        let (mut journal, _) = Journal::open(&lab.file(), &header).expect("a journal");
+        let header =
+            Header { record: "policy".into(), group: "lab".into(), epoch: 1, generation: 1 };
+        let (mut journal, _) = Journal::open_or_create(&lab.file(), &header).expect("a journal");
         for record in records {
             journal.append(record).expect("room");
             journal.sync().expect("a disk");

@@ -4,7 +4,8 @@ use std::collections::HashSet;
 
 use dialogue::Presentation;
 use service::exit::Failure;
-use service::inspection::{Part, at, count};
+use service::inspection::{Part, SharedFacts, at, count};
+use service::journal_set::NUMBERS_SKIPPED;
 
 use crate::record::Record;
 
@@ -39,7 +40,7 @@ pub(crate) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
             if again {
                 continue;
             }
-            if last.is_some_and(|last| number != last + 1) {
+            if last.is_some_and(|last| number != last + 1 && !is_first_after(last, number)) {
                 let last = last.unwrap_or(0);
                 return Err(part.broken(seq, format!("utterance {number} follows {last}")));
             }
@@ -49,8 +50,22 @@ pub(crate) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
             last = Some(number);
         }
     }
-    let accepted = count(last.unwrap_or(0), "utterance");
+    let accepted = count(last.unwrap_or(0) % NUMBERS_SKIPPED, "utterance");
     Ok(vec![format!("{accepted} accepted once and without a gap")])
+}
+
+/// Returns whether numbering began anew between the two, because a journal was set aside.
+fn is_first_after(last: u64, number: u64) -> bool {
+    number > last && number % NUMBERS_SKIPPED == 1
+}
+
+/// The last utterance accepted.
+pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
+    let accepted = parts.iter().flat_map(|part| part.records()).filter_map(|record| match record {
+        Record::Accepted(accepted) => Some(accepted.seq.0),
+        Record::Presented(_) => None,
+    });
+    SharedFacts { utterance: accepted.max().unwrap_or(0), ..SharedFacts::default() }
 }
 
 /// Returns whether the record belongs to the snapshot at the beginning of a rotated journal.

@@ -19,9 +19,10 @@ mod utterance_intake;
 #[cfg(test)]
 mod tests;
 
+use messages::UtteranceSeq;
 use prompt_player::PromptPlayer;
 use record::Record;
-use service::{Effects, Event, Node, NodeError, Span, Time};
+use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use stream_events::StreamEvent;
 use utterance_intake::UtteranceIntake;
 
@@ -74,6 +75,9 @@ impl Node for SpeechNode {
 
     fn on(&mut self, event: Event<In>, now: Time, fx: &mut Fx) {
         match event {
+            Event::SetAside(SetAside { over, .. }) => {
+                self.intake.accepted.skip(UtteranceSeq(over));
+            }
             Event::Started => self.send(now, fx),
             Event::Message(message) => self.handle(message, now, fx),
             Event::Tick => {

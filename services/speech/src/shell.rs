@@ -25,7 +25,7 @@ use messages::{
 use service::Span;
 use service::bus::{EncodedReader, PortError, Reader, Writer};
 use service::exit::Failure;
-use service::inspection::{Finding, Part};
+use service::inspection::{Finding, Part, SharedFacts};
 use service::lifecycle::Environment;
 use service::service_loop::{Context, Program, Shell};
 use service::worker_channel::DeviceSender;
@@ -60,8 +60,12 @@ impl Program for SpeechProgram {
         inspection::line(record)
     }
 
-    fn verify(_: Settings, parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
+    fn verify(_: &[Settings], parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
         inspection::verify(parts)
+    }
+
+    fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
+        inspection::shared_facts(parts)
     }
 
     fn doctor(settings: &Settings) -> Vec<Finding> {

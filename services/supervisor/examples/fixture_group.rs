@@ -91,7 +91,7 @@ fn load(file: &std::path::Path) -> Result<Configuration, Vec<String>> {
         profile: None,
         directory: file.parent().unwrap().to_owned(),
         shared_memory_free_min_mib: group.shared_memory_free_min_mib,
-        publish: Box::new(move |run| std::fs::write(run.join("published"), &text)),
+        publish: Box::new(move |paths| std::fs::write(paths.run().join("published"), &text)),
     })
 }
 

@@ -2,11 +2,13 @@
 
 use std::env;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use config::{Section, ServiceConfig, Settings};
 use messages::Service;
+use service::group::GroupPaths;
+use service::kept_settings;
 use service::launch::Options;
 
 pub use config::{Log, Restart, RestartLimits};
@@ -15,8 +17,8 @@ pub use config::{Log, Restart, RestartLimits};
 /// every problem, one line each.
 pub type Load = Box<dyn FnMut() -> Result<Configuration, Vec<String>>>;
 
-/// Writes the settings for the services into the group's run folder.
-pub type Publish = Box<dyn Fn(&Path) -> io::Result<()>>;
+/// Writes the settings for the services into the group's run folder, and keeps them beside the journals.
+pub type Publish = Box<dyn Fn(&GroupPaths) -> io::Result<()>>;
 
 /// A valid configuration.
 pub struct Configuration {
@@ -95,7 +97,10 @@ fn configuration(settings: Settings, options: &Options) -> Configuration {
         profile: options.profile.clone(),
         directory: options.config.clone(),
         shared_memory_free_min_mib: group.shared_memory_free_min_mib.into(),
-        publish: Box::new(move |run| settings.write_snapshot(run)),
+        publish: Box::new(move |paths| {
+            settings.write_snapshot(&paths.run())?;
+            kept_settings::keep(paths, &settings)
+        }),
     }
 }
 

@@ -29,6 +29,7 @@ mod signals;
 mod spawn;
 mod supervisor;
 
+pub use epoch::EpochError;
 pub use previous_run::PreviousRunError;
 pub use supervisor::{StartError, Supervisor};
 

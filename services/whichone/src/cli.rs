@@ -19,7 +19,7 @@ pub use group::{
     UpArgs, WaitFor,
 };
 pub use study::{ALL as STUDY_ALL, Preset, ReportArgs, StudyArgs, StudyVerb};
-pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalArgs, ListenArgs};
+pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};
 pub use talk::{MotionArgs, PointArgs, SayArgs, TalkArgs, WatchArgs};
 
 /// A robot that asks which one you mean before it fetches it.

@@ -48,6 +48,11 @@ impl Settings {
         self.manager_with(planner.unwrap_or(&self.dialogue.planner))
     }
 
+    /// Returns whether the key is that of these settings, perhaps with another planner.
+    pub fn makes_key(&self, settings_key: u64) -> bool {
+        registry::names().into_iter().any(|planner| self.manager_key(planner) == settings_key)
+    }
+
     /// Returns everything that the manager decides by, besides its planner.
     ///
     /// # Errors

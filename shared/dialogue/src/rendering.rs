@@ -21,6 +21,7 @@ pub fn text(scene: &Scene, act: &Act) -> String {
         Content::Correcting | Content::Cancelled => "All right.".to_owned(),
         Content::CallingOff => "I will leave it, unless I already hold it.".to_owned(),
         Content::Abandoned => "I will wait until you ask me again.".to_owned(),
+        Content::Forgotten => "I have lost a part of my memory; please ask me again.".to_owned(),
         Content::NotHere => {
             format!("What you want does not seem to be here. {}", inventory(scene))
         }

@@ -15,17 +15,28 @@ pub enum JournalOpenError {
         /// The other process, where the lock file names it.
         pid: Option<u32>,
     },
+    /// There is no file.
+    #[error("the file is missing")]
+    Missing,
+    /// The file has no bytes; a journal has some from its first moment.
+    #[error("the file is empty")]
+    Empty,
     /// The file does not begin like a journal.
-    #[error("not a journal; help: move the file away, or run `whichone up --fresh`")]
+    #[error("not a journal")]
     NotAJournal,
-    /// Another owner, epoch, kind of record or version of the format.
+    /// Another owner, epoch, kind of record or version of the format; with the way out.
     #[error("{0}")]
     Foreign(String),
+    /// Another journal of the same service.
+    #[error("expected generation {expected}, found {found}: a journal that was set aside")]
+    Generation {
+        /// The one in use.
+        expected: u64,
+        /// That of the file.
+        found: u64,
+    },
     /// Damage to acknowledged records.
-    #[error(
-        "corrupt at byte {at}, before record {seq}, with valid records after it; help: inspect the \
-         file, then start over with `whichone up --fresh`, which keeps it"
-    )]
+    #[error("damaged at byte {at}: record {seq} and what may follow it cannot be read")]
     Corrupt {
         /// Offset of the first damaged frame.
         at: u64,
@@ -104,6 +115,13 @@ pub enum RotateError {
 }
 
 impl JournalOpenError {
+    /// Returns whether the journal is lost or damaged: a restart changes nothing, and the one way out is
+    /// to set it aside.
+    pub fn is_lost(&self) -> bool {
+        use JournalOpenError::{Corrupt, Empty, Generation, Missing, NotAJournal};
+        matches!(self, Missing | Empty | NotAJournal | Generation { .. } | Corrupt { .. })
+    }
+
     pub(crate) fn io(doing: &'static str) -> impl FnOnce(io::Error) -> Self {
         move |source| Self::Io { doing, source }
     }

@@ -36,6 +36,15 @@ pub struct Recovered<R> {
     pub truncated_bytes: u64,
 }
 
+/// Owner and ending of a journal as found by [`inspect`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Inspection {
+    /// Owner and kind.
+    pub header: Header,
+    /// The ending of the file.
+    pub ending: Ending,
+}
+
 /// Contents found by [`read`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reading<R> {
@@ -50,24 +59,37 @@ pub struct Reading<R> {
 }
 
 impl<R: Serialize + DeserializeOwned> Journal<R> {
-    /// Opens the journal at `path`, or makes a new one where there is none or an empty file. The
-    /// folder must exist. What a killed writer had written without syncing is synced before this
-    /// returns, so every recovered record may be acted on.
+    /// Opens the journal at `path`. What a killed writer had written without syncing is synced before
+    /// this returns, so every recovered record may be acted on.
     ///
     /// # Errors
     /// See [`JournalOpenError`]; the file is left as it is.
     pub fn open(path: &Path, header: &Header) -> Result<(Self, Recovered<R>), JournalOpenError> {
+        Self::open_with(path, header, |_| Err(JournalOpenError::Missing))
+    }
+
+    /// As [`Journal::open`], but makes a new journal where there is no file. The folder must exist.
+    ///
+    /// # Errors
+    /// See [`JournalOpenError`]; the file is left as it is.
+    pub fn open_or_create(
+        path: &Path,
+        header: &Header,
+    ) -> Result<(Self, Recovered<R>), JournalOpenError> {
+        Self::open_with(path, header, |path| create(path, header))
+    }
+
+    fn open_with(
+        path: &Path,
+        header: &Header,
+        absent: impl FnOnce(&Path) -> Result<(Tail<File>, Recovered<R>), JournalOpenError>,
+    ) -> Result<(Self, Recovered<R>), JournalOpenError> {
         let lock = Lock::take(path)?;
         rotate::clear_unfinished(path)
             .map_err(JournalOpenError::io("clear an unfinished rotation"))?;
-        let bytes = match fs::read(path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
-            Err(error) => return Err(JournalOpenError::io("read the journal")(error)),
-        };
-        let (tail, recovered) = match bytes.is_empty() {
-            true => create(path, header)?,
-            false => recover(path, header, &bytes)?,
+        let (tail, recovered) = match load(path) {
+            Err(JournalOpenError::Missing) => absent(path)?,
+            bytes => recover(path, header, &bytes?)?,
         };
         let journal = Self {
             path: path.to_owned(),
@@ -157,10 +179,28 @@ impl<R: Serialize + DeserializeOwned> Journal<R> {
 /// # Errors
 /// Another header or record layout; damage is reported by [`Reading::ending`].
 pub fn read<R: DeserializeOwned>(path: &Path) -> Result<Reading<R>, JournalOpenError> {
-    let bytes = fs::read(path).map_err(JournalOpenError::io("read the journal"))?;
+    let bytes = load(path)?;
     let stored = header::decode(&bytes)?;
     let Scan { records, ending, .. } = scan::scan(&bytes, &stored)?;
     Ok(Reading { header: stored.header, records, first_seq: stored.first_seq, ending })
+}
+
+/// As [`read`], for those who do not know the records.
+///
+/// # Errors
+/// No journal, or one of another format; damage is reported by [`Inspection::ending`].
+pub fn inspect(path: &Path) -> Result<Inspection, JournalOpenError> {
+    let bytes = load(path)?;
+    let stored = header::decode(&bytes)?;
+    let (_, ending) = scan::scan_frames(&bytes, &stored, scan::count)?;
+    Ok(Inspection { header: stored.header, ending })
+}
+
+fn load(path: &Path) -> Result<Vec<u8>, JournalOpenError> {
+    fs::read(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => JournalOpenError::Missing,
+        _ => JournalOpenError::io("read the journal")(error),
+    })
 }
 
 fn create<R: Serialize>(
@@ -181,7 +221,7 @@ fn recover<R: DeserializeOwned>(
     bytes: &[u8],
 ) -> Result<(Tail<File>, Recovered<R>), JournalOpenError> {
     let stored = header::decode(bytes)?;
-    header::check(&stored.header, header)?;
+    stored.header.check(header)?;
     let Scan { records, position, ending } = scan::scan(bytes, &stored)?;
     let truncated_bytes = match ending {
         Ending::Whole => 0,
@@ -203,19 +243,17 @@ fn compose<R: Serialize>(
     first_seq: u64,
     snapshot: &[R],
 ) -> Result<(Vec<u8>, Position), AppendError> {
-    let (mut bytes, crc) = header::encode(header, first_seq)?;
-    let stored = StoredHeader { header: header.clone(), first_seq, crc, len: bytes.len() };
+    let count = snapshot.len() as u64;
+    let (mut bytes, crc) = header::encode(header, first_seq, count)?;
+    let (header, len) = (header.clone(), bytes.len());
+    let stored = StoredHeader { header, first_seq, snapshot: count, crc, len };
     let mut position = Position::after(&stored);
     if !snapshot.is_empty() {
         let mut batch = Batch::default();
         snapshot.iter().try_for_each(|record| batch.push(record))?;
-        let (sealed, crc) = frame::seal(first_seq, crc, &batch.body());
+        let (sealed, crc) = frame::seal(bytes.len() as u64, first_seq, crc, &batch.body());
         bytes.extend_from_slice(&sealed);
-        position = Position {
-            end: bytes.len() as u64,
-            next_seq: first_seq + snapshot.len() as u64,
-            prev_crc: crc,
-        };
+        position = Position { end: bytes.len() as u64, next_seq: first_seq + count, prev_crc: crc };
     }
     Ok((bytes, position))
 }

@@ -8,8 +8,8 @@ use crate::frame::words;
 
 /// Format number of the file layout that this version writes.
 ///
-/// Format 1 had two more numbers in its header.
-pub const FORMAT: u32 = 2;
+/// Format 1 had two more numbers in its header; format 2 had no generation, and frames without an end.
+pub const FORMAT: u32 = 3;
 
 /// Magic, format, length and checksum before the header's body.
 const PREFIX_BYTES: usize = 20;
@@ -24,6 +24,9 @@ pub struct Header {
     pub group: String,
     /// Epoch of the group; numbers of different epochs are never compared.
     pub epoch: u64,
+    /// Which journal of its service in this epoch it is, from 1: a file that was set aside is not
+    /// taken for its successor.
+    pub generation: u64,
 }
 
 /// A header as stored in the file.
@@ -32,6 +35,8 @@ pub(crate) struct StoredHeader {
     pub(crate) header: Header,
     /// Number of the first record in this file; above 1 after a rotation.
     pub(crate) first_seq: u64,
+    /// Number of records that the file began with.
+    pub(crate) snapshot: u64,
     /// The checksum that the first frame refers to.
     pub(crate) crc: u32,
     /// Offset of the first frame.
@@ -39,8 +44,12 @@ pub(crate) struct StoredHeader {
 }
 
 /// The bytes of a header and its checksum.
-pub(crate) fn encode(header: &Header, first_seq: u64) -> Result<(Vec<u8>, u32), postcard::Error> {
-    let body = postcard::to_stdvec(&(header, first_seq))?;
+pub(crate) fn encode(
+    header: &Header,
+    first_seq: u64,
+    snapshot: u64,
+) -> Result<(Vec<u8>, u32), postcard::Error> {
+    let body = postcard::to_stdvec(&(header, first_seq, snapshot))?;
     let len = u32::try_from(body.len()).map_err(|_| postcard::Error::SerializeBufferFull)?;
     let crc = checksum(FORMAT, &body);
     let mut bytes = Vec::with_capacity(PREFIX_BYTES + body.len());
@@ -55,9 +64,12 @@ pub(crate) fn encode(header: &Header, first_seq: u64) -> Result<(Vec<u8>, u32), 
 /// Reads the header at the start of a file.
 ///
 /// # Errors
-/// `NotAJournal`, `Foreign`, or `Corrupt { at: 0 }` where the checksum does not match.
+/// `Empty`, `NotAJournal`, `Foreign`, or `Corrupt { at: 0 }` where the checksum does not match.
 pub(crate) fn decode(bytes: &[u8]) -> Result<StoredHeader, JournalOpenError> {
     let corrupt = || JournalOpenError::Corrupt { at: 0, seq: 1 };
+    if bytes.is_empty() {
+        return Err(JournalOpenError::Empty);
+    }
     if !bytes.starts_with(&MAGIC) {
         return Err(JournalOpenError::NotAJournal);
     }
@@ -69,13 +81,22 @@ pub(crate) fn decode(bytes: &[u8]) -> Result<StoredHeader, JournalOpenError> {
     let len = len as usize;
     let body = bytes.get(PREFIX_BYTES..PREFIX_BYTES + len);
     let body = body.filter(|body| checksum(format, body) == crc);
-    let (header, first_seq) =
+    let (header, first_seq, snapshot) =
         body.and_then(|body| postcard::from_bytes(body).ok()).ok_or_else(corrupt)?;
-    Ok(StoredHeader { header, first_seq, crc, len: PREFIX_BYTES + len })
+    Ok(StoredHeader { header, first_seq, snapshot, crc, len: PREFIX_BYTES + len })
 }
 
-/// Rejects a journal of another owner or kind.
-pub(crate) fn check(found: &Header, expected: &Header) -> Result<(), JournalOpenError> {
+impl Header {
+    /// Rejects a journal of another owner, kind or generation than `expected`.
+    ///
+    /// # Errors
+    /// `Foreign` or `Generation`.
+    pub fn check(&self, expected: &Self) -> Result<(), JournalOpenError> {
+        check(self, expected)
+    }
+}
+
+fn check(found: &Header, expected: &Header) -> Result<(), JournalOpenError> {
     let what = if found.group != expected.group {
         let (ours, theirs) = (&expected.group, &found.group);
         format!(
@@ -91,6 +112,9 @@ pub(crate) fn check(found: &Header, expected: &Header) -> Result<(), JournalOpen
             "expected epoch {ours}, found a journal of epoch {theirs}; help: start a new epoch with \
              `whichone up --fresh`, which keeps the old file"
         )
+    } else if found.generation != expected.generation {
+        let (expected, found) = (expected.generation, found.generation);
+        return Err(JournalOpenError::Generation { expected, found });
     } else {
         return Ok(());
     };

@@ -8,19 +8,28 @@
 //! owner, followed by frames, one per sync, all little-endian:
 //!
 //! ```text
-//! header  magic 8 | format u32 | len u32 | crc32c u32 | body (postcard: Header, first_seq u64)
-//! frame   len u32 | crc32c u32 | seq u64 | prev_crc u32 | body (postcard: sequence of records)
+//! header  magic 8 | format u32 | len u32 | crc32c u32 | body (postcard: Header, first_seq, snapshot)
+//! frame   0xA5 | len u32 | crc32c u32 | seq u64 | prev_crc u32
+//!         | body (postcard: sequence of records) | crc32c u32 | len u32
 //! ```
 //!
 //! `seq` numbers the frame's first record, `crc32c` covers `seq`, `prev_crc` and the body, and
 //! `prev_crc` is the checksum of the frame before (of the header for the first frame), so a frame
-//! is only valid in its own place. A damaged frame with nothing valid after it is the torn tail of
-//! a write that was never acknowledged: it is cut off. A damaged frame with valid frames after it
-//! was acknowledged once: that is corruption, and the journal refuses to open.
+//! is only valid in its own place. `snapshot` is the number of records that the file began with.
 //!
-//! A frame per sync, and not per record, is what makes that distinction exact: a disk may write
-//! the pages of one batch in any order before the sync, and a hole in an unacknowledged batch must
-//! not look like corruption.
+//! A damaged frame was either torn, before anybody was told that it is durable, and is cut off; or it
+//! was acknowledged: that is corruption, and the journal refuses to open. Which of the two:
+//!
+//! - A valid frame after it: each is written after the one before was synced, so it was acknowledged.
+//! - Otherwise it is the last one. A disk may write the sectors of one frame in any order before the
+//!   sync, and may be interrupted anywhere: what it did not write is missing at the end of the file
+//!   or reads as zeros. Every frame has a byte `0xA5` at its start and at each multiple of 512 of the
+//!   file, so no sector's part of it is all zeros, and its length stands at both ends. A frame that
+//!   lacks its end, or a sector, is torn; one that is there to its last byte and is wrong is corrupt.
+//!
+//! What cannot be told apart: whole frames missing at the end of a file look as if they had never been
+//! written (the other services' journals may know of them); a last frame of which a whole sector was
+//! lost after the sync, or both of whose lengths are damaged, looks torn.
 //!
 //! Errors do not name the file; the caller knows it. Data for people is kept as [`lines`].
 
@@ -39,7 +48,7 @@ mod tail;
 mod tests;
 
 pub use error::{AppendError, JournalOpenError, RotateError, SyncError};
-pub use file::{Journal, Reading, Recovered, read};
+pub use file::{Inspection, Journal, Reading, Recovered, inspect, read};
 pub use frame::BODY_BYTES_MAX;
 pub use header::{FORMAT, Header};
 pub use replace::{replace_file, replace_file_synced};

@@ -24,7 +24,7 @@ pub enum Ending {
         at: u64,
         /// Number of the first record that cannot be read.
         seq: u64,
-        /// Offset of the next valid frame.
+        /// Offset of the next valid frame, or of the end of the file.
         resumes_at: u64,
     },
 }
@@ -54,12 +54,12 @@ impl Position {
         Self { end: stored.len as u64, next_seq: stored.first_seq, prev_crc: stored.crc }
     }
 
-    fn continues_with(&self, frame: &Frame<'_>) -> bool {
+    fn continues_with(&self, frame: &Frame) -> bool {
         frame.seq == self.next_seq && frame.prev_crc == self.prev_crc
     }
 
-    fn advance(&mut self, frame: &Frame<'_>, records: usize) {
-        self.end += frame.len() as u64;
+    fn advance(&mut self, frame: &Frame, records: usize) {
+        self.end += frame.len as u64;
         self.next_seq += records as u64;
         self.prev_crc = frame.crc;
     }
@@ -73,39 +73,72 @@ pub(crate) fn scan<R: DeserializeOwned>(
     bytes: &[u8],
     stored: &StoredHeader,
 ) -> Result<Scan<R>, JournalOpenError> {
-    let mut position = Position::after(stored);
     let mut records = Vec::new();
-    loop {
+    let (position, ending) = scan_frames(bytes, stored, |frame| {
+        let batch = decode::<R>(frame)?;
+        let count = batch.len();
+        records.extend(batch);
+        Some(count)
+    })?;
+    Ok(Scan { records, position, ending })
+}
+
+/// As [`scan`], without decoding the records: `take` gets each frame and returns how many it holds.
+pub(crate) fn scan_frames(
+    bytes: &[u8],
+    stored: &StoredHeader,
+    mut take: impl FnMut(&Frame) -> Option<usize>,
+) -> Result<(Position, Ending), JournalOpenError> {
+    let mut position = Position::after(stored);
+    let ending = loop {
         let rest = &bytes[position.end as usize..];
         if rest.is_empty() {
-            return Ok(Scan { records, position, ending: Ending::Whole });
+            break Ending::Whole;
         }
-        let next = frame::parse(rest, |seq| seq == position.next_seq);
+        let next = frame::parse(position.end, rest, |seq| seq == position.next_seq);
         let Some(frame) = next.filter(|frame| position.continues_with(frame)) else {
-            return Ok(Scan { records, position, ending: ending_of(rest, &position) });
+            break ending_of(rest, &position);
         };
-        let batch = decode::<R>(&frame)
+        let count = take(&frame)
             .ok_or(JournalOpenError::Undecodable { at: position.end, seq: position.next_seq })?;
-        position.advance(&frame, batch.len());
-        records.extend(batch);
+        position.advance(&frame, count);
+    };
+    // A snapshot was on the disk before its file had the journal's name.
+    let is_short = position.next_seq < stored.first_seq.saturating_add(stored.snapshot);
+    let (at, seq, resumes_at) = (position.end, position.next_seq, bytes.len() as u64);
+    match ending {
+        Ending::Whole | Ending::Torn { .. } if is_short => {
+            Ok((position, Ending::Corrupt { at, seq, resumes_at }))
+        }
+        ending => Ok((position, ending)),
     }
 }
 
+/// Number of records in a frame, for those who cannot decode them.
+pub(crate) fn count(frame: &Frame) -> Option<usize> {
+    postcard::take_from_bytes::<usize>(&frame.body).ok().map(|(count, _)| count)
+}
+
 /// Distinguishes a torn tail from corruption: each frame is written only after the one before was
-/// acknowledged, so a valid frame proves that everything before it was valid.
+/// acknowledged, so a valid frame proves that everything before it was valid; and a frame that is
+/// there to its last byte has no reason to be wrong.
 fn ending_of(rest: &[u8], position: &Position) -> Ending {
     let at = position.end;
     let expected = position.next_seq;
     let plausible = |seq| seq >= expected && seq - expected <= u64::from(u32::MAX);
     let last_start = rest.len().saturating_sub(PREFIX_BYTES);
-    match (0..=last_start).find(|&i| frame::parse(&rest[i..], plausible).is_some()) {
+    let starts = 0..=last_start;
+    let valid = |i: &usize| frame::parse(at + *i as u64, &rest[*i..], plausible).is_some();
+    let end = rest.len();
+    let complete = || frame::was_complete(at, rest).then_some(end);
+    match starts.into_iter().find(valid).or_else(complete) {
         Some(i) => Ending::Corrupt { at, seq: expected, resumes_at: at + i as u64 },
-        None => Ending::Torn { at, bytes: rest.len() as u64 },
+        None => Ending::Torn { at, bytes: end as u64 },
     }
 }
 
-fn decode<R: DeserializeOwned>(frame: &Frame<'_>) -> Option<Vec<R>> {
-    match postcard::take_from_bytes(frame.body) {
+fn decode<R: DeserializeOwned>(frame: &Frame) -> Option<Vec<R>> {
+    match postcard::take_from_bytes(&frame.body) {
         Ok((records, [])) => Some(records),
         _ => None,
     }

@@ -107,7 +107,7 @@ impl<S: Storage> Tail<S> {
             return Ok(());
         }
         let Position { end, next_seq, prev_crc } = self.position;
-        let (bytes, crc) = frame::seal(next_seq, prev_crc, &self.waiting.body());
+        let (bytes, crc) = frame::seal(end, next_seq, prev_crc, &self.waiting.body());
         let after = end + bytes.len() as u64;
         if let Err(error) = self.reserve(after)
             && !(vital && after <= self.reserved)

@@ -55,6 +55,13 @@ impl<T> Outbox<T> {
         self.last = self.last.max(mark);
     }
 
+    /// Every number up to `over` is over: what waits with one of them is dropped, and numbering
+    /// continues above it.
+    pub fn skip(&mut self, over: UtteranceSeq) {
+        self.waiting.retain(|(seq, _)| *seq > over);
+        self.last = self.last.max(over);
+    }
+
     /// Returns the messages to send now, in order.
     pub fn window(&self) -> impl Iterator<Item = &(UtteranceSeq, T)> {
         self.waiting.iter().take(self.window)

@@ -6,6 +6,7 @@
 use crate::bus::{Bus, BusError, EncodedWriter, Identity, PortError, Reader};
 use crate::clock;
 use crate::group::GroupPaths;
+use crate::journal_set::JournalSet;
 use crate::lifecycle::Environment;
 use crate::storage;
 use crate::submission::Submission;
@@ -57,8 +58,8 @@ impl Client {
         if !paths.ipc().is_dir() {
             return Err(none());
         }
-        let epoch = std::fs::read_to_string(paths.epoch_file()).map_err(|_| none())?;
-        let epoch = Epoch(epoch.trim().parse().map_err(|_| none())?);
+        let set = JournalSet::load(paths).ok().flatten().ok_or_else(none)?;
+        let epoch = Epoch(set.epoch);
         let bus = Bus::open(paths, "client", Identity { epoch, ..Identity::default() });
         // A new process makes files in the group's folder.
         bus.map(|bus| Self { bus }).map_err(|error| match storage::shortage(&paths.ipc()) {

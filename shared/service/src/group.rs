@@ -165,6 +165,11 @@ impl GroupPaths {
         self.root.join("journal")
     }
 
+    /// The settings by which the journals were written.
+    pub fn kept_settings(&self) -> PathBuf {
+        self.journal().join("settings")
+    }
+
     /// Decisions that the policy has worked out; a cache, which may be deleted.
     pub fn policies(&self) -> PathBuf {
         self.root.join("policies")
@@ -185,9 +190,14 @@ impl GroupPaths {
         self.log().join(format!("{service}.log"))
     }
 
-    /// The file that holds the epoch of the journals.
+    /// The file that holds the [set of journals](crate::journal_set).
     pub fn epoch_file(&self) -> PathBuf {
         self.root.join("epoch")
+    }
+
+    /// Held while the journals' file `epoch` is changed.
+    pub fn epoch_lock(&self) -> PathBuf {
+        self.root.join("epoch.lock")
     }
 
     /// Held by the supervisor for its life.

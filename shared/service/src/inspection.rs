@@ -2,6 +2,7 @@
 //! `whichone-SERVICE journal …` and `whichone-SERVICE doctor …`, so that only the service itself
 //! knows its records and its devices.
 
+use std::collections::BTreeSet;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -20,6 +21,36 @@ use crate::service_loop::{Program, Record};
 pub struct Part<R> {
     file: PathBuf,
     reading: Reading<R>,
+}
+
+/// What one journal says about the others.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SharedFacts {
+    /// Highest utterance accepted (speech) or applied (policy).
+    pub utterance: u64,
+    /// Picks with their objects: interaction, attempt, object; ordered (policy) or taken on (arm).
+    pub picks: BTreeSet<(u64, u32, u16)>,
+    /// Interactions above this have all their picks listed.
+    pub since: u64,
+}
+
+/// Result of a verification.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// Whether every invariant holds.
+    pub ok: bool,
+    /// The first broken one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub broken: Option<String>,
+    /// Number of records.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub records: Option<u64>,
+    /// What was verified.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub facts: Option<Vec<String>>,
+    /// For the other journals.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shared: Option<SharedFacts>,
 }
 
 /// One aspect of the machine that `whichone doctor` has examined.
@@ -92,11 +123,11 @@ impl<R: DeserializeOwned> Part<R> {
     /// The file cannot be read, or is not a journal of these records.
     pub fn read(file: &Path) -> Result<Self, Failure> {
         let reading = journal::read(file).map_err(|error| {
-            let exit = match error {
-                JournalOpenError::Io { .. } => Exit::Storage,
-                JournalOpenError::Corrupt { .. } => Exit::Invariant,
-                _ => Exit::Config,
-            };
+            let is_foreign = matches!(
+                error,
+                JournalOpenError::Foreign(_) | JournalOpenError::Undecodable { .. }
+            );
+            let exit = if is_foreign { Exit::Config } else { Exit::Storage };
             Failure::new(exit, format!("{}: {error}", file.display()))
         })?;
         Ok(Self { file: file.to_owned(), reading })
@@ -138,7 +169,8 @@ pub(crate) fn run<P: Program>(arguments: &[String]) -> Option<Exit> {
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Request {
     file: PathBuf,
-    settings: PathBuf,
+    /// Folders of settings that were in force, newest first.
+    settings: Vec<PathBuf>,
     verify: bool,
     json: bool,
 }
@@ -151,23 +183,29 @@ impl Request {
             match word.as_str() {
                 "--verify" => request.verify = true,
                 "--json" => request.json = true,
-                "--settings" => request.settings = words.next().map(Into::into).unwrap_or_default(),
+                "--settings" => request.settings.extend(words.next().map(PathBuf::from)),
                 file => request.file = file.into(),
             }
         }
         request
     }
 
-    fn settings(&self) -> Result<Settings, Failure> {
-        Ok(Settings::load_snapshot(&self.settings)?)
+    /// Returns the settings; of several, those of another version are left out.
+    fn settings(&self) -> Result<Vec<Settings>, Failure> {
+        let loaded = self.settings.iter().map(|folder| Settings::load_snapshot(folder));
+        let (fit, wrong): (Vec<_>, Vec<_>) = loaded.partition(Result::is_ok);
+        let fit: Vec<_> = fit.into_iter().flatten().collect();
+        match wrong.into_iter().find_map(Result::err) {
+            Some(error) if fit.is_empty() => Err(error.into()),
+            _ => Ok(fit),
+        }
     }
 }
 
 fn examine<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
-    for finding in P::doctor(&request.settings()?) {
-        json_line(out, &finding)?;
-    }
-    Ok(())
+    let settings = request.settings()?;
+    let findings = settings.first().map(P::doctor).unwrap_or_default();
+    findings.iter().try_for_each(|finding| json_line(out, finding))
 }
 
 fn show<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
@@ -184,12 +222,12 @@ fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fail
         record: &'a R,
     }
     let part = Part::<Record<P>>::read(&request.file)?;
-    let settings = request.settings().ok();
+    let settings = request.settings().unwrap_or_default();
     for (seq, record) in part.numbered() {
         match request.json {
             true => json_line(out, &Numbered { seq, record })?,
             false => {
-                line(out, format_args!("{seq:>6}  {}", P::describe(settings.as_ref(), record)))?
+                line(out, format_args!("{seq:>6}  {}", P::describe(settings.first(), record)))?
             }
         }
     }
@@ -206,34 +244,26 @@ fn check_ending<R>(part: &Part<R>) -> Result<(), Failure> {
             Ok(())
         }
         Ending::Corrupt { at, seq, .. } => {
-            let help =
-                "help: start a new epoch with `whichone up --fresh`, which keeps the old file";
-            Err(part.broken(seq, format_args!("damaged at byte {at}; {help}")))
+            let what = format!("record {seq}: damaged at byte {at}");
+            let help = "help: `whichone journal set-aside SERVICE` keeps the file";
+            let file = part.file.display();
+            Err(Failure::new(Exit::Storage, format!("{file}: {what}; {help}")))
         }
     }
 }
 
 /// Checks the journal with its older parts, oldest first.
 fn verify<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
-    #[derive(Default, Serialize)]
-    struct Verdict {
-        ok: bool,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        broken: Option<String>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        records: Option<u64>,
-        #[serde(skip_serializing_if = "Option::is_none")]
-        facts: Option<Vec<String>>,
-    }
     let older = (1..=journal::KEPT).rev().map(|n| log_file::numbered(&request.file, n));
     let files = older.filter(|file| file.is_file()).chain([request.file.clone()]);
     let parts: Vec<_> = files.map(|file| Part::read(&file)).collect::<Result<_, _>>()?;
     parts.iter().try_for_each(check_ending)?;
     let records: u64 = parts.iter().map(|part| part.records().len() as u64).sum();
-    match P::verify(request.settings()?, &parts) {
+    match P::verify(&request.settings()?, &parts) {
         Ok(facts) if request.json => {
             let (records, facts) = (Some(records), Some(facts));
-            json_line(out, &Verdict { ok: true, records, facts, ..Verdict::default() })
+            let shared = Some(P::shared_facts(&parts));
+            json_line(out, &Verdict { ok: true, records, facts, shared, ..Verdict::default() })
         }
         Ok(facts) => {
             let records = count(records, "record");

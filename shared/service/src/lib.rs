@@ -10,6 +10,8 @@ pub mod control;
 pub mod exit;
 pub mod group;
 pub mod inspection;
+pub mod journal_set;
+pub mod kept_settings;
 pub mod launch;
 pub mod lifecycle;
 pub mod log_file;
@@ -28,4 +30,4 @@ pub mod worker_channel;
 
 pub use dialogue::time::{Span, Time};
 pub use journal::{replace_file, replace_file_synced};
-pub use reducer::{Effects, Event, Never, Node, NodeError};
+pub use reducer::{Effects, Event, Never, Node, NodeError, SetAside};

@@ -11,6 +11,9 @@ use crate::Time;
 /// Input of a node.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event<In> {
+    /// A journal of the group has been set aside since the epoch began. Comes before
+    /// [`Event::Started`] at every start since, so it must be idempotent.
+    SetAside(SetAside),
     /// The node has been recovered and its topics are open.
     Started,
     /// Something arrived, from a topic or a device.
@@ -19,6 +22,16 @@ pub enum Event<In> {
     Tick,
     /// The service is to end: bring what moves to rest, then call [`Effects::exit`].
     Shutdown,
+}
+
+/// The numbers that are over because a journal of the group was set aside: nothing that has one of them
+/// is in progress any more, none of them is given again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SetAside {
+    /// The highest of them; for utterances, interactions, prompts and acts alike.
+    pub over: u64,
+    /// Whether this service's own journal was set aside and its successor is still empty.
+    pub is_own: bool,
 }
 
 /// A service as a reducer.

@@ -9,13 +9,13 @@ use crate::bus::{Bus, Identity, PortError, WakeListener};
 use crate::clock;
 use crate::commit::Commit;
 use crate::exit::{Exit, Failure};
-use crate::inspection::{self, Finding, Part};
+use crate::inspection::{self, Finding, Part, SharedFacts};
 use crate::lifecycle::{Cycle, Environment, Health, Lifecycle, drive};
 use crate::logging;
 use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
-use crate::{Effects, Event, Node, Span, Time};
+use crate::{Effects, Event, Node, SetAside, Span, Time, journal_set};
 use config::Settings;
-use journal::{Header, Journal, JournalOpenError};
+use journal::Journal;
 use messages::Service;
 use serde::{Serialize, de::DeserializeOwned};
 use std::ops::ControlFlow;
@@ -29,8 +29,6 @@ const PASS_EVENTS_MAX: usize = 256;
 const LOOK_EVERY: Span = Span::from_ms(500);
 /// Time that a topic may fail without a break before the service gives up: a restart may help then.
 const PORT_PATIENCE: Span = Span::from_ms(10_000);
-/// Timeout for the previous incarnation to release its journal.
-const LOCK_PATIENCE: Span = Span::from_ms(3_000);
 
 /// A service: a node and the shell around it.
 pub trait Program: Sized {
@@ -61,12 +59,21 @@ pub trait Program: Sized {
         String::new()
     }
 
-    /// Checks the invariants of the journal, oldest part first. Returns the verified facts.
+    /// Checks the invariants of the journal, oldest part first, with the settings that were in force,
+    /// newest first. Returns the verified facts.
     ///
     /// # Errors
-    /// The first broken invariant, or settings that do not fit.
-    fn verify(_settings: Settings, _parts: &[Part<Record<Self>>]) -> Result<Vec<String>, Failure> {
+    /// The first broken invariant, or settings of which none fit.
+    fn verify(
+        _settings: &[Settings],
+        _parts: &[Part<Record<Self>>],
+    ) -> Result<Vec<String>, Failure> {
         Ok(Vec::new())
+    }
+
+    /// What the journals of the others must agree with.
+    fn shared_facts(_parts: &[Part<Record<Self>>]) -> SharedFacts {
+        SharedFacts::default()
     }
 
     /// Examines the devices that the service needs, for `whichone doctor`.
@@ -169,7 +176,7 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
     let lifecycle = Lifecycle::begin(&environment.paths)?;
     let settings = Settings::load_snapshot(&environment.paths.run())?;
     let config = P::config(&environment, &settings)?;
-    let (journal, records) = open_journal::<P>(&environment)?;
+    let (journal, records, set_aside) = open_journal::<P>(&environment)?;
     let node = P::Node::recover(config, records)?;
     let failed = |e: std::io::Error| Failure::new(Exit::NotReached, e.to_string());
     let commit = Commit::start(journal, environment.paths.journal()).map_err(failed)?;
@@ -188,6 +195,9 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
         port_failure: None,
         _bus: bus,
     };
+    if let Some(set_aside) = set_aside {
+        service.node.on(Event::SetAside(set_aside), clock::now(), &mut service.effects);
+    }
     service.node.on(Event::Started, clock::now(), &mut service.effects);
     service.commit()?;
     drive(lifecycle, &mut service)
@@ -209,39 +219,18 @@ fn open_topics<P: Program>(
 pub type Record<P> = <<P as Program>::Node as Node>::Record;
 type In<P> = <<P as Program>::Node as Node>::In;
 type Out<P> = <<P as Program>::Node as Node>::Out;
-/// The journal of a service, if it has one, and its records.
-type Recovered<P> = (Option<Journal<Record<P>>>, Vec<Record<P>>);
+/// The journal of a service, if it has one, its records, and the numbers that are over.
+type Recovered<P> = (Option<Journal<Record<P>>>, Vec<Record<P>>, Option<SetAside>);
 
 fn open_journal<P: Program>(environment: &Environment) -> Result<Recovered<P>, Failure> {
-    let Some(record) = P::RECORD else { return Ok((None, Vec::new())) };
-    let path = environment.paths.journal_file(P::SERVICE.name());
-    let header = Header {
-        record: record.to_owned(),
-        group: environment.paths.name().to_string(),
-        epoch: environment.epoch.0,
-    };
-    let until = clock::now() + LOCK_PATIENCE;
-    loop {
-        match Journal::open(&path, &header) {
-            Ok((journal, recovered)) => {
-                if recovered.truncated_bytes > 0 {
-                    tracing::warn!(bytes = recovered.truncated_bytes, "torn tail cut off");
-                }
-                tracing::info!(records = recovered.records.len(), "journal recovered");
-                return Ok((Some(journal), recovered.records));
-            }
-            Err(JournalOpenError::Locked { .. }) if clock::now() < until => {
-                std::thread::sleep(std::time::Duration::from_millis(10));
-            }
-            Err(error) => {
-                let exit = match error {
-                    JournalOpenError::Locked { .. } | JournalOpenError::Io { .. } => Exit::Storage,
-                    _ => Exit::Config,
-                };
-                return Err(Failure::new(exit, format!("{}: {error}", path.display())));
-            }
-        }
+    let Some(record) = P::RECORD else { return Ok((None, Vec::new(), None)) };
+    let (journal, recovered, set_aside) =
+        journal_set::open(environment, P::SERVICE.name(), record)?;
+    if recovered.truncated_bytes > 0 {
+        tracing::warn!(bytes = recovered.truncated_bytes, "torn tail cut off");
     }
+    tracing::info!(records = recovered.records.len(), "journal recovered");
+    Ok((Some(journal), recovered.records, set_aside))
 }
 
 struct Loop<P: Program> {

@@ -55,6 +55,16 @@ impl AcceptedUtterances {
         self.outbox.len() != before || !was_marked
     }
 
+    /// Handles a journal that was set aside: utterances up to `over` are never sent again.
+    pub(crate) fn skip(&mut self, over: UtteranceSeq) {
+        let before = self.outbox.len();
+        self.outbox.skip(over);
+        if self.outbox.len() < before {
+            let dropped = before - self.outbox.len();
+            tracing::warn!(dropped, "utterances from before a journal was set aside are dropped");
+        }
+    }
+
     pub(super) fn is_marked(&self) -> bool {
         self.is_marked
     }

@@ -136,7 +136,7 @@ impl Supervisor {
         self.admin = None;
         remove_leftovers(paths);
         make_folders(&[&paths.run(), &paths.log(), &paths.journal()])?;
-        (self.configuration.publish)(&paths.run()).map_err(failed("settings for the services"))?;
+        (self.configuration.publish)(paths).map_err(failed("settings for the services"))?;
         self.admin = Some(Admin::open(paths, Epoch(self.around.epoch))?);
         if !paths.control_socket().exists() {
             self.server.rebind(&paths.control_socket()).map_err(failed("control socket"))?;

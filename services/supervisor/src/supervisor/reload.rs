@@ -30,7 +30,7 @@ impl Supervisor {
         self.check_same_services(&configuration.spec.services)?;
         let adopted = self.group.adopt(&configuration.spec);
         adopted.map_err(|error| wrong(vec![error.to_string()]))?;
-        if let Err(error) = (configuration.publish)(&self.around.paths.run()) {
+        if let Err(error) = (configuration.publish)(&self.around.paths) {
             return Err(wrong(vec![error.to_string()]));
         }
         let changed = self.put_into_force(configuration);

@@ -19,7 +19,7 @@ use thiserror::Error;
 use super::{Supervisor, TICK};
 use crate::configuration::GroupSpec;
 use crate::configuration::{Configuration, Load};
-use crate::epoch;
+use crate::epoch::{self, EpochError};
 use crate::group::Group;
 use crate::lifeline::Lifeline;
 use crate::previous_run::{self, PreviousRunError};
@@ -46,6 +46,9 @@ pub enum StartError {
     /// The group's shared memory cannot be created.
     #[error("shared memory: {0}")]
     SharedMemory(#[from] BusError),
+    /// The group's journals are lost, damaged or of another version.
+    #[error("{0}")]
+    Epoch(#[from] EpochError),
     /// A folder, file, socket or setting is refused by the operating system.
     #[error("{0}: {1}")]
     Io(&'static str, io::Error),
@@ -57,7 +60,10 @@ impl StartError {
         match self {
             Self::Config(_) | Self::Order(_) => Exit::Config,
             Self::PreviousRun(_) | Self::Room(_) | Self::SharedMemory(_) => Exit::NotReached,
-            Self::Io(..) => Exit::Storage,
+            Self::Epoch(EpochError::Journals(all)) if all.iter().all(|it| it.is_foreign) => {
+                Exit::Config
+            }
+            Self::Epoch(_) | Self::Io(..) => Exit::Storage,
         }
     }
 }
@@ -123,8 +129,8 @@ fn raise(
 ) -> Result<(Admin, Signals, Server, Surroundings), StartError> {
     check_room(configuration.shared_memory_free_min_mib)?;
     make_folders(&[&paths.run(), &paths.log(), &paths.journal()])?;
-    let epoch = epoch::open(paths, fresh).map_err(failed("epoch"))?;
-    (configuration.publish)(&paths.run()).map_err(failed("settings for the services"))?;
+    let epoch = epoch::open(paths, fresh)?;
+    (configuration.publish)(paths).map_err(failed("settings for the services"))?;
     let admin = Admin::open(paths, Epoch(epoch))?;
     let signals = Signals::new().map_err(failed("signals"))?;
     adopt_orphans().map_err(failed("process settings"))?;

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Args, ValueEnum};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Subcommand, ValueEnum};
 use messages::Service;
 
 use super::ConfigArgs;
@@ -131,19 +132,42 @@ pub struct MotionArgs {
 
 /// Arguments of `journal`.
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct JournalArgs {
-    /// Name of the service.
-    #[arg(default_value = Service::Policy.name(), value_parser = Service::JOURNALED.map(Service::name))]
-    pub service: String,
-    /// Verify the journal's invariants; exit code 70 if one is broken.
+    /// What is done besides listing and verifying.
+    #[command(subcommand)]
+    pub action: Option<JournalAction>,
+    /// Name of the service: the policy's journal is listed, and all are verified, where none is named.
+    #[arg(value_parser = journaled())]
+    pub service: Option<Service>,
+    /// Verify the journals' invariants; exit code 70 if one is broken, 74 if one is lost or damaged.
     ///
     /// For the policy: every utterance is applied once and in order, every state is reproduced bit for
-    /// bit from the one before, and no interaction delivers twice.
+    /// bit from the one before, and no interaction delivers twice. For all together: they belong
+    /// together, nothing was applied that was not accepted, and the arm took on what was ordered.
     #[arg(long)]
     pub verify: bool,
-    /// The configuration of the journal, if the group is not running.
-    #[command(flatten)]
-    pub config: ConfigArgs,
+}
+
+/// Change of the journals.
+#[derive(Debug, Subcommand)]
+pub enum JournalAction {
+    /// Put journals that are lost or damaged aside, and let the others continue without them.
+    ///
+    /// The files are kept in a folder `set-aside-TIME`. At the next start what was in progress ends,
+    /// utterances from before count no more, and numbers continue above all earlier ones. Without its
+    /// own journal the arm starts with its motion stop latched. The group must be down.
+    SetAside {
+        /// Services whose journals are set aside.
+        #[arg(required = true, value_name = "SERVICE", value_parser = journaled())]
+        services: Vec<Service>,
+    },
+}
+
+/// Parses the name of a service that keeps a journal.
+fn journaled() -> impl TypedValueParser<Value = Service> {
+    PossibleValuesParser::new(Service::JOURNALED.map(Service::name))
+        .try_map(|name| Service::from_name(&name).ok_or("no such service"))
 }
 
 /// Parses a timeout.

@@ -1,41 +1,150 @@
 //! Inspection of a journal or the machine by the services' own programs: `journal`, and a part of
 //! `doctor`.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::{env, fs, io};
 
+use messages::Service;
+use serde_json::json;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
-use service::launch;
+use service::inspection::{SharedFacts, Verdict, count};
+use service::journal_set::{self, JournalSet};
+use service::{kept_settings, launch};
 
-use super::paths as locations;
 use crate::Outcome;
-use crate::cli::JournalArgs;
+use crate::cli::{JournalAction, JournalArgs};
 use crate::output::Output;
 
-/// Prints a service's records, or verifies them.
+/// Lists, verifies or sets aside journals.
 pub(super) fn journal(paths: &GroupPaths, args: &JournalArgs, out: &mut Output<'_>) -> Outcome {
-    let file = paths.journal_file(&args.service);
-    if !file.is_file() {
-        let what = format!("group {} has no journal of {} yet", paths.name(), args.service);
-        let help = "help: start the group with `whichone up`";
-        return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
+    match (&args.action, &args.service) {
+        (Some(JournalAction::SetAside { services }), _) => set_aside(paths, services, out),
+        (None, None) if args.verify => verify_all(paths, out),
+        (None, service) => {
+            let service = service.unwrap_or(Service::Policy);
+            let file = paths.journal_file(service.name());
+            if !file.is_file() {
+                let what = format!("group {} has no journal of {}", paths.name(), service.name());
+                let help = "help: start the group with `whichone up`";
+                return Err(Failure::new(Exit::NotReached, format!("{what}; {help}")));
+            }
+            let mut command = journal_command(paths, service);
+            command.args(args.verify.then_some("--verify"));
+            command.args(out.is_json().then_some("--json"));
+            let status = command.status().map_err(|error| failed(&command, &error))?;
+            Ok(Exit::of_process(status.code()))
+        }
     }
-    let mut command = command(&args.service, "journal");
-    command.arg(&file).args(out.is_json().then_some("--json"));
-    // A listing does without settings, with fewer words.
-    let settings = match locations::settings_in_force(paths, &args.config) {
-        Err(error) if args.verify => return Err(error),
-        settings => settings.ok(),
+}
+
+fn set_aside(paths: &GroupPaths, services: &[Service], out: &mut Output<'_>) -> Outcome {
+    let folder = journal_set::set_aside(paths, services)?;
+    if out.is_json() {
+        out.json(&json!({ "folder": folder }))?;
+        return Ok(Exit::Ok);
+    }
+    match folder {
+        Some(folder) => out.line(format_args!("moved to {}", folder.display()))?,
+        None => out.line("there was no file to move")?,
+    }
+    out.line("at the next start what was in progress ends, and nothing said before counts again")?;
+    if services.contains(&Service::Arm) {
+        out.line(
+            "the arm starts with its motion stop latched: look, then `whichone resume-motion`",
+        )?;
+    }
+    Ok(Exit::Ok)
+}
+
+/// Verifies every journal, and that they agree with one another.
+fn verify_all(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
+    let unreadable = |error| Failure::file(&paths.epoch_file(), &error);
+    let Some(set) = JournalSet::load(paths).map_err(unreadable)? else {
+        let what = format!("group {} has no journals yet", paths.name());
+        return Err(Failure::new(Exit::NotReached, format!("{what}; help: `whichone up`")));
     };
-    let settings = settings.map(|it| Settings::write(&it)).transpose()?;
-    command.args(args.verify.then_some("--verify"));
-    if let Some(settings) = &settings {
-        command.arg("--settings").arg(settings.folder());
+    let unusable = set.check(paths);
+    if let Some(first) = unusable.first() {
+        let lines: Vec<_> = unusable.iter().map(ToString::to_string).collect();
+        return Err(Failure::new(first.exit(), lines.join("\n")));
     }
-    let status = command.status().map_err(|error| failed(&command, &error))?;
-    Ok(Exit::of_process(status.code()))
+    let mut verdicts = BTreeMap::new();
+    // A running group writes on: who was told is read before who told.
+    for service in [Service::Arm, Service::Policy, Service::Speech] {
+        if !paths.journal_file(service.name()).is_file() {
+            continue;
+        }
+        match verify(paths, service)? {
+            Ok(verdict) => verdicts.insert(service.name(), verdict),
+            Err(exit) => return Ok(exit),
+        };
+    }
+    let facts =
+        |service: Service| verdicts.get(service.name()).and_then(|it: &Verdict| it.shared.clone());
+    let shared = Service::JOURNALED.map(|service| facts(service).unwrap_or_default());
+    let together = agree(&set, shared);
+    let together = together.map_err(|broken| Failure::new(Exit::Invariant, broken))?;
+    for service in Service::JOURNALED {
+        let Some(Verdict { records, facts, .. }) = verdicts.get(service.name()) else { continue };
+        let (records, facts) = (records.unwrap_or(0), facts.clone().unwrap_or_default());
+        if out.is_json() {
+            let service = service.name();
+            out.json(
+                &json!({ "service": service, "ok": true, "records": records, "facts": facts }),
+            )?;
+            continue;
+        }
+        out.line(format_args!("{}: {} verified", service.name(), count(records, "record")))?;
+        facts.iter().try_for_each(|fact| out.line(format_args!("  {fact}")))?;
+    }
+    if !out.is_json() {
+        out.line(format_args!("together: {together}"))?;
+    }
+    Ok(Exit::Ok)
+}
+
+/// Has a service's program verify its journal; its own words on standard error where it is broken.
+fn verify(paths: &GroupPaths, service: Service) -> Result<Result<Verdict, Exit>, Failure> {
+    let mut command = journal_command(paths, service);
+    command.args(["--verify", "--json"]).stderr(Stdio::inherit());
+    let output = command.output().map_err(|error| failed(&command, &error))?;
+    let verdict = serde_json::from_slice::<Verdict>(&output.stdout).ok();
+    Ok(verdict.filter(|it| it.ok).ok_or(Exit::of_process(output.status.code())))
+}
+
+/// Checks what the journals say about one another.
+fn agree(set: &JournalSet, [speech, policy, arm]: [SharedFacts; 3]) -> Result<String, String> {
+    let accepted = speech.utterance.max(set.numbers_over);
+    if policy.utterance > accepted {
+        let applied = policy.utterance;
+        return Err(format!(
+            "the policy has applied utterance {applied}, speech accepted {accepted}"
+        ));
+    }
+    let is_listed = |(interaction, ..): &&(u64, u32, u16)| *interaction > policy.since;
+    let known: Vec<_> = arm.picks.iter().filter(is_listed).collect();
+    if let Some((interaction, attempt, object)) = known.iter().find(|it| !policy.picks.contains(it))
+    {
+        let pick = format!("pick {interaction}.{attempt} of object {object}");
+        return Err(format!("the arm took on {pick}, which the policy never ordered"));
+    }
+    let picks = count(known.len() as u64, "pick");
+    Ok(format!("nothing applied that was not accepted, {picks} as ordered, epoch {}", set.epoch))
+}
+
+/// The command line of a service's program for its journal, with the settings in force and those of
+/// earlier runs.
+fn journal_command(paths: &GroupPaths, service: Service) -> Command {
+    let mut command = command(service.name(), "journal");
+    command.arg(paths.journal_file(service.name()));
+    let running = Some(paths.run()).filter(|run| run.join(config::SNAPSHOT_FILE).is_file());
+    for folder in running.into_iter().chain(kept_settings::folders(paths)) {
+        command.arg("--settings").arg(folder);
+    }
+    command
 }
 
 /// A snapshot of settings in a temporary folder.
@@ -75,4 +184,29 @@ pub(super) fn command(service: &str, verb: &str) -> Command {
 pub(super) fn failed(command: &Command, error: &io::Error) -> Failure {
     let program = Path::new(command.get_program()).display();
     Failure::new(Exit::NotReached, format!("cannot run {program}: {error}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn facts(utterance: u64, picks: &[(u64, u32, u16)], since: u64) -> SharedFacts {
+        SharedFacts { utterance, picks: picks.iter().copied().collect(), since }
+    }
+
+    #[test]
+    fn journals_that_contradict_one_another_are_found() {
+        let set = JournalSet::new(7);
+        let speech = || facts(5, &[], 0);
+        let orders = [(1, 1, 2), (2, 1, 0)];
+        let check = |policy, arm| agree(&set, [speech(), policy, arm]);
+        assert!(check(facts(5, &orders, 0), facts(0, &orders, 0)).is_ok());
+        assert!(check(facts(4, &orders, 0), facts(0, &orders[..1], 0)).is_ok());
+        let replayed = check(facts(6, &orders, 0), facts(0, &[], 0)).unwrap_err();
+        assert_eq!(replayed, "the policy has applied utterance 6, speech accepted 5");
+        let other = check(facts(5, &orders, 0), facts(0, &[(2, 1, 1)], 0)).unwrap_err();
+        assert!(other.contains("pick 2.1 of object 1, which the policy never ordered"), "{other}");
+        // What the policy no longer keeps cannot be compared.
+        assert!(check(facts(5, &orders[1..], 1), facts(0, &orders, 0)).is_ok());
+    }
 }

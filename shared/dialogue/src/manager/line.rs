@@ -78,6 +78,8 @@ pub enum Content {
     Cancelled,
     /// The interaction is abandoned after silence.
     Abandoned,
+    /// The interaction is abandoned because a part of the robot's memory is lost.
+    Forgotten,
     /// The wanted object is not here.
     NotHere,
     /// None of the scene's objects is left.

@@ -42,7 +42,7 @@ use pointing::Pointing;
 use scene::{ObjectId, Scene};
 
 use crate::gesture::Gestures;
-use crate::ids::PickId;
+use crate::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 use crate::time::Time;
 use crate::{
     ActKind, Action, Actions, Costs, Decision, DecisionProblem, Durations, Ended, Model, Outcome,
@@ -158,6 +158,7 @@ impl Manager {
             Cause::Quiet => self.decide_deferred(state, at),
             Cause::PickEnded { pick, outcome } => self.end_pick(state, *pick, *outcome, at),
             Cause::Reconfigured => self.reconfigure(state, at),
+            Cause::SetAside(over) => self.set_aside(state, *over, at),
         }
     }
 
@@ -318,6 +319,20 @@ impl Manager {
             utterances: open.utterances,
         });
         say(state, content, at);
+    }
+
+    /// Lets every number up to `over` be over, and the open interaction with them: what was said in it
+    /// may be lost.
+    fn set_aside(&self, state: &mut State, over: u64, at: Time) {
+        state.applied = state.applied.max(UtteranceSeq(over));
+        state.last_interaction = state.last_interaction.max(InteractionId(over));
+        state.last_prompt = state.last_prompt.max(PromptId(over));
+        state.act.id = state.act.id.max(ActId(over));
+        if state.open.is_some() {
+            self.close(state, Outcome::Abandoned, at, Content::Forgotten);
+        } else {
+            set(state, Act { utterance: state.applied, decided: at, ..Act::default() });
+        }
     }
 
     /// Returns the description of an object, unique in the scene.

@@ -227,6 +227,8 @@ pub enum Cause {
     },
     /// The service was started with other settings, perhaps with another scene.
     Reconfigured,
+    /// A journal of the group was set aside: every number up to this one is over.
+    SetAside(u64),
 }
 
 /// An utterance of the user with its interpretations.

@@ -52,7 +52,7 @@ impl Storage for &mut Disk {
 
 impl Disk {
     fn new() -> Self {
-        Self { bytes: header::encode(&header(), 1).unwrap().0, ..Self::default() }
+        Self { bytes: header::encode(&header(), 1, 0).unwrap().0, ..Self::default() }
     }
 
     fn tail(&mut self) -> Tail<&mut Self> {

@@ -26,7 +26,7 @@ fn entry(number: u32) -> Entry {
 }
 
 fn header() -> Header {
-    Header { record: "entry/2".into(), group: "kitchen".into(), epoch: 3 }
+    Header { record: "entry/2".into(), group: "kitchen".into(), epoch: 3, generation: 1 }
 }
 
 /// A journal's path in a temporary folder.
@@ -43,7 +43,7 @@ impl TestJournal {
     }
 
     fn open(&self) -> (Journal<Entry>, Recovered<Entry>) {
-        Journal::open(&self.path, &header()).unwrap()
+        Journal::open_or_create(&self.path, &header()).unwrap()
     }
 
     fn recover(&self) -> Recovered<Entry> {

@@ -3,17 +3,46 @@
 use std::path::Path;
 
 use super::{Entry, TestJournal, entry, header};
-use crate::{AppendError, BODY_BYTES_MAX, Ending, Header, Journal, JournalOpenError, read};
+use crate::{
+    AppendError, BODY_BYTES_MAX, Ending, Header, Journal, JournalOpenError, inspect, read,
+};
+
+const SERVICES: [&str; 3] = ["speech", "policy", "arm"];
 
 #[test]
-fn journal_starts_fresh_with_a_new_or_empty_file() {
+fn journal_is_made_where_there_is_no_file() {
     let test = TestJournal::new();
-    assert_eq!(test.recover().records, []);
-    test.overwrite(b"");
     let recovered = test.recover();
     assert_eq!((recovered.records, recovered.first_seq, recovered.truncated_bytes), (vec![], 1, 0));
     assert_eq!(read::<Entry>(&test.path).unwrap().header, header());
+    assert_eq!(inspect(&test.path).unwrap().header, header());
     assert_eq!(test.names(), ["policy.journal", "policy.journal.lock"]);
+}
+
+#[test]
+fn journal_that_is_missing_or_empty_is_rejected() {
+    let test = TestJournal::new();
+    let open = || Journal::<Entry>::open(&test.path, &header()).map(drop);
+    assert!(matches!(open(), Err(JournalOpenError::Missing)));
+    assert!(matches!(read::<Entry>(&test.path), Err(JournalOpenError::Missing)));
+    test.overwrite(b"");
+    let make = || Journal::<Entry>::open_or_create(&test.path, &header()).map(drop);
+    for opened in [open(), make(), inspect(&test.path).map(drop)] {
+        assert!(matches!(opened, Err(JournalOpenError::Empty)), "{opened:?}");
+        assert!(opened.unwrap_err().is_lost());
+    }
+    assert_eq!(test.bytes(), b"");
+}
+
+#[test]
+fn journal_of_another_generation_is_rejected_and_left_unchanged() {
+    let test = TestJournal::new();
+    test.write(&[&[entry(1)]]);
+    let before = test.bytes();
+    let next = Header { generation: 2, ..header() };
+    let error = Journal::<Entry>::open_or_create(&test.path, &next).unwrap_err();
+    assert!(matches!(error, JournalOpenError::Generation { expected: 2, found: 1 }), "{error}");
+    assert_eq!(test.bytes(), before);
 }
 
 #[test]
@@ -97,7 +126,7 @@ fn journal_of_another_owner_or_kind_is_rejected_and_left_unchanged() {
     ];
     for (found, parts) in cases {
         let test = TestJournal::new();
-        drop(Journal::<Entry>::open(&test.path, &found).unwrap());
+        drop(Journal::<Entry>::open_or_create(&test.path, &found).unwrap());
         let before = test.bytes();
         let error = Journal::<Entry>::open(&test.path, &header()).unwrap_err();
         let message = error.to_string();
@@ -108,17 +137,17 @@ fn journal_of_another_owner_or_kind_is_rejected_and_left_unchanged() {
 }
 
 #[test]
-fn journals_of_format_1_are_rejected_with_a_way_out_and_left_unchanged() {
+fn journals_of_former_formats_are_rejected_with_a_way_out_and_left_unchanged() {
     let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fixtures/journals");
-    for service in ["speech", "policy", "arm"] {
-        let old = fixtures.join("format_1").join(format!("{service}.journal"));
+    for (format, service) in [1, 2].into_iter().flat_map(|format| SERVICES.map(|s| (format, s))) {
+        let old = fixtures.join(format!("format_{format}")).join(format!("{service}.journal"));
         let bytes = std::fs::read(old).unwrap();
         let test = TestJournal::new();
         test.overwrite(&bytes);
         let error = Journal::<Entry>::open(&test.path, &header()).unwrap_err();
         assert!(matches!(error, JournalOpenError::Foreign(_)), "{error}");
         let message = error.to_string();
-        assert!(message.contains("format 2, found 1"), "{message}");
+        assert!(message.contains(&format!("format 3, found {format}")), "{message}");
         assert!(message.contains("`whichone up --fresh`, which keeps the old file"), "{message}");
         assert_eq!(test.bytes(), bytes);
     }

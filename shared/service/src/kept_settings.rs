@@ -1,0 +1,73 @@
+//! The settings by which the journals were written, kept beside them: a journal can be listed and
+//! verified without saying how its group was started.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::PathBuf;
+use std::time::SystemTime;
+
+use config::Settings;
+
+use crate::group::GroupPaths;
+
+/// Number of settings that are kept.
+const KEPT: usize = 8;
+
+/// Keeps the settings, as the newest of a few.
+///
+/// # Errors
+/// The folder cannot be written.
+pub fn keep(paths: &GroupPaths, settings: &Settings) -> io::Result<()> {
+    let mut hash = scene::StableHash::default();
+    hash.text(&settings.snapshot());
+    let folder = paths.kept_settings().join(format!("{:016x}", hash.value()));
+    fs::create_dir_all(&folder)?;
+    if !folder.join(config::SNAPSHOT_FILE).is_file() {
+        settings.write_snapshot(&folder)?;
+    }
+    File::open(&folder)?.set_modified(SystemTime::now())?;
+    folders(paths).into_iter().skip(KEPT).try_for_each(fs::remove_dir_all)
+}
+
+/// Folders with the kept settings, newest first.
+pub fn folders(paths: &GroupPaths) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(paths.kept_settings()) else { return Vec::new() };
+    let dated = |path: PathBuf| Some((fs::metadata(&path).ok()?.modified().ok()?, path));
+    let mut folders: Vec<_> = entries.filter_map(|entry| dated(entry.ok()?.path())).collect();
+    folders.sort();
+    folders.into_iter().rev().map(|(_, path)| path).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+    use std::time::Duration;
+
+    use super::*;
+    use crate::group::GroupName;
+
+    #[test]
+    fn newest_settings_are_kept_once() {
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &GroupName::new("lab").unwrap()).unwrap();
+        let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
+        let settings = |repeats: usize| {
+            let set = ("dialogue.turns.repeats_max".to_owned(), repeats.to_string());
+            Settings::load(&config, None, &[set]).unwrap()
+        };
+        for repeats in 0..KEPT + 2 {
+            keep(&paths, &settings(repeats)).unwrap();
+            // The order must not depend on the resolution of the file system's times.
+            for folder in folders(&paths) {
+                let file = File::open(&folder).unwrap();
+                let age = file.metadata().unwrap().modified().unwrap() - Duration::from_secs(10);
+                file.set_modified(age).unwrap();
+            }
+        }
+        assert_eq!(folders(&paths).len(), KEPT);
+        keep(&paths, &settings(5)).unwrap();
+        assert_eq!(folders(&paths).len(), KEPT);
+        let newest = Settings::load_snapshot(&folders(&paths)[0]).unwrap();
+        assert_eq!(newest.dialogue.turns.repeats_max, 5);
+    }
+}
