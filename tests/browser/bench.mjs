@@ -63,7 +63,7 @@ function row(what, values) {
 async function measure() {
   const page = await browser.newPage({ viewport: { width: 1440, height: 900 } });
   await giveMicrophone(page);
-  await page.goto(group.url);
+  await page.goto(group.link());
   await hears(group);
   await drawnFinely(page);
   let right = 0;

@@ -34,7 +34,7 @@ let group;
 async function open(path, viewport, colorScheme) {
   const context = await browser.newContext({ viewport, colorScheme, deviceScaleFactor: 1 });
   const page = await context.newPage();
-  await page.goto(new URL(path, group.url).href);
+  await page.goto(group.link(path));
   return page;
 }
 

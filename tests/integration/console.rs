@@ -1,6 +1,7 @@
 //! The console as pages see it, with real groups and sockets.
 
 use std::net::TcpListener;
+use std::os::unix::fs::MetadataExt;
 
 use rustix::process::Signal;
 use serde_json::{Value as Json, json};
@@ -242,47 +243,105 @@ fn foreign_origins_are_refused() {
 }
 
 #[test]
-fn token_is_required_where_set() {
-    let group = Group::up(&["console.token=open-sesame-123"]);
-    let place = group.console();
+fn page_is_for_those_with_the_token() {
+    let group = Group::up(&[]);
+    let owner = group.console();
+    let place = owner.without_token();
     let html = "Accept: text/html";
-    assert_eq!(http(&place, "GET", "/api/state", &[], "").0, 401);
+    for path in ["/api/state", "/metrics", "/robot.urdf", "/study/export.json", "/ws"] {
+        assert_eq!(http(&place, "GET", path, &[], "").0, 401, "{path}");
+    }
     let (status, head, _) = http(&place, "GET", "/", &[html], "");
     assert!(status == 303 && head.contains("/login"), "{head}");
     assert_eq!(http(&place, "GET", "/login", &[html], "").0, 200);
     assert_eq!(http(&place, "GET", "/healthz", &[], "").0, 200);
     assert!(Page::connect(&place, &Visitor::operator(1)).unwrap_err().contains("401"));
+    let token = owner.token.clone().expect("a token");
     let own = format!("Origin: http://{place}");
     let wrong = http(&place, "POST", "/login", &[&own], "token=guess");
     assert!(wrong.1.contains("/login?wrong") && !wrong.1.to_lowercase().contains("set-cookie"));
-    assert_eq!(http(&place, "POST", "/login", &[], "token=open-sesame-123").0, 403);
-    let (status, head, _) = http(&place, "POST", "/login", &[&own], "token=open-sesame-123");
-    assert_eq!(status, 303, "{head}");
-    let head = head.to_lowercase();
-    let (_, cookie) = head.split_once("set-cookie: ").unwrap_or_else(|| panic!("{head}"));
-    let cookie = cookie.split(';').next().unwrap().to_owned();
-    let visitor = Visitor { headers: vec![("cookie", cookie)], ..Visitor::operator(1) };
-    drop(group.page(&visitor));
-    let bearer = ["Authorization: Bearer open-sesame-123"];
-    assert_eq!(http(&place, "GET", "/api/state", &bearer, "").0, 200);
+    let form = format!("token={token}");
+    assert_eq!(http(&place, "POST", "/login", &[], &form).0, 403);
+    for link in [("POST", "/login".to_owned(), form), ("GET", format!("/?{form}&lang=de"), String::new())] {
+        let (method, path, body) = link;
+        let (status, head, _) = http(&place, method, &path, &[&own], &body);
+        assert_eq!(status, 303, "{head}");
+        assert!(!head.contains(&token), "neither cookie nor address is the token: {head}");
+        let lower = head.to_lowercase();
+        let (_, cookie) = lower.split_once("set-cookie: ").unwrap_or_else(|| panic!("{head}"));
+        let cookie = cookie.split(';').next().unwrap().to_owned();
+        let visitor = Visitor { headers: vec![("cookie", cookie)], ..Visitor::operator(1) };
+        drop(Page::open(&place, &visitor).unwrap());
+    }
+    assert_eq!(http(&owner, "GET", "/api/state", &[], "").0, 200);
+    let link = group.must(&["console"]).stdout;
+    assert_eq!(link.trim(), format!("http://{place}/?token={token}"));
     group.down();
 }
 
 #[test]
-fn port_in_use_is_avoided_and_viewers_are_limited() {
+fn token_is_private_and_can_be_renewed() {
+    let group = Group::up(&[]);
+    let before = group.console();
+    let token = before.token.clone().expect("a token");
+    let file = service::console_link::token_file(group.paths());
+    assert_eq!(std::fs::metadata(&file).unwrap().mode() & 0o777, 0o600);
+    // Not even in the arguments of a process, which every user can read.
+    for process in std::fs::read_dir("/proc").unwrap() {
+        let arguments = process.unwrap().path().join("cmdline");
+        let arguments = std::fs::read(arguments).unwrap_or_default();
+        assert!(!String::from_utf8_lossy(&arguments).contains(&token));
+    }
+    let renewed = group.must(&["console", "--renew", "--json"]).json();
+    assert_ne!(renewed["token"], token.as_str());
+    assert_eq!(http(&before, "GET", "/api/state", &[], "").0, 401);
+    assert_eq!(http(&group.console(), "GET", "/api/state", &[], "").0, 200);
+    group.down();
+}
+
+#[test]
+fn page_is_open_where_the_configuration_says_so() {
+    let group = Group::up(&["console.access=open"]);
+    let anyone = group.console().without_token();
+    assert_eq!(http(&anyone, "GET", "/api/state", &[], "").0, 200);
+    drop(Page::open(&anyone, &Visitor::operator(1)).unwrap());
+    let log = std::fs::read_to_string(group.paths().log_file("console")).unwrap();
+    assert!(log.contains("every user of this machine can operate the robot"), "{log}");
+    group.down();
+}
+
+#[test]
+fn port_in_use_is_avoided() {
     let taken = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port();
     let listen = format!("console.listen=127.0.0.1:{port}");
-    let group = Group::up(&[&listen, "console.viewers_max=2"]);
+    let group = Group::up(&[&listen]);
     let place = group.console();
-    assert!(!place.ends_with(&format!(":{port}")), "{place}");
+    assert!(!place.place.ends_with(&format!(":{port}")), "{place}");
     let log = std::fs::read_to_string(group.paths().log_file("console")).unwrap();
     assert!(log.contains("another one is used"), "{log}");
     assert_eq!(group.status()["console"], format!("http://{place}/"));
-    let (_first, _second) = (group.page(&Visitor::operator(1)), group.page(&Visitor::operator(2)));
-    let refused = Page::open(&place, &Visitor::operator(3)).unwrap_err();
-    assert!(refused.contains("viewers_max"), "{refused}");
-    drop(group.page(&Visitor::operator(2)));
+    group.down();
+}
+
+#[test]
+fn operator_gets_in_beside_any_number_of_viewers() {
+    let group = Group::up(&[]);
+    let place = group.console();
+    let viewer = |n| Visitor { role: "viewer", ..Visitor::operator(n) };
+    let mut open: Vec<Page> = (1..=31).map(|n| group.page(&viewer(n))).collect();
+    for n in 32..=40 {
+        let refused = Page::open(&place, &viewer(n)).unwrap_err();
+        assert!(refused.contains("1013") && refused.contains("viewers_max"), "{refused}");
+    }
+    let mut operator = group.page(&Visitor::operator(100));
+    assert!(ok(&operator.ask("say", &json!({ "text": "get me the bowl" }))));
+    // Also where idle pages that may operate hold every place.
+    let mut next = group.page(&Visitor::operator(101));
+    let code = open[0].until("the end of the page that was idle for longest", |p| p.closed.clone()).0;
+    assert_eq!(code, 4002);
+    assert!(ok(&next.ask("stop", &Json::Null)));
+    drop((open, operator, next));
     group.down();
 }
 

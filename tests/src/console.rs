@@ -5,6 +5,7 @@ use dialogue::{Model, Params};
 use evaluation::simulation::SimulatedUser;
 use evaluation::simulation::users::Domain;
 use scene::{Scene, question_from_json};
+use service::console_link;
 use serde_json::{Map, Value as Json, json};
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -58,13 +59,40 @@ impl Visitor<'_> {
     }
 }
 
+/// Where a console is, and the token that lets one in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Console {
+    /// `127.0.0.1:PORT`.
+    pub place: String,
+    /// None: the console is asked without it.
+    pub token: Option<String>,
+}
+
+impl std::fmt::Display for Console {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.place)
+    }
+}
+
+impl Console {
+    /// The console for one who does not have the token.
+    pub fn without_token(&self) -> Self {
+        Self { token: None, ..self.clone() }
+    }
+
+    fn bearer(&self) -> Option<String> {
+        self.token.as_ref().map(|token| format!("Bearer {token}"))
+    }
+}
+
 impl Group {
-    /// The address of the console, `127.0.0.1:PORT`.
-    pub fn console(&self) -> String {
-        wait_for("the console's address", 10.0, || {
-            let url = std::fs::read_to_string(self.paths().console_url()).ok()?;
-            Some(url.trim().strip_prefix("http://")?.trim_end_matches('/').to_owned())
-        })
+    /// The group's console, for its owner.
+    pub fn console(&self) -> Console {
+        let place = wait_for("the console's address", 10.0, || {
+            let url = console_link::address(self.paths())?;
+            Some(url.strip_prefix("http://")?.trim_end_matches('/').to_owned())
+        });
+        Console { place, token: console_link::token(self.paths()) }
     }
 
     /// Opens a page.
@@ -78,17 +106,20 @@ impl Group {
 /// # Panics
 /// If no response arrives.
 pub fn http(
-    place: &str,
+    console: &Console,
     method: &str,
     path: &str,
     more: &[&str],
     body: &str,
 ) -> (u16, String, String) {
+    let place = &console.place;
     let mut stream = TcpStream::connect(place).expect("the console listens");
     stream.set_read_timeout(Some(PATIENCE)).expect("a timeout");
     let host = if more.iter().any(|line| line.starts_with("Host:")) { "" } else { place };
     let host = if host.is_empty() { String::new() } else { format!("Host: {host}\r\n") };
-    let more: String = more.iter().map(|line| format!("{line}\r\n")).collect();
+    let bearer = console.bearer().map(|bearer| format!("Authorization: {bearer}"));
+    let more = more.iter().copied().chain(bearer.as_deref());
+    let more: String = more.map(|line| format!("{line}\r\n")).collect();
     let length = body.len();
     write!(
         stream,
@@ -104,12 +135,12 @@ pub fn http(
 }
 
 impl Page {
-    /// Opens a page at `127.0.0.1:PORT` and waits for its welcome.
+    /// Opens a page and waits for its welcome.
     ///
     /// # Errors
     /// The console rejects the page, or does not answer.
-    pub fn open(place: &str, visitor: &Visitor<'_>) -> Result<Self, String> {
-        let mut page = Self::connect(place, visitor)?;
+    pub fn open(console: &Console, visitor: &Visitor<'_>) -> Result<Self, String> {
+        let mut page = Self::connect(console, visitor)?;
         let Visitor { session, role, last_line, .. } = visitor;
         page.send(&json!({ "t": "hello", "protocol": 2, "session": session, "name": "test",
                            "last_line": last_line, "role": role }));
@@ -130,7 +161,8 @@ impl Page {
     ///
     /// # Errors
     /// The console rejects the connection.
-    pub fn connect(place: &str, visitor: &Visitor<'_>) -> Result<Self, String> {
+    pub fn connect(console: &Console, visitor: &Visitor<'_>) -> Result<Self, String> {
+        let place = &console.place;
         let text = |error: &dyn std::fmt::Display| error.to_string();
         let stream = TcpStream::connect(place).map_err(|e| text(&e))?;
         stream.set_read_timeout(Some(PATIENCE)).map_err(|e| text(&e))?;
@@ -139,7 +171,8 @@ impl Page {
         let headers = request.headers_mut();
         let origin = HeaderValue::from_str(&format!("http://{place}")).map_err(|e| text(&e))?;
         headers.insert("origin", origin);
-        for (name, value) in &visitor.headers {
+        let bearer = console.bearer().map(|bearer| ("authorization", bearer));
+        for (name, value) in bearer.iter().chain(&visitor.headers) {
             headers.insert(*name, HeaderValue::from_str(value).map_err(|e| text(&e))?);
         }
         let (socket, _) = client(request, stream).map_err(|e| text(&e))?;

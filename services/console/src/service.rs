@@ -9,9 +9,12 @@ use std::time::Instant;
 
 use config::{Recogniser, Settings, Voice};
 use messages::Service;
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use service::client::Client;
 use service::clock;
+use service::console_link;
 use service::exit::{Exit, Failure};
+use service::group::GroupPaths;
 use service::lifecycle::{Cycle, Environment, Health, Lifecycle, drive};
 use service::service_loop;
 use service::worker_channel;
@@ -21,6 +24,7 @@ use crate::bridge::{self, Bridge, Inbox};
 use crate::hub::command::{Command, Motion};
 use crate::hub::outbound::{PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
+use crate::server::connections::Limits;
 use crate::server::web::Web;
 use crate::server::{Access, App};
 use crate::study::{self, Study};
@@ -69,9 +73,10 @@ impl Console {
         let study = Study::new(settings, paths)?;
         let handover = Span::from_s(settings.console.handover.as_secs_f64());
         let channels = Channels { commands: commands.clone(), motions, restarts };
+        let limits = limits(settings.console.viewers_max);
         let app = Arc::new(App {
-            hub: Hub::new(channels, settings.console.viewers_max, handover),
-            access: Access::new(settings.console.token.clone()),
+            hub: Hub::new(channels, limits.viewers, handover),
+            access: access(settings, paths)?,
             group: paths.name().to_string(),
             settings: page_settings(settings, study.is_some()),
             urdf: settings.robot_files().urdf.text.clone(),
@@ -81,12 +86,36 @@ impl Console {
         bridge::supervisor::watch(paths, &app, restart_inbox, commands)
             .map_err(failed("supervisor's thread"))?;
         let address: SocketAddr = settings.console.listen;
-        let web =
-            Web::new(&app, address, paths.console_url()).map_err(failed("web server's threads"))?;
+        let web = Web::new(&app, address, paths.console_url(), limits.others)
+            .map_err(failed("web server's threads"))?;
         let bridge = Bridge::open(Arc::clone(&app), client, paths, settings, study)?;
         let inbox = Inbox { commands: command_inbox, motions: motion_inbox };
         Ok(Self { app, bridge, inbox, web, is_ending: false })
     }
+}
+
+fn access(settings: &Settings, paths: &GroupPaths) -> Result<Access, Failure> {
+    if settings.console.access == config::Access::Open {
+        tracing::warn!("console.access is open: every user of this machine can operate the robot");
+        return Ok(Access::open());
+    }
+    let file = console_link::token_file(paths);
+    let failed = |error| Failure::new(Exit::Storage, format!("{}: {error}", file.display()));
+    Access::by_token(file.clone()).map_err(failed)
+}
+
+/// Raises the limit of descriptors as far as allowed, and divides it.
+fn limits(viewers_max: usize) -> Limits {
+    let Rlimit { maximum, .. } = getrlimit(Resource::Nofile);
+    let raised = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum });
+    let allowed = getrlimit(Resource::Nofile).current.map_or(usize::MAX, |most| most as usize);
+    let used = std::fs::read_dir("/proc/self/fd").map_or(0, Iterator::count);
+    let limits = Limits::new(viewers_max, allowed.saturating_sub(used));
+    if limits.viewers < viewers_max {
+        let most = limits.viewers;
+        tracing::warn!(allowed, used, ?raised, "too few file descriptors: at most {most} pages");
+    }
+    limits
 }
 
 fn page_settings(settings: &Settings, study: bool) -> PageSettings {

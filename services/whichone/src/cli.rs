@@ -15,7 +15,7 @@ pub use batch::{
     ArmArgs, ExportArgs, Exported, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm,
 };
 pub use group::{
-    CheckArgs, ConfigArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, SwapArgs,
+    CheckArgs, ConfigArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, SwapArgs,
     UpArgs, WaitFor,
 };
 pub use study::{ALL as STUDY_ALL, Preset, ReportArgs, StudyArgs, StudyVerb};
@@ -79,6 +79,8 @@ pub enum Verb {
     Hold(ServiceArgs),
     /// Let a held service run again.
     Release(ServiceArgs),
+    /// Print the link to the console's page, with the token that lets you in.
+    Console(ConsoleArgs),
     /// Show the logs of the services.
     Logs(LogsArgs),
     /// Reload the configuration and restart the affected services.

@@ -18,6 +18,7 @@ mod availability;
 mod await_pick;
 mod chat;
 mod check;
+mod console;
 mod conversation;
 mod doctor;
 mod export;
@@ -53,6 +54,7 @@ pub fn run(cli: Cli, out: &mut Output<'_>) -> Outcome {
         Verb::Restart(args) => operate::restart(&paths()?, args, out),
         Verb::Hold(args) => operate::on_service(&paths()?, Request::Hold, args, out),
         Verb::Release(args) => operate::on_service(&paths()?, Request::Release, args, out),
+        Verb::Console(args) => console::console(&paths()?, &args, out),
         Verb::Logs(args) => logs::logs(&paths()?, &args, out),
         Verb::Reload(args) => operate::reload(&paths()?, args.timeout, out),
         Verb::Check(args) => check::check(&args, out),

@@ -5,14 +5,23 @@ use std::time::Duration;
 
 use diagnostics::Fields;
 
+/// Who may use the page.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// Those who have the group's token.
+    Token,
+    /// Every user and every program of this machine.
+    Open,
+}
+
 /// The web page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Console {
     /// Address and port; port 0 for any free one.
     pub listen: SocketAddr,
-    /// Access token; present if `listen` accepts other machines.
-    pub token: Option<String>,
-    /// Maximum number of open pages.
+    /// Who may use the page; [`Access::Open`] only where `listen` accepts this machine alone.
+    pub access: Access,
+    /// Maximum number of open pages; one place is reserved for an operator.
     pub viewers_max: usize,
     /// Time after which a request for control is granted if the operator does not answer.
     pub handover: Duration,
@@ -22,19 +31,15 @@ pub struct Console {
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Console {
     let listen = listen(f);
-    let token = token(f);
-    if !f.is_wrong("listen")
-        && !f.is_wrong("token")
-        && token.is_none()
-        && !listen.ip().is_loopback()
-    {
-        let what = format!("{} accepts other machines, and there is no token", listen.ip());
-        f.problem("listen", what, "set console.token, or listen at 127.0.0.1");
+    let access = f.choice("access", &[("token", Access::Token), ("open", Access::Open)]);
+    if !f.is_wrong("listen") && access == Access::Open && !listen.ip().is_loopback() {
+        let what = format!("{} accepts other machines, and access is open", listen.ip());
+        f.problem("listen", what, "set console.access = \"token\", or listen at 127.0.0.1");
     }
     Console {
         listen,
-        token,
-        viewers_max: usize::from(f.whole::<u16>("viewers_max", 1..=200)),
+        access,
+        viewers_max: usize::from(f.whole::<u16>("viewers_max", 2..=200)),
         handover: f.seconds("handover_s", 1.0..=300.0),
         language: language(f),
     }
@@ -49,16 +54,6 @@ fn listen(f: &mut Fields<'_>) -> SocketAddr {
         }
         SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0)
     })
-}
-
-fn token(f: &mut Fields<'_>) -> Option<String> {
-    let token = f.optional_text("token")?;
-    let fits = (12..=200).contains(&token.len()) && token.chars().all(|c| c.is_ascii_graphic());
-    if !fits {
-        let help = "choose a longer one, or remove spaces and accents";
-        f.problem("token", "expected 12 to 200 ASCII characters without spaces", help);
-    }
-    Some(token)
 }
 
 /// Reads the language, which is part of a path and so must be a plain name.

@@ -6,6 +6,7 @@ pub mod bus;
 pub mod client;
 pub mod clock;
 mod commit;
+pub mod console_link;
 pub mod control;
 pub mod exit;
 pub mod group;

@@ -13,6 +13,7 @@ export class Group {
     this.home = home;
     this.name = name;
     this.url = "";
+    this.token = "";
   }
 
   /**
@@ -29,15 +30,15 @@ export class Group {
     const patient = ["dialogue.turns.response_window_s=20.0", ...settings];
     const sets = patient.flatMap((setting) => ["--set", setting]);
     await group.must(...up, "--config", join(ROOT, "config"), ...sets);
-    group.url = (await until("the console's address", () => group.address())).trim();
-    return group;
+    const { console: url, token } = await group.json("console");
+    return Object.assign(group, { url, token });
   }
 
-  /** The console's address from the group's file; nothing while there is none. */
-  async address() {
-    const files = await readdir(this.home, { recursive: true });
-    const file = files.find((path) => path.endsWith("console.url"));
-    return file && readFile(join(this.home, file), "utf8");
+  /** The link to a page of the console with which its owner gets in. @param {string} [path] */
+  link(path = "/") {
+    const link = new URL(path, this.url);
+    link.searchParams.set("token", this.token);
+    return link.href;
   }
 
   /** Runs `whichone WORDS…` for this group. @param {string[]} words */
@@ -60,7 +61,8 @@ export class Group {
 
   /** Everything that the console shows, from its own interface. */
   async state() {
-    const response = await fetch(new URL("/api/state", this.url));
+    const headers = { authorization: `Bearer ${this.token}` };
+    const response = await fetch(new URL("/api/state", this.url), { headers });
     return response.json();
   }
 

@@ -38,7 +38,7 @@ export const test = base.extend({
   /** A page on the console, connected. */
   console: async ({ page, group, watched }, use) => {
     void watched;
-    await page.goto(group.url);
+    await page.goto(group.link());
     await use(page);
   },
 });

@@ -39,7 +39,7 @@ for (const [size, viewport] of Object.entries(SIZES)) {
         await expect(page.getByRole("dialog", { name: t("help.title") })).toBeVisible();
         await expectAccessible(page);
         for (const path of ["/nowhere", "/login"]) {
-          await page.goto(new URL(path, group.url).href);
+          await page.goto(group.link(path));
           await expectAccessible(page);
         }
       });

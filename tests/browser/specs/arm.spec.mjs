@@ -86,7 +86,7 @@ test("a robot with joints of other names and mesh files is drawn by what can be 
   const files = [];
   page.on("request", (request) => request.url().endsWith(".stl") && files.push(request.url()));
   await page.route("**/robot.urdf", (route) => route.fulfill({ body: own }));
-  await page.goto(group.url);
+  await page.goto(group.link());
   await drawn(page);
   const { bodies, joints } = await shown(page);
   expect(joints).toHaveProperty("own_s0");
@@ -106,7 +106,7 @@ test.describe("an invalid robot description", () => {
     await page.route("**/robot.urdf", (route) => route.fulfill({ body: "<robot><link></robot>" }), {
       times: 2,
     });
-    await page.goto(group.url);
+    await page.goto(group.link());
     const notice = page.locator(".arm-notice");
     const [before] = t("arm.no_robot", { why: "|" }).split("|");
     await expect(notice).toContainText(before);

@@ -30,7 +30,7 @@ for (const [thread, make] of Object.entries(BROWSERS_BY_THREAD)) {
     test.beforeEach(async ({ page, group, watched }) => {
       void watched;
       await make(page);
-      await page.goto(group.url);
+      await page.goto(group.link());
       await drawn(page);
       expect((await shown(page)).thread).toBe(thread);
     });

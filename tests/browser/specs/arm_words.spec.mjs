@@ -17,7 +17,7 @@ for (const [thread, make] of Object.entries(BROWSERS_BY_THREAD)) {
   }) => {
     void watched;
     await make(page);
-    await page.goto(group.url);
+    await page.goto(group.link());
     await expect(page.locator(".arm-notice")).toHaveText(t("arm.no_webgl"));
     await expect(page.locator(".arm-caption")).toHaveText(t("arm.resting"));
     await expect(arm(page)).toHaveAttribute("data-state", "words");

@@ -15,7 +15,7 @@ test("three interactions, a reload, the questionnaire and the export", async ({
   watched,
 }) => {
   void watched;
-  await page.goto(new URL("/study", group.url).href);
+  await page.goto(group.link("/study"));
   await press(page, "study.begin");
   await screen(page, "consent");
   await page.getByRole("checkbox", { name: t("study.agree") }).focus();
@@ -43,7 +43,7 @@ test("three interactions, a reload, the questionnaire and the export", async ({
   await press(page, "study.send");
   await screen(page, "thanks");
 
-  await page.goto(new URL("/results", group.url).href);
+  await page.goto(group.link("/results"));
   await expect(page.getByRole("cell", { name: "100%" })).toBeVisible();
   await expect(page.getByRole("img", { name: t("study.picture.success") })).toBeVisible();
   await expectAccessible(page);
@@ -77,7 +77,7 @@ test("a second participant waits, and the first one withdraws", async ({
   watched,
 }) => {
   void watched;
-  const place = new URL("/study", group.url).href;
+  const place = group.link("/study");
   await page.goto(place);
   await press(page, "study.begin");
   await screen(page, "consent");

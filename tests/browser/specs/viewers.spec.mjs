@@ -12,7 +12,7 @@ test("one talks, the other watches, and control is handed over", async ({
   await expect(first.getByText(t("control.mine"))).toBeVisible();
   const context = await browser.newContext();
   const second = await context.newPage();
-  await second.goto(group.url);
+  await second.goto(group.link());
   await expect(second.getByRole("textbox", { name: t("say.label") })).toBeDisabled();
 
   await type(first, "get me the bowl");
@@ -33,7 +33,7 @@ test("a viewer without control can stop the robot", async ({ console: first, gro
   await expect(first.getByText(t("control.mine"))).toBeVisible();
   const context = await browser.newContext();
   const second = await context.newPage();
-  await second.goto(group.url);
+  await second.goto(group.link());
   await second.getByRole("button", { name: t("stop.stop") }).click();
   await expect.poll(async () => (await group.state()).arm.stopped).toBe(true);
   await expect(first.getByRole("alert").filter({ hasText: t("alarm.stopped") })).toBeAttached();

@@ -22,7 +22,7 @@ const next = (group, before) =>
 test("a spoken request and spoken answers get the right bowl", async ({ page, group, watched }) => {
   void watched;
   await giveMicrophone(page);
-  await page.goto(group.url);
+  await page.goto(group.link());
   await hears(group);
   await holdAndSpeak(page, "get me the small white bowl");
   const { scene } = await group.state();
@@ -55,7 +55,7 @@ test.describe("while the robot speaks at length", () => {
   }) => {
     void watched;
     await giveMicrophone(page);
-    await page.goto(group.url);
+    await page.goto(group.link());
     await hears(group);
     await page.locator("#say-text").fill("get me the bowl");
     await page.keyboard.press("Enter");
@@ -78,7 +78,7 @@ test.describe("while the robot speaks at length", () => {
 test("the space bar opens the microphone except while typing", async ({ page, group, watched }) => {
   void watched;
   await giveMicrophone(page);
-  await page.goto(group.url);
+  await page.goto(group.link());
   await hears(group);
   const button = page.locator(".voice-talk");
   await page.locator("#say-text").focus();
@@ -109,7 +109,7 @@ test("an unavailable microphone is reported with help", async ({ page, group, wa
       abort() {}
     };
   });
-  await page.goto(group.url);
+  await page.goto(group.link());
   await hears(group);
   const button = page.locator(".voice-talk");
   const fault = page.getByRole("alert").filter({ hasText: "icrophone" });
@@ -149,7 +149,7 @@ test("a browser's own words are taken with the time at which they began", async 
     };
     localStorage.setItem("whichone.voice", JSON.stringify({ engine: "browser" }));
   });
-  await page.goto(group.url);
+  await page.goto(group.link());
   await page.locator(".voice-talk").click();
   await expect(page.locator("#transcript")).toContainText("the clear bowl");
   await page.locator(".voice-talk").click();
@@ -157,7 +157,7 @@ test("a browser's own words are taken with the time at which they began", async 
 
 test("the robot's voice is switched off and stays off", async ({ page, group, watched }) => {
   void watched;
-  await page.goto(group.url);
+  await page.goto(group.link());
   const sound = page.getByRole("button", { name: "Hear the robot here" });
   await expect(sound).toHaveAttribute("aria-pressed", "true");
   await sound.click();
@@ -171,7 +171,7 @@ test.describe("a robot without a recogniser", () => {
 
   test("says what to install", async ({ page, group, watched }) => {
     void watched;
-    await page.goto(group.url);
+    await page.goto(group.link());
     const button = page.locator(".voice-talk");
     await expect(button).toContainText("does not work here");
     await button.click();
@@ -181,7 +181,7 @@ test.describe("a robot without a recogniser", () => {
 
 test("its settings are there for everybody", async ({ page, group, watched }) => {
   void watched;
-  await page.goto(group.url);
+  await page.goto(group.link());
   await page.getByRole("button", { name: "Voice settings" }).click();
   await expect(page.getByRole("radio", { name: /^The robot/ })).toBeChecked();
   await expectAccessible(page);

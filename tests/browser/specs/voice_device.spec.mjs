@@ -15,7 +15,7 @@ test.use({ launchOptions: { executablePath: CHROMIUM, args } });
 test("hands-free speech is recognised with interim results", async ({ page, group }) => {
   const request = await say("get me the small white bowl");
   await writeWav(wav, Buffer.concat([quiet(1), request, quiet(3)]));
-  await page.goto(group.url);
+  await page.goto(group.link());
   await hears(group);
   await page.evaluate(() => {
     window.partials = [];

@@ -14,7 +14,7 @@ test("the first view is light, and the part in 3D comes after it", async ({
   void watched;
   const loaded = [];
   page.on("requestfinished", (request) => loaded.push(request));
-  await page.goto(group.url);
+  await page.goto(group.link());
   await expect(page.getByText(t("control.mine"))).toBeAttached();
   await expect.poll(() => loaded.some((request) => request.url().includes("/vendor/"))).toBe(true);
 
@@ -36,7 +36,7 @@ test.describe("in German", () => {
 
   test("the page can be had", async ({ page, group, watched }) => {
     void watched;
-    await page.goto(`${group.url}?lang=de`);
+    await page.goto(group.link("/?lang=de"));
     await expect(page.locator("html")).toHaveAttribute("lang", "de");
     await expect(page.getByText(t("control.mine"))).toHaveCount(0);
   });

@@ -20,12 +20,14 @@ const PROBE_MS = 1_200;
 const DEADLINE_MS = 10_000;
 /** The server closes with it when another page uses the same session. */
 const REPLACED = 4001;
+/** … and when too many pages are open, and this one was idle for the longest time. */
+const GAVE_WAY = 4002;
 /** After so many attempts the page asks whether the server wants its token first. */
 const ATTEMPTS = 2;
 
 /**
  * @typedef {object} Status
- * @property {"connecting"|"up"|"down"|"replaced"} state
+ * @property {"connecting"|"up"|"down"|"replaced"|"gave_way"} state in the last two it waits for its user
  * @property {number} since page time of the last change
  * @property {number} attempt failed attempts in a row
  * @property {number|null} retryAt page time of the next attempt
@@ -260,6 +262,7 @@ class Link {
     if (socket !== this.#socket) return;
     this.#drop();
     if (code === REPLACED) return this.#update({ state: "replaced", retryAt: null });
+    if (code === GAVE_WAY) return this.#update({ state: "gave_way", retryAt: null });
     const attempt = this.#status.attempt + 1;
     if (attempt === ATTEMPTS) this.#options.refused();
     const wait = backoffMs(attempt, Math.random());
@@ -292,7 +295,8 @@ class Link {
   /** A page that comes back into sight does not wait for its timers. */
   #watchPage() {
     const wake = () => {
-      if (document.visibilityState === "hidden" || this.#status.state === "replaced") return;
+      const waits = ["replaced", "gave_way"].includes(this.#status.state);
+      if (document.visibilityState === "hidden" || waits) return;
       if (!this.isUp) return this.reconnect();
       this.#ping();
       clearTimeout(this.#probe);

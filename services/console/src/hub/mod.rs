@@ -85,6 +85,13 @@ struct Control {
     lease: Lease,
 }
 
+/// Returns whether a command concerns the participant of the page that gives it, which proves itself by its
+/// secret. All others need control of the robot.
+fn is_of_own_participant(verb: &Verb) -> bool {
+    const OWN: [&str; 7] = ["find", "begin", "consent", "next", "start", "answer", "withdraw"];
+    matches!(verb, Verb::Study(verb, _) if OWN.contains(&verb.as_str()))
+}
+
 impl Hub {
     pub fn new(channels: Channels, viewers_max: usize, handover: Span) -> Self {
         let control = Control { viewers: Viewers::default(), lease: Lease::new(handover) };
@@ -102,25 +109,43 @@ impl Hub {
         hub
     }
 
-    /// Admits a page; returns its number and the frames for it alone.
+    /// Admits a page; returns its number and the frames for it alone. One place is reserved for a page that
+    /// may operate the robot; where all are taken, the page that was idle for the longest time gives way to
+    /// it.
     pub fn join(
         &self,
         name: &str,
         session: &str,
         role: Role,
+        now: Time,
     ) -> Result<(ViewerId, mpsc::Receiver<OutboundFrame>), String> {
         let mut control = self.control();
-        let known = control.viewers.has_session(session);
-        if !known && control.viewers.len() >= self.viewers_max {
-            let most = self.viewers_max;
-            return Err(format!(
-                "{most} pages are open; help: close one, or raise console.viewers_max"
-            ));
+        let Control { viewers, lease } = &mut *control;
+        if !viewers.has_session(session) {
+            let places = match role {
+                Role::Operator => self.viewers_max,
+                Role::Viewer | Role::Screen => self.viewers_max - 1,
+            };
+            match role {
+                _ if viewers.len() < places => {}
+                Role::Operator => viewers.give_way(lease.operator()),
+                Role::Viewer | Role::Screen => {
+                    let most = self.viewers_max;
+                    return Err(format!(
+                        "{most} pages are open, or reserved; help: close one, or raise console.viewers_max"
+                    ));
+                }
+            }
         }
-        let (viewer, frames) = control.viewers.add(name.to_owned(), session.to_owned(), role);
-        control.lease.joined(viewer, session, role == Role::Operator);
+        let (viewer, frames) = viewers.add(name.to_owned(), session.to_owned(), role, now);
+        lease.joined(viewer, session, role == Role::Operator);
         self.show(&control);
         Ok((viewer, frames))
+    }
+
+    /// Notes that a viewer's user does something.
+    pub fn note(&self, viewer: ViewerId, now: Time) {
+        self.control().viewers.note(viewer, now);
     }
 
     pub fn leave(&self, viewer: ViewerId, now: Time) {
@@ -173,8 +198,7 @@ impl Hub {
 
     /// Passes a command to the bridge, which answers by [`Hub::answer`].
     pub fn ask(&self, viewer: ViewerId, id: u64, verb: Verb) -> Result<(), String> {
-        // A study checks its participant's page instead.
-        if !matches!(verb, Verb::Study(..)) {
+        if !is_of_own_participant(&verb) {
             self.must_hold(viewer)?;
         }
         let offered = self.channels.commands.offer(Command::Do(viewer, id, verb));

@@ -21,15 +21,15 @@ fn hub() -> Page {
 fn received(frames: &mut mpsc::Receiver<OutboundFrame>) -> Json {
     match frames.try_recv().unwrap() {
         OutboundFrame::Text(frame) => serde_json::from_str(&frame).unwrap(),
-        OutboundFrame::Replaced => panic!("replaced"),
+        other => panic!("{other:?}"),
     }
 }
 
 #[test]
 fn hub_obeys_the_operator_but_lets_every_viewer_stop() {
     let Page { hub, commands, motions } = hub();
-    let (one, mut to_one) = hub.join("", "a", Role::Operator).unwrap();
-    let (other, _frames) = hub.join("", "b", Role::Viewer).unwrap();
+    let (one, mut to_one) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
+    let (other, _frames) = hub.join("", "b", Role::Viewer, Time(0)).unwrap();
     hub.ask(one, 1, Verb::NotThat).unwrap();
     assert!(matches!(commands.take(), Some(Command::Do(_, 1, Verb::NotThat))));
     let refused = hub.ask(other, 2, Verb::NotThat).unwrap_err();
@@ -43,31 +43,65 @@ fn hub_obeys_the_operator_but_lets_every_viewer_stop() {
 }
 
 #[test]
-fn hub_limits_viewers_but_admits_a_known_session() {
+fn hub_admits_a_known_session_in_control() {
+    let Page { hub, .. } = hub();
+    let (_, mut first) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
+    let (again, _frames) = hub.join("", "a", Role::Viewer, Time(0)).unwrap();
+    assert_eq!(first.try_recv(), Ok(OutboundFrame::Replaced));
+    assert_eq!((hub.viewers(), hub.control().lease.operator()), (1, Some(again)));
+}
+
+#[test]
+fn hub_reserves_a_place_for_an_operator() {
     let Page { hub, .. } = hub();
     let open: Vec<_> =
-        ["a", "b", "c"].iter().map(|s| hub.join("", s, Role::Operator).unwrap()).collect();
-    assert!(hub.join("", "d", Role::Viewer).unwrap_err().contains("viewers_max"));
-    let (again, _frames) = hub.join("", "a", Role::Viewer).unwrap();
-    let [(_, mut first), ..] = <[_; 3]>::try_from(open).unwrap();
-    assert_eq!(first.try_recv(), Ok(OutboundFrame::Replaced));
+        (1..=2).map(|n| hub.join("", &format!("{n}"), Role::Viewer, Time(n)).unwrap()).collect();
+    for role in [Role::Viewer, Role::Screen] {
+        assert!(hub.join("", "d", role, Time(3)).unwrap_err().contains("viewers_max"));
+    }
+    let (operator, _frames) = hub.join("", "o", Role::Operator, Time(4)).unwrap();
+    assert_eq!(hub.control().lease.operator(), Some(operator));
+    // Where all of them would operate, the one that was idle for the longest time gives way.
+    hub.note(ViewerId(1), Time(5));
+    let (next, _more) = hub.join("", "p", Role::Operator, Time(6)).unwrap();
+    let [(_, mut first), (_, mut second)] = <[_; 2]>::try_from(open).unwrap();
+    assert!(first.try_recv().is_err());
+    assert_eq!(second.try_recv(), Ok(OutboundFrame::GaveWay));
     assert_eq!(hub.viewers(), 3);
-    assert_eq!(hub.control().lease.operator(), Some(again), "its session is in control");
+    assert_eq!(hub.control().lease.operator(), Some(operator), "it keeps control");
+    assert!(matches!(hub.take_control(next, Time(7)), Ok(Some(Answer::Control { .. }))));
+}
+
+#[test]
+fn hub_lets_only_the_operator_end_anothers_participation() {
+    let Page { hub, commands, .. } = hub();
+    let (one, _to_one) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
+    let (other, _to_other) = hub.join("", "b", Role::Viewer, Time(0)).unwrap();
+    let study = |verb: &str| Verb::Study(verb.to_owned(), Json::Null);
+    for verb in ["resume", "close", "spoilt", "delete", "anything"] {
+        assert!(hub.ask(other, 1, study(verb)).unwrap_err().contains("in control"), "{verb}");
+        hub.ask(one, 1, study(verb)).unwrap();
+        assert!(commands.take().is_some());
+    }
+    for verb in ["find", "begin", "consent", "next", "start", "answer", "withdraw"] {
+        hub.ask(other, 1, study(verb)).unwrap();
+        assert!(commands.take().is_some(), "{verb}");
+    }
 }
 
 #[test]
 fn hub_gives_a_screen_no_control() {
     let Page { hub, .. } = hub();
-    let (screen, _to_screen) = hub.join("", "a", Role::Screen).unwrap();
+    let (screen, _to_screen) = hub.join("", "a", Role::Screen, Time(0)).unwrap();
     assert!(hub.take_control(screen, Time(0)).is_err());
-    let (one, _to_one) = hub.join("", "b", Role::Operator).unwrap();
+    let (one, _to_one) = hub.join("", "b", Role::Operator, Time(0)).unwrap();
     assert!(hub.give_control(one, screen).unwrap_err().contains("screen"));
 }
 
 #[test]
 fn hub_disconnects_a_viewer_that_does_not_read() {
     let Page { hub, .. } = hub();
-    let (viewer, mut frames) = hub.join("", "a", Role::Viewer).unwrap();
+    let (viewer, mut frames) = hub.join("", "a", Role::Viewer, Time(0)).unwrap();
     (0..1_000).for_each(|n| hub.answer(viewer, n, Ok(None)));
     assert_eq!(hub.viewers(), 0);
     let mut kept = 0;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use service::Time;
 use tokio::sync::mpsc;
 
 use super::ViewerId;
@@ -12,6 +13,8 @@ pub enum OutboundFrame {
     Text(String),
     /// The same page is open elsewhere; this one ends.
     Replaced,
+    /// Too many pages are open, and an operator comes; this one ends.
+    GaveWay,
 }
 
 /// Frames that wait for a viewer; one with more does not read and is disconnected.
@@ -41,6 +44,8 @@ pub(super) struct Viewer {
     pub(super) session: String,
     pub(super) role: Role,
     pub(super) queue: mpsc::Sender<OutboundFrame>,
+    /// When its user did something last, or when it was opened.
+    pub(super) active: Time,
 }
 
 impl Viewers {
@@ -49,11 +54,13 @@ impl Viewers {
         name: String,
         session: String,
         role: Role,
+        now: Time,
     ) -> (ViewerId, mpsc::Receiver<OutboundFrame>) {
         self.replace(&session);
         self.last += 1;
         let (queue, frames) = mpsc::channel(QUEUE_MAX);
-        self.open.insert(ViewerId(self.last), Viewer { name, session, role, queue });
+        let viewer = Viewer { name, session, role, queue, active: now };
+        self.open.insert(ViewerId(self.last), viewer);
         (ViewerId(self.last), frames)
     }
 
@@ -68,6 +75,23 @@ impl Viewers {
             }
             !replaced
         });
+    }
+
+    /// Ends the page that was idle for the longest time, except `operator`'s.
+    pub(super) fn give_way(&mut self, operator: Option<ViewerId>) {
+        let others = self.open.iter().filter(|(viewer, _)| Some(**viewer) != operator);
+        let idle = others.min_by_key(|(_, open)| open.active).map(|(viewer, _)| *viewer);
+        if let Some(idle) = idle.and_then(|idle| self.open.remove(&idle)) {
+            // A full queue is closed with its owner all the same.
+            let _ = idle.queue.try_send(OutboundFrame::GaveWay);
+        }
+    }
+
+    /// Notes that a viewer's user does something.
+    pub(super) fn note(&mut self, viewer: ViewerId, now: Time) {
+        if let Some(open) = self.open.get_mut(&viewer) {
+            open.active = now;
+        }
     }
 
     /// Forgets a viewer; its socket ends once its queue is dropped.

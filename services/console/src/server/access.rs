@@ -1,41 +1,85 @@
-//! Access rules: the console's own pages, and the token where one is set.
+//! Access rules: the console's own pages, the token, and the sessions of browsers that have shown it.
 //!
-//! Pure: decided by a request's headers.
+//! Decided by a request's headers. A session is a random name in a cookie; it lives through restarts of
+//! the console, in the token's file.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::http::{HeaderMap, header};
+use service::console_link::{is_token, random_secret, read_private, replace_private};
 
-const COOKIE: &str = "whichone_console";
+/// Most sessions; the oldest gives way.
+const SESSIONS_MAX: usize = 64;
+/// Life of a session, seconds.
+const SESSION_S: u64 = 30 * 24 * 3_600;
 
-#[derive(Clone, Debug)]
-pub struct Access {
-    token: Option<String>,
+/// Who may use the page.
+#[derive(Debug)]
+pub struct Access(Option<Guard>);
+
+/// The token and the sessions, as in their file.
+#[derive(Debug)]
+struct Guard {
+    file: PathBuf,
+    token: String,
+    sessions: Mutex<Vec<Session>>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Session {
+    name: String,
+    /// When it began, Unix seconds.
+    began_s: u64,
 }
 
 impl Access {
-    /// Makes the rules: open to every client, or to those with the token.
-    pub fn new(token: Option<String>) -> Self {
-        Self { token }
+    /// Makes the rules for pages that everyone on this machine may use.
+    pub fn open() -> Self {
+        Self(None)
+    }
+
+    /// Makes the rules for those who have the token. A file that others can read, or that has no token, is
+    /// replaced by one with a new token.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn by_token(file: PathBuf) -> io::Result<Self> {
+        let text = read_private(&file).unwrap_or_default();
+        let mut lines = text.lines();
+        let token = lines.next().filter(|token| is_token(token)).map(str::to_owned);
+        let (token, is_new) = match token {
+            Some(token) => (token, false),
+            None => (random_secret()?, true),
+        };
+        let session = |line: &str| {
+            let (name, began_s) = line.split_once(' ')?;
+            Some(Session { name: name.to_owned(), began_s: began_s.parse().ok()? })
+        };
+        let sessions = if is_new { Vec::new() } else { lines.filter_map(session).collect() };
+        if is_new {
+            if file.exists() {
+                tracing::warn!(file = %file.display(), "other users could read the token, or it is none: replaced");
+            }
+            write(&file, &token, &[])?;
+        }
+        Ok(Self(Some(Guard { file, token, sessions: Mutex::new(sessions) })))
     }
 
     /// Returns whether the request is addressed to this console. Without a token it is only reached
     /// from this machine; another host name here is an attack by another site (DNS rebinding).
     pub fn is_addressed(&self, headers: &HeaderMap) -> bool {
         let Some(host) = text(headers, &header::HOST) else { return false };
-        self.token.is_some() || is_this_machine(host)
+        self.0.is_some() || is_this_machine(host)
     }
 
-    /// Returns whether the request carries the token, in a cookie or as a bearer.
-    pub fn is_known(&self, headers: &HeaderMap) -> bool {
-        let Some(token) = &self.token else { return true };
+    /// Returns whether the request carries the token as a bearer, or the cookie of a session.
+    pub fn is_known(&self, headers: &HeaderMap, now_s: u64) -> bool {
+        let Some(guard) = &self.0 else { return true };
         let bearer = text(headers, &header::AUTHORIZATION);
         let bearer = bearer.and_then(|said| said.strip_prefix("Bearer "));
-        let cookies =
-            headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
-        let mut pairs = cookies.flat_map(|cookies| cookies.split(';')).filter_map(|pair| {
-            let (name, value) = pair.trim().split_once('=')?;
-            (name == COOKIE).then_some(value)
-        });
-        bearer.is_some_and(|said| same(said, token)) || pairs.any(|said| same(said, &hex(token)))
+        bearer.is_some_and(|said| same(said, &guard.token)) || guard.has_session(headers, now_s)
     }
 
     /// Returns whether the request comes from a page of this console: its origin is its host.
@@ -49,14 +93,72 @@ impl Access {
         place.is_some_and(|place| place.eq_ignore_ascii_case(host))
     }
 
-    pub fn cookie_for(&self, said: &str) -> Option<String> {
-        let token = self.token.as_ref().filter(|token| same(said, token))?;
-        Some(format!("{COOKIE}={}; Path=/; HttpOnly; SameSite=Strict", hex(token)))
+    /// Begins a session for a browser that shows the token; returns its cookie.
+    pub fn log_in(&self, headers: &HeaderMap, said: &str, now_s: u64) -> Option<String> {
+        let guard = self.0.as_ref().filter(|guard| same(said, &guard.token))?;
+        let name = random_secret().ok()?;
+        guard.begin(Session { name: name.clone(), began_s: now_s });
+        let cookie = cookie_name(headers);
+        Some(format!("{cookie}={name}; Path=/; Max-Age={SESSION_S}; HttpOnly; SameSite=Strict"))
     }
+}
+
+impl Guard {
+    fn has_session(&self, headers: &HeaderMap, now_s: u64) -> bool {
+        let wanted = cookie_name(headers);
+        let cookies =
+            headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
+        let mut said = cookies.flat_map(|cookies| cookies.split(';')).filter_map(|pair| {
+            let (name, value) = pair.trim().split_once('=')?;
+            (name == wanted).then_some(value)
+        });
+        let sessions = self.sessions();
+        said.any(|said| {
+            sessions.iter().any(|known| known.is_alive(now_s) && same(said, &known.name))
+        })
+    }
+
+    fn begin(&self, session: Session) {
+        let mut sessions = self.sessions();
+        sessions.retain(|known| known.is_alive(session.began_s));
+        while sessions.len() >= SESSIONS_MAX {
+            sessions.remove(0);
+        }
+        sessions.push(session);
+        // Without it the session ends with this process.
+        if let Err(error) = write(&self.file, &self.token, &sessions) {
+            tracing::warn!(%error, "a browser's session is not stored");
+        }
+    }
+
+    fn sessions(&self) -> MutexGuard<'_, Vec<Session>> {
+        // Every change leaves a consistent list.
+        self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Session {
+    fn is_alive(&self, now_s: u64) -> bool {
+        now_s < self.began_s.saturating_add(SESSION_S)
+    }
+}
+
+fn write(file: &Path, token: &str, sessions: &[Session]) -> io::Result<()> {
+    let lines = sessions.iter().map(|session| format!("{} {}\n", session.name, session.began_s));
+    let text: String = std::iter::once(format!("{token}\n")).chain(lines).collect();
+    replace_private(file, &text)
 }
 
 fn text<'a>(headers: &'a HeaderMap, name: &header::HeaderName) -> Option<&'a str> {
     headers.get(name)?.to_str().ok()
+}
+
+/// Returns the cookie's name. Browsers send a cookie to every port of a host, so it names the port that the
+/// browser sees: consoles on one host, also behind tunnels, do not take each other's place.
+fn cookie_name(headers: &HeaderMap) -> String {
+    let port = text(headers, &header::HOST).and_then(|host| host.rsplit_once(':'));
+    let port = port.and_then(|(_, port)| port.parse::<u16>().ok()).unwrap_or(0);
+    format!("whichone_{port}")
 }
 
 fn is_this_machine(host: &str) -> bool {
@@ -76,26 +178,39 @@ fn same(said: &str, wanted: &str) -> bool {
     said.len() == wanted.len() && differ == 0
 }
 
-/// Encodes a text for a cookie, which would need quotes otherwise.
-fn hex(text: &str) -> String {
-    text.bytes().map(|byte| format!("{byte:02x}")).collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use std::fs;
+    use std::os::unix::fs::PermissionsExt;
+
     use super::*;
+
+    const TOKEN: &str = "correct-horse";
 
     fn headers(pairs: &[(&'static str, &str)]) -> HeaderMap {
         pairs.iter().map(|(name, value)| (name.parse().unwrap(), value.parse().unwrap())).collect()
     }
 
-    fn guarded() -> Access {
-        Access::new(Some("correct-horse".to_owned()))
+    fn guarded() -> (tempfile::TempDir, PathBuf) {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("console.token");
+        replace_private(&file, TOKEN).unwrap();
+        (folder, file)
+    }
+
+    /// Logs a browser in at a port; returns the headers of its next requests.
+    fn logged_in(access: &Access, host: &str, now_s: u64) -> HeaderMap {
+        let cookie = access.log_in(&headers(&[("host", host)]), TOKEN, now_s).unwrap();
+        let (pair, rules) = cookie.split_once("; ").unwrap();
+        assert!(rules.contains("HttpOnly") && rules.contains("SameSite=Strict"));
+        assert!(!pair.contains(TOKEN), "the cookie is not the token");
+        headers(&[("host", host), ("cookie", &format!("a=b; {pair}"))])
     }
 
     #[test]
-    fn access_without_a_token_is_for_this_machine_only() {
-        let open = Access::new(None);
+    fn open_access_is_for_this_machine_only() {
+        let (_folder, file) = guarded();
+        let (open, guarded) = (Access::open(), Access::by_token(file).unwrap());
         for host in ["localhost:8377", "127.0.0.1:9", "[::1]:8377", "LOCALHOST", "127.0.0.1"] {
             assert!(open.is_addressed(&headers(&[("host", host)])), "{host}");
         }
@@ -104,22 +219,54 @@ mod tests {
             assert!(!open.is_addressed(&headers(&[("host", host)])), "{host}");
         }
         assert!(!open.is_addressed(&HeaderMap::new()));
-        assert!(guarded().is_addressed(&headers(&[("host", "robot.lab:8377")])));
-        assert!(open.is_known(&HeaderMap::new()));
+        assert!(guarded.is_addressed(&headers(&[("host", "robot.lab:8377")])));
+        assert!(open.is_known(&HeaderMap::new(), 0) && !guarded.is_known(&HeaderMap::new(), 0));
     }
 
     #[test]
-    fn access_accepts_the_token_as_bearer_or_cookie() {
-        let access = guarded();
-        assert!(!access.is_known(&HeaderMap::new()));
-        assert!(access.is_known(&headers(&[("authorization", "Bearer correct-horse")])));
-        assert!(!access.is_known(&headers(&[("authorization", "Bearer correct-hors")])));
-        let cookie = access.cookie_for("correct-horse").unwrap();
-        let (pair, rules) = cookie.split_once("; ").unwrap();
-        assert!(rules.contains("HttpOnly") && rules.contains("SameSite=Strict"));
-        assert!(access.is_known(&headers(&[("cookie", &format!("a=b; {pair}"))])));
-        assert!(!access.is_known(&headers(&[("cookie", "whichone_console=correct-horse")])));
-        assert_eq!(access.cookie_for("battery-staple"), None);
+    fn token_is_a_bearer_or_begins_a_session() {
+        let (_folder, file) = guarded();
+        let access = Access::by_token(file.clone()).unwrap();
+        let bearer = |token: &str| headers(&[("authorization", &format!("Bearer {token}"))]);
+        assert!(access.is_known(&bearer(TOKEN), 0));
+        assert!(!access.is_known(&bearer("correct-hors"), 0));
+        assert_eq!(access.log_in(&HeaderMap::new(), "battery-staple", 0), None);
+        let browser = logged_in(&access, "localhost:8377", 100);
+        assert!(access.is_known(&browser, 100 + SESSION_S - 1));
+        assert!(!access.is_known(&browser, 100 + SESSION_S), "it ends");
+        let cookie = format!("whichone_8377={TOKEN}");
+        let token_as_cookie = headers(&[("host", "localhost:8377"), ("cookie", &cookie)]);
+        assert!(!access.is_known(&token_as_cookie, 100));
+        let again = Access::by_token(file).unwrap();
+        assert!(again.is_known(&browser, 200), "it lives through a restart");
+    }
+
+    #[test]
+    fn sessions_are_bounded_and_end_with_the_token() {
+        let (_folder, file) = guarded();
+        let access = Access::by_token(file.clone()).unwrap();
+        let first = logged_in(&access, "localhost:1", 0);
+        let others: Vec<HeaderMap> =
+            (1..=SESSIONS_MAX as u64).map(|n| logged_in(&access, "localhost:1", n)).collect();
+        assert!(!access.is_known(&first, 100), "the oldest has given way");
+        assert!(others.iter().all(|other| access.is_known(other, 100)));
+        assert_eq!(fs::read_to_string(&file).unwrap().lines().count(), 1 + SESSIONS_MAX);
+        replace_private(&file, "another-token").unwrap();
+        let renewed = Access::by_token(file).unwrap();
+        assert!(others.iter().all(|other| !renewed.is_known(other, 100)));
+    }
+
+    #[test]
+    fn token_that_others_could_read_is_replaced() {
+        let (_folder, file) = guarded();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o644)).unwrap();
+        let access = Access::by_token(file.clone()).unwrap();
+        assert!(!access.is_known(&headers(&[("authorization", "Bearer correct-horse")]), 0));
+        let token = read_private(&file).unwrap();
+        assert!(is_token(token.trim()), "{token}");
+        fs::remove_file(&file).unwrap();
+        Access::by_token(file.clone()).unwrap();
+        assert_ne!(read_private(&file).unwrap(), token);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod access;
 mod assets;
+pub mod connections;
 pub mod message;
 pub mod metrics;
 pub mod routes;
@@ -11,20 +12,20 @@ pub mod web;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use axum::Router;
 use axum::body::Body;
-use axum::extract::{Request, State};
+use axum::extract::{ConnectInfo, Request, State};
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Response, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Redirect};
 use axum::routing::get;
-use tokio::net::TcpListener;
 
 use crate::hub::Hub;
 use crate::hub::outbound::PageSettings;
 pub use access::Access;
+use connections::{Gate, Of};
 
 /// Interval of the server's progress reports.
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
@@ -45,18 +46,21 @@ pub struct App {
 }
 
 /// Serves a listener until the hub ends.
-pub async fn serve(listener: TcpListener, app: Arc<App>) -> std::io::Result<()> {
+pub async fn serve(gate: Gate, app: Arc<App>) -> std::io::Result<()> {
     let mut ending = app.hub.ending();
-    let beating = Arc::clone(&app);
+    let (beating, table) = (Arc::clone(&app), Arc::clone(&gate.table));
     let progress = tokio::spawn(async move {
         let mut beat = tokio::time::interval(PROGRESS_EVERY);
         loop {
             beat.tick().await;
             beating.hub.progress.fetch_add(1, Ordering::Relaxed);
-            beating.hub.tick(service::clock::now());
+            let now = service::clock::now();
+            beating.hub.tick(now);
+            table.tick(now);
         }
     });
-    let served = axum::serve(listener, router(app))
+    let router = router(app).into_make_service_with_connect_info::<Of>();
+    let served = axum::serve(gate, router)
         .with_graceful_shutdown(async move {
             // A hub that is gone ends the server, too.
             let _ = ending.wait_for(|ending| *ending).await;
@@ -83,20 +87,40 @@ fn router(app: Arc<App>) -> Router {
         .with_state(app)
 }
 
-/// Requires the token, except for the files of the login page, which hold no data of this robot.
-async fn admit(State(app): State<Arc<App>>, request: Request, next: Next) -> Response<Body> {
-    if assets::is_open(request.uri().path()) || app.access.is_known(request.headers()) {
+/// Requires the token or a session, except for the files of the login page, which hold no data of this
+/// robot. A link with the token is exchanged for a session: the token does not stay in the address.
+async fn admit(
+    State(app): State<Arc<App>>,
+    ConnectInfo(Of(connection)): ConnectInfo<Of>,
+    request: Request,
+    next: Next,
+) -> Response<Body> {
+    let (is_get, uri) = (request.method() == Method::GET, request.uri());
+    if let Some((token, rest)) = routes::token_of(uri).filter(|_| is_get) {
+        return routes::enter(&app, request.headers(), &token, &rest).await;
+    }
+    if app.access.is_known(request.headers(), unix_s()) {
+        connection.prove();
+        return next.run(request).await;
+    }
+    if assets::is_open(uri.path()) {
         return next.run(request).await;
     }
     let wants_page = request
         .headers()
         .get(header::ACCEPT)
         .is_some_and(|accepts| accepts.to_str().is_ok_and(|accepts| accepts.contains("text/html")));
-    if wants_page && request.method() == Method::GET {
+    if wants_page && is_get {
         return Redirect::to("/login").into_response();
     }
-    (StatusCode::UNAUTHORIZED, "token required; help: Authorization: Bearer TOKEN\n")
-        .into_response()
+    let why = "token required; help: `whichone console` prints a link; programs send the header \
+               Authorization: Bearer TOKEN\n";
+    (StatusCode::UNAUTHORIZED, why).into_response()
+}
+
+/// Returns the wall clock's time, Unix seconds.
+fn unix_s() -> u64 {
+    SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs()
 }
 
 /// Rejects requests that are not addressed to this console, and adds the security headers.

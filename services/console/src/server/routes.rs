@@ -6,14 +6,15 @@ use std::time::Duration;
 
 use axum::body::{Body, Bytes};
 use axum::extract::ws::WebSocketUpgrade;
-use axum::extract::{Path, State};
+use axum::extract::{ConnectInfo, Path, State};
 use axum::http::{HeaderMap, Method, Response, StatusCode, Uri, header};
 use axum::response::{AppendHeaders, IntoResponse, Redirect};
 use service::Span;
 use service::clock;
 
 use super::message::FRAME_BYTES_MAX;
-use super::{Access, App, assets, socket as sockets};
+use super::connections::Of;
+use super::{Access, App, assets, socket as sockets, unix_s};
 
 /// Longest silence of a healthy main loop.
 const WELL: Span = Span::from_ms(3_000);
@@ -26,6 +27,7 @@ const PAUSE: Duration = Duration::from_secs(1);
 
 pub(super) async fn socket(
     State(app): State<Arc<App>>,
+    ConnectInfo(Of(connection)): ConnectInfo<Of>,
     headers: HeaderMap,
     upgrade: WebSocketUpgrade,
 ) -> Response<Body> {
@@ -36,7 +38,7 @@ pub(super) async fn socket(
     upgrade
         .max_message_size(FRAME_BYTES_MAX)
         .max_frame_size(FRAME_BYTES_MAX)
-        .on_upgrade(move |socket| sockets::serve(socket, app))
+        .on_upgrade(move |socket| sockets::serve(socket, connection, app))
 }
 
 pub(super) async fn state(State(app): State<Arc<App>>) -> Response<Body> {
@@ -122,15 +124,52 @@ pub(super) async fn login(
     }
     let form = std::str::from_utf8(&form).ok().filter(|form| form.len() <= FORM_MAX);
     let token = form.and_then(|form| form_field(form, "token")).unwrap_or_default();
-    match app.access.cookie_for(&token) {
+    enter(&app, &headers, &token, "/").await
+}
+
+/// Exchanges the token for a session and leads to a page; back to the login page where it is wrong.
+pub(super) async fn enter(
+    app: &App,
+    headers: &HeaderMap,
+    token: &str,
+    page: &str,
+) -> Response<Body> {
+    let unseen = [(header::CACHE_CONTROL, "no-store")];
+    if app.access.is_known(headers, unix_s()) {
+        return (unseen, Redirect::to(page)).into_response();
+    }
+    match app.access.log_in(headers, token, unix_s()) {
         Some(cookie) => {
-            (AppendHeaders([(header::SET_COOKIE, cookie)]), Redirect::to("/")).into_response()
+            let cookie = AppendHeaders([(header::SET_COOKIE, cookie)]);
+            let site = headers.get("sec-fetch-site").and_then(|site| site.to_str().ok());
+            let from_elsewhere = site == Some("cross-site");
+            if !from_elsewhere {
+                return (unseen, cookie, Redirect::to(page)).into_response();
+            }
+            // A redirect of another site's link would not carry the cookie; the page's own one does.
+            let page = page.replace('&', "&amp;").replace('"', "&quot;");
+            let go_on = format!(
+                "<!doctype html><meta http-equiv=\"refresh\" content=\"0;url={page}\"><p>whichone\n"
+            );
+            let kind = [(header::CONTENT_TYPE, "text/html; charset=utf-8")];
+            (unseen, cookie, kind, go_on).into_response()
         }
         None => {
             tokio::time::sleep(PAUSE).await;
-            Redirect::to("/login?wrong").into_response()
+            (unseen, Redirect::to("/login?wrong")).into_response()
         }
     }
+}
+
+/// Returns the token of a link, and the link's page without it.
+pub(super) fn token_of(uri: &Uri) -> Option<(String, String)> {
+    let query = uri.query()?;
+    let token = form_field(query, "token")?;
+    let rest: Vec<&str> = query.split('&').filter(|pair| !pair.starts_with("token=")).collect();
+    // One slash: two would lead to another host.
+    let path = format!("/{}", uri.path().trim_start_matches('/'));
+    let mark = if rest.is_empty() { "" } else { "?" };
+    Some((token, format!("{path}{mark}{}", rest.join("&"))))
 }
 
 pub fn form_field(form: &str, name: &str) -> Option<String> {
@@ -169,6 +208,17 @@ mod tests {
         ] {
             assert_eq!(sound_file(folder, bad), None, "{bad}");
         }
+    }
+
+    #[test]
+    fn link_leads_to_its_page_without_the_token() {
+        let split = |link: &str| token_of(&link.parse().unwrap());
+        let of = |token: &str, page: &str| Some((token.to_owned(), page.to_owned()));
+        assert_eq!(split("/?token=abc"), of("abc", "/"));
+        assert_eq!(split("/study?lang=de&token=a%2Db&role=screen"), of("a-b", "/study?lang=de&role=screen"));
+        assert_eq!(split("//evil.example/?token=abc"), of("abc", "/evil.example/"));
+        assert_eq!(split("/?tokens=abc"), None);
+        assert_eq!(split("/"), None);
     }
 
     #[test]

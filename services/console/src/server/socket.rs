@@ -11,6 +11,7 @@ use tokio::sync::mpsc;
 use tokio::time::{Instant, interval_at, timeout};
 
 use super::App;
+use super::connections::Connection;
 use super::message::{self, Do, Hello, Message, PROTOCOL};
 use crate::hub::board::Cursor;
 use crate::hub::outbound::{PageMessage, Welcome};
@@ -25,6 +26,8 @@ const READ_PATIENCE: Duration = Duration::from_secs(10);
 const SILENCE_MAX: Duration = Duration::from_secs(60);
 /// Close code of a page that was replaced by another one of its session.
 const REPLACED: u16 = 4001;
+/// Close code of a page that gave way to an operator.
+const GAVE_WAY: u16 = 4002;
 /// Interval between pings to a page.
 const PROBE_EVERY: Duration = Duration::from_secs(20);
 
@@ -32,17 +35,18 @@ type Out = SplitSink<WebSocket, Frame>;
 type In = SplitStream<WebSocket>;
 
 /// Serves one page until it goes, does not read, or the console ends.
-pub(super) async fn serve(socket: WebSocket, app: Arc<App>) {
+pub(super) async fn serve(socket: WebSocket, connection: Arc<Connection>, app: Arc<App>) {
     let (mut out, mut into) = socket.split();
     let hello = match first(&mut into).await {
         Ok(hello) => hello,
         Err(why) => return refuse(&mut out, close_code::POLICY, &why).await,
     };
     let Hello { session, name, last_line, role } = hello;
-    let (viewer, outbound) = match app.hub.join(&name, &session, role) {
+    let (viewer, outbound) = match app.hub.join(&name, &session, role, clock::now()) {
         Ok(joined) => joined,
         Err(why) => return refuse(&mut out, close_code::AGAIN, &why).await,
     };
+    connection.become_page();
     tracing::info!(%viewer, ?role, "a page has connected");
     let ended = tokio::select! {
         ended = write(&mut out, outbound, viewer, last_line, &app) => ended,
@@ -57,6 +61,7 @@ pub(super) async fn serve(socket: WebSocket, app: Arc<App>) {
             (close_code::POLICY, "the page did not read for 10 s")
         }
         Ended::Replaced => (REPLACED, "the same page is open somewhere else"),
+        Ended::GaveWay => (GAVE_WAY, "too many pages are open; this one was idle for the longest time"),
         Ended::Page => (close_code::NORMAL, ""),
     };
     close(&mut out, code, reason).await;
@@ -67,6 +72,7 @@ pub(super) async fn serve(socket: WebSocket, app: Arc<App>) {
 enum Ended {
     Page,
     Replaced,
+    GaveWay,
     Slow,
     Console,
 }
@@ -76,6 +82,7 @@ impl std::fmt::Display for Ended {
         f.write_str(match self {
             Self::Page => "it was closed",
             Self::Replaced => "it is open elsewhere",
+            Self::GaveWay => "it gave way to an operator",
             Self::Slow => "it did not read",
             Self::Console => "the console ends",
         })
@@ -131,6 +138,7 @@ async fn write(
             frame = outbound.recv() => match frame {
                 Some(OutboundFrame::Text(frame)) => frames.push(Frame::Text(frame.into())),
                 Some(OutboundFrame::Replaced) => return Ended::Replaced,
+                Some(OutboundFrame::GaveWay) => return Ended::GaveWay,
                 None => return Ended::Slow,
             },
             _ = probe.tick() => frames.push(Frame::Ping(Vec::new().into())),
@@ -190,6 +198,7 @@ fn text_frame(text: &str, viewer: ViewerId, hub: &Hub) {
             hub.send(viewer, &PageMessage::Pong { at: &at, server_ms: ms(now) });
         }
         Ok(Message::Do(id, what)) => {
+            hub.note(viewer, now);
             // Others than control are answered by those who carry them out.
             let passed_on = match what {
                 Do::Ask(verb) => hub.ask(viewer, id, verb),

@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 use service::{Span, Time};
 use tokio::runtime::Runtime;
 
+use super::connections::{Connections, Gate};
 use super::{App, serve};
 
 /// Ports that are tried from the configured one on.
@@ -32,6 +33,8 @@ pub struct Web {
     app: Arc<App>,
     configured: SocketAddr,
     url_file: PathBuf,
+    /// Most connections besides those of pages.
+    others_max: usize,
     listening: bool,
     tried: Option<Time>,
     /// Progress of the server's tasks, and when it was seen last.
@@ -39,8 +42,14 @@ pub struct Web {
 }
 
 impl Web {
-    /// Starts the server's threads; it listens at `configured` once there is a port.
-    pub fn new(app: &Arc<App>, configured: SocketAddr, url_file: PathBuf) -> io::Result<Self> {
+    /// Starts the server's threads; it listens at `configured` once there is a port, and holds at most
+    /// `others_max` connections besides those of pages.
+    pub fn new(
+        app: &Arc<App>,
+        configured: SocketAddr,
+        url_file: PathBuf,
+        others_max: usize,
+    ) -> io::Result<Self> {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(WORKERS)
             .thread_name("web")
@@ -51,6 +60,7 @@ impl Web {
             app: Arc::clone(app),
             configured,
             url_file,
+            others_max,
             listening: false,
             tried: None,
             progress: (0, Time(0)),
@@ -98,9 +108,10 @@ impl Web {
             tracing::warn!(%error, "the page's address is not written");
         }
         let app = Arc::clone(&self.app);
+        let gate = Gate { listener, table: Arc::new(Connections::new(self.others_max)) };
         if let Some(runtime) = &self.runtime {
             runtime.spawn(async move {
-                if let Err(error) = serve(listener, app).await {
+                if let Err(error) = serve(gate, app).await {
                     tracing::error!(%error, "the web server has ended");
                 }
             });

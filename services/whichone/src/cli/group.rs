@@ -86,6 +86,17 @@ pub struct RestartArgs {
     pub timeout: Duration,
 }
 
+/// Arguments of `console`.
+#[derive(Debug, Args)]
+pub struct ConsoleArgs {
+    /// Open the page in the browser, without the token in any process's arguments.
+    #[arg(long)]
+    pub open: bool,
+    /// Replace the token first: every browser has to log in again.
+    #[arg(long)]
+    pub renew: bool,
+}
+
 /// Arguments of `logs`.
 #[derive(Debug, Args)]
 pub struct LogsArgs {

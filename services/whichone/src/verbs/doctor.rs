@@ -8,12 +8,12 @@ use std::process::Stdio;
 
 use config::Settings;
 use messages::{SUPERVISOR, Service};
+use service::console_link;
 use service::exit::{Exit, Failure};
 use service::group::{GroupName, GroupPaths};
 use service::inspection::{Condition, Finding};
 use service::shm_cleanup;
 
-use super::status::console_url;
 use super::{inspection, leftovers, paths as locations, up, words};
 use crate::Outcome;
 use crate::cli::ConfigArgs;
@@ -86,7 +86,12 @@ fn programs() -> Finding {
 /// Checks the page: its address, or else its port.
 fn page(paths: &GroupPaths, settings: &Settings) -> Finding {
     const WHAT: &str = Service::Console.name();
-    if let Some(url) = console_url(paths) {
+    if settings.console.access == config::Access::Open {
+        let help = "help: set console.access = \"token\"";
+        let what = "console.access is open: every user of this machine can operate the robot";
+        return Finding::poor(WHAT, format!("{what}; {help}"));
+    }
+    if let Some(url) = console_link::address(paths) {
         return Finding::good(WHAT, format!("served at {url}"));
     }
     let wanted = settings.console.listen;

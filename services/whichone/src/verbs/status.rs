@@ -1,6 +1,7 @@
 //! `status`: the state of a group for operators.
 
 use serde::Serialize;
+use service::console_link;
 use service::control::CallError;
 use service::exit::Exit;
 use service::group::{GroupName, GroupPaths};
@@ -23,25 +24,19 @@ pub(super) fn status(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     if out.is_json() {
         out.json(&Printed {
             status: &status,
-            console: console_url(paths),
+            console: console_link::address(paths),
             hearing: hearing.as_ref().map(HearingView::new),
         })?;
     } else {
         let mut lines = lines(&status, out.style());
-        lines.extend(console_url(paths).map(|url| format!("console {url}")));
+        let console = console_link::address(paths);
+        lines.extend(console.map(|url| format!("console {url} (log in: whichone console)")));
         lines.extend(hearing.map(|hearing| hearing::line(&hearing, out.style())));
         for line in lines {
             out.line(line)?;
         }
     }
     Ok(if status.state == GroupState::Ready { Exit::Ok } else { Exit::NotReached })
-}
-
-/// Returns the address of the console's page, while one is served.
-pub(super) fn console_url(paths: &GroupPaths) -> Option<String> {
-    let text = std::fs::read_to_string(paths.console_url()).ok()?;
-    let url = text.trim();
-    (!url.is_empty()).then(|| url.to_owned())
 }
 
 /// A running group with `--json`.

@@ -3,13 +3,13 @@
 use std::time::Duration;
 
 use serde::Serialize;
+use service::console_link;
 use service::control::{CallError, Request};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::launch::{self, Options};
 use service::status::GroupStatus;
 
-use super::status::console_url;
 use super::{operate, paths};
 use crate::Outcome;
 use crate::cli::{ConfigArgs, UpArgs, WaitFor};
@@ -42,12 +42,12 @@ pub(super) fn up(paths: &GroupPaths, args: &UpArgs, out: &mut Output<'_>) -> Out
     };
     let status = operate::status_of(paths)?;
     if out.is_json() {
-        out.json(&Started { status, console: console_url(paths) })?;
+        out.json(&Started { status, console: console_link::address(paths) })?;
     } else {
         let pid = status.supervisor_pid;
         out.line(format_args!("group {name} is up (supervisor {pid}): {ready}"))?;
-        if let Some(url) = console_url(paths) {
-            out.line(format_args!("console: {url}"))?;
+        if let Some(link) = console_link::link(paths) {
+            out.line(format_args!("console: {link}"))?;
         }
     }
     Ok(Exit::Ok)

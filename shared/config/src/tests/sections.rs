@@ -5,23 +5,21 @@ use std::time::Duration;
 
 use super::Folder;
 use crate::study::{Design, Kind, Objects};
-use crate::{Section, Settings};
+use crate::{Access, Section, Settings};
 
 #[test]
 fn console_default_serves_this_machine_only() {
     let settings = Folder::new(&[]).load(None, &[]).unwrap();
     let console = &settings.console;
-    assert!(console.listen.ip().is_loopback() && console.token.is_none());
+    assert!(console.listen.ip().is_loopback() && console.access == Access::Token);
     assert_eq!((console.viewers_max, console.handover), (32, Duration::from_secs(10)));
     assert_eq!(console.language, "en");
 }
 
 #[test]
-fn console_requires_a_token_for_other_machines() {
-    let open = "listen = '0.0.0.0:80'";
-    let guarded = format!("{open}\ntoken = 'correct-horse'");
-    let settings = Folder::new(&[("console.toml", &guarded)]).load(None, &[]).unwrap();
-    assert_eq!(settings.console.token.as_deref(), Some("correct-horse"));
+fn console_serves_other_machines_by_token() {
+    let settings = Folder::new(&[("console.toml", "listen = '0.0.0.0:80'")]).load(None, &[]).unwrap();
+    assert_eq!(settings.console.access, Access::Token);
 }
 
 #[test]

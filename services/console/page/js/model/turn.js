@@ -27,7 +27,9 @@ const STATES = {
  * @returns {Banner}
  */
 export function banner(link, turn, arm) {
-  if (link?.state === "replaced") return { key: "replaced", tone: "down", icon: "down" };
+  if (link?.state === "replaced" || link?.state === "gave_way") {
+    return { key: link.state, tone: "down", icon: "down" };
+  }
   if (link?.state !== "up") {
     const key = link?.state === "connecting" && !turn ? "connecting" : "offline";
     return { key, tone: "down", icon: "down" };
