@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { describe, it } from "node:test";
 import { drawingOf } from "../../../services/console/page/js/model/drawing.js";
-import { health } from "../../../services/console/page/js/model/health.js";
+import { actOf, health, tone } from "../../../services/console/page/js/model/health.js";
 import {
   density,
   likely,
@@ -253,16 +253,37 @@ describe("how an object is drawn", () => {
 });
 
 describe("health in a line", () => {
-  const of = (...states) =>
-    health(states.map((actual, i) => ({ name: `s${i}`, actual, wanted: "up" })));
+  const of = (...states) => health(states.map((state, i) => ({ name: `s${i}`, state })));
 
   it("names the gravest", () => {
     assert.deepEqual(of("ready", "ready"), { tone: "good", key: "health.good", args: { n: 2 } });
     assert.equal(of("ready", "starting").args.names, "s1");
-    assert.deepEqual(of("held", "starting").args, { names: "s0", n: 1 });
-    assert.equal(of("ready", "down").args.names, "s1", "it waits");
+    assert.deepEqual(of("failed", "short", "held").args, { names: "s0", n: 1 });
+    assert.equal(of("short", "held", "starting").key, "health.short");
     assert.equal(of().key, "services.none");
     assert.equal(health(undefined).tone, "busy");
+  });
+
+  it("does not call a held service failed", () => {
+    const looks = ["held", "starting", "short", "failed"].map((state) => tone(state));
+    assert.equal(new Set(looks).size, 4);
+    assert.deepEqual(
+      ["held", "down", "short", "failed", "ready"].map((state) => actOf(state)),
+      ["release", "start", "retry", "retry", "restart"],
+    );
+  });
+
+  it("has words for every state in every language", () => {
+    const states = "down waiting starting ready stopping restarting short held failed".split(" ");
+    for (const code of ["en", "de"]) {
+      const path = `../../../services/console/page/strings/${code}.json`;
+      const strings = JSON.parse(readFileSync(new URL(path, import.meta.url), "utf8"));
+      assert.equal(new Set(states.map((state) => strings[`service.${state}`])).size, 9, code);
+      for (const state of states) {
+        assert.ok(strings[`services.act.${actOf(state)}`], `${code} ${state}`);
+        assert.ok(state === "ready" || strings[`alarm.why.${state}`], `${code} ${state}`);
+      }
+    }
   });
 });
 
@@ -293,9 +314,8 @@ describe("stop", () => {
       },
     };
     const store = new Store();
-    const refusals = [];
-    const press = stopper({ link, store }, (error) => refusals.push(error.code));
-    return { link, press, refusals, state: () => store.get("stop").state };
+    const press = stopper({ link, store });
+    return { link, press, store, state: () => store.get("stop").state };
   }
 
   it("is sent in the same moment, and quiet when it is confirmed", async () => {
@@ -333,13 +353,32 @@ describe("stop", () => {
     assert.equal(state(), "idle");
   });
 
-  it("shows a rejection once", async () => {
-    const { link, press, refusals, state } = play(true);
+  it("leaves a stop that the server repeats to the server, with the warning", async () => {
+    const { link, press, store, state } = play(true);
     const pressed = press();
+    store.set("motion", { unconfirmed: { why: "held" } });
     link.sent[0].fail("refused");
     await pressed;
     link.come();
-    assert.deepEqual([refusals, state(), link.sent.length], [["refused"], "idle", 1]);
+    assert.deepEqual([state(), link.sent.length], ["idle", 1]);
+    const again = press();
+    assert.equal(link.sent.length, 2, "it can be pressed again");
+    link.sent[1].ok({});
+    await again;
+  });
+
+  it("repeats a stop that the server could not take, and warns", async (test) => {
+    test.mock.timers.enable({ apis: ["setTimeout"] });
+    const { link, press, state } = play(true);
+    const pressed = press();
+    link.sent[0].fail("refused");
+    await pressed;
+    assert.equal(state(), "undelivered");
+    test.mock.timers.tick(500);
+    assert.equal(link.sent.length, 2);
+    link.sent[1].ok({});
+    await new Promise(setImmediate);
+    assert.equal(state(), "idle");
   });
 
   it("is two presses of Escape, or one while the arm moves", () => {

@@ -1,36 +1,39 @@
 // @ts-check
-/** Deadline for the robot to confirm a stop, milliseconds. */
+/** Deadline for an answer to a stop, milliseconds: the server answers after one second at most. */
 const CONFIRM_MS = 1_500;
+/** Delay before a stop that was refused is sent again, milliseconds. */
+const AGAIN_MS = 500;
 
 /**
- * Stops the robot's motion. Without a connection or a confirmation the page says so, and sends the
- * stop again until it is confirmed. The state is the store's section `stop`: `idle`, `sent`, or
- * `undelivered` until a confirmation comes.
+ * Stops the robot's motion. Without a connection or an answer the page says so, and sends the stop again
+ * until there is one. From the server's section `motion` on, the server does so, for every page. The
+ * state is the store's section `stop`: `idle`, `sent`, or `undelivered` until a confirmation comes.
  * @param {{link: any, store: any}} context
- * @param {(error: Error) => void} refused called with the reason of a refusal
  * @returns {() => void} presses stop
  */
-export function stopper({ link, store }, refused) {
+export function stopper({ link, store }) {
   let wanted = false;
   /** True if a stop was sent and not confirmed in time: the warning stays until it is. */
   let late = false;
+  let again = 0;
   const notify = (state) => {
     if (store.get("stop")?.state !== state) store.set("stop", { state });
   };
+  const done = () => {
+    wanted = false;
+    notify("idle");
+  };
   const send = async () => {
+    clearTimeout(again);
     try {
       await link.do("stop", {}, CONFIRM_MS);
-      wanted = false;
-      notify("idle");
+      done();
     } catch (error) {
-      if (error.code === "refused") {
-        wanted = false;
-        notify("idle");
-        return refused(error);
-      }
-      late ||= error.code === "late";
+      if (!wanted || store.get("motion")?.unconfirmed) return done();
+      late ||= error.code === "late" || error.code === "refused";
       notify("undelivered");
       if (error.code === "late") link.reconnect();
+      if (error.code === "refused") again = setTimeout(() => wanted && send(), AGAIN_MS);
     }
   };
   store.set("stop", { state: "idle" });

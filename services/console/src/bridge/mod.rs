@@ -244,8 +244,9 @@ impl Bridge {
     }
 
     fn advance(&mut self, now: Now) {
+        self.model.tick(now);
         self.submissions.pass(&self.injections, &self.app.hub, now.at);
-        self.motions.pass(&self.motion, &self.app.hub, now.at);
+        self.motions.pass(&self.motion, self.model.group(), &self.app.hub, now.at);
         self.voice.pass(&self.app.hub, now.at);
         let events = self.model.take_events();
         let Some(study) = &mut self.study else { return };
@@ -264,6 +265,10 @@ impl Bridge {
         for (name, text) in sections.into_iter().chain(study) {
             self.hub().board.section(name, &text);
         }
+        let motion = self.motions.section(self.model.group());
+        // Every section can be written.
+        let motion = serde_json::to_string(&motion).unwrap_or_default();
+        self.hub().board.section("motion", &motion);
         for line in self.model.transcript().take_changed() {
             self.store.mark_changed();
             self.hub().board.line(line.id, &line.to_text());

@@ -4,13 +4,13 @@ use super::*;
 use serde_json::{Value as Json, json};
 use service::worker_channel::{self, DeviceReceiver};
 
-struct Page {
-    hub: Hub,
+pub(crate) struct Page {
+    pub(crate) hub: Hub,
     commands: DeviceReceiver<Command>,
     motions: DeviceReceiver<Motion>,
 }
 
-fn hub() -> Page {
+pub(crate) fn hub() -> Page {
     let (to_commands, commands) = worker_channel::channel().unwrap();
     let (to_motions, motions) = worker_channel::channel().unwrap();
     let (restarts, _) = crossbeam_channel::bounded(1);
@@ -18,7 +18,7 @@ fn hub() -> Page {
     Page { hub: Hub::new(channels, 3, Span::from_ms(1_000)), commands, motions }
 }
 
-fn received(frames: &mut mpsc::Receiver<OutboundFrame>) -> Json {
+pub(crate) fn received(frames: &mut mpsc::Receiver<OutboundFrame>) -> Json {
     match frames.try_recv().unwrap() {
         OutboundFrame::Text(frame) => serde_json::from_str(&frame).unwrap(),
         other => panic!("{other:?}"),

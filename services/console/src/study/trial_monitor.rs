@@ -80,9 +80,10 @@ impl RobotState<'_> {
     }
 }
 
+/// Returns whether the arm does something, or may do something unseen.
 pub(super) fn arm_is_busy(arm: Option<&ArmStatus>) -> bool {
     let still = [PickPhase::Idle, PickPhase::Done];
-    arm.is_some_and(|arm| !still.contains(&arm.phase.get()) || arm.stopped != 0)
+    arm.is_none_or(|arm| !still.contains(&arm.phase.get()) || arm.stopped != 0)
 }
 
 impl StudyController {

@@ -23,7 +23,7 @@ use messages::{
 };
 use scene::Scene;
 use serde::Serialize;
-use service::Time;
+use service::{Span, Time};
 use service::status::GroupStatus;
 use service::view::{ArmView, DialogueView, HearingView, Latest};
 
@@ -60,6 +60,9 @@ pub enum DialogueEvent {
     Heard(Box<Receipt>),
 }
 
+/// Silence of the arm's service, which publishes four times a second, after which the arm's state is unknown.
+const ARM_SILENCE: Span = Span::from_ms(2_000);
+
 /// Everything that pages show, at one moment.
 #[derive(Debug)]
 pub struct ViewModel {
@@ -67,6 +70,9 @@ pub struct ViewModel {
     /// Short descriptions of the scene's objects.
     labels: Vec<String>,
     latest: Latest,
+    /// When the arm's status arrived last, and whether its stop was latched.
+    arm_seen: Time,
+    was_stopped: bool,
     world: Option<WorldView>,
     trajectory: TrajectoryView,
     group: Option<GroupStatus>,
@@ -91,6 +97,8 @@ impl ViewModel {
             labels: labels(&scene),
             scene,
             latest: Latest::default(),
+            arm_seen: Time(0),
+            was_stopped: false,
             world: None,
             trajectory: TrajectoryView::default(),
             group: None,
@@ -213,12 +221,20 @@ impl ViewModel {
 
     pub fn on_arm(&mut self, arm: ArmStatus, now: Now) {
         self.is_changed = true;
-        let was_stopped = self.latest.arm.is_some_and(|arm| arm.stopped != 0);
         let is_stopped = arm.stopped != 0;
-        if is_stopped != was_stopped {
+        if is_stopped != std::mem::replace(&mut self.was_stopped, is_stopped) {
             self.transcript.on_motion_stop(is_stopped, now);
         }
+        self.arm_seen = now.at;
         self.latest.arm = Some(arm);
+    }
+
+    /// Forgets the arm's state where its service is silent: what it was is not what it is.
+    pub fn tick(&mut self, now: Now) {
+        let is_silent = now.at.since(self.arm_seen) >= ARM_SILENCE;
+        if is_silent && self.latest.arm.take().is_some() {
+            self.is_changed = true;
+        }
     }
 
     pub fn on_world(&mut self, world: WorldView) {
@@ -261,7 +277,7 @@ impl ViewModel {
         let speaking = speaking.map(|p| SpeakingSection::new(p, presented, self.has_sound));
         sections.put("speaking", Some(speaking));
         sections.put("hearing", hearing.as_ref().map(HearingView::new));
-        sections.put("arm", arm.as_ref().map(|arm| ArmView::new(&self.scene, arm)));
+        sections.put("arm", Some(arm.as_ref().map(|arm| ArmView::new(&self.scene, arm))));
         sections.put("world", self.world.as_ref().map(WorldSection::new));
         sections.put("trajectory", Some(TrajectorySection::new(&self.trajectory)));
         sections.put("group", self.group.as_ref());

@@ -247,3 +247,20 @@ fn transcript_notes_a_motion_stop_and_its_release_once() {
     }
     assert_eq!(texts(&mut model), ["The arm was stopped", "The arm may move again"]);
 }
+
+#[test]
+fn arm_that_is_silent_is_unknown() {
+    let mut model = model();
+    let stopped = ArmStatus { stopped: 1, ..ArmStatus::default() };
+    model.on_arm(stopped, now(1));
+    model.tick(now(2));
+    assert!(model.latest().arm.is_some());
+    model.tick(now(3));
+    let sections = model.sections(now(3));
+    let arm = sections.iter().find(|(name, _)| *name == "arm").map(|(_, text)| text.as_str());
+    assert_eq!(arm, Some("null"));
+    // It is back, and as it was: that is nothing new.
+    model.on_arm(stopped, now(4));
+    let said = model.transcript().lines().filter(|line| line.text == "The arm was stopped");
+    assert_eq!(said.count(), 1);
+}

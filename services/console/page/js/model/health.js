@@ -3,8 +3,7 @@
  * A service in the section `group`.
  * @typedef {object} Service
  * @property {string} name
- * @property {"up"|"down"} wanted
- * @property {"down"|"starting"|"ready"|"stopping"|"backoff"|"held"} actual
+ * @property {State} state its state in one word: `service.WORD` of the strings
  * @property {string|null} [why] why it is not in the wanted state
  * @property {string|null} [says] its own status
  * @property {{text: string}|null} [last_exit]
@@ -12,12 +11,26 @@
  */
 
 /**
- * The state of a service in one word: `service.WORD` of the strings.
- * @param {Service} service
+ * @typedef {"down"|"waiting"|"starting"|"ready"|"stopping"|"restarting"|"short"|"held"|"failed"} State
  */
-export function stateOf({ wanted, actual }) {
-  return actual === "down" && wanted === "up" ? "waiting" : actual;
-}
+
+/**
+ * What a state is to a person: held is not failed, and neither is waiting for space.
+ * @type {Record<State, {tone: Tone, act: "restart"|"start"|"release"|"retry"}>}
+ */
+const STATES = {
+  ready: { tone: "good", act: "restart" },
+  waiting: { tone: "busy", act: "restart" },
+  starting: { tone: "busy", act: "restart" },
+  stopping: { tone: "busy", act: "restart" },
+  restarting: { tone: "busy", act: "restart" },
+  short: { tone: "short", act: "retry" },
+  held: { tone: "off", act: "release" },
+  down: { tone: "off", act: "start" },
+  failed: { tone: "bad", act: "retry" },
+};
+
+/** @typedef {"good"|"busy"|"short"|"off"|"bad"} Tone the worst last */
 
 /**
  * The reason for its state, its own status, and how its previous run ended.
@@ -30,24 +43,31 @@ export function noteOf({ why, says, last_exit }, t) {
 }
 
 /**
- * Classifies a state as good, bad or neutral.
- * @param {string} state
- * @returns {"good"|"busy"|"bad"}
+ * Classifies a state.
+ * @param {State} state
+ * @returns {Tone}
  */
 export function tone(state) {
-  if (state === "ready") return "good";
-  return state === "held" || state === "down" ? "bad" : "busy";
+  return STATES[state]?.tone ?? "busy";
+}
+
+/**
+ * The name of what its button does: `services.act.NAME` of the strings.
+ * @param {State} state
+ */
+export function actOf(state) {
+  return STATES[state]?.act ?? "restart";
 }
 
 /**
  * Summarises the group's health in one line: the gravest problem first.
  * @param {Service[]|undefined} services
- * @returns {{tone: "good"|"busy"|"bad", key: string, args: Record<string, string|number>}}
+ * @returns {{tone: Tone, key: string, args: Record<string, string|number>}}
  */
 export function health(services) {
   if (!services?.length) return { tone: "busy", key: "services.none", args: {} };
-  for (const grave of /** @type {const} */ (["bad", "busy"])) {
-    const affected = services.filter((service) => tone(stateOf(service)) === grave);
+  for (const grave of /** @type {const} */ (["bad", "short", "off", "busy"])) {
+    const affected = services.filter(({ state }) => tone(state) === grave);
     const names = affected.map(({ name }) => name);
     if (names.length === 0) continue;
     const args = { names: names.join(", "), n: names.length };

@@ -2,7 +2,7 @@
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
 import { escapeStops, stopper } from "../stop.js";
-import { attempt, notify, reason } from "./attempt.js";
+import { attempt } from "./attempt.js";
 
 /** A press so soon after the stop is not meant for what the button has become, milliseconds. */
 const LATCH_MS = 800;
@@ -32,7 +32,7 @@ export function mountActions(element, context) {
   const button = h("button", { type: "button", id: "stop", class: "stop" }, mark, text);
   element.append(button);
 
-  const press = stopper(context, (error) => notify(reason(/** @type {any} */ (error), t)));
+  const press = stopper(context);
   let pressedAt = Number.NEGATIVE_INFINITY;
   const touch = matchMedia("(hover: none)");
   let askedAt = null;
@@ -124,13 +124,16 @@ export function mountActions(element, context) {
     setText(words, t(sending ? "stop.sending" : `stop.${is}`));
     const moving = store.get("arm")?.moving === true;
     const keys = touch.matches ? t("stop.touch") : t(moving ? "stop.key_moving" : "stop.key");
-    setText(hint, down ? t("stop.down") : is === "stop" ? keys : t(`stop.${is}.more`));
+    const unconfirmed =
+      store.get("motion")?.unconfirmed || store.get("stop")?.state === "undelivered";
+    const usual = is === "stop" ? keys : t(`stop.${is}.more`);
+    setText(hint, down ? t("stop.down") : unconfirmed ? t("stop.unconfirmed") : usual);
     const drawn = is === "stop" ? "stop" : "play";
     if (mark.dataset.icon !== drawn) mark.replaceChildren(icon(drawn, 34));
     mark.dataset.icon = drawn;
   };
   const draw = eachFrame(show);
-  store.subscribe(["arm", "stop", "link"], draw);
+  store.subscribe(["arm", "stop", "link", "motion"], draw);
   draw();
 }
 

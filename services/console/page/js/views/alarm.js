@@ -21,20 +21,21 @@ export function mountAlarm(element, polite, { link, store, t }) {
   let timer = 0;
   let shown = "";
 
-  const show = (key) => {
+  const show = (key, args = {}) => {
     shown = key;
-    setText(text, key && t(`alarm.${key}`));
+    setText(text, key && t(`alarm.${key}`, args));
     bar.hidden = key === "";
     // The sign and the button show a stop to the eye; to the ear it is said here.
     bar.classList.toggle("hidden", key === "stopped");
     if (key === "") return;
-    setText(act, t(key === "replaced" ? "alarm.use_here" : "alarm.again"));
-    act.hidden = !["offline", "replaced", "undelivered"].includes(key);
+    const here = ["replaced", "gave_way"].includes(key);
+    setText(act, t(here ? "alarm.use_here" : "alarm.again"));
+    act.hidden = !here && !["offline", "undelivered"].includes(key);
   };
   const look = () => {
     const state = store.get("link")?.state;
     const stop = store.get("stop")?.state;
-    if (state === "replaced") return show("replaced");
+    if (state === "replaced" || state === "gave_way") return show(state);
     if (state !== "up") {
       if (stop === "undelivered") return show("undelivered");
       timer ||= setTimeout(() => show("offline"), GRACE_MS);
@@ -43,10 +44,14 @@ export function mountAlarm(element, polite, { link, store, t }) {
     clearTimeout(timer);
     timer = 0;
     const arm = store.get("arm");
-    const key = stop === "undelivered" ? "unconfirmed" : arm?.stopped ? "stopped" : "";
+    const late = store.get("motion")?.unconfirmed;
+    if (late || stop === "undelivered") {
+      return show("unconfirmed", { why: t(`alarm.why.${late?.why ?? "silent"}`) });
+    }
+    const key = arm?.stopped ? "stopped" : "";
     if (key !== shown) show(key);
   };
-  store.subscribe(["link", "stop", "arm"], look);
+  store.subscribe(["link", "stop", "arm", "motion"], look);
   look();
 
   let turn = "";

@@ -1,12 +1,15 @@
 // @ts-check
 import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
-import { noteOf, stateOf, tone } from "../model/health.js";
+import { actOf, noteOf, tone } from "../model/health.js";
 import { whoControls } from "../model/turn.js";
 import { attempt } from "./attempt.js";
 
+/** Pictures of what a button does. */
+const ICONS = { restart: "again", retry: "again", start: "play", release: "play" };
+
 /**
- * The services: name, state, restarts, and a restart for who is in control.
+ * The services: name, state, restarts, and a button that starts them again for who is in control.
  * @param {HTMLElement} element
  * @param {{link: any, store: any, t: any}} context
  */
@@ -18,8 +21,7 @@ export function mountServices(element, context) {
 
   const make = ({ name }) => {
     const restart = () => attempt(link.do("restart_service", { service: name }), context);
-    const label = t("services.restart_one", { name });
-    const button = { type: "button", class: "small restart", "aria-label": label, title: label };
+    const button = { type: "button", class: "small restart" };
     return h(
       "li",
       { class: "service" },
@@ -27,14 +29,19 @@ export function mountServices(element, context) {
       h("span", { class: "service-name", text: name }),
       h("span", { class: "service-state" }),
       h("span", { class: "service-note" }),
-      h("button", { ...button, onclick: restart }, icon("again", 16)),
+      h("button", { ...button, onclick: restart }),
     );
   };
   const update = (node, service) => {
     const [, , state, note, button] = node.children;
-    const now = stateOf(service);
-    setAttribute(node, "data-state", tone(now));
-    setText(state, t(`service.${now}`));
+    setAttribute(node, "data-state", tone(service.state));
+    setText(state, t(`service.${service.state}`));
+    const act = actOf(service.state);
+    const label = t(`services.act.${act}`, { name: service.name });
+    setAttribute(button, "aria-label", label);
+    setAttribute(button, "title", label);
+    if (button.dataset.act !== act) button.replaceChildren(icon(ICONS[act], 16));
+    button.dataset.act = act;
     const restarts = service.restarts > 0 ? t("services.restarts", { n: service.restarts }) : "";
     setText(note, [noteOf(service, t), restarts].filter(Boolean).join(" · "));
     button.disabled = whoControls(store.get("control"), store.get("welcome")) !== "mine";
