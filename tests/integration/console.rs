@@ -262,7 +262,9 @@ fn page_is_for_those_with_the_token() {
     assert!(wrong.1.contains("/login?wrong") && !wrong.1.to_lowercase().contains("set-cookie"));
     let form = format!("token={token}");
     assert_eq!(http(&place, "POST", "/login", &[], &form).0, 403);
-    for link in [("POST", "/login".to_owned(), form), ("GET", format!("/?{form}&lang=de"), String::new())] {
+    for link in
+        [("POST", "/login".to_owned(), form), ("GET", format!("/?{form}&lang=de"), String::new())]
+    {
         let (method, path, body) = link;
         let (status, head, _) = http(&place, method, &path, &[&own], &body);
         assert_eq!(status, 303, "{head}");
@@ -338,7 +340,8 @@ fn operator_gets_in_beside_any_number_of_viewers() {
     assert!(ok(&operator.ask("say", &json!({ "text": "get me the bowl" }))));
     // Also where idle pages that may operate hold every place.
     let mut next = group.page(&Visitor::operator(101));
-    let code = open[0].until("the end of the page that was idle for longest", |p| p.closed.clone()).0;
+    let code =
+        open[0].until("the end of the page that was idle for longest", |p| p.closed.clone()).0;
     assert_eq!(code, 4002);
     assert!(ok(&next.ask("stop", &Json::Null)));
     drop((open, operator, next));

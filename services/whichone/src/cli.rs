@@ -15,8 +15,8 @@ pub use batch::{
     ArmArgs, ExportArgs, Exported, GroundArgs, InputArgs, PlanArgs, ProblemArgs, WhichArm,
 };
 pub use group::{
-    CheckArgs, ConfigArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs, SwapArgs,
-    UpArgs, WaitFor,
+    CheckArgs, ConfigArgs, ConsoleArgs, DownArgs, LogsArgs, ReloadArgs, RestartArgs, ServiceArgs,
+    SwapArgs, UpArgs, WaitFor,
 };
 pub use study::{ALL as STUDY_ALL, Preset, ReportArgs, StudyArgs, StudyVerb};
 pub use talk::{AwaitArgs, Awaited, ChatArgs, JournalAction, JournalArgs, ListenArgs};

@@ -209,7 +209,9 @@ mod tests {
         motions.judge(Some(&held), &hub, at(1_001));
         assert_eq!(section(&motions, &held)["unconfirmed"]["why"], "held");
         let answer = received(&mut frames);
-        assert!(answer["ok"] == false && answer["error"].as_str().unwrap().contains("emergency stop"));
+        assert!(
+            answer["ok"] == false && answer["error"].as_str().unwrap().contains("emergency stop")
+        );
         // Pressed again, an hour later, by a service that is back and silent: still not confirmed.
         stops(&hub, viewer, &mut motions, true, 3_600_000);
         let ready = group("ready");

@@ -12,8 +12,8 @@ use axum::response::{AppendHeaders, IntoResponse, Redirect};
 use service::Span;
 use service::clock;
 
-use super::message::FRAME_BYTES_MAX;
 use super::connections::Of;
+use super::message::FRAME_BYTES_MAX;
 use super::{Access, App, assets, socket as sockets, unix_s};
 
 /// Longest silence of a healthy main loop.
@@ -215,7 +215,10 @@ mod tests {
         let split = |link: &str| token_of(&link.parse().unwrap());
         let of = |token: &str, page: &str| Some((token.to_owned(), page.to_owned()));
         assert_eq!(split("/?token=abc"), of("abc", "/"));
-        assert_eq!(split("/study?lang=de&token=a%2Db&role=screen"), of("a-b", "/study?lang=de&role=screen"));
+        assert_eq!(
+            split("/study?lang=de&token=a%2Db&role=screen"),
+            of("a-b", "/study?lang=de&role=screen")
+        );
         assert_eq!(split("//evil.example/?token=abc"), of("abc", "/evil.example/"));
         assert_eq!(split("/?tokens=abc"), None);
         assert_eq!(split("/"), None);

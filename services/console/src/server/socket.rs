@@ -61,7 +61,9 @@ pub(super) async fn serve(socket: WebSocket, connection: Arc<Connection>, app: A
             (close_code::POLICY, "the page did not read for 10 s")
         }
         Ended::Replaced => (REPLACED, "the same page is open somewhere else"),
-        Ended::GaveWay => (GAVE_WAY, "too many pages are open; this one was idle for the longest time"),
+        Ended::GaveWay => {
+            (GAVE_WAY, "too many pages are open; this one was idle for the longest time")
+        }
         Ended::Page => (close_code::NORMAL, ""),
     };
     close(&mut out, code, reason).await;

@@ -23,9 +23,9 @@ use messages::{
 };
 use scene::Scene;
 use serde::Serialize;
-use service::{Span, Time};
 use service::status::GroupStatus;
 use service::view::{ArmView, DialogueView, HearingView, Latest};
+use service::{Span, Time};
 
 pub use latency::Latency;
 pub use line::Line;

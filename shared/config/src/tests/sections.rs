@@ -18,7 +18,8 @@ fn console_default_serves_this_machine_only() {
 
 #[test]
 fn console_serves_other_machines_by_token() {
-    let settings = Folder::new(&[("console.toml", "listen = '0.0.0.0:80'")]).load(None, &[]).unwrap();
+    let settings =
+        Folder::new(&[("console.toml", "listen = '0.0.0.0:80'")]).load(None, &[]).unwrap();
     assert_eq!(settings.console.access, Access::Token);
 }
 
