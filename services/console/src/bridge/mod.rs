@@ -13,13 +13,13 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use config::Settings;
 use messages::{
-    Injection, JointStates, MotionCommand, Observation, Partial, RobotAct, TrajectoryView,
-    WorldView, topics,
+    Injection, JointStates, Observation, Partial, RobotAct, Service, TrajectoryView, WorldView,
+    topics,
 };
-use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, Reader, Writer};
+use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, Reader};
 use service::client::Client;
 use service::clock;
-use service::exit::Failure;
+use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 use service::view::{LatestTopics, drain, quiet};
 use service::worker_channel::DeviceReceiver;
@@ -53,7 +53,6 @@ pub struct Bridge {
     client: Client,
     topics: Topics,
     injections: EncodedWriter<Injection>,
-    motion: Writer<MotionCommand>,
     model: ViewModel,
     voice: Voice,
     study: Option<Study>,
@@ -108,17 +107,18 @@ impl Bridge {
         study: Option<Study>,
     ) -> Result<Self, Failure> {
         let bus = client.bus();
+        let failed =
+            |error| Failure::new(Exit::NotReached, format!("the motion stop's socket: {error}"));
         let store = TranscriptStore::in_folder(&paths.run());
         let transcript = Transcript::after(store.read(), now().unix_ms);
         Ok(Self {
             topics: Topics::open(bus)?,
             injections: bus.encoded_writer(&topics::INJECTION)?,
-            motion: bus.writer(&topics::MOTION)?,
             model: ViewModel::new(settings.scene.clone(), transcript),
             voice: Voice::default(),
             study,
             submissions: Submissions::default(),
-            motions: Motions::default(),
+            motions: Motions::open(paths).map_err(failed)?,
             store,
             voice_dir: app.voice_dir.clone(),
             paths: paths.clone(),
@@ -153,7 +153,7 @@ impl Bridge {
         inbox.motions.clear();
         while let Some(motion) = inbox.motions.take() {
             tracing::info!(viewer = %motion.viewer, stop = motion.stop, "motion stop");
-            self.motions.order(motion, &self.motion, &self.app.hub, clock::now());
+            self.motions.order(motion, &self.app.hub, clock::now());
         }
     }
 
@@ -163,7 +163,9 @@ impl Bridge {
         let (observations, acts) = (drain(&topics.observations), drain(&topics.acts));
         let arrived = topics.latest.take();
         for receipt in &arrived.receipts {
-            self.submissions.on_receipt(receipt, &self.app.hub);
+            // What an accepted utterance still needs.
+            let later = [Service::Grounding, Service::Policy, Service::Arm];
+            self.submissions.on_receipt(receipt, || model.unavailable(&later), &self.app.hub);
             model.on_receipt(receipt, now);
         }
         observations.iter().for_each(|observation| model.on_observation(observation));
@@ -175,8 +177,7 @@ impl Bridge {
             model.on_presented(presented, sound.is_some_and(|file| file.is_file()), now);
         }
         arrived.hearing.into_iter().for_each(|hearing| model.on_hearing(hearing));
-        for (status, sent) in arrived.statuses {
-            self.motions.confirm(&status, sent, &self.app.hub);
+        for (status, _) in arrived.statuses {
             model.on_arm(status, now);
         }
         quiet(topics.worlds.latest()).into_iter().for_each(|world| model.on_world(world));
@@ -236,6 +237,10 @@ impl Bridge {
                 return self.hub().answer(viewer, id, outcome);
             }
         };
+        let words = words.and_then(|words| match self.model.unavailable(&[Service::Speech]) {
+            Some(why) => Err(why),
+            None => Ok(words),
+        });
         let submitted =
             words.and_then(|words| self.submissions.add(Some((viewer, id)), words, now.at));
         if let Err(why) = submitted {
@@ -246,7 +251,7 @@ impl Bridge {
     fn advance(&mut self, now: Now) {
         self.model.tick(now);
         self.submissions.pass(&self.injections, &self.app.hub, now.at);
-        self.motions.pass(&self.motion, self.model.group(), &self.app.hub, now.at);
+        self.motions.pass(self.model.group(), &self.app.hub, now.at);
         self.voice.pass(&self.app.hub, now.at);
         let events = self.model.take_events();
         let Some(study) = &mut self.study else { return };

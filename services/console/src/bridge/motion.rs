@@ -1,17 +1,21 @@
 //! Orders to the motion stop that the arm has not confirmed.
 //!
-//! A stop is repeated until the arm confirms it or the operator resumes, however long its service is away.
+//! They take the motion stop's own path, which needs neither shared memory nor disk. A stop is repeated
+//! until the arm confirms it or the operator resumes, however long its service is away.
 //! Where no confirmation comes, every page warns, with the reason, until one does.
 
-use messages::{ArmStatus, MotionCommand, MotionOrder, Service};
-use serde::Serialize;
-use service::bus::Writer;
-use service::status::GroupStatus;
-use service::{Span, Time};
+use std::io;
 
+use messages::{MotionOrder, Service};
+use serde::Serialize;
+use service::group::GroupPaths;
+use service::status::{GroupStatus, ServiceState};
+use service::stop_socket::{StopClient, StopError, StopState};
+use service::{Span, Time, clock};
+
+use crate::hub::Hub;
 use crate::hub::command::Motion;
 use crate::hub::outbound::Answer;
-use crate::hub::{Hub, ms};
 
 /// Interval at which an unconfirmed order is repeated.
 const RESEND_EVERY: Span = Span::from_ms(50);
@@ -23,10 +27,13 @@ const PATIENCE: Span = Span::from_ms(5_000);
 const ORDERS_MAX: usize = 64;
 
 /// Orders that the arm has not confirmed.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Motions {
+    client: StopClient,
     waiting: Vec<Motion>,
     latest: Option<Latest>,
+    /// `true` if nobody listens at the arm's end.
+    is_absent: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -46,22 +53,24 @@ pub(super) struct MotionSection {
 
 #[derive(Debug, PartialEq, Serialize)]
 struct Unconfirmed {
-    /// State of the arm's service, or `silent` if it runs and does not answer.
+    /// State of the arm's service, or `silent` if it should answer and does not.
     why: &'static str,
-    since_ms: f64,
 }
 
 impl Motions {
+    /// Opens the path to the arm's service of a group, which may be there or not.
+    ///
+    /// # Errors
+    /// No descriptor is left.
+    pub(super) fn open(paths: &GroupPaths) -> io::Result<Self> {
+        let client = StopClient::open(paths)?;
+        Ok(Self { client, waiting: Vec::new(), latest: None, is_absent: false })
+    }
+
     /// Sends an order at once.
-    pub(super) fn order(
-        &mut self,
-        motion: Motion,
-        writer: &Writer<MotionCommand>,
-        hub: &Hub,
-        now: Time,
-    ) {
+    pub(super) fn order(&mut self, motion: Motion, hub: &Hub, now: Time) {
         self.accept(motion, hub, now);
-        self.latest.iter().for_each(|latest| send(latest, writer));
+        self.send();
     }
 
     fn accept(&mut self, motion: Motion, hub: &Hub, now: Time) {
@@ -73,20 +82,36 @@ impl Motions {
         if self.waiting.len() < ORDERS_MAX {
             self.waiting.push(motion);
         }
-        // A stop that is repeated by its user is as late as before.
-        let before = self.latest.filter(|before| before.stop && motion.stop && before.is_late);
-        let new = Latest { stop: motion.stop, given: now, sent: now, is_late: false };
-        self.latest = Some(before.unwrap_or(new));
+        // A stop that its user repeats is as late as before.
+        let is_late = motion.stop && self.latest.is_some_and(|before| before.is_late);
+        self.latest = Some(Latest { stop: motion.stop, given: now, sent: now, is_late });
     }
 
     pub(super) fn is_waiting(&self) -> bool {
         self.latest.is_some()
     }
 
-    /// Takes in a status that the arm sent at `sent`; one from before the order does not confirm it.
-    pub(super) fn confirm(&mut self, status: &ArmStatus, sent: Time, hub: &Hub) {
-        let Some(latest) = self.latest.filter(|latest| sent >= latest.given) else { return };
-        if (status.stopped != 0) == latest.stop {
+    /// Takes in the arm's answers, repeats the order until it is confirmed, warns of a late stop, and gives up
+    /// a late release.
+    pub(super) fn pass(&mut self, group: Option<&GroupStatus>, hub: &Hub, now: Time) {
+        while let Some(state) = self.client.take() {
+            self.confirm(&state, hub);
+        }
+        self.judge(group, hub, now);
+        if self.latest.is_some_and(|latest| now >= latest.sent + RESEND_EVERY) {
+            self.send();
+        }
+    }
+
+    /// Takes in an answer; one to another order does not confirm this one.
+    fn confirm(&mut self, state: &StopState, hub: &Hub) {
+        let is_it = |latest: &Latest| state.given_ns == latest.given.ns();
+        let Some(latest) = self.latest.filter(is_it) else { return };
+        if state.in_force_ns > state.given_ns {
+            // Of the command line, or of another console.
+            self.latest = None;
+            self.refuse(hub, "overruled by another order");
+        } else if state.stopped == latest.stop {
             self.latest = None;
             for motion in self.waiting.drain(..) {
                 let answer = Answer::Motion { stopped: latest.stop };
@@ -95,19 +120,15 @@ impl Motions {
         }
     }
 
-    /// Repeats the order until it is confirmed, warns of a late stop, and gives up a late release.
-    pub(super) fn pass(
-        &mut self,
-        writer: &Writer<MotionCommand>,
-        group: Option<&GroupStatus>,
-        hub: &Hub,
-        now: Time,
-    ) {
-        self.judge(group, hub, now);
+    /// Sends the order with its original time, which makes repetitions harmless.
+    fn send(&mut self) {
         let Some(latest) = &mut self.latest else { return };
-        if now >= latest.sent + RESEND_EVERY {
-            latest.sent = now;
-            send(latest, writer);
+        latest.sent = clock::now();
+        let order = if latest.stop { MotionOrder::Stop } else { MotionOrder::Resume };
+        let sent = self.client.send(order, latest.given);
+        self.is_absent = matches!(sent, Err(StopError::Absent));
+        if let Err(error) = sent {
+            tracing::debug!(%error, "order to the motion stop not sent");
         }
     }
 
@@ -121,6 +142,7 @@ impl Motions {
         }
         if self.latest.is_some_and(|latest| latest.is_late) && !self.waiting.is_empty() {
             let what = match why(group) {
+                "silent" if self.is_absent => "the arm's service is not running".to_owned(),
                 "silent" => "the arm does not answer".to_owned(),
                 state => format!("the arm's service is not ready ({state})"),
             };
@@ -138,9 +160,7 @@ impl Motions {
     /// Returns what pages show.
     pub(super) fn section(&self, group: Option<&GroupStatus>) -> MotionSection {
         let late = self.latest.filter(|latest| latest.is_late);
-        let unconfirmed =
-            late.map(|latest| Unconfirmed { why: why(group), since_ms: ms(latest.given) });
-        MotionSection { unconfirmed }
+        MotionSection { unconfirmed: late.map(|_| Unconfirmed { why: why(group) }) }
     }
 }
 
@@ -149,22 +169,9 @@ fn why(group: Option<&GroupStatus>) -> &'static str {
     let arm = group.and_then(|group| {
         group.services.iter().find(|service| service.name == Service::Arm.name())
     });
-    match arm.map(|arm| arm.state()) {
-        None | Some("ready") => "silent",
-        Some(state) => state,
-    }
-}
-
-/// Sends an order with its original time: the arm ignores orders older than the last that it obeyed.
-fn send(latest: &Latest, writer: &Writer<MotionCommand>) {
-    let order = if latest.stop { MotionOrder::Stop } else { MotionOrder::Resume };
-    let command = MotionCommand {
-        given_ns: latest.given.ns(),
-        order: order.into(),
-        ..MotionCommand::default()
-    };
-    if let Err(error) = writer.send(&command) {
-        tracing::warn!(%error, "motion stop order not sent");
+    match arm.map(|arm| arm.state) {
+        None | Some(ServiceState::Ready) => "silent",
+        Some(state) => state.word(),
     }
 }
 
@@ -176,9 +183,9 @@ mod tests {
     use crate::hub::tests::{Page, hub, received};
     use crate::hub::{Role, ViewerId};
 
-    fn group(actual: &str) -> GroupStatus {
-        let arm = json!({ "name": "arm", "wanted": "up", "actual": actual, "incarnation": 1,
-                          "restarts": 0 });
+    fn group(state: &str) -> GroupStatus {
+        let arm = json!({ "name": "arm", "wanted": "up", "actual": "down", "state": state,
+                          "incarnation": 1, "restarts": 0 });
         let group = json!({ "name": "lab", "state": "ready", "supervisor_pid": 7, "version": "0",
                             "epoch": 1, "uptime_s": 1.0, "scene": "bowls", "config": "/c",
                             "strays_killed": 0, "services": [arm] });
@@ -193,6 +200,26 @@ mod tests {
         serde_json::to_value(motions.section(Some(group))).unwrap()
     }
 
+    fn motions() -> (tempfile::TempDir, Motions) {
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &"lab".parse().unwrap()).unwrap();
+        let motions = Motions::open(&paths).unwrap();
+        (home, motions)
+    }
+
+    fn answer(given_ms: u64, stopped: bool) -> StopState {
+        let given_ns = at(given_ms).ns();
+        let inhibit = messages::MotionInhibit::None;
+        StopState {
+            given_ns,
+            in_force_ns: given_ns,
+            stopped,
+            at_rest: true,
+            durable: true,
+            inhibit,
+        }
+    }
+
     fn stops(hub: &Hub, viewer: ViewerId, motions: &mut Motions, stop: bool, ms: u64) {
         motions.accept(Motion { viewer, id: ms, stop }, hub, at(ms));
     }
@@ -201,36 +228,46 @@ mod tests {
     fn stop_of_an_absent_arm_raises_an_alarm_that_stays() {
         let Page { hub, .. } = hub();
         let (viewer, mut frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
-        let (mut motions, held) = (Motions::default(), group("held"));
+        let ((_home, mut motions), held) = (motions(), group("held"));
         stops(&hub, viewer, &mut motions, true, 1);
         motions.judge(Some(&held), &hub, at(1_000));
         assert_eq!(section(&motions, &held)["unconfirmed"], Json::Null);
         assert!(frames.try_recv().is_err());
         motions.judge(Some(&held), &hub, at(1_001));
         assert_eq!(section(&motions, &held)["unconfirmed"]["why"], "held");
-        let answer = received(&mut frames);
-        assert!(
-            answer["ok"] == false && answer["error"].as_str().unwrap().contains("emergency stop")
-        );
+        let late = received(&mut frames);
+        assert!(late["ok"] == false && late["error"].as_str().unwrap().contains("emergency stop"));
         // Pressed again, an hour later, by a service that is back and silent: still not confirmed.
         stops(&hub, viewer, &mut motions, true, 3_600_000);
         let ready = group("ready");
         motions.judge(Some(&ready), &hub, at(3_600_000));
         assert_eq!(section(&motions, &ready)["unconfirmed"]["why"], "silent");
         assert_eq!(received(&mut frames)["ok"], false, "answered at once");
-        let moving = ArmStatus::default();
-        motions.confirm(&moving, at(3_600_001), &hub);
-        assert!(motions.is_waiting());
-        motions.confirm(&ArmStatus { stopped: 1, ..moving }, at(3_600_001), &hub);
+        for other in [answer(3_600_000, false), answer(1, true)] {
+            motions.confirm(&other, &hub);
+            assert!(motions.is_waiting(), "{other:?}");
+        }
+        motions.confirm(&answer(3_600_000, true), &hub);
         assert_eq!(section(&motions, &ready)["unconfirmed"], Json::Null);
         assert!(!motions.is_waiting());
+    }
+
+    #[test]
+    fn stop_that_another_order_overrules_is_over() {
+        let Page { hub, .. } = hub();
+        let (viewer, mut frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
+        let (_home, mut motions) = motions();
+        stops(&hub, viewer, &mut motions, true, 1);
+        motions.confirm(&StopState { in_force_ns: at(2).ns(), ..answer(1, false) }, &hub);
+        assert!(!motions.is_waiting());
+        assert!(received(&mut frames)["error"].as_str().unwrap().contains("overruled"));
     }
 
     #[test]
     fn late_release_is_given_up() {
         let Page { hub, .. } = hub();
         let (viewer, mut frames) = hub.join("", "a", Role::Operator, Time(0)).unwrap();
-        let (mut motions, ready) = (Motions::default(), group("ready"));
+        let ((_home, mut motions), ready) = (motions(), group("ready"));
         stops(&hub, viewer, &mut motions, true, 0);
         stops(&hub, viewer, &mut motions, false, 1);
         assert!(received(&mut frames)["error"].as_str().unwrap().contains("overruled"));

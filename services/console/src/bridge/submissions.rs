@@ -62,14 +62,22 @@ impl Submissions {
         }
     }
 
-    /// Answers the command that waits for a receipt.
-    pub(super) fn on_receipt(&mut self, receipt: &Receipt, hub: &Hub) {
+    /// Answers the command that waits for a receipt; an accepted one with what keeps the robot from
+    /// following it.
+    pub(super) fn on_receipt(
+        &mut self,
+        receipt: &Receipt,
+        hindrance: impl FnOnce() -> Option<String>,
+        hub: &Hub,
+    ) {
         let key = receipt.request();
         let Some(at) = self.0.iter().position(|(_, waiting)| waiting.key() == key) else { return };
         let Some((viewer, id)) = self.0.swap_remove(at).0 else { return };
         let note = receipt.note.as_str().unwrap_or_default();
         let answer = match receipt.status.get() {
-            ReceiptStatus::Accepted => Ok(Some(Answer::Accepted { seq: receipt.seq })),
+            ReceiptStatus::Accepted => {
+                Ok(Some(Answer::Accepted { seq: receipt.seq, waits_for: hindrance() }))
+            }
             ReceiptStatus::NotForMe => Err(format!("heard, but not taken for a request: {note}")),
             _ => Err(note.to_owned()),
         };

@@ -63,6 +63,9 @@ pub struct Done<'a> {
 pub enum Answer {
     Accepted {
         seq: u64,
+        /// Why nothing follows yet: a service does nothing for now.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        waits_for: Option<String>,
     },
     Motion {
         stopped: bool,
@@ -230,7 +233,7 @@ mod tests {
                         "utterances": null }),
             ),
             (
-                PageMessage::Done(done(Some(Answer::Accepted { seq: 7 }))),
+                PageMessage::Done(done(Some(Answer::Accepted { seq: 7, waits_for: None }))),
                 json!({ "t": "done", "id": 9, "ok": true, "seq": 7 }),
             ),
             (PageMessage::Done(done(None)), json!({ "t": "done", "id": 9, "ok": true })),

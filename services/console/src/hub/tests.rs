@@ -38,7 +38,7 @@ fn hub_obeys_the_operator_but_lets_every_viewer_stop() {
     assert!(commands.take().is_none() && motions.take().is_none());
     hub.motion(other, 4, true).unwrap();
     assert!(motions.take().is_some_and(|motion| motion.stop && motion.viewer == other));
-    hub.answer(one, 9, Ok(Some(Answer::Accepted { seq: 7 })));
+    hub.answer(one, 9, Ok(Some(Answer::Accepted { seq: 7, waits_for: None })));
     assert_eq!(received(&mut to_one), json!({ "t": "done", "id": 9, "ok": true, "seq": 7 }));
 }
 

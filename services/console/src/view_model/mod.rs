@@ -18,12 +18,12 @@ mod tests;
 use std::collections::VecDeque;
 
 use messages::{
-    Activity, ArmStatus, Hearing, Observation, PolicyView, Presented, Receipt, RobotAct,
+    Activity, ArmStatus, Hearing, Observation, PolicyView, Presented, Receipt, RobotAct, Service,
     TrajectoryView, WorldView,
 };
 use scene::Scene;
 use serde::Serialize;
-use service::status::GroupStatus;
+use service::status::{GroupStatus, ServiceStatus};
 use service::view::{ArmView, DialogueView, HearingView, Latest};
 use service::{Span, Time};
 
@@ -124,6 +124,14 @@ impl ViewModel {
 
     pub fn group(&self) -> Option<&GroupStatus> {
         self.group.as_ref()
+    }
+
+    /// Returns why the first of these services does nothing for anyone for now; none where they work or soon
+    /// will.
+    pub fn unavailable(&self, services: &[Service]) -> Option<String> {
+        let named = |name: &str| services.iter().any(|service| service.name() == name);
+        let needed = self.group.iter().flat_map(|group| &group.services);
+        needed.filter(|service| named(&service.name)).find_map(ServiceStatus::unavailable)
     }
 
     pub fn transcript(&mut self) -> &mut Transcript {

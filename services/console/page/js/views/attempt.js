@@ -8,16 +8,27 @@ const STAY_MS = 7_000;
  * Waits for something that was asked of the server; if it fails, says why.
  * @template T
  * @param {Promise<T>} promise
- * @param {{t: (key: string) => string}} context
+ * @param {{t: (key: string, args?: object) => string}} context
  * @returns {Promise<T|null>} null: it failed
  */
 export async function attempt(promise, { t }) {
   try {
-    return await promise;
+    const done = await promise;
+    if (/** @type {any} */ (done)?.waits_for) notify(waiting(done, t));
+    return done;
   } catch (error) {
     notify(reason(/** @type {any} */ (error), t));
     return null;
   }
+}
+
+/**
+ * Says that words are kept although nothing follows yet, and why; nothing where all is well.
+ * @param {any} done the server's answer to words
+ * @param {(key: string, args?: object) => string} t
+ */
+export function waiting(done, t) {
+  return done?.waits_for ? t("say.kept", { why: done.waits_for }) : "";
 }
 
 /**

@@ -2,7 +2,7 @@
 import { eachFrame, h, setAttribute } from "../dom.js";
 import { icon } from "../icons.js";
 import { whoControls } from "../model/turn.js";
-import { reason } from "./attempt.js";
+import { reason, waiting } from "./attempt.js";
 
 /** Longest text, characters. */
 const TEXT_MAX = 500;
@@ -62,7 +62,8 @@ export function mountSay(element, { link, store, t }) {
       await link.up(OUTAGE_MS);
       await ready();
       const times = { began_ms: link.toServer(began), ended_ms: link.serverNow() };
-      await link.do("say", { text, source: "typed", ...times });
+      const done = await link.do("say", { text, source: "typed", ...times });
+      note.textContent = waiting(done, t);
     } catch (error) {
       if (input.value === "") input.value = text;
       note.textContent = reason(/** @type {any} */ (error), t);
