@@ -263,7 +263,7 @@ fn page_is_for_those_with_the_token() {
     let form = format!("token={token}");
     assert_eq!(http(&place, "POST", "/login", &[], &form).0, 403);
     for link in
-        [("POST", "/login".to_owned(), form), ("GET", format!("/?{form}&lang=de"), String::new())]
+        [("GET", format!("/?{form}&lang=de"), String::new()), ("POST", "/login".to_owned(), form)]
     {
         let (method, path, body) = link;
         let (status, head, _) = http(&place, method, &path, &[&own], &body);
