@@ -90,10 +90,10 @@ impl Node for PolicyNode {
             Event::SetAside(_) => {}
             Event::Started => self.start(now, fx),
             Event::Message(In::Observation(observation)) => self.observe(&observation, now, fx),
-            Event::Message(In::Presented(it)) => self.floor.presented = presentation(&it),
+            Event::Message(In::Presented(it)) => self.floor.presented = presentation(&it, now),
             Event::Message(In::Activity(activity)) => {
                 self.floor.speaking_since =
-                    (activity.onset_ns > 0).then_some(Time(activity.onset_ns));
+                    (activity.onset_ns > 0).then_some(Time(activity.onset_ns).min(now));
                 self.floor.pending = activity.pending;
                 self.decide_deferred(now, fx);
             }
@@ -142,7 +142,7 @@ impl PolicyNode {
                 return;
             }
         }
-        let Some(utterance) = self.utterance(observation) else {
+        let Some(utterance) = self.utterance(observation, now) else {
             // Not applied, so speech sends the utterance again: grounding may be repaired or swapped
             // meanwhile, and nothing is lost.
             self.rejected += 1;
@@ -157,7 +157,8 @@ impl PolicyNode {
     }
 
     /// Returns the utterance of an observation; none where it is invalid or of another scene.
-    fn utterance(&self, observation: &Observation) -> Option<Utterance> {
+    /// A time in the future is none: it is of a clock before a restart of the machine, or a defect.
+    fn utterance(&self, observation: &Observation, now: Time) -> Option<Utterance> {
         let scene = self.manager.scene();
         let begun =
             if observation.onset_ns > 0 { observation.onset_ns } else { observation.accepted_ns };
@@ -166,9 +167,9 @@ impl PolicyNode {
             seq: UtteranceSeq(observation.seq),
             presentations: presentations.collect::<Result<_, _>>().ok()?,
             typed: !is_live(observation.source.get()),
-            onset: Time(begun),
-            end: Time(observation.end_ns.max(begun)),
-            accepted: Time(observation.accepted_ns),
+            onset: Time(begun).min(now),
+            end: Time(observation.end_ns.max(begun)).min(now),
+            accepted: Time(observation.accepted_ns).min(now),
             interpretations: observation.interpretations(scene.words().len()).ok()?,
             unknown: observation.unknown.as_str().unwrap_or_default().to_owned(),
             gesture: observation.gesture.target_m().ok()?,
@@ -236,12 +237,12 @@ fn is_live(source: Source) -> bool {
     matches!(source, Source::Microphone | Source::Browser)
 }
 
-fn presentation(presented: &Presented) -> Presentation {
+fn presentation(presented: &Presented, now: Time) -> Presentation {
     Presentation {
         prompt: PromptId(presented.prompt),
         number: presented.presentation,
-        began: Time(presented.started_ns),
-        ended: (presented.ended_ns > 0).then_some(Time(presented.ended_ns)),
+        began: Time(presented.started_ns).min(now),
+        ended: (presented.ended_ns > 0).then_some(Time(presented.ended_ns).min(now)),
         complete: presented.state.get() == PresentationState::Ended,
         ..Presentation::default()
     }

@@ -73,9 +73,12 @@ impl PromptPlayer {
     /// Handles the policy's current decision, which is resent periodically.
     pub(crate) fn on_act(&mut self, act: &RobotAct, now: Time, fx: &mut Fx) {
         let kind = act.kind.get();
-        let (Ok(question), Ok(text)) = (Question::try_from(act.question), act.text.as_str()) else {
-            tracing::warn!(act = act.act, "invalid act rejected");
-            return;
+        let (question, text) = match act.judge() {
+            Ok(judged) => judged,
+            Err(error) => {
+                tracing::warn!(act = act.act, %error, "act rejected");
+                return;
+            }
         };
         if kind == ActKind::Wait || text.is_empty() {
             self.waiting = None;
@@ -96,10 +99,11 @@ impl PromptPlayer {
         self.waiting = Some(Waiting { act, presentation, text, aim_until });
     }
 
-    /// Returns whether the presentation was spoken, is being spoken, or waits.
+    /// Returns whether the presentation was the last one spoken, is being spoken, or waits. Acts come
+    /// in order, so only equality counts: a number that was too high must not silence what follows.
     fn is_known(&self, prompt: PromptId, number: u32) -> bool {
         let is = |other: &Presentation| (other.prompt, other.number) == (prompt, number);
-        self.last.is_some_and(|last| (last.prompt, last.number) >= (prompt, number))
+        self.last.as_ref().is_some_and(is)
             || self.playing.as_ref().is_some_and(|playing| is(&playing.presentation))
             || self.waiting.as_ref().is_some_and(|waiting| is(&waiting.presentation))
     }

@@ -5,6 +5,9 @@ use scene::{Intent, Question};
 
 use crate::{Config, Hypothesis};
 
+/// Largest weight of a hypothesis.
+const WEIGHT_MAX: f64 = 1e9;
+
 /// Words, a pointing gesture, or both.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct UtteranceContent {
@@ -35,8 +38,11 @@ impl UtteranceContent {
     pub(crate) fn transcript(mut hypotheses: Vec<Hypothesis>) -> Result<Self, String> {
         for Hypothesis { text, weight, word_confidence } in &hypotheses {
             let words = text.split_whitespace().count();
-            if !(weight.is_finite() && *weight > 0.0) {
-                return Err(format!("transcript: expected a weight above 0, found {weight}"));
+            // Their sum must be a number, too: the weights become shares.
+            if !(*weight > 0.0 && *weight <= WEIGHT_MAX) {
+                return Err(format!(
+                    "transcript: expected a weight above 0, at most {WEIGHT_MAX}, found {weight}"
+                ));
             }
             if let Some(wrong) = word_confidence.iter().find(|c| !(0.0..=1.0).contains(*c)) {
                 return Err(format!(
@@ -116,7 +122,8 @@ mod tests {
     #[test]
     fn transcript_rejects_invalid_weights_and_confidences() {
         for (weight, confidence, expected) in [
-            (0.0, &[][..], "weight above 0, found 0"),
+            (0.0, &[][..], "weight above 0, at most 1000000000, found 0"),
+            (f64::MAX, &[], "found 1797"),
             (f64::NAN, &[], "NaN"),
             (1.0, &[1.5], "found 1.5"),
             (1.0, &[f32::NAN], "NaN"),

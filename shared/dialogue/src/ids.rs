@@ -16,7 +16,7 @@ macro_rules! id {
             /// Returns the identifier that follows.
             #[must_use]
             pub fn next(self) -> Self {
-                Self(self.0 + 1)
+                Self(self.0.saturating_add(1))
             }
         }
 

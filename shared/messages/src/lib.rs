@@ -8,6 +8,7 @@
 mod fixed;
 pub mod ids;
 pub mod inbox;
+pub mod judge;
 pub mod outbox;
 pub mod payloads;
 pub mod pick;

@@ -46,13 +46,16 @@ impl<T> Outbox<T> {
         self.waiting.push_back((seq, message));
     }
 
-    /// The receiver has applied everything up to `mark`. A mark beyond our own last number means
-    /// that our journal was lost; numbering continues after it.
-    pub fn acknowledge(&mut self, mark: UtteranceSeq) {
+    /// The receiver has applied everything up to `mark`. Returns `false` and changes nothing if that
+    /// was never sent: believed, such a mark would end what still waits.
+    pub fn acknowledge(&mut self, mark: UtteranceSeq) -> bool {
+        if mark > self.last {
+            return false;
+        }
         while self.waiting.front().is_some_and(|(seq, _)| *seq <= mark) {
             self.waiting.pop_front();
         }
-        self.last = self.last.max(mark);
+        true
     }
 
     /// Every number up to `over` is over: what waits with one of them is dropped, and numbering

@@ -50,7 +50,10 @@ impl AcceptedUtterances {
     /// Handles the policy's mark. Returns whether it is new.
     pub(crate) fn acknowledge(&mut self, mark: AppliedMark) -> bool {
         let (before, was_marked) = (self.outbox.len(), self.is_marked);
-        self.outbox.acknowledge(UtteranceSeq(mark.seq));
+        if !self.outbox.acknowledge(UtteranceSeq(mark.seq)) {
+            tracing::warn!(mark = mark.seq, last = %self.outbox.last(), "impossible mark rejected");
+            return false;
+        }
         self.is_marked = true;
         self.outbox.len() != before || !was_marked
     }

@@ -4,9 +4,9 @@ use crate::fixed::common::WireQuestion;
 use crate::schema::wire_struct;
 use crate::text::FixedText;
 use crate::wire::{Code, wire_codes};
-use crate::{ActKind, InteractionId, PickId};
+use crate::{ActKind, InteractionId, PickId, WireError, judge};
 use iceoryx2::prelude::ZeroCopySend;
-use scene::ObjectId;
+use scene::{ObjectId, Question};
 
 wire_struct! {
     /// The highest utterance that the belief holds. Policy to speech.
@@ -55,6 +55,18 @@ impl RobotAct {
     pub fn pick(&self) -> Option<(PickId, ObjectId)> {
         let object = u16::try_from(self.object).ok()?;
         (self.kind == ActKind::Pick).then_some((self.pick_id(), ObjectId(object)))
+    }
+
+    /// Judges what the policy alone can know: its numbers, its question and its text.
+    ///
+    /// # Errors
+    /// A number that nothing counts to, or a question or text that is none.
+    pub fn judge(&self) -> Result<(Question, &str), WireError> {
+        judge::count("act", self.act)?;
+        judge::count("interaction", self.interaction)?;
+        judge::count("prompt", self.prompt)?;
+        judge::count("utterance", self.utterance)?;
+        Ok((Question::try_from(self.question)?, self.text.as_str()?))
     }
 
     /// The key of the pick that it orders or gives up.
