@@ -6,6 +6,7 @@
 //! and `WHICHONE_SEEDS=N` runs that many instead of the usual number.
 
 mod checkers;
+mod forged;
 mod turns;
 
 use config::Settings;

@@ -26,15 +26,15 @@ impl ArmNode {
         if id < self.act.id || act.scene_key != self.config.scene.key() {
             return;
         }
+        let question = match act.judge() {
+            Ok((question, _)) => question,
+            Err(error) => {
+                tracing::warn!(%id, %error, "act rejected");
+                return;
+            }
+        };
         let is_new = id != self.act.id;
         let kind = act.kind.get();
-        let Ok(question) = Question::try_from(act.question) else {
-            if is_new {
-                tracing::warn!(%id, "invalid act ignored");
-            }
-            self.act = StandingAct { id, aim: None };
-            return;
-        };
         let aim = match (kind, question) {
             (ActKind::Ask, Question::Point(object)) => Some(object),
             _ => None,

@@ -5,12 +5,14 @@
 //! |---|---|
 //! | `host.rs` | one reducer in a simulated process, with its journal |
 //! | `faults.rs` | faults drawn from a seed: kills, lost and duplicated messages |
+//! | `forger.rs` | messages that no service sends |
 //! | `user.rs` | the user and the input channels |
 //! | `routes.rs` | routing of the services' messages |
 //! | `attribution.rs` | a study of turn-taking: to which question each answer is credited |
 
 mod attribution;
 mod faults;
+mod forger;
 mod host;
 mod routes;
 mod user;
@@ -94,6 +96,8 @@ pub struct SimulatedGroup {
     picked: Option<ObjectId>,
     view: PolicyView,
     story: Vec<String>,
+    /// Random numbers of the forger of messages, if there is one.
+    forger: Option<Rng>,
 }
 
 impl SimulatedGroup {
@@ -121,6 +125,7 @@ impl SimulatedGroup {
             picked: None,
             view: PolicyView::default(),
             story: Vec::new(),
+            forger: None,
         }
     }
 
@@ -220,6 +225,7 @@ impl SimulatedGroup {
     }
 
     fn pass_all(&mut self) {
+        self.forge();
         let now = self.now;
         let inbox = std::mem::take(&mut self.inboxes.speech);
         let outputs = self.speech.wake(inbox, now, &mut self.faults);

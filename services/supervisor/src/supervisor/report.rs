@@ -65,6 +65,18 @@ impl Supervisor {
         }
     }
 
+    /// Describes a shortage: as it was said, or by what is left where only its kind is known.
+    fn waits_for(&self, what: &str) -> String {
+        let folder = match what {
+            STORAGE => &self.around.paths.journal(),
+            SHARED_MEMORY => Path::new("/dev/shm"),
+            said => return format!("waits for {said}"),
+        };
+        let Ok(stat) = rustix::fs::statvfs(folder) else { return format!("waits for {what}") };
+        let (free_kib, folder) = ((stat.f_bavail * stat.f_frsize) >> 10, folder.display());
+        format!("waits for {what}: {free_kib} KiB free in {folder}")
+    }
+
     /// Returns the reason why a service is not in its wanted state.
     pub(super) fn why(&self, service: usize) -> Option<String> {
         let (machine, entry) = (self.group.machine(service), &self.services[service]);
@@ -73,26 +85,11 @@ impl Supervisor {
         }
         // One that runs may be short, too.
         if machine.state() == ServiceState::Short || entry.running.is_some() {
-            let shortage = entry.shortage().map(|what| self.with_figures(what));
-            return shortage.map(|what| format!("waits for {what}"));
+            return entry.shortage().map(|what| self.waits_for(what));
         }
         let missing = self.group.waits_for(service);
         let names: Vec<&str> = missing.iter().map(|&other| self.name(other)).collect();
         (!names.is_empty()).then(|| format!("waits for {}", names.join(" and ")))
-    }
-}
-
-/// Adds what is left of a resource.
-impl Supervisor {
-    fn with_figures(&self, what: &str) -> String {
-        let folder = match what {
-            STORAGE => &self.around.paths.journal(),
-            SHARED_MEMORY => Path::new("/dev/shm"),
-            _ => return what.to_owned(),
-        };
-        let Ok(stat) = rustix::fs::statvfs(folder) else { return what.to_owned() };
-        let (free, folder) = ((stat.f_bavail * stat.f_frsize) >> 20, folder.display());
-        format!("{what}: {free} MiB free in {folder}")
     }
 }
 

@@ -78,7 +78,7 @@ fn shortage_is_waited_out_without_limit_and_without_a_person() {
     assert_eq!(waiting.state, ServiceState::Short);
     assert_eq!(waiting.log_tail.last().map(String::as_str), Some("disk full"));
     let why = waiting.why.unwrap();
-    assert!(why.starts_with("waits for disk: ") && why.contains("MiB free"), "{why}");
+    assert!(why.starts_with("waits for disk: ") && why.contains("KiB free in "), "{why}");
     let refused = group.refused(&Request::WaitReady { wait_ms: 100 });
     assert!(refused.message.contains("arm waits for disk: "), "{}", refused.message);
     assert!(refused.message.contains("policy waits for arm"), "{}", refused.message);
