@@ -50,8 +50,21 @@ fn hold_keeps_a_service_down_until_release() {
     let group = Group::up(&[]);
     group.must(&["hold", "speech"]);
     wait_for("the hold", 10.0, || (group.service("speech")["actual"] == "held").then_some(()));
-    assert_eq!(group.call(&["status"]).code, Some(1), "not everything is ready");
+    assert_eq!(group.service("speech")["state"], "held");
+    let status = group.call(&["status"]);
+    assert_eq!(status.code, Some(1), "not everything is ready");
+    assert!(status.stdout.contains("whichone release speech"), "{status:?}");
+    for verb in [&["say", "hello", "--timeout", "30"][..], &["await", "pick", "--timeout", "30"]] {
+        let refused = group.call(verb);
+        assert_eq!(refused.code, Some(1), "{refused:?}");
+        let why = "error: speech is held by the operator; help: whichone release speech\n";
+        assert_eq!(refused.stderr, why);
+    }
     group.must(&["release", "speech"]);
+    group.must(&["hold", "policy"]);
+    let kept = group.must(&["say", "a bowl"]);
+    assert!(kept.stderr.contains("policy is held by the operator"), "{kept:?}");
+    group.must(&["release", "policy"]);
     wait_for("the release", 10.0, || (group.service("speech")["actual"] == "ready").then_some(()));
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     group.down();

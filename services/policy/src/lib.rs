@@ -13,7 +13,7 @@ mod view;
 mod tests;
 
 use dialogue::ids::{PromptId, UtteranceSeq};
-use dialogue::manager::{Cause, Floor, Manager, Record, State, Utterance};
+use dialogue::manager::{Cause, Floor, HEARING_MAX, Manager, Record, State, Utterance};
 use dialogue::{PickOutcome, PickPhase, Presentation};
 use messages::inbox::{Inbox, Verdict};
 use messages::{
@@ -185,6 +185,10 @@ impl PolicyNode {
             return;
         }
         let mut outcome = status.outcome.get();
+        if outcome == PickOutcome::Pending {
+            // Done without an outcome is no end.
+            return;
+        }
         if outcome == PickOutcome::Delivered && status.object != u32::from(object.0) {
             // The order has two parts. Whatever the arm delivered, it was not what this one names.
             self.rejected += 1;
@@ -196,7 +200,7 @@ impl PolicyNode {
 
     fn tick(&mut self, now: Time, fx: &mut Fx) {
         self.decide_deferred(now, fx);
-        if self.manager.silence_is_due(&self.state, &self.floor(), now) {
+        if self.manager.silence_is_due(&self.state, &self.floor(now), now) {
             self.apply(Cause::Silence, now, fx);
         } else if now >= self.next_send {
             self.send(now, fx);
@@ -204,14 +208,16 @@ impl PolicyNode {
     }
 
     fn decide_deferred(&mut self, now: Time, fx: &mut Fx) {
-        if self.manager.quiet_is_due(&self.state, &self.floor(), now) {
+        if self.manager.quiet_is_due(&self.state, &self.floor(now), now) {
             self.apply(Cause::Quiet, now, fx);
         }
     }
 
-    /// Returns the floor: an observation that arrived early shows that one more is on its way.
-    fn floor(&self) -> Floor {
-        let pending = self.floor.pending.max(self.waiting_since.is_some().into());
+    /// Returns the floor: an observation that arrived early shows that one more is on its way. It is
+    /// not waited for without end: the early one may never have been an utterance's.
+    fn floor(&self, now: Time) -> Floor {
+        let is_on_its_way = self.waiting_since.is_some_and(|since| now < since + HEARING_MAX);
+        let pending = self.floor.pending.max(is_on_its_way.into());
         Floor { pending, ..self.floor }
     }
 

@@ -16,11 +16,13 @@ enum Fault {
     LoseMark,
     ReceiverRestarts,
     SenderRestarts,
+    ForgedMark(u64),
 }
 
 fn fault() -> impl Strategy<Value = Fault> {
     use Fault::*;
-    prop::sample::select(vec![
+    let forged = prop_oneof![Just(u64::MAX), Just(u64::MAX - 1), 1 << 40..u64::MAX];
+    let usual = prop::sample::select(vec![
         LoseAll,
         LoseOdd,
         Double,
@@ -28,7 +30,8 @@ fn fault() -> impl Strategy<Value = Fault> {
         LoseMark,
         ReceiverRestarts,
         SenderRestarts,
-    ])
+    ]);
+    prop_oneof![7 => usual, 1 => forged.prop_map(ForgedMark)]
 }
 
 struct Pair {
@@ -62,6 +65,9 @@ impl Pair {
                 self.inbox = Inbox::new(UtteranceSeq(self.applied.len() as u64));
             }
             Some(Fault::SenderRestarts) => self.restart_sender(),
+            Some(Fault::ForgedMark(mark)) => {
+                assert!(!self.outbox.acknowledge(UtteranceSeq(mark)), "never sent");
+            }
             Some(Fault::LoseMark) | None => {}
         }
         for (seq, message) in wire {

@@ -7,7 +7,7 @@ use crate::{ActKind, Presentation};
 
 /// Longest time for which a sound being heard defers a decision or a repetition: noise must not
 /// silence the robot.
-const HEARING_MAX: Span = Span::from_ms(10_000);
+pub const HEARING_MAX: Span = Span::from_ms(10_000);
 
 /// What is known of both voices.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

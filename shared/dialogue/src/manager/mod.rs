@@ -29,7 +29,7 @@ mod refold;
 mod state;
 
 pub use evidence::{Evidence, NAMES_MAX};
-pub use floor::Floor;
+pub use floor::{Floor, HEARING_MAX};
 pub use history::History;
 pub use line::{Content, Line, Preface, Remark};
 pub use refold::{Mismatch, refold, refold_since};
