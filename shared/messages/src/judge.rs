@@ -23,5 +23,5 @@ pub const COUNT_MAX: u64 = 1 << 53;
 /// # Errors
 /// Larger than [`COUNT_MAX`].
 pub fn count(field: &'static str, number: u64) -> Result<u64, WireError> {
-    if number <= COUNT_MAX { Ok(number) } else { Err(WireError::new(field, u32::MAX)) }
+    if number <= COUNT_MAX { Ok(number) } else { Err(WireError::count(field, number)) }
 }

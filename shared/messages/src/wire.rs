@@ -8,12 +8,17 @@ use std::marker::PhantomData;
 #[error("invalid {field} {value} on the wire")]
 pub struct WireError {
     field: &'static str,
-    value: u32,
+    value: u64,
 }
 
 impl WireError {
     /// An error for `value` in `field`.
     pub const fn new(field: &'static str, value: u32) -> Self {
+        Self { field, value: value as u64 }
+    }
+
+    /// An error for a count in `field`.
+    pub const fn count(field: &'static str, value: u64) -> Self {
         Self { field, value }
     }
 }

@@ -122,8 +122,12 @@ fn outbox_rejects_messages_when_full() {
 }
 
 #[test]
-fn outbox_numbering_skips_to_a_later_mark() {
-    let mut outbox: Outbox<u32> = Outbox::new(UtteranceSeq(0), 4, 8);
-    outbox.acknowledge(UtteranceSeq(41));
-    assert_eq!(outbox.next(), Ok(UtteranceSeq(42)));
+fn outbox_ignores_a_mark_that_was_never_sent() {
+    let mut outbox: Outbox<u32> = Outbox::new(UtteranceSeq(7), 4, 8);
+    outbox.push(UtteranceSeq(8), 0);
+    for forged in [9, 41, u64::MAX] {
+        assert!(!outbox.acknowledge(UtteranceSeq(forged)));
+    }
+    assert_eq!((outbox.len(), outbox.next()), (1, Ok(UtteranceSeq(9))));
+    assert!(outbox.acknowledge(UtteranceSeq(8)) && outbox.is_empty());
 }
