@@ -3,7 +3,8 @@
 //! other solvers; how fast the group starts and recovers, how long an utterance
 //! takes to become a decision and where the time goes, what it costs when nothing happens, how
 //! steadily joint states come, how much of spoken sentences is understood, how turns are taken in
-//! simulated time, what many open pages cost the console, and how dialogues by voice end.
+//! simulated time, what many open pages cost the console, how dialogues by voice end, and how soon
+//! the arm stops while something is short.
 //!
 //! Machines are noisy: each figure stands beside a peer that was measured in the same run, and no
 //! test rests on one.
@@ -20,6 +21,7 @@ mod report;
 mod speech;
 mod spoken;
 mod start;
+mod stops;
 mod turns;
 
 use clap::Parser;
@@ -63,6 +65,9 @@ fn measure(options: &Options, report: &mut Report) {
     }
     if all || options.joints {
         jitter::measure(report);
+    }
+    if all || options.stops {
+        stops::measure(report, options.quick);
     }
     if all || options.speech {
         speech::measure(report, options.quick);

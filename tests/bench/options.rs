@@ -24,6 +24,9 @@ pub(crate) struct Options {
     /// Only spoken input: what is understood of spoken sentences, how late
     #[arg(long)]
     pub(crate) speech: bool,
+    /// Only stops of the arm, in each shortage
+    #[arg(long)]
+    pub(crate) stops: bool,
     /// Only turn-taking in simulated time: answers late, early, overlapping, doubled
     #[arg(long)]
     pub(crate) turns: bool,
@@ -53,8 +56,9 @@ pub(crate) struct Options {
 impl Options {
     /// Returns whether all parts are selected.
     pub(crate) fn wants_all(&self) -> bool {
-        let Self { core, kinematics, processes, joints, speech, turns, console, spoken, .. } =
-            *self;
-        !(core || kinematics || processes || joints || speech || turns || console || spoken)
+        let Self { core, kinematics, processes, joints, stops, .. } = *self;
+        let Self { speech, turns, console, spoken, .. } = *self;
+        let measured = core || kinematics || processes || joints || stops;
+        !(measured || speech || turns || console || spoken)
     }
 }

@@ -21,6 +21,7 @@ mod python;
 mod recovery;
 mod reload;
 mod robot;
+mod shortage;
 mod speech;
 mod spoken;
 mod supervision;

@@ -4,6 +4,7 @@
 mod command;
 pub mod console;
 mod group;
+pub mod shortage;
 pub mod simulated_group;
 pub mod spoken;
 

@@ -30,10 +30,8 @@ impl Lock {
             }
             Err(TryLockError::Error(error)) => return Err(io("lock the journal")(error)),
         }
-        // The number only serves messages, so losing it in a crash is harmless and it is not
-        // synced.
-        file.set_len(0).map_err(io("write the lock file"))?;
-        writeln!(file, "{}", std::process::id()).map_err(io("write the lock file"))?;
+        // The number only serves messages, so losing it in a crash or on a full disk is harmless.
+        let _ = file.set_len(0).and_then(|()| writeln!(file, "{}", std::process::id()));
         Ok(Self { _file: file })
     }
 }

@@ -54,7 +54,11 @@ pub(crate) fn replace(
     let mut enter = |step| before(step).map_err(at(step));
 
     enter(Step::WriteNew)?;
-    let file = write_new(&new, bytes).map_err(at(Step::WriteNew))?;
+    let file = write_new(&new, bytes).inspect_err(|_| {
+        // On a full disk a part of it would only take space.
+        let _ = fs::remove_file(&new);
+    });
+    let file = file.map_err(at(Step::WriteNew))?;
     enter(Step::ShiftOld)?;
     shift(path, keep).map_err(at(Step::ShiftOld))?;
     enter(Step::LinkOld)?;

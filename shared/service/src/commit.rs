@@ -86,7 +86,7 @@ pub(crate) struct Commit<Out, Record> {
     durable: u64,
     /// Outputs, with the passes that must be durable first.
     held: VecDeque<(u64, Out)>,
-    shortage: Option<String>,
+    is_short: bool,
     bytes: u64,
     rotate_at: u64,
 }
@@ -114,7 +114,7 @@ impl<Out, Record: Send + 'static> Commit<Out, Record> {
             stated: 0,
             durable: 0,
             held: VecDeque::new(),
-            shortage: None,
+            is_short: false,
             bytes,
             rotate_at: ROTATE_BYTES,
         })
@@ -158,7 +158,7 @@ impl<Out, Record: Send + 'static> Commit<Out, Record> {
             match report {
                 Report::Durable { passes, bytes } => {
                     (self.durable, self.bytes) = (passes, bytes);
-                    if self.shortage.take().is_some() {
+                    if std::mem::take(&mut self.is_short) {
                         tracing::info!(
                             "the disk has space again; everything that waited is written"
                         );
@@ -168,10 +168,9 @@ impl<Out, Record: Send + 'static> Commit<Out, Record> {
                     }
                 }
                 Report::Short(what) => {
-                    if self.shortage.is_none() {
-                        tracing::error!("{what}; waiting for space; help: free some");
+                    if !std::mem::replace(&mut self.is_short, true) {
+                        tracing::error!("{what}; waiting for space");
                     }
-                    self.shortage = Some(what);
                 }
                 Report::Failed(failure) => return Err(failure),
             }
@@ -190,9 +189,9 @@ impl<Out, Record: Send + 'static> Commit<Out, Record> {
         self.held.len() >= WAITING_MAX || self.stated - self.durable >= WAITING_MAX as u64
     }
 
-    /// What the disk is short of.
-    pub(crate) fn shortage(&self) -> Option<&str> {
-        self.shortage.as_deref()
+    /// Returns whether the disk is full; what waits is tried again.
+    pub(crate) fn is_short(&self) -> bool {
+        self.is_short
     }
 
     /// Returns whether the journal is long, and everything durable.
@@ -310,7 +309,7 @@ impl<R, S: Store<R>> Writer<R, S> {
             }
             Err(error @ (SyncError::Full(_) | SyncError::Write(_))) => {
                 let free = storage::free_text(&self.folder);
-                self.reports.send(Report::Short(format!("disk: {error} ({free})")));
+                self.reports.send(Report::Short(format!("{error} ({free})")));
                 Ok(false)
             }
             Err(error) => Err(storage_failure(&error)),

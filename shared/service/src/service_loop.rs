@@ -27,6 +27,8 @@ use std::process::ExitCode;
 const PASS_EVENTS_MAX: usize = 256;
 /// Maximum sleep: inputs are polled this often even if a wake-up was lost.
 const LOOK_EVERY: Span = Span::from_ms(500);
+/// The disk, as a service reports it to be short.
+const SHORT_OF_DISK: &str = "disk";
 /// Time that a topic may fail without a break before the service gives up: a restart may help then.
 const PORT_PATIENCE: Span = Span::from_ms(10_000);
 
@@ -265,7 +267,7 @@ impl<P: Program> Cycle for Loop<P> {
         self.commit()?;
         self.judge_ports()?;
         // What waits for a full disk was never acknowledged, and is given up as by a kill.
-        let is_done = self.commit.is_settled() || self.commit.shortage().is_some();
+        let is_done = self.commit.is_settled() || self.commit.is_short();
         let ends = self.effects.exits() && is_done;
         Ok(if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
@@ -276,7 +278,7 @@ impl<P: Program> Cycle for Loop<P> {
 
     fn shortage(&self) -> Option<&str> {
         let port_failure = self.port_failure.as_ref().map(|(what, _)| what.as_str());
-        self.commit.shortage().or(port_failure)
+        self.commit.is_short().then_some(SHORT_OF_DISK).or(port_failure)
     }
 }
 

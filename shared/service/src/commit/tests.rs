@@ -117,10 +117,10 @@ fn outputs_follow_their_records_and_keep_their_order() {
     assert!(pass(&mut commit, &[1, 2], &["one", "two"]).is_empty());
     assert!(pass(&mut commit, &[], &["three"]).is_empty(), "it may tell of an earlier record");
     assert!(pass(&mut commit, &[3], &["four"]).is_empty());
-    assert!(until(&mut commit, |commit| commit.shortage().is_some()).is_empty());
+    assert!(until(&mut commit, Commit::is_short).is_empty());
     disk.set(|state| state.is_full = false);
     assert_eq!(until(&mut commit, Commit::is_settled), ["one", "two", "three", "four"]);
-    assert_eq!((disk.durable(), commit.shortage()), (vec![vec![1, 2], vec![3]], None));
+    assert_eq!((disk.durable(), commit.is_short()), (vec![vec![1, 2], vec![3]], false));
 }
 
 #[test]
@@ -129,8 +129,7 @@ fn full_disk_is_tried_again_until_there_is_space() {
     disk.set(|state| state.is_full = true);
     let mut commit = start(&disk);
     pass(&mut commit, &[1], &["one"]);
-    until(&mut commit, |commit| commit.shortage().is_some());
-    assert!(commit.shortage().unwrap().starts_with("disk: no space for the journal"));
+    until(&mut commit, Commit::is_short);
     let tried = disk.get(|state| state.attempts);
     until(&mut commit, |_| disk.get(|state| state.attempts) > tried + 1);
     assert!(disk.durable().is_empty() && !commit.is_settled());
@@ -144,14 +143,14 @@ fn vital_record_takes_what_waits_before_it_into_the_reserve() {
     disk.set(|state| (state.is_full, state.reserve) = (true, 1));
     let mut commit = start(&disk);
     pass(&mut commit, &[1], &["one"]);
-    until(&mut commit, |commit| commit.shortage().is_some());
+    until(&mut commit, Commit::is_short);
     let mut effects = Effects::default();
     effects.append_vital(2);
     commit.state(&mut effects).unwrap();
     assert_eq!(until(&mut commit, Commit::is_settled), ["one"]);
     assert_eq!(disk.durable(), [vec![1], vec![2]]);
     pass(&mut commit, &[3], &["three"]);
-    until(&mut commit, |commit| commit.shortage().is_some());
+    until(&mut commit, Commit::is_short);
     assert_eq!(disk.durable(), [vec![1], vec![2]], "an ordinary record leaves the reserve alone");
 }
 

@@ -1,0 +1,98 @@
+//! From the command to stop to joints that stand, with everything at hand and in each shortage, and
+//! the time until the group is whole again once a shortage ends.
+
+use crate::report::Report;
+use rustix::process::{Pid, Signal, kill_process};
+use std::time::{Duration, Instant};
+use whichone_tests::shortage::{
+    JointWatch, NoDescriptors, SmallDisk, SmallGroup, has_private_mounts,
+};
+use whichone_tests::{Group, wait_for};
+
+/// Stops in one pick: all of them in its first motion.
+const STOPS: u32 = 8;
+/// Picks in each situation.
+const PICKS: u32 = 3;
+
+/// A group in which one pick after another is stopped several times.
+struct Stopped<'a> {
+    name: &'a str,
+    group: &'a Group,
+    picks: u32,
+    /// True if the arm's service is killed before the shortage ends.
+    kills_arm: bool,
+}
+
+pub(crate) fn measure(report: &mut Report, quick: bool) {
+    let picks = if quick { 1 } else { PICKS };
+    let settings = ["arm.time_scale=1.0"];
+    let group = Group::up(&settings);
+    let stopped = |name| Stopped { name, group: &group, picks, kills_arm: false };
+    stopped("nothing is short").measure(report, || (), |()| {});
+    let hang = |pid: Pid| kill_process(pid, Signal::STOP).map(|()| pid).expect("a process of ours");
+    let go_on = |pid| kill_process(pid, Signal::CONT).expect("a process of ours");
+    stopped("hung supervisor").measure(report, || hang(supervisor(&group)), go_on);
+    stopped("stopped policy").measure(report, || hang(group.pid("policy")), go_on);
+    let arm = || NoDescriptors::of(group.pid("arm"));
+    stopped("no free descriptor").measure(report, arm, drop);
+    if has_private_mounts() {
+        let shared_memory = SmallDisk::shared_memory();
+        let stopped = stopped("full shared memory");
+        stopped.measure(report, || shared_memory.fill(), |()| shared_memory.free());
+    }
+    group.down();
+    if !has_private_mounts() {
+        return crate::report::print("without root: stops on a full disk are left out");
+    }
+    for (name, kills_arm) in [("full disk", false), ("full disk, then the arm killed", true)] {
+        let SmallGroup { group, disk } = SmallGroup::up(&settings);
+        let stopped = Stopped { name, group: &group, picks, kills_arm };
+        stopped.measure(report, || disk.fill(), |()| disk.free());
+        group.down();
+    }
+}
+
+impl Stopped<'_> {
+    fn measure<T>(&self, report: &mut Report, begin: impl Fn() -> T, end: impl Fn(T)) {
+        let joints = JointWatch::open(self.group);
+        let (mut stops_ms, mut recoveries_s) = (Vec::new(), Vec::new());
+        for _ in 0..self.picks {
+            let outcome = self.group.fetch_while("the clear bowl", "clear", || {
+                joints.wait_moving();
+                let shortage = begin();
+                for n in 0..STOPS {
+                    joints.wait_moving();
+                    std::thread::sleep(Duration::from_millis(u64::from(n % 4) * 40));
+                    stops_ms.push(joints.stop(self.group));
+                    if n + 1 < STOPS {
+                        self.group.must(&["resume-motion"]);
+                    }
+                }
+                if self.kills_arm {
+                    self.group.signal("arm", Signal::KILL);
+                }
+                end(shortage);
+                let ended = Instant::now();
+                wait_for("the whole group", 60.0, || self.is_whole().then_some(()));
+                recoveries_s.push(ended.elapsed().as_secs_f64());
+                self.group.must(&["resume-motion"]);
+            });
+            assert_eq!(outcome["outcome"], "delivered", "{outcome}");
+        }
+        let name = self.name;
+        report.add(&format!("stop to rest: {name}"), "ms", &stops_ms, "bar: 100 ms of motion");
+        report.add(&format!("whole again after: {name}"), "s", &recoveries_s, "");
+    }
+
+    /// Returns whether every service is ready and in want of nothing.
+    fn is_whole(&self) -> bool {
+        let status = self.group.status();
+        let services = status["services"].as_array();
+        services.is_some_and(|rows| rows.iter().all(|row| row["state"] == "ready"))
+    }
+}
+
+fn supervisor(group: &Group) -> Pid {
+    let pid = group.status()["supervisor_pid"].as_i64().expect("its pid");
+    Pid::from_raw(i32::try_from(pid).expect("a number of a process")).expect("not zero")
+}

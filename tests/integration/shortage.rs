@@ -1,0 +1,180 @@
+//! The motion stop, and recovery, while something is short or hangs.
+
+use messages::{Receipt, ReceiptStatus, Sound, topics};
+use rustix::process::{Pid, Signal, kill_process};
+use serde_json::Value as Json;
+use service::client::{Client, deliver};
+use service::{Span, Time, clock};
+use whichone_tests::shortage::{
+    JointWatch, NoDescriptors, SmallDisk, SmallGroup, in_private_mounts,
+};
+use whichone_tests::{Group, wait_for};
+
+/// Real time, so that there is a motion to be stopped.
+const REAL_TIME: &str = "arm.time_scale=1.0";
+/// Longest time from the stop command to standing joints, milliseconds: the arm's 100 ms, and the
+/// start of a process on a busy machine.
+const STOP_MS_MAX: f64 = 1_000.0;
+
+fn stop(group: &Group, joints: &JointWatch) {
+    joints.wait_moving();
+    let took_ms = joints.stop(group);
+    assert!(took_ms < STOP_MS_MAX, "{took_ms} ms");
+}
+
+fn assert_delivered(group: &Group, outcome: &Json, object: &str) {
+    assert_eq!(outcome["outcome"], "delivered", "{outcome}\n{}", group.logs());
+    assert_eq!(outcome["object"], object, "{outcome}");
+    group.verify_journals();
+}
+
+fn supervisor(group: &Group) -> Pid {
+    let pid = group.status()["supervisor_pid"].as_i64().expect("its pid");
+    Pid::from_raw(i32::try_from(pid).unwrap()).unwrap()
+}
+
+#[test]
+fn arm_stops_with_a_hung_supervisor_a_stopped_policy_and_no_free_descriptor() {
+    let group = Group::up(&[REAL_TIME]);
+    let joints = JointWatch::open(&group);
+    let outcome = group.fetch_while("the clear bowl", "clear", || {
+        let supervisor = supervisor(&group);
+        joints.wait_moving();
+        kill_process(supervisor, Signal::STOP).unwrap();
+        stop(&group, &joints);
+        group.must(&["resume-motion"]);
+        kill_process(supervisor, Signal::CONT).unwrap();
+
+        group.signal("policy", Signal::STOP);
+        stop(&group, &joints);
+        group.must(&["resume-motion"]);
+        group.signal("policy", Signal::CONT);
+
+        let no_descriptors = NoDescriptors::of(group.pid("arm"));
+        stop(&group, &joints);
+        drop(no_descriptors);
+        group.must(&["resume-motion"]);
+    });
+    assert_delivered(&group, &outcome, "clear");
+    drop(joints);
+    group.down();
+}
+
+#[test]
+fn stop_without_the_arm_ends_soon_and_names_the_emergency_stop() {
+    let group = Group::up(&[]);
+    group.must(&["hold", "arm"]);
+    wait_for("the hold", 10.0, || (group.service("arm")["actual"] == "held").then_some(()));
+    let ended = group.call(&["stop-motion", "--timeout", "50"]);
+    assert_eq!(ended.code, Some(1), "{ended:?}");
+    for words in ["not running", "may still move", "emergency stop", "held"] {
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
+    group.must(&["release", "arm"]);
+    group.down();
+}
+
+/// What needs file systems of its own.
+mod as_root {
+    use super::*;
+
+    #[test]
+    #[ignore = "needs root, for a small disk"]
+    fn arm_stops_on_a_full_disk_and_the_stop_survives_a_kill() {
+        let SmallGroup { group, disk } = SmallGroup::up(&[REAL_TIME]);
+        let joints = JointWatch::open(&group);
+        let outcome = group.fetch_while("the clear bowl", "clear", || {
+            joints.wait_moving();
+            disk.fill();
+            stop(&group, &joints);
+            let state = group.must(&["stop-motion", "--json"]).json();
+            assert_eq!(state["durable"], true, "the journal's reserve holds it: {state}");
+            let before = group.incarnation("arm");
+            group.signal("arm", Signal::KILL);
+            let said = group.call(&["say", "the white one"]);
+            assert_ne!(said.code, Some(0), "{said:?}");
+            assert!(said.stderr.contains("KiB free"), "{said:?}");
+            disk.free();
+            group.wait_for_restart("arm", before);
+            assert_eq!(group.arm()["stopped"], true, "the stop has survived");
+            group.must(&["resume-motion"]);
+        });
+        assert_delivered(&group, &outcome, "clear");
+        drop(joints);
+        group.down();
+    }
+
+    #[test]
+    #[ignore = "needs root, for a small disk"]
+    fn full_disk_is_waited_out_and_the_same_interaction_completed() {
+        let SmallGroup { group, disk } = SmallGroup::up(&[]);
+        // A client that joins now, because a new one makes files.
+        let client = Client::join(group.paths()).unwrap();
+        let receipts = client.bus().reader::<Receipt>(&topics::RECEIPT).unwrap();
+        let writer = client.bus().encoded_writer(&topics::INJECTION).unwrap();
+        let say = |text: &str| {
+            let said = (clock::now(), Time(0));
+            deliver(&writer, &receipts, Sound::Text(text.into()), said, Span::from_ms(60_000))
+        };
+        say("get me the bowl").unwrap();
+        let asked = group.wait_for_decision("ask")["interaction"].clone();
+        let services = ["speech", "policy", "arm"];
+        let incarnations = services.map(|service| group.incarnation(service));
+        disk.fill();
+        // Small frames use up what the journal has been given, until it needs more.
+        let mut accepted = 0;
+        let freed = std::thread::scope(|scope| {
+            let status = scope.spawn(|| {
+                let why = wait_for("a service that waits for the disk", 40.0, || {
+                    let row = group.service("speech");
+                    (row["state"] == "short").then(|| row["why"].clone())
+                });
+                assert!(why.as_str().unwrap().contains("disk"), "{why}");
+                let ended = group.call(&["say", "hello"]);
+                assert_ne!(ended.code, Some(0), "{ended:?}");
+                assert!(
+                    ended.stderr.contains("disk") || ended.stderr.contains("full"),
+                    "{ended:?}"
+                );
+                disk.free();
+                clock::now()
+            });
+            while !status.is_finished() {
+                let heard = say("please").unwrap();
+                assert_eq!(heard[0].status, ReceiptStatus::Accepted, "{heard:?}");
+                accepted += 1;
+            }
+            status.join().expect("the disk is freed")
+        });
+        assert!(clock::now().since(freed) < Span::from_ms(10_000), "it goes on by itself");
+        assert!(accepted > 0);
+        let now = services.map(|service| group.incarnation(service));
+        assert_eq!(incarnations, now, "nobody died of it");
+        say("the clear bowl").unwrap();
+        let outcome = group.await_pick(Some("clear"));
+        assert_delivered(&group, &outcome, "clear");
+        assert_eq!(group.dialogue()["last"]["interaction"], asked);
+        drop((receipts, writer, client));
+        group.down();
+    }
+
+    #[test]
+    #[ignore = "needs root, for a small shared memory"]
+    fn arm_stops_with_full_shared_memory() {
+        in_private_mounts("shortage::as_root::arm_stops_with_full_shared_memory", || {
+            let group = Group::up(&[REAL_TIME]);
+            let joints = JointWatch::open(&group);
+            let shared_memory = SmallDisk::shared_memory();
+            let outcome = group.fetch_while("the clear bowl", "clear", || {
+                joints.wait_moving();
+                shared_memory.fill();
+                stop(&group, &joints);
+                shared_memory.free();
+                group.must(&["resume-motion"]);
+            });
+            assert_delivered(&group, &outcome, "clear");
+            drop(joints);
+            group.down();
+        });
+    }
+}
