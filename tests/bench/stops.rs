@@ -88,7 +88,9 @@ impl Stopped<'_> {
     fn is_whole(&self) -> bool {
         let status = self.group.status();
         let services = status["services"].as_array();
-        services.is_some_and(|rows| rows.iter().all(|row| row["state"] == "ready"))
+        services.is_some_and(|rows| {
+            rows.iter().all(|row| row["state"] == "ready" && row["why"].is_null())
+        })
     }
 }
 

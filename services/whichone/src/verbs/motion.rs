@@ -30,7 +30,7 @@ pub(super) fn motion(
 ) -> Outcome {
     let patience = Span::from_s(timeout.as_secs_f64());
     let state = stop_socket::give(paths, order, patience, &mut |trouble| {
-        note(&format!("{trouble}; trying again"));
+        note(format!("{trouble}; trying again"));
     });
     let state = state.map_err(|error| with_reason(error, paths))?;
     if order == MotionOrder::Stop {
