@@ -12,7 +12,7 @@ use messages::{
 };
 use service::{Span, Time};
 use std::path::Path;
-use whichone_tests::simulated_group::{Faults, Host, configured};
+use whichone_tests::simulated_group::{Faults, Host};
 
 /// Time step: shorter than any deadline.
 const LOOK_EVERY: Span = Span::from_ms(2);
@@ -40,8 +40,8 @@ impl World {
         let over: Vec<_> = over.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect();
         let settings = Settings::load(config, Some("baxter"), &over).unwrap();
         let mut world = Self {
-            arm: Host::new(configured::<arm::shell::ArmProgram>(&settings)),
-            robot: Host::new(configured::<baxter::shell::BaxterProgram>(&settings)),
+            arm: Host::new::<arm::shell::ArmProgram>(&settings),
+            robot: Host::new::<baxter::shell::BaxterProgram>(&settings),
             settings,
             now: Time(1_000_000_000),
             to_arm: Vec::new(),
@@ -59,7 +59,7 @@ impl World {
     }
 
     pub(crate) fn start_arm(&mut self) {
-        let outputs = self.arm.start(self.now);
+        let outputs = self.arm.start(self.now, &mut Faults::none());
         self.route_arm(outputs);
     }
 
@@ -69,7 +69,7 @@ impl World {
     }
 
     pub(crate) fn start_robot(&mut self) {
-        let outputs = self.robot.start(self.now);
+        let outputs = self.robot.start(self.now, &mut Faults::none());
         self.route_robot(outputs);
     }
 

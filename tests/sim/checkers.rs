@@ -1,18 +1,26 @@
 //! Invariants of any dialogue, checked on the journals.
 
 use config::Settings;
+use dialogue::Ended;
 use dialogue::manager::{Cause, refold, refold_since};
 use messages::{Outcome, PickOutcome, PickPhase};
+use scene::ObjectId;
 use speech::record::Record as Spoken;
 use whichone_tests::simulated_group::SimulatedGroup;
 
 type Verdict = Result<(), String>;
 
-/// Checks all invariants, the most informative first.
-pub(crate) fn check(group: &SimulatedGroup) -> Verdict {
+/// Checks all invariants, the most informative first; `wanted` are the objects of a user at a
+/// terminal, in order.
+pub(crate) fn check(group: &SimulatedGroup, wanted: &[ObjectId]) -> Verdict {
     ensure(group.change.is_none(), || "the scene has never changed".to_owned())?;
-    delivered_the_right_one(group)?;
-    picked_once(group)?;
+    if group.client.is_some() {
+        delivered_in_order(group, wanted)?;
+        deliveries_are_picks(group)?;
+    } else {
+        delivered_the_right_one(group)?;
+        picked_once(group)?;
+    }
     numbered_without_gap(group)?;
     applied_each_once(group)?;
     nothing_premature(group)?;
@@ -26,6 +34,42 @@ fn ensure(holds: bool, what: impl FnOnce() -> String) -> Verdict {
 fn delivered_the_right_one(group: &SimulatedGroup) -> Verdict {
     let wanted = (Outcome::Delivered, group.user.wanted());
     ensure(group.outcome() == Some(wanted), || format!("the end was {:?}", group.outcome()))
+}
+
+/// What was wanted was delivered, each once and nothing else, and the user was never given up.
+fn delivered_in_order(group: &SimulatedGroup, wanted: &[ObjectId]) -> Verdict {
+    let mut ends: Vec<&Ended> = Vec::new();
+    for ended in group.policy.journal().iter().filter_map(|record| record.state.ended.as_ref()) {
+        if ends.last().is_none_or(|last| last.interaction != ended.interaction) {
+            ends.push(ended);
+        }
+    }
+    let found: Vec<_> = ends.iter().map(|ended| (ended.outcome, ended.object)).collect();
+    let expected: Vec<_> =
+        wanted.iter().map(|object| (Outcome::Delivered, Some(*object))).collect();
+    ensure(found == expected, || format!("wanted {wanted:?}, the ends were {found:?}"))
+}
+
+/// Each delivery is backed by a pick of this very object, delivered in the arm's own journal and held
+/// once (I4, I5).
+fn deliveries_are_picks(group: &SimulatedGroup) -> Verdict {
+    let Some(arm) = &group.arm else { return Err("no arm".to_owned()) };
+    let picks: Vec<_> = arm.journal().iter().filter_map(|r| r.state.pick).collect();
+    for record in group.policy.journal() {
+        let Cause::PickEnded { pick, outcome: PickOutcome::Delivered } = record.cause else {
+            continue;
+        };
+        let object = record.state.ended.as_ref().and_then(|ended| ended.object);
+        let of_pick: Vec<_> = picks.iter().filter(|it| it.id == pick).collect();
+        let delivered = of_pick
+            .iter()
+            .any(|it| Some(it.object) == object && it.outcome == PickOutcome::Delivered);
+        ensure(delivered, || format!("{pick:?} of {object:?} was not delivered by the arm"))?;
+        let holds = |it: &messages::pick::Pick| it.phase == PickPhase::Holding;
+        let held = of_pick.windows(2).filter(|w| holds(w[1]) && !holds(w[0])).count();
+        ensure(held <= 1, || format!("{pick:?} was held {held} times"))?;
+    }
+    Ok(())
 }
 
 /// At most one grasp that holds and one end for each interaction (I4), of the ordered object (I5).
@@ -55,7 +99,8 @@ fn numbered_without_gap(group: &SimulatedGroup) -> Verdict {
     distinct.sort_unstable();
     distinct.dedup();
     ensure(distinct.len() == keys.len(), || "one sentence was accepted twice".to_owned())?;
-    let lost = group.user.accepted.iter().find(|key| !keys.contains(key));
+    let accepted = group.client.as_ref().map_or(&group.user.accepted, |client| &client.accepted);
+    let lost = accepted.iter().find(|key| !keys.contains(key));
     ensure(lost.is_none(), || format!("{lost:?} was acknowledged but is not in the journal"))
 }
 

@@ -1,10 +1,17 @@
 //! All services as one simulated group, with faults drawn from a seed: messages lost and doubled,
-//! processes killed between any two effects. The right object must be delivered once, and the
-//! journals must agree.
+//! processes killed between any two effects and in the middle of a write, clients and whole groups
+//! killed, disks full. The right object must be delivered once, and the journals must agree.
 //!
 //! A failing seed is printed; `WHICHONE_SEED=N cargo test -p whichone-tests --test sim` repeats it,
-//! and `WHICHONE_SEEDS=N` runs that many instead of the usual number.
+//! and `WHICHONE_SEEDS=N` runs that many instead of the usual number. Many, on all cores:
+//!
+//! ```text
+//! WHICHONE_SEEDS=100000 cargo test --release -p whichone-tests --test sim -- --ignored --nocapture
+//! ```
+//!
+//! with `WHICHONE_FIRST=S` from another seed on.
 
+mod bad_days;
 mod checkers;
 mod forged;
 mod turns;
@@ -35,7 +42,7 @@ fn run(seed: u64, faults: Faults) {
 
 fn run_with(seed: u64, mut group: SimulatedGroup) {
     group.run();
-    if let Err(broken) = checkers::check(&group) {
+    if let Err(broken) = checkers::check(&group, &[]) {
         let wanted = group.user.wanted();
         panic!("seed {seed}, wanted {wanted:?}: {broken}\n{}", group.story());
     }

@@ -39,6 +39,8 @@ mod up;
 mod watch;
 mod words;
 
+pub use await_pick::{TruthfulUser, Waiting};
+
 /// Executes the verb of the command line.
 ///
 /// # Errors

@@ -1,17 +1,26 @@
 //! A node in a simulated process: it can die at any point between an event and the last of its
-//! effects, and comes back from what its journal had synced by then.
+//! effects, and comes back from what its disk has kept of its journal by then.
 
 use config::Settings;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use service::lifecycle::Environment;
+use service::service_loop::Program;
 use service::{Effects, Event, Node, Time};
 
 use super::Faults;
+use super::disk::Disk;
+
+/// Most passes that wait for the disk: with more nothing new is taken in, as in the real loop.
+const WAITING_MAX: usize = 256;
 
 /// The point of a pass at which the process dies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Crash {
-    /// After deciding, before the sync: the records are gone and nothing was seen.
-    BeforeSync,
+    /// After deciding, before a byte is written.
+    BeforeWrite,
+    /// While the records are written: the disk may have any part of them, and nothing was seen.
+    DuringSync,
     /// After the sync and this many outputs.
     AfterOutputs(usize),
 }
@@ -21,42 +30,57 @@ pub enum Crash {
 pub struct Host<N: Node> {
     config: Box<dyn Fn() -> N::Config>,
     node: Option<N>,
-    journal: Vec<N::Record>,
+    disk: Disk<N::Record>,
+    /// Records and outputs of the passes that wait for room on the disk.
+    waiting: Vec<(Vec<N::Record>, Vec<N::Out>)>,
+    /// Until when the disk is full.
+    full_until: Time,
     /// Number of starts.
     pub incarnation: u32,
 }
 
 impl<N: Node> Host<N>
 where
-    N::Record: Clone,
+    N::Record: Clone + PartialEq + Serialize + DeserializeOwned,
 {
-    /// A process that is not started yet.
-    pub fn new(config: impl Fn() -> N::Config + 'static) -> Self {
-        Self { config: Box::new(config), node: None, journal: Vec::new(), incarnation: 0 }
+    /// A program's process that is not started yet.
+    pub fn new<P: Program<Node = N>>(settings: &Settings) -> Self {
+        Self {
+            config: configured::<P>(settings),
+            node: None,
+            disk: Disk::new(P::RECORD.unwrap_or("none")),
+            waiting: Vec::new(),
+            full_until: Time(0),
+            incarnation: 0,
+        }
     }
 
     /// Starts the process, if it is not up. Returns the outputs of its start.
     ///
     /// # Panics
     /// If recovery from its journal fails.
-    pub fn start(&mut self, now: Time) -> Vec<N::Out> {
+    pub fn start(&mut self, now: Time, faults: &mut Faults) -> Vec<N::Out> {
         if self.node.is_some() {
             return Vec::new();
         }
         self.incarnation += 1;
-        let node = N::recover((self.config)(), self.journal.clone());
+        let node = N::recover((self.config)(), self.disk.open());
         self.node = Some(node.unwrap_or_else(|e| panic!("recovery: {e}")));
-        self.pass(vec![Event::Started], now, None)
+        let crash = faults.crash(now);
+        self.pass(vec![Event::Started], now, crash, faults)
     }
 
     /// Kills the process; the next one starts with another configuration.
-    pub fn replace(&mut self, config: impl Fn() -> N::Config + 'static) {
-        (self.node, self.config) = (None, Box::new(config));
+    pub fn replace<P: Program<Node = N>>(&mut self, settings: &Settings) {
+        self.kill();
+        self.config = configured::<P>(settings);
     }
 
     /// Kills the process.
     pub fn kill(&mut self) {
         self.node = None;
+        self.waiting.clear();
+        self.disk.close();
     }
 
     /// Returns whether the process runs.
@@ -64,9 +88,9 @@ where
         self.node.is_some()
     }
 
-    /// The records that were synced.
+    /// Every record that was durable.
     pub fn journal(&self) -> &[N::Record] {
-        &self.journal
+        self.disk.all()
     }
 
     /// Time of the next tick.
@@ -79,52 +103,94 @@ where
         self.node.as_ref()
     }
 
-    /// One pass of the main loop if there is anything to do: the inbox, and a tick that is due. The
-    /// process may die in it.
+    /// One pass of the main loop if there is anything to do: what has waited for the disk, the inbox,
+    /// and a tick that is due. The process may die in it.
     pub fn wake(&mut self, inbox: Vec<N::In>, now: Time, faults: &mut Faults) -> Vec<N::Out> {
+        if !self.is_up() {
+            return Vec::new();
+        }
+        let has_room = !self.waiting.is_empty() && now >= self.full_until;
         let due = self.deadline().is_some_and(|deadline| deadline <= now);
-        if inbox.is_empty() && !due {
+        let is_behind = self.waiting.len() >= WAITING_MAX;
+        if !has_room && (is_behind || inbox.is_empty() && !due) {
             return Vec::new();
         }
         let tick = due.then_some(Event::Tick);
         let events = inbox.into_iter().map(Event::Message).chain(tick).collect();
-        let crash = if self.is_up() { faults.crash(now) } else { None };
-        self.pass(events, now, crash)
+        let crash = faults.crash(now);
+        self.pass(events, now, crash, faults)
     }
 
     /// One pass of the main loop: the events and their urgent outputs, then the sync, then the other
     /// outputs, in the order of the real driver. Returns the outputs that became visible.
-    pub fn pass(
+    ///
+    /// On a full disk the node goes on, and everything but urgent outputs waits for room.
+    fn pass(
         &mut self,
         events: Vec<Event<N::In>>,
         now: Time,
         crash: Option<Crash>,
+        faults: &mut Faults,
     ) -> Vec<N::Out> {
         let Some(node) = &mut self.node else { return Vec::new() };
         let mut effects = Effects::default();
         events.into_iter().for_each(|event| node.on(event, now, &mut effects));
-        if crash == Some(Crash::BeforeSync) {
-            self.node = None;
-            return effects.take_urgent();
+        let mut visible = effects.take_urgent();
+        if let Some(until) = faults.disk_full(now) {
+            self.full_until = until;
         }
-        self.journal.extend(effects.take_records());
-        node.on_durable();
-        let mut outputs = effects.take_outputs();
-        if let Some(Crash::AfterOutputs(count)) = crash {
-            self.node = None;
-            outputs.truncate(count);
+        self.waiting.push((effects.take_records(), effects.take_outputs()));
+        let has_records = self.waiting.iter().any(|(records, _)| !records.is_empty());
+        if has_records && now < self.full_until {
+            if crash.is_some() {
+                self.kill();
+            }
+            return visible;
+        }
+        visible.extend(self.commit(crash, faults));
+        visible
+    }
+
+    fn commit(&mut self, crash: Option<Crash>, faults: &mut Faults) -> Vec<N::Out> {
+        let (records, outputs): (Vec<_>, Vec<_>) = self.waiting.drain(..).unzip();
+        let records: Vec<_> = records.into_iter().flatten().collect();
+        let mut outputs: Vec<_> = outputs.into_iter().flatten().collect();
+        match crash {
+            Some(Crash::BeforeWrite) => {
+                self.kill();
+                return Vec::new();
+            }
+            Some(Crash::DuringSync) if !records.is_empty() => {
+                self.disk.tear(records, faults.rng());
+                self.kill();
+                return Vec::new();
+            }
+            _ if records.is_empty() => {}
+            _ => self.disk.write(records),
+        }
+        match (crash, &mut self.node) {
+            (Some(Crash::AfterOutputs(count)), _) => {
+                outputs.truncate(count);
+                self.kill();
+            }
+            (Some(_), _) => {
+                outputs.clear();
+                self.kill();
+            }
+            (None, Some(node)) => {
+                node.on_durable();
+                self.disk.shorten(|| node.snapshot());
+            }
+            (None, None) => {}
         }
         outputs
     }
 }
 
 /// Returns the configuration that the real program gives its node.
-///
-/// # Panics
-/// If the settings are invalid for it.
-pub fn configured<P: service::service_loop::Program>(
-    settings: &Settings,
-) -> impl Fn() -> <P::Node as Node>::Config + use<P> {
+fn configured<P: Program>(settings: &Settings) -> Box<dyn Fn() -> <P::Node as Node>::Config> {
     let settings = settings.clone();
-    move || P::config(&Environment::nowhere(), &settings).unwrap_or_else(|e| panic!("{e}"))
+    Box::new(move || {
+        P::config(&Environment::nowhere(), &settings).unwrap_or_else(|e| panic!("{e}"))
+    })
 }

@@ -3,14 +3,18 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `host.rs` | one reducer in a simulated process, with its journal |
-//! | `faults.rs` | faults drawn from a seed: kills, lost and duplicated messages |
+//! | `host.rs` | one reducer in a simulated process |
+//! | `disk.rs` | its journal: the real one, on a disk that tears and loses what is not synced |
+//! | `faults.rs` | faults drawn from a seed: kills, full disks, lost and duplicated messages |
 //! | `forger.rs` | messages that no service sends |
 //! | `user.rs` | the user and the input channels |
+//! | `client.rs` | the user at a terminal, by the command line's own code, who is killed as well |
 //! | `routes.rs` | routing of the services' messages |
 //! | `attribution.rs` | a study of turn-taking: to which question each answer is credited |
 
 mod attribution;
+mod client;
+mod disk;
 mod faults;
 mod forger;
 mod host;
@@ -28,8 +32,9 @@ use service::{Span, Time};
 use speech::{PlaybackEvent, PlaybackRequest, PlaybackState, SpeechNode};
 
 pub use attribution::{Count, study};
-pub use faults::Faults;
-pub use host::{Crash, Host, configured};
+pub use client::Client;
+pub use faults::{Fault, Faults};
+pub use host::{Crash, Host};
 pub use user::{Channel, GroupUser};
 
 /// Time between two passes.
@@ -80,11 +85,14 @@ pub struct SimulatedGroup {
     pub arm: Option<Host<arm::ArmNode>>,
     /// The user.
     pub user: GroupUser,
+    /// The user at a terminal, if it is one who is killed: they act in place of `user`.
+    pub client: Option<Client>,
     /// Acts that became visible before their decision was durable.
     pub premature: Vec<String>,
     grounding: Host<GroundingNode>,
     model: Model,
-    faults: Faults,
+    /// The faults, and how many there were.
+    pub faults: Faults,
     sentence_s: (f64, f64),
     rng: Rng,
     now: Time,
@@ -105,14 +113,15 @@ impl SimulatedGroup {
     pub fn new(settings: Settings, user: GroupUser, faults: Faults) -> Self {
         Self {
             model: Model::new(&settings.scene, settings.dialogue.params),
-            speech: Host::new(configured::<speech::shell::SpeechProgram>(&settings)),
-            grounding: Host::new(configured::<grounding::shell::GroundingProgram>(&settings)),
-            policy: Host::new(configured::<policy::shell::PolicyProgram>(&settings)),
-            arm: Some(Host::new(configured::<arm::shell::ArmProgram>(&settings))),
+            speech: Host::new::<speech::shell::SpeechProgram>(&settings),
+            grounding: Host::new::<grounding::shell::GroundingProgram>(&settings),
+            policy: Host::new::<policy::shell::PolicyProgram>(&settings),
+            arm: Some(Host::new::<arm::shell::ArmProgram>(&settings)),
             settings,
             before: None,
             change: None,
             user,
+            client: None,
             premature: Vec::new(),
             faults,
             sentence_s: QUICK_SENTENCE_S,
@@ -142,6 +151,14 @@ impl SimulatedGroup {
         self
     }
 
+    /// A group whose user, at a terminal, wants these objects one after another.
+    pub fn with_client(settings: Settings, wanted: &[usize], faults: Faults) -> Self {
+        let name = |object: &usize| settings.scene.object(ObjectId::from(*object)).name.clone();
+        let client = Client::new(wanted.iter().map(name).collect());
+        let group = Self::new(settings, GroupUser::typing(0), faults);
+        Self { client: Some(client), ..group }
+    }
+
     /// The log of the dialogue.
     pub fn story(&self) -> String {
         self.story.join("\n")
@@ -154,19 +171,26 @@ impl SimulatedGroup {
 
     /// Runs until the interaction is over and published, or the time is up.
     pub fn run(&mut self) {
-        self.user.request(Domain { scene: &self.settings.scene, model: &self.model });
+        if self.client.is_none() {
+            self.user.request(Domain { scene: &self.settings.scene, model: &self.model });
+        }
         while self.now < END && !self.is_over() {
             self.now = self.now + STEP;
             self.change_the_scene();
+            self.kill_everything();
             self.restart();
             self.finish_sentence();
             self.user_speaks();
+            self.client_looks();
             self.finish_decoding();
             self.pass_all();
         }
     }
 
     fn is_over(&self) -> bool {
+        if let Some(client) = &self.client {
+            return client.is_done();
+        }
         let Some(arm) = &self.arm else { return self.picked.is_some() };
         let up = self.speech.is_up() && self.policy.is_up() && arm.is_up();
         up && self.view.last.is_some() && self.view.interaction == 0
@@ -186,11 +210,11 @@ impl SimulatedGroup {
         let is_time = self.view.decision == ActKind::Ask && self.policy.is_up();
         let Some(to) = self.change.take_if(|_| is_time) else { return };
         self.log("the scene changes");
-        self.speech.replace(configured::<speech::shell::SpeechProgram>(&to));
-        self.grounding.replace(configured::<grounding::shell::GroundingProgram>(&to));
-        self.policy.replace(configured::<policy::shell::PolicyProgram>(&to));
+        self.speech.replace::<speech::shell::SpeechProgram>(&to);
+        self.grounding.replace::<grounding::shell::GroundingProgram>(&to);
+        self.policy.replace::<policy::shell::PolicyProgram>(&to);
         if let Some(arm) = &mut self.arm {
-            arm.replace(configured::<arm::shell::ArmProgram>(&to));
+            arm.replace::<arm::shell::ArmProgram>(&to);
         }
         self.restarts = std::array::from_fn(|_| Some(self.now + self.faults.downtime()));
         let wanted = self.user.wanted().map(|object| &self.scene().object(object).name);
@@ -201,25 +225,50 @@ impl SimulatedGroup {
         self.before = Some((std::mem::replace(&mut self.settings, to), records));
     }
 
+    /// The supervisor dies: every service follows it, and the client finds no group. The person
+    /// starts all of it again.
+    fn kill_everything(&mut self) {
+        if !self.faults.group_dies(self.now) {
+            return;
+        }
+        self.log("the group dies");
+        self.speech.kill();
+        self.grounding.kill();
+        self.policy.kill();
+        if let Some(arm) = &mut self.arm {
+            arm.kill();
+        }
+        self.inboxes = Inboxes::default();
+        let up = self.now + self.faults.client_downtime();
+        self.restarts = std::array::from_fn(|_| Some(up + self.faults.downtime()));
+        if let Some(client) = &mut self.client {
+            (client.arrived, client.history) = Default::default();
+            client.kill(up + self.faults.client_downtime());
+        }
+    }
+
     fn restart(&mut self) {
         let now = self.now;
         let [speech, grounding, policy, arm] =
             self.restarts.each_mut().map(|at| at.take_if(|at| *at <= now).is_some());
         if speech {
-            let outputs = self.speech.start(now);
+            let outputs = self.speech.start(now, &mut self.faults);
             self.saying = None;
+            if let Some(client) = &mut self.client {
+                client.forget_speech();
+            }
             self.route_speech(outputs);
         }
         if grounding {
-            let outputs = self.grounding.start(now);
+            let outputs = self.grounding.start(now, &mut self.faults);
             self.route_grounding(outputs);
         }
         if policy {
-            let outputs = self.policy.start(now);
+            let outputs = self.policy.start(now, &mut self.faults);
             self.route_policy(outputs);
         }
         if let Some(host) = self.arm.as_mut().filter(|_| arm) {
-            let outputs = host.start(now);
+            let outputs = host.start(now, &mut self.faults);
             self.route_arm(outputs);
         }
     }
@@ -252,6 +301,22 @@ impl SimulatedGroup {
         if !is_up && self.restarts[which].is_none() {
             self.restarts[which] = Some(self.now + self.faults.downtime());
             self.log(format_args!("{name} dies"));
+        }
+    }
+
+    fn client_looks(&mut self) {
+        let now = self.now;
+        let Some(client) = &mut self.client else { return };
+        if self.faults.client_dies(now) {
+            client.kill(now + self.faults.client_downtime());
+            return self.log("the client dies");
+        }
+        let (sent, story) = client.look(&self.settings.scene, now);
+        story.into_iter().for_each(|line| self.log(line));
+        for injection in sent {
+            let copies = self.faults.copies(now);
+            let message = speech::In::Injection(injection);
+            self.inboxes.speech.extend(std::iter::repeat_n(message, copies));
         }
     }
 

@@ -18,6 +18,9 @@ const DETECTION: Span = Span::from_ms(100);
 impl SimulatedGroup {
     /// Sends onsets and ends of the user's utterances by the user's channel.
     pub(super) fn user_speaks(&mut self) {
+        if self.client.is_some() {
+            return;
+        }
         let now = self.now;
         let story = self.user.begins(now, &self.settings.scene);
         story.into_iter().for_each(|line| self.log(line));
@@ -76,14 +79,23 @@ impl SimulatedGroup {
                 speech::Out::Utterance(utterance) => {
                     self.inboxes.grounding.extend(repeat_n(utterance, copies));
                 }
-                speech::Out::Receipt(receipt) if copies > 0 => self.user.acknowledge(&receipt),
-                speech::Out::Receipt(_) => {}
+                speech::Out::Receipt(receipt) => match &mut self.client {
+                    Some(client) => client.publish(copies, |it| it.receipts.push(*receipt)),
+                    None if copies > 0 => self.user.acknowledge(&receipt),
+                    None => {}
+                },
                 speech::Out::Presented(presented) => {
                     self.user_hears(&presented);
+                    if let Some(client) = &mut self.client {
+                        client.publish(copies, |it| it.presented = Some(presented));
+                    }
                     let message = policy::In::Presented(presented);
                     self.inboxes.policy.extend(repeat_n(message, copies));
                 }
                 speech::Out::Activity(activity) => {
+                    if let Some(client) = &mut self.client {
+                        client.publish(copies, |it| it.activity = Some(activity));
+                    }
                     self.inboxes.policy.extend(repeat_n(policy::In::Activity(activity), copies));
                 }
                 speech::Out::Motion(command) => {
@@ -152,7 +164,12 @@ impl SimulatedGroup {
                     self.inboxes.speech.extend(repeat_n(to_speech, copies));
                     self.inboxes.arm.extend(repeat_n(to_arm, copies));
                 }
-                policy::Out::View(view) => self.view = *view,
+                policy::Out::View(view) => {
+                    if let Some(client) = &mut self.client {
+                        client.publish(copies, |it| it.view = Some((*view).clone()));
+                    }
+                    self.view = *view;
+                }
             }
         }
     }

@@ -15,8 +15,8 @@ use crate::Outcome;
 use crate::cli::AwaitArgs;
 use crate::output::Output;
 
-use user::TruthfulUser;
-use waiting::Waiting;
+pub use user::TruthfulUser;
+pub use waiting::Waiting;
 
 mod user;
 mod waiting;

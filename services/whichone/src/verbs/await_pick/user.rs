@@ -10,7 +10,8 @@ use scene::Scene;
 use service::view::Latest;
 
 /// A user who wants one object and answers every question once it has been presented.
-pub(super) struct TruthfulUser {
+#[allow(missing_debug_implementations, reason = "the model has none")]
+pub struct TruthfulUser {
     scene: Scene,
     model: Model,
     name: String,
@@ -20,7 +21,10 @@ pub(super) struct TruthfulUser {
 impl TruthfulUser {
     /// A user who wants the object of that name. With `may_be_absent`, where the robot considers
     /// that the wanted object is not here, the scene need not have it.
-    pub(super) fn new(scene: &Scene, name: &str, may_be_absent: bool) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// There is no such object.
+    pub fn new(scene: &Scene, name: &str, may_be_absent: bool) -> Result<Self, String> {
         if scene.object_named(name).is_none() && !may_be_absent {
             let names: Vec<&str> = scene.objects().iter().map(|o| o.name.as_str()).collect();
             return Err(format!(
@@ -36,7 +40,7 @@ impl TruthfulUser {
     }
 
     /// Adopts the scene in force, which may have changed.
-    pub(super) fn look(&mut self, scene: &Scene) {
+    pub fn look(&mut self, scene: &Scene) {
         if scene.key() != self.scene.key() {
             self.model = Model::new(scene, Params::default());
             self.scene = scene.clone();
@@ -47,7 +51,7 @@ impl TruthfulUser {
     ///
     /// While earlier words are not yet applied there is none: the question may be answered already,
     /// and an answer after the end would be a new request.
-    pub(super) fn answer(&mut self, seen: &Latest) -> Option<String> {
+    pub fn answer(&mut self, seen: &Latest) -> Option<String> {
         let question = seen.open_question().filter(|_| seen.is_settled())?;
         let view = seen.view.as_ref()?;
         let is_of_scene = view.scene_key == self.scene.key() && self.scene.contains(view.question);

@@ -11,7 +11,7 @@ const LOOKS: u32 = 3;
 /// Waits for the end of one interaction: the one that is open, or that words already accepted will
 /// open; else the latest that was not reported yet; else the next.
 #[derive(Debug)]
-pub(super) struct Waiting {
+pub struct Waiting {
     reported: u64,
     goal: Option<u64>,
     settled: u32,
@@ -19,12 +19,12 @@ pub(super) struct Waiting {
 
 impl Waiting {
     /// Waits for an interaction after `reported`, the latest that was reported; 0 for none.
-    pub(super) fn new(reported: u64) -> Self {
+    pub fn new(reported: u64) -> Self {
         Self { reported, goal: None, settled: 0 }
     }
 
     /// Returns the awaited outcome, if the interaction has ended.
-    pub(super) fn look(&mut self, seen: &Latest) -> Option<Ended> {
+    pub fn look(&mut self, seen: &Latest) -> Option<Ended> {
         let view = seen.view.as_ref()?;
         if let Some(goal) = self.goal {
             return view.last.clone().filter(|last| last.interaction.0 >= goal);

@@ -1,0 +1,93 @@
+//! A user at a terminal has several objects fetched while everything fails: every process dies at
+//! every point, writes are torn, disks are full, the client and the whole group are killed. Once the
+//! faults stop, a user who is willing to answer gets the right objects, each once, and is never given
+//! up before.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use config::Settings;
+use scene::ObjectId;
+use whichone_tests::settings;
+use whichone_tests::simulated_group::{Fault, Faults, SimulatedGroup};
+
+use crate::{checkers, number};
+
+/// Dialogues of the short run.
+const SEEDS: u64 = 60;
+
+/// Objects that the user wants one after another.
+fn wanted(seed: u64) -> [usize; 2] {
+    let first = (seed % 6) as usize;
+    [first, (first + 1 + (seed / 6 % 5) as usize) % 6]
+}
+
+/// Runs the dialogues of one seed and returns the faults that there were.
+fn run(settings: &Settings, seed: u64) -> Result<BTreeMap<Fault, u64>, String> {
+    let wanted = wanted(seed);
+    let faults = Faults::bad_day(seed);
+    let mut group = SimulatedGroup::with_client(settings.clone(), &wanted, faults);
+    let ran = catch_unwind(AssertUnwindSafe(|| group.run()));
+    let broken = match ran {
+        Ok(()) => checkers::check(&group, &wanted.map(ObjectId::from)).err(),
+        Err(_) => Some("a panic, printed above".to_owned()),
+    };
+    match broken {
+        None => Ok(group.faults.counts),
+        Some(broken) => Err(format!("seed {seed}: {broken}\n{}", group.story())),
+    }
+}
+
+#[test]
+fn willing_user_gets_every_object_on_a_bad_day() {
+    let settings = settings(&[]);
+    let failed: Vec<String> =
+        crate::seeds(SEEDS).into_iter().filter_map(|seed| run(&settings, seed).err()).collect();
+    assert!(failed.is_empty(), "{} seeds failed; the first:\n{}", failed.len(), failed[0]);
+}
+
+#[test]
+#[ignore = "minutes to hours: for a long run by hand"]
+fn willing_user_gets_every_object_on_many_bad_days() {
+    let first = number("WHICHONE_FIRST").unwrap_or(0);
+    let count = number("WHICHONE_SEEDS").unwrap_or(100_000);
+    let settings = settings(&[]);
+    let (next, done) = (AtomicU64::new(first), AtomicU64::new(0));
+    let results = Mutex::new((BTreeMap::<Fault, u64>::new(), Vec::<String>::new()));
+    let work = || {
+        loop {
+            let seed = next.fetch_add(1, Ordering::Relaxed);
+            if seed >= first + count {
+                return;
+            }
+            let ran = run(&settings, seed);
+            let mut results = results.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            match ran {
+                Ok(counts) => counts.into_iter().for_each(|(fault, n)| {
+                    *results.0.entry(fault).or_default() += n;
+                }),
+                Err(failed) => results.1.push(failed),
+            }
+            let done = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if done.is_multiple_of(1_000) {
+                report(done, &results);
+            }
+        }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| (0..threads).for_each(|_| drop(scope.spawn(work))));
+    let results = results.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    report(count, &results);
+    assert!(results.1.is_empty(), "{} seeds failed; the first:\n{}", results.1.len(), results.1[0]);
+}
+
+fn report(done: u64, (faults, failed): &(BTreeMap<Fault, u64>, Vec<String>)) {
+    use std::io::Write;
+    // A closed pipe is the reader's choice.
+    let _ = writeln!(std::io::stdout(), "{done} seeds, {} failed, faults {faults:?}", failed.len());
+    for story in failed.iter().take(3) {
+        let _ = writeln!(std::io::stdout(), "  {}", story.lines().next().unwrap_or_default());
+    }
+}

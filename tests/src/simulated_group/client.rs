@@ -1,0 +1,158 @@
+//! The user at a terminal: `whichone say`, then `whichone await --answer-as`, by the command line's
+//! own code. The client dies like every other process; the person starts it again.
+
+use std::collections::VecDeque;
+
+use messages::{Injection, Outcome, ReceiptStatus, RequestKey, Sound};
+use scene::Scene;
+use service::submission::Submission;
+use service::view::{Arrived, Latest};
+use service::{Span, Time};
+use whichone::verbs::{TruthfulUser, Waiting};
+
+/// Receipts that a new client still gets.
+const RECEIPTS: usize = messages::topics::WINDOW;
+
+/// A person who wants one object after another, and their client.
+pub struct Client {
+    wanted: VecDeque<String>,
+    process: Option<Process>,
+    /// When the person starts the client again.
+    pub(super) restart: Option<Time>,
+    /// Whether the current request was submitted as far as the person knows.
+    has_asked: bool,
+    /// The latest interaction whose end was reported.
+    reported: u64,
+    /// What has arrived since the last look.
+    pub(super) arrived: Arrived,
+    /// The latest messages of the writers that live: what a new client gets at once.
+    pub(super) history: Arrived,
+    /// Keys of all accepted utterances, in order.
+    pub accepted: Vec<RequestKey>,
+    /// Times that the person had to ask again because the robot had given up.
+    pub abandoned: u32,
+}
+
+/// The memory of the client.
+struct Process {
+    latest: Latest,
+    user: TruthfulUser,
+    waiting: Waiting,
+    saying: VecDeque<Submission>,
+}
+
+impl Client {
+    pub(super) fn new(wanted: Vec<String>) -> Self {
+        Self {
+            wanted: wanted.into(),
+            process: None,
+            restart: Some(Time(0)),
+            has_asked: false,
+            reported: 0,
+            arrived: Arrived::default(),
+            history: Arrived::default(),
+            accepted: Vec::new(),
+            abandoned: 0,
+        }
+    }
+
+    /// Returns whether the person has everything.
+    pub(super) fn is_done(&self) -> bool {
+        self.wanted.is_empty()
+    }
+
+    pub(super) fn kill(&mut self, restart: Time) {
+        (self.process, self.restart) = (None, Some(restart));
+    }
+
+    /// A new topic of speech has no message yet.
+    pub(super) fn forget_speech(&mut self) {
+        let view = self.history.view.take();
+        self.history = Arrived { view, ..Arrived::default() };
+    }
+
+    /// Passes on a message of a service. The writer keeps the latest for late readers, whatever the
+    /// bus loses.
+    pub(super) fn publish(&mut self, copies: usize, put: impl Fn(&mut Arrived)) {
+        put(&mut self.history);
+        let excess = self.history.receipts.len().saturating_sub(RECEIPTS);
+        self.history.receipts.drain(..excess);
+        if copies > 0 {
+            put(&mut self.arrived);
+        }
+    }
+
+    /// One look of the client. Returns what it sends, and what the person does for the story.
+    pub(super) fn look(&mut self, scene: &Scene, now: Time) -> (Vec<Injection>, Option<String>) {
+        let Some(wanted) = self.wanted.front().cloned() else { return Default::default() };
+        if self.restart.take_if(|at| *at <= now).is_some() {
+            self.start(scene, &wanted);
+        }
+        let arrived = std::mem::take(&mut self.arrived);
+        let Some(process) = &mut self.process else { return Default::default() };
+        process.latest.update(&arrived);
+        for receipt in &arrived.receipts {
+            let is_first = process.saying.front().is_some_and(|it| it.key() == receipt.request());
+            if is_first {
+                assert_eq!(
+                    receipt.status,
+                    ReceiptStatus::Accepted,
+                    "a plain sentence: {receipt:?}"
+                );
+                self.accepted.push(receipt.request());
+                process.saying.pop_front();
+                self.has_asked = true;
+            }
+        }
+        let story = self.next(scene, now);
+        let Some(process) = &mut self.process else { return Default::default() };
+        let due = process.saying.front_mut().and_then(|submission| submission.due(now)).cloned();
+        (due.into_iter().collect(), story)
+    }
+
+    fn start(&mut self, scene: &Scene, wanted: &str) {
+        let user = TruthfulUser::new(scene, wanted, false).expect("an object of the scene");
+        self.arrived = self.history.clone();
+        self.process = Some(Process {
+            latest: Latest::default(),
+            user,
+            waiting: Waiting::new(self.reported),
+            saying: VecDeque::new(),
+        });
+    }
+
+    /// Takes in the outcome, or says what there is to say.
+    fn next(&mut self, scene: &Scene, now: Time) -> Option<String> {
+        let process = self.process.as_mut()?;
+        if !self.has_asked {
+            if process.saying.is_empty() {
+                process.say("get me the bowl", now);
+                return Some("user: get me the bowl".to_owned());
+            }
+            return None;
+        }
+        if let Some(ended) = process.waiting.look(&process.latest) {
+            self.reported = ended.interaction.0;
+            self.has_asked = false;
+            match ended.outcome {
+                Outcome::Delivered => drop(self.wanted.pop_front()),
+                _ => self.abandoned += 1,
+            }
+            if let Some(wanted) = self.wanted.front().cloned() {
+                self.start(scene, &wanted);
+            }
+            return Some(format!("user: learns of {:?}, {:?}", ended.outcome, ended.name));
+        }
+        let answer = process.user.answer(&process.latest)?;
+        process.say(&answer, now);
+        Some(format!("user: {answer} (to {:?})", process.latest.open_question()))
+    }
+}
+
+impl Process {
+    fn say(&mut self, text: &str, now: Time) {
+        let sound = Sound::Text(text.to_owned());
+        let patience = Span(u64::MAX / 2);
+        self.saying.push_back(Submission::new(sound, (now, Time(0)), now, patience));
+    }
+}
