@@ -21,6 +21,8 @@ pub(super) struct Disk<R> {
     folder: TempDir,
     header: Header,
     journal: Option<Journal<R>>,
+    /// Whether it was made: from then on it must be there.
+    exists: bool,
     /// Content of the file.
     file: Vec<R>,
     /// Records whose write was cut short by a crash: all of them are there, or none.
@@ -43,6 +45,7 @@ impl<R: Serialize + DeserializeOwned + Clone + PartialEq> Disk<R> {
             folder: folder.expect("a folder for the journal"),
             header,
             journal: None,
+            exists: false,
             file: Vec::new(),
             unknown: Vec::new(),
             all: Vec::new(),
@@ -64,7 +67,10 @@ impl<R: Serialize + DeserializeOwned + Clone + PartialEq> Disk<R> {
     /// If what was durable is not there, or a batch in part: the journal's invariant is broken.
     pub(super) fn open(&mut self) -> Vec<R> {
         self.close();
-        let opened = Journal::open(&self.path(), &self.header);
+        let opened = match std::mem::replace(&mut self.exists, true) {
+            true => Journal::open(&self.path(), &self.header),
+            false => Journal::open_or_create(&self.path(), &self.header),
+        };
         let (journal, recovered) = opened.unwrap_or_else(|e| panic!("recovery of a journal: {e}"));
         let found = recovered.records;
         let written = std::mem::take(&mut self.unknown);
