@@ -270,7 +270,10 @@ impl SpeechJournal {
         for (seq, said) in (u64::from(self.base) + 1..).zip(&self.accepted) {
             outbox.push(UtteranceSeq(seq), *said);
         }
-        mark.into_iter().for_each(|mark| outbox.acknowledge(UtteranceSeq(mark.into())));
+        if let Some(mark) = mark {
+            // A mark that was never sent is not believed, as in the service.
+            let _ = outbox.acknowledge(UtteranceSeq(mark.into()));
+        }
         outbox
     }
 
