@@ -87,8 +87,10 @@ class Bus:
                                  os.environ["WHICHONE_GROUP"])
         iox2.set_log_level(iox2.LogLevel.Fatal)
         config = iox2.config.default()
-        config.global_cfg.prefix = iox2.FileName.new(f"wo{fnv1a(os.fsencode(self.root)):016x}_")
-        config.global_cfg.root_path = iox2.Path.new(os.path.join(self.root, "run", "ipc"))
+        with open(os.path.join(self.root, "run", "shm"), encoding="ascii") as file:
+            name = file.read()
+        config.global_cfg.prefix = iox2.FileName.new(name)
+        config.global_cfg.root_path = iox2.Path.new(os.path.join("/dev/shm", name))
         # The supervisor cleans up after dead processes.
         config.global_cfg.node.cleanup_dead_nodes_on_creation = False
         config.global_cfg.node.cleanup_dead_nodes_on_destruction = False

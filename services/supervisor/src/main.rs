@@ -51,6 +51,8 @@ fn main() -> ExitCode {
             return if error.use_stderr() { Exit::Usage.code() } else { Exit::Ok.code() };
         }
     };
+    // Also of what the services create: they inherit it.
+    rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
     service::logging::init();
     end_on_panic();
     if arguments.detached

@@ -1,7 +1,7 @@
 //! The group's shared memory: one iceoryx2 node per process, opened with the group's own prefix and
 //! folder so that groups never see each other.
 
-use crate::group::GroupPaths;
+use crate::group::{GroupPaths, ShmName};
 use iceoryx2::prelude::*;
 use messages::schema::Schema;
 use messages::{Epoch, Incarnation, Stamp, WireField};
@@ -9,14 +9,17 @@ use messages::{Epoch, Incarnation, Stamp, WireField};
 mod encoded;
 mod open;
 mod ports;
+mod refusal;
+mod segment;
+mod variant;
 mod wake;
 
 pub use encoded::{EncodedReader, EncodedWriter};
 pub use open::Topics;
 pub use ports::{Reader, Writer};
+pub use refusal::Refusal;
+pub(crate) use variant::Ipc;
 pub use wake::{WakeListener, WakeNotifier};
-
-pub(crate) type Ipc = ipc::Service;
 
 /// A process's access to the group's topics. Not shared between threads.
 #[derive(Debug)]
@@ -52,6 +55,14 @@ pub enum BusError {
         /// iceoryx2's word for it.
         cause: String,
     },
+    /// A segment of shared memory cannot be created or used.
+    #[error("{what}: {refusal}")]
+    Refused {
+        /// Operation that failed.
+        what: String,
+        /// The reason.
+        refusal: Refusal,
+    },
     /// Any other error of iceoryx2.
     #[error("shared memory, {what}: {cause}")]
     Ipc {
@@ -63,8 +74,29 @@ pub enum BusError {
 }
 
 impl BusError {
+    /// An error of iceoryx2, with the reason of the last refused segment if there was one.
     pub(crate) fn ipc(what: &str, cause: String) -> Self {
-        Self::Ipc { what: what.to_owned(), cause }
+        let what = what.to_owned();
+        match refusal::take() {
+            Some(refusal) => Self::Refused { what, refusal },
+            None => Self::Ipc { what, cause },
+        }
+    }
+}
+
+/// Creates a port. iceoryx2 also returns one that reaches only some of its peers, for want of a
+/// segment; here that is an error.
+fn create<T, E: std::fmt::Debug>(
+    what: &str,
+    create: impl FnOnce() -> Result<T, E>,
+) -> Result<T, BusError> {
+    refusal::take();
+    let port = create().map_err(|error| BusError::ipc(what, format!("{error:?}")))?;
+    match refusal::take() {
+        Some(refusal @ (Refusal::Room { .. } | Refusal::Foreign { .. })) => {
+            Err(BusError::Refused { what: what.to_owned(), refusal })
+        }
+        _ => Ok(port),
     }
 }
 
@@ -77,19 +109,21 @@ pub struct PortError {
 }
 
 impl PortError {
+    /// An error of iceoryx2, with the reason of the last refused segment if there was one.
     pub(crate) fn new(topic: &'static str, cause: String) -> Self {
+        let cause = refusal::take().map_or(cause, |refusal| refusal.to_string());
         Self { topic, cause }
     }
 }
 
 /// The configuration with which every process of the group opens iceoryx2.
-pub(crate) fn config(paths: &GroupPaths) -> Result<Config, BusError> {
+pub(crate) fn config(name: &ShmName) -> Result<Config, BusError> {
     set_log_level(LogLevel::Fatal);
     let mut config = Config::default();
     let bad = |what: &str| BusError::ipc(what, "not usable as a name".to_owned());
-    config.global.prefix =
-        FileName::new(paths.ipc_prefix().as_bytes()).map_err(|_| bad("prefix"))?;
-    let root = Path::new(paths.ipc().as_os_str().as_encoded_bytes());
+    config.global.prefix = FileName::new(name.prefix().as_bytes()).map_err(|_| bad("prefix"))?;
+    let folder = name.folder();
+    let root = Path::new(folder.as_os_str().as_encoded_bytes());
     config.global.set_root_path(&root.map_err(|_| bad("iceoryx2 folder"))?);
     // Only the supervisor cleans up after the dead: right after it has reaped them, before it
     // starts a successor. Others would race it at every start.
@@ -103,17 +137,22 @@ impl Bus {
     /// Opens the group's shared memory as process `name`.
     ///
     /// # Errors
-    /// iceoryx2 fails: no memory, no permission, no such folder.
+    /// The group is not running, or iceoryx2 fails: no memory, no permission.
     pub fn open(paths: &GroupPaths, name: &str, identity: Identity) -> Result<Self, BusError> {
-        let config = config(paths)?;
+        let place = paths.shm_name();
+        let place = place.map_err(|error| {
+            BusError::ipc(&paths.shm_name_file().display().to_string(), error.to_string())
+        })?;
+        let config = config(&place)?;
         let node_name =
             NodeName::new(name).map_err(|e| BusError::ipc("node name", format!("{e:?}")))?;
-        let node = NodeBuilder::new()
-            .name(&node_name)
-            .config(&config)
-            .signal_handling_mode(SignalHandlingMode::Disabled)
-            .create::<Ipc>()
-            .map_err(|e| BusError::ipc("node", format!("{e:?}")))?;
+        let node = create("node", || {
+            NodeBuilder::new()
+                .name(&node_name)
+                .config(&config)
+                .signal_handling_mode(SignalHandlingMode::Disabled)
+                .create::<Ipc>()
+        })?;
         Ok(Self { node, identity })
     }
 

@@ -55,9 +55,7 @@ impl Client {
     /// The group is not running, or its messages are of another build.
     pub fn join(paths: &GroupPaths) -> Result<Self, ClientError> {
         let none = || ClientError::NoGroup(paths.name().to_string());
-        if !paths.ipc().is_dir() {
-            return Err(none());
-        }
+        paths.shm_name().map_err(|_| none())?;
         let set = JournalSet::load(paths).ok().flatten().ok_or_else(none)?;
         let epoch = Epoch(set.epoch);
         let bus = Bus::open(paths, "client", Identity { epoch, ..Identity::default() });

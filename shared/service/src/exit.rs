@@ -98,7 +98,7 @@ impl From<BusError> for Failure {
     fn from(error: BusError) -> Self {
         let exit = match error {
             BusError::Schema { .. } => Exit::Config,
-            BusError::Ipc { .. } => Exit::NotReached,
+            BusError::Refused { .. } | BusError::Ipc { .. } => Exit::NotReached,
         };
         Self::new(exit, error.to_string())
     }

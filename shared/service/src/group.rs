@@ -1,5 +1,6 @@
 //! Name and folders of a group, and its identity among the processes of the machine.
 
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Name of the environment variable that holds the group's name.
@@ -19,6 +20,17 @@ pub const ENV_LOG: &str = "WHICHONE_LOG";
 
 /// Longest path of a Unix socket, without the final zero.
 const SOCKET_PATH_MAX: usize = 107;
+
+/// File system of the machine's shared memory.
+pub const SHM: &str = "/dev/shm";
+
+/// Letters of names in shared memory: one for each six bits.
+const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+/// Letters that stand for the group; equal at each of its starts.
+const STABLE_LETTERS: usize = 6;
+/// Letters drawn at each start: 96 bits, which another user can neither guess nor occupy. More do
+/// not fit into the path of a socket.
+const RANDOM_LETTERS: usize = 16;
 
 /// A group's name: 1 to 32 of `a–z 0–9 -`, beginning with a letter or digit.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -150,7 +162,7 @@ impl GroupPaths {
         &self.root
     }
 
-    /// Sockets, the settings in force, and iceoryx2's files; gone after `down`.
+    /// Sockets, the settings in force, and the name of the shared memory; gone after `down`.
     pub fn run(&self) -> PathBuf {
         self.root.join("run")
     }
@@ -230,18 +242,67 @@ impl GroupPaths {
         self.run().join(format!("n-{service}-{incarnation}"))
     }
 
-    /// iceoryx2's own files.
-    pub fn ipc(&self) -> PathBuf {
-        self.run().join("ipc")
+    /// The file that names the group's shared memory, while there is some. Only its owner can read
+    /// it, and nothing else says the name before the first segment exists.
+    pub fn shm_name_file(&self) -> PathBuf {
+        self.run().join("shm")
     }
 
-    /// Prefix of everything that iceoryx2 creates in shared memory for this group: two groups differ
-    /// even where they share a name in different homes.
-    pub fn ipc_prefix(&self) -> String {
+    /// What every name of the group in shared memory begins with, at each of its starts: two groups
+    /// differ even where they share a name in different homes.
+    pub fn shm_stem(&self) -> String {
         let mut hash = scene::StableHash::default();
         hash.bytes(self.root.as_os_str().as_encoded_bytes());
-        format!("wo{:016x}_", hash.value())
+        format!("wo{}", letters(&hash.value().to_le_bytes()[..STABLE_LETTERS]))
     }
+
+    /// Draws a name for shared memory that nobody can foresee.
+    ///
+    /// # Errors
+    /// The operating system has no random numbers.
+    pub(crate) fn draw_shm_name(&self) -> io::Result<ShmName> {
+        let mut random = [0; RANDOM_LETTERS];
+        rustix::rand::getrandom(&mut random, rustix::rand::GetRandomFlags::empty())?;
+        Ok(ShmName(self.shm_stem() + &letters(&random)))
+    }
+
+    /// Returns the name of the running group's shared memory.
+    ///
+    /// # Errors
+    /// The group is not running, or the file that names it is damaged.
+    pub fn shm_name(&self) -> io::Result<ShmName> {
+        let name = std::fs::read_to_string(self.shm_name_file())?;
+        let is_whole = name.len() == 2 + STABLE_LETTERS + RANDOM_LETTERS
+            && name.starts_with(&self.shm_stem())
+            && name.bytes().all(|byte| LETTERS.contains(&byte));
+        if !is_whole {
+            let what = format!("{}: damaged", self.shm_name_file().display());
+            return Err(io::Error::new(io::ErrorKind::InvalidData, what));
+        }
+        Ok(ShmName(name))
+    }
+}
+
+/// Name of a group's shared memory for one start: prefix of all its segments, and name of the folder
+/// beside them that holds iceoryx2's other files. The folder is here because sockets lie in it, whose
+/// paths must be short.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ShmName(String);
+
+impl ShmName {
+    /// Prefix of the segments.
+    pub fn prefix(&self) -> &str {
+        &self.0
+    }
+
+    /// The folder of iceoryx2's other files.
+    pub fn folder(&self) -> PathBuf {
+        Path::new(SHM).join(&self.0)
+    }
+}
+
+fn letters(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| char::from(LETTERS[usize::from(byte % 64)])).collect()
 }
 
 #[cfg(test)]
@@ -261,7 +322,26 @@ mod tests {
         let name = GroupName::new("lab").unwrap();
         let one = GroupPaths::in_home(Path::new("/a"), &name).unwrap();
         let two = GroupPaths::in_home(Path::new("/b"), &name).unwrap();
-        assert_ne!(one.ipc_prefix(), two.ipc_prefix());
+        assert_ne!(one.shm_stem(), two.shm_stem());
+    }
+
+    #[test]
+    fn name_in_shared_memory_differs_at_each_start_and_leaves_room_for_sockets() {
+        let home = tempfile::tempdir().unwrap();
+        let paths = GroupPaths::in_home(home.path(), &GroupName::new("lab").unwrap()).unwrap();
+        let (one, two) = (paths.draw_shm_name().unwrap(), paths.draw_shm_name().unwrap());
+        assert_ne!(one, two);
+        assert!(one.prefix().starts_with(&paths.shm_stem()));
+        // iceoryx2 adds the prefix, a number of 128 bits and a suffix.
+        let socket = one.folder().join(format!("{}{}.event", one.prefix(), u128::MAX));
+        assert!(socket.as_os_str().len() <= SOCKET_PATH_MAX);
+
+        std::fs::create_dir_all(paths.run()).unwrap();
+        assert_eq!(paths.shm_name().unwrap_err().kind(), io::ErrorKind::NotFound);
+        std::fs::write(paths.shm_name_file(), one.prefix()).unwrap();
+        assert_eq!(paths.shm_name().unwrap(), one);
+        std::fs::write(paths.shm_name_file(), "wo../../x").unwrap();
+        assert_eq!(paths.shm_name().unwrap_err().kind(), io::ErrorKind::InvalidData);
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use messages::SUPERVISOR;
 use std::env;
 use std::ffi::OsString;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
@@ -12,6 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use crate::exit::Exit;
+use crate::folders::{FolderError, make_private, make_root};
 use crate::group::{ENV_HOME, GroupName, GroupPaths};
 use config::Log;
 use thiserror::Error;
@@ -49,6 +50,9 @@ pub enum LaunchError {
     /// The supervisor's program could not be started, or its log could not be created.
     #[error("{}: {}", .0.display(), .1)]
     Io(PathBuf, io::Error),
+    /// A folder of the group is not its owner's alone.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
     /// It ended before it listened; its exit status and the end of its log.
     #[error("the supervisor ended with {}{}", .0, indented(.1))]
     Ended(ExitStatus, Vec<String>),
@@ -68,7 +72,7 @@ impl LaunchError {
                 Exit::Ok => Exit::NotReached,
                 exit => exit,
             },
-            Self::Io(..) => Exit::Storage,
+            Self::Io(..) | Self::Folder(_) => Exit::Storage,
             Self::Late(..) | Self::Call(_) => Exit::NotReached,
         }
     }
@@ -132,6 +136,8 @@ pub fn detached(
     options: &Options,
     paths: &GroupPaths,
 ) -> Result<Launched, LaunchError> {
+    make_root(paths.root())?;
+    make_private(&paths.log())?;
     let path = paths.log_file(SUPERVISOR);
     let (log, log_from) = open_log(paths).map_err(|error| LaunchError::Io(path, error))?;
     let process = command(program, options, paths)
@@ -151,7 +157,6 @@ fn command(program: &Path, options: &Options, paths: &GroupPaths) -> Command {
 }
 
 fn open_log(paths: &GroupPaths) -> io::Result<(File, u64)> {
-    fs::create_dir_all(paths.log())?;
     let path = paths.log_file(SUPERVISOR);
     let limits = Log { level: String::new(), file_bytes_max: LOG_BYTES_MAX, files_kept: 3 };
     let log = log_file::open(&path, &limits)?;

@@ -1,21 +1,32 @@
 //! Shared memory of a group, as managed by the supervisor: creation, checks, cleanup after
 //! dead processes, and removal.
 
-use crate::bus::{Bus, BusError, Identity, Topics, config};
-use crate::group::GroupPaths;
+use crate::bus::{Bus, BusError, Identity, Ipc, Topics, config};
+use crate::folders::make_private;
+use crate::group::{GroupPaths, SHM, ShmName};
+use iceoryx2::prelude::{CallbackProgression, Node, NodeState};
 use messages::Epoch;
+use rustix::process::geteuid;
+use std::fs::{self, DirBuilder};
+use std::io::{self, ErrorKind};
+use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Timeout for another process that is cleaning up.
 const CLEANUP_PATIENCE: Duration = Duration::from_millis(200);
 
+/// iceoryx2's bookkeeping of a group as a whole.
+const MANAGEMENT: &str = "global_mgmt";
+
 /// The supervisor's handle to the group's shared memory.
 #[derive(Debug)]
 pub struct Admin {
     bus: Bus,
     _topics: Topics,
-    root: PathBuf,
+    paths: GroupPaths,
+    place: ShmName,
+    management: PathBuf,
 }
 
 /// Too little free shared memory for the group.
@@ -30,35 +41,35 @@ pub struct NoRoom {
     needed_mib: u64,
 }
 
-/// Checks for free shared memory before a start: running out of it later is not an error but kills the
-/// process that touches it (SIGBUS).
+/// Checks for free shared memory before a start, so that a lack shows before anything runs.
 ///
 /// # Errors
 /// Less than `needed_mib` free.
 pub fn check_room(needed_mib: u64) -> Result<(), NoRoom> {
-    let path = "/dev/shm";
-    let Ok(stat) = rustix::fs::statvfs(path) else { return Ok(()) };
+    let Ok(stat) = rustix::fs::statvfs(SHM) else { return Ok(()) };
     let free_mib = (stat.f_bavail * stat.f_frsize) >> 20;
     if free_mib < needed_mib {
-        return Err(NoRoom { path: path.to_owned(), free_mib, needed_mib });
+        return Err(NoRoom { path: SHM.to_owned(), free_mib, needed_mib });
     }
     Ok(())
 }
 
 impl Admin {
-    /// Opens the group's shared memory, cleans up after processes of an earlier run, and creates
+    /// Removes what earlier runs left, and creates the group's shared memory under a new name, with
     /// every topic.
     ///
     /// # Errors
     /// iceoryx2 refuses.
     pub fn open(paths: &GroupPaths, epoch: Epoch) -> Result<Self, BusError> {
-        std::fs::create_dir_all(paths.ipc())
-            .map_err(|e| BusError::ipc("iceoryx2 folder", e.to_string()))?;
+        remove_leftovers(paths);
+        let failed = |error: io::Error| BusError::ipc("folder in shared memory", error.to_string());
+        let place = create_place(paths).map_err(failed)?;
         let identity = Identity { epoch, ..Identity::default() };
         let bus = Bus::open(paths, messages::SUPERVISOR, identity)?;
-        bus.node().blocking_cleanup_dead_nodes(CLEANUP_PATIENCE);
         let topics = Topics::create(&bus)?;
-        Ok(Self { bus, _topics: topics, root: paths.ipc() })
+        let management = entries(place.prefix()).find(|path| is_management(path));
+        let management = management.ok_or_else(|| failed(ErrorKind::NotFound.into()))?;
+        Ok(Self { bus, _topics: topics, paths: paths.clone(), place, management })
     }
 
     /// Removes what dead processes left behind. Called after each reap, before the successor is
@@ -68,39 +79,73 @@ impl Admin {
         tracing::debug!(?state, "cleaned up after dead processes");
     }
 
-    /// Returns true if the group's files are still there. If they were removed by
-    /// hand, every new process would silently create a second group of the same name.
+    /// Returns true if the files by which new processes find the group are still there and whole. If
+    /// not, new processes would create a second group of the same name, or none could start.
     pub fn intact(&self) -> bool {
-        self.root.is_dir()
-            && std::fs::read_dir(&self.root).is_ok_and(|mut entries| entries.next().is_some())
+        let is_named = self.paths.shm_name().is_ok_and(|place| place == self.place);
+        let is_filled = fs::read_dir(self.place.folder()).is_ok_and(|mut all| all.next().is_some());
+        is_named && is_filled && self.management.metadata().is_ok_and(|file| file.len() > 0)
     }
+}
+
+/// Creates the folder of iceoryx2's files under a name that nobody else has, and writes the name down
+/// for the group's processes.
+///
+/// # Errors
+/// The operating system refuses.
+pub fn create_place(paths: &GroupPaths) -> io::Result<ShmName> {
+    make_private(&paths.run()).map_err(io::Error::other)?;
+    let place = loop {
+        let place = paths.draw_shm_name()?;
+        match DirBuilder::new().mode(0o700).create(place.folder()) {
+            Ok(()) => break place,
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    };
+    // Complete as soon as it is there: clients may look for it at any time.
+    let draft = paths.shm_name_file().with_extension("new");
+    fs::write(&draft, place.prefix())?;
+    fs::rename(&draft, paths.shm_name_file())?;
+    Ok(place)
 }
 
 /// Removes every trace of the group from shared memory, after its last process has ended. Returns
 /// what was left over by then and had to be removed by name.
 pub fn remove_leftovers(paths: &GroupPaths) -> Vec<PathBuf> {
-    if let Ok(config) = config(paths) {
-        let _ = iceoryx2::prelude::Node::<crate::bus::Ipc>::list(&config, |state| {
-            if let iceoryx2::prelude::NodeState::Dead(view) = state {
+    let place = paths.shm_name().ok();
+    if let Some(config) = place.as_ref().and_then(|place| config(place).ok()) {
+        let _ = Node::<Ipc>::list(&config, |state| {
+            if let NodeState::Dead(view) = state {
                 let _ = view.try_remove_stale_resources();
             }
-            iceoryx2::prelude::CallbackProgression::Continue
+            CallbackProgression::Continue
         });
     }
+    let folder = place.map(|place| place.folder());
     let left = leftovers(paths);
     left.iter().for_each(|path| {
-        let _ = std::fs::remove_file(path);
+        let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
     });
-    // iceoryx2's bookkeeping of the group as a whole is always the last to go and not a leftover.
-    left.into_iter().filter(|path| !path.to_string_lossy().ends_with("global_mgmt")).collect()
+    // The bookkeeping of the group as a whole is always the last to go and not a leftover.
+    let is_left = |path: &PathBuf| !is_management(path) && folder.as_ref() != Some(path);
+    left.into_iter().filter(is_left).collect()
 }
 
-/// Files of the group in shared memory.
+/// Files of the group in shared memory, of all its starts.
 pub fn leftovers(paths: &GroupPaths) -> Vec<PathBuf> {
-    let prefix = paths.ipc_prefix();
-    let named = |path: &PathBuf| {
-        path.file_name().is_some_and(|name| name.to_string_lossy().contains(&prefix))
-    };
-    let Ok(entries) = std::fs::read_dir(Path::new("/dev/shm")) else { return Vec::new() };
-    entries.filter_map(|entry| Some(entry.ok()?.path())).filter(named).collect()
+    let user = geteuid().as_raw();
+    let is_ours = |path: &PathBuf| path.symlink_metadata().is_ok_and(|file| file.uid() == user);
+    entries(&paths.shm_stem()).filter(is_ours).collect()
+}
+
+fn is_management(path: &Path) -> bool {
+    path.to_string_lossy().ends_with(MANAGEMENT)
+}
+
+/// Entries of shared memory whose names begin with `prefix`.
+fn entries(prefix: &str) -> impl Iterator<Item = PathBuf> {
+    let all = fs::read_dir(SHM).into_iter().flatten().flatten();
+    all.filter(move |entry| entry.file_name().to_string_lossy().starts_with(prefix))
+        .map(|entry| entry.path())
 }

@@ -20,7 +20,7 @@ impl Shm {
     fn new() -> Self {
         let home = tempfile::Builder::new().prefix("wo").tempdir().unwrap();
         let paths = GroupPaths::in_home(home.path(), &GroupName::new("bus").unwrap()).unwrap();
-        std::fs::create_dir_all(paths.ipc()).unwrap();
+        shm_cleanup::create_place(&paths).unwrap();
         Self { _home: home, paths }
     }
 

@@ -135,7 +135,7 @@ impl Supervisor {
         let paths = &self.around.paths;
         self.admin = None;
         remove_leftovers(paths);
-        make_folders(&[&paths.run(), &paths.log(), &paths.journal()])?;
+        make_folders(paths)?;
         (self.configuration.publish)(paths).map_err(failed("settings for the services"))?;
         self.admin = Some(Admin::open(paths, Epoch(self.around.epoch))?);
         if !paths.control_socket().exists() {

@@ -3,17 +3,16 @@
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io;
-use std::os::unix::fs::DirBuilderExt;
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use messages::Epoch;
 use rustix::process::{Resource, Rlimit, getpid, set_child_subreaper, setrlimit};
 use service::bus::BusError;
 use service::exit::Exit;
+use service::folders::{FolderError, make_private, make_root};
 use service::group::GroupPaths;
 use service::notify::Notifier;
-use service::shm_cleanup::{Admin, NoRoom, check_room};
+use service::shm_cleanup::{Admin, NoRoom, check_room, remove_leftovers};
 use thiserror::Error;
 
 use super::{Supervisor, TICK};
@@ -49,6 +48,9 @@ pub enum StartError {
     /// The group's journals are lost, damaged or of another version.
     #[error("{0}")]
     Epoch(#[from] EpochError),
+    /// A folder of the group is not its owner's alone.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
     /// A folder, file, socket or setting is refused by the operating system.
     #[error("{0}: {1}")]
     Io(&'static str, io::Error),
@@ -63,7 +65,7 @@ impl StartError {
             Self::Epoch(EpochError::Journals(all)) if all.iter().all(|it| it.is_foreign) => {
                 Exit::Config
             }
-            Self::Epoch(_) | Self::Io(..) => Exit::Storage,
+            Self::Epoch(_) | Self::Folder(_) | Self::Io(..) => Exit::Storage,
         }
     }
 }
@@ -78,11 +80,12 @@ pub(super) fn start(
     let configuration = load().map_err(StartError::Config)?;
     let group = Group::new(&configuration.spec)?;
     // It holds the lock that the other folders wait for.
-    make_folders(&[paths.root()])?;
+    make_root(paths.root())?;
     let taken = previous_run::take_group(&paths)?;
     let alive = previous_run::await_end(&paths, longest_stop(&configuration.spec))?;
     let raised = raise(&paths, &configuration, alive, fresh);
     let (admin, signals, server, around) = raised.inspect_err(|_| {
+        remove_leftovers(&paths);
         // The folder says that a group runs. What cannot be removed is removed at the next start.
         let _ = fs::remove_dir_all(paths.run());
     })?;
@@ -128,7 +131,7 @@ fn raise(
     fresh: bool,
 ) -> Result<(Admin, Signals, Server, Surroundings), StartError> {
     check_room(configuration.shared_memory_free_min_mib)?;
-    make_folders(&[&paths.run(), &paths.log(), &paths.journal()])?;
+    make_folders(paths)?;
     let epoch = epoch::open(paths, fresh)?;
     (configuration.publish)(paths).map_err(failed("settings for the services"))?;
     let admin = Admin::open(paths, Epoch(epoch))?;
@@ -152,11 +155,9 @@ fn longest_stop(spec: &GroupSpec) -> Duration {
     deadlines.max().unwrap_or_default()
 }
 
-/// Creates folders that only their owner can read.
-pub(super) fn make_folders(folders: &[&Path]) -> Result<(), StartError> {
-    let mut builder = fs::DirBuilder::new();
-    builder.recursive(true).mode(0o700);
-    folders.iter().try_for_each(|folder| builder.create(folder)).map_err(failed("folders"))
+/// Creates the folders that every group has.
+pub(super) fn make_folders(paths: &GroupPaths) -> Result<(), FolderError> {
+    [paths.run(), paths.log(), paths.journal()].iter().try_for_each(|folder| make_private(folder))
 }
 
 /// Makes this process the reaper of orphans of its services. No process below it

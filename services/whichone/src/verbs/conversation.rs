@@ -184,7 +184,7 @@ impl Conversation {
 }
 
 fn folder(paths: &GroupPaths) -> Option<u64> {
-    paths.ipc().metadata().ok().map(|metadata| metadata.ino())
+    paths.shm_name_file().metadata().ok().map(|metadata| metadata.ino())
 }
 
 fn ended(paths: &GroupPaths) -> Failure {

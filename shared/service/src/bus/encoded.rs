@@ -1,8 +1,9 @@
 //! Readers and writers of topics whose payloads are postcard in a byte slice.
 
 use super::open::{Gate, notifiers, open_topic};
+use super::refusal::{self, Refusal};
 use super::wake::WakeNotifier;
-use super::{Bus, BusError, Ipc, PortError};
+use super::{Bus, BusError, Ipc, PortError, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
 use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
@@ -10,6 +11,7 @@ use messages::Stamp;
 use messages::schema::Schema;
 use messages::topics::Topic;
 use serde::{Serialize, de::DeserializeOwned};
+use std::cell::Cell;
 use std::marker::PhantomData;
 
 /// First guess at the size of a payload, bytes; it grows as needed.
@@ -24,18 +26,22 @@ impl Bus {
     /// As [`Bus::writer`].
     pub fn encoded_writer<T: Schema>(&self, topic: &Topic) -> Result<EncodedWriter<T>, BusError> {
         let service = open_topic!(self, topic, [u8])?;
-        let publisher = service
-            .publisher_builder()
-            .max_loaned_samples(1)
-            .initial_max_slice_len(BYTES)
-            .allocation_strategy(AllocationStrategy::PowerOfTwo)
-            .backpressure_strategy(BackpressureStrategy::DiscardData)
-            .create()
-            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let publisher = create(topic.name, || {
+            service
+                .publisher_builder()
+                .max_loaned_samples(1)
+                .initial_max_slice_len(BYTES)
+                .allocation_strategy(AllocationStrategy::PowerOfTwo)
+                .backpressure_strategy(BackpressureStrategy::DiscardData)
+                .create()
+        })?;
         let notifiers = notifiers(self, topic)?;
+        let is_view = topic.writer.is_some();
         let (topic, stamp) = (topic.name, self.stamp());
         Ok(EncodedWriter {
             topic,
+            is_view,
+            is_short: Cell::new(false),
             publisher,
             notifiers,
             stamp,
@@ -50,12 +56,13 @@ impl Bus {
     /// As [`Bus::writer`].
     pub fn encoded_reader<T: Schema>(&self, topic: &Topic) -> Result<EncodedReader<T>, BusError> {
         let service = open_topic!(self, topic, [u8])?;
-        let subscriber = service
-            .subscriber_builder()
-            .buffer_size(topic.buffer)
-            .history_request(topic.history)
-            .create()
-            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let subscriber = create(topic.name, || {
+            service
+                .subscriber_builder()
+                .buffer_size(topic.buffer)
+                .history_request(topic.history)
+                .create()
+        })?;
         let gate = Gate::new(self.identity().epoch, topic);
         Ok(EncodedReader {
             topic: topic.name,
@@ -71,6 +78,10 @@ impl Bus {
 #[derive(Debug)]
 pub struct EncodedWriter<T: Schema> {
     topic: &'static str,
+    /// What a service shows to clients; a later one replaces it.
+    is_view: bool,
+    /// The last payload was dropped for want of shared memory.
+    is_short: Cell<bool>,
     publisher: Publisher<Ipc, [u8], Stamp>,
     notifiers: Vec<WakeNotifier>,
     stamp: Stamp,
@@ -79,7 +90,8 @@ pub struct EncodedWriter<T: Schema> {
 }
 
 impl<T: Schema> EncodedWriter<T> {
-    /// Encodes and sends the payload.
+    /// Encodes and sends the payload. Where it needs more memory than was reserved and there is
+    /// none, a service goes on without showing it.
     ///
     /// # Errors
     /// The payload cannot be encoded or is too large, or iceoryx2 is out of memory.
@@ -92,12 +104,31 @@ impl<T: Schema> EncodedWriter<T> {
         if bytes.len() > BYTES_MAX {
             return Err(failed(format!("{} bytes, {BYTES_MAX} at most", bytes.len())));
         }
-        let loan = self.publisher.loan_slice_uninit(bytes.len());
-        let mut sample = loan.map_err(|e| failed(format!("{e:?}")))?;
+        refusal::take();
+        let mut sample = match self.publisher.loan_slice_uninit(bytes.len()) {
+            Ok(sample) => sample,
+            Err(error) => return self.unsent(format!("{error:?}")),
+        };
+        self.is_short.set(false);
         *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
         sample.write_from_slice(&bytes).send().map_err(|e| failed(format!("{e:?}")))?;
         self.notifiers.iter().for_each(WakeNotifier::notify);
         Ok(())
+    }
+}
+
+impl<T: Schema> EncodedWriter<T> {
+    fn unsent(&self, cause: String) -> Result<(), PortError> {
+        match refusal::take() {
+            Some(refusal @ Refusal::Room { .. }) if self.is_view => {
+                if !self.is_short.replace(true) {
+                    tracing::warn!(topic = self.topic, %refusal, "not shown");
+                }
+                Ok(())
+            }
+            Some(refusal) => Err(PortError::new(self.topic, refusal.to_string())),
+            None => Err(PortError::new(self.topic, cause)),
+        }
     }
 }
 

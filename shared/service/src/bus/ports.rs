@@ -5,7 +5,7 @@
 
 use super::open::{Gate, notifiers, open_topic};
 use super::wake::WakeNotifier;
-use super::{Bus, BusError, Ipc, PortError, WireMessage};
+use super::{Bus, BusError, Ipc, PortError, WireMessage, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::BackpressureStrategy;
 use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
@@ -19,12 +19,13 @@ impl Bus {
     /// Another schema, too many writers, or an error of iceoryx2.
     pub fn writer<T: WireMessage>(&self, topic: &Topic) -> Result<Writer<T>, BusError> {
         let service = open_topic!(self, topic, T)?;
-        let publisher = service
-            .publisher_builder()
-            .max_loaned_samples(1)
-            .backpressure_strategy(BackpressureStrategy::DiscardData)
-            .create()
-            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let publisher = create(topic.name, || {
+            service
+                .publisher_builder()
+                .max_loaned_samples(1)
+                .backpressure_strategy(BackpressureStrategy::DiscardData)
+                .create()
+        })?;
         let notifiers = notifiers(self, topic)?;
         Ok(Writer {
             topic: topic.name,
@@ -41,12 +42,13 @@ impl Bus {
     /// As [`Bus::writer`].
     pub fn reader<T: WireMessage>(&self, topic: &Topic) -> Result<Reader<T>, BusError> {
         let service = open_topic!(self, topic, T)?;
-        let subscriber = service
-            .subscriber_builder()
-            .buffer_size(topic.buffer)
-            .history_request(topic.history)
-            .create()
-            .map_err(|e| BusError::ipc(topic.name, format!("{e:?}")))?;
+        let subscriber = create(topic.name, || {
+            service
+                .subscriber_builder()
+                .buffer_size(topic.buffer)
+                .history_request(topic.history)
+                .create()
+        })?;
         let gate = Gate::new(self.identity().epoch, topic);
         Ok(Reader { topic: topic.name, subscriber, gate, _service: service })
     }

@@ -1,7 +1,7 @@
 //! Wake-ups. An event says only "look": it may come once for many messages, or never where its
 //! listener was dead, so the woken side always drains everything and also polls from time to time.
 
-use super::{Bus, BusError, Ipc};
+use super::{Bus, BusError, Ipc, create};
 use iceoryx2::port::{listener::Listener, notifier::Notifier};
 use iceoryx2::prelude::*;
 use iceoryx2::service::port_factory::event::PortFactory;
@@ -27,14 +27,15 @@ pub(super) fn open(bus: &Bus, service: Service) -> Result<PortFactory<Ipc>, BusE
     let name = format!("wake/{}", service.name());
     let service_name =
         ServiceName::new(&name).map_err(|e| BusError::ipc(&name, format!("{e:?}")))?;
-    bus.node()
-        .service_builder(&service_name)
-        .event()
-        .max_nodes(NODES_MAX)
-        .max_notifiers(4 * NODES_MAX)
-        .max_listeners(2)
-        .open_or_create()
-        .map_err(|e| BusError::ipc(&name, format!("{e:?}")))
+    create(&name, || {
+        bus.node()
+            .service_builder(&service_name)
+            .event()
+            .max_nodes(NODES_MAX)
+            .max_notifiers(4 * NODES_MAX)
+            .max_listeners(2)
+            .open_or_create()
+    })
 }
 
 impl Bus {
@@ -44,10 +45,7 @@ impl Bus {
     /// iceoryx2 fails.
     pub fn wake_listener(&self, service: Service) -> Result<WakeListener, BusError> {
         let topic = open(self, service)?;
-        let listener = topic
-            .listener_builder()
-            .create()
-            .map_err(|e| BusError::ipc(service.name(), format!("{e:?}")))?;
+        let listener = create(service.name(), || topic.listener_builder().create())?;
         Ok(WakeListener { listener, _topic: topic })
     }
 }
@@ -75,10 +73,7 @@ impl WakeListener {
 impl WakeNotifier {
     pub(super) fn open(bus: &Bus, service: Service) -> Result<Self, BusError> {
         let topic = open(bus, service)?;
-        let notifier = topic
-            .notifier_builder()
-            .create()
-            .map_err(|e| BusError::ipc(service.name(), format!("{e:?}")))?;
+        let notifier = create(service.name(), || topic.notifier_builder().create())?;
         Ok(Self { notifier, _topic: topic })
     }
 

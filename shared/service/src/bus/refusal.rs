@@ -1,0 +1,65 @@
+//! Reasons for refusing a segment, which iceoryx2's errors have no room for: noted where the segment
+//! is refused, taken where the error is reported, on the same thread.
+
+use crate::group::SHM;
+use std::cell::RefCell;
+
+/// Reason for refusing a segment of shared memory.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// Shared memory is full.
+    #[error(
+        "shared memory is full: {needed_kib} KiB needed, {free_kib} KiB free in {SHM}; help: free \
+         some (see `df {SHM}`); services try again by themselves"
+    )]
+    Room {
+        /// Size of the segment, KiB.
+        needed_kib: u64,
+        /// Free memory, KiB.
+        free_kib: u64,
+    },
+    /// A segment of another user has the name.
+    #[error(
+        "{SHM}/{file} belongs to user {user}; help: remove it as that user or as root, and start \
+         the group again"
+    )]
+    Foreign {
+        /// The file in shared memory.
+        file: String,
+        /// User id of its owner.
+        user: u32,
+    },
+    /// A segment is empty or was never completed.
+    #[error(
+        "{SHM}/{file} is damaged, or its creator has not completed it in time; help: restart the \
+         group with `whichone down` and `whichone up`"
+    )]
+    Incomplete {
+        /// The file in shared memory.
+        file: String,
+    },
+}
+
+thread_local! {
+    static NOTED: RefCell<Option<Refusal>> = const { RefCell::new(None) };
+}
+
+impl Refusal {
+    /// Lack of `bytes` of shared memory.
+    pub(super) fn room(bytes: u64) -> Self {
+        let free = rustix::fs::statvfs(SHM).map_or(0, |stat| stat.f_bavail * stat.f_frsize);
+        Self::Room { needed_kib: bytes.div_ceil(1024), free_kib: free / 1024 }
+    }
+}
+
+/// Notes why a segment is refused; the first reason counts.
+pub(super) fn note(refusal: Refusal) {
+    NOTED.with_borrow_mut(|noted| {
+        noted.get_or_insert(refusal);
+    });
+}
+
+/// Takes the reason noted since the last call.
+pub(super) fn take() -> Option<Refusal> {
+    NOTED.take()
+}
