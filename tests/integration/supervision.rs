@@ -1,6 +1,8 @@
 //! The operator's verbs and the supervisor's automatic restarts.
 
 use rustix::process::Signal;
+use service::shm_cleanup;
+use std::fs::File;
 use whichone_tests::{Group, wait_for};
 
 #[test]
@@ -85,6 +87,24 @@ fn restart_limit_holds_a_failing_service_alone() {
     });
     assert_eq!(group.service("policy")["actual"], "ready");
     group.must(&["start", "arm"]);
+    assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
+    group.down();
+}
+
+#[test]
+fn damaged_shared_memory_is_an_error_and_then_renewed() {
+    let group = Group::up(&[]);
+    let before = group.incarnation("speech");
+    let of_group = shm_cleanup::leftovers(group.paths());
+    let management = of_group.iter().find(|path| path.to_string_lossy().ends_with("global_mgmt"));
+    File::create(management.expect("iceoryx2's bookkeeping")).unwrap();
+    // Its timeout is what shows that it does not hang.
+    let ended = group.call(&["say", "the clear bowl"]);
+    assert!(ended.code == Some(0) || ended.stderr.contains("help:"), "{ended:?}");
+    wait_for("the group to start again", 30.0, || {
+        (group.incarnation("speech") > before && group.call(&["status"]).code == Some(0))
+            .then_some(())
+    });
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     group.down();
 }

@@ -5,6 +5,7 @@ mod command;
 pub mod console;
 mod group;
 pub mod shortage;
+pub mod isolated;
 pub mod simulated_group;
 pub mod spoken;
 

@@ -77,7 +77,7 @@ impl BusError {
     /// An error of iceoryx2, with the reason of the last refused segment if there was one.
     pub(crate) fn ipc(what: &str, cause: String) -> Self {
         let what = what.to_owned();
-        match refusal::take() {
+        match refusal::of_failure() {
             Some(refusal) => Self::Refused { what, refusal },
             None => Self::Ipc { what, cause },
         }

@@ -105,7 +105,7 @@ fn truncated_segments_are_an_error_and_no_hang() {
 
 #[test]
 #[ignore = "needs root: gives a file to another user"]
-fn segment_of_another_user_is_refused() {
+fn second_user_owns_a_segment_and_it_is_refused() {
     let shm = Shm::new();
     let _bus = shm.join();
     for path in shm.files("global_mgmt") {

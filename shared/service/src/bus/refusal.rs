@@ -63,3 +63,11 @@ pub(super) fn note(refusal: Refusal) {
 pub(super) fn take() -> Option<Refusal> {
     NOTED.take()
 }
+
+/// Takes the reason of a failure: the one noted, else that there was no room for a small file of
+/// iceoryx2's either.
+pub(super) fn of_failure() -> Option<Refusal> {
+    let is_full =
+        || rustix::fs::statvfs(SHM).is_ok_and(|stat| stat.f_bavail.min(stat.f_ffree) == 0);
+    take().or_else(|| is_full().then(|| Refusal::room(1)))
+}

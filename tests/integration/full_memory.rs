@@ -1,0 +1,188 @@
+//! Shared memory that is full, in a small one that nothing else on the machine sees.
+
+use dialogue::Ended;
+use messages::{AppliedMark, Epoch, Injection, PolicyView, Receipt, Sound, topics};
+use rustix::fs::{FallocateFlags, fallocate};
+use rustix::process::Signal;
+use service::Span;
+use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, Identity, Reader, Refusal};
+use service::client::{Client, deliver};
+use service::group::{GroupName, GroupPaths, SHM};
+use service::shm_cleanup;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use whichone_tests::isolated::with_shared_memory;
+use whichone_tests::{Group, wait_for};
+
+/// Memory that somebody else takes; given back when dropped.
+struct Ballast(PathBuf, File);
+
+impl Ballast {
+    /// Takes everything that is free.
+    fn fill() -> Self {
+        let path = Path::new(SHM).join("ballast");
+        let ballast = Self(path.clone(), File::create(path).unwrap());
+        ballast.grow();
+        assert_eq!(free(), 0);
+        ballast
+    }
+
+    /// Takes what has become free since.
+    fn grow(&self) {
+        let mut step = 1 << 24;
+        while step >= 4096 {
+            let end = self.1.metadata().unwrap().len();
+            if fallocate(&self.1, FallocateFlags::empty(), end, step).is_err() {
+                step /= 2;
+            }
+        }
+    }
+}
+
+impl Drop for Ballast {
+    fn drop(&mut self) {
+        std::fs::remove_file(&self.0).unwrap();
+    }
+}
+
+fn free() -> u64 {
+    rustix::fs::statvfs(SHM).unwrap().f_bavail
+}
+
+/// A client with everything open that a dialogue needs.
+struct Talker {
+    injections: EncodedWriter<Injection>,
+    receipts: Reader<Receipt>,
+    views: EncodedReader<PolicyView>,
+    _client: Client,
+}
+
+impl Talker {
+    fn join(group: &Group) -> Self {
+        let client = Client::join(group.paths()).unwrap();
+        let bus = client.bus();
+        Self {
+            injections: bus.encoded_writer(&topics::INJECTION).unwrap(),
+            receipts: bus.reader(&topics::RECEIPT).unwrap(),
+            views: bus.encoded_reader(&topics::VIEW).unwrap(),
+            _client: client,
+        }
+    }
+
+    /// Asks for an object by a name that needs no question, and waits until it is handed over.
+    fn fetch(&self, words: &str) -> Ended {
+        let now = (service::clock::now(), service::Time(0));
+        let words = Sound::Text(words.to_owned());
+        deliver(&self.injections, &self.receipts, words, now, Span::from_s(10.0)).unwrap();
+        let before = self.views.latest().unwrap().and_then(|view| view.last);
+        let before = before.map_or(0, |ended| ended.interaction.0);
+        wait_for("the hand-over", 40.0, || {
+            let ended = self.views.latest().unwrap()?.last?;
+            (ended.interaction.0 > before).then_some(ended)
+        })
+    }
+}
+
+#[test]
+#[ignore = "needs root: mounts a small /dev/shm"]
+fn full_memory_is_an_error_of_the_creator_and_of_nobody_else() {
+    let home = tempfile::tempdir().unwrap();
+    let paths = GroupPaths::in_home(home.path(), &GroupName::new("full").unwrap()).unwrap();
+    with_shared_memory(8, || {
+        shm_cleanup::create_place(&paths).unwrap();
+        let join =
+            || Bus::open(&paths, "test", Identity { epoch: Epoch(1), ..Identity::default() });
+        let (one, two) = (join().unwrap(), join().unwrap());
+        let marks = one.writer::<AppliedMark>(&topics::MARK).unwrap();
+        let views = one.encoded_writer::<PolicyView>(&topics::VIEW).unwrap();
+        let read_marks = two.reader::<AppliedMark>(&topics::MARK).unwrap();
+        let read_views = two.encoded_reader::<PolicyView>(&topics::VIEW).unwrap();
+        let view = |objects| PolicyView { belief: vec![0.5; objects], ..PolicyView::default() };
+
+        let ballast = Ballast::fill();
+        let error = two.encoded_writer::<Injection>(&topics::INJECTION).unwrap_err();
+        let BusError::Refused { refusal: Refusal::Room { needed_kib, free_kib }, .. } = error
+        else {
+            panic!("{error}")
+        };
+        assert!(needed_kib > 1000 && free_kib == 0, "{error}");
+        assert!(two.reader::<Receipt>(&topics::RECEIPT).is_err());
+        // Each page that these touch was reserved, however often they go round.
+        for seq in 0..200 {
+            marks.send(&AppliedMark { seq }).unwrap();
+            assert_eq!(read_marks.latest().unwrap(), Some(AppliedMark { seq }));
+            views.send(&view(100 + seq as usize)).unwrap();
+            assert!(read_views.latest().unwrap().is_some());
+        }
+        // What would have to grow is not shown, and its writer goes on.
+        views.send(&view(10_000)).unwrap();
+        assert_eq!(read_views.latest().unwrap(), None);
+        views.send(&view(3)).unwrap();
+        assert_eq!(read_views.latest().unwrap(), Some(view(3)));
+
+        drop(ballast);
+        views.send(&view(10_000)).unwrap();
+        assert_eq!(read_views.latest().unwrap(), Some(view(10_000)));
+        two.encoded_writer::<Injection>(&topics::INJECTION).unwrap();
+        drop((marks, views, read_marks, read_views, one, two));
+        shm_cleanup::remove_leftovers(&paths);
+    });
+}
+
+#[test]
+#[ignore = "needs root: mounts a small /dev/shm"]
+fn group_that_does_not_fit_is_refused_with_the_figure() {
+    with_shared_memory(4, || {
+        let mut group = Group::new();
+        let ended = group.start(&["group.shared_memory.free_min_mib=1"]);
+        assert_ne!(ended.code, Some(0));
+        let all = format!("{ended:?}\n{}", group.logs());
+        assert!(all.contains("shared memory is full") && all.contains("KiB needed"), "{all}");
+        group.call(&["down"]);
+    });
+}
+
+#[test]
+#[ignore = "needs root: mounts a small /dev/shm"]
+fn group_goes_on_in_full_memory_and_recovers_by_itself() {
+    with_shared_memory(64, || {
+        let group = Group::up(&[]);
+        let talker = Talker::join(&group);
+        let services = ["speech", "grounding", "policy", "arm", "console"];
+        let before = services.map(|service| group.incarnation(service));
+
+        let ballast = Ballast::fill();
+        for object in ["clear", "metal1"] {
+            let words =
+                if object == "clear" { "the clear bowl" } else { "the metal bowl on the table" };
+            let ended = talker.fetch(words);
+            let name = ended.name.as_deref();
+            assert_eq!(name, Some(object), "{ended:?}\n{}", group.logs());
+        }
+        assert_eq!(services.map(|service| group.incarnation(service)), before, "{}", group.logs());
+        let ended = group.call(&["say", "the clear bowl"]);
+        assert_eq!(ended.code, Some(1), "{ended:?}");
+        assert!(ended.stderr.contains("shared memory is full"), "{ended:?}");
+
+        let of_grounding = group.incarnation("grounding");
+        group.signal("grounding", Signal::KILL);
+        wait_for("a start that fails for want of memory", 20.0, || {
+            ballast.grow();
+            let row = group.service("grounding").to_string();
+            row.contains("shared memory").then_some(())
+        });
+        assert_eq!(group.service("speech")["actual"], "ready");
+
+        drop(ballast);
+        let freed = Instant::now();
+        group.wait_for_restart("grounding", of_grounding);
+        eprintln!(
+            "ready {:.1} s after shared memory was free again",
+            freed.elapsed().as_secs_f64()
+        );
+        assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
+        group.verify_journals();
+        group.down();
+    });
+}
