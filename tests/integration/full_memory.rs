@@ -5,7 +5,7 @@ use messages::{AppliedMark, Epoch, Injection, PolicyView, Receipt, Sound, topics
 use rustix::fs::{FallocateFlags, fallocate};
 use rustix::process::Signal;
 use service::Span;
-use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, Identity, Reader, Refusal};
+use service::bus::{Bus, BusError, EncodedReader, EncodedWriter, Identity, Reader, SegmentError};
 use service::client::{Client, deliver};
 use service::group::{GroupName, GroupPaths, SHM};
 use service::shm_cleanup;
@@ -102,7 +102,7 @@ fn full_memory_is_an_error_of_the_creator_and_of_nobody_else() {
 
         let ballast = Ballast::fill();
         let error = two.encoded_writer::<Injection>(&topics::INJECTION).unwrap_err();
-        let BusError::Refused { refusal: Refusal::Room { needed_kib, free_kib }, .. } = error
+        let BusError::Segment { cause: SegmentError::Room { needed_kib, free_kib }, .. } = error
         else {
             panic!("{error}")
         };
@@ -162,15 +162,22 @@ fn group_goes_on_in_full_memory_and_recovers_by_itself() {
         }
         assert_eq!(services.map(|service| group.incarnation(service)), before, "{}", group.logs());
         let ended = group.call(&["say", "the clear bowl"]);
-        assert_eq!(ended.code, Some(1), "{ended:?}");
+        assert_eq!(ended.code, Some(74), "{ended:?}");
         assert!(ended.stderr.contains("shared memory is full"), "{ended:?}");
 
+        // A service that is killed takes the room that it had.
+        let of_policy = group.incarnation("policy");
+        group.signal("policy", Signal::KILL);
+        group.wait_for_restart("policy", of_policy);
+        assert_eq!(talker.fetch("the clear bowl").name.as_deref(), Some("clear"));
+
+        // If somebody else takes that room, it starts once there is some.
         let of_grounding = group.incarnation("grounding");
-        group.signal("grounding", Signal::KILL);
+        group.must(&["hold", "grounding"]);
+        ballast.grow();
+        group.call(&["release", "grounding"]);
         wait_for("a start that fails for want of memory", 20.0, || {
-            ballast.grow();
-            let row = group.service("grounding").to_string();
-            row.contains("shared memory").then_some(())
+            group.service("grounding").to_string().contains("shared memory is full").then_some(())
         });
         assert_eq!(group.service("speech")["actual"], "ready");
 

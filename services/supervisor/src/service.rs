@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use service::group::{self, GroupPaths};
-use service::shm_cleanup::NoRoom;
 
 use crate::Time;
 use crate::child::Child;
@@ -88,17 +87,15 @@ impl Service {
         Self { spec, swapped: None, running: None, ended: None, log_from: 0 }
     }
 
-    /// Starts incarnation `incarnation`, if there is room for it.
+    /// Starts incarnation `incarnation`.
     pub(crate) fn spawn(
         &mut self,
         incarnation: u32,
         around: &Surroundings,
-        room: Result<(), NoRoom>,
         now: Time,
     ) -> Result<(), ProcessExit> {
         assert!(self.running.is_none(), "{} runs already", self.spec.name);
-        let started = room.map_err(SpawnError::from);
-        match started.and_then(|()| self.try_spawn(incarnation, around, now)) {
+        match self.try_spawn(incarnation, around, now) {
             Ok(running) => {
                 let (service, pid) = (&self.spec.name, running.child.pid());
                 tracing::info!(service, incarnation, %pid, "started");

@@ -9,7 +9,6 @@ use std::process::{Command, Stdio};
 
 use rustix::fs::{Access, access};
 use rustix::process::Pid;
-use service::shm_cleanup::NoRoom;
 use thiserror::Error;
 
 use crate::before_exec;
@@ -29,9 +28,6 @@ pub(crate) enum SpawnError {
     /// The program may not be run.
     #[error("{}: not an executable file", .0.display())]
     NotExecutable(PathBuf),
-    /// Shared memory is short.
-    #[error(transparent)]
-    Room(#[from] NoRoom),
     /// Error of the operating system with a file.
     #[error("{}: {}", .0.display(), .1)]
     Io(PathBuf, io::Error),
@@ -48,7 +44,6 @@ impl SpawnError {
                 }
                 _ => ProcessExit::NotStarted,
             },
-            Self::Room(_) => ProcessExit::NotStarted,
             Self::Empty | Self::Missing(_) | Self::NotExecutable(_) => ProcessExit::NotStartable,
         }
     }

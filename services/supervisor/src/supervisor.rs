@@ -11,7 +11,7 @@ use rustix::process::Pid;
 use service::exit::Exit;
 use service::group::GroupPaths;
 use service::notify::Notifier;
-use service::shm_cleanup::{Admin, NoRoom, check_room};
+use service::shm_cleanup::Admin;
 
 use crate::Time;
 use crate::configuration::{Configuration, Load};
@@ -189,20 +189,12 @@ impl Supervisor {
             return self.services[service].signal(effect);
         }
         let incarnation = self.group.machine(service).incarnation();
-        let room = self.room_for_one();
-        if let Err(exit) = self.services[service].spawn(incarnation, &self.around, room, now) {
+        if let Err(exit) = self.services[service].spawn(incarnation, &self.around, now) {
             // A start that failed is never followed by another one at once.
             let effect = self.group.on(service, Event::Exited(exit), now);
             debug_assert_eq!(effect, None);
             self.report_rest(service);
         }
-    }
-
-    /// Checks the free shared memory before a restart: if it were full, the service would die of
-    /// SIGBUS without a message.
-    fn room_for_one(&self) -> Result<(), NoRoom> {
-        let services = self.services.len().max(1) as u64;
-        check_room(self.configuration.shared_memory_free_min_mib.div_ceil(services))
     }
 
     /// Reaps a service's ended process, cleans up after it, and only then starts its successor.

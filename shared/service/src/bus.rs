@@ -9,15 +9,15 @@ use messages::{Epoch, Incarnation, Stamp, WireField};
 mod encoded;
 mod open;
 mod ports;
-mod refusal;
 mod segment;
+mod segment_error;
 mod variant;
 mod wake;
 
 pub use encoded::{EncodedReader, EncodedWriter};
 pub use open::Topics;
 pub use ports::{Reader, Writer};
-pub use refusal::Refusal;
+pub use segment_error::SegmentError;
 pub(crate) use variant::Ipc;
 pub use wake::{WakeListener, WakeNotifier};
 
@@ -56,12 +56,12 @@ pub enum BusError {
         cause: String,
     },
     /// A segment of shared memory cannot be created or used.
-    #[error("{what}: {refusal}")]
-    Refused {
+    #[error("{what}: {cause}")]
+    Segment {
         /// Operation that failed.
         what: String,
         /// The reason.
-        refusal: Refusal,
+        cause: SegmentError,
     },
     /// Any other error of iceoryx2.
     #[error("shared memory, {what}: {cause}")]
@@ -74,11 +74,11 @@ pub enum BusError {
 }
 
 impl BusError {
-    /// An error of iceoryx2, with the reason of the last refused segment if there was one.
+    /// An error of iceoryx2, with the segment's error where there was one.
     pub(crate) fn ipc(what: &str, cause: String) -> Self {
         let what = what.to_owned();
-        match refusal::of_failure() {
-            Some(refusal) => Self::Refused { what, refusal },
+        match segment_error::of_failure() {
+            Some(cause) => Self::Segment { what, cause },
             None => Self::Ipc { what, cause },
         }
     }
@@ -90,11 +90,11 @@ fn create<T, E: std::fmt::Debug>(
     what: &str,
     create: impl FnOnce() -> Result<T, E>,
 ) -> Result<T, BusError> {
-    refusal::take();
+    segment_error::take();
     let port = create().map_err(|error| BusError::ipc(what, format!("{error:?}")))?;
-    match refusal::take() {
-        Some(refusal @ (Refusal::Room { .. } | Refusal::Foreign { .. })) => {
-            Err(BusError::Refused { what: what.to_owned(), refusal })
+    match segment_error::take() {
+        Some(cause @ (SegmentError::Room { .. } | SegmentError::Foreign { .. })) => {
+            Err(BusError::Segment { what: what.to_owned(), cause })
         }
         _ => Ok(port),
     }
@@ -109,9 +109,9 @@ pub struct PortError {
 }
 
 impl PortError {
-    /// An error of iceoryx2, with the reason of the last refused segment if there was one.
+    /// An error of iceoryx2, with the segment's error where there was one.
     pub(crate) fn new(topic: &'static str, cause: String) -> Self {
-        let cause = refusal::take().map_or(cause, |refusal| refusal.to_string());
+        let cause = segment_error::take().map_or(cause, |error| error.to_string());
         Self { topic, cause }
     }
 }

@@ -8,7 +8,6 @@ use crate::clock;
 use crate::group::GroupPaths;
 use crate::journal_set::JournalSet;
 use crate::lifecycle::Environment;
-use crate::storage;
 use crate::submission::Submission;
 use crate::{Span, Time};
 use messages::{Epoch, Injection, Receipt, RequestKey, Sound, topics};
@@ -32,9 +31,6 @@ pub enum ClientError {
     /// Its shared memory cannot be opened.
     #[error(transparent)]
     Bus(#[from] BusError),
-    /// The group's disk is full.
-    #[error("no access to the group, so nothing was accepted: {0}")]
-    Full(String),
     /// A topic failed.
     #[error(transparent)]
     Port(#[from] PortError),
@@ -56,14 +52,9 @@ impl Client {
     pub fn join(paths: &GroupPaths) -> Result<Self, ClientError> {
         let none = || ClientError::NoGroup(paths.name().to_string());
         paths.shm_name().map_err(|_| none())?;
+        paths.shm_name().map_err(|_| none())?;
         let set = JournalSet::load(paths).ok().flatten().ok_or_else(none)?;
         let epoch = Epoch(set.epoch);
-        let bus = Bus::open(paths, "client", Identity { epoch, ..Identity::default() });
-        // A new process makes files in the group's folder.
-        bus.map(|bus| Self { bus }).map_err(|error| match storage::shortage(&paths.ipc()) {
-            Some(shortage) => ClientError::Full(shortage),
-            None => error.into(),
-        })
     }
 
     /// Joins the group as one of its services that writes no topic of its own: the console.

@@ -10,13 +10,12 @@ use diagnostics::Diagnostics;
 use serde::{Deserialize, Serialize};
 
 use crate::NodeError;
-use crate::bus::{BusError, PortError};
+use crate::bus::{BusError, PortError, SegmentError};
 use crate::client::ClientError;
 use crate::control::{CallError, Refusal};
 use crate::group::GroupError;
 use crate::launch::LaunchError;
 use crate::stop_socket::StopError;
-use crate::storage;
 
 /// Exit code of a program of the group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,15 +74,6 @@ impl Failure {
         Self::new(Exit::Storage, format!("{}: {error}", path.display()))
     }
 
-    /// A failure in `folder`, put down to a full file system where that is one.
-    #[must_use]
-    pub fn or_shortage(self, folder: &Path) -> Self {
-        match storage::shortage(folder) {
-            Some(shortage) => Self::new(Exit::Storage, format!("{shortage} ({self})")),
-            None => self,
-        }
-    }
-
     /// Output that cannot be printed. A closed pipe is the reader's choice: the program ends
     /// silently and with success.
     pub fn output(error: io::Error) -> Self {
@@ -98,7 +88,8 @@ impl From<BusError> for Failure {
     fn from(error: BusError) -> Self {
         let exit = match error {
             BusError::Schema { .. } => Exit::Config,
-            BusError::Refused { .. } | BusError::Ipc { .. } => Exit::NotReached,
+            BusError::Segment { cause: SegmentError::Room { .. }, .. } => Exit::Storage,
+            BusError::Segment { .. } | BusError::Ipc { .. } => Exit::NotReached,
         };
         Self::new(exit, error.to_string())
     }
@@ -132,7 +123,6 @@ impl From<ClientError> for Failure {
     fn from(error: ClientError) -> Self {
         match error {
             ClientError::Bus(error) => error.into(),
-            ClientError::Full(_) => Self::new(Exit::Storage, error.to_string()),
             other => Self::new(Exit::NotReached, other.to_string()),
         }
     }

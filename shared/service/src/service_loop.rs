@@ -12,6 +12,7 @@ use crate::exit::{Exit, Failure};
 use crate::inspection::{self, Finding, Part, SharedFacts};
 use crate::lifecycle::{Cycle, Environment, Health, Lifecycle, drive};
 use crate::logging;
+use crate::notify::Notifier;
 use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
 use crate::{Effects, Event, Node, SetAside, Span, Time, journal_set};
 use config::Settings;
@@ -157,6 +158,11 @@ pub fn program(
         Ok(()) => Exit::Ok.code(),
         Err(failure) => {
             tracing::error!(exit = failure.exit as u8, "{failure}");
+            if failure.exit == Exit::Storage
+                && let Ok(mut supervisor) = Notifier::from_environment()
+            {
+                supervisor.say(&format!("X_SHORTAGE={failure}"));
+            }
             failure.exit.code()
         }
     }
@@ -184,8 +190,7 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
     let commit = Commit::start(journal, environment.paths.journal()).map_err(failed)?;
     let identity = Identity { epoch: environment.epoch, incarnation: environment.incarnation };
     let (devices, inbox) = worker_channel::channel().map_err(failed)?;
-    let (bus, shell, wake_listener) = open_topics::<P>(&environment, identity, &settings, devices)
-        .map_err(|failure| failure.or_shortage(&environment.paths.ipc()))?;
+    let (bus, shell, wake_listener) = open_topics::<P>(&environment, identity, &settings, devices)?;
     let mut service = Loop::<P> {
         node,
         shell,

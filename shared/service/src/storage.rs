@@ -2,9 +2,6 @@
 
 use std::path::Path;
 
-/// Below this a failed operation is put down to the lack of space, bytes.
-const SHORT_BYTES: u64 = 256 << 10;
-
 /// Free space of the file system that holds `folder`, bytes; `None` if it cannot be asked.
 fn free_bytes(folder: &Path) -> Option<u64> {
     let stat = rustix::fs::statvfs(folder).ok()?;
@@ -21,12 +18,6 @@ pub(crate) fn free_text(folder: &Path) -> String {
     }
 }
 
-/// Returns why an operation in `folder` may have failed, in words, if the file system is full.
-pub fn shortage(folder: &Path) -> Option<String> {
-    free_bytes(folder).filter(|bytes| *bytes < SHORT_BYTES)?;
-    Some(format!("storage is full: {}; help: free some space", free_text(folder)))
-}
-
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a failed unwrap fails the test")]
 mod tests {
@@ -36,6 +27,5 @@ mod tests {
     fn free_space_is_reported_in_kib_of_the_folder() {
         let folder = tempfile::tempdir().unwrap();
         assert!(free_text(folder.path()).contains(" KiB free in /"));
-        assert_eq!(shortage(Path::new("/nowhere/at/all")), None);
     }
 }

@@ -4,7 +4,7 @@
 
 use messages::topics;
 use messages::{AppliedMark, Epoch, Incarnation, PolicyView, Service};
-use service::bus::{Bus, BusError, Identity, Refusal};
+use service::bus::{Bus, BusError, Identity, SegmentError};
 use service::group::{GroupName, GroupPaths};
 use service::shm_cleanup;
 use std::fs::{self, File};
@@ -96,7 +96,7 @@ fn truncated_segments_are_an_error_and_no_hang() {
             File::create(path).unwrap();
         }
         let error = shm.refused(read_marks);
-        let BusError::Refused { refusal: Refusal::Incomplete { file }, .. } = &error else {
+        let BusError::Segment { cause: SegmentError::Incomplete { file }, .. } = &error else {
             panic!("{error}")
         };
         assert!(file.ends_with(kind) && error.to_string().contains("help:"), "{error}");

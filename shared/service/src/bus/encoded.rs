@@ -1,7 +1,7 @@
 //! Readers and writers of topics whose payloads are postcard in a byte slice.
 
 use super::open::{Gate, notifiers, open_topic};
-use super::refusal::{self, Refusal};
+use super::segment_error::{self, SegmentError};
 use super::wake::WakeNotifier;
 use super::{Bus, BusError, Ipc, PortError, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
@@ -104,7 +104,7 @@ impl<T: Schema> EncodedWriter<T> {
         if bytes.len() > BYTES_MAX {
             return Err(failed(format!("{} bytes, {BYTES_MAX} at most", bytes.len())));
         }
-        refusal::take();
+        segment_error::take();
         let mut sample = match self.publisher.loan_slice_uninit(bytes.len()) {
             Ok(sample) => sample,
             Err(error) => return self.unsent(format!("{error:?}")),
@@ -119,14 +119,14 @@ impl<T: Schema> EncodedWriter<T> {
 
 impl<T: Schema> EncodedWriter<T> {
     fn unsent(&self, cause: String) -> Result<(), PortError> {
-        match refusal::take() {
-            Some(refusal @ Refusal::Room { .. }) if self.is_view => {
+        match segment_error::take() {
+            Some(error @ SegmentError::Room { .. }) if self.is_view => {
                 if !self.is_short.replace(true) {
-                    tracing::warn!(topic = self.topic, %refusal, "not shown");
+                    tracing::warn!(topic = self.topic, %error, "not shown");
                 }
                 Ok(())
             }
-            Some(refusal) => Err(PortError::new(self.topic, refusal.to_string())),
+            Some(error) => Err(PortError::new(self.topic, error.to_string())),
             None => Err(PortError::new(self.topic, cause)),
         }
     }

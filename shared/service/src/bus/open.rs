@@ -22,7 +22,7 @@ macro_rules! open_topic {
         let failed = |cause: String| $crate::bus::BusError::ipc(topic.name, cause);
         let name = ServiceName::new(topic.name).map_err(|e| failed(format!("{e:?}")))?;
         let required = $crate::bus::open::schema_attribute(topic).map_err(failed)?;
-        $crate::bus::refusal::take();
+        $crate::bus::segment_error::take();
         bus.node()
             .service_builder(&name)
             .publish_subscribe::<$payload>()

@@ -6,7 +6,7 @@
 //! - No segment is open to another user, and none of another user is used.
 //! - Every open ends within its timeout, whatever has become of the file.
 
-use super::refusal::{self, Refusal};
+use super::segment_error::{self, SegmentError};
 use crate::group::SHM;
 use iceoryx2_bb_elementary::bump_allocator::BumpAllocator;
 use iceoryx2_bb_elementary::package_version::PackageVersion;
@@ -186,8 +186,8 @@ impl<T: Content> Builder<'_, T> {
                 }
                 _ => DynamicStorageCreateError::InternalError,
             })?;
-        reserve(&memory).map_err(|refusal| {
-            refusal::note(refusal);
+        reserve(&memory).map_err(|error| {
+            segment_error::note(error);
             DynamicStorageCreateError::InternalError
         })?;
         self.complete(memory)
@@ -228,7 +228,7 @@ impl<T: Content> Builder<'_, T> {
                 return Ok(Segment { memory, name: self.name, _content: PhantomData });
             }
             if Instant::now() >= until {
-                refusal::note(Refusal::Incomplete { file: self.file().to_string() });
+                segment_error::note(SegmentError::Incomplete { file: self.file().to_string() });
                 return Err(DynamicStorageOpenError::InitializationNotYetFinalized);
             }
             thread::sleep(LOOK_EVERY);
@@ -267,8 +267,8 @@ impl<T: Content> Builder<'_, T> {
         }
         // Segments that another program created, in Python for example.
         if access == AccessMode::ReadWrite {
-            reserve(&memory).map_err(|refusal| {
-                refusal::note(refusal);
+            reserve(&memory).map_err(|error| {
+                segment_error::note(error);
                 DynamicStorageOpenError::InternalError
             })?;
         }
@@ -288,7 +288,7 @@ fn check_owner(file: &FileName, stat: &Stat) -> Result<(), DynamicStorageOpenErr
     if stat.st_uid == geteuid().as_raw() {
         return Ok(());
     }
-    refusal::note(Refusal::Foreign { file: file.to_string(), user: stat.st_uid });
+    segment_error::note(SegmentError::Foreign { file: file.to_string(), user: stat.st_uid });
     Err(DynamicStorageOpenError::InternalError)
 }
 
@@ -305,7 +305,7 @@ fn stat(memory: &SharedMemory) -> rustix::io::Result<Stat> {
 }
 
 /// Reserves every page of a segment.
-fn reserve(memory: &SharedMemory) -> Result<(), Refusal> {
+fn reserve(memory: &SharedMemory) -> Result<(), SegmentError> {
     let bytes = memory.size() as u64;
     if stat(memory).is_ok_and(|stat| stat.st_blocks as u64 * BLOCK >= bytes) {
         return Ok(());
@@ -316,7 +316,7 @@ fn reserve(memory: &SharedMemory) -> Result<(), Refusal> {
             // against iceoryx2's own segments.
             Ok(()) | Err(Errno::OPNOTSUPP | Errno::NOSYS) => return Ok(()),
             Err(Errno::INTR) => {}
-            Err(_) => return Err(Refusal::room(bytes)),
+            Err(_) => return Err(SegmentError::room(bytes)),
         }
     }
 }

@@ -6,7 +6,7 @@ use std::cell::RefCell;
 
 /// Reason for refusing a segment of shared memory.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Refusal {
+pub enum SegmentError {
     /// Shared memory is full.
     #[error(
         "shared memory is full: {needed_kib} KiB needed, {free_kib} KiB free in {SHM}; help: free \
@@ -41,10 +41,10 @@ pub enum Refusal {
 }
 
 thread_local! {
-    static NOTED: RefCell<Option<Refusal>> = const { RefCell::new(None) };
+    static NOTED: RefCell<Option<SegmentError>> = const { RefCell::new(None) };
 }
 
-impl Refusal {
+impl SegmentError {
     /// Lack of `bytes` of shared memory.
     pub(super) fn room(bytes: u64) -> Self {
         let free = rustix::fs::statvfs(SHM).map_or(0, |stat| stat.f_bavail * stat.f_frsize);
@@ -53,21 +53,21 @@ impl Refusal {
 }
 
 /// Notes why a segment is refused; the first reason counts.
-pub(super) fn note(refusal: Refusal) {
+pub(super) fn note(error: SegmentError) {
     NOTED.with_borrow_mut(|noted| {
-        noted.get_or_insert(refusal);
+        noted.get_or_insert(error);
     });
 }
 
 /// Takes the reason noted since the last call.
-pub(super) fn take() -> Option<Refusal> {
+pub(super) fn take() -> Option<SegmentError> {
     NOTED.take()
 }
 
 /// Takes the reason of a failure: the one noted, else that there was no room for a small file of
 /// iceoryx2's either.
-pub(super) fn of_failure() -> Option<Refusal> {
+pub(super) fn of_failure() -> Option<SegmentError> {
     let is_full =
         || rustix::fs::statvfs(SHM).is_ok_and(|stat| stat.f_bavail.min(stat.f_ffree) == 0);
-    take().or_else(|| is_full().then(|| Refusal::room(1)))
+    take().or_else(|| is_full().then(|| SegmentError::room(1)))
 }
