@@ -1,6 +1,7 @@
 //! Another user of the machine can neither read, change, reach nor block a group.
 
 use rustix::fs::{FlockOperation, Mode, flock};
+use rustix::process::Signal;
 use service::folders::make_private;
 use service::group::{GroupPaths, SHM};
 use service::shm_cleanup;
@@ -135,6 +136,19 @@ fn generous_umask_and_folders_of_an_earlier_version_open_nothing() {
     group.down();
 }
 
+/// Creates files with parts of the names of the group's segments.
+fn begin_like_segments(group: &Group) -> Vec<PathBuf> {
+    let names: Vec<_> = shm_cleanup::leftovers(group.paths());
+    let names = names.iter().map(|path| path.file_name().unwrap().to_string_lossy().into_owned());
+    let parts = names.flat_map(|name| {
+        let ends: Vec<usize> = name.match_indices(['_', '.']).map(|(at, _)| at).collect();
+        let ends = ends.into_iter().flat_map(|at| [at, at + 1]).chain([65]);
+        ends.filter_map(move |end| name.get(..end).map(str::to_owned)).collect::<Vec<_>>()
+    });
+    let parts: BTreeSet<PathBuf> = parts.map(|part| Path::new(SHM).join(part)).collect();
+    parts.into_iter().filter(|path| File::create_new(path).is_ok()).collect()
+}
+
 #[test]
 #[ignore = "needs root: acts as another user"]
 fn files_of_another_user_under_the_groups_names_do_not_keep_it_from_starting() {
@@ -147,11 +161,18 @@ fn files_of_another_user_under_the_groups_names_do_not_keep_it_from_starting() {
         File::create_new(&foreign[1]).unwrap();
     });
     assert_eq!(group.start(&[]).code, Some(0), "{}", group.logs());
+    // Names that begin as those of the running group's segments do, and end where they must not.
+    let cut = as_other_user(|| begin_like_segments(&group));
+    assert!(cut.len() > 20, "{cut:?}");
+    let before = group.incarnation("policy");
+    group.signal("policy", Signal::KILL);
+    group.wait_for_restart("policy", before);
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     group.down();
-    assert!(foreign.iter().all(|path| path.exists()), "they are not the group's to remove");
-    fs::remove_dir(&foreign[0]).unwrap();
-    fs::remove_file(&foreign[1]).unwrap();
+    for path in foreign.iter().chain(&cut) {
+        assert!(path.exists(), "{} is not the group's to remove", path.display());
+        let _ = if path.is_dir() { fs::remove_dir(path) } else { fs::remove_file(path) };
+    }
 }
 
 #[test]

@@ -8,6 +8,7 @@
 
 use super::segment_error::{self, SegmentError};
 use crate::group::SHM;
+use iceoryx2::prelude::SemanticString;
 use iceoryx2_bb_elementary::bump_allocator::BumpAllocator;
 use iceoryx2_bb_elementary::package_version::PackageVersion;
 use iceoryx2_bb_elementary_traits::{
@@ -33,9 +34,11 @@ use rustix::fs::{FallocateFlags, Stat, fallocate, fstat, lstat};
 use rustix::io::Errno;
 use rustix::process::geteuid;
 use std::fmt::{self, Debug};
+use std::fs::Metadata;
 use std::marker::PhantomData;
 use std::mem::{MaybeUninit, size_of};
 use std::os::fd::BorrowedFd;
+use std::os::unix::{ffi::OsStrExt, fs::MetadataExt};
 use std::ptr::NonNull;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
@@ -358,8 +361,16 @@ impl<T: Content> NamedConceptMgmt for Segment<T> {
         Storage::does_exist_cfg(name, config)
     }
 
+    /// Lists the owner's segments only: iceoryx2 takes a name that begins like one and does not go on
+    /// like one, which any user can make, for a defect and panics.
     fn list_cfg(config: &Configuration<T>) -> Result<Vec<FileName>, NamedConceptListError> {
-        Storage::list_cfg(config)
+        let own = geteuid().as_raw();
+        let is_own = |file: &Metadata| file.is_file() && file.uid() == own;
+        let entries = std::fs::read_dir(SHM).map_err(|_| NamedConceptListError::InternalError)?;
+        let entries =
+            entries.flatten().filter(|entry| entry.metadata().is_ok_and(|file| is_own(&file)));
+        let names = entries.filter_map(|entry| FileName::new(entry.file_name().as_bytes()).ok());
+        Ok(names.filter_map(|name| config.extract_name_from_file(&name)).collect())
     }
 
     #[allow(unsafe_code)]

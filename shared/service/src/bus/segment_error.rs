@@ -4,6 +4,9 @@
 use crate::group::SHM;
 use std::cell::RefCell;
 
+/// Room of the smallest file, bytes.
+const PAGE: u64 = 4096;
+
 /// Reason for refusing a segment of shared memory.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SegmentError {
@@ -69,5 +72,5 @@ pub(super) fn take() -> Option<SegmentError> {
 pub(super) fn of_failure() -> Option<SegmentError> {
     let is_full =
         || rustix::fs::statvfs(SHM).is_ok_and(|stat| stat.f_bavail.min(stat.f_ffree) == 0);
-    take().or_else(|| is_full().then(|| SegmentError::room(1)))
+    take().or_else(|| is_full().then(|| SegmentError::room(PAGE)))
 }
