@@ -169,6 +169,11 @@ impl Supervisor {
         self.server.drop_slow(now);
         self.bound_logs();
         self.check_topics(now);
+        if let Some(admin) = &self.admin
+            && self.group.state() == service::status::GroupState::Ready
+        {
+            admin.keep_spare();
+        }
     }
 
     fn listen(&mut self, service: usize, now: Time) {

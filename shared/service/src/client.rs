@@ -52,9 +52,10 @@ impl Client {
     pub fn join(paths: &GroupPaths) -> Result<Self, ClientError> {
         let none = || ClientError::NoGroup(paths.name().to_string());
         paths.shm_name().map_err(|_| none())?;
-        paths.shm_name().map_err(|_| none())?;
         let set = JournalSet::load(paths).ok().flatten().ok_or_else(none)?;
         let epoch = Epoch(set.epoch);
+        let bus = Bus::open(paths, "client", Identity { epoch, ..Identity::default() })?;
+        Ok(Self { bus })
     }
 
     /// Joins the group as one of its services that writes no topic of its own: the console.

@@ -6,8 +6,9 @@ use crate::folders::make_private;
 use crate::group::{GroupPaths, SHM, ShmName};
 use iceoryx2::prelude::{CallbackProgression, Node, NodeState};
 use messages::Epoch;
+use rustix::fs::{FallocateFlags, fallocate};
 use rustix::process::geteuid;
-use std::fs::{self, DirBuilder};
+use std::fs::{self, DirBuilder, File};
 use std::io::{self, ErrorKind};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt};
 use std::path::{Path, PathBuf};
@@ -15,6 +16,10 @@ use std::time::Duration;
 
 /// Timeout for another process that is cleaning up.
 const CLEANUP_PATIENCE: Duration = Duration::from_millis(200);
+
+/// Memory kept for restarts, bytes: a successor needs its connections before its peers let go of
+/// those of its predecessor.
+const SPARE: u64 = 1 << 20;
 
 /// iceoryx2's bookkeeping of a group as a whole.
 const MANAGEMENT: &str = "global_mgmt";
@@ -27,6 +32,7 @@ pub struct Admin {
     paths: GroupPaths,
     place: ShmName,
     management: PathBuf,
+    spare: File,
 }
 
 /// Too little free shared memory for the group.
@@ -64,19 +70,29 @@ impl Admin {
         remove_leftovers(paths);
         let failed = |error: io::Error| BusError::ipc("folder in shared memory", error.to_string());
         let place = create_place(paths).map_err(failed)?;
+        let spare = File::create_new(place.folder().join("spare")).map_err(failed)?;
+        fallocate(&spare, FallocateFlags::empty(), 0, SPARE).map_err(|e| failed(e.into()))?;
         let identity = Identity { epoch, ..Identity::default() };
         let bus = Bus::open(paths, messages::SUPERVISOR, identity)?;
         let topics = Topics::create(&bus)?;
         let management = entries(place.prefix()).find(|path| is_management(path));
         let management = management.ok_or_else(|| failed(ErrorKind::NotFound.into()))?;
-        Ok(Self { bus, _topics: topics, paths: paths.clone(), place, management })
+        Ok(Self { bus, _topics: topics, paths: paths.clone(), place, management, spare })
     }
 
-    /// Removes what dead processes left behind. Called after each reap, before the successor is
-    /// started.
+    /// Removes what dead processes left behind, and gives way for a successor in full memory. Called
+    /// after each reap, before the successor is started.
     pub fn clean_dead(&self) {
         let state = self.bus.node().blocking_cleanup_dead_nodes(CLEANUP_PATIENCE);
         tracing::debug!(?state, "cleaned up after dead processes");
+        let _ = self.spare.set_len(0);
+    }
+
+    /// Takes back the memory that is kept for restarts, as soon as there is some.
+    pub fn keep_spare(&self) {
+        if self.spare.metadata().is_ok_and(|file| file.len() < SPARE) {
+            let _ = fallocate(&self.spare, FallocateFlags::empty(), 0, SPARE);
+        }
     }
 
     /// Returns true if the files by which new processes find the group are still there and whole. If
