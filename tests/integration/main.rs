@@ -16,6 +16,7 @@ mod full_memory;
 mod hearing;
 mod isolation;
 mod journal_format;
+mod journal_loss;
 mod planners;
 mod pointing;
 mod python;

@@ -6,6 +6,7 @@ mod pointing;
 mod prior;
 mod reconfigure;
 mod seconds;
+mod set_aside;
 mod turns;
 
 use crate::{In, Out, PolicyNode};

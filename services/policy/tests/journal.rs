@@ -126,5 +126,5 @@ fn verification_reports_the_place_of_damage() {
     let in_the_first_frame = flipped.len() / 4;
     flipped[in_the_first_frame] ^= 1;
     std::fs::write(lab.file(), &flipped).expect("a disk");
-    lab.check(&["--verify"], 70, "damaged at byte");
+    lab.check(&["--verify"], 74, "damaged at byte");
 }

@@ -1,5 +1,7 @@
 //! Rules of hearing and speaking, without devices.
 
+mod set_aside;
+
 use crate::devices::stream::SpeechSegment;
 use crate::devices::testing;
 use crate::record::Record;

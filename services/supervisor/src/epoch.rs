@@ -40,15 +40,18 @@ pub(crate) fn open(paths: &GroupPaths, fresh: bool) -> Result<u64, EpochError> {
     if fresh {
         put_journals_aside(paths, old)?;
     }
-    let set = match found {
-        Some(set) if !fresh => set,
-        _ => JournalSet::new(now_s().max(old + 1)),
+    let (set, is_new) = match found {
+        Some(set) if !fresh => (set, false),
+        _ => (JournalSet::new(now_s().max(old + 1)), true),
     };
     let unusable = set.check(paths);
     if !unusable.is_empty() {
         return Err(EpochError::Journals(unusable));
     }
-    set.save(paths)?;
+    // On a full disk a group starts as long as nothing has to be written.
+    if is_new {
+        set.save(paths)?;
+    }
     Ok(set.epoch)
 }
 

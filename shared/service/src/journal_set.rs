@@ -17,6 +17,7 @@
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};
+use std::os::unix::fs::DirBuilderExt;
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -257,18 +258,18 @@ pub fn set_aside(paths: &GroupPaths, services: &[Service]) -> Result<Option<Path
         .into_iter()
         .collect::<Result<Vec<_>, _>>()?;
     let mut set = load()?.ok_or_else(none)?;
-    let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_secs());
-    let folder = paths.root().join(format!("set-aside-{seconds}"));
-    let mut moved = false;
+    let parts: Vec<_> = services.iter().flat_map(|service| parts(paths, *service)).collect();
+    let folder = match parts.is_empty() {
+        true => None,
+        false => Some(move_parts(paths, &parts).map_err(|e| Failure::file(paths.root(), &e))?),
+    };
     for service in services {
-        moved |= move_parts(&paths.journal_file(service.name()), &folder)
-            .map_err(|error| Failure::file(&folder, &error))?;
         let entry = set.entry(service.name());
         *entry = Entry { generation: entry.generation + 1, exists: false };
     }
     set.numbers_over = set.numbers_over.saturating_add(NUMBERS_SKIPPED);
     set.save(paths).map_err(|error| Failure::file(&file, &error))?;
-    Ok(moved.then_some(folder))
+    Ok(folder)
 }
 
 /// Takes a lock that a running group holds.
@@ -281,21 +282,36 @@ fn lock_idle(paths: &GroupPaths, path: &Path) -> Result<File, Failure> {
     Ok(file)
 }
 
-/// Moves a journal and its older parts, oldest last; returns whether there was any.
-fn move_parts(journal: &Path, folder: &Path) -> io::Result<bool> {
-    let parts = (1..=KEPT).map(|n| numbered(journal, n));
-    let parts: Vec<_> =
-        [journal.to_owned()].into_iter().chain(parts).filter(|p| p.exists()).collect();
-    if parts.is_empty() {
-        return Ok(false);
-    }
-    fs::create_dir_all(folder)?;
+/// The files of a service's journal, oldest last.
+fn parts(paths: &GroupPaths, service: Service) -> impl Iterator<Item = PathBuf> {
+    let file = paths.journal_file(service.name());
+    let older = (1..=KEPT).map(|n| numbered(&file, n)).collect::<Vec<_>>();
+    std::iter::once(file).chain(older).filter(|path| path.exists())
+}
+
+/// Moves files into a new folder, and returns it.
+fn move_parts(paths: &GroupPaths, parts: &[PathBuf]) -> io::Result<PathBuf> {
+    let folder = new_folder(paths.root())?;
     for part in parts {
-        fs::rename(&part, folder.join(part.file_name().unwrap_or_default()))?;
+        fs::rename(part, folder.join(part.file_name().unwrap_or_default()))?;
     }
-    File::open(folder)?.sync_all()?;
-    File::open(journal.parent().unwrap_or(Path::new(".")))?.sync_all()?;
-    Ok(true)
+    for changed in [&folder, &paths.journal(), paths.root()] {
+        File::open(changed)?.sync_all()?;
+    }
+    Ok(folder)
+}
+
+/// Makes a folder `set-aside-SECONDS`, which is never one that exists: its files would be replaced.
+fn new_folder(root: &Path) -> io::Result<PathBuf> {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    let mut second = now.map_or(0, |time| time.as_secs());
+    loop {
+        let folder = root.join(format!("set-aside-{second}"));
+        match fs::DirBuilder::new().mode(0o700).create(&folder) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => second += 1,
+            made => return made.map(|()| folder),
+        }
+    }
 }
 
 fn checksum(line: &str) -> String {

@@ -8,6 +8,7 @@ mod orders;
 mod point;
 mod publish;
 mod robot;
+mod set_aside;
 mod stop;
 mod trajectory_view;
 

@@ -137,7 +137,8 @@ fn journal_set_aside_is_kept_and_its_numbers_are_over() {
     // The old file is not taken for the new one.
     fs::copy(folder.join("policy.journal"), lab.file("policy")).unwrap();
     lab.assert_lost("policy", "expected generation 2, found 1");
-    set_aside(&lab.paths, &[Service::Policy, Service::Speech]).unwrap();
+    let other = set_aside(&lab.paths, &[Service::Policy, Service::Speech]).unwrap().unwrap();
+    assert_ne!(other, folder, "what is kept is never replaced");
     assert_eq!(lab.open("policy").unwrap().2.unwrap().over, 2 * over);
 }
 
