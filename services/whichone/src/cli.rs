@@ -115,7 +115,7 @@ pub enum Verb {
     StopMotion(MotionArgs),
     /// Release the motion stop.
     ResumeMotion(MotionArgs),
-    /// List or verify the journal of a service.
+    /// List, verify or set aside the journals.
     Journal(JournalArgs),
     /// Print a completion script for a shell.
     Completions {

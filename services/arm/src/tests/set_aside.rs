@@ -32,7 +32,6 @@ fn arm_without_memory_waits_for_a_person() {
 #[test]
 fn pick_whose_interaction_is_over_is_left_before_the_grasp_and_brought_after_it() {
     for (phase, outcome) in [
-        (PickPhase::Accepted, PickOutcome::Cancelled),
         (PickPhase::Moving, PickOutcome::Cancelled),
         (PickPhase::Closing, PickOutcome::Delivered),
         (PickPhase::Holding, PickOutcome::Delivered),

@@ -32,8 +32,8 @@ fn speech_without_memory_numbers_above_everything_that_the_policy_may_know() {
     assert_eq!(speech.type_in(1.0, "the bowl").utterance().unwrap().seq, OVER + 1);
 }
 
-/// The robot fell silent for good: a policy without memory numbered its prompts from 1, and speech took
-/// them for those that it had said before.
+/// The robot fell silent for good: a policy without memory gave its prompts the numbers of those that
+/// speech had said before.
 #[test]
 fn prompts_of_a_policy_without_memory_are_said() {
     let mut speech = Speech::new();
@@ -48,6 +48,6 @@ fn prompts_of_a_policy_without_memory_are_said() {
     let said = speech.take(1.0, In::Act(Box::new(act(9)))).spoken().expect("it is said");
     speech.playback(1.0, said.playback, PlaybackState::Started);
     speech.playback(1.0, said.playback, PlaybackState::Ended);
-    assert!(speech.take(1.0, In::Act(Box::new(act(1)))).spoken().is_none());
+    assert!(speech.take(1.0, In::Act(Box::new(act(9)))).spoken().is_none(), "it was said");
     assert!(speech.take(1.0, In::Act(Box::new(act(OVER + 1)))).spoken().is_some());
 }
