@@ -1,9 +1,11 @@
 //! The console as pages see it, with real groups and sockets.
 
-use std::net::TcpListener;
+use std::io::Write;
+use std::net::{TcpListener, TcpStream};
 use std::os::unix::fs::MetadataExt;
+use std::time::Instant;
 
-use rustix::process::Signal;
+use rustix::process::{Pid, Resource, Rlimit, Signal, prlimit};
 use serde_json::{Value as Json, json};
 use tungstenite::Message;
 use whichone_tests::console::{Page, Visitor, http};
@@ -345,6 +347,84 @@ fn operator_gets_in_beside_any_number_of_viewers() {
     assert_eq!(code, 4002);
     assert!(ok(&next.ask("stop", &Json::Null)));
     drop((open, operator, next));
+    group.down();
+}
+
+/// At 256 descriptors, 400 visitors who begin a request and never end it.
+#[test]
+fn page_loads_among_half_open_connections() {
+    const DESCRIPTORS: u64 = 256;
+    let group = Group::up(&[]);
+    let supervisor = group.status()["supervisor_pid"].as_u64().unwrap();
+    let limit = Rlimit { current: Some(DESCRIPTORS), maximum: Some(DESCRIPTORS) };
+    let pid = Pid::from_raw(i32::try_from(supervisor).unwrap());
+    prlimit(pid, Resource::Nofile, limit).unwrap();
+    group.must(&["restart", "console"]);
+    let place = group.console();
+    let begin = |_| {
+        let mut stream = TcpStream::connect(&place.place).unwrap();
+        stream.write_all(b"GET / HTTP/1.1\r\n").unwrap();
+        stream
+    };
+    let mut crowd: Vec<TcpStream> = (0..400).map(begin).collect();
+    let mut page = group.page(&Visitor::operator(1));
+    for n in 2..6 {
+        // Those who were shut out come back; the others send one more line.
+        for stream in &mut crowd {
+            if stream.write_all(b"X-More: please wait\r\n").is_err() {
+                *stream = begin(0);
+            }
+        }
+        let (status, _, body) = http(&place, "GET", "/", &["Accept: text/html"], "");
+        assert!(status == 200 && body.contains("</html>"), "{status}");
+        drop(Page::open(&place, &Visitor { role: "viewer", ..Visitor::operator(n) }).unwrap());
+        assert!(ok(&page.ask("stop", &Json::Null)), "an open page works on");
+    }
+    let console = group.pid("console").as_raw_nonzero();
+    let used = std::fs::read_dir(format!("/proc/{console}/fd")).unwrap().count();
+    assert!(used < DESCRIPTORS as usize, "{used}");
+    drop((crowd, page));
+    group.down();
+}
+
+/// A stop behind a good connection, with nobody to carry it out.
+#[test]
+fn stop_without_the_arms_service_alarms_every_page_until_it_is_confirmed() {
+    let group = Group::up(&[]);
+    let mut page = group.page(&Visitor::operator(1));
+    let mut viewer = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
+    viewer.until_part("motion", |motion| motion["unconfirmed"].is_null());
+    group.must(&["hold", "arm"]);
+    viewer.until_part("arm", Json::is_null);
+    let held = |group: &Json| {
+        let mut services = group["services"].as_array().unwrap().iter();
+        services.any(|service| service["name"] == "arm" && service["state"] == "held")
+    };
+    viewer.until_part("group", held);
+    let pressed = Instant::now();
+    let id = page.begin("stop", &Json::Null);
+    viewer.until_part("motion", |motion| motion["unconfirmed"]["why"] == "held");
+    let after = pressed.elapsed();
+    let late =
+        page.until("an answer", |page| page.messages.iter().find(|m| m["id"] == id).cloned());
+    assert!(why(&late).contains("emergency stop") && why(&late).contains("held"), "{late}");
+    println!("the alarm came {after:?} after the stop");
+    // Words that the arm will be needed for are kept, with the reason why nothing follows.
+    let said = page.ask("say", &json!({ "text": "get me the bowl" }));
+    assert!(said["waits_for"].as_str().unwrap().contains("arm is held"), "{said}");
+    drop(page);
+    group.must(&["release", "arm"]);
+    viewer.until_part("motion", |motion| motion["unconfirmed"].is_null());
+    viewer.until_part("arm", |arm| arm["stopped"] == true);
+    group.must(&["hold", "speech"]);
+    let mut page = group.page(&Visitor::operator(1));
+    page.until_part("group", |group| {
+        let mut services = group["services"].as_array().unwrap().iter();
+        services.any(|service| service["name"] == "speech" && service["state"] == "held")
+    });
+    let refused = page.ask("say", &json!({ "text": "get me the bowl" }));
+    assert!(why(&refused).contains("speech is held"), "{refused}");
+    drop((page, viewer));
     group.down();
 }
 

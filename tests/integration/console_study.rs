@@ -198,6 +198,14 @@ fn withdrawal_removes_all_data() {
     start(&mut page);
     assert_eq!(page.ask("say", &json!({ "text": "the bowl" }))["ok"], true);
     group.wait_for_decision("ask");
+    // Nobody else's page does it, not without control of the robot.
+    let mut viewer = group.page(&Visitor { role: "viewer", ..Visitor::operator(2) });
+    for verb in ["resume", "close", "spoilt", "delete"] {
+        let more = json!({ "page": "f".repeat(32), "participant": code });
+        let refused = ask(&mut viewer, verb, more);
+        assert!(refused["error"].as_str().unwrap().contains("in control"), "{verb}: {refused}");
+    }
+    drop(viewer);
     must(&mut page, "withdraw", json!({ "delete": true }));
     assert_eq!(at_stage(&mut page, "withdrawn")["deleted"], true);
     assert!(table(&group, "interactions.csv").is_empty());

@@ -62,3 +62,21 @@ test("nothing is cut off at 320 pixels", async ({ console: page }) => {
   const wide = () => page.evaluate(() => document.documentElement.scrollWidth);
   await expect.poll(wide).toBeLessThanOrEqual(320);
 });
+
+test("nobody gets in without the token, and the owner by one click", async ({ page, group }) => {
+  await page.goto(group.url);
+  await expect(page.getByRole("heading", { name: t("login.title") })).toBeVisible();
+  await expectAccessible(page);
+  await page.getByLabel(t("login.token")).fill("not-the-token");
+  await page.getByRole("button", { name: t("login.enter") }).click();
+  await expect(page.getByText(t("login.wrong"))).toBeVisible();
+
+  // From another site, too: a link in a mail or in a terminal that is a page.
+  await page.goto("data:text/html,<title>a mail</title>");
+  await page.evaluate((link) => location.assign(link), group.link());
+  await expect(page.getByText(t("control.mine"))).toBeAttached();
+  expect(page.url(), "the token is not in the address").toBe(group.url);
+  const [cookie] = await page.context().cookies(group.url);
+  expect(cookie).toMatchObject({ httpOnly: true, sameSite: "Strict" });
+  expect(cookie.value).not.toContain(group.token);
+});

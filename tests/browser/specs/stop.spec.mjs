@@ -64,3 +64,27 @@ test("it works while the page is busy", async ({ console: page, group }) => {
   await expect.poll(() => stopped(group)).toBe(true);
   await page.mouse.up();
 });
+
+test("without the arm's service it warns, with the reason, until the arm confirms", async ({
+  console: page,
+  group,
+}) => {
+  await group.must("hold", "arm");
+  await expect(page.getByText(t("arm.unknown"))).toBeAttached();
+  await expect(page.getByText(t("health.off", { names: "arm" }))).toBeAttached();
+  const alarm = page
+    .getByRole("alert")
+    .filter({ hasText: t("alarm.unconfirmed", { why: t("alarm.why.held") }) });
+  const pressed = Date.now();
+  await stop(page).click();
+  await expect(alarm).toBeVisible();
+  test.info().annotations.push({ type: "alarm after, ms", description: `${Date.now() - pressed}` });
+  await expect(page.getByText(t("stop.unconfirmed"))).toBeVisible();
+
+  // It stays: after a reload, and when the service comes back, until that has confirmed.
+  await page.reload();
+  await expect(alarm).toBeVisible();
+  await page.getByRole("button", { name: t("services.act.release", { name: "arm" }) }).click();
+  await expect(alarm).toBeHidden();
+  await expect(page.getByRole("button", { name: t("stop.resume") })).toBeVisible();
+});

@@ -39,3 +39,24 @@ test("a viewer without control can stop the robot", async ({ console: first, gro
   await expect(first.getByRole("alert").filter({ hasText: t("alarm.stopped") })).toBeAttached();
   await context.close();
 });
+
+test.describe("where few pages may be open", () => {
+  test.use({ settings: ["console.viewers_max=2"] });
+
+  test("an operator gets in, and the idle page says why it has ended", async ({
+    console: first,
+    group,
+    browser,
+  }) => {
+    const [idle, next] = await Promise.all([browser.newPage(), browser.newPage()]);
+    await expect(first.getByText(t("control.mine"))).toBeVisible();
+    await idle.goto(group.link());
+    await expect(idle.getByRole("button", { name: t("control.ask") })).toBeVisible();
+    await next.goto(group.link());
+    await expect(idle.getByRole("alert").filter({ hasText: t("alarm.gave_way") })).toBeVisible();
+    await next.getByRole("button", { name: t("control.ask") }).click();
+    await first.getByRole("button", { name: t("control.give") }).click();
+    await expect(next.getByText(t("control.mine"))).toBeVisible();
+    await Promise.all([idle.close(), next.close()]);
+  });
+});

@@ -12,6 +12,12 @@ pub const FRAME_BYTES_MAX: usize = 64 << 10;
 pub const PROTOCOL: u64 = 2;
 /// Most alternatives of a browser's recogniser.
 const ALTERNATIVES_MAX: usize = 5;
+/// Largest weight of an alternative: of any of them the sum is a number.
+const WEIGHT_MAX: f64 = 1e6;
+/// Longest text of an utterance, characters.
+const TEXT_MAX: usize = 1_000;
+/// Longest name of a viewer, characters.
+const NAME_MAX: usize = 40;
 /// Longest time since an utterance, milliseconds.
 const OLDEST_MS: f64 = 120_000.0;
 
@@ -55,7 +61,7 @@ pub fn hello(text: &str) -> Result<Hello, String> {
     if session.len() != 32 || !session.bytes().all(|b| b.is_ascii_hexdigit()) {
         return Err("session: expected 32 hexadecimal digits".to_owned());
     }
-    let name: String = json["name"].as_str().unwrap_or_default().chars().take(40).collect();
+    let name = plain(json["name"].as_str().unwrap_or_default()).chars().take(NAME_MAX).collect();
     let role = match json["role"].as_str() {
         Some("operator") => Role::Operator,
         Some("viewer") | None => Role::Viewer,
@@ -119,10 +125,7 @@ fn what(json: &Json, now: Time) -> Result<Do, String> {
 }
 
 fn words(json: &Json, now: Time) -> Result<Words, String> {
-    let text = json["text"].as_str().ok_or("text: expected a text")?.trim();
-    if text.is_empty() {
-        return Err("text: expected words, found none".to_owned());
-    }
+    let text = spoken_text(json["text"].as_str().ok_or("text: expected a text")?)?;
     let spoken = match json["source"].as_str() {
         Some("browser") => true,
         Some("typed") | None => false,
@@ -134,7 +137,22 @@ fn words(json: &Json, now: Time) -> Result<Words, String> {
     {
         return Err("ended_ms: lies before began_ms".to_owned());
     }
-    Ok(Words { text: text.to_owned(), alternatives: alternatives(json)?, spoken, began, ended })
+    Ok(Words { text, alternatives: alternatives(json)?, spoken, began, ended })
+}
+
+/// Returns the words of an utterance, on one line.
+fn spoken_text(text: &str) -> Result<String, String> {
+    let text = plain(text);
+    match text.chars().count() {
+        0 => Err("text: expected words, found none".to_owned()),
+        1..=TEXT_MAX => Ok(text),
+        length => Err(format!("text: expected at most {TEXT_MAX} characters, found {length}")),
+    }
+}
+
+/// Returns a text without the characters that steer what shows it, such as a terminal.
+fn plain(text: &str) -> String {
+    text.replace(char::is_control, " ").trim().to_owned()
 }
 
 /// Reads a time of the last two minutes; one slightly ahead becomes `now`.
@@ -154,16 +172,16 @@ fn moment(json: &Json, key: &str, now: Time) -> Result<Option<Time>, String> {
 }
 
 fn alternatives(json: &Json) -> Result<Vec<(String, f64)>, String> {
-    const WRONG: &str = "alternatives: expected up to 5 of {text, weight above 0}";
+    const WRONG: &str = "alternatives: expected up to 5 of {text, weight above 0 and at most 1e6}";
     let given = match &json["alternatives"] {
         Json::Null => return Ok(Vec::new()),
         Json::Array(given) if given.len() <= ALTERNATIVES_MAX => given,
         _ => return Err(WRONG.to_owned()),
     };
     let one = |json: &Json| {
-        let text = json["text"].as_str()?.trim();
-        let weight = json["weight"].as_f64().filter(|w| w.is_finite() && *w > 0.0)?;
-        (!text.is_empty()).then(|| (text.to_owned(), weight))
+        let text = spoken_text(json["text"].as_str()?).ok()?;
+        let weight = json["weight"].as_f64().filter(|w| *w > 0.0 && *w <= WEIGHT_MAX)?;
+        Some((text, weight))
     };
     given.iter().map(one).collect::<Option<_>>().ok_or_else(|| WRONG.to_owned())
 }
@@ -171,6 +189,7 @@ fn alternatives(json: &Json) -> Result<Vec<(String, f64)>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
     use serde_json::json;
 
     const NOW: Time = Time(1_000_000_000_000);
@@ -225,6 +244,8 @@ mod tests {
             wrong(json)
         };
         assert!(say("text", json!("  ")).contains("found none"));
+        assert!(say("text", json!("\u{1b}\u{7}")).contains("found none"));
+        assert!(say("text", json!("a".repeat(1_001))).contains("1001"));
         assert!(say("began_ms", json!(5)).contains("two minutes"));
         assert!(say("began_ms", json!("x")).contains("began_ms"));
         assert!(say("source", json!("radio")).contains("radio"));
@@ -235,6 +256,77 @@ mod tests {
         );
         for bad in ["", "[]", "{}", "{\"t\":\"do\"}", "{\"t\":\"do\",\"id\":-1}", "\u{0}"] {
             assert!(message(bad, NOW).is_err(), "{bad}");
+        }
+    }
+
+    /// Any JSON, mostly of the keys and values that mean something.
+    fn any_json() -> impl Strategy<Value = Json> {
+        let keys = "t|id|do|text|alternatives|weight|began_ms|ended_ms|source|viewer|service|at|\
+                    session|protocol|role|name|last_line|page";
+        let words = "do|say|ping|hello|stop|resume|study[.]begin|give_control|restart_service|browser|\
+                     v[0-9]{1,20}|\\PC{0,8}|[\u{0}-\u{1f}\u{7f}-\u{9f}]{1,4}";
+        let leaf = prop_oneof![
+            Just(Json::Null),
+            any::<bool>().prop_map(Json::from),
+            any::<u64>().prop_map(Json::from),
+            any::<i64>().prop_map(Json::from),
+            proptest::num::f64::ANY.prop_map(Json::from),
+            (998_000.0..1_002_000.0).prop_map(Json::from),
+            words.prop_map(Json::from),
+        ];
+        leaf.prop_recursive(3, 24, 6, move |inner| {
+            let pairs = proptest::collection::btree_map(keys, inner.clone(), 0..8);
+            let commands = pairs.clone().prop_map(|mut pairs| {
+                pairs.insert("t".to_owned(), "do".into());
+                pairs.insert("do".to_owned(), "say".into());
+                pairs.insert("id".to_owned(), 3.into());
+                Json::from_iter(pairs)
+            });
+            let list = proptest::collection::vec(inner, 0..6).prop_map(Json::from);
+            prop_oneof![pairs.prop_map(Json::from_iter), commands, list]
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        /// Whatever a page sends is refused, or lies within the limits that everything behind relies on.
+        #[test]
+        fn any_message_is_within_limits_or_refused(json in any_json(), text in "\\PC{0,40}") {
+            let _ = message(&text, NOW);
+            if let Ok(hello) = hello(&json.to_string()) {
+                prop_assert!(hello.session.len() == 32 && hello.name.chars().count() <= NAME_MAX);
+                prop_assert!(!hello.name.contains(char::is_control));
+            }
+            let Ok(Message::Do(_, Do::Ask(Verb::Say(words)))) = read(json) else { return Ok(()) };
+            let texts = words.alternatives.iter().map(|(text, _)| text).chain([&words.text]);
+            for text in texts {
+                prop_assert!((1..=TEXT_MAX).contains(&text.chars().count()));
+                prop_assert!(!text.contains(char::is_control));
+            }
+            prop_assert!(words.alternatives.len() <= ALTERNATIVES_MAX);
+            let sum: f64 = words.alternatives.iter().map(|(_, weight)| weight).sum();
+            prop_assert!(sum.is_finite() && words.alternatives.iter().all(|(_, w)| *w > 0.0));
+            let oldest = Time(NOW.ns() - 120_000_000_000);
+            for time in words.began.iter().chain(&words.ended) {
+                prop_assert!((oldest..=NOW).contains(time));
+            }
+            prop_assert!(words.began.zip(words.ended).is_none_or(|(began, ended)| began <= ended));
+        }
+
+        /// So is any frame of sound.
+        #[test]
+        fn any_frame_of_sound_is_within_limits_or_refused(
+            mut bytes in proptest::collection::vec(any::<u8>(), 0..80),
+            is_marked: bool,
+        ) {
+            if is_marked && bytes.len() >= 4 {
+                bytes[..4].copy_from_slice(&[1, 0, 0, 0]);
+            }
+            if let Ok(frame) = crate::voice::PcmFrame::read(&bytes) {
+                prop_assert!(frame.taken <= service::clock::now());
+                prop_assert_eq!(2 * frame.samples.len(), bytes.len() - 24);
+            }
         }
     }
 }

@@ -8,7 +8,7 @@ use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
 use service::clock;
 use tokio::sync::mpsc;
-use tokio::time::{Instant, interval_at, timeout};
+use tokio::time::{Instant, interval_at, sleep_until, timeout};
 
 use super::App;
 use super::connections::Connection;
@@ -24,6 +24,9 @@ const HELLO_PATIENCE: Duration = Duration::from_secs(10);
 const READ_PATIENCE: Duration = Duration::from_secs(10);
 /// Longest silence of a page, pongs included.
 const SILENCE_MAX: Duration = Duration::from_secs(60);
+/// Shortest time between two frames of a page that are read, on average, and frames that are read at once.
+const FRAME_EVERY: Duration = Duration::from_micros(500);
+const FRAMES_AT_ONCE: u32 = 500;
 /// Close code of a page that was replaced by another one of its session.
 const REPLACED: u16 = 4001;
 /// Close code of a page that gave way to an operator.
@@ -178,7 +181,11 @@ fn welcome(viewer: ViewerId, app: &App) -> String {
 }
 
 async fn read(into: &mut In, viewer: ViewerId, hub: &Hub) -> Ended {
+    let mut pace = Instant::now();
     loop {
+        // One that sends faster waits, and fills its own connection only.
+        pace = pace.max(Instant::now() - FRAME_EVERY * FRAMES_AT_ONCE) + FRAME_EVERY;
+        sleep_until(pace).await;
         match timeout(SILENCE_MAX, into.next()).await {
             Ok(Some(Ok(Frame::Text(text)))) => text_frame(&text, viewer, hub),
             Ok(Some(Ok(Frame::Binary(bytes)))) => {

@@ -8,6 +8,7 @@ import { chooseLanguage, loadStrings, t, translate } from "../strings.js";
 import { mountAlarm } from "../views/alarm.js";
 import { attempt } from "../views/attempt.js";
 import { mountTools } from "../views/tools.js";
+import { inControl } from "./control.js";
 import { picturesOf } from "./numbers.js";
 import { Secret } from "./secret.js";
 import { reportView } from "./tables.js";
@@ -96,9 +97,10 @@ function now(study, welcome) {
   const pairs = facts.map(([key, text]) =>
     h("div", {}, h("dt", { text: t(`study.${key}`) }), h("dd", { text })),
   );
+  const args = { page: secret.value, participant: person.participant };
   const ask = (verb) => () =>
     attempt(
-      link.do(`study.${verb}`, { page: secret.value, participant: person.participant }),
+      inControl(context, () => link.do(`study.${verb}`, args)),
       context,
     );
   const button = (verb) =>
