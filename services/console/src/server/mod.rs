@@ -157,7 +157,8 @@ fn secure(headers: &mut HeaderMap, host: Option<&str>) {
     for (name, value) in [
         ("x-content-type-options", "nosniff"),
         ("x-frame-options", "DENY"),
-        ("referrer-policy", "no-referrer"),
+        // Without any, browsers would not name the origin of the login form.
+        ("referrer-policy", "same-origin"),
         ("cross-origin-opener-policy", "same-origin"),
         ("cross-origin-resource-policy", "same-origin"),
         ("permissions-policy", "microphone=(self), camera=(), geolocation=()"),
