@@ -3,6 +3,7 @@
 
 mod command;
 pub mod console;
+pub mod fuzz;
 mod group;
 pub mod shortage;
 pub mod isolated;

@@ -1,0 +1,203 @@
+//! The reducers of a group that take turns in one thread, as peers of a forged message.
+
+use std::sync::LazyLock;
+
+use config::Settings;
+use grounding::GroundingNode;
+use messages::{
+    Activity, AppliedMark, ArmStatus, Injection, MotionCommand, Observation, Presented, RequestKey,
+    RobotAct, Sound, Utterance,
+};
+use policy::PolicyNode;
+use service::{Node, Span, Time};
+use speech::{PlaybackEvent, PlaybackState, SpeechNode};
+
+use crate::simulated_group::{Faults, Host, configured};
+
+/// The settings of the tests.
+pub(super) static SETTINGS: LazyLock<Settings> = LazyLock::new(|| crate::settings(&[]));
+
+/// Time between two passes.
+const STEP: Span = Span::from_ms(20);
+/// Steps for which a sentence of the robot sounds.
+const SENTENCE_STEPS: u32 = 10;
+
+/// The latest message of each kind.
+#[derive(Default)]
+pub(super) struct Latest {
+    pub(super) utterance: Utterance,
+    pub(super) observation: Observation,
+    pub(super) mark: AppliedMark,
+    pub(super) act: RobotAct,
+    pub(super) presented: Presented,
+    pub(super) activity: Activity,
+    pub(super) status: ArmStatus,
+    pub(super) motion: MotionCommand,
+}
+
+pub(super) struct Group {
+    pub(super) speech: Host<SpeechNode>,
+    pub(super) grounding: Host<GroundingNode>,
+    pub(super) policy: Host<PolicyNode>,
+    pub(super) arm: Host<arm::ArmNode>,
+    pub(super) latest: Latest,
+    pub(super) to_speech: Vec<speech::In>,
+    pub(super) to_grounding: Vec<Box<Utterance>>,
+    pub(super) to_policy: Vec<policy::In>,
+    pub(super) to_arm: Vec<arm::In>,
+    now: Time,
+    said: u8,
+    /// The playback that sounds, and its remaining steps.
+    saying: Option<(u64, u32)>,
+}
+
+impl Group {
+    pub(super) fn new() -> Self {
+        let settings = &*SETTINGS;
+        let mut group = Self {
+            speech: Host::new(configured::<speech::shell::SpeechProgram>(settings)),
+            grounding: Host::new(configured::<grounding::shell::GroundingProgram>(settings)),
+            // Without the precomputed decisions, which take longer than a dialogue.
+            policy: Host::new(|| SETTINGS.manager().expect("valid settings")),
+            arm: Host::new(configured::<arm::shell::ArmProgram>(settings)),
+            latest: Latest::default(),
+            to_speech: Vec::new(),
+            to_grounding: Vec::new(),
+            to_policy: Vec::new(),
+            to_arm: Vec::new(),
+            now: Time(1_000_000_000),
+            said: 0,
+            saying: None,
+        };
+        group.start();
+        group
+    }
+
+    /// Starts what does not run, from its journal.
+    pub(super) fn start(&mut self) {
+        let now = self.now;
+        let speech = self.speech.start(now);
+        speech.into_iter().for_each(|output| self.speech_says(output));
+        self.grounding.start(now);
+        let policy = self.policy.start(now);
+        policy.into_iter().for_each(|output| self.policy_says(output));
+        let arm = self.arm.start(now);
+        arm.into_iter().for_each(|output| self.arm_says(&output));
+    }
+
+    /// A user types.
+    pub(super) fn say(&mut self, text: &str) {
+        self.said = self.said.wrapping_add(1);
+        let key = RequestKey([self.said; 16]);
+        let sound = Sound::Text(text.to_owned());
+        let injection = Injection { key, onset_ns: 0, end_ns: 0, sound };
+        self.to_speech.push(speech::In::Injection(injection));
+    }
+
+    pub(super) fn run(&mut self, steps: u32) {
+        (0..steps).for_each(|_| self.step());
+    }
+
+    /// One fetch, questions answered with yes.
+    pub(super) fn dialogue(&mut self) {
+        self.say("the small white bowl in the dishwasher");
+        for _ in 0..4 {
+            self.run(150);
+            self.say("yes");
+        }
+        self.run(150);
+    }
+
+    /// The encoded records of speech, policy and arm.
+    pub(super) fn journals(&self) -> [Vec<Vec<u8>>; 3] {
+        fn encoded<N: Node<Record: serde::Serialize + Clone>>(host: &Host<N>) -> Vec<Vec<u8>> {
+            let record = |record| postcard::to_stdvec(record).expect("a record encodes");
+            host.journal().iter().map(record).collect()
+        }
+        [encoded(&self.speech), encoded(&self.policy), encoded(&self.arm)]
+    }
+
+    fn step(&mut self) {
+        self.now = self.now + STEP;
+        let (now, mut none) = (self.now, Faults::none());
+        if let Some((playback, left)) = self.saying.take() {
+            match left {
+                0 => self.playback(playback, PlaybackState::Ended),
+                _ => self.saying = Some((playback, left - 1)),
+            }
+        }
+        let inbox = std::mem::take(&mut self.to_speech);
+        let outputs = self.speech.wake(inbox, now, &mut none);
+        outputs.into_iter().for_each(|output| self.speech_says(output));
+        let inbox = std::mem::take(&mut self.to_grounding);
+        for observation in self.grounding.wake(inbox, now, &mut none) {
+            self.latest.observation = *observation;
+            self.to_policy.push(policy::In::Observation(observation));
+        }
+        let inbox = std::mem::take(&mut self.to_policy);
+        let outputs = self.policy.wake(inbox, now, &mut none);
+        outputs.into_iter().for_each(|output| self.policy_says(output));
+        let inbox = std::mem::take(&mut self.to_arm);
+        let outputs = self.arm.wake(inbox, now, &mut none);
+        outputs.into_iter().for_each(|output| self.arm_says(&output));
+    }
+
+    fn playback(&mut self, playback: u64, state: PlaybackState) {
+        self.to_speech.push(speech::In::Playback(PlaybackEvent { playback, state }));
+    }
+
+    fn speech_says(&mut self, output: speech::Out) {
+        match output {
+            speech::Out::Utterance(utterance) => {
+                self.latest.utterance = *utterance;
+                self.to_grounding.push(utterance);
+            }
+            speech::Out::Presented(presented) => {
+                self.latest.presented = presented;
+                self.to_policy.push(policy::In::Presented(presented));
+            }
+            speech::Out::Activity(activity) => {
+                self.latest.activity = activity;
+                self.to_policy.push(policy::In::Activity(activity));
+            }
+            speech::Out::Motion(motion) => {
+                self.latest.motion = motion;
+                self.to_arm.push(arm::In::Motion(motion));
+            }
+            speech::Out::Speak(line) => {
+                self.saying = Some((line.playback, SENTENCE_STEPS));
+                self.playback(line.playback, PlaybackState::Started);
+            }
+            speech::Out::StopSpeaking => {
+                if let Some((playback, _)) = self.saying.take() {
+                    self.playback(playback, PlaybackState::Interrupted);
+                }
+            }
+            // To clients, and to a recogniser and a microphone that are not there.
+            _ => {}
+        }
+    }
+
+    fn policy_says(&mut self, output: policy::Out) {
+        match output {
+            policy::Out::Mark(mark) => {
+                self.latest.mark = mark;
+                self.to_speech.push(speech::In::Mark(mark));
+            }
+            policy::Out::Act(act) => {
+                self.latest.act = *act;
+                self.to_speech.push(speech::In::Act(act.clone()));
+                self.to_arm.push(arm::In::Act(act));
+            }
+            policy::Out::View(_) => {}
+        }
+    }
+
+    fn arm_says(&mut self, output: &arm::Out) {
+        if let arm::Out::Status(status) = output {
+            self.latest.status = *status;
+            self.to_policy.push(policy::In::Arm(*status));
+            self.to_speech.push(speech::In::Arm(*status));
+        }
+    }
+}
