@@ -2,17 +2,20 @@
 
 use std::sync::LazyLock;
 
+use arm::shell::ArmProgram;
 use config::Settings;
-use grounding::GroundingNode;
+use grounding::shell::GroundingProgram;
 use messages::{
     Activity, AppliedMark, ArmStatus, Injection, MotionCommand, Observation, Presented, RequestKey,
     RobotAct, Sound, Utterance,
 };
-use policy::PolicyNode;
-use service::{Node, Span, Time};
-use speech::{PlaybackEvent, PlaybackState, SpeechNode};
+use policy::shell::PolicyProgram;
+use service::service_loop::{Program, Record};
+use service::{Effects, Event, Node, Span, Time};
+use speech::shell::SpeechProgram;
+use speech::{PlaybackEvent, PlaybackState};
 
-use crate::simulated_group::{Faults, Host, configured};
+use crate::simulated_group::configured;
 
 /// The settings of the tests.
 pub(super) static SETTINGS: LazyLock<Settings> = LazyLock::new(|| crate::settings(&[]));
@@ -35,11 +38,63 @@ pub(super) struct Latest {
     pub(super) motion: MotionCommand,
 }
 
+/// A service with its journal; recovers from the journal's bytes.
+pub(super) struct Process<P: Program> {
+    config: Box<dyn Fn() -> <P::Node as Node>::Config>,
+    node: Option<P::Node>,
+    pub(super) journal: Vec<Record<P>>,
+}
+
+impl<P: Program> Process<P> {
+    fn new(config: impl Fn() -> <P::Node as Node>::Config + 'static) -> Self {
+        Self { config: Box::new(config), node: None, journal: Vec::new() }
+    }
+
+    pub(super) fn kill(&mut self) {
+        self.node = None;
+    }
+
+    fn start(&mut self, now: Time) -> Vec<<P::Node as Node>::Out> {
+        if self.node.is_some() {
+            return Vec::new();
+        }
+        let bytes = postcard::to_stdvec(&self.journal).expect("records encode");
+        let records = postcard::from_bytes(&bytes).expect("what was encoded decodes");
+        let node = P::Node::recover((self.config)(), records);
+        self.node = Some(node.unwrap_or_else(|error| panic!("recovery: {error}")));
+        self.pass([Event::Started], now)
+    }
+
+    /// One pass of the main loop: what has arrived, and a tick that is due.
+    fn wake(
+        &mut self,
+        inbox: Vec<<P::Node as Node>::In>,
+        now: Time,
+    ) -> Vec<<P::Node as Node>::Out> {
+        let deadline = self.node.as_ref().and_then(Node::deadline);
+        let tick = deadline.is_some_and(|deadline| deadline <= now).then_some(Event::Tick);
+        self.pass(inbox.into_iter().map(Event::Message).chain(tick), now)
+    }
+
+    fn pass(
+        &mut self,
+        events: impl IntoIterator<Item = Event<<P::Node as Node>::In>>,
+        now: Time,
+    ) -> Vec<<P::Node as Node>::Out> {
+        let Some(node) = &mut self.node else { return Vec::new() };
+        let mut effects = Effects::default();
+        events.into_iter().for_each(|event| node.on(event, now, &mut effects));
+        self.journal.extend(effects.take_records());
+        node.on_durable();
+        effects.take_outputs()
+    }
+}
+
 pub(super) struct Group {
-    pub(super) speech: Host<SpeechNode>,
-    pub(super) grounding: Host<GroundingNode>,
-    pub(super) policy: Host<PolicyNode>,
-    pub(super) arm: Host<arm::ArmNode>,
+    pub(super) speech: Process<SpeechProgram>,
+    pub(super) grounding: Process<GroundingProgram>,
+    pub(super) policy: Process<PolicyProgram>,
+    pub(super) arm: Process<ArmProgram>,
     pub(super) latest: Latest,
     pub(super) to_speech: Vec<speech::In>,
     pub(super) to_grounding: Vec<Box<Utterance>>,
@@ -55,11 +110,11 @@ impl Group {
     pub(super) fn new() -> Self {
         let settings = &*SETTINGS;
         let mut group = Self {
-            speech: Host::new(configured::<speech::shell::SpeechProgram>(settings)),
-            grounding: Host::new(configured::<grounding::shell::GroundingProgram>(settings)),
+            speech: Process::new(configured::<SpeechProgram>(settings)),
+            grounding: Process::new(configured::<GroundingProgram>(settings)),
             // Without the precomputed decisions, which take longer than a dialogue.
-            policy: Host::new(|| SETTINGS.manager().expect("valid settings")),
-            arm: Host::new(configured::<arm::shell::ArmProgram>(settings)),
+            policy: Process::new(|| SETTINGS.manager().expect("valid settings")),
+            arm: Process::new(configured::<ArmProgram>(settings)),
             latest: Latest::default(),
             to_speech: Vec::new(),
             to_grounding: Vec::new(),
@@ -110,16 +165,16 @@ impl Group {
 
     /// The encoded records of speech, policy and arm.
     pub(super) fn journals(&self) -> [Vec<Vec<u8>>; 3] {
-        fn encoded<N: Node<Record: serde::Serialize + Clone>>(host: &Host<N>) -> Vec<Vec<u8>> {
+        fn encoded<P: Program>(process: &Process<P>) -> Vec<Vec<u8>> {
             let record = |record| postcard::to_stdvec(record).expect("a record encodes");
-            host.journal().iter().map(record).collect()
+            process.journal.iter().map(record).collect()
         }
         [encoded(&self.speech), encoded(&self.policy), encoded(&self.arm)]
     }
 
     fn step(&mut self) {
         self.now = self.now + STEP;
-        let (now, mut none) = (self.now, Faults::none());
+        let now = self.now;
         if let Some((playback, left)) = self.saying.take() {
             match left {
                 0 => self.playback(playback, PlaybackState::Ended),
@@ -127,18 +182,18 @@ impl Group {
             }
         }
         let inbox = std::mem::take(&mut self.to_speech);
-        let outputs = self.speech.wake(inbox, now, &mut none);
+        let outputs = self.speech.wake(inbox, now);
         outputs.into_iter().for_each(|output| self.speech_says(output));
         let inbox = std::mem::take(&mut self.to_grounding);
-        for observation in self.grounding.wake(inbox, now, &mut none) {
+        for observation in self.grounding.wake(inbox, now) {
             self.latest.observation = *observation;
             self.to_policy.push(policy::In::Observation(observation));
         }
         let inbox = std::mem::take(&mut self.to_policy);
-        let outputs = self.policy.wake(inbox, now, &mut none);
+        let outputs = self.policy.wake(inbox, now);
         outputs.into_iter().for_each(|output| self.policy_says(output));
         let inbox = std::mem::take(&mut self.to_arm);
-        let outputs = self.arm.wake(inbox, now, &mut none);
+        let outputs = self.arm.wake(inbox, now);
         outputs.into_iter().for_each(|output| self.arm_says(&output));
     }
 

@@ -45,12 +45,12 @@ fn folder() -> TempDir {
 }
 
 fn header() -> Header {
-    Header { record: "fuzz/1".to_owned(), group: "fuzz".to_owned(), epoch: 7 }
+    Header { record: "fuzz/1".to_owned(), group: "fuzz".to_owned(), epoch: 7, generation: 1 }
 }
 
 /// Writes a new journal at `path`, one sync for each batch.
 fn write<R: Serialize + for<'a> Deserialize<'a>>(path: &Path, batches: &[Vec<R>]) {
-    let (mut journal, _) = Journal::open(path, &header()).expect("a new journal");
+    let (mut journal, _) = Journal::open_or_create(path, &header()).expect("a new journal");
     for batch in batches {
         batch.iter().for_each(|record| journal.append(record).expect("small records"));
         journal.sync().expect("space in memory");
@@ -121,7 +121,9 @@ fn inspected<P: Program>(input: &mut Input<'_>) {
         fs::remove_file(&path).expect("it was there");
         let Ok(part) = part else { return };
         part.records().iter().for_each(|record| drop(P::describe(Some(&SETTINGS), record)));
-        let _ = P::verify(SETTINGS.clone(), &[part]);
+        let parts = [part];
+        let _ = P::verify(&[SETTINGS.clone()], &parts);
+        let _ = P::shared_facts(&parts);
     });
 }
 

@@ -127,16 +127,16 @@ fn restart(group: &mut Group, which: u8) {
 }
 
 fn numbered_without_gaps(group: &Group) {
-    let accepted = group.speech.journal().iter().filter_map(|record| match record {
+    let accepted = group.speech.journal.iter().filter_map(|record| match record {
         Record::Accepted(accepted) => Some(accepted.seq.0),
         Record::Presented(_) => None,
     });
     let numbers: Vec<u64> = accepted.collect();
     assert!(numbers.windows(2).all(|pair| Some(pair[1]) == pair[0].checked_add(1)), "{numbers:?}");
-    let applied = group.policy.journal().iter().map(|record| record.state.applied.0);
+    let applied = group.policy.journal.iter().map(|record| record.state.applied.0);
     let applied: Vec<u64> = applied.collect();
     assert!(applied.windows(2).all(|pair| pair[1] - pair[0] <= 1), "{applied:?}");
-    for record in group.arm.journal() {
+    for record in &group.arm.journal {
         let joints = record.state.posture.joints.iter().flatten();
         joints.for_each(|q| assert!(q.is_finite(), "a joint at {q}"));
     }
