@@ -70,9 +70,11 @@ fn samples(path: &Path, longest_s: f64) -> Result<Vec<i16>, String> {
     }
     let channels = usize::from(spec.channels);
     let frames = samples.chunks_exact(channels);
-    let mono: Vec<f32> = frames.map(|f| f.iter().sum::<f32>() / channels as f32).collect();
+    // Clipped to full scale here: a filter cannot add numbers close to the largest there are.
+    let mean = |f: &[f32]| f.iter().map(|s| s.clamp(-1.0, 1.0)).sum::<f32>() / channels as f32;
+    let mono: Vec<f32> = frames.map(mean).collect();
     let samples = resample(&mono, spec.sample_rate, RATE_HZ).map_err(|e| unsupported(&e))?;
-    // The cast saturates: values beyond full scale are clipped.
+    // The cast saturates: the filter may swing beyond full scale.
     Ok(samples.iter().map(|s| (s * 32_768.0).round() as i16).collect())
 }
 

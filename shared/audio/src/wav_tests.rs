@@ -73,6 +73,16 @@ fn wav_reads_every_usual_format() {
 }
 
 #[test]
+fn wav_clips_samples_that_no_filter_can_add() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("huge.wav");
+    let mut wav = WavWriter::create(&path, spec(2, 44_100, 32, SampleFormat::Float)).unwrap();
+    (0..2 * 441).for_each(|n| wav.write_sample(f32::MAX * [1.0, -1.0, 1.0][n % 3]).unwrap());
+    wav.finalize().unwrap();
+    assert_eq!(read_wav(&path, LONGEST_S).unwrap().len(), 160);
+}
+
+#[test]
 fn wav_rejects_other_and_damaged_files_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.wav");
