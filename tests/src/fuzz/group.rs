@@ -10,12 +10,11 @@ use messages::{
     RobotAct, Sound, Utterance,
 };
 use policy::shell::PolicyProgram;
+use service::lifecycle::Environment;
 use service::service_loop::{Program, Record};
 use service::{Effects, Event, Node, Span, Time};
 use speech::shell::SpeechProgram;
 use speech::{PlaybackEvent, PlaybackState};
-
-use crate::simulated_group::configured;
 
 /// The settings of the tests.
 pub(super) static SETTINGS: LazyLock<Settings> = LazyLock::new(|| crate::settings(&[]));
@@ -36,6 +35,11 @@ pub(super) struct Latest {
     pub(super) activity: Activity,
     pub(super) status: ArmStatus,
     pub(super) motion: MotionCommand,
+}
+
+/// The configuration that the real program gives its node.
+fn configured<P: Program>() -> <P::Node as Node>::Config {
+    P::config(&Environment::nowhere(), &SETTINGS).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// A service with its journal; recovers from the journal's bytes.
@@ -108,13 +112,12 @@ pub(super) struct Group {
 
 impl Group {
     pub(super) fn new() -> Self {
-        let settings = &*SETTINGS;
         let mut group = Self {
-            speech: Process::new(configured::<SpeechProgram>(settings)),
-            grounding: Process::new(configured::<GroundingProgram>(settings)),
+            speech: Process::new(configured::<SpeechProgram>),
+            grounding: Process::new(configured::<GroundingProgram>),
             // Without the precomputed decisions, which take longer than a dialogue.
             policy: Process::new(|| SETTINGS.manager().expect("valid settings")),
-            arm: Process::new(configured::<ArmProgram>(settings)),
+            arm: Process::new(configured::<ArmProgram>),
             latest: Latest::default(),
             to_speech: Vec::new(),
             to_grounding: Vec::new(),
