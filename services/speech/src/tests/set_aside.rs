@@ -18,7 +18,7 @@ fn utterances_from_before_a_journal_was_set_aside_are_not_sent_again() {
     let mut speech = Speech::new();
     assert_eq!(speech.type_in(1.0, "the bowl").utterance().unwrap().seq, 1);
     assert!(start(&mut speech, false).utterance().is_none());
-    speech.take(0.1, In::Mark(AppliedMark { seq: OVER, ..AppliedMark::default() }));
+    speech.take(0.1, In::Mark(AppliedMark { seq: OVER }));
     let next = speech.type_in(1.0, "the white bowl");
     assert_eq!(next.utterance().unwrap().seq, OVER + 1);
     assert_eq!(next.receipt().unwrap().seq, OVER + 1);
@@ -28,7 +28,7 @@ fn utterances_from_before_a_journal_was_set_aside_are_not_sent_again() {
 fn speech_without_memory_numbers_above_everything_that_the_policy_may_know() {
     let mut speech = Speech::new();
     start(&mut speech, true);
-    speech.take(0.1, In::Mark(AppliedMark { seq: OVER, ..AppliedMark::default() }));
+    speech.take(0.1, In::Mark(AppliedMark { seq: OVER }));
     assert_eq!(speech.type_in(1.0, "the bowl").utterance().unwrap().seq, OVER + 1);
 }
 
