@@ -5,8 +5,8 @@ mod command;
 pub mod console;
 pub mod fuzz;
 mod group;
-pub mod shortage;
 pub mod isolated;
+pub mod shortage;
 pub mod simulated_group;
 pub mod spoken;
 

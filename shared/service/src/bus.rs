@@ -7,6 +7,7 @@ use messages::schema::Schema;
 use messages::{Epoch, Incarnation, Stamp, WireField};
 
 mod encoded;
+mod gate;
 mod open;
 mod ports;
 mod segment;
@@ -15,6 +16,7 @@ mod variant;
 mod wake;
 
 pub use encoded::{EncodedReader, EncodedWriter};
+pub use gate::rejected;
 pub use open::Topics;
 pub use ports::{Reader, Writer};
 pub use segment_error::SegmentError;
@@ -26,6 +28,7 @@ pub use wake::{WakeListener, WakeNotifier};
 pub struct Bus {
     node: Node<Ipc>,
     identity: Identity,
+    paths: GroupPaths,
 }
 
 /// Identity of a process in its group.
@@ -153,7 +156,7 @@ impl Bus {
                 .signal_handling_mode(SignalHandlingMode::Disabled)
                 .create::<Ipc>()
         })?;
-        Ok(Self { node, identity })
+        Ok(Self { node, identity, paths: paths.clone() })
     }
 
     /// Returns the identity of this process.

@@ -4,6 +4,7 @@
 //! only the supervisor could write to: its end of file means that the supervisor has died. The
 //! service then shuts down, and if it cannot, a guard thread kills its whole process group.
 
+use crate::bus;
 use crate::exit::{Exit, Failure};
 use crate::group::{self, GroupName, GroupPaths};
 use crate::notify::Notifier;
@@ -174,8 +175,10 @@ impl Lifecycle {
         self.last_beat = Some(now);
         self.shortage = shortage.replace('\n', " ");
         let age_ms = pending_since.map_or(0, |since| now.since(since).0 / 1_000_000);
-        let shortage = &self.shortage;
-        self.notifier.beat(&format!("WATCHDOG=1\nX_INPUT_AGE_MS={age_ms}\nX_SHORTAGE={shortage}"));
+        let (shortage, rejected) = (&self.shortage, bus::rejected());
+        self.notifier.beat(&format!(
+            "WATCHDOG=1\nX_INPUT_AGE_MS={age_ms}\nX_SHORTAGE={shortage}\nX_REJECTED={rejected}"
+        ));
     }
 
     /// Time of the next heartbeat.

@@ -1,6 +1,7 @@
 //! Readers and writers of topics whose payloads are postcard in a byte slice.
 
-use super::open::{Gate, notifiers, open_topic};
+use super::gate::{Gate, reject};
+use super::open::{notifiers, open_topic};
 use super::segment_error::{self, SegmentError};
 use super::wake::WakeNotifier;
 use super::{Bus, BusError, Ipc, PortError, create};
@@ -63,7 +64,7 @@ impl Bus {
                 .history_request(topic.history)
                 .create()
         })?;
-        let gate = Gate::new(self.identity().epoch, topic);
+        let gate = Gate::new(self, topic);
         Ok(EncodedReader {
             topic: topic.name,
             subscriber,
@@ -158,7 +159,7 @@ impl<T: Schema + DeserializeOwned> EncodedReader<T> {
             }
             match postcard::from_bytes(sample.payload()) {
                 Ok(payload) => return Ok(Some(payload)),
-                Err(error) => tracing::warn!(topic = self.topic, %error, "payload refused"),
+                Err(error) => reject(self.topic, &error),
             }
         }
     }

@@ -9,8 +9,6 @@ use iceoryx2::service::builder::publish_subscribe::{
 };
 use iceoryx2::service::port_factory::event::PortFactory;
 use messages::topics::{self, Topic};
-use messages::{Epoch, Incarnation, Stamp, WireError};
-use std::cell::Cell;
 
 /// Opens the topic, creating it where this process is the first. A macro, because iceoryx2's
 /// builders for structs and for slices are different types without a common trait.
@@ -114,40 +112,4 @@ fn keep(bus: &Bus, topic: &Topic) -> Result<Box<dyn std::fmt::Debug>, BusError> 
 /// The notifiers of a topic's readers.
 pub(super) fn notifiers(bus: &Bus, topic: &Topic) -> Result<Vec<WakeNotifier>, BusError> {
     topic.readers.iter().map(|&service| WakeNotifier::open(bus, service)).collect()
-}
-
-/// Drops messages of another epoch and of an earlier incarnation of the writer than has
-/// already been heard.
-#[derive(Debug)]
-pub(super) struct Gate {
-    epoch: Epoch,
-    /// Newest incarnation heard; not kept where several clients write.
-    newest: Option<Cell<Incarnation>>,
-    /// Messages rejected because of invalid codes.
-    rejected: Cell<u64>,
-}
-
-impl Gate {
-    pub(super) fn new(epoch: Epoch, topic: &Topic) -> Self {
-        Self { epoch, newest: topic.writer.map(|_| Cell::default()), rejected: Cell::new(0) }
-    }
-
-    pub(super) fn admits(&self, stamp: &Stamp) -> bool {
-        if Epoch(stamp.epoch) != self.epoch {
-            return false;
-        }
-        let Some(newest) = &self.newest else { return true };
-        let incarnation = Incarnation(stamp.incarnation);
-        if incarnation < newest.get() {
-            return false;
-        }
-        newest.set(incarnation);
-        true
-    }
-
-    /// Counts and logs a message with invalid codes, which no service may see.
-    pub(super) fn reject(&self, topic: &str, error: &WireError) {
-        self.rejected.set(self.rejected.get() + 1);
-        tracing::warn!(topic, %error, rejected = self.rejected.get(), "message rejected");
-    }
 }

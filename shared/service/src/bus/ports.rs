@@ -3,7 +3,8 @@
 //! A writer never blocks: a slow or stopped reader loses the oldest message, and is sent again what
 //! matters.
 
-use super::open::{Gate, notifiers, open_topic};
+use super::gate::{Gate, reject};
+use super::open::{notifiers, open_topic};
 use super::wake::WakeNotifier;
 use super::{Bus, BusError, Ipc, PortError, WireMessage, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
@@ -49,7 +50,7 @@ impl Bus {
                 .history_request(topic.history)
                 .create()
         })?;
-        let gate = Gate::new(self.identity().epoch, topic);
+        let gate = Gate::new(self, topic);
         Ok(Reader { topic: topic.name, subscriber, gate, _service: service })
     }
 }
@@ -107,7 +108,7 @@ impl<T: WireMessage> Reader<T> {
                 Some(sample) if self.gate.admits(sample.user_header()) => {
                     match sample.payload().check() {
                         Ok(()) => return Ok(Some(read(sample.payload(), sample.user_header()))),
-                        Err(error) => self.gate.reject(self.topic, &error),
+                        Err(error) => reject(self.topic, &error),
                     }
                 }
                 Some(_) => {}
