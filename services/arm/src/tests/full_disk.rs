@@ -83,7 +83,7 @@ fn nothing_begins_that_is_not_durable_however_slow_the_disk_and_whenever_killed(
             match random.below(40) {
                 0..8 => machine.disk_fails(),
                 8..30 => machine.disk_is_back(),
-                30 if machine.now.ns() % 3 == 0 => {
+                30 if random.below(3) == 0 => {
                     machine.now = machine.now + Span::from_ms(200);
                     machine.restart();
                 }
