@@ -194,12 +194,12 @@ impl JointWatch {
         });
     }
 
-    /// Stops the arm with `whichone stop-motion` and returns the milliseconds until the first of the joint
-    /// states from which on nothing moves.
+    /// Stops the arm with `whichone stop-motion` and returns the milliseconds until the last joint state in
+    /// which something moves; none if the arm stood already, as between two steps.
     ///
     /// # Panics
     /// If the stop is not confirmed, or a joint moves afterwards.
-    pub fn stop(&self, group: &Group) -> f64 {
+    pub fn stop(&self, group: &Group) -> Option<f64> {
         let given = clock::now();
         let mut last_moving = given;
         let mut seen = |joints: &JointStates| {
@@ -226,7 +226,7 @@ impl JointWatch {
             drained.expect("a topic that can be read");
             after
         });
-        last_moving.since(given).s() * 1e3
+        (last_moving > given).then(|| last_moving.since(given).s() * 1e3)
     }
 }
 
