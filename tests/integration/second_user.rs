@@ -136,10 +136,10 @@ fn generous_umask_and_folders_of_an_earlier_version_open_nothing() {
     group.down();
 }
 
-/// Creates files with parts of the names of the group's segments.
-fn begin_like_segments(group: &Group) -> Vec<PathBuf> {
-    let names: Vec<_> = shm_cleanup::leftovers(group.paths());
-    let names = names.iter().map(|path| path.file_name().unwrap().to_string_lossy().into_owned());
+/// Creates files with parts of the names of segments.
+fn begin_like(segments: &[PathBuf]) -> Vec<PathBuf> {
+    let names =
+        segments.iter().map(|path| path.file_name().unwrap().to_string_lossy().into_owned());
     let parts = names.flat_map(|name| {
         let ends: Vec<usize> = name.match_indices(['_', '.']).map(|(at, _)| at).collect();
         let ends = ends.into_iter().flat_map(|at| [at, at + 1]).chain([65]);
@@ -162,7 +162,8 @@ fn files_of_another_user_under_the_groups_names_do_not_keep_it_from_starting() {
     });
     assert_eq!(group.start(&[]).code, Some(0), "{}", group.logs());
     // Names that begin as those of the running group's segments do, and end where they must not.
-    let cut = as_other_user(|| begin_like_segments(&group));
+    let segments = shm_cleanup::leftovers(group.paths());
+    let cut = as_other_user(|| begin_like(&segments));
     assert!(cut.len() > 20, "{cut:?}");
     let before = group.incarnation("policy");
     group.signal("policy", Signal::KILL);
