@@ -1,17 +1,25 @@
 //! Random faults on real processes, while a simulated user has one object after another fetched.
 //!
-//! Every dialogue must end with the right object picked once, and the journals must fold again to
-//! the same belief. Prints the seed and what was done; exit code 70 on a broken invariant.
+//! Every dialogue must end with the right object picked, and the journals must fold again to the
+//! same belief. Prints the seed, the counts of faults and the times of recovery; exit code 70 on a
+//! broken invariant.
+
+mod between;
+mod during;
+mod kind;
+mod machine;
+mod person;
+mod tally;
 
 use clap::Parser;
 use dialogue::Rng;
-use messages::Service;
-use rustix::process::Signal;
+use kind::Kind;
+use machine::Machine;
 use std::io::Write;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
-use whichone_tests::Group;
+use tally::Tally;
 
 const BOWLS: [&str; 6] = ["white", "white2", "white3", "metal", "metal2", "clear"];
 
@@ -22,9 +30,15 @@ struct Plan {
     /// Stop after so many minutes
     #[arg(long, value_name = "N")]
     minutes: Option<u64>,
-    /// Stop after so many kills [200, unless --minutes is given]
+    /// Stop after so many kills [200, unless --minutes or --dialogues is given]
     #[arg(long, value_name = "N")]
     kills: Option<u64>,
+    /// Stop after so many dialogues
+    #[arg(long, value_name = "N")]
+    dialogues: Option<u64>,
+    /// Kinds of faults; all but clock-step unless given
+    #[arg(long, value_name = "KIND,…", value_enum, value_delimiter = ',')]
+    kinds: Vec<Kind>,
     /// Seed of all faults; a random one unless given
     #[arg(long, value_name = "S", default_value_t = random_seed(), hide_default_value = true)]
     seed: u64,
@@ -36,23 +50,20 @@ fn random_seed() -> u64 {
 }
 
 impl Plan {
-    fn kills_max(&self) -> u64 {
-        self.kills.unwrap_or(if self.minutes.is_some() { u64::MAX } else { 200 })
+    fn is_over(&self, tally: &Tally, started: Instant) -> bool {
+        let unbounded = self.minutes.is_none() && self.dialogues.is_none();
+        let kills_max = self.kills.or(unbounded.then_some(200));
+        kills_max.is_some_and(|max| tally.kills() >= max)
+            || self.dialogues.is_some_and(|max| tally.dialogues >= max)
+            || self.minutes.is_some_and(|n| started.elapsed() >= Duration::from_secs(60 * n))
     }
-}
 
-/// Counts of the injected faults.
-#[derive(Debug, Default)]
-struct Counters {
-    dialogues: u64,
-    kills: [u64; Service::BUILT_IN.len()],
-    pauses: u64,
-    restarts: u64,
-}
-
-impl Counters {
-    fn kills(&self) -> u64 {
-        self.kills.iter().sum()
+    /// The kinds that were asked for; all that leave the rest of the machine alone by default.
+    fn kinds(&self) -> Vec<Kind> {
+        match self.kinds.is_empty() {
+            true => Kind::ALL.into_iter().filter(|&kind| kind != Kind::ClockStep).collect(),
+            false => self.kinds.clone(),
+        }
     }
 }
 
@@ -64,11 +75,14 @@ fn main() -> ExitCode {
             return ExitCode::from(if error.use_stderr() { 64 } else { 0 });
         }
     };
+    machine::enter_own_mounts();
     print(&format!("seed {}", plan.seed));
-    let ran = std::panic::catch_unwind(|| run(&plan));
+    let mut tally = Tally::default();
+    let ran = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| run(&plan, &mut tally)));
+    print(&tally.to_string());
     match ran {
-        Ok(counters) => {
-            print(&format!("{counters:?}: every dialogue ended with the right single pick"));
+        Ok(()) => {
+            print("every dialogue ended with the right pick, and the journals verify");
             ExitCode::SUCCESS
         }
         Err(_) => {
@@ -83,63 +97,63 @@ fn print(line: &str) {
     let _ = writeln!(std::io::stdout(), "{line}");
 }
 
-fn run(plan: &Plan) -> Counters {
+fn run(plan: &Plan, tally: &mut Tally) {
+    let started = Instant::now();
     let mut rng = Rng::new(plan.seed);
-    let group = Group::up(&["arm.time_scale=20.0"]);
-    let mut counters = Counters::default();
-    let until = plan.minutes.map(|n| Instant::now() + Duration::from_secs(60 * n));
-    while counters.kills() < plan.kills_max() && until.is_none_or(|until| Instant::now() < until) {
-        let bowl = BOWLS[rng.below(BOWLS.len())];
-        dialogue(&group, bowl, plan, &mut rng, &mut counters);
-        counters.dialogues += 1;
-        if counters.dialogues.is_multiple_of(10) {
-            print(&format!("{counters:?}"));
+    let mut machine = Machine::start();
+    let (possible, left_out): (Vec<Kind>, Vec<Kind>) =
+        plan.kinds().into_iter().partition(|kind| machine.allows(*kind));
+    if !left_out.is_empty() {
+        print(&format!("not on this machine (needs root and mounts): {left_out:?}"));
+    }
+    let (during, between): (Vec<Kind>, Vec<Kind>) =
+        possible.into_iter().partition(|kind| kind.is_during_dialogue());
+    while !plan.is_over(tally, started) {
+        dialogue(plan, &machine, &during, &mut rng, tally);
+        if !between.is_empty() && rng.below(5) == 0 {
+            let kind = kind::draw(&between, &mut rng);
+            tally.faults.entry(kind).and_modify(|n| *n += 1).or_insert(1);
+            between::inject(kind, &mut machine, &mut rng, tally);
+        }
+        if tally.dialogues.is_multiple_of(10) {
+            print(&tally.to_string());
         }
     }
-    group.verify_journals();
-    group.down();
-    counters
+    machine.group.verify_journals();
+    machine.end();
 }
 
 /// One dialogue with faults until its end.
-fn dialogue(group: &Group, bowl: &str, plan: &Plan, rng: &mut Rng, counters: &mut Counters) {
+fn dialogue(plan: &Plan, machine: &Machine, kinds: &[Kind], rng: &mut Rng, tally: &mut Tally) {
+    let bowl = BOWLS[rng.below(BOWLS.len())];
     let over = AtomicBool::new(false);
+    let client = person::Client::default();
     let outcome = std::thread::scope(|scope| {
         let person = scope.spawn(|| {
-            let outcome = group.fetch("get me the bowl", bowl);
-            over.store(true, Ordering::SeqCst);
-            outcome
+            // Set whatever happens, so that no further fault is injected.
+            let _over = OnDrop(&over);
+            person::fetch(&machine.group, bowl, &client)
         });
         while !over.load(Ordering::SeqCst) && !person.is_finished() {
             std::thread::sleep(Duration::from_millis(10 + rng.below(250) as u64));
-            if counters.kills() < plan.kills_max() {
-                fault(group, rng, counters);
+            let enough = plan.kills.is_some_and(|max| tally.kills() >= max);
+            if !kinds.is_empty() && !enough && !over.load(Ordering::SeqCst) {
+                let kind = kind::draw(kinds, rng);
+                tally.faults.entry(kind).and_modify(|n| *n += 1).or_insert(1);
+                during::inject(kind, machine, &client, rng, tally);
             }
         }
         person.join().expect("the person gets an outcome")
     });
-    assert_eq!(outcome["outcome"], "delivered", "{outcome}\n{}", group.logs());
-    assert_eq!(outcome["object"], bowl, "{outcome}\n{}", group.logs());
+    assert_eq!(outcome["outcome"], "delivered", "{outcome}\n{}", machine.group.logs());
+    assert_eq!(outcome["object"], bowl, "{outcome}\n{}", machine.group.logs());
+    tally.dialogues += 1;
 }
 
-/// Mostly kills; now and then a pause below the watchdog, or an orderly restart.
-fn fault(group: &Group, rng: &mut Rng, counters: &mut Counters) {
-    let which = rng.below(Service::BUILT_IN.len());
-    let service = Service::BUILT_IN[which].name();
-    match rng.below(10) {
-        0 => {
-            group.signal(service, Signal::STOP);
-            std::thread::sleep(Duration::from_millis(100));
-            group.signal(service, Signal::CONT);
-            counters.pauses += 1;
-        }
-        1 => {
-            let _ = group.call(&["restart", service]);
-            counters.restarts += 1;
-        }
-        _ => {
-            group.signal(service, Signal::KILL);
-            counters.kills[which] += 1;
-        }
+struct OnDrop<'a>(&'a AtomicBool);
+
+impl Drop for OnDrop<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::SeqCst);
     }
 }

@@ -562,7 +562,7 @@ impl Protocol {
         let act = |next: &mut State| publish_act(next, after);
         let mark = |next: &mut State| publish_mark(next, after);
         for cut in self.cuts(state, self.is(Broken::PublishBeforeSync)) {
-            visit(step(cut), commit(&next, cut, Service::Policy, &record, &[&act, &mark]));
+            visit(step(cut), commit(&next, cut, Service::Policy, record, &[&act, &mark]));
         }
     }
 

@@ -63,14 +63,24 @@ impl Group {
         self.start_with(&["--fresh"])
     }
 
+    /// Starts a group again whose supervisor was killed.
+    pub fn start_again(&self, settings: &[&str]) -> Ended {
+        let options: Vec<&str> = settings.iter().flat_map(|setting| ["--set", *setting]).collect();
+        self.launch(&options)
+    }
+
     fn start_with(&mut self, options: &[&str]) -> Ended {
+        let ended = self.launch(options);
+        self.is_up = ended.code == Some(0);
+        ended
+    }
+
+    fn launch(&self, options: &[&str]) -> Ended {
         let config = self.config.display().to_string();
         let mut words = vec!["up", "--detach", "--wait", "ready", "--timeout", "40", "--config"];
         words.extend([config.as_str(), "--profile", "ci"]);
         words.extend(options);
-        let ended = self.call(&words);
-        self.is_up = ended.code == Some(0);
-        ended
+        self.call(&words)
     }
 
     /// Paths of the group.

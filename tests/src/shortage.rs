@@ -29,9 +29,12 @@ pub struct SmallDisk {
 }
 
 impl SmallDisk {
-    /// Mounts one on `folder`.
-    fn mount(folder: &Path) -> Self {
-        let size = format!("size={DISK_MIB}m");
+    /// Mounts one of `mib` MiB on `folder`.
+    ///
+    /// # Panics
+    /// Without the permission to mount.
+    pub fn mount(folder: &Path, mib: u32) -> Self {
+        let size = format!("size={mib}m");
         let words = ["-t", "tmpfs", "-o", &size, "tmpfs"];
         let mounted = Command::new("mount").args(words).arg(folder).status();
         assert!(mounted.is_ok_and(|status| status.success()), "mount: this needs root");
@@ -95,7 +98,7 @@ impl SmallGroup {
     /// Without root, or if the group does not become ready.
     pub fn up(settings: &[&str]) -> Self {
         let mut group = Group::new();
-        let disk = SmallDisk::mount(group.paths().home());
+        let disk = SmallDisk::mount(group.paths().home(), DISK_MIB);
         let ended = group.start(settings);
         assert_eq!(ended.code, Some(0), "{ended:?}\n{}", group.logs());
         Self { group, disk }

@@ -122,7 +122,7 @@ fn inspected<P: Program>(input: &mut Input<'_>) {
         let Ok(part) = part else { return };
         part.records().iter().for_each(|record| drop(P::describe(Some(&SETTINGS), record)));
         let parts = [part];
-        let _ = P::verify(&[SETTINGS.clone()], &parts);
+        let _ = P::verify(std::slice::from_ref(&SETTINGS), &parts);
         let _ = P::shared_facts(&parts);
     });
 }

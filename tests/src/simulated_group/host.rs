@@ -25,14 +25,17 @@ pub enum Crash {
     AfterOutputs(usize),
 }
 
+/// Records and outputs of one pass.
+type Batch<N> = (Vec<<N as Node>::Record>, Vec<<N as Node>::Out>);
+
 /// A node, its journal, and the configuration that each start gets.
 #[allow(missing_debug_implementations, reason = "nodes have none")]
 pub struct Host<N: Node> {
     config: Box<dyn Fn() -> N::Config>,
     node: Option<N>,
     disk: Disk<N::Record>,
-    /// Records and outputs of the passes that wait for room on the disk.
-    waiting: Vec<(Vec<N::Record>, Vec<N::Out>)>,
+    /// Passes that wait for room on the disk.
+    waiting: Vec<Batch<N>>,
     /// Until when the disk is full.
     full_until: Time,
     /// Number of starts.
