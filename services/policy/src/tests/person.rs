@@ -101,26 +101,31 @@ fn other_planners_learn_nothing() {
     assert!(state.open.unwrap().posterior.person().is_none());
 }
 
-/// Answers come `reaction_s` after each question; whether the window follows.
+/// The manager and its state after answers that came `reaction_s` after each question.
+fn acquainted(reaction_s: f64, answers: u64) -> (Manager, State) {
+    let mut manager = learning_manager();
+    let mut state = asked(&mut manager);
+    for seq in 2..2 + answers {
+        let mut said = typed(seq, state.act.prompt, answer(Response::Yes));
+        said.presentations[0].began = Time(0);
+        said.onset = Time(0) + Span::from_s(reaction_s);
+        said.end = said.onset;
+        state = manager.next(&state, &Cause::Utterance(said), at(seq));
+        if state.act.kind != ActKind::Ask {
+            let again = heard(seq + 1_000, PromptId(0), Reading::default());
+            let (pick, _) = state.act.pick.expect("it picks");
+            let outcome = PickOutcome::Delivered;
+            state = manager.next(&state, &Cause::PickEnded { pick, outcome }, at(seq));
+            state = manager.next(&state, &again, at(seq));
+        }
+    }
+    (manager, state)
+}
+
 #[test]
 fn the_response_window_follows_a_person_whose_answers_were_seen() {
     let window = |reaction_s: f64, answers: u64| {
-        let mut manager = learning_manager();
-        let mut state = asked(&mut manager);
-        for seq in 2..2 + answers {
-            let mut said = typed(seq, state.act.prompt, answer(Response::Yes));
-            said.presentations[0].began = Time(0);
-            said.onset = Time(0) + Span::from_s(reaction_s);
-            said.end = said.onset;
-            state = manager.next(&state, &Cause::Utterance(said), at(seq));
-            if state.act.kind != ActKind::Ask {
-                let again = heard(seq + 1_000, PromptId(0), Reading::default());
-                let (pick, _) = state.act.pick.expect("it picks");
-                let outcome = PickOutcome::Delivered;
-                state = manager.next(&state, &Cause::PickEnded { pick, outcome }, at(seq));
-                state = manager.next(&state, &again, at(seq));
-            }
-        }
+        let (manager, state) = acquainted(reaction_s, answers);
         manager.response_window_s(&state)
     };
     let configured = settings().dialogue.turns.response_window_s;
@@ -128,4 +133,19 @@ fn the_response_window_follows_a_person_whose_answers_were_seen() {
     assert!(window(0.5, 12) < 0.6 * configured, "{}", window(0.5, 12));
     assert!(window(12.0, 12) > configured, "{}", window(12.0, 12));
     assert!(window(60.0, 40) <= 2.0 * configured);
+}
+
+/// A client that answers at once and then dies must find its question when it is started again.
+#[test]
+fn a_quick_person_is_not_given_up_sooner_than_configured() {
+    let (mut manager, mut state) = acquainted(0.05, 12);
+    let turns = settings().dialogue.turns;
+    let mut waited_s = 0.0;
+    while state.open.is_some() {
+        assert_eq!(state.act.kind, ActKind::Ask);
+        waited_s += manager.response_window_s(&state);
+        state = manager.next(&state, &Cause::Silence, at(1_000 + waited_s as u64));
+    }
+    let least = f64::from(turns.repeats_max) * turns.response_window_s;
+    assert!(waited_s >= least, "given up after {waited_s} s, expected {least} s at least");
 }

@@ -59,6 +59,9 @@ impl Manager {
 
     /// Returns the response window: the one configured, or, once the user has answered a few times,
     /// the one in which this user does. Seconds.
+    ///
+    /// A question that was met with silence is asked again after the adapted window, but from then on
+    /// nobody is given up sooner than configured: the user, or the client, may be away for a moment.
     pub fn response_window_s(&self, state: &State) -> f64 {
         /// Answers after which a user's reaction time counts as known.
         const ACQUAINTED: u32 = 5;
@@ -67,8 +70,10 @@ impl Manager {
         let configured = self.setup.turns.response_window_s;
         // A user who was seen to type may type the next answer, too.
         let known = state.timing.typed.or(state.timing.spoken);
+        let is_silent = state.open.as_ref().is_some_and(|open| open.silences > 0);
+        let least = if is_silent { 1.0 } else { RANGE.0 };
         known.filter(|reaction| reaction.seen() >= ACQUAINTED).map_or(configured, |reaction| {
-            reaction.patience_s().clamp(configured * RANGE.0, configured * RANGE.1)
+            reaction.patience_s().clamp(configured * least, configured * RANGE.1)
         })
     }
 }
