@@ -138,7 +138,7 @@ fn the_response_window_follows_a_person_whose_answers_were_seen() {
 /// A client that answers at once and then dies must find its question when it is started again.
 #[test]
 fn a_quick_person_is_not_given_up_sooner_than_configured() {
-    let (mut manager, mut state) = acquainted(0.05, 12);
+    let (mut manager, mut state) = acquainted(0.5, 40);
     let turns = settings().dialogue.turns;
     let mut waited_s = 0.0;
     while state.open.is_some() {

@@ -110,6 +110,31 @@ fn a_doubled_answer_does_not_answer_the_question_that_begins() {
     assert!(after < 0.1 * before, "naive attribution takes it for an answer: {before} {after}");
 }
 
+/// A question sounded twice: which time it was answered is open, but not that it was. A quick answer
+/// to the next question must not be taken for another answer to it.
+#[test]
+fn an_answer_to_a_repeated_question_answers_it() {
+    for typed in [true, false] {
+        let mut manager = manager_with("mixture");
+        let first = asked(&mut manager);
+        let one = said(first.act.prompt, 1.0, 1.5);
+        let first = manager.next(&first, &Cause::Silence, at(7));
+        let again = Presentation { number: 2, ..said(first.act.prompt, 7.0, 7.5) };
+        let heard = |seq, asked: &[Presentation], onset_s, response| {
+            Cause::Utterance(Utterance { typed, ..spoken(seq, asked, onset_s, response) })
+        };
+        let second = manager.next(&first, &heard(2, &[again, one], 8.0, Response::No), at(9));
+        assert_ne!(second.act.prompt, first.act.prompt);
+        let answered = |state: &State| state.open.as_ref().unwrap().prompts[0].answered;
+        assert_eq!(answered(&second), Some(s(8.5)), "typed: {typed}");
+        let next = said(second.act.prompt, 9.0, 9.4);
+        let third =
+            manager.next(&second, &heard(3, &[next, again, one], 9.9, Response::Yes), at(11));
+        let mass = mass(&third, next.prompt);
+        assert!(mass > 0.97, "typed: {typed}, {mass}");
+    }
+}
+
 #[test]
 fn words_count_whatever_they_answer() {
     let mut manager = manager_with("mixture");

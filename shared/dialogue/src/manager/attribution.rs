@@ -121,23 +121,28 @@ impl Manager {
         (weight, NamedQuestion::new(scene, question), NamedReading::new(scene, reading))
     }
 
-    /// Notes that a question was answered, and how soon, if it is plain which one. A question counts
-    /// as answered once, however much is said after it.
+    /// Notes that a question was answered, if it is plain which one, and how soon, if it is plain which
+    /// presentation of it. A question counts as answered once, however much is said after it.
     pub(super) fn note_answer(&self, state: &mut State, utterance: &Utterance, shares: &[f64]) {
-        let questions = &shares[..shares.len() - 1];
-        let best = (0..questions.len()).max_by(|a, b| questions[*a].total_cmp(&questions[*b]));
-        let Some(at) = best.filter(|at| questions[*at] >= PLAIN) else { return };
+        let asked = || utterance.presentations.iter().zip(shares);
+        // One that was repeated is answered by what is divided among its presentations.
+        let of_prompt = |prompt: PromptId| -> f64 {
+            asked().filter(|(put, _)| put.prompt == prompt).map(|(_, share)| share).sum()
+        };
+        let plain = asked().filter(|(put, _)| of_prompt(put.prompt) >= PLAIN);
+        let Some((put, share)) = plain.max_by(|a, b| a.1.total_cmp(b.1)) else { return };
         let says_something = |it: &Interpretation| {
-            it.answers == Some(at) && *content(&it.reading) != Reading::default()
+            it.answers.is_some_and(|at| utterance.presentations[at].prompt == put.prompt)
+                && *content(&it.reading) != Reading::default()
         };
         if !utterance.interpretations.iter().any(says_something) {
             return;
         }
-        let put = utterance.presentations[at];
         let open = state.open.as_mut();
         let Some(prompt) = open.and_then(|open| open.prompt_mut(put.prompt)) else { return };
         if prompt.answered.replace(utterance.end).is_none() {
             let from = if utterance.typed { Some(put.began) } else { put.ended };
+            let from = from.filter(|_| *share >= PLAIN);
             let after = from.map(|from| utterance.onset.since(from)).filter(|span| *span > Span(0));
             self.see_answer(state, true);
             self.see_reaction(state, utterance.typed, after.map(Span::s));
