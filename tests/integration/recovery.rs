@@ -2,6 +2,8 @@
 //! object is picked once, and the journal folds to the same belief.
 
 use rustix::process::Signal;
+use std::io::{BufRead, BufReader};
+use std::process::Stdio;
 use whichone_tests::{Group, wait_for};
 
 const SERVICES: [&str; 4] = ["speech", "grounding", "policy", "arm"];
@@ -114,5 +116,24 @@ fn interaction_survives_down_and_up() {
     group.must(&["down"]);
     assert_eq!(group.start(&[]).code, Some(0));
     assert_fetched(&group, "white3");
+    group.down();
+}
+
+#[test]
+fn killed_clients_leave_their_places_to_others() {
+    let group = Group::up(&[]);
+    for _ in 0..messages::topics::READERS_MAX + 2 {
+        let mut client =
+            group.command(&["watch", "--json"]).stdout(Stdio::piped()).spawn().unwrap();
+        let mut first = String::new();
+        BufReader::new(client.stdout.take().unwrap()).read_line(&mut first).unwrap();
+        assert!(first.starts_with('{'), "{first}");
+        client.kill().unwrap();
+        client.wait().unwrap();
+    }
+    wait_for("places for a new client", 10.0, || {
+        (group.call(&["watch", "--once", "--json"]).code == Some(0)).then_some(())
+    });
+    assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
     group.down();
 }

@@ -131,6 +131,14 @@ fn step(
     delivered: &mut BTreeMap<u64, u32>,
 ) -> Result<(), String> {
     let now = record.state.applied.0;
+    if let Cause::Utterance(heard) = &record.cause
+        && !heard.is_consistent()
+    {
+        return Err(format!(
+            "utterance {} answers a presentation that it does not list",
+            heard.seq
+        ));
+    }
     match (&record.cause, *applied) {
         (Cause::Utterance(heard), before) if before.is_some_and(|b| heard.seq.0 != b + 1) => {
             let before = before.unwrap_or(0);

@@ -169,10 +169,12 @@ impl Supervisor {
         self.server.drop_slow(now);
         self.bound_logs();
         self.check_topics(now);
-        if let Some(admin) = &self.admin
-            && self.group.state() == service::status::GroupState::Ready
-        {
-            admin.keep_spare();
+        if let Some(admin) = &self.admin {
+            // Each client that was killed would keep its places among a topic's readers and writers.
+            admin.clean_dead();
+            if self.group.state() == service::status::GroupState::Ready {
+                admin.keep_spare();
+            }
         }
     }
 
@@ -211,6 +213,7 @@ impl Supervisor {
         let Some(exit) = self.services[service].reap(failure, ended_at) else { return };
         if let Some(admin) = &self.admin {
             admin.clean_dead();
+            admin.make_way();
         }
         self.clear_orphans();
         self.give(service, Event::Exited(exit), self.now());

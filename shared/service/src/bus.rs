@@ -10,6 +10,7 @@ mod encoded;
 mod gate;
 mod open;
 mod ports;
+mod renewed;
 mod segment;
 mod segment_error;
 mod variant;

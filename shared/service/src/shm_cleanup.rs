@@ -80,11 +80,15 @@ impl Admin {
         Ok(Self { bus, _topics: topics, paths: paths.clone(), place, management, spare })
     }
 
-    /// Removes what dead processes left behind, and gives way for a successor in full memory. Called
-    /// after each reap, before the successor is started.
+    /// Removes what dead processes left behind.
     pub fn clean_dead(&self) {
         let state = self.bus.node().blocking_cleanup_dead_nodes(CLEANUP_PATIENCE);
-        tracing::debug!(?state, "cleaned up after dead processes");
+        tracing::trace!(?state, "cleaned up after dead processes");
+    }
+
+    /// Frees the memory that is kept for restarts. Called after each reap, before the successor is
+    /// started.
+    pub fn make_way(&self) {
         let _ = self.spare.set_len(0);
     }
 

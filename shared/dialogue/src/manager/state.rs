@@ -257,6 +257,12 @@ pub struct Utterance {
 }
 
 impl Utterance {
+    /// Returns true if every interpretation answers one of its presentations, or none.
+    pub fn is_consistent(&self) -> bool {
+        let answers = self.interpretations.iter().filter_map(|one| one.answers);
+        answers.into_iter().all(|answered| answered < self.presentations.len())
+    }
+
     /// Returns the last question that the user had heard completely before beginning to speak.
     pub fn heard(&self) -> PromptId {
         let heard = |put: &&Presentation| put.complete && put.ended <= Some(self.onset);

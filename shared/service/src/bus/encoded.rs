@@ -2,12 +2,12 @@
 
 use super::gate::{Gate, reject};
 use super::open::{notifiers, open_topic};
+use super::renewed::Renewed;
 use super::segment_error::{self, SegmentError};
 use super::wake::WakeNotifier;
 use super::{Bus, BusError, Ipc, PortError, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
-use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
 use messages::Stamp;
 use messages::schema::Schema;
 use messages::topics::Topic;
@@ -27,14 +27,18 @@ impl Bus {
     /// As [`Bus::writer`].
     pub fn encoded_writer<T: Schema>(&self, topic: &Topic) -> Result<EncodedWriter<T>, BusError> {
         let service = open_topic!(self, topic, [u8])?;
-        let publisher = create(topic.name, || {
-            service
-                .publisher_builder()
-                .max_loaned_samples(1)
-                .initial_max_slice_len(BYTES)
-                .allocation_strategy(AllocationStrategy::PowerOfTwo)
-                .backpressure_strategy(BackpressureStrategy::DiscardData)
-                .create()
+        let name = topic.name;
+        let publisher = Renewed::new(name, move |failing| {
+            create(name, || {
+                service
+                    .publisher_builder()
+                    .max_loaned_samples(1)
+                    .initial_max_slice_len(BYTES)
+                    .allocation_strategy(AllocationStrategy::PowerOfTwo)
+                    .backpressure_strategy(BackpressureStrategy::DiscardData)
+                    .set_degradation_handler(failing.handler())
+                    .create()
+            })
         })?;
         let notifiers = notifiers(self, topic)?;
         let is_view = topic.writer.is_some();
@@ -46,7 +50,6 @@ impl Bus {
             publisher,
             notifiers,
             stamp,
-            _service: service,
             _payload: PhantomData,
         })
     }
@@ -57,21 +60,19 @@ impl Bus {
     /// As [`Bus::writer`].
     pub fn encoded_reader<T: Schema>(&self, topic: &Topic) -> Result<EncodedReader<T>, BusError> {
         let service = open_topic!(self, topic, [u8])?;
-        let subscriber = create(topic.name, || {
-            service
-                .subscriber_builder()
-                .buffer_size(topic.buffer)
-                .history_request(topic.history)
-                .create()
+        let (name, buffer, history) = (topic.name, topic.buffer, topic.history);
+        let subscriber = Renewed::new(name, move |failing| {
+            create(name, || {
+                service
+                    .subscriber_builder()
+                    .buffer_size(buffer)
+                    .history_request(history)
+                    .set_degradation_handler(failing.handler())
+                    .create()
+            })
         })?;
         let gate = Gate::new(self, topic);
-        Ok(EncodedReader {
-            topic: topic.name,
-            subscriber,
-            gate,
-            _service: service,
-            _payload: PhantomData,
-        })
+        Ok(EncodedReader { topic: name, subscriber, gate, _payload: PhantomData })
     }
 }
 
@@ -83,10 +84,9 @@ pub struct EncodedWriter<T: Schema> {
     is_view: bool,
     /// The last payload was dropped for want of shared memory.
     is_short: Cell<bool>,
-    publisher: Publisher<Ipc, [u8], Stamp>,
+    publisher: Renewed<Publisher<Ipc, [u8], Stamp>>,
     notifiers: Vec<WakeNotifier>,
     stamp: Stamp,
-    _service: PortFactory<Ipc, [u8], Stamp>,
     _payload: PhantomData<T>,
 }
 
@@ -105,14 +105,20 @@ impl<T: Schema> EncodedWriter<T> {
         if bytes.len() > BYTES_MAX {
             return Err(failed(format!("{} bytes, {BYTES_MAX} at most", bytes.len())));
         }
-        segment_error::take();
-        let mut sample = match self.publisher.loan_slice_uninit(bytes.len()) {
-            Ok(sample) => sample,
-            Err(error) => return self.unsent(format!("{error:?}")),
-        };
-        self.is_short.set(false);
-        *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
-        sample.write_from_slice(&bytes).send().map_err(|e| failed(format!("{e:?}")))?;
+        let is_sent = self.publisher.with(|publisher| {
+            segment_error::take();
+            let mut sample = match publisher.loan_slice_uninit(bytes.len()) {
+                Ok(sample) => sample,
+                Err(error) => return self.unsent(format!("{error:?}")).map(|()| false),
+            };
+            self.is_short.set(false);
+            *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
+            let sent = sample.write_from_slice(&bytes).send();
+            sent.map(|_| true).map_err(|e| failed(format!("{e:?}")))
+        })?;
+        if !is_sent {
+            return Ok(());
+        }
         self.notifiers.iter().for_each(WakeNotifier::notify);
         Ok(())
     }
@@ -137,9 +143,8 @@ impl<T: Schema> EncodedWriter<T> {
 #[derive(Debug)]
 pub struct EncodedReader<T: Schema> {
     topic: &'static str,
-    subscriber: Subscriber<Ipc, [u8], Stamp>,
+    subscriber: Renewed<Subscriber<Ipc, [u8], Stamp>>,
     gate: Gate,
-    _service: PortFactory<Ipc, [u8], Stamp>,
     _payload: PhantomData<T>,
 }
 
@@ -150,18 +155,21 @@ impl<T: Schema + DeserializeOwned> EncodedReader<T> {
     /// # Errors
     /// iceoryx2 lost its connection to a writer.
     pub fn take(&self) -> Result<Option<T>, PortError> {
-        loop {
-            let received = self.subscriber.receive();
-            let received = received.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
-            let Some(sample) = received else { return Ok(None) };
-            if !self.gate.admits(sample.user_header()) {
-                continue;
+        self.subscriber.with(|subscriber| {
+            loop {
+                let received = subscriber.receive();
+                let received =
+                    received.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
+                let Some(sample) = received else { return Ok(None) };
+                if !self.gate.admits(sample.user_header()) {
+                    continue;
+                }
+                match postcard::from_bytes(sample.payload()) {
+                    Ok(payload) => return Ok(Some(payload)),
+                    Err(error) => reject(self.topic, &error),
+                }
             }
-            match postcard::from_bytes(sample.payload()) {
-                Ok(payload) => return Ok(Some(payload)),
-                Err(error) => reject(self.topic, &error),
-            }
-        }
+        })
     }
 
     /// Returns the newest pending payload.

@@ -5,11 +5,11 @@
 
 use super::gate::{Gate, reject};
 use super::open::{notifiers, open_topic};
+use super::renewed::Renewed;
 use super::wake::WakeNotifier;
 use super::{Bus, BusError, Ipc, PortError, WireMessage, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::BackpressureStrategy;
-use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
 use messages::Stamp;
 use messages::topics::Topic;
 
@@ -20,21 +20,19 @@ impl Bus {
     /// Another schema, too many writers, or an error of iceoryx2.
     pub fn writer<T: WireMessage>(&self, topic: &Topic) -> Result<Writer<T>, BusError> {
         let service = open_topic!(self, topic, T)?;
-        let publisher = create(topic.name, || {
-            service
-                .publisher_builder()
-                .max_loaned_samples(1)
-                .backpressure_strategy(BackpressureStrategy::DiscardData)
-                .create()
+        let name = topic.name;
+        let publisher = Renewed::new(name, move |failing| {
+            create(name, || {
+                service
+                    .publisher_builder()
+                    .max_loaned_samples(1)
+                    .backpressure_strategy(BackpressureStrategy::DiscardData)
+                    .set_degradation_handler(failing.handler())
+                    .create()
+            })
         })?;
         let notifiers = notifiers(self, topic)?;
-        Ok(Writer {
-            topic: topic.name,
-            publisher,
-            notifiers,
-            stamp: self.stamp(),
-            _service: service,
-        })
+        Ok(Writer { topic: name, publisher, notifiers, stamp: self.stamp() })
     }
 
     /// Reads a fixed-layout topic.
@@ -43,15 +41,18 @@ impl Bus {
     /// As [`Bus::writer`].
     pub fn reader<T: WireMessage>(&self, topic: &Topic) -> Result<Reader<T>, BusError> {
         let service = open_topic!(self, topic, T)?;
-        let subscriber = create(topic.name, || {
-            service
-                .subscriber_builder()
-                .buffer_size(topic.buffer)
-                .history_request(topic.history)
-                .create()
+        let (name, buffer, history) = (topic.name, topic.buffer, topic.history);
+        let subscriber = Renewed::new(name, move |failing| {
+            create(name, || {
+                service
+                    .subscriber_builder()
+                    .buffer_size(buffer)
+                    .history_request(history)
+                    .set_degradation_handler(failing.handler())
+                    .create()
+            })
         })?;
-        let gate = Gate::new(self, topic);
-        Ok(Reader { topic: topic.name, subscriber, gate, _service: service })
+        Ok(Reader { topic: name, subscriber, gate: Gate::new(self, topic) })
     }
 }
 
@@ -59,10 +60,9 @@ impl Bus {
 #[derive(Debug)]
 pub struct Writer<T: WireMessage> {
     topic: &'static str,
-    publisher: Publisher<Ipc, T, Stamp>,
+    publisher: Renewed<Publisher<Ipc, T, Stamp>>,
     notifiers: Vec<WakeNotifier>,
     stamp: Stamp,
-    _service: PortFactory<Ipc, T, Stamp>,
 }
 
 impl<T: WireMessage> Writer<T> {
@@ -72,11 +72,13 @@ impl<T: WireMessage> Writer<T> {
     /// # Errors
     /// iceoryx2 is out of memory.
     pub fn send(&self, message: &T) -> Result<(), PortError> {
-        let loan = self.publisher.loan_uninit();
-        let mut sample = loan.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
-        *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
-        let sent = sample.write_payload(*message).send();
-        sent.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
+        self.publisher.with(|publisher| {
+            let loan = publisher.loan_uninit();
+            let mut sample = loan.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
+            *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
+            let sent = sample.write_payload(*message).send();
+            sent.map(drop).map_err(|e| PortError::new(self.topic, format!("{e:?}")))
+        })?;
         self.notifiers.iter().for_each(WakeNotifier::notify);
         Ok(())
     }
@@ -86,9 +88,8 @@ impl<T: WireMessage> Writer<T> {
 #[derive(Debug)]
 pub struct Reader<T: WireMessage> {
     topic: &'static str,
-    subscriber: Subscriber<Ipc, T, Stamp>,
+    subscriber: Renewed<Subscriber<Ipc, T, Stamp>>,
     gate: Gate,
-    _service: PortFactory<Ipc, T, Stamp>,
 }
 
 impl<T: WireMessage> Reader<T> {
@@ -101,19 +102,23 @@ impl<T: WireMessage> Reader<T> {
     }
 
     fn take_stamped<R>(&self, read: impl FnOnce(&T, &Stamp) -> R) -> Result<Option<R>, PortError> {
-        loop {
-            let received = self.subscriber.receive();
-            match received.map_err(|e| PortError::new(self.topic, format!("{e:?}")))? {
-                None => return Ok(None),
-                Some(sample) if self.gate.admits(sample.user_header()) => {
-                    match sample.payload().check() {
-                        Ok(()) => return Ok(Some(read(sample.payload(), sample.user_header()))),
-                        Err(error) => reject(self.topic, &error),
+        self.subscriber.with(|subscriber| {
+            loop {
+                let received = subscriber.receive();
+                match received.map_err(|e| PortError::new(self.topic, format!("{e:?}")))? {
+                    None => return Ok(None),
+                    Some(sample) if self.gate.admits(sample.user_header()) => {
+                        match sample.payload().check() {
+                            Ok(()) => {
+                                return Ok(Some(read(sample.payload(), sample.user_header())));
+                            }
+                            Err(error) => reject(self.topic, &error),
+                        }
                     }
+                    Some(_) => {}
                 }
-                Some(_) => {}
             }
-        }
+        })
     }
 
     /// Returns every pending message, in order.
