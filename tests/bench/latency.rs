@@ -75,7 +75,7 @@ impl Taps {
         let sound = Sound::Text(text.to_owned());
         let patience = Span::from_ms(10_000);
         let said = (clock::now(), Time(0));
-        let receipts = deliver(&self.injections, &self.receipts, sound, said, patience);
+        let receipts = deliver(&self.injections, &self.receipts, sound, said, patience, || None);
         let seq = receipts.expect("a receipt")[0].utterance().expect("an accepted utterance").0;
         wait_for("the decision", 10.0, || {
             self.collect(seq, &mut moments);

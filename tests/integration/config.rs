@@ -96,12 +96,13 @@ fn check_and_up_name_file_and_key_of_a_fault() {
 
 #[test]
 fn up_refuses_settings_with_the_key_and_a_fix() {
-    for (setting, words) in [
-        ("dialogue.planner=oracle", &dialogue::registry::names()[..]),
-        ("arm.driver=baxter", &["time_scale", "real time"]),
-        ("console.listen=0.0.0.0:0", &["console.listen", "token", "127.0.0.1"]),
+    let open_to_all = ["console.access=open", "console.listen=0.0.0.0:0"];
+    for (settings, words) in [
+        (&["dialogue.planner=oracle"][..], &dialogue::registry::names()[..]),
+        (&["arm.driver=baxter"], &["time_scale", "real time"]),
+        (&open_to_all, &["console.listen", "token", "127.0.0.1"]),
     ] {
-        let refused = Group::new().start(&[setting]);
+        let refused = Group::new().start(settings);
         assert_eq!(refused.code, Some(78), "{refused:?}");
         for word in words {
             assert!(refused.stderr.contains(word), "no {word} in: {}", refused.stderr);

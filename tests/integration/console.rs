@@ -237,8 +237,9 @@ fn foreign_origins_are_refused() {
         let refused = Page::connect(&place, &foreign("origin", origin)).unwrap_err();
         assert!(refused.contains("403"), "{refused}");
     }
-    // A name of another site's that leads to this machine.
-    assert_eq!(http(&place, "GET", "/api/state", &["Host: evil.example"], "").0, 421);
+    // A name of another site's that leads to this machine; its page has no session here.
+    let without = place.without_token();
+    assert_eq!(http(&without, "GET", "/api/state", &["Host: evil.example"], "").0, 401);
     let (_, head, _) = http(&place, "GET", "/", &[], "");
     assert!(head.to_lowercase().contains("content-security-policy: default-src 'self'"), "{head}");
     group.down();
@@ -308,6 +309,7 @@ fn page_is_open_where_the_configuration_says_so() {
     let group = Group::up(&["console.access=open"]);
     let anyone = group.console().without_token();
     assert_eq!(http(&anyone, "GET", "/api/state", &[], "").0, 200);
+    assert_eq!(http(&anyone, "GET", "/api/state", &["Host: evil.example"], "").0, 421);
     drop(Page::open(&anyone, &Visitor::operator(1)).unwrap());
     let log = std::fs::read_to_string(group.paths().log_file("console")).unwrap();
     assert!(log.contains("every user of this machine can operate the robot"), "{log}");

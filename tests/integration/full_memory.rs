@@ -73,7 +73,7 @@ impl Talker {
     fn say(&self, words: &str) {
         let now = (service::clock::now(), service::Time(0));
         let words = Sound::Text(words.to_owned());
-        deliver(&self.injections, &self.receipts, words, now, Span::from_s(10.0)).unwrap();
+        deliver(&self.injections, &self.receipts, words, now, Span::from_s(10.0), || None).unwrap();
     }
 
     /// Asks for an object, repeats the request at every question, and waits until the interaction

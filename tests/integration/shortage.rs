@@ -111,7 +111,14 @@ mod as_root {
         let writer = client.bus().encoded_writer(&topics::INJECTION).unwrap();
         let say = |text: &str| {
             let said = (clock::now(), Time(0));
-            deliver(&writer, &receipts, Sound::Text(text.into()), said, Span::from_ms(2_000))
+            deliver(
+                &writer,
+                &receipts,
+                Sound::Text(text.into()),
+                said,
+                Span::from_ms(2_000),
+                || None,
+            )
         };
         let is_accepted = |text: &str| {
             let receipts = say(text).unwrap_or_default();

@@ -63,6 +63,7 @@ fn hold_keeps_a_service_down_until_release() {
         assert_eq!(refused.stderr, why);
     }
     group.must(&["release", "speech"]);
+    group.say("hello");
     group.must(&["hold", "policy"]);
     let kept = group.must(&["say", "a bowl"]);
     assert!(kept.stderr.contains("policy is held by the operator"), "{kept:?}");

@@ -42,6 +42,9 @@ pub enum ClientError {
         /// The timeout, seconds.
         seconds: f64,
     },
+    /// A service that the answer needs does nothing for now; the reason.
+    #[error("not confirmed: {0}")]
+    Standstill(String),
 }
 
 impl Client {
@@ -73,32 +76,25 @@ impl Client {
         &self.bus
     }
 
-    /// Submits `sound` to the speech service and returns its receipts: one for text, one for every
-    /// utterance in a sound file.
+    /// Submits `sound`, with the start and end of the utterance (0: its arrival), to the speech
+    /// service and returns its receipts: one for text, one for every utterance in a sound file.
     ///
     /// # Errors
-    /// No answer within `patience`.
-    pub fn inject(&self, sound: Sound, patience: Span) -> Result<Vec<Receipt>, ClientError> {
-        self.inject_said(sound, (clock::now(), Time(0)), patience)
-    }
-
-    /// As [`Client::inject`], with the start and end of the utterance (0: its arrival).
-    ///
-    /// # Errors
-    /// As [`Client::inject`].
-    pub fn inject_said(
+    /// No answer within `patience`, or before `standstill` returns why there will be none.
+    pub fn inject(
         &self,
         sound: Sound,
         said: (Time, Time),
         patience: Span,
+        standstill: impl FnMut() -> Option<String>,
     ) -> Result<Vec<Receipt>, ClientError> {
         let receipts = self.bus.reader::<Receipt>(&topics::RECEIPT)?;
         let writer = self.bus.encoded_writer::<Injection>(&topics::INJECTION)?;
-        deliver(&writer, &receipts, sound, said, patience)
+        deliver(&writer, &receipts, sound, said, patience, standstill)
     }
 }
 
-/// As [`Client::inject_said`], with open topics.
+/// As [`Client::inject`], with open topics.
 ///
 /// # Errors
 /// As [`Client::inject`].
@@ -108,6 +104,7 @@ pub fn deliver(
     sound: Sound,
     said: (Time, Time),
     patience: Span,
+    mut standstill: impl FnMut() -> Option<String>,
 ) -> Result<Vec<Receipt>, ClientError> {
     let mut submission = Submission::new(sound, said, clock::now(), patience);
     while !submission.is_expired(clock::now()) {
@@ -117,6 +114,9 @@ pub fn deliver(
         receipts.drain(|receipt| submission.on_receipt(receipt))?;
         if let Some(receipts) = submission.receipts() {
             return Ok(receipts.to_vec());
+        }
+        if let Some(why) = standstill() {
+            return Err(ClientError::Standstill(why));
         }
         std::thread::sleep(POLL_EVERY);
     }

@@ -54,24 +54,31 @@ fn first(
 #[derive(Debug)]
 pub(super) struct Lookout {
     due: Instant,
+    /// Whether a shortage counts, which may pass by itself.
+    shortages: bool,
     /// What was reported last.
     told: Option<String>,
 }
 
 impl Lookout {
+    /// For one who waits until a shortage has passed.
     pub(super) fn new() -> Self {
-        Self { due: Instant::now() + FIRST_LOOK, told: None }
+        Self { due: Instant::now() + FIRST_LOOK, shortages: false, told: None }
     }
 
-    /// Returns why the dialogue stands still, where that is news. A shortage may pass, and is left
-    /// to the patience of the one who waits.
+    /// For one who wants to know of shortages too.
+    pub(super) fn with_shortages() -> Self {
+        Self { shortages: true, ..Self::new() }
+    }
+
+    /// Returns why the dialogue stands still, where that is news.
     pub(super) fn news(&mut self, paths: &GroupPaths) -> Option<String> {
         if Instant::now() < self.due {
             return None;
         }
         self.due = Instant::now() + LOOK_EVERY;
-        let needs_help = |state| state != ServiceState::Short;
-        let why = unavailable(paths, &Service::DIALOGUE, needs_help);
+        let counts = |state| self.shortages || state != ServiceState::Short;
+        let why = unavailable(paths, &Service::DIALOGUE, counts);
         let is_news = why != self.told;
         self.told.clone_from(&why);
         why.filter(|_| is_news)

@@ -11,7 +11,8 @@ use service::group::GroupPaths;
 use service::printable::one_line;
 use service::{Span, Time};
 
-use super::{availability, hearing};
+use super::availability::{self, Lookout};
+use super::hearing;
 use crate::Outcome;
 use crate::cli::{PointArgs, SayArgs, TalkArgs};
 use crate::output::{Ink, Output, note};
@@ -25,11 +26,8 @@ pub(super) fn say(paths: &GroupPaths, args: &SayArgs, out: &mut Output<'_>) -> O
     if !spoken {
         return give(paths, Sound::Text(args.text.join(" ")), args.timeout, out);
     }
-    availability::require(paths, Service::Speech)?;
-    let client = Client::join(paths)?;
-    let patience = Span::from_s(args.timeout.as_secs_f64());
     let (sound, said) = (transcript(args)?, when(args)?);
-    print_all(paths, &client.inject_said(sound, said, patience)?, out)
+    give_said(paths, sound, said, args.timeout, out)
 }
 
 /// When it was said.
@@ -81,9 +79,21 @@ pub(super) fn give(
     timeout: Duration,
     out: &mut Output<'_>,
 ) -> Outcome {
+    give_said(paths, sound, (clock::now(), Time(0)), timeout, out)
+}
+
+fn give_said(
+    paths: &GroupPaths,
+    sound: Sound,
+    said: (Time, Time),
+    timeout: Duration,
+    out: &mut Output<'_>,
+) -> Outcome {
     availability::require(paths, Service::Speech)?;
     let client = Client::join(paths)?;
-    let receipts = client.inject(sound, Span::from_s(timeout.as_secs_f64()))?;
+    let mut lookout = Lookout::with_shortages();
+    let standstill = || lookout.news(paths);
+    let receipts = client.inject(sound, said, Span::from_s(timeout.as_secs_f64()), standstill)?;
     print_all(paths, &receipts, out)
 }
 
