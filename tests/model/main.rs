@@ -101,7 +101,7 @@ fn protocol_needs_its_rules_for_a_journal_set_aside() {
     breaks(LOST, Broken::ReplayAfterLoss, "applied twice");
     breaks(LOST, Broken::ReuseInteractions, "progress");
     breaks(LOST, Broken::ReuseAndCompareIdOnly, "false delivery");
-    breaks(LOST, Broken::ReuseUtterances, "acknowledged utterance is lost");
+    breaks(LOST, Broken::ReuseUtterances, "progress");
     breaks(LOST, Broken::WaitForLost, "progress");
     breaks(LOST, Broken::ReusePrompts, "progress");
 }

@@ -222,6 +222,8 @@ struct Client {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct World {
     holding: u8,
+    /// The latest question that the user has heard to its end.
+    heard: u8,
     /// Bits of interactions.
     grasped: u16,
     /// Bits of (interaction, object).
@@ -366,6 +368,7 @@ impl Protocol {
             let answers = view.open != 0
                 && view.pick == 0
                 && state.bus.presented == prompt
+                && state.world.heard == prompt
                 && client.answered != prompt;
             if settled && (asks || answers) {
                 let mut next = state.clone();
@@ -421,6 +424,7 @@ impl Protocol {
             let mut next = state.clone();
             let prompt = speech.playing;
             next.speech = Some(Speech { playing: 0, ..speech });
+            next.world.heard = prompt;
             let record = |next: &mut State| next.speech_journal.presented = prompt;
             let publish = |next: &mut State| next.bus.presented = prompt;
             for cut in self.cuts(state, false) {
