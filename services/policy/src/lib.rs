@@ -24,6 +24,8 @@ use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 
 /// Interval at which the standing decision is sent again.
 const RESEND_EVERY: Span = Span::from_ms(250);
+/// Longest time without a message of speech, which sends several a second, that is no outage.
+const OUTAGE: Span = Span::from_ms(1_000);
 
 /// Input of the policy.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +58,10 @@ pub struct PolicyNode {
     manager: Manager,
     state: State,
     floor: Floor,
+    /// The latest standing prompt that was said to its end, and which presentation of it.
+    said: (PromptId, u32),
+    /// When speech was last heard of.
+    heard_of_speech: Time,
     /// Messages rejected as invalid or contradictory.
     rejected: u64,
     /// Since when an earlier observation is missing.
@@ -75,6 +81,8 @@ impl Node for PolicyNode {
             manager,
             state,
             floor: Floor::default(),
+            said: Default::default(),
+            heard_of_speech: Time(0),
             rejected: 0,
             waiting_since: None,
             next_send: Time(0),
@@ -90,8 +98,9 @@ impl Node for PolicyNode {
             Event::SetAside(_) => {}
             Event::Started => self.start(now, fx),
             Event::Message(In::Observation(observation)) => self.observe(&observation, now, fx),
-            Event::Message(In::Presented(it)) => self.floor.presented = presentation(&it, now),
+            Event::Message(In::Presented(it)) => self.present(presentation(&it, now), now),
             Event::Message(In::Activity(activity)) => {
+                self.listen(now);
                 self.floor.speaking_since =
                     (activity.onset_ns > 0).then_some(Time(activity.onset_ns).min(now));
                 self.floor.pending = activity.pending;
@@ -198,6 +207,30 @@ impl PolicyNode {
         self.apply(Cause::PickEnded { pick, outcome }, now, fx);
     }
 
+    fn present(&mut self, put: Presentation, now: Time) {
+        self.listen(now);
+        let (act, which) = (&self.state.act, (put.prompt, put.number));
+        if let Some(ended) = put.ended
+            && put.complete
+            && which == (act.prompt, act.presentation)
+            && which != self.said
+        {
+            (self.said, self.floor.listened) = (which, now.since(ended).min(OUTAGE));
+        }
+        self.floor.presented = put;
+    }
+
+    fn listen(&mut self, now: Time) {
+        self.floor.listened = self.listened(now);
+        self.heard_of_speech = now;
+    }
+
+    /// Returns for how long the standing prompt could be answered since its end.
+    fn listened(&self, now: Time) -> Span {
+        let Span(before) = self.floor.listened;
+        Span(before + now.since(self.heard_of_speech).min(OUTAGE).0)
+    }
+
     fn tick(&mut self, now: Time, fx: &mut Fx) {
         self.decide_deferred(now, fx);
         if self.manager.silence_is_due(&self.state, &self.floor(now), now) {
@@ -218,7 +251,7 @@ impl PolicyNode {
     fn floor(&self, now: Time) -> Floor {
         let is_on_its_way = self.waiting_since.is_some_and(|since| now < since + HEARING_MAX);
         let pending = self.floor.pending.max(is_on_its_way.into());
-        Floor { pending, ..self.floor }
+        Floor { pending, listened: self.listened(now), ..self.floor }
     }
 
     fn apply(&mut self, cause: Cause, now: Time, fx: &mut Fx) {

@@ -264,10 +264,26 @@ fn silence_counts_from_the_end_of_the_spoken_question() {
         ended_ns: at(1000).ns(),
         ..Presented::default()
     };
-    tell(&mut node, In::Presented(said), at(1000));
+    // Speech says it again all the time, but for an hour in which it is down; then the policy is.
+    let says = |node: &mut PolicyNode, from: Time, until: Time| {
+        let mut now = from;
+        while now < until {
+            tell(node, In::Presented(said), now);
+            assert!(!silent(node, now), "{now:?}");
+            now = now + Span::from_ms(250);
+        }
+    };
     let window = Span::from_s(manager().turns().response_window_s);
-    assert!(!silent(&mut node, at(1000) + window - Span::from_ms(1)));
-    assert!(silent(&mut node, at(1000) + window));
+    let (down, up) = (at(1000) + window - Span::from_ms(1_100), at(4600));
+    says(&mut node, at(1000), down);
+    assert!(!silent(&mut node, up), "speech is down");
+    says(&mut node, up, up + Span::from_ms(1));
+    assert!(silent(&mut node, up + Span::from_ms(500)));
+    let record = Record { cause: Cause::Snapshot, at: up, state: node.state().clone() };
+    let mut node = PolicyNode::recover(manager(), vec![record]).unwrap();
+    let again = Presented { presentation: 2, ended_ns: up.ns(), ..said };
+    tell(&mut node, In::Presented(again), at(8000));
+    assert!(!silent(&mut node, at(8000)), "the policy was down");
 }
 
 /// Whole dialogues with a person who sometimes lies, falls silent, speaks late or starts over: the

@@ -18,6 +18,8 @@ pub struct Floor {
     pub pending: u32,
     /// The latest presentation of a prompt.
     pub presented: Presentation,
+    /// For how long the standing prompt could be answered since its end: an outage is no silence.
+    pub listened: Span,
 }
 
 impl Floor {
@@ -43,8 +45,8 @@ impl Manager {
         deferred.is_some_and(|it| !floor.is_taken(now) || now >= it.since + HEARING_MAX)
     }
 
-    /// Returns whether [`Silence`](super::Cause::Silence) is due: the standing question was said to its end, and the
-    /// response window has passed since.
+    /// Returns whether [`Silence`](super::Cause::Silence) is due: the standing question was said to its end, and could
+    /// be answered for the response window since.
     pub fn silence_is_due(&self, state: &State, floor: &Floor, now: Time) -> bool {
         let (act, put) = (&state.act, &floor.presented);
         let asked = act.kind == ActKind::Ask && act.prompt != PromptId(0);
@@ -53,7 +55,7 @@ impl Manager {
         asked
             && said
             && !(self.setup.turns.defers && floor.is_taken(now))
-            && put.ended.is_some_and(|ended| now >= ended + window)
+            && floor.listened >= window
             && now >= act.decided + window
     }
 
