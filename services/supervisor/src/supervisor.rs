@@ -64,6 +64,7 @@ pub struct Supervisor {
     condemned: Vec<Pid>,
     ending: Option<Ending>,
     last_renewal: Option<Time>,
+    next_renewal: Time,
     last_pass: Time,
     next_tick: Time,
     reported_ready: bool,

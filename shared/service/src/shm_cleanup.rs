@@ -99,13 +99,21 @@ impl Admin {
         }
     }
 
-    /// Returns true if the files by which new processes find the group are still there and whole. If
-    /// not, new processes would create a second group of the same name, or none could start.
+    /// Returns false if the files by which new processes find the group are known to be gone or
+    /// damaged: new processes would create a second group of the same name, or none could start.
+    /// What cannot be looked at for now, e.g. for want of a descriptor, counts as whole.
     pub fn intact(&self) -> bool {
-        let is_named = self.paths.shm_name().is_ok_and(|place| place == self.place);
-        let is_filled = fs::read_dir(self.place.folder()).is_ok_and(|mut all| all.next().is_some());
-        is_named && is_filled && self.management.metadata().is_ok_and(|file| file.len() > 0)
+        let unless_gone =
+            |looked: io::Result<bool>| looked.unwrap_or_else(|error| !is_gone(&error));
+        let is_named = self.paths.shm_name().map(|place| place == self.place);
+        let is_filled = fs::read_dir(self.place.folder()).map(|mut all| all.next().is_some());
+        let is_managed = self.management.metadata().map(|file| file.len() > 0);
+        [is_named, is_filled, is_managed].into_iter().all(unless_gone)
     }
+}
+
+fn is_gone(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory | ErrorKind::InvalidData)
 }
 
 /// Creates the folder of iceoryx2's files under a name that nobody else has, and writes the name down

@@ -18,6 +18,9 @@ use service::control::{DownReport, Refusal, RefusalKind, Reply};
 /// A second loss of the topics' files within this time stops the group for good.
 const RENEWAL_INTERVAL: Duration = Duration::from_secs(60);
 
+/// Pause after a restart that has failed: what it needs may be short for a while.
+const RENEWAL_RETRY: Duration = Duration::from_secs(1);
+
 /// A group that is being stopped.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ending {
@@ -36,7 +39,7 @@ pub(super) enum Cause {
     Critical(HeldBecause),
     /// Its files were removed from outside: it is restarted.
     FilesGone,
-    /// They were removed again, or could not be made again.
+    /// They were removed again.
     Unusable,
 }
 
@@ -61,17 +64,20 @@ impl Supervisor {
         if ending.cause != Cause::FilesGone {
             return Some(ending);
         }
+        if self.now() < self.next_renewal {
+            return None;
+        }
         match self.renew() {
             Ok(()) => {
                 self.ending = None;
                 self.settle(self.now());
-                None
             }
             Err(error) => {
-                tracing::error!(%error, "the group cannot be started again");
-                Some(Ending { cause: Cause::Unusable, ..ending })
+                tracing::error!(%error, "the group cannot be started again yet");
+                self.next_renewal = self.now() + RENEWAL_RETRY;
             }
         }
+        None
     }
 
     /// Cleans up, answers the waiting clients, and returns the exit code.
@@ -118,7 +124,7 @@ impl Supervisor {
     /// silently create a group of its own; only restarting all services repairs that.
     pub(super) fn check_topics(&mut self, now: Time) {
         let is_intact = self.admin.as_ref().is_some_and(Admin::intact)
-            && self.around.paths.control_socket().exists();
+            && self.around.paths.control_socket().try_exists().unwrap_or(true);
         if is_intact || self.ending.is_some() {
             return;
         }

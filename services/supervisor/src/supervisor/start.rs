@@ -114,6 +114,7 @@ pub(super) fn start(
         condemned: Vec::new(),
         ending: None,
         last_renewal: None,
+        next_renewal: now,
         last_pass: now,
         next_tick: now + TICK,
         reported_ready: false,
