@@ -38,7 +38,11 @@ impl Supervisor {
         let machine = self.group.machine(service);
         let running = entry.running.as_ref();
         let pid = running.map(|running| running.child.pid());
-        let log_tail = match machine.state() {
+        let state = match machine.state() {
+            ServiceState::Ready if entry.shortage().is_some() => ServiceState::Short,
+            state => state,
+        };
+        let log_tail = match state {
             ServiceState::Failed | ServiceState::Short => entry.log_tail(&self.around.paths),
             _ => Vec::new(),
         };
@@ -46,7 +50,7 @@ impl Supervisor {
             name: entry.spec.name.clone(),
             wanted: machine.wanted(),
             actual: machine.actual(),
-            state: machine.state(),
+            state,
             why: self.why(service),
             pid: pid.map(|pid| pid.as_raw_nonzero().get().unsigned_abs()),
             incarnation: machine.incarnation(),
