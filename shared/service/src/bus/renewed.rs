@@ -23,13 +23,21 @@ const PAUSE_MAX: Span = Span::from_ms(2_000);
 pub(super) struct Failing(Arc<AtomicBool>);
 
 impl Failing {
+    fn note(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    fn is_noted(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+
     /// The handler for a port's builder.
     pub(super) fn handler(
         &self,
     ) -> impl Fn(DegradationCause, &DegradationInfo) -> DegradationAction + Send + 'static {
-        let Self(failing) = self.clone();
+        let failing = self.clone();
         move |_, _| {
-            failing.store(true, Ordering::Relaxed);
+            failing.note();
             DegradationAction::Ignore
         }
     }
@@ -69,7 +77,7 @@ impl<P> Renewed<P> {
         &self,
         act: impl FnOnce(&P) -> Result<T, PortError>,
     ) -> Result<T, PortError> {
-        if self.failing.0.load(Ordering::Relaxed) {
+        if self.failing.is_noted() {
             self.renew()?;
         }
         match &*self.port.borrow() {
@@ -93,7 +101,7 @@ impl<P> Renewed<P> {
         self.failing.0.store(false, Ordering::Relaxed);
         let made = (self.create)(&self.failing);
         let port = made.map_err(|error| {
-            self.failing.0.store(true, Ordering::Relaxed);
+            self.failing.note();
             PortError::new(self.topic, error.to_string())
         })?;
         self.port.replace(Some(port));
@@ -104,5 +112,36 @@ impl<P> Renewed<P> {
 impl<P> fmt::Debug for Renewed<P> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Renewed").field("topic", &self.topic).finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn port_whose_connection_failed_is_created_until_it_connects() {
+        let tries = Arc::new(std::sync::atomic::AtomicU32::new(0));
+        let counted = Arc::clone(&tries);
+        let port = Renewed::new("topic", move |failing| {
+            let number = counted.fetch_add(1, Ordering::Relaxed) + 1;
+            match number {
+                1 => failing.note(),
+                2 => return Err(BusError::ipc("topic", "no descriptor is free".to_owned())),
+                _ => {}
+            }
+            Ok(number)
+        });
+        let port = port.unwrap();
+        let number = || port.with(|number| Ok(*number));
+        assert_eq!(number(), Ok(1), "no other try at once");
+        let mut failures = 0;
+        while number() != Ok(3) {
+            failures += u32::from(number().is_err());
+            assert!(tries.load(Ordering::Relaxed) <= 3);
+            std::thread::yield_now();
+        }
+        assert!(failures > 0, "a port that could not be created is an error");
+        assert_eq!(number(), Ok(3));
     }
 }
