@@ -10,6 +10,7 @@ use std::fs::{self, File, OpenOptions, Permissions};
 use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt};
 use std::os::unix::net::{UnixDatagram, UnixStream};
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 /// What a hostile user tries with a file, folder or socket; returns what succeeded.
 fn attack(path: &Path) -> Vec<&'static str> {
@@ -78,7 +79,13 @@ pub fn everything(group: &Group) -> BTreeSet<PathBuf> {
     let mut all = held_open(group);
     below(group.paths().root(), &mut all);
     shm_cleanup::leftovers(group.paths()).iter().for_each(|path| below(path, &mut all));
-    let is_ours = |path: &PathBuf| path.symlink_metadata().is_ok_and(|file| file.uid() == 0);
+    // A recogniser's model or a library may be held open, too: what is older is not of the group.
+    let since = group.paths().home().metadata().and_then(|home| home.created());
+    let since = since.unwrap_or(SystemTime::UNIX_EPOCH);
+    let is_ours = |path: &PathBuf| {
+        let file = path.symlink_metadata();
+        file.is_ok_and(|file| file.uid() == 0 && file.modified().is_ok_and(|at| at >= since))
+    };
     all.into_iter().filter(is_ours).collect()
 }
 
