@@ -54,7 +54,7 @@ pub(crate) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
     Ok(vec![format!("{accepted} accepted once and without a gap")])
 }
 
-/// Returns whether numbering began anew between the two, because a journal was set aside.
+/// Returns whether numbering skipped between the two, because a journal was set aside.
 fn is_first_after(last: u64, number: u64) -> bool {
     number > last && number % NUMBERS_SKIPPED == 1
 }

@@ -17,7 +17,7 @@
 //! `prev_crc` is the checksum of the frame before (of the header for the first frame), so a frame
 //! is only valid in its own place. `snapshot` is the number of records that the file began with.
 //!
-//! A damaged frame was either torn, before anybody was told that it is durable, and is cut off; or it
+//! A damaged frame was either torn, before it was acknowledged as durable, and is cut off; or it
 //! was acknowledged: that is corruption, and the journal refuses to open. Which of the two:
 //!
 //! - A valid frame after it: each is written after the one before was synced, so it was acknowledged.
@@ -27,7 +27,7 @@
 //!   file, so no sector's part of it is all zeros, and its length stands at both ends. A frame that
 //!   lacks its end, or a sector, is torn; one that is there to its last byte and is wrong is corrupt.
 //!
-//! What cannot be told apart: whole frames missing at the end of a file look as if they had never been
+//! What cannot be distinguished: whole frames missing at the end of a file look as if they had never been
 //! written (the other services' journals may know of them); a last frame of which a whole sector was
 //! lost after the sync, or both of whose lengths are damaged, looks torn.
 //!

@@ -33,7 +33,7 @@ pub fn init() {
     let _ = if json { builder.json().try_init() } else { builder.try_init() };
 }
 
-/// Standard error. A pipe and a terminal are opened anew, so that writes to them do not block and
+/// Standard error. A pipe and a terminal are opened again, so that writes to them do not block and
 /// the others that share them are not affected; a file keeps the position that it shares.
 fn standard_error() -> io::Result<File> {
     let shared = io::stderr().as_fd().try_clone_to_owned()?;

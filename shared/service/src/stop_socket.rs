@@ -37,7 +37,7 @@ const DATAGRAMS_MAX: usize = 64;
 const RESEND_EVERY: Span = Span::from_ms(10);
 /// Time for a restart of the arm's service, before it counts as absent.
 const RESTART_GRACE: Span = Span::from_ms(1_000);
-/// Time without an answer before the caller is told.
+/// Time without an answer before the caller is notified.
 const SILENCE: Span = Span::from_ms(250);
 /// Time that a stop of an arm at rest is given to become durable.
 const DURABLE_GRACE: Span = Span::from_ms(500);
@@ -219,7 +219,7 @@ impl StopClient {
 /// Gives an order and waits until the arm has carried it out: latched, at rest and durable, or
 /// released. A stop that cannot become durable is returned as such.
 ///
-/// `note` is told once, while there is still time, why the answer is late.
+/// `note` is called once, while there is still time, with the reason for which the answer is late.
 ///
 /// # Errors
 /// Not confirmed within `patience`, which no error exceeds; see [`StopError`].

@@ -6,21 +6,21 @@ use super::*;
 
 const OVER: u64 = service::journal_set::NUMBERS_SKIPPED;
 
-fn told(machine: &mut Machine, is_own: bool) {
+fn set_aside(machine: &mut Machine, is_own: bool) {
     machine.pass(vec![Event::SetAside(SetAside { over: OVER, is_own })], None);
 }
 
 #[test]
 fn arm_without_memory_waits_for_a_person() {
     let mut machine = Machine::new(config_at(20.0));
-    told(&mut machine, true);
+    set_aside(&mut machine, true);
     machine.act(pick(OVER + 1, 4));
     machine.run(3.0);
     assert_eq!(machine.phase(), PickPhase::Accepted);
     assert_eq!(machine.robot.grasps(), 0);
     // The latch is durable.
     machine.restart();
-    told(&mut machine, false);
+    set_aside(&mut machine, false);
     assert!(machine.node.state().stopped);
     let given_ns = machine.now.ns();
     let resume =
@@ -39,7 +39,7 @@ fn pick_whose_interaction_is_over_is_left_before_the_grasp_and_brought_after_it(
         let mut machine = Machine::picking(config_at(5.0), 4, phase);
         machine.act = None;
         machine.restart();
-        told(&mut machine, false);
+        set_aside(&mut machine, false);
         machine.run_until("the end", |m| m.phase() == PickPhase::Done);
         assert_eq!(machine.outcome(), outcome, "{phase:?}");
         machine.robot.assert_well_behaved();

@@ -28,7 +28,7 @@ fn policy_without_memory_takes_no_old_utterance_and_gives_no_old_number() {
     assert!(state.act.prompt.0 > OVER && state.act.id.0 > OVER, "{:?}", state.act);
     refold(&mut manager(), &records).unwrap();
 
-    // At every further start it is told the same.
+    // Every further start repeats it.
     let mut again = PolicyNode::recover(manager(), records).unwrap();
     assert_eq!(start(&mut again, false, at(4)), []);
     assert_eq!(again.state(), state);

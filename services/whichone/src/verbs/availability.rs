@@ -57,13 +57,13 @@ pub(super) struct Lookout {
     /// Whether a shortage counts, which may pass by itself.
     shortages: bool,
     /// What was reported last.
-    told: Option<String>,
+    reported: Option<String>,
 }
 
 impl Lookout {
     /// For one who waits until a shortage has passed.
     pub(super) fn new() -> Self {
-        Self { due: Instant::now() + FIRST_LOOK, shortages: false, told: None }
+        Self { due: Instant::now() + FIRST_LOOK, shortages: false, reported: None }
     }
 
     /// For one who wants to know of shortages too.
@@ -79,8 +79,8 @@ impl Lookout {
         self.due = Instant::now() + LOOK_EVERY;
         let counts = |state| self.shortages || state != ServiceState::Short;
         let why = unavailable(paths, &Service::DIALOGUE, counts);
-        let is_news = why != self.told;
-        self.told.clone_from(&why);
+        let is_news = why != self.reported;
+        self.reported.clone_from(&why);
         why.filter(|_| is_news)
     }
 }

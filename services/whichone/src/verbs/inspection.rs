@@ -72,7 +72,7 @@ fn verify_all(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
         return Err(Failure::new(first.exit(), lines.join("\n")));
     }
     let mut verdicts = BTreeMap::new();
-    // A running group writes on: who was told is read before who told.
+    // A running group writes on: a receiver's journal is read before its sender's.
     for service in [Service::Arm, Service::Policy, Service::Speech] {
         if !paths.journal_file(service.name()).is_file() {
             continue;

@@ -2,6 +2,7 @@
 
 use super::gate::{Gate, reject};
 use super::open::{notifiers, open_topic};
+use super::ports::subscribe;
 use super::renewed::Renewed;
 use super::segment_error::{self, SegmentError};
 use super::wake::WakeNotifier;
@@ -60,19 +61,9 @@ impl Bus {
     /// As [`Bus::writer`].
     pub fn encoded_reader<T: Schema>(&self, topic: &Topic) -> Result<EncodedReader<T>, BusError> {
         let service = open_topic!(self, topic, [u8])?;
-        let (name, buffer, history) = (topic.name, topic.buffer, topic.history);
-        let subscriber = Renewed::new(name, move |failing| {
-            create(name, || {
-                service
-                    .subscriber_builder()
-                    .buffer_size(buffer)
-                    .history_request(history)
-                    .set_degradation_handler(failing.handler())
-                    .create()
-            })
-        })?;
+        let subscriber = subscribe(service, topic)?;
         let gate = Gate::new(self, topic);
-        Ok(EncodedReader { topic: name, subscriber, gate, _payload: PhantomData })
+        Ok(EncodedReader { topic: topic.name, subscriber, gate, _payload: PhantomData })
     }
 }
 

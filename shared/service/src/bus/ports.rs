@@ -9,9 +9,11 @@ use super::renewed::Renewed;
 use super::wake::WakeNotifier;
 use super::{Bus, BusError, Ipc, PortError, WireMessage, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
-use iceoryx2::prelude::BackpressureStrategy;
+use iceoryx2::prelude::{BackpressureStrategy, IceoryxSend};
+use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
 use messages::Stamp;
 use messages::topics::Topic;
+use std::fmt::Debug;
 
 impl Bus {
     /// Writes a fixed-layout topic.
@@ -41,19 +43,27 @@ impl Bus {
     /// As [`Bus::writer`].
     pub fn reader<T: WireMessage>(&self, topic: &Topic) -> Result<Reader<T>, BusError> {
         let service = open_topic!(self, topic, T)?;
-        let (name, buffer, history) = (topic.name, topic.buffer, topic.history);
-        let subscriber = Renewed::new(name, move |failing| {
-            create(name, || {
-                service
-                    .subscriber_builder()
-                    .buffer_size(buffer)
-                    .history_request(history)
-                    .set_degradation_handler(failing.handler())
-                    .create()
-            })
-        })?;
-        Ok(Reader { topic: name, subscriber, gate: Gate::new(self, topic) })
+        let subscriber = subscribe(service, topic)?;
+        Ok(Reader { topic: topic.name, subscriber, gate: Gate::new(self, topic) })
     }
+}
+
+/// Creates the reading port of a topic, whatever its payload.
+pub(super) fn subscribe<P: IceoryxSend + Debug + ?Sized + 'static>(
+    service: PortFactory<Ipc, P, Stamp>,
+    topic: &Topic,
+) -> Result<Renewed<Subscriber<Ipc, P, Stamp>>, BusError> {
+    let (name, buffer, history) = (topic.name, topic.buffer, topic.history);
+    Renewed::new(name, move |failing| {
+        create(name, || {
+            service
+                .subscriber_builder()
+                .buffer_size(buffer)
+                .history_request(history)
+                .set_degradation_handler(failing.handler())
+                .create()
+        })
+    })
 }
 
 /// Writes a fixed-layout topic.

@@ -114,7 +114,7 @@ fn absent_service_is_reported_soon_with_the_emergency_stop() {
 fn restarted_service_takes_the_repeated_order() {
     let (_home, paths) = group();
     drop(StopListener::bind(&paths).unwrap());
-    let (told, trouble) = std::sync::mpsc::channel();
+    let (noted, trouble) = std::sync::mpsc::channel();
     let paths = &paths;
     thread::scope(|scope| {
         let listener = scope.spawn(move || {
@@ -129,7 +129,7 @@ fn restarted_service_takes_the_repeated_order() {
             }
         });
         let state = give(paths, MotionOrder::Stop, Span::from_ms(60_000), &mut |_| {
-            told.send(()).unwrap();
+            noted.send(()).unwrap();
         });
         listener.join().unwrap();
         assert!(state.unwrap().stopped);
