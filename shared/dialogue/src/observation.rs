@@ -204,7 +204,9 @@ fn add_response(model: &Model, question: Question, reading: &Reading, log: &mut 
     let response = reading.response;
     let yes = match (question, response) {
         (Question::None | Question::Which(_), _) => return (1.0_f64 / 3.0).ln(),
-        (_, Response::None) => return (1.0 - params.p_l).ln(),
+        (_, Response::None | Response::CannotTell | Response::DoesNotMatter) => {
+            return (1.0 - params.p_l).ln();
+        }
         (_, response) => response == Response::Yes,
     };
     let right = (params.p_l * (1.0 - params.epsilon)).ln();

@@ -1,6 +1,6 @@
 //! From one utterance's content to the ways in which it can be understood.
 
-use scene::{Doubt, Intent, Reading, Response};
+use scene::{Doubt, Intent, Reading, Reference, Response};
 
 use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
@@ -41,6 +41,8 @@ impl ParsedUtterance<'_> {
             response: if answered { response } else { Response::None },
             excluded: excluded.iter().map(|group| group.words.clone()).collect(),
             intent: self.intent,
+            refers: Reference::None,
+            further: Vec::new(),
             doubt: Doubt {
                 base: known(base.iter().map(|value| value.doubt)),
                 excluded: known(excluded.iter().map(|group| group.doubt)),

@@ -1,6 +1,6 @@
 //! Enums as bytes in fixed layouts, and the check of bytes that another process wrote.
 
-use scene::{Intent, Response};
+use scene::{Intent, Reference, Response};
 use std::marker::PhantomData;
 
 /// An invalid value on the wire.
@@ -187,7 +187,7 @@ macro_rules! wire_enum {
 }
 pub(crate) use wire_enum;
 
-wire_codes! { Response { None = 0, Yes = 1, No = 2, } }
+wire_codes! { Response { None = 0, Yes = 1, No = 2, CannotTell = 3, DoesNotMatter = 4, } }
 wire_codes! {
     Intent {
         Inform = 0,
@@ -197,5 +197,25 @@ wire_codes! {
         Repeat = 4,
         StartOver = 5,
         AskBack = 6,
+        AskCount = 7,
+        AskWhich = 8,
+        AskWhere = 9,
+        AskWhy = 10,
+        AskStatus = 11,
+        AskHelp = 12,
+        Greet = 13,
+        Thank = 14,
+        PutBack = 15,
+    }
+}
+wire_codes! {
+    Reference {
+        None = 0,
+        Other = 1,
+        Same = 2,
+        Smaller = 3,
+        Larger = 4,
+        Smallest = 5,
+        Largest = 6,
     }
 }

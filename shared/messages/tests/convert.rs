@@ -1,11 +1,14 @@
 //! Wire round trips are lossless, and invalid data is rejected.
 
 use messages::{
-    ASKED_MAX, AskedQuestion, BASE_WORDS_MAX, Code, EXCLUDED_GROUPS_MAX, EXCLUDED_WORDS_MAX, Fits,
-    Hypothesis, Interpretation, Observation, Utterance, WireQuestion, WireReading,
+    ASKED_MAX, AskedQuestion, BASE_WORDS_MAX, Code, EXCLUDED_GROUPS_MAX, EXCLUDED_WORDS_MAX,
+    FURTHER_MAX, Fits, Hypothesis, Interpretation, Observation, Utterance, WireQuestion,
+    WireReading,
 };
 use proptest::prelude::*;
-use scene::{AttributeId, Doubt, Intent, ObjectId, Question, Reading, Response, ValueId, WordId};
+use scene::{
+    AttributeId, Doubt, Intent, ObjectId, Question, Reading, Reference, Response, ValueId, WordId,
+};
 
 const WORDS: usize = 40;
 
@@ -25,11 +28,16 @@ prop_compose! {
         response_doubt in 0..=8_u8,
         base in words(BASE_WORDS_MAX),
         excluded in prop::collection::vec(words(EXCLUDED_WORDS_MAX), 0..=EXCLUDED_GROUPS_MAX),
-        response in prop::sample::select(vec![Response::Yes, Response::No, Response::None]),
+        response in prop::sample::select(vec![
+            Response::Yes, Response::No, Response::None, Response::CannotTell,
+            Response::DoesNotMatter,
+        ]),
         intent in prop::sample::select(vec![
             Intent::Inform, Intent::None, Intent::Stop, Intent::Cancel, Intent::Repeat,
-            Intent::StartOver, Intent::AskBack,
+            Intent::StartOver, Intent::AskBack, Intent::AskCount, Intent::PutBack,
         ]),
+        refers in prop::sample::select(vec![Reference::None, Reference::Other, Reference::Largest]),
+        further in prop::collection::vec(words(EXCLUDED_WORDS_MAX), 0..=FURTHER_MAX),
     ) -> Reading {
         let first = |doubts: Vec<f64>, len: usize| doubts.into_iter().take(len).collect();
         let doubt = Doubt {
@@ -37,7 +45,7 @@ prop_compose! {
             excluded: first(excluded_doubt, excluded.len()),
             response: f64::from(response_doubt) / 8.0,
         };
-        Reading { base, response, excluded, intent, doubt }
+        Reading { base, response, excluded, intent, refers, further, doubt }
     }
 }
 

@@ -159,8 +159,8 @@ fn messages_with_invalid_codes_are_rejected_wherever_the_code_is() {
     assert_eq!(act.check(), Err(WireError::new("ActKind", 9)));
     let mut observation = Observation::default();
     assert_eq!(observation.check(), Ok(()));
-    observation.readings[READINGS_MAX - 1].intent = Code::from_raw(7);
-    assert_eq!(observation.check(), Err(WireError::new("Intent", 7)));
+    observation.readings[READINGS_MAX - 1].intent = Code::from_raw(200);
+    assert_eq!(observation.check(), Err(WireError::new("Intent", 200)));
 }
 
 #[test]

@@ -24,5 +24,5 @@ pub use ids::{AttributeId, ObjectId, ValueId, WordId};
 pub use model::{Attribute, Object, Placement, Role, Scene, Value};
 pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};
-pub use reading::{Doubt, Intent, Reading, Response};
+pub use reading::{Doubt, Intent, Reading, Reference, Response};
 pub use stable_hash::StableHash;

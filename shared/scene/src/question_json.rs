@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use crate::{AttributeId, Question, Reading, Scene};
+use crate::{AttributeId, Intent, Question, Reading, Response, Scene};
 
 /// An invalid question in JSON, in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -73,10 +73,32 @@ pub fn reading_to_json(scene: &Scene, reading: &Reading) -> Json {
     };
     json!({
         "base": words(&reading.base),
-        "response": reading.response,
+        "response": published_response(reading.response),
         "excluded": reading.excluded.iter().map(|group| words(group)).collect::<Vec<_>>(),
-        "intent": reading.intent,
+        "intent": published_intent(reading.intent),
     })
+}
+
+/// The published format knows `l_r` of the paper alone.
+fn published_response(response: Response) -> Response {
+    match response {
+        Response::CannotTell | Response::DoesNotMatter => Response::None,
+        told => told,
+    }
+}
+
+/// The published format has one intent for all questions to the robot.
+fn published_intent(intent: Intent) -> Intent {
+    match intent {
+        Intent::AskCount
+        | Intent::AskWhich
+        | Intent::AskWhere
+        | Intent::AskWhy
+        | Intent::AskStatus
+        | Intent::AskHelp => Intent::AskBack,
+        Intent::Greet | Intent::Thank | Intent::PutBack => Intent::None,
+        other => other,
+    }
 }
 
 fn attribute(scene: &Scene, json: &Json) -> Result<AttributeId, QuestionError> {

@@ -1,4 +1,5 @@
-//! Understood utterances: `(l_b, l_r)` of section 3.6, extended by excluded values and intents.
+//! Understood utterances: `(l_b, l_r)` of section 3.6, extended by excluded values, references and
+//! intents.
 
 use crate::WordId;
 
@@ -15,6 +16,10 @@ pub enum Response {
     /// Neither, or both.
     #[default]
     None,
+    /// "I don't know": the user cannot tell.
+    CannotTell,
+    /// "I don't care", "either": the answer does not matter to the user.
+    DoesNotMatter,
 }
 
 /// The purpose of an utterance.
@@ -36,8 +41,49 @@ pub enum Intent {
     Repeat,
     /// Forget everything said and start over.
     StartOver,
-    /// Ask the robot a question ("what colours do you have?").
+    /// Ask the robot what there is ("what colours do you have?").
     AskBack,
+    /// Ask how many objects the words describe ("how many cups are there?").
+    AskCount,
+    /// Ask which objects the words describe ("what is on the shelf?").
+    AskWhich,
+    /// Ask where the objects are that the words describe.
+    AskWhere,
+    /// Ask for the reason of what the robot said or does.
+    AskWhy,
+    /// Ask what the robot is doing.
+    AskStatus,
+    /// Ask what one can say to the robot.
+    AskHelp,
+    /// Greet, or take leave.
+    Greet,
+    /// Thank.
+    Thank,
+    /// Have the delivered object put back.
+    PutBack,
+}
+
+/// An object that an utterance points to by what was spoken of.
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "snake_case")]
+pub enum Reference {
+    /// None.
+    #[default]
+    None,
+    /// "the other one": not the one just spoken of.
+    Other,
+    /// "the same one again": the one delivered last.
+    Same,
+    /// "the smaller one", of those that may be meant.
+    Smaller,
+    /// "the bigger one", of those that may be meant.
+    Larger,
+    /// "the smallest one", of those that the words describe.
+    Smallest,
+    /// "the biggest one", of those that the words describe.
+    Largest,
 }
 
 /// One way to understand an utterance.
@@ -50,8 +96,12 @@ pub struct Reading {
     pub response: Response,
     /// Groups of words; an object that has every value of a group is ruled out.
     pub excluded: Vec<Vec<WordId>>,
-    /// Its purpose.
+    /// Its purpose. Where it asks for objects, `base` and `excluded` describe those.
     pub intent: Intent,
+    /// The object that it points to by what was spoken of.
+    pub refers: Reference,
+    /// Words of each further object that is asked for ("… and the white cup").
+    pub further: Vec<Vec<WordId>>,
     /// Doubts about its parts.
     pub doubt: Doubt,
 }

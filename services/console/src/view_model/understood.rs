@@ -2,7 +2,7 @@
 
 use dialogue::Attributed;
 use messages::{Observation, UtteranceSeq};
-use scene::{Intent, Reading, Response, Scene};
+use scene::{Intent, Reading, Reference, Response, Scene};
 
 use super::line::{Answered, Meaning};
 use super::prompts::Prompts;
@@ -98,18 +98,43 @@ fn words(scene: &Scene, reading: &Reading) -> String {
         Intent::Cancel => Some("never mind"),
         Intent::Repeat => Some("say that again"),
         Intent::StartOver => Some("start over"),
-        Intent::AskBack => Some("a question to me"),
+        Intent::AskBack
+        | Intent::AskCount
+        | Intent::AskWhich
+        | Intent::AskWhere
+        | Intent::AskWhy
+        | Intent::AskStatus
+        | Intent::AskHelp => Some("a question to me"),
+        Intent::Greet => Some("a greeting"),
+        Intent::Thank => Some("thanks"),
+        Intent::PutBack => Some("put it back"),
     };
     let response = match reading.response {
         Response::Yes => Some("yes"),
         Response::No => Some("no"),
+        Response::CannotTell => Some("cannot tell"),
+        Response::DoesNotMatter => Some("does not matter"),
         Response::None => None,
     };
-    let mut parts: Vec<String> = intent.into_iter().chain(response).map(str::to_owned).collect();
+    let refers = match reading.refers {
+        Reference::None => None,
+        Reference::Other => Some("the other one"),
+        Reference::Same => Some("the same one"),
+        Reference::Smaller => Some("the smaller one"),
+        Reference::Larger => Some("the bigger one"),
+        Reference::Smallest => Some("the smallest one"),
+        Reference::Largest => Some("the biggest one"),
+    };
+    let given = [intent, response, refers].into_iter().flatten();
+    let mut parts: Vec<String> = given.map(str::to_owned).collect();
     parts.extend(reading.base.iter().map(|id| word(id).to_owned()));
     parts.extend(reading.excluded.iter().map(|group| {
         let group: Vec<&str> = group.iter().map(word).collect();
         format!("not {}", group.join(" and "))
+    }));
+    parts.extend(reading.further.iter().map(|group| {
+        let group: Vec<&str> = group.iter().map(word).collect();
+        format!("then {}", group.join(" "))
     }));
     if parts.is_empty() { "a request".to_owned() } else { parts.join(" · ") }
 }

@@ -22,7 +22,7 @@ impl Manager {
             Intent::None if self.is_pointing(utterance) => {
                 self.inform(state, utterance, &shares, at);
             }
-            Intent::None => {}
+            Intent::None | Intent::Greet | Intent::Thank | Intent::PutBack => {}
             // The speech service has already stopped the arm. An ordered pick continues once the
             // operator releases the stop, so its order must stand.
             Intent::Stop => interject(state, Remark::Stopped, at),
@@ -33,7 +33,13 @@ impl Manager {
                 }
             }
             Intent::StartOver => self.start_over(state, utterance.seq, at),
-            Intent::AskBack => interject(state, Remark::Inventory, at),
+            Intent::AskBack
+            | Intent::AskCount
+            | Intent::AskWhich
+            | Intent::AskWhere
+            | Intent::AskWhy
+            | Intent::AskStatus
+            | Intent::AskHelp => interject(state, Remark::Inventory, at),
         }
     }
 

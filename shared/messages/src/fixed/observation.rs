@@ -7,7 +7,7 @@ use crate::text::FixedText;
 use crate::wire::{Code, WireError, WireField};
 use dialogue::Interpretation;
 use iceoryx2::prelude::ZeroCopySend;
-use scene::{Doubt, Intent, Reading, Response, WordId};
+use scene::{Doubt, Intent, Reading, Reference, Response, WordId};
 
 /// Readings of one utterance, for all questions together.
 pub const READINGS_MAX: usize = 32;
@@ -17,6 +17,8 @@ pub const BASE_WORDS_MAX: usize = 32;
 pub const EXCLUDED_GROUPS_MAX: usize = 8;
 /// Words of one excluded group.
 pub const EXCLUDED_WORDS_MAX: usize = 6;
+/// Further objects of one reading.
+pub const FURTHER_MAX: usize = 4;
 /// [`WireReading::question`] of a reading that answers no question.
 pub const NO_QUESTION: u8 = u8::MAX;
 wire_struct! {
@@ -34,21 +36,29 @@ wire_struct! {
         base: [u16; BASE_WORDS_MAX],
         /// [`WordId`]s by group.
         excluded: [[u16; EXCLUDED_WORDS_MAX]; EXCLUDED_GROUPS_MAX],
+        /// [`WordId`]s by further object.
+        further: [[u16; EXCLUDED_WORDS_MAX]; FURTHER_MAX],
         /// Used words of each excluded group.
         excluded_len: [u8; EXCLUDED_GROUPS_MAX],
+        /// Used words of each further object.
+        further_len: [u8; FURTHER_MAX],
         /// The question that it is the answer to if the utterance answers that one: its place in
         /// the observation's `asked`, or [`NO_QUESTION`].
         question: u8,
-        /// [`scene::Response`]: 0 none, 1 yes, 2 no.
+        /// [`scene::Response`].
         response: Code<Response>,
         /// [`scene::Intent`], in its order.
         intent: Code<Intent>,
+        /// [`scene::Reference`].
+        refers: Code<Reference>,
         /// Used entries of `base`.
         base_count: u8,
         /// Used entries of `excluded`.
         excluded_count: u8,
+        /// Used entries of `further`.
+        further_count: u8,
         /// Zero.
-        reserved: [u8; 7],
+        reserved: [u8; 1],
     }
 }
 
@@ -61,21 +71,22 @@ impl WireReading {
             question: answers.map_or(NO_QUESTION, |place| place as u8),
             response: reading.response.into(),
             intent: reading.intent.into(),
+            refers: reading.refers.into(),
             base_count: reading.base.len().min(BASE_WORDS_MAX) as u8,
             excluded_count: reading.excluded.len().min(EXCLUDED_GROUPS_MAX) as u8,
+            further_count: reading.further.len().min(FURTHER_MAX) as u8,
             response_doubt: reading.doubt.response as f32,
             ..Self::default()
         };
         copy_words(&mut wire.base, &reading.base);
         copy_doubts(&mut wire.base_doubt, &reading.doubt.base);
         copy_doubts(&mut wire.excluded_doubt, &reading.doubt.excluded);
-        let mut fits =
-            reading.base.len() <= BASE_WORDS_MAX && reading.excluded.len() <= EXCLUDED_GROUPS_MAX;
-        for (i, group) in reading.excluded.iter().take(EXCLUDED_GROUPS_MAX).enumerate() {
-            wire.excluded_len[i] = copy_words(&mut wire.excluded[i], group) as u8;
-            fits &= group.len() <= EXCLUDED_WORDS_MAX;
-        }
-        (wire, if fits { Fits::Whole } else { Fits::Cut })
+        let fits = [
+            reading.base.len() <= BASE_WORDS_MAX,
+            copy_groups(&mut wire.excluded, &mut wire.excluded_len, &reading.excluded),
+            copy_groups(&mut wire.further, &mut wire.further_len, &reading.further),
+        ];
+        (wire, if fits == [true; 3] { Fits::Whole } else { Fits::Cut })
     }
 
     /// Decodes it. `words` is `|V|` of the scene, `asked` the number of questions.
@@ -96,18 +107,16 @@ impl WireReading {
     fn reading(&self, words: usize) -> Result<Reading, WireError> {
         let base = checked_words(&self.base, self.base_count, words)?;
         let groups = used(&self.excluded, self.excluded_count, "excluded count")?;
-        let excluded: Vec<Vec<WordId>> = groups
-            .iter()
-            .zip(self.excluded_len)
-            .map(|(group, len)| checked_words(group, len, words))
-            .collect::<Result<_, _>>()?;
+        let excluded = checked_groups(groups, &self.excluded_len, words)?;
+        let groups = used(&self.further, self.further_count, "further count")?;
+        let further = checked_groups(groups, &self.further_len, words)?;
         let doubt = Doubt {
             base: doubts(&self.base_doubt, base.len())?,
             excluded: doubts(&self.excluded_doubt, excluded.len())?,
             response: checked_share("doubt", self.response_doubt.into())?,
         };
         let (response, intent) = (self.response.get(), self.intent.get());
-        Ok(Reading { base, excluded, response, intent, doubt })
+        Ok(Reading { base, excluded, response, intent, refers: self.refers.get(), further, doubt })
     }
 }
 
@@ -133,6 +142,26 @@ pub enum Fits {
 
 fn copy_words(slots: &mut [u16], words: &[WordId]) -> usize {
     slots.iter_mut().zip(words).map(|(slot, word)| *slot = word.0).count()
+}
+
+/// Copies groups of words; returns whether all of them fit.
+fn copy_groups(
+    slots: &mut [[u16; EXCLUDED_WORDS_MAX]],
+    lengths: &mut [u8],
+    groups: &[Vec<WordId>],
+) -> bool {
+    for ((slots, len), group) in slots.iter_mut().zip(&mut *lengths).zip(groups) {
+        *len = copy_words(slots, group) as u8;
+    }
+    groups.len() <= lengths.len() && groups.iter().all(|group| group.len() <= EXCLUDED_WORDS_MAX)
+}
+
+fn checked_groups(
+    groups: &[[u16; EXCLUDED_WORDS_MAX]],
+    lengths: &[u8],
+    known: usize,
+) -> Result<Vec<Vec<WordId>>, WireError> {
+    groups.iter().zip(lengths).map(|(group, len)| checked_words(group, *len, known)).collect()
 }
 
 fn checked_words(slots: &[u16], count: u8, known: usize) -> Result<Vec<WordId>, WireError> {
