@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-use dialogue::{Actions, Costs, Mode, Model, Params};
+use dialogue::{Actions, Announce, Costs, Mode, Model, Params};
 use language::Language;
 use manipulation::Limb;
 use serde_json::{Value as Json, json};
@@ -199,7 +199,9 @@ fn beliefs_become_actions() {
     let planner = dialogue::registry::planner("lookahead").unwrap();
     let actions = Actions { mode: Mode::Remote, attribute: true, which: false };
     let costs = Costs::default();
-    let problem = Problem { scene, model, costs, durations: None, actions, settings: None };
+    let announce = Announce::FINAL;
+    let problem =
+        Problem { scene, model, costs, durations: None, actions, announce, settings: None };
     let mut decider = Decider { problem, planner };
     let input = "{\"id\":1,\"belief\":[1,0,0,0,0,0]}\n{\"id\":2,\"belief\":[0.2,0.8]}\n\
                  {\"id\":3,\"belief\":[0,0,0,0,0,0]}\n{\"id\":4,\"belief\":[1,2,3,4,5,\"6\"]}\n\

@@ -3,7 +3,9 @@
 use diagnostics::{Fields, Report, Table};
 use dialogue::gesture::{Direction, Gestures};
 use dialogue::user_model::Reaction;
-use dialogue::{Actions, Attribution, Costs, Fault, Mode, Params, Prior, PriorObjects, TurnTaking};
+use dialogue::{
+    Actions, Announce, Attribution, Costs, Fault, Mode, Params, Prior, PriorObjects, TurnTaking,
+};
 use language::Language;
 use scene::Scene;
 
@@ -22,6 +24,8 @@ pub struct Dialogue {
     pub costs: Costs,
     /// Source of the costs of questions.
     pub costs_from: CostsFrom,
+    /// Whether an announced pick can be denied.
+    pub announce: Announce,
     /// Turn-taking.
     pub turns: TurnTaking,
     /// Prior belief.
@@ -69,6 +73,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
         },
         costs,
         costs_from,
+        announce: f.table("announce", announce),
         turns: f.table("turns", turns),
         prior: f.table("prior", prior),
         gesture: f.table("gesture", gesture),
@@ -97,6 +102,12 @@ fn costs(f: &mut Fields<'_>) -> (Costs, CostsFrom) {
     };
     report(costs.check(), f);
     (costs, f.choice("from", &[("config", CostsFrom::Config), ("robot", CostsFrom::Robot)]))
+}
+
+fn announce(f: &mut Fields<'_>) -> Announce {
+    let announce = Announce { heard: f.any_number("heard"), cost_s: f.any_number("cost_s") };
+    report(announce.check(), f);
+    announce
 }
 
 fn turns(f: &mut Fields<'_>) -> TurnTaking {

@@ -67,6 +67,7 @@ impl Settings {
             costs: dialogue.costs,
             durations: self.durations.clone(),
             actions: dialogue.actions,
+            announce: dialogue.announce,
             prior: dialogue.prior,
             gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
             turns: dialogue.turns,

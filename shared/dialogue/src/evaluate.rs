@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use scene::{ObjectId, Question};
+
 use crate::{Action, Answer, Belief, Decision, DecisionProblem, Planner, Step};
 
 /// What a policy achieves from a belief, in expectation over wanted object and answers.
@@ -13,6 +15,8 @@ pub struct Evaluation {
     pub success: f64,
     /// Number of questions asked, repetitions after silence included.
     pub questions: f64,
+    /// Number of announced picks that were denied.
+    pub denied: f64,
     /// Probability of waiting for ever.
     pub waiting: f64,
     /// Probability of the dialogues that were cut short, by picking what was most likely then.
@@ -35,19 +39,26 @@ pub fn evaluate(
     belief: &Belief,
     cut: f64,
 ) -> Evaluation {
-    let mut walk = Walk { planner, problem, known: BTreeMap::new(), total: EMPTY };
+    let mut walk = Walk { planner, problem, cut, known: BTreeMap::new(), total: EMPTY };
     let mut level = BTreeMap::from([(belief.key(), (1.0, belief.clone()))]);
     let mut step = 0;
     while !level.is_empty() {
-        level = walk.follow(level, step, cut);
+        level = walk.follow(level, step);
         step += 1;
     }
     walk.total.decisions = walk.known.len();
     walk.total
 }
 
-const EMPTY: Evaluation =
-    Evaluation { value: 0.0, success: 0.0, questions: 0.0, waiting: 0.0, cut: 0.0, decisions: 0 };
+const EMPTY: Evaluation = Evaluation {
+    value: 0.0,
+    success: 0.0,
+    questions: 0.0,
+    denied: 0.0,
+    waiting: 0.0,
+    cut: 0.0,
+    decisions: 0,
+};
 
 /// Beliefs reached at one step, with the probability of reaching them.
 type Level = BTreeMap<Vec<i64>, (f64, Belief)>;
@@ -55,16 +66,17 @@ type Level = BTreeMap<Vec<i64>, (f64, Belief)>;
 struct Walk<'a> {
     planner: &'a mut dyn Planner,
     problem: &'a DecisionProblem<'a>,
+    cut: f64,
     known: BTreeMap<(bool, Vec<i64>), Decision>,
     total: Evaluation,
 }
 
 impl Walk<'_> {
-    fn follow(&mut self, level: Level, step: u32, cut: f64) -> Level {
+    fn follow(&mut self, level: Level, step: u32) -> Level {
         let mut next = Level::new();
         let discount = self.problem.costs.discount.powi(i32::try_from(step).unwrap_or(i32::MAX));
         for (key, (reached, belief)) in level {
-            let action = if reached < cut {
+            let action = if reached < self.cut {
                 self.total.cut += reached;
                 Action::Pick(belief.most_likely())
             } else {
@@ -90,32 +102,80 @@ impl Walk<'_> {
         discount: f64,
         next: &mut Level,
     ) {
-        let costs = self.problem.costs;
         match action {
-            Action::Pick(i) => {
-                let right = belief.probability(i);
-                self.total.value += discount * reached * costs.pick_value(right);
-                self.total.success += reached * right;
-            }
+            Action::Pick(i) => self.pick(i, belief, reached, discount, next),
             Action::Wait => {
-                self.total.value += discount * reached * costs.wait_value();
+                self.total.value += discount * reached * self.problem.costs.wait_value();
                 self.total.waiting += reached;
             }
             Action::Ask(question) => {
                 self.total.value -= discount * reached * self.problem.cost(action);
                 self.total.questions += reached;
-                let model = self.problem.model;
-                for answer in Answer::possible(model, question) {
-                    let heard: f64 = (belief.probabilities().iter().enumerate())
-                        .map(|(i, p)| p * answer.probability(model, question, i.into()))
-                        .sum();
-                    let mut after = belief.clone();
-                    after.update(model, question, &answer.reading(model));
+                for answer in Answer::possible(self.problem.model, question) {
+                    let (heard, after) = hear(self.problem, belief, question, answer);
                     next.entry(after.key()).or_insert((0.0, after)).0 += reached * heard;
                 }
             }
         }
     }
+
+    /// A pick ends the dialogue, unless it is denied. Nothing is denied where the dialogue is cut
+    /// short or the robot concludes that the object is not here.
+    fn pick(
+        &mut self,
+        i: ObjectId,
+        belief: &Belief,
+        reached: f64,
+        discount: f64,
+        next: &mut Level,
+    ) {
+        let DecisionProblem { model, costs, announce, concessions, .. } = *self.problem;
+        let right = concessions.chances(model, belief)[i.index()];
+        if announce.is_final() || model.absent() == Some(i) || reached < self.cut {
+            self.total.value += discount * reached * costs.pick_value(right);
+            self.total.success += reached * right;
+            return;
+        }
+        let epsilon = model.params().epsilon;
+        let (settled, denied) = announce.settle(&costs, epsilon, right);
+        self.total.value += discount * reached * settled;
+        self.total.success += reached * right * (1.0 - announce.denials(epsilon).0);
+        self.total.denied += reached * denied;
+        let (_, after) = hear(self.problem, belief, Question::Point(i), Answer::No);
+        next.entry(after.key()).or_insert((0.0, after)).0 += reached * denied;
+    }
+}
+
+/// Probability of an answer, and the belief after it. Who wants one of several objects that are
+/// equally right answers about each of them alike.
+fn hear(
+    problem: &DecisionProblem<'_>,
+    belief: &Belief,
+    question: Question,
+    answer: Answer,
+) -> (f64, Belief) {
+    let model = problem.model;
+    let mut after = belief.clone();
+    let alike = match question {
+        Question::Point(asked) if !problem.concessions.indifferent.is_empty() => {
+            Some((asked, problem.concessions.wishes(model)))
+        }
+        _ => None,
+    };
+    let probability = |i: usize| match &alike {
+        Some((asked, wishes)) if wishes[i] == wishes[asked.index()] => {
+            answer.probability(model, question, *asked)
+        }
+        _ => answer.probability(model, question, i.into()),
+    };
+    let heard = belief.probabilities().iter().enumerate().map(|(i, p)| p * probability(i)).sum();
+    if alike.is_some() {
+        let log: Vec<f64> = (0..belief.len()).map(|i| probability(i).ln()).collect();
+        after.weigh(&log);
+    } else {
+        after.update(model, question, &answer.reading(model));
+    }
+    (heard, after)
 }
 
 #[cfg(test)]

@@ -79,7 +79,7 @@ struct Writer<'a> {
 impl<'a> Writer<'a> {
     fn new(scene: &Scene, problem: &'a DecisionProblem<'a>) -> Result<Self, TooLarge> {
         let model = problem.model;
-        let questions = problem.actions.questions(model);
+        let questions = problem.questions();
         let states = model.hypotheses() + 1;
         let count = 1 + questions.len() + model.objects();
         if states.saturating_mul(count) > PAIRS_MAX {

@@ -4,9 +4,11 @@
 //! alone, so that a replay believes and decides the same, bit for bit on the same build.
 
 mod action;
+mod announce;
 mod answer;
 mod answer_attribution;
 mod belief;
+mod concessions;
 mod confusion;
 mod costs;
 mod durations;
@@ -40,10 +42,12 @@ pub mod user_model;
 mod testing;
 
 pub use action::{Action, Actions, Decision, Mode};
+pub use announce::Announce;
 
 pub use answer::Answer;
 pub use answer_attribution::{Attributed, Attribution, Candidate, QuestionShare, Shares};
 pub use belief::{Belief, BeliefError};
+pub use concessions::Concessions;
 pub use confusion::{Confusion, NotAConfusion};
 pub use costs::Costs;
 pub use durations::Durations;

@@ -4,7 +4,9 @@ use scene::Question;
 use serde::{Deserialize, Serialize};
 
 use crate::user_model::Joint;
-use crate::{Action, Actions, Belief, Costs, Decision, Durations, Model, PolicyTable};
+use crate::{
+    Action, Actions, Announce, Belief, Concessions, Costs, Decision, Durations, Model, PolicyTable,
+};
 
 /// The decision problem `(S, A, T, R, Ω, O)` of section 3, but for the belief.
 ///
@@ -20,16 +22,40 @@ pub struct DecisionProblem<'a> {
     pub actions: Actions,
     /// What single questions cost, where that was measured; `costs` says it of the others.
     pub durations: Option<&'a Durations>,
+    /// Whether an announced pick can be denied.
+    pub announce: Announce,
+    /// What the user said of attributes in this interaction.
+    pub concessions: &'a Concessions,
 }
 
+static NOTHING_CONCEDED: Concessions = Concessions::NONE;
+
 impl<'a> DecisionProblem<'a> {
-    /// The problem in which all questions of a kind cost the same.
+    /// The problem in which all questions of a kind cost the same, picks are final, and the user has
+    /// conceded nothing.
     pub fn new(model: &'a Model, costs: Costs, actions: Actions) -> Self {
-        Self { model, costs, actions, durations: None }
+        let (announce, concessions) = (Announce::FINAL, &NOTHING_CONCEDED);
+        Self { model, costs, actions, durations: None, announce, concessions }
+    }
+
+    /// The same problem as a planner sees it that takes picks for final.
+    #[must_use]
+    pub fn with_final_picks(self) -> Self {
+        Self { announce: Announce::FINAL, ..self }
     }
 }
 
 impl DecisionProblem<'_> {
+    /// Every question that may be asked, useful or not, in the order of [`Actions::questions`].
+    pub fn questions(&self) -> Vec<Question> {
+        let mut questions = self.actions.questions(self.model);
+        questions.retain(|question| match question {
+            Question::Attribute(k, _) | Question::Which(k) => !self.concessions.bar(*k),
+            Question::Point(_) | Question::None => true,
+        });
+        questions
+    }
+
     /// Cost of an action itself (a positive number); a pick is paid by its outcome.
     pub fn cost(&self, action: Action) -> f64 {
         let costs = &self.costs;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::stable_hash::StableHash128;
-use crate::{Action, Actions, Decision, DecisionProblem};
+use crate::{Action, Actions, Announce, Decision, DecisionProblem};
 
 /// The decisions of one problem, by belief.
 ///
@@ -89,6 +89,11 @@ impl DecisionProblem<'_> {
         if let Some(durations) = self.durations {
             durations.identify(&mut |part| hash = hash.add(part));
         }
+        if !self.announce.is_final() {
+            let Announce { heard, cost_s } = self.announce;
+            hash = hash.add(heard.to_bits()).add(cost_s.to_bits());
+        }
+        self.concessions.identify(&mut |part| hash = hash.add(part));
         hash.narrow()
     }
 }

@@ -4,7 +4,9 @@ use std::io::Read;
 use std::time::Instant;
 
 use config::Settings;
-use dialogue::{Action, Actions, Belief, Costs, DecisionProblem, Durations, Model, Planner, Step};
+use dialogue::{
+    Action, Actions, Announce, Belief, Costs, DecisionProblem, Durations, Model, Planner, Step,
+};
 use scene::{Scene, question_to_json};
 use serde::Deserialize;
 use serde_json::{Value as Json, json};
@@ -25,6 +27,8 @@ pub struct Problem {
     pub durations: Option<Durations>,
     /// Actions that are allowed.
     pub actions: Actions,
+    /// Whether an announced pick can be denied.
+    pub announce: Announce,
     /// The configuration, if there is one.
     pub settings: Option<Settings>,
 }
@@ -32,9 +36,8 @@ pub struct Problem {
 impl Problem {
     /// Returns the decision problem for planners.
     pub fn decision(&self) -> DecisionProblem<'_> {
-        let Self { model, costs, durations, actions, .. } = self;
-        let durations = durations.as_ref();
-        DecisionProblem { model, costs: *costs, actions: *actions, durations }
+        let problem = DecisionProblem::new(&self.model, self.costs, self.actions);
+        DecisionProblem { durations: self.durations.as_ref(), announce: self.announce, ..problem }
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use config::CostsFrom;
-use dialogue::{Actions, Costs, Model, Params, registry};
+use dialogue::{Actions, Announce, Costs, Model, Params, registry};
 use preflight::ArmSetup;
 use scene::Scene;
 use service::exit::{Exit, Failure};
@@ -60,7 +60,8 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Failure> {
                 .map_err(|error| Failure::new(Exit::Config, error.to_string()))
         })
         .transpose()?;
-    Ok(Problem { scene, model, costs, durations, actions, settings })
+    let announce = Announce::FINAL;
+    Ok(Problem { scene, model, costs, durations, actions, announce, settings })
 }
 
 /// Resolves a scene: a name without folder and extension is looked up in the configuration.

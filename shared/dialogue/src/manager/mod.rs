@@ -45,8 +45,8 @@ use crate::gesture::Gestures;
 use crate::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 use crate::time::Time;
 use crate::{
-    ActKind, Action, Actions, Costs, Decision, DecisionProblem, Durations, Ended, Model, Outcome,
-    PickOutcome, Planner, PolicyTable, Prior, Step, TurnTaking, rendering,
+    ActKind, Action, Actions, Announce, Costs, Decision, DecisionProblem, Durations, Ended, Model,
+    Outcome, PickOutcome, Planner, PolicyTable, Prior, Step, TurnTaking, rendering,
 };
 
 /// Alternatives that an act lists.
@@ -65,6 +65,8 @@ pub struct Setup {
     pub durations: Option<Durations>,
     /// Actions that the robot may take.
     pub actions: Actions,
+    /// Whether an announced pick can be denied, in the planner's eyes.
+    pub announce: Announce,
     /// Prior of a new interaction.
     pub prior: Prior,
     /// Model of pointing gestures and the user's place (metres, frame `base`); none where gestures
@@ -77,9 +79,8 @@ pub struct Setup {
 impl Setup {
     /// Returns the decision problem for planners.
     fn problem(&self) -> DecisionProblem<'_> {
-        let Self { model, costs, durations, actions, .. } = self;
-        let durations = durations.as_ref();
-        DecisionProblem { model, costs: *costs, actions: *actions, durations }
+        let problem = DecisionProblem::new(&self.model, self.costs, self.actions);
+        DecisionProblem { durations: self.durations.as_ref(), announce: self.announce, ..problem }
     }
 }
 

@@ -82,8 +82,15 @@ fn follow(problem: &DecisionProblem<'_>, belief: &Belief) -> Decision {
 
 /// The better of picking and waiting, and its value.
 fn stopping(problem: &DecisionProblem<'_>, belief: &Belief) -> (Action, f64) {
-    let likeliest = belief.most_likely();
-    let pick = problem.costs.pick_value(belief.probability(likeliest));
+    let chances = problem.concessions.chances(problem.model, belief);
+    let best = chances.iter().copied().fold(0.0, f64::max);
+    // Of the objects that are equally right the most probable one.
+    let right = |i: &usize| chances[*i] >= best;
+    let likelier = |a: usize, b: usize| {
+        if belief.probability(b.into()) > belief.probability(a.into()) { b } else { a }
+    };
+    let likeliest = (0..chances.len()).filter(right).reduce(likelier).unwrap_or(0).into();
+    let pick = problem.costs.pick_value(best);
     let wait = problem.costs.wait_value();
     if pick > wait { (Action::Pick(likeliest), pick) } else { (Action::Wait, wait) }
 }

@@ -102,7 +102,8 @@ fn alternatives(
     chosen: Action,
 ) -> Vec<(Action, f64)> {
     weighed.push((Action::Wait, problem.costs.wait_value()));
-    let mut picks: Vec<(usize, f64)> = belief.probabilities().into_iter().enumerate().collect();
+    let chances = problem.concessions.chances(problem.model, belief);
+    let mut picks: Vec<(usize, f64)> = chances.into_iter().enumerate().collect();
     let likelier = |a: &(usize, f64), b: &(usize, f64)| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0));
     if picks.len() > PICKS_MAX {
         picks.select_nth_unstable_by(PICKS_MAX, likelier);

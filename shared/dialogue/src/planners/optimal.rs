@@ -72,7 +72,10 @@ impl Planner for Optimal {
             return known.clone();
         }
         let decision = self.solve(problem, &stands_for(belief, &key));
-        self.table.insert(problem_key, &key, decision.clone());
+        // What was conceded is of one interaction; the table is for those that recur.
+        if problem.concessions.is_empty() {
+            self.table.insert(problem_key, &key, decision.clone());
+        }
         decision
     }
 

@@ -52,9 +52,8 @@ impl Reduced {
         let EquivalenceClasses { mass, best, share, interchangeable } =
             EquivalenceClasses::of(problem, belief);
         let asked = if problem.actions.about_attributes() { model.attributes() } else { 0 };
-        let partitions = (0..asked)
-            .filter_map(|k| Partition::of(problem, AttributeId::from(k), &best))
-            .collect();
+        let asked = (0..asked).map(AttributeId::from).filter(|k| !problem.concessions.bar(*k));
+        let partitions = asked.filter_map(|k| Partition::of(problem, k, &best)).collect();
         let point_at = best.iter().map(|object| Question::Point(*object));
         let point = Channels::yes_no(problem, problem.costs.point_s, point_at);
         let absent = best.iter().position(|object| Some(*object) == model.absent());

@@ -45,13 +45,14 @@ impl<'a> Room<'a> {
     /// Returns a dialogue manager that decides by a planner. Each utterance follows the question that
     /// it answers, so it is attributed by its onset.
     pub fn manager(&self, planner: CachedPlanner) -> Manager {
-        let DecisionProblem { model, costs, actions, durations } = self.problem;
+        let DecisionProblem { model, costs, actions, durations, announce, .. } = self.problem;
         let setup = Setup {
             scene: self.scene.clone(),
             model: model.clone(),
             costs,
             durations: durations.cloned(),
             actions,
+            announce,
             prior: Prior { objects: PriorObjects::Uniform, smoothing: 1.0, absent: 0.0 },
             gestures: None,
             turns: TurnTaking { attribution: Attribution::Onset, ..self.turns },
