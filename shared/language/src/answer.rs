@@ -15,6 +15,8 @@ pub(crate) enum Answer {
     No,
     /// "I do not know": takes back what was answered before.
     Unsure,
+    /// "let me think": takes it back as well, and says nothing instead.
+    Pondering,
 }
 
 /// Answers in order, each with its tag; a scope of what was asked about has none.
@@ -35,7 +37,12 @@ struct Given {
 
 impl Answers {
     pub(crate) fn push(&mut self, answer: Answer, tags: &[Tag<'_>], at: usize) {
-        self.given.push(Given { answer, at: Some(at), doubt: tags[at].answer_doubt() });
+        let doubt = match answer {
+            Answer::Yes | Answer::No => tags[at].answer_doubt(),
+            // That one does not know is no less sure for being said so.
+            Answer::Unsure | Answer::Pondering => tags[at].doubt,
+        };
+        self.given.push(Given { answer, at: Some(at), doubt });
     }
 
     /// "not the white one", when white was asked about.
@@ -54,6 +61,11 @@ impl Answers {
 
     pub(crate) fn is_empty(&self) -> bool {
         self.given.is_empty()
+    }
+
+    /// Returns whether the last answer was given by a tag before `at`.
+    fn are_before(&self, at: usize) -> bool {
+        self.given.last().is_some_and(|given| given.at.is_some_and(|given| given < at))
     }
 
     /// The answer that stands: the last one, unless it is tied to its opposite ("yes and no"); and
@@ -98,6 +110,10 @@ pub(crate) fn answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> Option<Ans
         Class::WeakNo if is_bare(tags, clause) => Some(Answer::No),
         Class::Likely if is_bare(tags, clause) => Some(Answer::Yes),
         Class::Other if is_other_one(tags, clause, at) => Some(Answer::No),
+        Class::Ordinal if tags[at].word == "next" && is_other_one(tags, clause, at) => {
+            Some(Answer::No)
+        }
+        Class::PutBack => Some(Answer::No),
         Class::Be | Class::Auxiliary if is_affirmed(tags, clause, at) => Some(Answer::Yes),
         Class::WeakYes if is_judged(tags, clause, at) => Some(Answer::Yes),
         Class::WeakNo if is_judged(tags, clause, at) => Some(Answer::No),
@@ -143,7 +159,8 @@ fn is_affirmed(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     let said = &tags[at + 1..clause.span.end];
     if said.is_empty() {
         // "it very much is", but not "if it is"
-        const OPEN: &[Class] = classes![Question Join Unsure Not Unlisted Ordinal AskBack];
+        const OPEN: &[Class] =
+            classes![Question Join Unsure Pondering Not Unlisted Ordinal AskBack];
         let plain = |tag: &Tag<'_>| !tag.is_unknown() && !tag.is_value() && !tag.is_any(OPEN);
         return subject.is_some_and(|tag| tag.is(Class::It)) && before.iter().all(plain);
     }
@@ -155,7 +172,7 @@ fn is_affirmed(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
 /// "that's where it is", "that's what I've been looking for".
 fn is_what(said: &[Tag<'_>]) -> bool {
     let [what, whose, rest @ ..] = said else { return false };
-    const STRANGE: &[Class] = classes![Not No Unsure Unlisted Third Other Ordinal];
+    const STRANGE: &[Class] = classes![Not No Unsure Pondering Unlisted Third Other Ordinal];
     // "what is in it" is a phrase
     let phrase = what.is(Class::AskBack) && what.word == "what";
     (what.is(Class::Question) || phrase)
@@ -191,21 +208,37 @@ fn is_the_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
 }
 
 /// The response to the question: the answer that stands, or what the values said imply; and the
-/// probability that it was not given.
+/// probability that it was not given. `indifferent`: where it was said that the answer does not
+/// matter.
 pub(crate) fn response(
     content: &Content<'_>,
     tags: &[Tag<'_>],
     asked: QuestionWords<'_>,
+    indifferent: Option<usize>,
 ) -> (Response, f64) {
+    let careless = indifferent.map(|at| (Response::DoesNotMatter, tags[at].doubt));
     if matches!(asked, QuestionWords::Nothing) {
-        return (Response::None, 0.0);
+        return careless.unwrap_or((Response::None, 0.0));
     }
     let certain = !content.hedged && !content.alternatives;
-    match content.answers.standing(tags) {
-        Some((Answer::Yes, doubt)) => (Response::Yes, doubt),
-        Some((Answer::No, doubt)) => (Response::No, doubt),
-        None if certain => implied(&content.base, asked),
-        Some((Answer::Unsure, _)) | None => (Response::None, 0.0),
+    let described = !content.base.is_empty() || !content.excluded.is_empty();
+    let answer = content.answers.standing(tags);
+    match (answer, careless) {
+        (Some((Answer::Yes, doubt)), _) => (Response::Yes, doubt),
+        // "no, I don't mind" denies nothing.
+        (Some((Answer::No, _)), Some(careless))
+            if !described && indifferent.is_some_and(|at| content.answers.are_before(at)) =>
+        {
+            careless
+        }
+        (Some((Answer::No, doubt)), _) => (Response::No, doubt),
+        (None, _) if certain => match implied(&content.base, asked) {
+            (Response::None, _) => careless.unwrap_or((Response::None, 0.0)),
+            implied => implied,
+        },
+        (_, Some(careless)) => careless,
+        (Some((Answer::Unsure, doubt)), None) if !described => (Response::CannotTell, doubt),
+        (Some((Answer::Unsure | Answer::Pondering, _)) | None, None) => (Response::None, 0.0),
     }
 }
 

@@ -6,6 +6,13 @@ use crate::tokens::Gap;
 use crate::topic::{ClauseAnalysis, SCENE_NAMES};
 
 impl ClauseAnalysis<'_> {
+    /// Returns whether the clause asks what the robot does or what one can say to it.
+    pub(crate) fn asks_about_robot(&self) -> bool {
+        self.opening().is_some_and(|(_, class)| matches!(class, Class::AskStatus | Class::AskHelp))
+            && !self.has(classes![Fetch Want Story])
+            && self.values == 0
+    }
+
     /// Returns whether the clause asks the robot something.
     pub(crate) fn asks_back(&self) -> bool {
         let opens = self.clause[0].gap == Gap::Stop || !self.previous_tags.iter().any(is_content);

@@ -56,7 +56,7 @@ pub(crate) fn clauses(tags: &[Tag<'_>], code: bool) -> Vec<Clause> {
 fn starts_clause(tags: &[Tag<'_>], at: usize) -> bool {
     const SUBJECTS: &[Class] = classes![
         First Second Third Possessive It Fetch Want Put Story Question Auxiliary Stop Cancel
-        AskBack StartOver Repeat Join When SideTalk Injection Yes No
+        AskBack AskStatus AskHelp PutBack StartOver Repeat Join When SideTalk Injection Yes No
     ];
     let tag = &tags[at];
     let before = &tags[at - 1];

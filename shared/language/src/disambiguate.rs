@@ -16,6 +16,7 @@ pub(crate) fn disambiguate<'a>(lexicon: &'a Lexicon, tags: &mut [Tag<'a>]) {
             && let Some((sense, doubt)) = place.misheard(lexicon)
         {
             tags[at].sense = sense;
+            tags[at].exact = false;
             tags[at].add_doubt(doubt);
         }
     }

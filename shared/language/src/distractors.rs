@@ -110,7 +110,7 @@ impl ClauseAnalysis<'_> {
     fn is_short_answer(&self, at: usize) -> bool {
         const BESIDE: &[Class] = classes![
             Determiner Pointer Filler Courtesy Plain Yes No WeakYes WeakNo It Hedge Likely
-            Unsure Not Except And Or But Join Repair Withdraw Want Ordinal
+            Unsure Pondering Not Except And Or But Join Repair Withdraw Want Ordinal
         ];
         // "drawer is right": the verb before a judgement that ends the clause.
         let judges = |verb: usize| {

@@ -102,8 +102,9 @@ impl<'a> Extractor<'a, '_> {
             Class::Repair => self.repair(repair::Strength::Soft),
             Class::Withdraw => self.repair(repair::Strength::Hard),
             Class::Cancel | Class::StartOver if commands(self.tags, clause, class) => self.forget(),
-            Class::Unsure => self.unsure(at),
-            Class::Indifferent => self.wondering = self.wonders_after(at),
+            Class::Unsure => self.unsure(Answer::Unsure, at),
+            Class::Pondering => self.unsure(Answer::Pondering, at),
+            Class::Indifferent | Class::Unsaid => self.wondering = wonders_after(self.tags, at),
             Class::Hedge => self.content.hedged = true,
             _ => {}
         }
@@ -247,18 +248,9 @@ impl<'a> Extractor<'a, '_> {
         self.content.clear();
     }
 
-    fn unsure(&mut self, at: usize) {
-        self.content.answers.push(Answer::Unsure, self.tags, at);
-        self.wondering = self.wonders_after(at);
-    }
-
-    /// "not sure if it is white", "I don't care what colour", "it doesn't have to be white".
-    fn wonders_after(&self, at: usize) -> bool {
-        let open = matches!(self.tags[at].word, "does" | "do" | "need" | "it" | "i" | "at");
-        after(self.tags, at).is_some_and(|next| {
-            next.is_any(classes![Join Question Preposition])
-                || open && (next.is_value() || next.is(Class::Determiner))
-        })
+    fn unsure(&mut self, answer: Answer, at: usize) {
+        self.content.answers.push(answer, self.tags, at);
+        self.wondering = wonders_after(self.tags, at);
     }
 
     fn in_negation(&mut self, change: impl FnOnce(&mut NegationScope<'a>)) {
@@ -283,4 +275,13 @@ impl<'a> Extractor<'a, '_> {
             self.content.exclude(group);
         }
     }
+}
+
+/// "not sure if it is white", "I don't care what colour", "it doesn't have to be white".
+pub(crate) fn wonders_after(tags: &[Tag<'_>], at: usize) -> bool {
+    let open = matches!(tags[at].word, "does" | "do" | "need" | "it" | "i" | "at");
+    after(tags, at).is_some_and(|next| {
+        next.is_any(classes![Join Question Preposition])
+            || open && (next.is_value() || next.is(Class::Determiner))
+    })
 }

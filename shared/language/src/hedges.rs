@@ -66,7 +66,9 @@ pub(crate) fn sureness(class: Class, phrase: &str) -> f64 {
         listed.reduce(f64::max)
     };
     match class {
-        Class::Hedge | Class::Likely | Class::Unsure => listed().unwrap_or(SURE_LEAST),
+        Class::Hedge | Class::Likely | Class::Unsure | Class::Pondering => {
+            listed().unwrap_or(SURE_LEAST)
+        }
         // "I think so", "I doubt it", but not "good guess" and "no doubt"
         Class::Yes if phrase.ends_with(" so") => listed().unwrap_or(1.0),
         Class::No
@@ -82,7 +84,7 @@ pub(crate) fn sureness(class: Class, phrase: &str) -> f64 {
 /// "I don't think", where "think" is not a phrase of its own.
 fn sureness_of(tag: &Tag<'_>) -> f64 {
     match tag.sense {
-        Sense::Class(Class::Hedge | Class::Likely | Class::Unsure) => tag.sure,
+        Sense::Class(Class::Hedge | Class::Likely | Class::Unsure | Class::Pondering) => tag.sure,
         Sense::Class(Class::Plain) if matches!(tag.word, "think" | "believe") => {
             sureness(Class::Hedge, tag.word)
         }

@@ -4,6 +4,7 @@ use scene::Intent;
 
 use crate::clauses::{Clause, Topic};
 use crate::content::Content;
+use crate::question_words::QuestionWords;
 use crate::tagger::{Tag, before};
 use crate::token_class::{Class, classes};
 
@@ -14,8 +15,10 @@ pub(crate) fn intent(
     tags: &[Tag<'_>],
     clauses: &[Clause],
     content: &Content<'_>,
+    asked: QuestionWords<'_>,
     code: bool,
 ) -> Intent {
+    let new = matches!(asked, QuestionWords::Nothing);
     let says_nothing = content.base.is_empty() && content.excluded.is_empty();
     let spoken = if code { clauses.len().min(1) } else { clauses.len() };
     let commands = |class| clauses[..spoken].iter().any(|clause| commands(tags, clause, class));
@@ -33,6 +36,14 @@ pub(crate) fn intent(
         Intent::Repeat
     } else if says_nothing && clauses.iter().any(|clause| clause.topic == Topic::AskBack) {
         Intent::AskBack
+    } else if says_nothing && new && tags.iter().any(|tag| tag.is(Class::PutBack))
+        || clauses.iter().any(|clause| puts_back(tags, clause))
+    {
+        Intent::PutBack
+    } else if let Some(courtesy) =
+        courtesy(tags).filter(|_| says_nothing && (new || content.answers.is_empty()))
+    {
+        courtesy
     } else if !says_nothing || informs(tags, clauses, content) {
         Intent::Inform
     } else {
@@ -75,6 +86,69 @@ fn declines(tags: &[Tag<'_>], clause: &Clause) -> bool {
     clause.topic == Topic::On && denies && fetches && noun && plain
 }
 
+/// "put the red mug back", but not "put it back on".
+fn puts_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
+    let [verb, rest @ ..] = after_leads(&tags[clause.span.clone()]) else { return false };
+    let values = tags.iter().filter(|tag| tag.is_value()).count();
+    let Some(back) = rest.iter().position(|tag| tag.word == "back") else { return false };
+    let things = classes![Determiner Pointer Possessive It Head];
+    matches!(verb.word, "put" | "take" | "bring" | "return")
+        && rest[..back].iter().all(|tag| tag.is_value() || tag.is_any(things))
+        && rest[..back].iter().any(|tag| tag.is_value() || tag.is_any(classes![Pointer It Head]))
+        && rest[..back].iter().filter(|tag| tag.is_value()).count() == values
+        && rest[back + 1..].iter().all(|tag| tag.is_any(classes![Courtesy Filler]))
+}
+
+/// What is said after words that say nothing.
+fn after_leads<'t, 'a>(tags: &'t [Tag<'a>]) -> &'t [Tag<'a>] {
+    const LEADS: &[Class] = classes![Filler Courtesy No And But Join Auxiliary Second];
+    let leads = tags.iter().take_while(|tag| tag.is_any(LEADS) && tag.word != "do").count();
+    &tags[leads..]
+}
+
+/// A greeting or thanks, and nothing that asks for anything.
+fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
+    const BESIDE: &[Class] = classes![
+        Courtesy Filler WeakYes Reply Plain Second It Be First Determiner Preposition Pointer Head
+        And But When Possessive AskHelp
+    ];
+    const STRANGE_MAX: usize = 2;
+    let strange = tags.iter().filter(|tag| tag.is_unknown()).count();
+    let beside = |tag: &Tag<'_>| tag.is_any(BESIDE) || tag.is_unknown();
+    let said = |words: &[&str]| {
+        tags.iter().any(|tag| tag.is(Class::Courtesy) && words.contains(&tag.word))
+    };
+    if strange > STRANGE_MAX || !tags.iter().all(beside) {
+        None
+    } else if said(&["thanks", "thank", "thx", "ty", "cheers", "many", "much", "ta"])
+        || said(&["i"])
+    {
+        Some(Intent::Thank)
+    } else if strange == 0
+        && said(&[
+            "hello",
+            "hi",
+            "hey",
+            "hiya",
+            "howdy",
+            "good",
+            "goodbye",
+            "bye",
+            "greetings",
+            "see",
+            "take",
+            "farewell",
+            "welcome",
+            "nice",
+            "how",
+        ])
+    {
+        Some(Intent::Greet)
+    } else {
+        None
+    }
+}
+
 /// "wait", and nothing else.
 fn is_only_wait(tags: &[Tag<'_>]) -> bool {
     let wait = |tag: &Tag<'_>| tag.is(Class::Repair) && tag.word == "wait";
@@ -95,7 +169,9 @@ fn is_only_huh(tags: &[Tag<'_>]) -> bool {
 
 /// Returns whether anything was said that is meant for the robot.
 fn informs(tags: &[Tag<'_>], clauses: &[Clause], content: &Content<'_>) -> bool {
-    const REPLIES: &[Class] = classes![Yes No Unsure Hedge Likely Indifferent Reply];
+    const REPLIES: &[Class] = classes![
+        Yes No Unsure Pondering Hedge Likely Indifferent Unsaid Reply
+    ];
     !content.answers.is_empty()
         || clauses.iter().filter(|clause| clause.topic == Topic::On).any(|clause| {
             clause.requests || tags[clause.span.clone()].iter().any(|tag| tag.is_any(REPLIES))

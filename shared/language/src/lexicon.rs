@@ -5,12 +5,13 @@
 use std::cmp::Reverse;
 use std::collections::HashMap;
 
-use scene::{AttributeId, Role, Scene, WordId};
+use scene::{AttributeId, Reference, Role, Scene, WordId};
 
 use crate::hedges::sureness;
 use crate::lookalikes::Lookalikes;
 use crate::morphology::inflected;
 use crate::normalise::normalise;
+use crate::references::by_size;
 use crate::token_class::Class;
 use crate::tokens::{Token, Tokens};
 use crate::vocabulary;
@@ -30,6 +31,8 @@ pub(crate) struct ValueSense {
     /// The attributes that have the value; more than one if they share its name.
     pub(crate) attributes: Vec<AttributeId>,
     pub(crate) role: Role,
+    /// Its attribute has no more than two values.
+    pub(crate) one_of_two: bool,
 }
 
 impl ValueSense {
@@ -153,7 +156,8 @@ impl Lexicon {
             for value in &attribute.values {
                 let place = *places.entry(value.word).or_insert_with(|| {
                     let (word, role, attributes) = (value.word, value.role(), Vec::new());
-                    self.values.push(ValueSense { word, attributes, role });
+                    let one_of_two = attribute.values.len() <= 2;
+                    self.values.push(ValueSense { word, attributes, role, one_of_two });
                     self.values.len() - 1
                 });
                 self.values[place].attributes.push(AttributeId::from(k));
@@ -191,7 +195,13 @@ impl Lexicon {
             self.add(&[joined], Meaning::Value(place));
         }
         let quality = words.len() == 1 && self.values[place].role == Role::Quality;
-        self.add_inflected(words, quality, Meaning::Value(place));
+        let Some((last, lead)) = words.split_last() else { return };
+        for form in inflected(last, quality) {
+            // Of three sizes "smaller" need not be small.
+            if self.values[place].one_of_two || by_size(&form) == Reference::None {
+                self.add(&[lead, &[form]].concat(), Meaning::Value(place));
+            }
+        }
     }
 
     fn add_names(&mut self, scene: &Scene) {

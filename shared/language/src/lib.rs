@@ -14,7 +14,7 @@
 //! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
 //! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
-//! | answer, intent | `answer.rs`, `intent.rs` | the response that counts, the user's intent |
+//! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs` | the response that counts, the user's intent, what is referred to |
 //! | readings | `parsed.rs` (`hedges.rs`) | alternative readings with weights and doubts |
 //!
 //! [`confusion`] gives the probabilities of mishearing one of a scene's words for another.
@@ -31,6 +31,7 @@ mod disambiguate;
 mod distractors;
 mod extractor;
 mod hedges;
+mod indifference;
 mod intent;
 mod lexicon;
 mod lookalikes;
@@ -42,7 +43,9 @@ mod paper;
 mod parsed;
 mod phonetics;
 mod question_words;
+mod questions;
 mod reader;
+mod references;
 mod repair;
 mod spelling;
 mod tagger;

@@ -21,6 +21,7 @@ pub(crate) struct ParsedUtterance<'a> {
     /// The answer and the probability that it was not given.
     pub(crate) response: (Response, f64),
     pub(crate) intent: Intent,
+    pub(crate) refers: Reference,
     pub(crate) asked: QuestionWords<'a>,
     pub(crate) tags: Vec<Tag<'a>>,
     pub(crate) clauses: Vec<Clause>,
@@ -41,7 +42,7 @@ impl ParsedUtterance<'_> {
             response: if answered { response } else { Response::None },
             excluded: excluded.iter().map(|group| group.words.clone()).collect(),
             intent: self.intent,
-            refers: Reference::None,
+            refers: self.refers,
             further: Vec::new(),
             doubt: Doubt {
                 base: known(base.iter().map(|value| value.doubt)),

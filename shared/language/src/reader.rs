@@ -1,18 +1,21 @@
 //! The reader: runs the pipeline on an utterance.
 
-use scene::{Intent, Question, Reading, Scene};
+use scene::{Intent, Question, Reading, Reference, Response, Scene};
 
 use crate::answer::response;
 use crate::clauses::clauses;
 use crate::content::Content;
 use crate::extractor::extract;
 use crate::hedges::hedge;
+use crate::indifference::indifference;
 use crate::intent::{intent, is_side_talk, unknown_words};
 use crate::lexicon::Lexicon;
 use crate::normalise::normalise;
 use crate::paper::WordSpotter;
 use crate::parsed::ParsedUtterance;
 use crate::question_words::SceneQuestions;
+use crate::questions::question;
+use crate::references::reference;
 use crate::tagger::tag;
 use crate::tokens::Tokens;
 
@@ -114,11 +117,20 @@ impl Reader {
         if side_talk {
             content = Content::default();
         }
-        let response = response(&content, &tags, asked);
-        let intent = match intent(&tags, &clauses, &content, tokens.code) {
+        let refers = reference(&tags, &clauses, asked);
+        let careless = indifference(&tags, &clauses, asked);
+        let response = response(&content, &tags, asked, careless);
+        let mut intent = match intent(&tags, &clauses, &content, asked, tokens.code) {
             Intent::Inform if side_talk => Intent::None,
+            Intent::None if response.0 == Response::DoesNotMatter => Intent::Inform,
+            Intent::None if refers != Reference::None => Intent::Inform,
+            // "the same again"
+            Intent::Repeat if refers == Reference::Same => Intent::Inform,
             intent => intent,
         };
-        ParsedUtterance { content, response, intent, asked, tags, clauses }
+        if intent == Intent::AskBack {
+            (intent, content) = question(&tags, &clauses);
+        }
+        ParsedUtterance { content, response, intent, refers, asked, tags, clauses }
     }
 }

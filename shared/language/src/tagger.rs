@@ -16,6 +16,10 @@ pub(crate) struct Tag<'a> {
     pub(crate) gap: Gap,
     /// Its first word.
     pub(crate) word: &'a str,
+    /// Its last word; the first one again where it has one only.
+    pub(crate) last: &'a str,
+    /// Stands in the lexicon as it was said or typed.
+    pub(crate) exact: bool,
     /// Probability that something else was said: the recogniser's doubt, and that of taking the
     /// word for another.
     pub(crate) doubt: f64,
@@ -59,7 +63,10 @@ impl<'a> Tag<'a> {
         let run = &tokens[..found.words.min(tokens.len())];
         let least = run.iter().map(|token| token.confidence).fold(1.0, f32::min);
         let Token { word, gap, .. } = tokens[0];
-        let mut tag = Self { sense: found.sense, gap, word, doubt: 0.0, sure: found.sure };
+        let last = run.last().map_or(word, |token| token.word);
+        let exact = found.doubt == 0.0;
+        let (sense, sure) = (found.sense, found.sure);
+        let mut tag = Self { sense, gap, word, last, exact, doubt: 0.0, sure };
         tag.add_doubt(1.0 - f64::from(least));
         tag.add_doubt(found.doubt);
         tag

@@ -35,7 +35,7 @@ token_classes! {
     Attribute,
     /// A noun or quality that people ask for, but not in this scene: "mug", "purple".
     Unlisted,
-    /// "first", "left", "top".
+    /// "first", "left", "top", "smaller".
     Ordinal,
     /// "other", "different", "else".
     Other,
@@ -110,12 +110,16 @@ token_classes! {
     WeakNo,
     /// "i do not know", "not sure".
     Unsure,
+    /// "let me think", "are you sure": the answer is put off.
+    Pondering,
     /// "maybe", "i think".
     Hedge,
     /// "probably": a yes if nothing else is said.
     Likely,
     /// "i do not care", "any of them".
     Indifferent,
+    /// "i was about to say": what follows is not said.
+    Unsaid,
 
     // Intents.
     Stop,
@@ -124,7 +128,14 @@ token_classes! {
     /// "pardon", "what": a request to repeat if nothing else is said.
     Huh,
     StartOver,
+    /// "put it back".
+    PutBack,
+    /// "how many", "what is on": a question to the robot about the scene.
     AskBack,
+    /// "what are you doing", "are you there".
+    AskStatus,
+    /// "help", "what can i say".
+    AskHelp,
 
     // Not for the robot.
     /// "on the phone", "talking to".

@@ -77,6 +77,9 @@ impl<'a> ClauseAnalysis<'a> {
         if is_other_talk {
             return Topic::Off;
         }
+        if self.asks_about_robot() {
+            return Topic::AskBack;
+        }
         if self.asks_back() {
             return if self.asks_about_something_else() { Topic::Off } else { Topic::AskBack };
         }
@@ -121,7 +124,9 @@ impl<'a> ClauseAnalysis<'a> {
         let article = |tag: &&Tag<'_>| matches!(tag.word, "de" | "da" | "te");
         let foreign = self.clause.iter().filter(|tag| tag.is(Class::OtherLanguage)).count();
         let articles = self.clause.iter().filter(article).count();
-        foreign > 0 && 2 * (foreign + articles + self.unknown) >= self.clause.len()
+        // "die weisse cup bitte": what is there was meant.
+        let ours = self.clause.iter().any(|tag| tag.is_value() && tag.exact);
+        !ours && foreign > 0 && 2 * (foreign + articles + self.unknown) >= self.clause.len()
     }
 
     /// "I had a big breakfast", "my shirt is white", "he said yes".

@@ -71,11 +71,16 @@ pub fn reading_to_json(scene: &Scene, reading: &Reading) -> Json {
     let words = |ids: &[crate::WordId]| -> Vec<&str> {
         ids.iter().map(|w| scene.words()[w.index()].as_str()).collect()
     };
+    // What a question is asked of, or what is to be put back, is not what is wanted.
+    let intent = published_intent(reading.intent);
+    let wants = intent != Intent::AskBack && reading.intent != Intent::PutBack;
+    let base: &[crate::WordId] = if wants { &reading.base } else { &[] };
+    let excluded: &[Vec<crate::WordId>] = if wants { &reading.excluded } else { &[] };
     json!({
-        "base": words(&reading.base),
+        "base": words(base),
         "response": published_response(reading.response),
-        "excluded": reading.excluded.iter().map(|group| words(group)).collect::<Vec<_>>(),
-        "intent": published_intent(reading.intent),
+        "excluded": excluded.iter().map(|group| words(group)).collect::<Vec<_>>(),
+        "intent": intent,
     })
 }
 

@@ -1,5 +1,6 @@
 //! The reader on whole utterances: the public set, our own table, and any text at all.
 
+mod conversation;
 mod formatting;
 mod readings;
 mod table;
@@ -26,6 +27,7 @@ pub(crate) fn scene(name: &str) -> Scene {
     let text = match name {
         "bowls" => include_str!("../../../../config/scenes/bowls.toml"),
         "tools" => include_str!("../../../../config/scenes/tools.toml"),
+        "mugs" => fixture!("mugs.toml"),
         "garments" => fixture!("garments.toml"),
         "pantry" => fixture!("pantry.toml"),
         other => panic!("no scene {other}"),

@@ -1,0 +1,52 @@
+//! "I don't care", "any cup will do": the user leaves the choice to the robot.
+
+use crate::clauses::{Clause, Topic};
+use crate::extractor::wonders_after;
+use crate::question_words::QuestionWords;
+use crate::tagger::Tag;
+use crate::token_class::{Class, classes};
+
+/// Returns the tag that says so.
+pub(crate) fn indifference(
+    tags: &[Tag<'_>],
+    clauses: &[Clause],
+    asked: QuestionWords<'_>,
+) -> Option<usize> {
+    let answers = !matches!(asked, QuestionWords::Nothing);
+    let on_topic = clauses.iter().filter(|clause| clause.topic == Topic::On);
+    on_topic.flat_map(|clause| clause.span.clone().map(move |at| (clause, at))).find_map(
+        |(clause, at)| {
+            // "I don't care what colour" is about what is asked, if anything is.
+            let said = tags[at].is(Class::Indifferent) && (answers || !wonders_after(tags, at));
+            (said || is_any(&tags[clause.span.clone()], at - clause.span.start, answers))
+                .then_some(at)
+        },
+    )
+}
+
+/// "any", "any white one will do", "whichever", "give me either".
+fn is_any(clause: &[Tag<'_>], at: usize, answers: bool) -> bool {
+    const OTHERWISE: &[Class] = classes![Not No AskBack Story Cancel];
+    const NOUN_PHRASE: &[Class] = classes![Head Preposition Determiner Possessive Attribute It];
+    const AFTER: &[Class] = classes![
+        Be Auxiliary Courtesy Filler Except WeakYes Plain First Second Indifferent But
+    ];
+    let free = clause[at].is_any(classes![Quantifier Plain Head])
+        && matches!(clause[at].word, "any" | "either" | "whichever" | "whatever" | "anything");
+    if !free || clause.iter().any(|tag| tag.is_any(OTHERWISE)) {
+        return false;
+    }
+    let rest = &clause[at + 1..];
+    let rest = &rest[..rest.iter().position(Tag::pauses).unwrap_or(rest.len())];
+    let noun_phrase = rest
+        .iter()
+        .take_while(|tag| tag.is_value() || tag.is_any(NOUN_PHRASE) || tag.word == "old")
+        .count();
+    let (named, after) = rest.split_at(noun_phrase);
+    // "either the red one or the blue one" is a choice of two.
+    let two =
+        clause[at].word == "either" && named.first().is_some_and(|tag| tag.is(Class::Determiner));
+    // "any colour" says nothing of the rest, but answers a question for the colour.
+    let of_attribute = named.iter().any(|tag| tag.is(Class::Attribute));
+    !two && (answers || !of_attribute) && after.first().is_none_or(|tag| tag.is_any(AFTER))
+}
