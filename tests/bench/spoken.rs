@@ -1,7 +1,7 @@
 //! Spoken dialogues with the real group.
 
 use crate::options::Options;
-use crate::report::{Report, print};
+use crate::report::{Report, percentile, print};
 use std::path::Path;
 use std::process::Command;
 use whichone_tests::spoken::{Conditions, Held, Tally, tally};
@@ -34,6 +34,8 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         "utterances",
         "rejected",
         "misunderstood",
+        "end of speech to the reply's first sound, ms, p50",
+        "p95",
     ];
     let note = format!(
         "{dialogues} dialogues of seed {seed} over the six bowls in each noise, with the real \
@@ -65,6 +67,8 @@ fn show(held: &Held) {
 fn row(name: &str, tally: &Tally) -> Vec<String> {
     let (all, (low, high)) = (tally.dialogues.len(), tally.interval());
     let said = tally.sum(|held| held.said);
+    let replies = tally.dialogues.iter().flat_map(|held| &held.replies_ms);
+    let replies_ms: Vec<f64> = replies.copied().collect();
     let share = |of: u32| format!("{of} ({:.1} %)", 100.0 * f64::from(of) / f64::from(said.max(1)));
     vec![
         name.to_owned(),
@@ -75,6 +79,8 @@ fn row(name: &str, tally: &Tally) -> Vec<String> {
         said.to_string(),
         share(tally.sum(|held| held.rejected)),
         share(tally.sum(|held| held.misunderstood)),
+        format!("{:.0}", percentile(&replies_ms, 0.5)),
+        format!("{:.0}", percentile(&replies_ms, 0.95)),
     ]
 }
 

@@ -105,7 +105,7 @@ fn microphone(settings: &Settings) -> Finding {
         Ok(())
     };
     let mask = Arc::new(PlaybackMask::new(Span::from_ms(0)));
-    let _microphone = Microphone::start(options, mask, Box::new(sink));
+    let _microphone = Microphone::start(options, mask, Arc::default(), Box::new(sink));
     let (until, mut failed) = (Instant::now() + MICROPHONE_TIMEOUT, Vec::new());
     while failed.len() < programs {
         let timeout = until.saturating_duration_since(Instant::now());

@@ -9,6 +9,7 @@ use service::Span;
 use crate::Hypothesis;
 use crate::devices::microphone::MicrophoneStatus;
 use crate::devices::stream::SpeechSegment;
+use crate::devices::vad::Closing;
 use crate::stream_events::StreamEvent;
 
 /// Events delivered to the reducer.
@@ -34,6 +35,15 @@ pub enum In {
         sound: u64,
         /// The words so far.
         text: String,
+    },
+    /// Result for a possible end of an utterance in progress.
+    EarlyResult {
+        /// Number of the sound.
+        sound: u64,
+        /// The pause after which it was decoded.
+        at: Closing,
+        /// The result; `None` if decoding failed.
+        result: Option<RecognisedSegment>,
     },
     /// State of the recogniser.
     RecogniserState(EarState),
@@ -62,6 +72,8 @@ pub enum Out {
     InterimSamples(u64, Vec<i16>),
     /// To the recogniser: a possible end of a sound.
     DecodeEarly(u64, SpeechSegment),
+    /// To the live source: the pause that ends a sound in progress.
+    Close(u64, Closing),
     /// To the recogniser: input to recognise; the result carries the number.
     Recognise(u64, RecognitionInput),
     /// To the microphone: record one utterance of this length at most; its events carry the number.
@@ -134,4 +146,14 @@ pub struct RecognisedSegment {
     pub snr_db: f32,
     /// The hypotheses, best first; or the text of speech that is not meant for the robot.
     pub hypotheses: Result<Vec<Hypothesis>, String>,
+}
+
+impl RecognisedSegment {
+    /// Returns the best words, if any were recognised.
+    pub fn text(&self) -> Option<&str> {
+        match &self.hypotheses {
+            Ok(hypotheses) => hypotheses.first().map(|best| best.text.as_str()),
+            Err(text) => Some(text),
+        }
+    }
 }

@@ -6,6 +6,7 @@
 
 pub mod devices;
 mod doctor;
+mod endpointing;
 mod inspection;
 mod io;
 mod pending_sounds;
@@ -27,6 +28,7 @@ use stream_events::StreamEvent;
 use utterance_intake::UtteranceIntake;
 
 pub use devices::microphone::MicrophoneStatus;
+pub use endpointing::{EarlyDecoding, Endpointing};
 pub use io::{
     In, Out, PlaybackEvent, PlaybackRequest, PlaybackState, Recognised, RecognisedSegment,
     RecognitionInput,
@@ -49,6 +51,8 @@ pub struct SpeechNode {
 pub struct Config {
     /// Finds the stop word.
     pub reader: language::Reader,
+    /// Judges when utterances in progress end.
+    pub endpointing: Endpointing,
     /// Longest utterance, bytes.
     pub utterance_bytes_max: usize,
     /// `true` if pointing gestures are accepted.
@@ -127,6 +131,9 @@ impl SpeechNode {
                 self.intake.stream_event(event, now, fx);
             }
             In::InterimResult { sound, text } => self.intake.interim_result(sound, &text, fx),
+            In::EarlyResult { sound, at, result } => {
+                self.intake.early_result(sound, at, result.as_ref(), self.player.standing(), fx);
+            }
             In::Microphone(status) => self.intake.set_microphone(&status, fx),
             In::RecogniserState(state) => self.intake.set_recogniser(state, fx),
             In::Mark(mark) => {

@@ -20,6 +20,8 @@ pub(crate) struct PendingSound {
     pub(crate) onset: Time,
     /// When a live one ended; none while it lasts.
     pub(crate) end: Option<Time>,
+    /// `true` if its speaker can interrupt the robot.
+    pub(crate) interrupts: bool,
 }
 
 impl PendingSound {
@@ -69,7 +71,8 @@ impl PendingSounds {
     pub(crate) fn add(&mut self, key: RequestKey, source: Source, onset: Time) -> u64 {
         self.last += 1;
         let segment = (source == Source::Microphone).then_some((0, 1));
-        self.sounds.insert(self.last, PendingSound { key, segment, source, onset, end: None });
+        let sound = PendingSound { key, segment, source, onset, end: None, interrupts: false };
+        self.sounds.insert(self.last, sound);
         self.last
     }
 
@@ -82,6 +85,7 @@ impl PendingSounds {
             source: began.source,
             onset: began.at.min(now),
             end: None,
+            interrupts: began.interrupts,
         };
         self.sounds.insert(began.sound, sound);
     }

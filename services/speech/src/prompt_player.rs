@@ -70,6 +70,13 @@ impl PromptPlayer {
         playing.into_iter().chain(earlier).take(ASKED_MAX).collect()
     }
 
+    /// Returns the question that what a user says now answers, if the last prompt is one.
+    pub(crate) fn standing(&self) -> Question {
+        let playing = self.playing.as_ref().and_then(Playing::begun);
+        let last = playing.or(self.interrupted).or(self.last);
+        last.map_or(Question::None, |presentation| presentation.question)
+    }
+
     /// Handles the policy's current decision, which is resent periodically.
     pub(crate) fn on_act(&mut self, act: &RobotAct, now: Time, fx: &mut Fx) {
         let kind = act.kind.get();

@@ -7,17 +7,18 @@ use std::time::Duration;
 use crate::devices::asr_worker::AsrWorker;
 use crate::devices::client_streams::ClientStreams;
 use crate::devices::microphone::Microphone;
-use crate::devices::stream::PlaybackMask;
+use crate::devices::stream::{Closings, PlaybackMask};
 use crate::devices::vad::SegmenterOptions;
 use crate::devices::voice::Voice;
 use crate::record::Record;
 use crate::stream_events::StreamEvent;
 use crate::{
-    Config, In, Out, PlaybackRequest, Recognised, RecognitionInput, SpeechNode, doctor, inspection,
+    Config, Endpointing, In, Out, PlaybackRequest, Recognised, RecognitionInput, SpeechNode,
+    doctor, inspection,
 };
 use config::Settings;
 use crossbeam_channel::Receiver;
-use language::{Language, Reader as TextReader};
+use language::{CompletenessJudge, Language, Reader as TextReader};
 use messages::{
     Activity, AppliedMark, ArmStatus, AudioChunk, EarState, Hearing, Injection, MotionCommand,
     Partial, Presented, Receipt, RobotAct, Service, Utterance, topics,
@@ -51,6 +52,12 @@ impl Program for SpeechProgram {
         let reader = TextReader::new(&settings.scene, Language::Careful);
         Ok(Config {
             reader,
+            endpointing: Endpointing {
+                judge: CompletenessJudge::new(&settings.scene),
+                complete: settings.speech.complete_pause,
+                closing: settings.speech.closing_pause,
+                open: settings.speech.open_pause,
+            },
             utterance_bytes_max: settings.speech.utterance_bytes_max,
             gestures: settings.dialogue.gesture.enabled,
         })
@@ -92,6 +99,8 @@ pub struct SpeechShell {
     /// The microphone, or why it is off.
     microphone: Result<Microphone, String>,
     streams: ClientStreams,
+    /// Pauses that close utterances in progress.
+    closings: Arc<Closings>,
     voice: Voice,
     inbox: DeviceSender<In>,
     /// Replies on behalf of the devices that did not fit into the inbox.
@@ -131,6 +140,7 @@ impl Shell<SpeechNode> for SpeechShell {
         let (settings, inbox) = (context.settings, &context.devices);
         let echo = Span::from_s(settings.speech.microphone.echo_pause.as_secs_f64());
         let playback_mask = Arc::new(PlaybackMask::new(echo));
+        let closings = Arc::new(Closings::default());
         Ok(Self {
             injections: bus.encoded_reader(&topics::INJECTION)?,
             audio: bus.reader(&topics::AUDIO)?,
@@ -145,12 +155,14 @@ impl Shell<SpeechNode> for SpeechShell {
             hearing: bus.writer(&topics::HEARING)?,
             partials: bus.writer(&topics::PARTIAL)?,
             recogniser: start_recogniser(settings, &work, inbox),
-            microphone: microphone::start(settings, &playback_mask, inbox),
+            microphone: microphone::start(settings, &playback_mask, &closings, inbox),
             streams: ClientStreams::start(
                 SegmenterOptions::of(&settings.speech),
                 Arc::clone(&playback_mask),
+                Arc::clone(&closings),
                 microphone::sink(inbox),
             ),
+            closings,
             voice: voice::start(settings, &work, playback_mask, inbox),
             inbox: inbox.clone(),
             replies: Vec::new(),
@@ -188,6 +200,7 @@ impl Shell<SpeechNode> for SpeechShell {
                     recogniser.decode_early(sound, segment);
                 }
             }
+            Out::Close(sound, closing) => self.closings.set(sound, closing),
             Out::Recognise(sound, input) => {
                 if let Err(reason) = self.recognise(sound, input) {
                     tracing::warn!(reason, "audio not recognised");

@@ -7,10 +7,10 @@ use crate::devices::testing;
 use crate::record::Record;
 use crate::stream_events::{Began, LIVE_FROM, StreamEvent};
 use crate::{
-    Config, Hypothesis, In, Out, PlaybackEvent, PlaybackRequest, PlaybackState, Recognised,
-    RecognisedSegment, SpeechNode,
+    Config, Endpointing, Hypothesis, In, Out, PlaybackEvent, PlaybackRequest, PlaybackState,
+    Recognised, RecognisedSegment, SpeechNode,
 };
-use language::{Language, Reader};
+use language::{CompletenessJudge, Language, Reader};
 use messages::{
     ActKind, Activity, AppliedMark, FixedText, Injection, PresentationState, Receipt, RequestKey,
     RobotAct, Sound, Source, Utterance, WireCode,
@@ -30,7 +30,14 @@ struct Speech {
 impl Speech {
     fn new() -> Self {
         let reader = Reader::new(&testing::bowls(), Language::Careful);
-        let config = Config { reader, utterance_bytes_max: 4000, gestures: false };
+        let ms = std::time::Duration::from_millis;
+        let endpointing = Endpointing {
+            judge: CompletenessJudge::new(&testing::bowls()),
+            complete: ms(120),
+            closing: ms(500),
+            open: ms(900),
+        };
+        let config = Config { reader, endpointing, utterance_bytes_max: 4000, gestures: false };
         let node = SpeechNode::recover(config, Vec::new()).unwrap();
         let mut speech = Self { node, now: Time(0), records: Vec::new() };
         speech.take(1.0, In::Mark(AppliedMark::default()));
@@ -101,6 +108,18 @@ impl Outputs {
 
     fn recognises(&self) -> Option<u64> {
         self.find(|out| if let Out::Recognise(sound, _) = out { Some(*sound) } else { None })
+    }
+
+    /// Returns the pause that ends an utterance, milliseconds.
+    fn closes_ms(&self) -> Option<u32> {
+        self.find(|out| match out {
+            Out::Close(SOUND, closing) => Some((closing.pause_s * 1e3).round() as u32),
+            _ => None,
+        })
+    }
+
+    fn decodes_early(&self) -> bool {
+        self.find(|out| matches!(out, Out::DecodeEarly(SOUND, _)).then_some(())).is_some()
     }
 
     fn partials(&self) -> Vec<(String, u8)> {
@@ -336,6 +355,59 @@ fn interim_results_are_published_until_the_result() {
     assert!(speech.take(0.0, samples).0.is_empty());
     assert_eq!(speech.take(0.1, recognised(SOUND, None)).partials(), [(String::new(), 1)]);
     assert!(speech.records.is_empty(), "interim results are not journaled");
+}
+
+/// Returns the result for the pause at the end of [`segment`].
+fn early(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> In {
+    let hypotheses = words.map_err(str::to_owned);
+    let result = RecognisedSegment { span_s: (0.2, 0.7), snr_db, hypotheses };
+    let at = segment(Time(0)).closing(std::time::Duration::ZERO);
+    In::EarlyResult { sound: SOUND, at, result: Some(result) }
+}
+
+#[test]
+fn pause_that_ends_an_utterance_depends_on_what_was_said() {
+    let said = |text: &str| Ok(vec![Hypothesis::certain(text)]);
+    let either = |best: &str, other: &str, weight: f64| {
+        let other = Hypothesis { weight, ..Hypothesis::certain(other) };
+        Ok(vec![Hypothesis { weight: 1.0 - weight, ..Hypothesis::certain(best) }, other])
+    };
+    for (what, interrupts, words, snr_db, expected) in [
+        ("complete", false, said("yes"), 30.0, 120),
+        ("a correction may follow", false, said("no"), 30.0, 500),
+        ("a correction interrupts", true, said("no"), 30.0, 310),
+        ("leads on", true, said("no the"), 30.0, 900),
+        ("in noise", true, said("yes"), 10.0, 500),
+        ("perhaps not complete", true, either("yes", "yes the", 0.3), 30.0, 500),
+        ("hardly not complete", true, either("yes", "yes the", 0.1), 30.0, 120),
+        ("not meant for the robot", true, Err("yes"), 30.0, 500),
+        ("not meant for the robot so far", true, Err("um the"), 30.0, 900),
+    ] {
+        let mut speech = Speech::new();
+        speech.take(0.0, ask(7));
+        speech.playback(0.1, 1, PlaybackState::Started);
+        speech.playback(1.5, 1, PlaybackState::Ended);
+        let onset = speech.now;
+        speech.take(0.1, began(onset, interrupts));
+        let paused = StreamEvent::Paused { sound: SOUND, segment: segment(onset) };
+        assert!(speech.take(0.3, In::Stream(paused)).decodes_early());
+        let closes = speech.take(0.1, early(words, snr_db)).closes_ms();
+        assert_eq!(closes, Some(expected), "{what}");
+    }
+}
+
+#[test]
+fn later_end_of_the_same_speech_is_decoded_only_if_the_earlier_one_is_not_complete() {
+    let said = |text: &str| Ok(vec![Hypothesis::certain(text)]);
+    for (text, is_decoded) in [("the clear bowl", false), ("get me the", true)] {
+        let mut speech = Speech::new();
+        let onset = speech.now;
+        speech.take(0.1, began(onset, false));
+        let paused = || In::Stream(StreamEvent::Paused { sound: SOUND, segment: segment(onset) });
+        assert!(speech.take(0.1, paused()).decodes_early());
+        assert!(!speech.take(0.1, paused()).decodes_early(), "it waits for the earlier one");
+        assert_eq!(speech.take(0.1, early(said(text), 30.0)).decodes_early(), is_decoded, "{text}");
+    }
 }
 
 #[test]

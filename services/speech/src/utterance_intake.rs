@@ -6,16 +6,20 @@ mod hearing_status;
 mod origin;
 
 use crate::devices::microphone::MicrophoneStatus;
+use crate::devices::vad::Closing;
+use crate::endpointing::EarlyDecoding;
 use crate::pending_sounds::{ClosedStream, PendingSound, PendingSounds};
 use crate::prompt_player::PromptPlayer;
 use crate::record::{Accepted, Record};
 use crate::stream_events::StreamEvent;
 use crate::utterance_content::UtteranceContent;
-use crate::{Config, Fx, Hypothesis, Out, Recognised, RecognitionInput};
+use crate::{Config, Fx, Hypothesis, Out, Recognised, RecognisedSegment, RecognitionInput};
 use accepted::{AcceptedUtterances, Receipts};
 use hearing_status::HearingStatus;
+use language::Completeness;
 use messages::{EarState, Injection, MotionCommand, MotionOrder, ReceiptStatus, Sound, Source};
 use origin::Origin;
+use scene::Question;
 use service::{Span, Time};
 use std::ops::RangeInclusive;
 
@@ -33,6 +37,7 @@ pub(crate) struct UtteranceIntake {
     status: HearingStatus,
     /// Number of the last interim result.
     last_partial: u64,
+    early: EarlyDecoding,
 }
 
 impl UtteranceIntake {
@@ -44,6 +49,7 @@ impl UtteranceIntake {
             pending: PendingSounds::default(),
             status: HearingStatus::default(),
             last_partial: 0,
+            early: EarlyDecoding::default(),
         }
     }
 
@@ -113,7 +119,9 @@ impl UtteranceIntake {
                 return;
             }
             StreamEvent::Paused { sound, segment } => {
-                if self.pending.in_progress(sound).is_some() {
+                if self.pending.in_progress(sound).is_some()
+                    && let Some(segment) = self.early.offer(sound, segment)
+                {
                     fx.publish(Out::DecodeEarly(sound, segment));
                 }
                 return;
@@ -156,6 +164,33 @@ impl UtteranceIntake {
     pub(crate) fn interim_result(&mut self, sound: u64, text: &str, fx: &mut Fx) {
         if let Some(sound) = self.pending.in_progress(sound).copied() {
             self.publish_partial(&sound, text, false, fx);
+        }
+    }
+
+    /// Handles the result for a possible end of a sound, which follows `question`: its words are an
+    /// interim result, and determine the pause that ends it.
+    pub(crate) fn early_result(
+        &mut self,
+        sound: u64,
+        at: Closing,
+        result: Option<&RecognisedSegment>,
+        question: Question,
+        fx: &mut Fx,
+    ) {
+        let next = self.early.decoded(sound, at);
+        let Some(pending) = self.pending.in_progress(sound).copied() else { return };
+        let Some(result) = result else { return };
+        if let Some(text) = result.text() {
+            self.publish_partial(&pending, text, false, fx);
+        }
+        let judged = self.config.endpointing.judge(result, question);
+        let pause_s = self.config.endpointing.pause(judged, pending.interrupts).as_secs_f64();
+        // What ends an utterance is what was said; no disk need be waited for.
+        fx.publish_urgent(Out::Close(sound, Closing { pause_s, ..at }));
+        // What is complete ends with these samples.
+        if let Some(segment) = next.filter(|_| judged != Completeness::Complete) {
+            fx.publish(Out::DecodeEarly(sound, segment));
+            self.early.begun(sound, at);
         }
     }
 

@@ -33,8 +33,12 @@ pub struct Speech {
     pub model_dir: Option<PathBuf>,
     /// Minimum score of speech that counts as addressed to the robot, 0 … 1.
     pub accept_score_min: f64,
-    /// Silence that ends an utterance.
+    /// Silence that ends an utterance which is complete.
+    pub complete_pause: Duration,
+    /// Silence that ends an utterance of which nothing else is known.
     pub closing_pause: Duration,
+    /// Silence that ends an utterance whose last words lead on.
+    pub open_pause: Duration,
     /// Maximum length of an utterance.
     pub spoken_max: Duration,
     /// Longest typed or injected utterance, bytes of UTF-8.
@@ -133,6 +137,8 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
         whisper_model: whisper_model(f, recogniser),
         model_dir: f.absolute("model_dir"),
         accept_score_min: f.number("accept_score_min", 0.0..=1.0),
+        complete_pause: Duration::from_millis(f.whole("complete_pause_ms", 50..=5000)),
+        open_pause: Duration::from_millis(f.whole("open_pause_ms", 100..=5000)),
         closing_pause: Duration::from_millis(f.whole("closing_pause_ms", 100..=5000)),
         spoken_max: f.seconds("spoken_s_max", 2.0..=60.0),
         utterance_bytes_max: f.whole("utterance_bytes_max", 16..=UTTERANCE_BYTES_MAX) as usize,

@@ -17,6 +17,7 @@
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs` | the response that counts, the user's intent, what is referred to |
 //! | readings | `parsed.rs` (`hedges.rs`) | alternative readings with weights and doubts |
 //!
+//! [`CompletenessJudge`] judges whether a speaker will go on after a pause.
 //! [`confusion`] gives the probabilities of mishearing one of a scene's words for another.
 //!
 //! Words that belong to a scene come from the scene; the English of a dialogue is data in
@@ -25,6 +26,7 @@
 mod answer;
 mod asking_back;
 mod clauses;
+mod completeness;
 mod confusion;
 mod content;
 mod disambiguate;
@@ -57,6 +59,7 @@ mod vocabulary;
 #[cfg(test)]
 mod tests;
 
+pub use completeness::{Completeness, CompletenessJudge};
 pub use confusion::confusion;
 pub use normalise::TEXT_CHARS_MAX;
 pub use parsed::READINGS_MAX;

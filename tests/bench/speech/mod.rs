@@ -5,6 +5,7 @@
 //! spoke: the figures compare methods and show what noise does; they promise nothing about people.
 
 mod corpus;
+mod endings;
 mod listener;
 mod score;
 mod tables;
@@ -31,6 +32,7 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
         return print(&format!("spoken input is left out: {missing} is not installed"));
     }
     let voices = Voices::new().expect("a folder for what is spoken");
+    endings::measure(report, &voices, quick);
     let levels: &[f64] = if quick { &[25.0, 10.0] } else { &[25.0, 20.0, 15.0, 10.0] };
     for corpus in [Corpus::main(), Corpus::fresh(), Corpus::utterances()] {
         let mut ears = match Ears::open(&corpus) {

@@ -112,7 +112,8 @@ impl SimulatedGroup {
                 speech::Out::Hearing(_)
                 | speech::Out::Partial(_)
                 | speech::Out::InterimSamples(..)
-                | speech::Out::DecodeEarly(..) => {}
+                | speech::Out::DecodeEarly(..)
+                | speech::Out::Close(..) => {}
                 speech::Out::OpenMicrophone(..) => unreachable!("no client opens the microphone"),
             }
         }

@@ -50,6 +50,8 @@ pub struct Held {
     pub questions: u32,
     /// From the user's first sound to the decision what to bring, seconds.
     pub seconds: f64,
+    /// From the end of the user's voice to the first sound of the reply, milliseconds, of each reply.
+    pub replies_ms: Vec<f64>,
     /// The user's utterances.
     pub said: u32,
     /// Those that were rejected or not heard.
@@ -143,6 +145,9 @@ struct Talk {
     room: Room,
     taps: Taps,
     begun: HashSet<Said>,
+    replies_ms: Vec<f64>,
+    /// End of the user's voice that has no reply yet.
+    unreplied: Option<Time>,
     answered: HashSet<Said>,
     thought: Option<Thought>,
     sentences: Vec<Sentence>,
@@ -180,6 +185,8 @@ impl Talk {
             room,
             taps: Taps::open(client),
             begun: HashSet::new(),
+            replies_ms: Vec::new(),
+            unreplied: None,
             answered: HashSet::new(),
             thought: None,
             sentences: Vec::new(),
@@ -216,8 +223,13 @@ impl Talk {
             self.heard(Time(receipt.onset_ns), &note, accepted, receipt.snr_db);
         }
         for (said, at) in news.began {
-            let words = self.taps.questions.get(&said).cloned();
-            if let (Some(words), true) = (words, self.begun.insert(said)) {
+            if !self.begun.insert(said) {
+                continue;
+            }
+            if let Some(ended) = self.unreplied.take_if(|ended| *ended <= Time(at)) {
+                self.replies_ms.push(Time(at).since(ended).s() * 1e3);
+            }
+            if let Some(words) = self.taps.questions.get(&said).cloned() {
                 self.log(Time(at), format!("robot: {words}"));
             }
         }
@@ -277,6 +289,7 @@ impl Talk {
         let samples = self.voice.samples(&text).expect("a synthesised voice");
         let (began, ended) = self.room.say(at, levelled(&samples));
         self.log(began, format!("user: {text}"));
+        self.unreplied = Some(ended);
         self.sentences.push(Sentence { text, question, began, ended, heard: false });
         ended
     }
@@ -320,6 +333,7 @@ impl Talk {
             brought: delivered.and_then(|last| last.name.clone()),
             questions: last.map_or(0, |last| last.questions),
             seconds: ended.since(began).s(),
+            replies_ms: self.replies_ms,
             said: self.sentences.len() as u32,
             rejected: self.sentences.iter().filter(|sentence| !sentence.heard).count() as u32,
             misunderstood: self.misunderstood,

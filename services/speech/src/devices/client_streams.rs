@@ -14,7 +14,7 @@ use service::{Span, Time};
 
 use crate::In;
 use crate::devices::microphone::{EventQueue, Sink};
-use crate::devices::stream::{Duplex, MaskedStream, PlaybackMask, shifted};
+use crate::devices::stream::{Closings, Duplex, MaskedStream, PlaybackMask, shifted};
 use crate::devices::vad::SegmenterOptions;
 use crate::devices::worker_thread::WorkerThread;
 use crate::stream_events::{Began, StreamEvent, next_sound};
@@ -39,8 +39,14 @@ pub(crate) struct ClientStreams(WorkerThread<Box<AudioChunk>>);
 
 impl ClientStreams {
     /// Starts the thread.
-    pub(crate) fn start(segmenter: SegmenterOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
-        let streams = Streams { segmenter, mask, queue: EventQueue::new(sink), open: Vec::new() };
+    pub(crate) fn start(
+        segmenter: SegmenterOptions,
+        mask: Arc<PlaybackMask>,
+        closings: Arc<Closings>,
+        sink: Sink,
+    ) -> Self {
+        let streams =
+            Streams { segmenter, mask, closings, queue: EventQueue::new(sink), open: Vec::new() };
         Self(WorkerThread::start(CHUNKS_MAX, move |chunks| streams.run(chunks)))
     }
 
@@ -55,6 +61,7 @@ impl ClientStreams {
 struct Streams {
     segmenter: SegmenterOptions,
     mask: Arc<PlaybackMask>,
+    closings: Arc<Closings>,
     queue: EventQueue,
     open: Vec<OpenStream>,
 }
@@ -111,7 +118,11 @@ impl Streams {
     fn begin(&self, key: RequestKey, chunk: &AudioChunk) -> OpenStream {
         OpenStream {
             key,
-            stream: MaskedStream::new(self.segmenter.clone(), Arc::clone(&self.mask)),
+            stream: MaskedStream::new(
+                self.segmenter.clone(),
+                Arc::clone(&self.mask),
+                Arc::clone(&self.closings),
+            ),
             next: chunk.first_sample,
             lost: 0,
             utterances: 0,

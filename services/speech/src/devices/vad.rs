@@ -20,7 +20,8 @@ pub struct SegmenterOptions {
     pub threshold: f32,
     /// Consecutive frames of speech that open a segment; fewer admit clicks.
     pub opening_frames: usize,
-    /// Pause that closes a segment, seconds; for human speech 0.3 to 1.0.
+    /// Pause that closes a segment of which nothing else is known, seconds; for human speech 0.3 to
+    /// 1.0. See [`Segmenter::set_closing`].
     pub closing_pause_s: f64,
     /// Audio before the onset that belongs to the segment, seconds: soft first consonants precede the
     /// detected onset.
@@ -28,6 +29,8 @@ pub struct SegmenterOptions {
     /// Audio after the speech that belongs to the segment, seconds. The rest of the pause is not
     /// decoded, so that decoding can begin before the pause ends.
     pub post_roll_s: f64,
+    /// The same for a segment that closes before the post-roll is over, seconds.
+    pub early_roll_s: f64,
     /// Longest speech in a segment, seconds; the rest becomes the next segment.
     pub longest_s: f64,
 }
@@ -51,9 +54,21 @@ impl Default for SegmenterOptions {
             closing_pause_s: 0.5,
             pre_roll_s: 0.5,
             post_roll_s: 0.2,
+            early_roll_s: 0.048,
             longest_s: 15.0,
         }
     }
+}
+
+/// When a pause closes a segment whose words so far were judged.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closing {
+    /// Length of the speech that was judged, samples.
+    pub speech: usize,
+    /// Audio after it that was decoded, samples.
+    pub roll: usize,
+    /// The pause, seconds.
+    pub pause_s: f64,
 }
 
 /// An event of the segmenter.
@@ -64,8 +79,8 @@ pub enum VadEvent {
         /// First sample of the speech, counted from the stream's start.
         at_sample: usize,
     },
-    /// A pause as long as the post-roll. Unless speech continues, the end carries the same range and
-    /// speech.
+    /// A pause as long as the early roll or the post-roll. Unless speech continues, the end carries the
+    /// range and speech of one of them.
     Pause {
         /// The samples to decode.
         range: Range<usize>,
@@ -111,6 +126,15 @@ impl Segmenter {
         events
     }
 
+    /// Sets the pause that closes the open segment, unless speech has continued since it was judged.
+    pub fn set_closing(&mut self, closing: Closing) {
+        if let Some(open) = &mut self.track.open
+            && open.speech_end - open.onset == closing.speech
+        {
+            open.closing = Some(closing);
+        }
+    }
+
     /// Ends the stream and an open segment with it, and resets the segmenter.
     pub fn finish(&mut self) -> Option<VadEvent> {
         let track = std::mem::take(&mut self.track);
@@ -145,17 +169,37 @@ struct Open {
     onset: usize,
     /// End of the last frame of speech.
     speech_end: usize,
+    /// What was judged since.
+    closing: Option<Closing>,
 }
 
 impl Open {
-    /// Returns the range to decode at sample `at`, and the speech in it.
+    /// Returns the range to decode at sample `at`, and the speech in it. The range is that of a pause that
+    /// was reported: of the last one, or of the one that was judged if it is closed by that.
     fn cut(
         &self,
         speech_end: usize,
         at: usize,
         options: &SegmenterOptions,
     ) -> (Range<usize>, Range<usize>) {
-        (self.start..at.min(speech_end + post_roll(options)), self.onset..speech_end)
+        let (early, late) = (roll(options.early_roll_s), roll(options.post_roll_s));
+        let paused = at - speech_end;
+        let is_closed = |closing: &&Closing| {
+            closing.pause_s < options.closing_pause_s && paused >= samples(closing.pause_s)
+        };
+        let judged = self.closing.as_ref().filter(is_closed).map(|closing| closing.roll);
+        let roll = judged.unwrap_or(if paused >= late {
+            late
+        } else if paused >= early {
+            early
+        } else {
+            paused
+        });
+        (self.start..speech_end + roll.min(paused), self.onset..speech_end)
+    }
+
+    fn closing_pause(&self, options: &SegmenterOptions) -> usize {
+        samples(self.closing.map_or(options.closing_pause_s, |closing| closing.pause_s))
     }
 }
 
@@ -167,15 +211,16 @@ impl Track {
             None if self.streak >= options.opening_frames.max(1) => {
                 let onset = self.at - self.streak * FRAME;
                 let start = onset.saturating_sub(samples(options.pre_roll_s)).max(self.free_from);
-                self.open = Some(Open { start, onset, speech_end: self.at });
+                self.open = Some(Open { start, onset, speech_end: self.at, closing: None });
                 events.push(VadEvent::Onset { at_sample: onset });
             }
             None => {}
             Some(open) => {
                 if speech {
-                    open.speech_end = self.at;
+                    (open.speech_end, open.closing) = (self.at, None);
                 }
-                let paused = self.at - open.speech_end >= samples(options.closing_pause_s);
+                let pause = self.at - open.speech_end;
+                let paused = pause > 0 && pause >= open.closing_pause(options);
                 let full = self.at - open.onset >= samples(options.longest_s);
                 let (range, speech) = open.cut(open.speech_end, self.at, options);
                 if paused || full {
@@ -183,7 +228,7 @@ impl Track {
                     self.streak = 0;
                     self.open = None;
                     events.push(VadEvent::End { range, speech });
-                } else if self.at - open.speech_end == post_roll(options) {
+                } else if [options.early_roll_s, options.post_roll_s].map(roll).contains(&pause) {
                     events.push(VadEvent::Pause { range, speech });
                 }
             }
@@ -196,8 +241,8 @@ fn samples(seconds: f64) -> usize {
 }
 
 /// Returns the length of a segment after its speech: whole frames, at least one.
-fn post_roll(options: &SegmenterOptions) -> usize {
-    samples(options.post_roll_s).div_ceil(FRAME).max(1) * FRAME
+fn roll(seconds: f64) -> usize {
+    samples(seconds).div_ceil(FRAME).max(1) * FRAME
 }
 
 #[cfg(test)]
@@ -222,6 +267,7 @@ mod tests {
             closing_pause_s: 2.0 * frame_s,
             pre_roll_s: frame_s,
             post_roll_s: 2.0 * frame_s,
+            early_roll_s: 2.0 * frame_s,
             longest_s: 8.0 * frame_s,
             ..SegmenterOptions::default()
         }
@@ -275,6 +321,77 @@ mod tests {
             ),
         ] {
             assert_eq!(track(frames, &options), expected, "{what}");
+        }
+    }
+
+    /// Processes frames; `judged` is known after frame `after`, of the pause at which it was decoded.
+    fn judged(frames: &str, after: usize, pause_frames: usize, roll: usize) -> Vec<VadEvent> {
+        let frame_s = FRAME as f64 / f64::from(RATE_HZ);
+        let options = SegmenterOptions {
+            early_roll_s: frame_s,
+            post_roll_s: 3.0 * frame_s,
+            closing_pause_s: 6.0 * frame_s,
+            longest_s: 1.0,
+            ..short()
+        };
+        let mut segmenter = Segmenter::new(options.clone());
+        let mut events = Vec::new();
+        for (n, frame) in frames.chars().enumerate() {
+            segmenter.track.frame(frame == '#', &options, &mut events);
+            if n + 1 == after {
+                let pause_s = pause_frames as f64 * frame_s;
+                segmenter.set_closing(Closing { speech: 4 * FRAME, roll: roll * FRAME, pause_s });
+            }
+        }
+        events
+    }
+
+    #[test]
+    fn vad_segments_close_by_what_was_judged() {
+        let early = || vec![onset(0), pause(0..5, 0..4)];
+        let late = || [early(), vec![pause(0..7, 0..4)]].concat();
+        for (what, events, expected) in [
+            (
+                "complete: after two frames, with the range that was decoded",
+                judged("####..........", 5, 2, 1),
+                [early(), vec![end(0..5, 0..4)]].concat(),
+            ),
+            (
+                "judged late: at once, with the range that was decoded",
+                judged("####..........", 8, 2, 1),
+                [late(), vec![end(0..5, 0..4)]].concat(),
+            ),
+            (
+                "open: after nine frames",
+                judged("####.........###", 6, 9, 1),
+                [late(), vec![end(0..7, 0..4), onset(13)]].concat(),
+            ),
+            (
+                "speech has continued: as if nothing was judged",
+                judged("####.#.......###", 6, 1, 1),
+                vec![
+                    onset(0),
+                    pause(0..5, 0..4),
+                    pause(0..7, 0..6),
+                    pause(0..9, 0..6),
+                    end(0..9, 0..6),
+                    onset(13),
+                ],
+            ),
+            (
+                "speech continues after it was judged",
+                judged("####..#......###", 5, 4, 1),
+                vec![
+                    onset(0),
+                    pause(0..5, 0..4),
+                    pause(0..8, 0..7),
+                    pause(0..10, 0..7),
+                    end(0..10, 0..7),
+                    onset(13),
+                ],
+            ),
+        ] {
+            assert_eq!(events, expected, "{what}");
         }
     }
 

@@ -6,7 +6,7 @@ use crate::In;
 use crate::devices::microphone::{
     Microphone, MicrophoneOptions, MicrophoneState, MicrophoneStatus, Sink,
 };
-use crate::devices::stream::PlaybackMask;
+use crate::devices::stream::{Closings, PlaybackMask};
 use config::{MicrophoneMode, Recogniser, Settings};
 use service::worker_channel::DeviceSender;
 
@@ -14,6 +14,7 @@ use service::worker_channel::DeviceSender;
 pub(super) fn start(
     settings: &Settings,
     mask: &Arc<PlaybackMask>,
+    closings: &Arc<Closings>,
     inbox: &DeviceSender<In>,
 ) -> Result<Microphone, String> {
     let speech = &settings.speech;
@@ -22,7 +23,12 @@ pub(super) fn start(
         (_, Recogniser::None) => NO_RECOGNISER,
         _ => {
             let options = MicrophoneOptions::of(speech);
-            return Ok(Microphone::start(options, Arc::clone(mask), sink(inbox)));
+            return Ok(Microphone::start(
+                options,
+                Arc::clone(mask),
+                Arc::clone(closings),
+                sink(inbox),
+            ));
         }
     };
     let (state, note) = (MicrophoneState::Off, reason.to_owned());

@@ -195,8 +195,8 @@ fn asr_worker_reuses_an_early_result_of_the_very_same_samples() {
     assert_eq!(called.recv_timeout(PATIENCE), Ok(1_000));
     submit(&worker, 1, 1_000);
     go.send(()).unwrap();
-    let interim = In::InterimResult { sound: 1, text: "white".to_owned() };
-    assert_eq!(next(&events), interim);
+    let In::EarlyResult { sound: 1, at, result: Some(early) } = next(&events) else { panic!() };
+    assert_eq!((at, text(&early)), (segment(1_000).closing(Duration::ZERO), "white"));
     assert_eq!(result(&events).sound, 1);
     assert!(called.is_empty());
     worker.decode_early(1, segment(1_000));
@@ -210,7 +210,7 @@ fn asr_worker_reuses_an_early_result_of_the_very_same_samples() {
     other.samples[500] = 8;
     worker.submit(3, RecognitionInput::Speech(other)).unwrap();
     (0..2).for_each(|_| go.send(()).unwrap());
-    assert!(matches!(next(&events), In::InterimResult { sound: 3, .. }));
+    assert!(matches!(next(&events), In::EarlyResult { sound: 3, .. }));
     assert_eq!(result(&events).sound, 3);
     assert_eq!(called.try_iter().count(), 1, "one sample differs");
 }
@@ -225,7 +225,7 @@ fn asr_worker_prefers_inputs_to_hints() {
     submit(&worker, 3, 4_000);
     (0..3).for_each(|_| go.send(()).unwrap());
     assert_eq!((result(&events).sound, result(&events).sound), (1, 3));
-    assert!(matches!(next(&events), In::InterimResult { sound: 2, .. }));
+    assert!(matches!(next(&events), In::EarlyResult { sound: 2, .. }));
     assert_eq!(called.try_iter().collect::<Vec<_>>(), [4_000, 3_000], "the newest hint");
 }
 

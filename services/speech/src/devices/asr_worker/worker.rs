@@ -7,6 +7,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, TryRecvError, select};
 
@@ -102,16 +103,13 @@ impl Worker {
             return;
         }
         // A failure is retried when the end is certain, and reported then.
-        let Ok(result) = recognise_segment(recogniser.as_mut(), &self.gate, &segment) else {
-            return;
-        };
-        let text = match &result.hypotheses {
-            Ok(hypotheses) => hypotheses.first().map(|best| best.text.clone()),
-            Err(text) => Some(text.clone()),
-        };
-        push(&mut self.early.results, (segment, result));
+        let result = recognise_segment(recogniser.as_mut(), &self.gate, &segment).ok();
+        let at = segment.closing(Duration::ZERO);
+        if let Some(result) = &result {
+            push(&mut self.early.results, (segment, result.clone()));
+        }
         // Without a receiver of its events the worker ends with the next input.
-        let _ = text.map(|text| events.send(In::InterimResult { sound, text }));
+        let _ = events.send(In::EarlyResult { sound, at, result });
     }
 
     fn recognise(&mut self, input: RecognitionInput) -> Result<Vec<RecognisedSegment>, String> {

@@ -23,7 +23,7 @@ impl Client {
         };
         let mask = Arc::new(PlaybackMask::new(Span::from_ms(300)));
         let options = SegmenterOptions::default();
-        let streams = ClientStreams::start(options, mask, Box::new(sink));
+        let streams = ClientStreams::start(options, mask, Arc::default(), Box::new(sink));
         let began = clock::now() - Span::from_s(20.0);
         Self { streams, events, number: 0, first_sample: 0, flags: 0, began }
     }

@@ -13,7 +13,7 @@ mod worker;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::devices::stream::PlaybackMask;
+use crate::devices::stream::{Closings, PlaybackMask};
 use crate::devices::vad::SegmenterOptions;
 use crate::devices::worker_thread::{QueueError, WorkerThread};
 pub(crate) use event_queue::EventQueue;
@@ -102,8 +102,15 @@ pub(crate) struct Microphone(WorkerThread<Talk>);
 
 impl Microphone {
     /// Starts the thread.
-    pub(crate) fn start(options: MicrophoneOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
-        let run = move |requests: &_| worker::Worker::new(options, mask, sink).run(requests);
+    pub(crate) fn start(
+        options: MicrophoneOptions,
+        mask: Arc<PlaybackMask>,
+        closings: Arc<Closings>,
+        sink: Sink,
+    ) -> Self {
+        let run = move |requests: &_| {
+            worker::Worker::new(options, mask, closings, sink).run(requests);
+        };
         Self(WorkerThread::start(1, run))
     }
 

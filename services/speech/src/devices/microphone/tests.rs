@@ -32,7 +32,7 @@ fn listen_behind(options: MicrophoneOptions, prepare: impl Fn(&PlaybackMask)) ->
     };
     let mask = Arc::new(PlaybackMask::new(Span::from_ms(300)));
     prepare(&mask);
-    let microphone = Microphone::start(options, Arc::clone(&mask), Box::new(sink));
+    let microphone = Microphone::start(options, Arc::clone(&mask), Arc::default(), Box::new(sink));
     Listening { microphone, events, mask }
 }
 

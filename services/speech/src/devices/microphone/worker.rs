@@ -13,7 +13,7 @@ use super::level::{Level, QUIETEST_DB};
 use super::recorder::{Read, Recorder};
 use super::{MicrophoneOptions, MicrophoneStatus, Talk};
 use crate::In;
-use crate::devices::stream::{Duplex, MaskedStream, PlaybackMask, SampleClock};
+use crate::devices::stream::{Closings, Duplex, MaskedStream, PlaybackMask, SampleClock};
 use crate::stream_events::{Began, StreamEvent, next_sound};
 
 /// Timeout of one read.
@@ -50,10 +50,15 @@ struct Request {
 }
 
 impl Worker {
-    pub(super) fn new(options: MicrophoneOptions, mask: Arc<PlaybackMask>, sink: Sink) -> Self {
+    pub(super) fn new(
+        options: MicrophoneOptions,
+        mask: Arc<PlaybackMask>,
+        closings: Arc<Closings>,
+        sink: Sink,
+    ) -> Self {
         let now = Instant::now();
         Self {
-            stream: MaskedStream::new(options.segmenter.clone(), mask),
+            stream: MaskedStream::new(options.segmenter.clone(), mask, closings),
             queue: EventQueue::new(sink),
             clock: SampleClock::default(),
             recorder: None,

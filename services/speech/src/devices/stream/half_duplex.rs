@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use service::Time;
 
-use super::{PlaybackMask, Stream, shifted};
+use super::{Closings, PlaybackMask, Stream, shifted};
 use crate::devices::vad::SegmenterOptions;
 use crate::stream_events::{Begin, StreamEvent};
 
@@ -29,8 +29,12 @@ pub struct MaskedStream {
 
 impl MaskedStream {
     /// Returns a stream that has not begun.
-    pub fn new(options: SegmenterOptions, mask: Arc<PlaybackMask>) -> Self {
-        Self { stream: Stream::new(options), mask, is_muted: false }
+    pub fn new(
+        options: SegmenterOptions,
+        mask: Arc<PlaybackMask>,
+        closings: Arc<Closings>,
+    ) -> Self {
+        Self { stream: Stream::new(options, closings), mask, is_muted: false }
     }
 
     /// Processes the next samples; see [`Stream::push`]. An utterance in progress ends when the robot
@@ -89,7 +93,7 @@ mod tests {
         let mask = Arc::new(PlaybackMask::new(Span::from_ms(300)));
         mask.begins(s(1.0));
         mask.ends(s(2.0));
-        let mut stream = MaskedStream::new(SegmenterOptions::default(), mask);
+        let mut stream = MaskedStream::new(SegmenterOptions::default(), mask, Arc::default());
         let mut events = Vec::new();
         for (n, samples) in voice(4.0).chunks(1_600).enumerate() {
             events.extend(stream.push(s(n as f64 / 10.0), samples, duplex, &mut began));

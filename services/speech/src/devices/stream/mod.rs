@@ -2,23 +2,27 @@
 //!
 //! Invariant: every [`StreamEvent::Began`] is followed by exactly one [`StreamEvent::Ended`], at the
 //! latest at the end of the stream, and all events between them belong to that utterance. Unless speech
-//! continues, a [`StreamEvent::Paused`] carries the same segment as the end. Memory is bounded by the
-//! longest utterance.
+//! continues, one of the [`StreamEvent::Paused`] carries the same segment as the end. Memory is bounded
+//! by the longest utterance.
 
+mod closings;
 mod half_duplex;
 mod playback_mask;
 
 use std::ops::Range;
+use std::sync::Arc;
+use std::time::Duration;
 
 use service::Time;
 
 pub use audio::SampleClock;
 pub(crate) use audio::shifted;
+pub use closings::Closings;
 pub use half_duplex::{Duplex, MaskedStream};
 pub use playback_mask::PlaybackMask;
 
 use crate::devices::audio::RATE_HZ;
-use crate::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
+use crate::devices::vad::{Closing, Segmenter, SegmenterOptions, VadEvent};
 use crate::stream_events::{Begin, StreamEvent};
 
 /// Samples beyond the pre-roll that are kept between utterances: the detector decides on the third
@@ -41,6 +45,14 @@ pub struct SpeechSegment {
     pub speech: Range<usize>,
 }
 
+impl SpeechSegment {
+    /// Returns the pause that closes the utterance if nothing follows this segment.
+    pub fn closing(&self, pause: Duration) -> Closing {
+        let roll = self.samples.len() - self.speech.end;
+        Closing { speech: self.speech.len(), roll, pause_s: pause.as_secs_f64() }
+    }
+}
+
 /// Finds the utterances in a stream.
 pub struct Stream {
     segmenter: Segmenter,
@@ -53,12 +65,14 @@ pub struct Stream {
     anchor: (usize, Time),
     /// The utterance in progress, and the number of its next sample to publish.
     open: Option<(u64, usize)>,
+    closings: Arc<Closings>,
 }
 
 impl Stream {
     /// Returns a stream that has not begun.
-    pub fn new(options: SegmenterOptions) -> Self {
+    pub fn new(options: SegmenterOptions, closings: Arc<Closings>) -> Self {
         Self {
+            closings,
             pre_roll: (options.pre_roll_s * f64::from(RATE_HZ)) as usize,
             segmenter: Segmenter::new(options),
             buffer: Vec::new(),
@@ -77,6 +91,11 @@ impl Stream {
     /// utterance by the time of its onset.
     pub fn push(&mut self, at: Time, samples: &[i16], began: Begin<'_>) -> Vec<StreamEvent> {
         self.anchor = (self.first + self.buffer.len(), at);
+        if let Some((sound, _)) = self.open
+            && let Some(closing) = self.closings.take(sound)
+        {
+            self.segmenter.set_closing(closing);
+        }
         self.buffer.extend_from_slice(samples);
         let found = self.segmenter.push(samples).into_iter();
         let mut events: Vec<_> = found.filter_map(|event| self.event(event, began)).collect();
@@ -174,7 +193,7 @@ mod tests {
     }
 
     fn new() -> Stream {
-        Stream::new(SegmenterOptions::default())
+        Stream::new(SegmenterOptions::default(), Arc::default())
     }
 
     fn edges(events: Vec<StreamEvent>) -> Vec<StreamEvent> {
@@ -236,10 +255,39 @@ mod tests {
             }
             _ => None,
         });
-        let [first, second, end] = segments.collect::<Vec<_>>()[..] else { panic!("{events:?}") };
+        let segments = segments.collect::<Vec<_>>();
+        let [first, .., second, end] = segments[..] else { panic!("{events:?}") };
         assert_eq!(second, end);
         assert_eq!(first.onset, end.onset);
         assert!(first.samples.len() < end.samples.len(), "speech continued after the first pause");
+    }
+
+    #[test]
+    fn stream_closes_an_utterance_that_was_judged_with_the_samples_that_were_decoded() {
+        let closings = Arc::new(Closings::default());
+        let mut stream = Stream::new(SegmenterOptions::default(), Arc::clone(&closings));
+        let mut judged: Option<SpeechSegment> = None;
+        for (n, samples) in recording()[..48_000].chunks(320).enumerate() {
+            let at = shifted(Time(BEGAN * MS), (n * 320) as i64);
+            for event in stream.push(at, samples, &mut began) {
+                match event {
+                    StreamEvent::Paused { sound, segment } => {
+                        closings.set(sound, segment.closing(Duration::from_millis(120)));
+                        closings.set(sound + 1, segment.closing(Duration::ZERO));
+                        judged = Some(segment);
+                    }
+                    StreamEvent::Ended { segment, .. } => {
+                        assert_eq!(Some(&segment), judged.as_ref());
+                        let later = segment.end + service::Span::from_ms(120);
+                        let now = shifted(at, 320);
+                        assert!(now >= later && now.since(later).s() < 0.05, "{now:?} {later:?}");
+                        return;
+                    }
+                    _ => {}
+                }
+            }
+        }
+        panic!("no end");
     }
 
     #[test]
@@ -262,7 +310,7 @@ mod tests {
     #[test]
     fn stream_memory_is_bounded() {
         let options = SegmenterOptions { longest_s: 2.0, ..SegmenterOptions::default() };
-        let mut stream = Stream::new(options);
+        let mut stream = Stream::new(options, Arc::default());
         run(&mut stream, &vec![0; 160_000], 320);
         assert!(stream.buffer.len() <= 8_000 + UNDECIDED);
         let mut most = 0;
