@@ -69,9 +69,14 @@ impl CompletenessJudge {
         let reading = self.reader.read(text, question);
         match reading.intent {
             Intent::Stop => Completeness::Complete,
-            Intent::Cancel | Intent::StartOver => Completeness::Sufficient,
-            Intent::Repeat | Intent::AskBack | Intent::None => Completeness::Unclear,
             Intent::Inform => self.judge_content(spoken, &reading, question),
+            Intent::Cancel
+            | Intent::StartOver
+            | Intent::Greet
+            | Intent::Thank
+            | Intent::PutBack => Completeness::Sufficient,
+            // Questions to the robot, and what is not meant for it.
+            _ => Completeness::Unclear,
         }
     }
 
