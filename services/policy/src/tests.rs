@@ -8,6 +8,7 @@ mod reconfigure;
 mod seconds;
 mod set_aside;
 mod turns;
+mod words;
 
 use crate::{In, Out, PolicyNode};
 use config::Settings;

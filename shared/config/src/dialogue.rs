@@ -16,6 +16,8 @@ pub struct Dialogue {
     pub language: Language,
     /// Parameters of the observation model (section 3.6 of the paper).
     pub params: Params,
+    /// Smoothing of words that are certain; [`Language::Paper`] has `params.alpha` for all words.
+    pub alpha_typed: f64,
     /// Name of the planner; one of [`dialogue::registry::names`].
     pub planner: String,
     /// Kinds of questions that are allowed.
@@ -65,6 +67,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Dialogue {
         language: f
             .choice("language", &[("careful", Language::Careful), ("paper", Language::Paper)]),
         params: params(f),
+        alpha_typed: f.number("alpha_typed", 1e-6..=100.0),
         planner,
         actions: Actions {
             mode: f.choice("mode", &[("remote", Mode::Remote), ("present", Mode::Present)]),

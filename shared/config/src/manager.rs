@@ -3,6 +3,7 @@
 use dialogue::manager::{Manager, Setup};
 use dialogue::registry::{self, UnknownPlanner};
 use dialogue::{Confusion, Model, NotAConfusion};
+use language::Language;
 use scene::StableHash;
 
 use crate::{Section, Settings};
@@ -63,7 +64,7 @@ impl Settings {
         let gesture = dialogue.gesture;
         Ok(Setup {
             scene: self.scene.clone(),
-            model: Model::new(&self.scene, dialogue.params).with_confusion(confusion),
+            model: self.model().with_confusion(confusion),
             costs: dialogue.costs,
             durations: self.durations.clone(),
             actions: dialogue.actions,
@@ -72,6 +73,14 @@ impl Settings {
             gestures: gesture.enabled.then_some((gesture.model, gesture.person_xyz_m)),
             turns: dialogue.turns,
         })
+    }
+
+    fn model(&self) -> Model {
+        let model = Model::new(&self.scene, self.dialogue.params);
+        match self.dialogue.language {
+            Language::Paper => model,
+            Language::Careful => model.with_certain_words(self.dialogue.alpha_typed),
+        }
     }
 
     /// Returns the identity of everything that the manager decides by, with that planner.

@@ -56,7 +56,7 @@ pub use interaction::{ActKind, Ended, Outcome, PickOutcome, PickPhase};
 pub use interpretation::{Interpretation, NamedReading};
 pub use model::Model;
 pub use model_user::ModelUser;
-pub use observation::{OpenQuestion, log_likelihood};
+pub use observation::{CERTAIN_DOUBT, OpenQuestion, log_likelihood};
 pub use params::{Fault, Params};
 pub use planner::{DecisionProblem, Planner, Step};
 pub use planners::{Lookahead, Optimal};

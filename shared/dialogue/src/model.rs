@@ -24,6 +24,16 @@ struct Tables {
     confusion: Confusion,
     columns: Vec<Column>,
     words: Vec<Word>,
+    /// Of words that may have been something else.
+    smoothing: Smoothing,
+    /// Of words that are certain.
+    certain: Smoothing,
+}
+
+/// Eq. (5) for one `α`.
+#[derive(Clone, Debug, PartialEq)]
+struct Smoothing {
+    alpha: f64,
     vocabulary: Vocabulary,
 }
 
@@ -74,17 +84,29 @@ impl Model {
                 words[word.index()].meanings.push((AttributeId::from(k), ValueId::from(v)));
             }
         }
-        let smoothing = params.alpha * scene.words().len() as f64;
         let objects = scene.objects().len();
-        let vocabulary = Vocabulary::new(
-            (0..objects)
-                .map(|i| (scene.vocabulary_len(ObjectId::from(i)) as f64 + smoothing).ln())
-                .collect(),
-        );
+        let lengths = (0..objects).map(|i| scene.vocabulary_len(ObjectId::from(i)));
+        let smoothing = Smoothing::new(params.alpha, lengths, words.len());
         let confusion = Confusion::even(words.len());
-        let mut tables = Tables { confusion, columns, words, vocabulary };
+        let certain = smoothing.clone();
+        let mut tables = Tables { confusion, columns, words, smoothing, certain };
         tables.find_what_splits();
         Self { params, objects, absent: false, tables: Arc::new(tables) }
+    }
+
+    /// The model with another smoothing for words that are certain ([`CERTAIN_DOUBT`](crate::CERTAIN_DOUBT)).
+    /// Without it they have `α` like all others, as in the paper.
+    ///
+    /// # Panics
+    /// If `alpha` is not a number above 0, or the model has a hypothesis beyond the objects already.
+    #[must_use]
+    pub fn with_certain_words(mut self, alpha: f64) -> Self {
+        assert!(alpha > 0.0 && alpha.is_finite(), "{alpha} is not a smoothing weight");
+        assert!(!self.absent, "the objects' words come first");
+        let tables = Arc::make_mut(&mut self.tables);
+        let lengths = tables.vocabulary_lengths(self.objects);
+        tables.certain = Smoothing::new(alpha, lengths.into_iter(), tables.words.len());
+        self
     }
 
     /// The model with one hypothesis more, after the objects: that the wanted object is not here.
@@ -97,8 +119,7 @@ impl Model {
     pub fn with_absent(mut self) -> Self {
         if !self.absent {
             self.absent = true;
-            let smoothing = self.params.alpha * self.tables.words.len() as f64;
-            Arc::make_mut(&mut self.tables).add_unknown(smoothing.ln());
+            Arc::make_mut(&mut self.tables).add_unknown();
         }
         self
     }
@@ -227,14 +248,15 @@ impl Model {
     /// `ln P(w | D)` of eq. (5), but for a constant that is returned, added to every entry. The
     /// constant is chosen so that entries only fall.
     pub(crate) fn add_log_word(&self, word: WordId, out: &mut [f64]) -> f64 {
-        let own = (1.0 + self.params.alpha).ln();
-        let other = self.params.alpha.ln() - own;
-        let constant = own - self.tables.vocabulary.least;
+        let Smoothing { alpha, vocabulary } = &self.tables.certain;
+        let own = (1.0 + alpha).ln();
+        let other = alpha.ln() - own;
+        let constant = own - vocabulary.least;
         if !self.tables.words[word.index()].splits {
             let has = self.has_word(ObjectId(0), word);
             return if has { constant } else { constant + other };
         }
-        let entries = out.iter_mut().zip(&self.tables.vocabulary.above);
+        let entries = out.iter_mut().zip(&vocabulary.above);
         match self.meanings(word) {
             &[(k, v)] => {
                 for ((entry, above), &value) in entries.zip(self.column(k)) {
@@ -257,10 +279,13 @@ impl Model {
     /// As [`Model::add_log_word`] for a word that was said with `1 − doubt`, and else was one that
     /// is taken for it: `ln ((1−d) P(w|D) + d Σ_u κ(u|w) P(u|D))`.
     pub(crate) fn add_doubted_word(&self, word: WordId, doubt: f64, out: &mut [f64]) -> f64 {
-        let Vocabulary { least, above } = &self.tables.vocabulary;
-        let alpha = self.params.alpha;
-        let mut said = vec![alpha; out.len()];
-        for (u, share) in self.tables.confusion.said_instead(word, doubt) {
+        let tables = &*self.tables;
+        let is_certain = doubt <= crate::CERTAIN_DOUBT;
+        let Smoothing { alpha, vocabulary } =
+            if is_certain { &tables.certain } else { &tables.smoothing };
+        let Vocabulary { least, above } = vocabulary;
+        let mut said = vec![*alpha; out.len()];
+        for (u, share) in tables.confusion.said_instead(word, doubt) {
             let own = |i: usize| self.has_word(ObjectId::from(i), u);
             said.iter_mut().enumerate().filter(|(i, _)| own(*i)).for_each(|(_, s)| *s += share);
         }
@@ -274,12 +299,22 @@ impl Model {
 
 impl Tables {
     /// Adds a hypothesis that has no words and of which no value is known.
-    fn add_unknown(&mut self, log_vocabulary: f64) {
+    fn add_unknown(&mut self) {
         self.columns.iter_mut().for_each(|column| column.values.push(Model::UNKNOWN));
-        let Vocabulary { least, above } = &self.vocabulary;
-        let known = above.iter().map(|log| log + least);
-        self.vocabulary = Vocabulary::new(known.chain([log_vocabulary]).collect());
+        let words = self.words.len() as f64;
+        for Smoothing { alpha, vocabulary } in [&mut self.smoothing, &mut self.certain] {
+            let known = vocabulary.above.iter().map(|log| log + vocabulary.least);
+            *vocabulary = Vocabulary::new(known.chain([(*alpha * words).ln()]).collect());
+        }
         self.find_what_splits();
+    }
+
+    /// `|V_D|` of every object.
+    fn vocabulary_lengths(&self, objects: usize) -> Vec<usize> {
+        let has = |i: usize, word: &&Word| {
+            word.meanings.iter().any(|(k, v)| self.columns[k.index()].values[i] == v.0)
+        };
+        (0..objects).map(|i| self.words.iter().filter(|word| has(i, word)).count()).collect()
     }
 
     fn find_what_splits(&mut self) {
@@ -292,14 +327,24 @@ impl Tables {
             let some = |n: usize| n > 0 && n < column.values.len();
             column.splits = count.into_iter().map(|n| unsure || some(n)).collect();
         }
-        let hypotheses = self.vocabulary.above.len();
-        let vocabulary = self.vocabulary.above.iter().any(|above| *above > 0.0);
+        let above = &self.smoothing.vocabulary.above;
+        let hypotheses = above.len();
+        let vocabulary = above.iter().any(|above| *above > 0.0);
         for word in &mut self.words {
             let has = |i: usize| {
                 (word.meanings.iter()).any(|(k, v)| self.columns[k.index()].values[i] == v.0)
             };
             word.splits = vocabulary || (1..hypotheses).any(|i| has(i) != has(0));
         }
+    }
+}
+
+impl Smoothing {
+    /// `lengths` are `|V_D|` of the objects, `words` is `|V|`.
+    fn new(alpha: f64, lengths: impl Iterator<Item = usize>, words: usize) -> Self {
+        let smoothing = alpha * words as f64;
+        let log = lengths.map(|length| (length as f64 + smoothing).ln());
+        Self { alpha, vocabulary: Vocabulary::new(log.collect()) }
     }
 }
 

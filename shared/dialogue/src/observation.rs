@@ -12,12 +12,18 @@
 //! | word doubted by `d` | `(1−d) P(w∣D) + d Σ_u κ(u∣w) P(u∣D)`, `κ` of [`Confusion`](crate::Confusion) | extension |
 //! | answer or group doubted by `d` | `ε + d (1/2 − ε)` in place of `ε` | extension |
 //!
+//! Words that are certain ([`CERTAIN_DOUBT`]) may have an `α` of their own
+//! ([`Model::with_certain_words`]).
+//!
 //! A doubt is the probability that something else was said ([`scene::Doubt`]): what a recogniser
 //! misheard, what a person was not sure of.
 
 use scene::{AttributeId, ObjectId, Question, Reading, Response, ValueId, WordId};
 
 use crate::{Model, Params};
+
+/// Doubt up to which a word counts as certain: it was typed, or recognised beyond doubt.
+pub const CERTAIN_DOUBT: f64 = 0.02;
 
 /// `ln P(l_b, l_r | D, Q_t, Q_v)` of eq. (1) for every hypothesis `D`, in the model's order.
 ///

@@ -146,3 +146,32 @@ fn a_question_of_another_scene_is_refused() {
     let scene = pots();
     let _ = log_likelihood(&model(&scene), Question::Point(ObjectId(3)), &Reading::default());
 }
+
+/// A certain word's odds are `(1 + α) : α` with the `α` of certain words, and it is the paper's where
+/// there is no other.
+#[test]
+fn certain_words_have_their_own_smoothing() {
+    let scene = bowls();
+    let paper = Model::new(&scene, Params::default());
+    let same = paper.clone().with_certain_words(paper.params().alpha);
+    let model = paper.clone().with_certain_words(0.001);
+    for (word, absent) in (0..scene.words().len()).flat_map(|w| [(w, false), (w, true)]) {
+        let with = |model: &Model| if absent { model.clone().with_absent() } else { model.clone() };
+        let base = vec![WordId::from(word)];
+        let likelihood = |model: &Model, doubt: Vec<f64>| {
+            let doubt = scene::Doubt { base: doubt, ..scene::Doubt::default() };
+            let reading = Reading { base: base.clone(), doubt, ..Reading::default() };
+            log_likelihood(&with(model), Question::None, &reading)
+        };
+        assert_eq!(likelihood(&paper, vec![]), likelihood(&same, vec![]));
+        assert_eq!(likelihood(&paper, vec![0.1]), likelihood(&model, vec![0.1]));
+        let certain = likelihood(&model, vec![]);
+        let has = |i: usize| model.has_word(i.into(), base[0]);
+        for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
+            if has(i) && !has(j) {
+                let odds = certain[i] - certain[j];
+                assert!((odds - 1001_f64.ln()).abs() < 1e-9, "{word} {i} {j}: {odds}");
+            }
+        }
+    }
+}
