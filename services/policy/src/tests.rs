@@ -1,10 +1,12 @@
 //! The policy's rules, on the shipped six bowls.
 
+mod concede;
 mod correct;
 mod person;
 mod pointing;
 mod prior;
 mod reconfigure;
+mod replies;
 mod seconds;
 mod set_aside;
 mod turns;

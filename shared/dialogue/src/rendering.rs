@@ -1,33 +1,54 @@
 //! English of the robot's lines and actions. Nothing else in the dialogue produces text.
 
+mod remarks;
+
 use scene::{ObjectId, Question, Scene};
 
-use crate::manager::{Act, Content, Preface, Remark};
-use crate::{Action, PickOutcome};
+use crate::manager::{Act, Content, Preface};
+use crate::{ActKind, Action, PickOutcome};
 
 /// Returns the text of an act's line; empty where nothing is said.
 pub fn text(scene: &Scene, act: &Act) -> String {
     let content = match &act.line.content {
         Content::Silence => return String::new(),
-        Content::Question { variant, presentation } => {
+        Content::Question { variant, time, choices, is_last } => {
             if act.question == Question::None || !scene.contains(act.question) {
                 return String::new();
             }
-            scene.phrase_variant(act.question, *variant, *presentation)
+            let question = scene.phrase_variant(act.question, *variant, *time, choices);
+            if *is_last { format!("{question} {LAST}") } else { question }
         }
-        Content::Fetching(object) => format!("I will get the {object}."),
+        Content::Wanted(time) => wanted(scene, *time),
+        Content::Fetching(object) => fetching(object, &act.line.preface),
         Content::PickEnded(object, outcome) => pick_ended(object, *outcome),
-        Content::Remark(it) => remark(scene, *it),
+        Content::Remark(it) => remarks::text(scene, it, act.kind),
         Content::Correcting | Content::Cancelled => "All right.".to_owned(),
         Content::CallingOff => "I will leave it, unless I already hold it.".to_owned(),
-        Content::Abandoned => "I will wait until you ask me again.".to_owned(),
         Content::Forgotten => "I have lost a part of my memory; please ask me again.".to_owned(),
         Content::NotHere => {
-            format!("What you want does not seem to be here. {}", inventory(scene))
+            format!("What you want does not seem to be here. {}", remarks::inventory(scene))
         }
         Content::SceneReplaced => "The scene has changed; please ask me again.".to_owned(),
     };
     format!("{}{content}", preface(scene, &act.line.preface))
+}
+
+/// Follows the last repetition of a question.
+const LAST: &str = "I am here when you need me.";
+
+fn wanted(scene: &Scene, time: u32) -> String {
+    match time {
+        0 | 1 => "What would you like?".to_owned(),
+        2 => scene.phrase(Question::None),
+        _ => remarks::example(scene),
+    }
+}
+
+fn fetching(object: &str, preface: &Preface) -> String {
+    match preface {
+        Preface::Left(_) => format!("I will take the {object}."),
+        _ => format!("I will get the {object}."),
+    }
 }
 
 /// Returns the text of an action, for operators.
@@ -54,13 +75,16 @@ fn preface(scene: &Scene, preface: &Preface) -> String {
     match preface {
         Preface::None => String::new(),
         Preface::UnknownWord(word) => format!("I do not know \"{word}\" here. "),
-        Preface::StartingOver => "From the beginning. ".to_owned(),
         Preface::ObjectsChanged { gone, new } => {
             let noun = scene.noun();
             format!("{}{}", changed(noun, gone, "gone"), changed(noun, new, "new"))
         }
         Preface::SceneChanged => format!("The {}s here have changed. ", scene.noun()),
-        Preface::Remark(it) => format!("{} ", remark(scene, *it)),
+        Preface::Remark(it) => format!("{} ", remarks::text(scene, it, ActKind::Ask)),
+        Preface::Left(objects) => {
+            let count = remarks::number(objects.len());
+            format!("There are {count}: {}. ", remarks::list(objects))
+        }
     }
 }
 
@@ -73,13 +97,6 @@ fn changed(noun: &str, objects: &[String], how: &str) -> String {
         [one] if one.len() <= DESCRIPTION_MAX => format!("The {one} is {how}. "),
         [_] => format!("One {noun} is {how}. "),
         more => format!("{} {noun}s are {how}. ", more.len()),
-    }
-}
-
-fn remark(scene: &Scene, remark: Remark) -> String {
-    match remark {
-        Remark::Stopped => "I have stopped. Release the motion stop to go on.".to_owned(),
-        Remark::Inventory => inventory(scene),
     }
 }
 
@@ -99,13 +116,4 @@ fn pick_ended(it: &str, outcome: PickOutcome) -> String {
         PickOutcome::Cancelled => "I have left it where it was.".to_owned(),
         PickOutcome::Pending => String::new(),
     }
-}
-
-fn inventory(scene: &Scene) -> String {
-    let values = scene.attributes().iter().filter(|k| k.values.len() > 1).map(|k| {
-        let names: Vec<&str> = k.values.iter().map(|v| v.name.as_str()).collect();
-        format!("{} {}", k.name, names.join(" or "))
-    });
-    let values: Vec<String> = values.collect();
-    format!("I see {} {}s: {}.", scene.objects().len(), scene.noun(), values.join(", "))
 }

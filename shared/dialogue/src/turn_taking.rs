@@ -31,7 +31,7 @@ impl Default for TurnTaking {
     fn default() -> Self {
         Self {
             response_window_s: 15.0,
-            repeats_max: 3,
+            repeats_max: 2,
             questions_max: 20,
             attribution: Attribution::Mixture,
             defers: true,

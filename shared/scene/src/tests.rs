@@ -69,30 +69,45 @@ fn questions_are_worded_by_the_scene() {
 fn wordings_alternate_and_repetitions_are_reworded() {
     let bowls = shipped(BOWLS);
     for question in all_questions(&bowls) {
-        assert_eq!(bowls.phrase_variant(question, 0, 1), bowls.phrase(question));
-        for (n, presentation) in (0..6).flat_map(|n| (0..6).map(move |p| (n, p))) {
-            let text = bowls.phrase_variant(question, n, presentation);
+        assert_eq!(bowls.phrase_variant(question, 0, 1, &[]), bowls.phrase(question));
+        for (n, time) in (0..6).flat_map(|n| (0..6).map(move |time| (n, time))) {
+            let text = bowls.phrase_variant(question, n, time, &[]);
             assert!(text.ends_with('?') && !text.contains(['{', '}']), "{text}");
             assert!(text.starts_with(char::is_uppercase) && text.len() < 60, "{text}");
         }
     }
-    let say = |json, n, presentation| {
+    let say = |json, n, time, choices: &[&str]| {
         let question = question_from_json(&bowls, &json).expect("a question");
-        bowls.phrase_variant(question, n, presentation)
+        let choices: Vec<String> = choices.iter().map(|it| (*it).to_owned()).collect();
+        bowls.phrase_variant(question, n, time, &choices)
     };
     let white = || json!({"type": "attr", "attribute": "color", "value": "white"});
     let color = || json!({"type": "which", "attribute": "color"});
     let this = || json!({"type": "point", "object": "clear"});
-    assert_eq!(say(white(), 0, 2), "Sorry: is it white?");
-    assert_eq!(say(white(), 0, 3), "White: yes or no?");
-    assert_eq!(say(white(), 0, 4), "Once more: is it white?");
-    assert_ne!(say(white(), 1, 1), say(white(), 0, 1));
-    assert_eq!(say(color(), 0, 3), "What colour is it: white, metallic or clear?");
-    assert_eq!(say(this(), 0, 3), "This one: yes or no?");
-    assert_eq!(say(this(), 1, 2), "Sorry: is it this one?");
-    assert_eq!(say(json!(null), 0, 2), "Sorry: which bowl would you like?");
-    let size = bowls.attribute_named("size").expect("there");
-    assert_eq!(bowls.phrase_variant(Question::Which(size), 0, 3), "Once more: is it small or big?");
+    assert_eq!(say(white(), 0, 2, &[]), "White?");
+    assert_eq!(say(white(), 0, 3, &["white", "clear"]), "White or clear?");
+    assert_eq!(say(white(), 0, 3, &["white", "metallic", "clear"]), "White, metallic or clear?");
+    assert_eq!(say(white(), 0, 3, &[]), "White: yes or no?");
+    assert_eq!(say(white(), 0, 4, &[]), "Once more: is it white?");
+    assert_ne!(say(white(), 1, 1, &[]), say(white(), 0, 1, &[]));
+    assert_eq!(say(color(), 0, 2, &[]), "Which color?");
+    assert_eq!(say(color(), 0, 3, &["white", "clear"]), "White or clear?");
+    assert_eq!(say(this(), 0, 3, &[]), "This one: yes or no?");
+    assert_eq!(say(this(), 0, 2, &[]), "Is it this one?");
+}
+
+/// However often a question is put, it never comes twice in the same words within ten times.
+#[test]
+fn no_wording_comes_twice_in_ten() {
+    let bowls = shipped(BOWLS);
+    let of_attributes = |question: &Question| !matches!(question, Question::None);
+    for question in all_questions(&bowls).into_iter().filter(of_attributes) {
+        let mut said: Vec<String> =
+            (1..=10).map(|time| bowls.phrase_variant(question, 0, time, &[])).collect();
+        said.sort_unstable();
+        said.dedup();
+        assert_eq!(said.len(), 10, "{question:?}: {said:?}");
+    }
 }
 
 /// Every question that there is about a scene.

@@ -11,8 +11,17 @@ pub(crate) const ASK_WANTED: [&str; 1] = ["Which {noun} would you like?"];
 /// Default wordings of a pointing question.
 pub(crate) const ASK_POINT: [&str; 3] = ["This one?", "Is it this one?", "Do you mean this one?"];
 
-/// Most values that are read out as options.
-const CHOICES_MAX: usize = 4;
+/// Beginnings of a question that was put before.
+const LEADS: [&str; 8] = [
+    "Once more:",
+    "Please tell me:",
+    "What I need to know:",
+    "Let me ask again:",
+    "Again:",
+    "I still wonder:",
+    "My question was:",
+    "Just to be sure:",
+];
 
 /// Wordings of questions that are not about an attribute; at least one of each.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,26 +37,41 @@ impl Scene {
     /// # Panics
     /// If the question is not of this scene ([`Scene::contains`]).
     pub fn phrase(&self, question: Question) -> String {
-        self.phrase_variant(question, 0, 1)
+        self.phrase_variant(question, 0, 1, &[])
     }
 
-    /// Returns the wording of `question` as the `n`-th prompt, presented for the `presentation`-th
-    /// time, from 1. Wordings take turns; a repeated question begins with "Sorry", then
-    /// lists the possible answers. The result depends on the arguments alone, so that a replay gives
-    /// the same words; variant 0 presented once is [`Scene::phrase`].
+    /// Returns the wording of `question` as the `n`-th prompt, when it is put for the `time`-th time in
+    /// one interaction, from 1. Wordings take turns; a repeated question is shortened, then lists
+    /// `choices`, the answers that are left (in their spoken form; none where there are too many), and
+    /// then begins in another way each time. The result depends on the arguments alone, so that a
+    /// replay gives the same words; variant 0 put once is [`Scene::phrase`].
     ///
     /// # Panics
     /// If the question is not of this scene ([`Scene::contains`]).
-    pub fn phrase_variant(&self, question: Question, n: u64, presentation: u32) -> String {
+    pub fn phrase_variant(
+        &self,
+        question: Question,
+        n: u64,
+        time: u32,
+        choices: &[String],
+    ) -> String {
         let wordings = self.wordings(question);
-        let at = n % wordings.len() as u64;
-        #[expect(clippy::cast_possible_truncation, reason = "below the number of wordings")]
-        let plain = self.fill(&wordings[at as usize], question);
-        match presentation {
-            0 | 1 => plain,
-            2 => format!("Sorry: {}", in_lower_case(&plain)),
-            odd if odd % 2 == 1 => self.with_choices(question, plain),
-            _ => format!("Once more: {}", in_lower_case(&plain)),
+        let plain = |n: u64| {
+            #[expect(clippy::cast_possible_truncation, reason = "below the number of wordings")]
+            let at = (n % wordings.len() as u64) as usize;
+            self.fill(&wordings[at], question)
+        };
+        match time {
+            0 | 1 => plain(n),
+            2 => self.shortened(question).unwrap_or_else(|| plain(n + 1)),
+            3 => self.with_choices(question, &plain(n), choices),
+            more => {
+                let again = u64::from(more) - 4;
+                #[expect(clippy::cast_possible_truncation, reason = "below the number of leads")]
+                let lead = (again % LEADS.len() as u64) as usize;
+                let wording = plain(n + again + again / LEADS.len() as u64);
+                format!("{} {}", LEADS[lead], in_lower_case(&wording))
+            }
         }
     }
 
@@ -76,30 +100,34 @@ impl Scene {
         }
     }
 
-    /// "In the dishwasher: yes or no?", "What colour is it: white, metallic or clear?"
-    fn with_choices(&self, question: Question, plain: String) -> String {
-        let open = plain.trim_end_matches('?').trim_end();
+    /// "In the dishwasher?", "Which colour?"
+    fn shortened(&self, question: Question) -> Option<String> {
         match question {
             Question::Attribute(k, v) => {
                 let spoken = &self.attributes()[k.index()].values[v.index()].spoken;
+                Some(format!("{}?", capitalised(spoken)))
+            }
+            Question::Which(k) => Some(format!("Which {}?", self.attributes()[k.index()].name)),
+            Question::None | Question::Point(_) => None,
+        }
+    }
+
+    /// "White, metallic or clear?", "In the dishwasher: yes or no?"
+    fn with_choices(&self, question: Question, plain: &str, choices: &[String]) -> String {
+        match (question, choices) {
+            (_, [first @ .., last]) if !first.is_empty() => {
+                format!("{} or {last}?", capitalised(&first.join(", ")))
+            }
+            (Question::Attribute(k, v), _) => {
+                let spoken = &self.attributes()[k.index()].values[v.index()].spoken;
                 format!("{}: yes or no?", capitalised(spoken))
             }
-            Question::Point(_) => format!("{open}: yes or no?"),
-            Question::Which(k) => {
-                let values = self.attributes()[k.index()].values.iter();
-                let values: Vec<&str> = values.map(|value| value.name.as_str()).collect();
-                // "Is it small or big?" has said it.
-                let said = |value: &&str| open.contains(*value);
-                match &values[..] {
-                    [first @ .., last]
-                        if (1..CHOICES_MAX).contains(&first.len()) && !values.iter().all(said) =>
-                    {
-                        format!("{open}: {} or {last}?", first.join(", "))
-                    }
-                    _ => format!("Once more: {}", in_lower_case(&plain)),
-                }
+            (Question::Point(_), _) => {
+                format!("{}: yes or no?", plain.trim_end_matches('?').trim_end())
             }
-            Question::None => format!("Once more: {}", in_lower_case(&plain)),
+            (Question::None | Question::Which(_), _) => {
+                format!("Sorry: {}", in_lower_case(plain))
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use scene::{Intent, ObjectId, Reading, Response};
 
 /// A state in which an object is fetched, and which.
 fn fetching(manager: &mut Manager) -> (State, PickId, ObjectId) {
-    let request = words(&["small", "white", "plastic", "dishwasher", "dishwasher", "dishwasher"]);
+    let request = words(&["white", "dishwasher"]);
     let state = first(manager, request);
     let (pick, object) = state.act.pick.expect("sure enough to pick");
     (state, pick, object)
@@ -28,10 +28,10 @@ fn a_denial_calls_the_pick_off_and_what_was_said_before_still_counts() {
     assert_eq!((open.id, open.evidence.len()), (pick.interaction, 3));
     let before = belief(&state)[object.index()];
     assert!(belief(&after)[object.index()] < 0.5 * before, "{:?}", belief(&after));
-    // Small, white and plastic ones are still likelier than what was never spoken of.
+    // White ones are still likelier than what was never spoken of, and the denied one is not.
     let scene = settings().scene;
-    let name = |name: &str| scene.object_named(name).unwrap().index();
-    assert!(belief(&after)[name("white")] > belief(&after)[name("metal2")]);
+    let of = |name: &str| belief(&after)[scene.object_named(name).unwrap().index()];
+    assert!(of("white2") > of("metal2") && of("metal2") > belief(&after)[object.index()]);
     assert_eq!((after.act.kind, after.act.pick), (ActKind::Ask, None));
 }
 
@@ -39,11 +39,11 @@ fn a_denial_calls_the_pick_off_and_what_was_said_before_still_counts() {
 fn the_next_pick_has_a_key_of_its_own() {
     let mut manager = manager();
     let (state, pick, object) = fetching(&mut manager);
-    let wanted = Reading { response: Response::No, ..words(&["clear", "clear", "big", "clear"]) };
+    let wanted = Reading { response: Response::No, ..words(&["metallic"]) };
     let denied = reply(&mut manager, &state, wanted);
     let mut after = manager.next(&denied, &left(pick), at(3));
     assert_eq!(after.act.kind, ActKind::Ask);
-    let more = words(&["clear", "clear", "counter", "big"]);
+    let more = words(&["metallic", "big"]);
     after = remark(&mut manager, &after, more);
     let (next, other) = after.act.pick.expect("sure again");
     assert_eq!((next.interaction, next.attempt), (pick.interaction, 2));
@@ -63,7 +63,7 @@ fn an_object_ruled_out_in_words_is_denied_too() {
     let group = words(&["clear"]).base;
     let not_another = Reading { excluded: vec![group], ..Reading::default() };
     let goes_on = remark(&mut manager, &state, not_another);
-    assert_eq!(goes_on.act, state.act);
+    assert_eq!((goes_on.act.kind, goes_on.act.pick), (state.act.kind, state.act.pick));
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn what_fits_and_what_is_about_something_else_leaves_the_arm_alone() {
     ];
     for reading in readings {
         let after = remark(&mut manager, &state, reading);
-        assert_eq!(after.act, state.act);
+        assert_eq!((after.act.kind, after.act.pick), (state.act.kind, state.act.pick));
         assert!(belief(&after).iter().zip(belief(&state)).all(|(a, b)| (a - b).abs() < 0.05));
     }
 }
@@ -123,7 +123,7 @@ fn who_wants_nothing_any_more_after_a_denial_gets_nothing() {
     let denied = reply(&mut manager, &state, answer(Response::No));
     let never_mind = Reading { intent: Intent::Cancel, ..Reading::default() };
     let withdrawn = remark(&mut manager, &denied, never_mind);
-    assert_eq!(withdrawn.act, denied.act);
+    assert_eq!((withdrawn.act.kind, withdrawn.act.pick), (denied.act.kind, denied.act.pick));
     let ended = manager.next(&withdrawn, &left(pick), at(4));
     assert!(ended.open.is_none());
     assert_eq!(ended.ended.map(|ended| ended.outcome), Some(Outcome::Cancelled));

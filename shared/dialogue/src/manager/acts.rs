@@ -7,7 +7,7 @@ use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, Basis, Interaction, Prompt, State};
 use crate::ids::{PickId, PromptId};
 use crate::time::Time;
-use crate::{ActKind, NamedQuestion};
+use crate::{ActKind, Belief, NamedQuestion};
 
 /// Makes `act` the standing decision.
 pub(super) fn set(state: &mut State, act: Act) {
@@ -36,31 +36,94 @@ impl Manager {
         let stands = standing.kind == ActKind::Ask
             && standing.question == question
             && open.prompts.last().is_some_and(|prompt| prompt.id == standing.prompt);
-        if stands && basis.heard != standing.prompt {
+        if stands && basis.heard != standing.prompt && basis.preface == Preface::None {
             // It stands already and was not heard to its end yet: saying it again would only
             // interrupt it.
             return set_reasons(state, reasons);
         }
         open.presentations += 1;
-        let (prompt, presentation) = if stands {
-            await_answer(open, standing.prompt);
-            (standing.prompt, standing.presentation + 1)
-        } else {
-            state.last_prompt = state.last_prompt.next();
-            let named = match self.recall {
-                true => NamedQuestion::new(&self.setup.scene, question),
-                false => NamedQuestion::None,
-            };
-            open.prompts.push(Prompt { id: state.last_prompt, question, named, answered: None });
-            (state.last_prompt, 1)
+        if stands {
+            let at = reasons.decided;
+            set_reasons(state, reasons);
+            return self.put_again(state, basis.preface, at);
+        }
+        state.last_prompt = state.last_prompt.next();
+        let prompt = state.last_prompt;
+        let named = match self.recall {
+            true => NamedQuestion::new(&self.setup.scene, question),
+            false => NamedQuestion::None,
         };
+        open.prompts.push(Prompt { id: prompt, question, named, answered: None, times: 0 });
         // The wording is a function of the state: a replay says the same.
-        let content = Content::Question { variant: prompt.0, presentation };
-        let line = Line { preface: basis.preface, content };
-        set(state, Act { kind: ActKind::Ask, prompt, presentation, question, line, ..reasons });
+        let line = Line { preface: basis.preface, content: self.wording(open, prompt) };
+        set(state, Act { kind: ActKind::Ask, prompt, presentation: 1, question, line, ..reasons });
     }
 
-    pub(super) fn pick(&mut self, state: &mut State, object: ObjectId, reasons: Act) {
+    /// Puts the standing question once more, in other words.
+    pub(super) fn put_again(&self, state: &mut State, preface: Preface, at: Time) {
+        let Some(open) = &mut state.open else { return };
+        let prompt = state.act.prompt;
+        await_answer(open, prompt);
+        let content = match state.act.line.content {
+            Content::Wanted(time) => Content::Wanted(time + 1),
+            _ => self.wording(open, prompt),
+        };
+        let act = &mut state.act;
+        act.id = act.id.next();
+        act.presentation += 1;
+        act.line = Line { preface, content };
+        (act.decided, act.utterance) = (at, state.applied);
+    }
+
+    /// Returns the next wording of a prompt: each is used once in an interaction.
+    fn wording(&self, open: &mut Interaction, prompt: PromptId) -> Content {
+        let Some(question) = open.prompt(prompt).map(|prompt| prompt.question) else {
+            return Content::Silence;
+        };
+        let alike = open.prompts.iter().filter(|prompt| prompt.question == question);
+        let time = 1 + alike.map(|prompt| prompt.times).sum::<u32>();
+        let choices = self.choices(&open.belief(), question);
+        let is_last = open.silences > 0 && open.silences >= self.setup.turns.repeats_max;
+        if let Some(prompt) = open.prompt_mut(prompt) {
+            prompt.times += 1;
+        }
+        Content::Question { variant: prompt.0, time, choices, is_last }
+    }
+
+    /// Returns the values that the wanted object may have for the attribute in question, in their
+    /// spoken form; none where there are too many.
+    fn choices(&self, belief: &Belief, question: Question) -> Vec<String> {
+        let (Question::Attribute(k, _) | Question::Which(k)) = question else { return Vec::new() };
+        let scene = &self.setup.scene;
+        let values = &scene.attributes()[k.index()].values;
+        let mut is_left = vec![false; values.len()];
+        if let Question::Attribute(_, v) = question {
+            is_left[v.index()] = true;
+        }
+        for object in self.left(belief) {
+            if let Some(v) = scene.object(object).values[k.index()] {
+                is_left[v.index()] = true;
+            }
+        }
+        let left = values.iter().zip(is_left).filter(|(_, is_left)| *is_left);
+        let choices: Vec<String> = left.map(|(value, _)| value.spoken.clone()).collect();
+        if choices.len() > CHOICES_MAX { Vec::new() } else { choices }
+    }
+
+    /// Returns the objects that may well be wanted, in the scene's order.
+    pub(super) fn left(&self, belief: &Belief) -> Vec<ObjectId> {
+        let objects = || (0..self.setup.scene.objects().len()).map(ObjectId::from);
+        let most = objects().map(|i| belief.probability(i)).fold(0.0, f64::max);
+        objects().filter(|i| belief.probability(*i) >= LIKELY * most).collect()
+    }
+
+    pub(super) fn pick(
+        &mut self,
+        state: &mut State,
+        object: ObjectId,
+        preface: Preface,
+        reasons: Act,
+    ) {
         let Some(open) = &mut state.open else { return };
         open.picks += 1;
         let id = PickId { interaction: open.id, attempt: open.picks };
@@ -68,11 +131,48 @@ impl Manager {
         open.pick = pick;
         open.picked.clone_from(&self.setup.scene.object(object).name);
         state.last_prompt = state.last_prompt.next();
-        let line = Content::Fetching(self.description(object)).into();
+        open.announced = vec![state.last_prompt];
+        let line = Line { preface, content: Content::Fetching(self.description(object)) };
         let prompt = state.last_prompt;
         set(state, Act { kind: ActKind::Pick, prompt, presentation: 1, pick, line, ..reasons });
     }
+
+    /// Asks openly what is wanted.
+    pub(super) fn ask_wanted(&self, state: &mut State, at: Time) {
+        state.last_prompt = state.last_prompt.next();
+        let (prompt, utterance) = (state.last_prompt, state.applied);
+        let (kind, line) = (ActKind::Ask, Content::Wanted(1).into());
+        let act =
+            Act { kind, prompt, presentation: 1, line, utterance, decided: at, ..Act::default() };
+        set(state, act);
+    }
+
+    /// Answers the user without a decision: before the standing question, in the middle of the
+    /// standing pick, or alone.
+    pub(super) fn reply(&self, state: &mut State, remark: Remark, at: Time) {
+        match state.act.kind {
+            ActKind::Ask if state.open.is_some() => {
+                self.put_again(state, Preface::Remark(remark), at);
+            }
+            ActKind::Pick | ActKind::Cancel if state.open.is_some() => {
+                state.last_prompt = state.last_prompt.next();
+                let act = &mut state.act;
+                (act.id, act.prompt, act.presentation) = (act.id.next(), state.last_prompt, 1);
+                act.line = Content::Remark(remark).into();
+                (act.decided, act.utterance) = (at, state.applied);
+                if let Some(open) = &mut state.open {
+                    open.announced.push(state.last_prompt);
+                }
+            }
+            _ => say(state, Content::Remark(remark), at),
+        }
+    }
 }
+
+/// Share of the likeliest object's probability from which another one may well be wanted.
+const LIKELY: f64 = 0.1;
+/// Most values that are read out as choices.
+const CHOICES_MAX: usize = 4;
 
 /// Orders the same pick under a new key.
 pub(super) fn order_again(state: &mut State, at: Time) {
@@ -102,17 +202,6 @@ fn say_with(state: &mut State, kind: ActKind, content: Content, at: Time) {
     let line = content.into();
     let act = Act { kind, prompt, presentation: 1, line, utterance, decided: at, ..Act::default() };
     set(state, act);
-}
-
-/// Says a remark, and repeats the standing question behind it.
-pub(super) fn interject(state: &mut State, remark: Remark, at: Time) {
-    if state.act.kind == ActKind::Ask {
-        repeat(state, at);
-        let content = Content::Question { variant: 0, presentation: 1 };
-        state.act.line = Line { preface: Preface::Remark(remark), content };
-    } else if state.act.kind != ActKind::Pick {
-        say(state, Content::Remark(remark), at);
-    }
 }
 
 /// Repeats the standing line.

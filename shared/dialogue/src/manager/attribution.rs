@@ -3,6 +3,7 @@
 use scene::{Intent, Question, Reading};
 
 use super::Manager;
+use super::evidence::Mark;
 use super::state::{State, Utterance};
 use crate::answer_attribution::{Attributed, Candidate, QUESTION_S, QuestionShare, Shares};
 use crate::ids::PromptId;
@@ -13,7 +14,7 @@ use crate::{ActKind, Attribution, Interpretation, NamedQuestion, NamedReading, P
 /// Weights below this say nothing.
 const NEGLIGIBLE: f64 = 1e-9;
 /// Share from which it is plain which question is answered.
-const PLAIN: f64 = 0.8;
+pub(super) const PLAIN: f64 = 0.8;
 
 /// Content of an utterance in the open interaction.
 pub(super) struct Heard<'a> {
@@ -23,6 +24,8 @@ pub(super) struct Heard<'a> {
     pub(super) unknown: &'a str,
     /// The point that the user points at, metres, frame `base`.
     pub(super) gesture: Option<[f64; 3]>,
+    /// Objects that it plainly refused or meant.
+    pub(super) mark: Option<Mark>,
 }
 
 /// Returns the share of the question that an interpretation answers: `shares` has one for each
@@ -107,7 +110,8 @@ impl Manager {
             }
         }
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        Heard { interpretations: all, unknown: &utterance.unknown, gesture: utterance.gesture }
+        let (unknown, gesture) = (utterance.unknown.as_str(), utterance.gesture);
+        Heard { interpretations: all, unknown, gesture, mark: None }
     }
 
     /// Returns an interpretation by names.
@@ -183,7 +187,7 @@ fn candidate(state: &State, put: &Presentation) -> Option<Candidate> {
 fn question(state: &State, prompt: PromptId) -> Option<Question> {
     let open = state.open.as_ref()?;
     if let (ActKind::Pick, Some((_, object))) = (state.act.kind, state.act.pick)
-        && state.act.prompt == prompt
+        && open.announced.contains(&prompt)
     {
         return Some(Question::Point(object));
     }

@@ -3,6 +3,7 @@
 use scene::{Question, Reading};
 
 use super::Manager;
+use super::evidence::{Evidence, Mark};
 use super::state::{Interaction, State};
 use crate::user_model::Person;
 use crate::{Belief, Posterior, PriorObjects};
@@ -54,6 +55,7 @@ impl Manager {
         posterior: &mut Posterior,
         interpretations: &[(f64, Question, Reading)],
         gesture: Option<[f64; 3]>,
+        mark: Option<&Mark>,
     ) {
         posterior.update_mixture(&self.setup.model, interpretations);
         if let (Some(pointing), Some(at)) = (&self.pointing, gesture)
@@ -61,13 +63,19 @@ impl Manager {
         {
             posterior.weigh(&log);
         }
+        if let Some(mark) = mark {
+            let hypotheses = self.setup.model.hypotheses();
+            posterior.weigh(&mark.log_likelihood(&self.setup.scene, hypotheses));
+        }
     }
 
     /// Returns the posterior after all evidence of the interaction, in the present scene.
     pub(super) fn fold(&self, state: &State, open: &Interaction) -> Posterior {
         let mut posterior = self.beginning(state);
         for evidence in &open.evidence {
-            self.update(&mut posterior, &evidence.in_scene(&self.setup.scene), evidence.gesture);
+            let interpretations = evidence.in_scene(&self.setup.scene);
+            let Evidence { gesture, mark, .. } = evidence;
+            self.update(&mut posterior, &interpretations, *gesture, mark.as_ref());
         }
         posterior
     }

@@ -5,7 +5,8 @@ use scene::{ObjectId, Question, Reading, Response, WordId};
 
 use super::Manager;
 use super::acts::call_off;
-use super::attribution::Heard;
+use super::attribution::{Heard, PLAIN};
+use super::evidence::Mark;
 use super::line::Content;
 use super::state::{Basis, State};
 use crate::ActKind;
@@ -22,8 +23,8 @@ impl Manager {
         let denial = self.denial(object, &heard.interpretations);
         let is_denied = denial.is_some();
         self.take_in(open, heard);
-        if let Some(interpretations) = denial {
-            self.take_in(open, Heard { interpretations, unknown: "", gesture: None });
+        if let Some(denial) = denial {
+            self.take_in(open, denial);
         }
         let is_unlikely = open.belief().probability(object) < LIKELY;
         if state.act.kind == ActKind::Pick && (is_denied || is_unlikely) {
@@ -39,7 +40,7 @@ impl Manager {
         &self,
         object: ObjectId,
         interpretations: &[(f64, Question, Reading)],
-    ) -> Option<Vec<(f64, Question, Reading)>> {
+    ) -> Option<Heard<'static>> {
         let that = Question::Point(object);
         let denies = |question: Question, reading: &Reading| {
             (question == that && reading.response == Response::No)
@@ -49,7 +50,11 @@ impl Manager {
         let all: f64 = weights.clone().map(|(weight, _)| weight).sum();
         let no: f64 = weights.filter(|(_, denies)| *denies).map(|(weight, _)| weight).sum();
         let alone = Reading { response: Response::No, ..Reading::default() };
-        let denial = vec![(no, that, alone), (all - no, Question::None, Reading::default())];
+        let interpretations =
+            vec![(no, that, alone), (all - no, Question::None, Reading::default())];
+        let name = || self.setup.scene.object(object).name.clone();
+        let mark = (no >= PLAIN * all).then(|| Mark::Not(name()));
+        let denial = Heard { interpretations, unknown: "", gesture: None, mark };
         (2.0 * no > all).then_some(denial)
     }
 
@@ -63,6 +68,7 @@ impl Manager {
         let Some(open) = &mut state.open else { return };
         (open.pick, open.corrected) = (None, false);
         open.picked.clear();
+        open.announced.clear();
         let utterance = open.utterances.1;
         self.decide(state, Basis { utterance, ..Basis::default() }, at);
     }

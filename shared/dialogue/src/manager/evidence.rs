@@ -23,6 +23,42 @@ pub struct Evidence {
     pub unknown: String,
     /// The point that the user points at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
+    /// Objects that it plainly refused or meant.
+    pub mark: Option<Mark>,
+}
+
+/// Objects, by name, that the user refused or meant beyond the words of the scene.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Mark {
+    /// Refused.
+    Not(String),
+    /// One of these is meant.
+    OneOf(Vec<String>),
+}
+
+/// Factor of what a mark rules out: beyond what words of the scene can make up for in one utterance.
+const RULED_OUT: f64 = 1e-9;
+
+impl Mark {
+    /// Returns the logarithm of its likelihood for each hypothesis.
+    pub(super) fn log_likelihood(&self, scene: &Scene, hypotheses: usize) -> Vec<f64> {
+        let is_ruled_out = |i: usize| {
+            let name = scene.objects().get(i).map(|object| &object.name);
+            match self {
+                Self::Not(refused) => name == Some(refused),
+                Self::OneOf(meant) => name.is_none_or(|name| !meant.contains(name)),
+            }
+        };
+        let log = |i: usize| if is_ruled_out(i) { RULED_OUT.ln() } else { 0.0 };
+        (0..hypotheses).map(log).collect()
+    }
+
+    fn names(&self) -> usize {
+        match self {
+            Self::Not(_) => 1,
+            Self::OneOf(names) => names.len(),
+        }
+    }
 }
 
 impl Evidence {
@@ -47,7 +83,8 @@ impl Evidence {
         let of = |(_, question, reading): &(f64, NamedQuestion, NamedReading)| {
             question.names() + reading.names()
         };
-        ENTRY + self.interpretations.iter().map(of).sum::<usize>()
+        let marked = self.mark.as_ref().map_or(0, Mark::names);
+        ENTRY + marked + self.interpretations.iter().map(of).sum::<usize>()
     }
 }
 

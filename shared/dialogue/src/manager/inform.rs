@@ -5,8 +5,9 @@ use scene::{Reading, Response};
 use super::Manager;
 use super::attribution::Heard;
 use super::evidence::Evidence;
-use super::line::Preface;
-use super::state::{Basis, Deferred, Interaction, State, Utterance};
+use super::line::{Preface, Remark};
+use super::state::{Basis, Deferred, Interaction, State, Utterance, Wish};
+use crate::ActKind;
 use crate::time::Time;
 
 impl Manager {
@@ -32,9 +33,11 @@ impl Manager {
         if open.pick.is_some() {
             return self.reconsider(state, heard, at);
         }
+        let wish = self.concede(open, &heard.interpretations);
+        let preface = preface(&heard, state.act.kind);
         self.take_in(open, heard);
         self.note_answer(state, utterance, shares);
-        defer(state, utterance, at);
+        defer(state, utterance, wish, preface, at);
         if !utterance.more {
             self.decide_deferred(state, at);
         }
@@ -42,14 +45,15 @@ impl Manager {
 
     /// Updates the interaction's posterior with an utterance, and remembers its content.
     pub(super) fn take_in(&self, open: &mut Interaction, heard: Heard) {
-        let Heard { interpretations, unknown, gesture } = heard;
-        self.update(&mut open.posterior, &interpretations, gesture);
+        let Heard { interpretations, unknown, gesture, mark } = heard;
+        self.update(&mut open.posterior, &interpretations, gesture, mark.as_ref());
         if self.recall {
             let interpretations = interpretations
                 .iter()
                 .map(|(weight, question, reading)| self.named(*weight, *question, reading));
             let interpretations = interpretations.collect();
-            open.remember(Evidence { interpretations, unknown: unknown.to_owned(), gesture });
+            let unknown = unknown.to_owned();
+            open.remember(Evidence { interpretations, unknown, gesture, mark });
         }
     }
 
@@ -84,18 +88,28 @@ impl Manager {
     }
 }
 
-/// Records what the next decision rests on. It waits while the user is still speaking.
-fn defer(state: &mut State, utterance: &Utterance, at: Time) {
-    let Some(open) = &mut state.open else { return };
-    let (preface, since) = match open.deferred.take() {
-        Some(before) => (before.basis.preface, before.since),
-        None => (Preface::None, at),
-    };
-    let preface = match utterance.unknown.as_str() {
-        "" => preface,
+/// Returns what is said before the next question about an utterance that was not understood.
+fn preface(heard: &Heard, standing: ActKind) -> Preface {
+    let says_nothing = heard.interpretations.iter().all(|(.., it)| *it == Reading::default());
+    match heard.unknown {
+        "" if says_nothing && heard.gesture.is_none() && standing == ActKind::Ask => {
+            Preface::Remark(Remark::NotUnderstood)
+        }
+        "" => Preface::None,
         word => Preface::UnknownWord(word.to_owned()),
-    };
-    let basis = Basis { heard: utterance.heard(), preface, utterance: utterance.seq };
+    }
+}
+
+/// Records what the next decision rests on. It waits while the user is still speaking.
+fn defer(state: &mut State, utterance: &Utterance, wish: Wish, preface: Preface, at: Time) {
+    let Some(open) = &mut state.open else { return };
+    let before = open.deferred.take();
+    let since = before.as_ref().map_or(at, |before| before.since);
+    let Basis { preface: preface_before, wish: wish_before, .. } =
+        before.map(|before| before.basis).unwrap_or_default();
+    let preface = if preface == Preface::None { preface_before } else { preface };
+    let wish = if wish == Wish::Best { wish_before } else { wish };
+    let basis = Basis { heard: utterance.heard(), preface, utterance: utterance.seq, wish };
     open.deferred = Some(Deferred { basis, since });
 }
 

@@ -3,48 +3,49 @@
 use scene::Intent;
 
 use super::Manager;
-use super::acts::{call_off, interject, repeat};
+use super::acts::{call_off, repeat, say};
 use super::attribution::share_of;
-use super::line::{Content, Preface, Remark};
-use super::state::{Basis, State, Utterance};
-use crate::ids::UtteranceSeq;
+use super::concede::Conceded;
+use super::line::{Content, Remark};
+use super::state::{State, Utterance};
 use crate::time::Time;
 use crate::{ActKind, Outcome};
 
 impl Manager {
-    /// Processes one utterance. Whatever its content, it counts as applied.
+    /// Processes one utterance. Whatever its content, it counts as applied, and what was typed gets an
+    /// answer.
     pub(super) fn hear(&mut self, state: &mut State, utterance: &Utterance, at: Time) {
         state.applied = utterance.seq;
         let shares = self.attribute(state, utterance);
+        let before = state.act.id;
         match intent(utterance, &shares) {
             Intent::Inform => self.inform(state, utterance, &shares, at),
             // "That one over there" has no word of the scene, but the gesture counts.
             Intent::None if self.is_pointing(utterance) => {
                 self.inform(state, utterance, &shares, at);
             }
-            Intent::None | Intent::Greet | Intent::Thank | Intent::PutBack => {}
-            // The speech service has already stopped the arm. An ordered pick continues once the
-            // operator releases the stop, so its order must stand.
-            Intent::Stop => interject(state, Remark::Stopped, at),
+            // Talk that is not meant for the robot stays without an answer.
+            Intent::None if !utterance.typed => {}
+            Intent::None => self.reply(state, Remark::NotUnderstood, at),
             Intent::Cancel => self.cancel(state, at),
-            Intent::Repeat => {
-                if state.act.line.content != Content::Silence {
-                    repeat(state, at);
-                }
+            Intent::Repeat if state.act.line.content != Content::Silence => repeat(state, at),
+            Intent::StartOver => self.start_over(state, at),
+            intent => {
+                let remark = self.answer(state, utterance, intent);
+                self.reply(state, remark, at);
             }
-            Intent::StartOver => self.start_over(state, utterance.seq, at),
-            Intent::AskBack
-            | Intent::AskCount
-            | Intent::AskWhich
-            | Intent::AskWhere
-            | Intent::AskWhy
-            | Intent::AskStatus
-            | Intent::AskHelp => interject(state, Remark::Inventory, at),
+        }
+        let is_deferred = state.open.as_ref().is_some_and(|open| open.deferred.is_some());
+        // The standing question is on its way.
+        let is_asked = state.open.is_some() && state.act.kind == ActKind::Ask;
+        if utterance.typed && state.act.id == before && !is_deferred && !is_asked {
+            let remark = self.status(state);
+            self.reply(state, remark, at);
         }
     }
 
     fn cancel(&self, state: &mut State, at: Time) {
-        let Some(open) = &mut state.open else { return };
+        let Some(open) = &mut state.open else { return say(state, Content::Cancelled, at) };
         // Another object may have been wanted instead of the one being left: no longer.
         open.corrected = false;
         if open.pick.is_none() {
@@ -54,19 +55,22 @@ impl Manager {
         }
     }
 
-    fn start_over(&mut self, state: &mut State, utterance: UtteranceSeq, at: Time) {
-        if state.open.as_ref().is_none_or(|open| open.pick.is_some()) {
-            return;
-        }
+    /// Forgets what was said of the wanted object, and waits for it.
+    fn start_over(&mut self, state: &mut State, at: Time) {
         let beginning = self.beginning(state);
-        if let Some(open) = &mut state.open {
-            open.silences = 0;
-            open.evidence.clear();
-            open.forgotten = 0;
-            open.posterior = beginning;
+        match &mut state.open {
+            None => return say(state, Content::Wanted(1), at),
+            Some(open) if open.pick.is_some() => return,
+            Some(open) => {
+                open.silences = 0;
+                open.evidence.clear();
+                open.forgotten = 0;
+                open.conceded = Conceded::default();
+                open.posterior = beginning;
+                open.deferred = None;
+            }
         }
-        let (heard, preface) = (state.act.prompt, Preface::StartingOver);
-        self.decide(state, Basis { heard, preface, utterance }, at);
+        self.ask_wanted(state, at);
     }
 }
 

@@ -27,8 +27,6 @@ pub enum Preface {
     None,
     /// The user said a word that the scene does not have.
     UnknownWord(String),
-    /// The interaction starts over.
-    StartingOver,
     /// The objects changed; descriptions of those that are gone and of those that are new.
     ObjectsChanged {
         /// Objects that are gone.
@@ -40,15 +38,68 @@ pub enum Preface {
     SceneChanged,
     /// A remark of its own: the question that follows was interrupted by it.
     Remark(Remark),
+    /// These objects are left, which the user cannot tell apart; descriptions.
+    Left(Vec<String>),
 }
 
 /// A remark that answers the user without a decision.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Remark {
     /// The motion stop is latched.
     Stopped,
     /// The objects and values that there are to choose from.
     Inventory,
+    /// A greeting.
+    Greeting,
+    /// The answer to thanks.
+    Welcome,
+    /// What one can say.
+    Help,
+    /// The utterance was not understood.
+    NotUnderstood,
+    /// Agreement.
+    AllRight,
+    /// Nothing is being done.
+    Idle,
+    /// The object of that description is being fetched.
+    Fetching(String),
+    /// The object of that description is being left.
+    Leaving(String),
+    /// The answer to a question about the scene.
+    Objects {
+        /// What was asked.
+        asked: AboutObjects,
+        /// The words that describe the objects.
+        words: Vec<String>,
+        /// Names of the objects.
+        objects: Vec<String>,
+    },
+    /// What speaks for the objects in question.
+    Why(Reason),
+}
+
+/// A question of the user about the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum AboutObjects {
+    /// How many there are.
+    Count,
+    /// Which there are.
+    Which,
+    /// Where they are.
+    Where,
+}
+
+/// Reason of what the robot does.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Reason {
+    /// A question tells these objects apart; descriptions.
+    Between(Vec<String>),
+    /// The user said these words.
+    Said(Vec<String>),
+    /// It is the likeliest object.
+    Likeliest,
+    /// There is nothing to explain.
+    None,
 }
 
 /// Content of a line.
@@ -61,9 +112,15 @@ pub enum Content {
     Question {
         /// Selects one of the scene's wordings.
         variant: u64,
-        /// Which presentation it is worded for, from 1.
-        presentation: u32,
+        /// For which time in the interaction it is put, from 1.
+        time: u32,
+        /// The answers that are left, in their spoken form; none where there are too many.
+        choices: Vec<String>,
+        /// Whether it is not repeated again.
+        is_last: bool,
     },
+    /// Asks what is wanted; for which time, from 1.
+    Wanted(u32),
     /// The object of that description is being fetched.
     Fetching(String),
     /// The pick of the object of that description is over.
@@ -76,8 +133,6 @@ pub enum Content {
     CallingOff,
     /// The request was withdrawn.
     Cancelled,
-    /// The interaction is abandoned after silence.
-    Abandoned,
     /// The interaction is abandoned because a part of the robot's memory is lost.
     Forgotten,
     /// The wanted object is not here.

@@ -7,6 +7,8 @@
 //! | `intents.rs` | dispatch of an utterance by the user's intent |
 //! | `attribution.rs` | the questions that an utterance answers |
 //! | `inform.rs`, `correct.rs` | content of an utterance: while deciding, and while the arm fetches |
+//! | `concede.rs` | what the user cannot tell, and what does not matter |
+//! | `replies.rs` | answers to what the user asks |
 //! | `beliefs.rs`, `pointing.rs` | prior, updates, the user model, gestures |
 //! | `acts.rs` | decisions as standing acts |
 //! | `floor.rs` | deferred decisions and response windows |
@@ -16,6 +18,7 @@
 mod acts;
 mod attribution;
 mod beliefs;
+mod concede;
 mod correct;
 mod evidence;
 mod floor;
@@ -26,18 +29,21 @@ mod line;
 mod pointing;
 mod reconfigure;
 mod refold;
+mod replies;
 mod state;
 
-pub use evidence::{Evidence, NAMES_MAX};
+pub use concede::Conceded;
+pub use evidence::{Evidence, Mark, NAMES_MAX};
 pub use floor::{Floor, HEARING_MAX};
 pub use history::History;
-pub use line::{Content, Line, Preface, Remark};
+pub use line::{AboutObjects, Content, Line, Preface, Reason, Remark};
 pub use refold::{Mismatch, refold, refold_since};
 pub use state::{
-    Act, Basis, Cause, Deferred, Interaction, KnownObject, Prompt, Record, State, Timing, Utterance,
+    Act, Basis, Cause, Deferred, Interaction, KnownObject, Prompt, Record, State, Timing,
+    Utterance, Wish,
 };
 
-use acts::{order_again, repeat, say, set, set_reasons};
+use acts::{order_again, say, set, set_reasons};
 use pointing::Pointing;
 use scene::{ObjectId, Scene};
 
@@ -45,10 +51,12 @@ use crate::gesture::Gestures;
 use crate::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 use crate::time::Time;
 use crate::{
-    ActKind, Action, Actions, Announce, Costs, Decision, DecisionProblem, Durations, Ended, Model,
-    Outcome, PickOutcome, Planner, PolicyTable, Prior, Step, TurnTaking, rendering,
+    ActKind, Action, Actions, Announce, Belief, Costs, Decision, DecisionProblem, Durations, Ended,
+    Model, Outcome, PickOutcome, Planner, PolicyTable, Prior, Step, TurnTaking, rendering,
 };
 
+/// Objects that are named before one of them is picked.
+const LEFT_MAX: usize = 3;
 /// Alternatives that an act lists.
 const ALTERNATIVES_MAX: usize = 5;
 
@@ -201,21 +209,27 @@ impl Manager {
     /// Decides on the present belief.
     fn decide(&mut self, state: &mut State, basis: Basis, at: Time) {
         let Some(decision) = self.plan(state) else { return };
-        let action = decision.action;
-        self.carry_out(state, action, decision, basis, at);
-    }
-
-    /// Decides on the present belief, and prefers any other question to the standing one.
-    fn decide_otherwise(&mut self, state: &mut State, basis: Basis, at: Time) {
-        let Some(decision) = self.plan(state) else { return };
         let standing = Action::Ask(state.act.question);
         let others = decision.alternatives.iter().map(|(action, _)| *action);
         let mut questions = others.filter(|action| matches!(action, Action::Ask(_)));
-        let action = match decision.action {
-            action if action == standing => questions.next().unwrap_or(action),
-            action => action,
+        let action = match (basis.wish, decision.action) {
+            (Wish::Any, action) => state
+                .open
+                .as_ref()
+                .map_or(action, |open| Action::Pick(self.likeliest_object(&open.belief()))),
+            (Wish::Otherwise, action) if action == standing => questions.next().unwrap_or(action),
+            (_, action) => action,
         };
         self.carry_out(state, action, decision, basis, at);
+    }
+
+    /// Returns the likeliest of the scene's objects; of several the first.
+    fn likeliest_object(&self, belief: &Belief) -> ObjectId {
+        let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
+        let likelier = |best: ObjectId, next: ObjectId| {
+            if belief.probability(next) > belief.probability(best) { next } else { best }
+        };
+        objects.reduce(likelier).unwrap_or(ObjectId(0))
     }
 
     /// Asks the planner.
@@ -223,7 +237,9 @@ impl Manager {
         let open = state.open.as_mut()?;
         let step = Step { interaction: open.id.0, step: open.step };
         open.step += 1;
-        Some(open.posterior.decide(&mut *self.planner, &self.setup.problem(), step))
+        let concessions = open.conceded.in_scene(&self.setup.scene);
+        let problem = DecisionProblem { concessions: &concessions, ..self.setup.problem() };
+        Some(open.posterior.decide(&mut *self.planner, &problem, step))
     }
 
     fn carry_out(
@@ -259,8 +275,25 @@ impl Manager {
                 self.close(state, Outcome::NotHere, at, Content::NotHere);
                 set_reasons(state, reasons);
             }
-            Action::Pick(object) => self.pick(state, object, reasons),
+            Action::Pick(object) => {
+                let preface = match basis.preface {
+                    Preface::None => self.left_over(state, object),
+                    preface => preface,
+                };
+                self.pick(state, object, preface, reasons);
+            }
         }
+    }
+
+    /// Names the objects that the user cannot tell apart before one of them is picked.
+    fn left_over(&mut self, state: &State, object: ObjectId) -> Preface {
+        let Some(open) = &state.open else { return Preface::None };
+        let left = self.left(&open.belief());
+        let is_told = open.conceded.unknown.is_empty();
+        if is_told || !(2..=LEFT_MAX).contains(&left.len()) || !left.contains(&object) {
+            return Preface::None;
+        }
+        Preface::Left(left.into_iter().map(|i| self.description(i)).collect())
     }
 
     /// Repeats the question after a silent response window, or abandons the interaction.
@@ -273,12 +306,13 @@ impl Manager {
         open.silences += 1;
         let out_of_questions = open.presentations >= self.setup.turns.questions_max;
         if open.silences > self.setup.turns.repeats_max || out_of_questions {
-            self.close(state, Outcome::Abandoned, at, Content::Abandoned);
+            self.close(state, Outcome::Abandoned, at, Content::Silence);
         } else if self.setup.turns.repeats_same {
-            repeat(state, at);
+            open.presentations += 1;
+            self.put_again(state, Preface::None, at);
         } else {
-            let (heard, utterance) = (state.act.prompt, state.applied);
-            self.decide_otherwise(state, Basis { heard, utterance, ..Basis::default() }, at);
+            let (heard, utterance, wish) = (state.act.prompt, state.applied, Wish::Otherwise);
+            self.decide(state, Basis { heard, utterance, wish, ..Basis::default() }, at);
         }
     }
 

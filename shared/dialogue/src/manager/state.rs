@@ -4,6 +4,7 @@
 use scene::{ObjectId, Question};
 use serde::{Deserialize, Serialize};
 
+use super::concede::Conceded;
 use super::evidence::Evidence;
 use super::history::History;
 use super::line::{Line, Preface};
@@ -69,6 +70,8 @@ pub struct Interaction {
     pub forgotten: u32,
     /// The scene's objects when it was last read; empty where they are too many.
     pub objects: Vec<KnownObject>,
+    /// What the user said of attributes, by name.
+    pub conceded: Conceded,
     /// Every question asked, so that an answer can be scored against the one it was meant for.
     pub prompts: Vec<Prompt>,
     /// Presentations of questions so far.
@@ -85,6 +88,8 @@ pub struct Interaction {
     pub pick: Option<(PickId, ObjectId)>,
     /// Name of its object.
     pub picked: String,
+    /// Lines said since it was ordered: each can be denied.
+    pub announced: Vec<PromptId>,
     /// Picks ordered so far.
     pub picks: u32,
     /// Whether the ordered pick is called off for another object: the interaction continues once
@@ -102,6 +107,7 @@ impl Interaction {
             evidence: Vec::new(),
             forgotten: 0,
             objects: Vec::new(),
+            conceded: Conceded::default(),
             prompts: Vec::new(),
             presentations: 0,
             step: 0,
@@ -110,6 +116,7 @@ impl Interaction {
             deferred: None,
             pick: None,
             picked: String::new(),
+            announced: Vec::new(),
             picks: 0,
             corrected: false,
         }
@@ -143,6 +150,20 @@ pub struct Basis {
     pub preface: Preface,
     /// The latest utterance.
     pub utterance: UtteranceSeq,
+    /// What the user wants to be decided.
+    pub wish: Wish,
+}
+
+/// What the user wants to be decided.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Wish {
+    /// Whatever is best.
+    #[default]
+    Best,
+    /// Anything but the standing question.
+    Otherwise,
+    /// Any of the objects that are left, at once.
+    Any,
 }
 
 /// A deferred decision: the user was still speaking when the belief was updated.
@@ -174,6 +195,8 @@ pub struct Prompt {
     pub named: NamedQuestion,
     /// When the answer to its latest presentation had ended.
     pub answered: Option<Time>,
+    /// How often it was put, each time in other words.
+    pub times: u32,
 }
 
 /// A decision with its reasons.

@@ -1,0 +1,70 @@
+//! What the user cannot tell, and what does not matter to the user.
+
+use scene::{AttributeId, Question, Reading, Response, Scene};
+use serde::{Deserialize, Serialize};
+
+use super::Manager;
+use super::state::{Interaction, Wish};
+use crate::Concessions;
+
+/// What the user said of attributes rather than of values, by names: it outlives a change of the scene.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Conceded {
+    /// Attributes that the user cannot tell.
+    pub unknown: Vec<String>,
+    /// Attributes that do not matter to the user.
+    pub indifferent: Vec<String>,
+}
+
+impl Conceded {
+    /// Returns the concessions in a scene.
+    pub fn in_scene(&self, scene: &Scene) -> Concessions {
+        let ids = |names: &[String]| -> Vec<AttributeId> {
+            names.iter().filter_map(|name| scene.attribute_named(name)).collect()
+        };
+        Concessions { unknown: ids(&self.unknown), indifferent: ids(&self.indifferent) }
+    }
+}
+
+impl Manager {
+    /// Notes what an utterance concedes, and returns what the user wants to be decided. "I do not
+    /// know" and "it does not matter" are about the attribute that was asked about; without one, or
+    /// with other words ("any red cup"), the latter is about the object.
+    pub(super) fn concede(
+        &self,
+        open: &mut Interaction,
+        heard: &[(f64, Question, Reading)],
+    ) -> Wish {
+        let Some((question, reading)) = likeliest(heard) else { return Wish::Best };
+        let attribute = match question {
+            Question::Attribute(k, _) | Question::Which(k) => Some(k),
+            Question::None | Question::Point(_) => None,
+        };
+        let name = attribute.map(|k| self.setup.scene.attributes()[k.index()].name.clone());
+        match (reading.response, name) {
+            (Response::CannotTell, name) => {
+                add(&mut open.conceded.unknown, name);
+                Wish::Otherwise
+            }
+            (Response::DoesNotMatter, Some(name)) if reading.base.is_empty() => {
+                add(&mut open.conceded.indifferent, Some(name));
+                Wish::Best
+            }
+            (Response::DoesNotMatter, _) => Wish::Any,
+            _ => Wish::Best,
+        }
+    }
+}
+
+/// Returns the interpretation that is likelier than all others together.
+fn likeliest(heard: &[(f64, Question, Reading)]) -> Option<(Question, &Reading)> {
+    let all: f64 = heard.iter().map(|(weight, ..)| weight).sum();
+    let (weight, question, reading) = heard.first()?;
+    (2.0 * weight > all).then_some((*question, reading))
+}
+
+fn add(names: &mut Vec<String>, name: Option<String>) {
+    if let Some(name) = name.filter(|name| !names.contains(name)) {
+        names.push(name);
+    }
+}

@@ -1,0 +1,85 @@
+//! Answers to what the user asks the robot: from the scene, the state and the evidence.
+
+use scene::{Intent, ObjectId, Reading, WordId};
+
+use super::Manager;
+use super::line::{AboutObjects, Reason, Remark};
+use super::state::{Interaction, State, Utterance};
+use crate::ActKind;
+
+/// Most objects that a reason names.
+const RIVALS_MAX: usize = 3;
+
+impl Manager {
+    /// Returns the answer to an utterance that is not about the wanted object.
+    pub(super) fn answer(&mut self, state: &State, said: &Utterance, intent: Intent) -> Remark {
+        match intent {
+            Intent::Greet => Remark::Greeting,
+            Intent::Thank => Remark::Welcome,
+            Intent::Stop => Remark::Stopped,
+            Intent::AskHelp => Remark::Help,
+            Intent::AskBack => Remark::Inventory,
+            Intent::AskCount => self.objects(said, intent, AboutObjects::Count),
+            Intent::AskWhich => self.objects(said, intent, AboutObjects::Which),
+            Intent::AskWhere => self.objects(said, intent, AboutObjects::Where),
+            Intent::AskWhy => Remark::Why(self.reason(state)),
+            _ => self.status(state),
+        }
+    }
+
+    /// Returns what the robot is doing.
+    pub(super) fn status(&mut self, state: &State) -> Remark {
+        let picked = state.open.as_ref().and_then(|open| open.pick);
+        match (state.act.kind, picked) {
+            (ActKind::Cancel, Some((_, object))) => Remark::Leaving(self.description(object)),
+            (_, Some((_, object))) => Remark::Fetching(self.description(object)),
+            (ActKind::Ask, None) => Remark::AllRight,
+            _ => Remark::Idle,
+        }
+    }
+
+    /// Returns the objects that the likeliest reading with that intent describes.
+    fn objects(&self, said: &Utterance, intent: Intent, asked: AboutObjects) -> Remark {
+        let fits = said.interpretations.iter().filter(|it| it.reading.intent == intent);
+        let best = fits.reduce(|best, next| if next.weight > best.weight { next } else { best });
+        let scene = &self.setup.scene;
+        let Some(reading) = best.map(|best| &best.reading) else { return Remark::Inventory };
+        let described = (0..scene.objects().len()).filter(|i| self.fits(reading, (*i).into()));
+        let objects = described.map(|i| scene.objects()[i].name.clone()).collect();
+        let name = |word: &WordId| scene.words()[word.index()].clone();
+        Remark::Objects { asked, words: reading.base.iter().map(name).collect(), objects }
+    }
+
+    fn fits(&self, reading: &Reading, object: ObjectId) -> bool {
+        let has = |word: &WordId| self.setup.model.has_word(object, *word);
+        let is_excluded = |group: &Vec<WordId>| !group.is_empty() && group.iter().all(has);
+        reading.base.iter().all(has) && !reading.excluded.iter().any(is_excluded)
+    }
+
+    fn reason(&mut self, state: &State) -> Reason {
+        let Some(open) = &state.open else { return Reason::None };
+        if open.pick.is_none() {
+            let belief = open.belief();
+            let mut left = self.left(&belief);
+            left.sort_by(|a, b| belief.probability(*b).total_cmp(&belief.probability(*a)));
+            left.truncate(RIVALS_MAX);
+            return Reason::Between(left.into_iter().map(|i| self.description(i)).collect());
+        }
+        match said(open) {
+            words if words.is_empty() => Reason::Likeliest,
+            words => Reason::Said(words),
+        }
+    }
+}
+
+/// Returns the scene's words that were said, each once.
+fn said(open: &Interaction) -> Vec<String> {
+    let likeliest = open.evidence.iter().filter_map(|it| it.interpretations.first());
+    let mut words: Vec<String> = Vec::new();
+    for word in likeliest.flat_map(|(.., reading)| &reading.base) {
+        if !words.contains(word) {
+            words.push(word.clone());
+        }
+    }
+    words
+}

@@ -1,0 +1,158 @@
+//! English of the robot's remarks: answers to what the user asks.
+
+use scene::{ObjectId, Role, Scene, Value};
+
+use crate::ActKind;
+use crate::manager::{AboutObjects, Reason, Remark};
+
+/// Length of a list from which it is cut short, bytes: what is said has room for 244, and a question
+/// may follow.
+const LIST_MAX: usize = 120;
+
+/// Returns the text of a remark within an act of that kind.
+pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
+    let text = match remark {
+        Remark::Stopped => "I have stopped. Release the motion stop to go on.".to_owned(),
+        Remark::Inventory => inventory(scene),
+        Remark::Greeting => "Hello!".to_owned(),
+        Remark::Welcome => "You are welcome.".to_owned(),
+        Remark::Help => format!("{} You can also say \"stop\".", example(scene)),
+        Remark::NotUnderstood => {
+            let sorry = "Sorry, I did not understand that.";
+            match kind {
+                ActKind::Say => format!("{sorry} {}", example(scene)),
+                _ => sorry.to_owned(),
+            }
+        }
+        Remark::AllRight => "All right.".to_owned(),
+        Remark::Idle => "I am waiting.".to_owned(),
+        Remark::Fetching(object) => format!("I am getting the {object}."),
+        Remark::Leaving(object) => format!("I am leaving the {object}."),
+        Remark::Objects { asked, words, objects } => about_objects(scene, *asked, words, objects),
+        Remark::Why(reason) => why(reason),
+    };
+    let invites = matches!(remark, Remark::Greeting | Remark::Idle) && kind == ActKind::Say;
+    if invites { format!("{text} What would you like?") } else { text }
+}
+
+/// "You can say what you want, for example: the red mug."
+pub(super) fn example(scene: &Scene) -> String {
+    let object = scene.describe(ObjectId(0));
+    format!("You can say what you want, for example: the {object}.")
+}
+
+/// Returns what there is to choose from.
+pub(super) fn inventory(scene: &Scene) -> String {
+    let values = scene.attributes().iter().filter(|k| k.values.len() > 1).map(|k| {
+        let names: Vec<&str> = k.values.iter().map(|v| v.name.as_str()).collect();
+        format!("{} {}", k.name, names.join(" or "))
+    });
+    let values: Vec<String> = values.collect();
+    format!("I see {} {}s: {}.", scene.objects().len(), scene.noun(), values.join(", "))
+}
+
+fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[String]) -> String {
+    let objects: Vec<ObjectId> = names.iter().filter_map(|name| scene.object_named(name)).collect();
+    let descriptions: Vec<String> = objects.iter().map(|i| scene.describe(*i)).collect();
+    let verb = if objects.len() == 1 { "is" } else { "are" };
+    let group = group(scene, words, objects.len() != 1);
+    match (asked, &objects[..]) {
+        (_, []) => format!("There are no {group} here."),
+        (AboutObjects::Where, _) => places(scene, &objects),
+        (AboutObjects::Count, _) => {
+            let count = number(objects.len());
+            format!("There {verb} {count} {group}: {}.", list(&descriptions))
+        }
+        (AboutObjects::Which, _) => format!("I see {}.", list(&descriptions)),
+    }
+}
+
+/// "red cups on the shelf": the objects that the words describe.
+fn group(scene: &Scene, words: &[String], is_plural: bool) -> String {
+    let values = || {
+        let all = scene.attributes().iter().flat_map(|attribute| &attribute.values);
+        all.filter(|value| words.contains(&value.name))
+    };
+    let of = |role: Role| values().filter(move |value: &&Value| value.role() == role);
+    let qualities = of(Role::Quality).map(|value| value.name.clone());
+    let kind = of(Role::Kind).next().map_or(scene.noun(), |value| value.name.as_str());
+    let kind = if is_plural { format!("{kind}s") } else { kind.to_owned() };
+    let places = of(Role::Place).map(|value| value.spoken.clone());
+    let parts: Vec<String> = qualities.chain([kind]).chain(places).collect();
+    parts.join(" ")
+}
+
+/// "It is on the shelf.", "One is on the shelf, and one is in the drawer."
+fn places(scene: &Scene, objects: &[ObjectId]) -> String {
+    let place = |object: &ObjectId| -> Option<&str> {
+        let values = scene.attributes().iter().zip(&scene.object(*object).values);
+        let mut values = values.filter_map(|(k, v)| Some(&k.values[(*v)?.index()]));
+        values.find(|value| value.role() == Role::Place).map(|value| value.spoken.as_str())
+    };
+    let mut by_place: Vec<(&str, usize)> = Vec::new();
+    for place in objects.iter().map(|object| place(object).unwrap_or("somewhere here")) {
+        match by_place.iter_mut().find(|(known, _)| *known == place) {
+            Some((_, count)) => *count += 1,
+            None => by_place.push((place, 1)),
+        }
+    }
+    if let ([(place, _)], [_]) = (&by_place[..], objects) {
+        return format!("It is {place}.");
+    }
+    let clause = |(place, count): &(&str, usize)| {
+        let verb = if *count == 1 { "is" } else { "are" };
+        format!("{} {verb} {place}", number(*count))
+    };
+    let clauses: Vec<String> = by_place.iter().map(clause).collect();
+    format!("{}.", capitalised(&joined(&clauses)))
+}
+
+fn why(reason: &Reason) -> String {
+    match reason {
+        Reason::Between(objects) => match &objects[..] {
+            [] | [_] => "Because I want to be sure.".to_owned(),
+            more => format!("Because it could be {}.", list(more)),
+        },
+        Reason::Said(words) => format!("Because you said {}.", joined(words)),
+        Reason::Likeliest => "Because it seems the likeliest one.".to_owned(),
+        Reason::None => "I am waiting for your request; there is no other reason.".to_owned(),
+    }
+}
+
+/// "the red mug, the blue mug and 3 more"
+pub(super) fn list(descriptions: &[String]) -> String {
+    let mut items: Vec<String> = Vec::new();
+    let mut length = 0;
+    for description in descriptions {
+        length += description.len() + "the , ".len();
+        if length > LIST_MAX {
+            items.push(format!("{} more", descriptions.len() - items.len()));
+            break;
+        }
+        items.push(format!("the {description}"));
+    }
+    joined(&items)
+}
+
+fn joined(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+/// A number in words where people say it so.
+pub(super) fn number(n: usize) -> String {
+    const WORDS: [&str; 13] = [
+        "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten",
+        "eleven", "twelve",
+    ];
+    WORDS.get(n).map_or_else(|| n.to_string(), |word| (*word).to_owned())
+}
+
+fn capitalised(text: &str) -> String {
+    let mut chars = text.chars();
+    let first = chars.next().into_iter().flat_map(char::to_uppercase);
+    first.chain(chars).collect()
+}
