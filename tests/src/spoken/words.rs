@@ -33,7 +33,7 @@ fn asked_about(scene: &Scene, question: &str) -> Question {
     let lower = question.to_lowercase();
     let is_about = |(k, attribute): (usize, &scene::Attribute)| {
         let asked = Question::Which(AttributeId::from(k));
-        let wordings = (0..WORDINGS).map(|n| scene.phrase_variant(asked, n, 1));
+        let wordings = (0..WORDINGS).map(|n| scene.phrase_variant(asked, n, 1, &[]));
         let names = std::iter::once(&attribute.name).chain(&attribute.synonyms).cloned();
         let mut all = wordings.chain(names);
         all.any(|text| lower.contains(&text.to_lowercase())).then_some(asked)
@@ -60,14 +60,14 @@ mod tests {
             for v in (0..attribute.values.len()).map(ValueId::from) {
                 let question = Question::Attribute(k, v);
                 for (n, presentation) in (0..WORDINGS).flat_map(|n| (1..5).map(move |p| (n, p))) {
-                    let words = scene.phrase_variant(question, n, presentation);
+                    let words = scene.phrase_variant(question, n, presentation, &[]);
                     assert_eq!(asked(&words), question, "{words}");
                 }
                 let words = format!("I do not know \"red\" here. {}", scene.phrase(question));
                 assert_eq!(asked(&words), question, "{words}");
             }
             for n in 0..WORDINGS {
-                let words = scene.phrase_variant(Question::Which(k), n, 1);
+                let words = scene.phrase_variant(Question::Which(k), n, 1, &[]);
                 assert_eq!(asked(&words), Question::Which(k), "{words}");
             }
         }
