@@ -30,7 +30,7 @@ impl Planner for AlwaysAsk {
             Mode::Present => Actions { mode: Mode::Present, attribute: false, which: false },
             Mode::Remote => problem.actions,
         };
-        let problem = &DecisionProblem { actions, ..*problem };
+        let problem = &DecisionProblem { actions, ..problem.with_final_picks() };
         let outlook = Outlook::new(problem, belief);
         // Pointing questions come in order of falling probability: the first is at the most
         // probable object, even where pointing at the next tells as much.

@@ -26,6 +26,7 @@ impl Planner for Entropy {
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, _: Step) -> Decision {
+        let problem = &problem.with_final_picks();
         let outlook = Outlook::new(problem, belief);
         let price = |query| outlook.reduced.channel(query).price;
         let rate = |query, information: f64| information / price(query).cost;

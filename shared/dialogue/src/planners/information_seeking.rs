@@ -4,10 +4,10 @@ use crate::planning::{Choice, Effort};
 use crate::user_model::{Joint, Person};
 use crate::{Action, Answer, Belief, Decision, DecisionProblem, Model, Planner, Step};
 
-use scene::Question;
+use scene::{ObjectId, Question};
 
 use super::searched::{affordable, searched};
-use super::{Entry, Outlook, alternatives};
+use super::{Entry, Outlook, PICKS_MAX, alternatives};
 
 /// The registry's entry.
 pub(super) const ENTRY: Entry = Entry {
@@ -47,17 +47,19 @@ impl Planner for InformationSeeking {
         let model = expected(problem.model, joint.person());
         let expected = DecisionProblem { model: &model, ..*problem };
         let plain = follow(&expected, &belief);
-        let mut asked: Vec<(Action, f64)> = promising(&expected, &belief)
+        let mut weighed: Vec<(Action, f64)> = promising(&expected, &belief)
             .into_iter()
             .map(|question| (Action::Ask(question), ask(problem, &model, joint, question)))
             .collect();
-        asked.sort_by(|a, b| b.1.total_cmp(&a.1));
+        weighed.extend(announced(problem, &model, joint));
+        weighed.sort_by(|a, b| b.1.total_cmp(&a.1));
         let (stop, stopped) = stopping(&expected, &belief);
-        let best = asked.first().copied().filter(|(_, value)| *value > stopped);
+        let best = weighed.first().copied().filter(|(_, value)| *value > stopped);
         let (action, value) = best.unwrap_or((stop, stopped));
-        let alternatives = alternatives(problem, &belief, asked, action);
+        let alternatives = alternatives(problem, &belief, weighed, action);
         // Expected of the plan that takes the person as known; it may pick where this one asks.
-        let expected_questions = best.map_or(0.0, |_| plain.expected_questions.max(1.0));
+        let asks = matches!(action, Action::Ask(_));
+        let expected_questions = if asks { plain.expected_questions.max(1.0) } else { 0.0 };
         Decision { action, value, alternatives, expected_questions, bounds: None }
     }
 
@@ -80,8 +82,14 @@ fn follow(problem: &DecisionProblem<'_>, belief: &Belief) -> Decision {
     })
 }
 
-/// The better of picking and waiting, and its value.
+/// The better of a pick that is final and waiting, and its value.
 fn stopping(problem: &DecisionProblem<'_>, belief: &Belief) -> (Action, f64) {
+    if !problem.announce.is_final() {
+        let wait = (Action::Wait, problem.costs.wait_value());
+        let Some(absent) = problem.model.absent() else { return wait };
+        let concluded = problem.costs.pick_value(belief.probability(absent));
+        return if concluded > wait.1 { (Action::Pick(absent), concluded) } else { wait };
+    }
     let chances = problem.concessions.chances(problem.model, belief);
     let best = chances.iter().copied().fold(0.0, f64::max);
     // Of the objects that are equally right the most probable one.
@@ -93,6 +101,25 @@ fn stopping(problem: &DecisionProblem<'_>, belief: &Belief) -> (Action, f64) {
     let pick = problem.costs.pick_value(best);
     let wait = problem.costs.wait_value();
     if pick > wait { (Action::Pick(likeliest), pick) } else { (Action::Wait, wait) }
+}
+
+/// The most probable objects as announced picks, each with its value; none where picks are final.
+fn announced(problem: &DecisionProblem<'_>, model: &Model, joint: &Joint) -> Vec<(Action, f64)> {
+    if problem.announce.is_final() {
+        return Vec::new();
+    }
+    let chances = problem.concessions.chances(model, &joint.belief());
+    let mut likeliest: Vec<usize> = (0..model.objects()).collect();
+    likeliest.sort_by(|a, b| chances[*b].total_cmp(&chances[*a]));
+    likeliest.truncate(PICKS_MAX);
+    let value = |i: &usize| {
+        let question = Question::Point(ObjectId::from(*i));
+        let (settled, denied) =
+            problem.announce.settle(&problem.costs, model.params().epsilon, chances[*i]);
+        let after = after(problem, model, joint, question, Answer::No);
+        (Action::Pick(ObjectId::from(*i)), settled + problem.costs.discount * denied * after)
+    };
+    likeliest.iter().map(value).collect()
 }
 
 /// The questions that look best from one step ahead.
@@ -107,20 +134,30 @@ fn promising(problem: &DecisionProblem<'_>, belief: &Belief) -> Vec<Question> {
 
 /// Value of asking until something is heard, and going on with what is known then.
 fn ask(problem: &DecisionProblem<'_>, model: &Model, joint: &Joint, question: Question) -> f64 {
-    let (mut heard, mut after) = (0.0, 0.0);
+    let (mut heard, mut sum) = (0.0, 0.0);
     for answer in Answer::possible(model, question) {
         if answer == Answer::Silence {
             continue;
         }
         let probability = joint.probability(model, question, answer);
-        let mut next = joint.clone();
-        next.update_mixture(model, &[(1.0, question, answer.reading(model))]);
-        let model = expected(model, next.person());
-        let problem = DecisionProblem { model: &model, ..*problem };
         heard += probability;
-        after += probability * follow(&problem, &next.belief()).value;
+        sum += probability * after(problem, model, joint, question, answer);
     }
     let costs = &problem.costs;
     let again = 1.0 - costs.discount * (1.0 - heard);
-    (costs.discount * after - problem.cost(Action::Ask(question))) / again
+    (costs.discount * sum - problem.cost(Action::Ask(question))) / again
+}
+
+/// Value of going on after an answer with what is known then.
+fn after(
+    problem: &DecisionProblem<'_>,
+    model: &Model,
+    joint: &Joint,
+    question: Question,
+    answer: Answer,
+) -> f64 {
+    let mut next = joint.clone();
+    next.update_mixture(model, &[(1.0, question, answer.reading(model))]);
+    let model = expected(model, next.person());
+    follow(&DecisionProblem { model: &model, ..*problem }, &next.belief()).value
 }

@@ -45,7 +45,8 @@ pub struct Entry {
 /// Most picks that a decision weighs.
 const PICKS_MAX: usize = 3;
 
-/// A belief seen one step ahead, as the planners see it that look no further.
+/// A belief seen one step ahead, as the planners see it that look no further. They take picks for
+/// final ([`DecisionProblem::with_final_picks`]).
 struct Outlook {
     reduced: Reduced,
     one_step: OneStepLookahead,
@@ -61,7 +62,7 @@ impl Outlook {
 
     /// The better of picking and waiting.
     fn stop(&self, problem: &DecisionProblem<'_>) -> Action {
-        stop(problem, &self.reduced, self.one_step.class, self.one_step.stop.lower)
+        stop(problem, &self.reduced, self.one_step.class, self.one_step.stop)
     }
 
     /// The decision to stop, or to ask `choice`. A question is worth what stopping is worth after
@@ -75,7 +76,7 @@ impl Outlook {
         let asks = |choice: &Choice| Action::Ask(self.reduced.question(choice.query));
         let asked = self.one_step.choices.iter().map(|c| (asks(c), c.value.lower)).collect();
         let (action, value) = choice.map_or_else(
-            || (self.stop(problem), self.one_step.stop.lower),
+            || (self.stop(problem), self.one_step.stop),
             |choice| (asks(choice), choice.value.lower),
         );
         let expected_questions = choice.map_or(0.0, |choice| {
@@ -94,7 +95,8 @@ fn stop(problem: &DecisionProblem<'_>, reduced: &Reduced, class: usize, value: f
     Action::Pick(reduced.best[class])
 }
 
-/// Questions with their values, the best picks and waiting, without what was chosen, best first.
+/// What was weighed, the best picks where these are final, and waiting, without what was chosen, best
+/// first.
 fn alternatives(
     problem: &DecisionProblem<'_>,
     belief: &Belief,
@@ -102,7 +104,10 @@ fn alternatives(
     chosen: Action,
 ) -> Vec<(Action, f64)> {
     weighed.push((Action::Wait, problem.costs.wait_value()));
-    let chances = problem.concessions.chances(problem.model, belief);
+    let chances = match problem.announce.is_final() {
+        true => problem.concessions.chances(problem.model, belief),
+        false => Vec::new(),
+    };
     let mut picks: Vec<(usize, f64)> = chances.into_iter().enumerate().collect();
     let likelier = |a: &(usize, f64), b: &(usize, f64)| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0));
     if picks.len() > PICKS_MAX {
@@ -117,5 +122,7 @@ fn alternatives(
     weighed
 }
 
+#[cfg(test)]
+mod announced_tests;
 #[cfg(test)]
 mod tests;

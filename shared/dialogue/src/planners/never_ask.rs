@@ -21,6 +21,7 @@ impl Planner for NeverAsk {
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, _: Step) -> Decision {
+        let problem = &problem.with_final_picks();
         Outlook::new(problem, belief).decide(problem, belief, None)
     }
 }

@@ -1,6 +1,6 @@
 //! A decision from searching the beliefs that questions lead to.
 
-use crate::planning::{Bound, Effort, Reduced, Search};
+use crate::planning::{Bound, Effort, Move, Reduced, Search};
 use crate::{Action, Belief, Decision, DecisionProblem};
 
 use super::{alternatives, stop};
@@ -17,16 +17,18 @@ pub(super) fn searched(
     let mut search = Search::new(&reduced, &bound);
     search.run(effort(&reduced));
     let root = search.root();
-    let asks = |query| Action::Ask(reduced.question(query));
-    let action = root
-        .best()
-        .map_or_else(|| stop(problem, &reduced, root.class, root.stop), |b| asks(b.query));
+    let does = |to| match to {
+        Move::Ask(query) => Action::Ask(reduced.question(query)),
+        Move::Announce(class) => Action::Pick(reduced.best[class as usize]),
+    };
+    let action =
+        root.best().map_or_else(|| stop(problem, &reduced, root.class, root.stop), |b| does(b.to));
     let value = root.best().map_or(root.stop, |branch| branch.value.estimate);
-    let asked = root.branches.iter().map(|b| (asks(b.query), b.value.estimate)).collect();
+    let weighed = root.branches.iter().map(|b| (does(b.to), b.value.estimate)).collect();
     Decision {
         action,
         value,
-        alternatives: alternatives(problem, belief, asked, action),
+        alternatives: alternatives(problem, belief, weighed, action),
         expected_questions: questions_left(&search, &reduced, 0, 1.0),
         bounds: Some((root.value.lower, root.value.upper)),
     }
@@ -45,13 +47,15 @@ const UNLIKELY: f64 = 1e-3;
 fn questions_left(search: &Search<'_>, reduced: &Reduced, node: usize, reached: f64) -> f64 {
     let node = search.at(node);
     let Some(branch) = node.best() else { return 0.0 };
-    let channel = reduced.channel(branch.query);
     if branch.answers.is_empty() {
-        return channel.times_until_spent(node.entropy);
+        return match branch.to {
+            Move::Ask(query) => reduced.channel(query).times_until_spent(node.entropy),
+            Move::Announce(_) => 0.0,
+        };
     }
     let likely = branch.answers.iter().map(|(p, next)| (p, next, reached * p));
     let after = likely
         .filter(|(.., reached)| *reached > UNLIKELY)
         .map(|(p, next, reached)| p * questions_left(search, reduced, *next, reached));
-    channel.price.times + after.sum::<f64>()
+    branch.price.times + after.sum::<f64>()
 }

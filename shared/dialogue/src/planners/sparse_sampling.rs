@@ -46,6 +46,7 @@ impl Planner for SparseSampling {
     }
 
     fn decide(&mut self, problem: &DecisionProblem<'_>, belief: &Belief, step: Step) -> Decision {
+        let problem = &problem.with_final_picks();
         let outlook = Outlook::new(problem, belief);
         let Outlook { reduced, one_step } = &outlook;
         let queries = reduced.all_queries();
@@ -53,10 +54,10 @@ impl Planner for SparseSampling {
         let mut tree = Tree { reduced, problem, queries, width: self.width, rng };
         let asked = tree.ask(&reduced.mass, self.horizon);
         let best = asked.iter().copied().reduce(|a, b| if b.1 > a.1 { b } else { a });
-        let best = best.filter(|(_, value)| *value > one_step.stop.lower);
+        let best = best.filter(|(_, value)| *value > one_step.stop);
         let asks = |query| Action::Ask(reduced.question(query));
         let (action, value) = best.map_or_else(
-            || (outlook.stop(problem), one_step.stop.lower),
+            || (outlook.stop(problem), one_step.stop),
             |(query, value)| (asks(query), value),
         );
         let expected_questions =

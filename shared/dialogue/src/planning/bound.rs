@@ -12,9 +12,17 @@
 //! if it holds for the greatest information and the smallest potential. Waiting for ever must not
 //! beat it either.
 //!
+//! **Announced picks.** Where a pick can be denied, `r_c` is the value of announcing what is known to
+//! be wanted, and `δ` the least constant for which announcing does not beat `ψ` ([`Announced::offset`]).
+//! Classes that nothing but announcing tells apart count as one: for their sum of `b_c r_c` stands
+//! [`Announced::among`], and `H` is the entropy over such groups.
+//!
 //! **The doubt about one class.** Near certainty a nat costs far more than `B`, because answers
 //! rarely tell anything new. There [`Doubt`] is the tighter bound.
 
+use std::ops::Range;
+
+use super::announced::Announced;
 use super::channel::Price;
 use super::doubt::Doubt;
 use super::reduced::Reduced;
@@ -24,13 +32,17 @@ use crate::Costs;
 #[derive(Clone, Debug)]
 pub(crate) struct Bound {
     pub(crate) costs: Costs,
-    /// `r_c` per class.
+    /// `r_c` per class, that of a group of one where picks are announced.
     pub(crate) worth: Vec<f64>,
     /// `δ`.
     offset: f64,
     /// `B`: price of a nat.
     price: f64,
     doubt: Doubt,
+    announced: Option<Announced>,
+    has_absent: bool,
+    /// A value that none goes below.
+    floor: f64,
 }
 
 /// What a nat is expected to cost in fact, as a multiple of `B`: questions rarely split the
@@ -86,17 +98,50 @@ impl Value {
 impl Bound {
     /// Finds the price of information for a problem.
     pub(crate) fn new(reduced: &Reduced, costs: &Costs) -> Self {
-        let known = |share: &f64| costs.pick_value(*share).max(costs.wait_value());
-        let worth: Vec<f64> = reduced.share.iter().map(known).collect();
-        let price = price(reduced, costs, &worth);
-        let doubt = Doubt::new(reduced, costs);
-        Self { costs: *costs, offset: offset(reduced, costs, price), worth, price, doubt }
+        let known = |(class, share): (usize, &f64)| match &reduced.announced {
+            Some(announced) if reduced.absent != Some(class) => announced.certain(),
+            _ => costs.pick_value(*share),
+        };
+        let known = |class| known(class).max(costs.wait_value());
+        let worth: Vec<f64> = reduced.share.iter().enumerate().map(known).collect();
+        let least = least(reduced, &worth);
+        let price = price(reduced, costs, least);
+        let (has_absent, classes) = (reduced.absent.is_some(), reduced.classes());
+        let mut bound = Self {
+            costs: *costs,
+            offset: offset(reduced, costs, least, price),
+            worth,
+            price,
+            doubt: Doubt::new(reduced, costs),
+            announced: reduced.announced,
+            has_absent,
+            floor: costs.wait_value(),
+        };
+        if let Some(announced) = reduced.announced {
+            let lowest = announced.floor(classes).min(bound.final_pick(1.0 / classes as f64));
+            bound.floor = bound.floor.max(lowest);
+        }
+        bound
+    }
+
+    /// Value of a pick that ends the dialogue, where it may be the best thing to do: not where it is
+    /// announced, unless it is the conclusion that the object is not here.
+    fn final_pick(&self, right: f64) -> f64 {
+        let is_possible = self.announced.is_none() || self.has_absent;
+        if is_possible { self.costs.pick_value(right) } else { f64::INFINITY }
+    }
+
+    /// Greatest value of any belief.
+    pub(crate) fn ceiling(&self) -> f64 {
+        self.worth.iter().copied().fold(self.costs.wait_value(), f64::max) + self.offset
     }
 
     /// What can be said about a belief without asking: its value is at least that of picking or
     /// waiting.
     pub(crate) fn value(&self, belief: &Summary) -> Value {
-        let lower = self.costs.pick_value(belief.top).max(self.costs.wait_value());
+        let announced = self.announced.map(|announced| announced.value(belief.top, self.floor));
+        let picked = self.final_pick(belief.top).min(announced.unwrap_or(f64::INFINITY));
+        let lower = picked.max(self.floor);
         let certain = belief.worth + self.offset;
         let doubt = self.doubt.upper(belief.peak);
         let upper = (certain - self.price * belief.entropy).min(doubt).max(lower);
@@ -111,17 +156,26 @@ impl Bound {
     }
 }
 
+/// Least worth of knowing a class; of knowing a group of classes, which is least if all are alike.
+fn least(reduced: &Reduced, worth: &[f64]) -> f64 {
+    let least = worth.iter().copied().fold(f64::INFINITY, f64::min);
+    let among = reduced.announced.iter().flat_map(|announced| {
+        let runs = reduced.doubles.iter().map(Range::len);
+        runs.map(|len| announced.among(&vec![1.0 / len as f64; len]))
+    });
+    among.fold(least, f64::min)
+}
+
 /// The largest admissible price of a nat, by bisection: every condition is harder to meet the
 /// higher the price.
-fn price(reduced: &Reduced, costs: &Costs, worth: &[f64]) -> f64 {
-    let least = worth.iter().copied().fold(f64::INFINITY, f64::min);
-    let entropy = (reduced.classes() as f64).ln();
+fn price(reduced: &Reduced, costs: &Costs, least: f64) -> f64 {
+    let entropy = (reduced.groups() as f64).ln();
     let channels = reduced.channels();
     if channels.is_empty() {
         return 0.0;
     }
     let admissible = |price: f64| {
-        let lowest = least + offset(reduced, costs, price) - price * entropy;
+        let lowest = least + offset(reduced, costs, least, price) - price * entropy;
         lowest >= costs.wait_value()
             && channels.iter().all(|channel| {
                 let (cost, discount) = (channel.price.cost, channel.price.discount);
@@ -142,7 +196,15 @@ fn price(reduced: &Reduced, costs: &Costs, worth: &[f64]) -> f64 {
 /// `δ = B ln(1 + Σ_c exp(−(r + p) s_c / B))`: the greatest advantage of a pick over
 /// `Σ b_c r_c − B·H(b)`, which is a log-partition function; including the picked class in the sum
 /// makes it one bound for all picks.
-fn offset(reduced: &Reduced, costs: &Costs, price: f64) -> f64 {
+fn offset(reduced: &Reduced, costs: &Costs, least: f64, price: f64) -> f64 {
+    if let Some(announced) = &reduced.announced {
+        let offset = announced.offset(reduced.groups(), least, price);
+        let (final_stake, others) = (costs.wrong + least, reduced.groups() as f64 - 1.0);
+        // That of the only pick that is final, by the same sum.
+        let concluded = reduced.absent.filter(|_| price > 0.0);
+        let concluded = concluded.map(|_| price * (others * (-final_stake / price).exp()).ln_1p());
+        return offset.max(concluded.unwrap_or(0.0));
+    }
     if price <= 0.0 {
         return 0.0;
     }

@@ -5,9 +5,13 @@
 //! class. It is all but exact where one class is nearly certain, and that is where it counts:
 //! whether to make sure or to pick is the last decision of every dialogue.
 //!
+//! An announced pick of a third class tells the two apart no more than silence does, and is paid as a
+//! wrong one.
+//!
 //! Between two classes every question is a symmetric channel: an open one at best confuses two of
 //! its values, and its other answers tell the two apart no more than silence does.
 
+use super::announced::Announced;
 use super::channel::Price;
 use super::reduced::Reduced;
 use crate::Costs;
@@ -37,16 +41,20 @@ struct Split {
 impl Doubt {
     pub(super) fn new(reduced: &Reduced, costs: &Costs) -> Self {
         let share = reduced.share.iter().copied().fold(0.0, f64::max);
-        let stop = |x: f64| costs.pick_value(share * x).max(costs.wait_value());
+        let announced = reduced.announced.as_ref();
+        let is_final = announced.is_none() || reduced.absent.is_some();
+        let pick = |x: f64| if is_final { costs.pick_value(share * x) } else { f64::NEG_INFINITY };
+        let stop = |x: f64| pick(x).max(costs.wait_value());
+        let most = announced.map_or(f64::NEG_INFINITY, Announced::certain).max(stop(1.0));
         let splits = splits(reduced, costs);
         // Starting above and improving from there stays above: the two-class value is convex, so
         // that interpolating it linearly does, too.
-        let mut doubt = Self { grid: vec![stop(1.0); POINTS + 1] };
+        let mut doubt = Self { grid: vec![most; POINTS + 1] };
         let enough = 1e-6 * (costs.correct + costs.wrong);
         for _ in 0..SWEEPS_MAX {
             let mut change = 0.0_f64;
             for point in 0..=POINTS {
-                let value = doubt.backup(point, &splits, &stop);
+                let value = doubt.backup(point, &splits, announced, &stop);
                 change = change.max(doubt.grid[point] - value);
                 doubt.grid[point] = value;
             }
@@ -67,7 +75,13 @@ impl Doubt {
         self.grid[below] + part * (self.grid[below + 1] - self.grid[below])
     }
 
-    fn backup(&self, n: usize, splits: &[Split], stop: &dyn Fn(f64) -> f64) -> f64 {
+    fn backup(
+        &self,
+        n: usize,
+        splits: &[Split],
+        announced: Option<&Announced>,
+        stop: &dyn Fn(f64) -> f64,
+    ) -> f64 {
         let u = n as f64 * (SPAN / POINTS as f64);
         let x = 1.0 - u * u;
         let asked = splits.iter().map(|split| {
@@ -77,7 +91,17 @@ impl Doubt {
                 + denied * self.upper(x * (1.0 - split.right) / denied);
             split.price.discount * after - split.price.cost
         });
-        asked.fold(stop(x), f64::max).min(self.grid[n])
+        let picked = announced.map_or(f64::NEG_INFINITY, |announced| self.announce(announced, x));
+        asked.fold(stop(x).max(picked), f64::max).min(self.grid[n])
+    }
+
+    /// Value of the best announced pick: of the one class, of the other, or of none of them.
+    fn announce(&self, announced: &Announced, x: f64) -> f64 {
+        let of = |right: f64| {
+            let denied = announced.price(right).1;
+            announced.value(right, self.upper(right * announced.own / denied))
+        };
+        of(x).max(of(1.0 - x)).max(announced.value(0.0, self.upper(x)))
     }
 }
 

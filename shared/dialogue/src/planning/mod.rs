@@ -2,6 +2,7 @@
 //!
 //! All of it is deterministic and counts its work in beliefs looked at, never in time.
 
+mod announced;
 mod block;
 mod bound;
 mod channel;
@@ -21,4 +22,4 @@ pub(crate) use channel::Query;
 pub(crate) use one_step_lookahead::{Choice, OneStepEvaluator, OneStepLookahead};
 pub(crate) use outcome::outcomes;
 pub(crate) use reduced::Reduced;
-pub(crate) use search::{Effort, Search};
+pub(crate) use search::{Effort, Move, Search};

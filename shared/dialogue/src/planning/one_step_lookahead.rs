@@ -4,17 +4,22 @@
 //! Each attribute's blocks collect what the bounds need of their classes. A question's answers
 //! weigh whole blocks, so the beliefs after them never have to be written down.
 
+use std::ops::Range;
+
+use super::announced::Announced;
 use super::block::{Block, TwoGreatest};
 use super::bound::{Bound, Summary, Value};
-use super::channel::{Channel, Query};
+use super::channel::{Channel, Price, Query};
 use super::reduced::Reduced;
 
 /// A belief seen one step ahead.
 #[derive(Clone, Debug)]
 pub(crate) struct OneStepLookahead {
-    /// What can be said without asking.
-    pub(crate) stop: Value,
-    /// The class that would be picked.
+    /// What can be said without looking ahead.
+    pub(crate) value: Value,
+    /// Value of the better of waiting and a pick that is final.
+    pub(crate) stop: f64,
+    /// The class of that pick.
     pub(crate) class: usize,
     /// Entropy over classes, nats.
     pub(crate) entropy: f64,
@@ -22,8 +27,18 @@ pub(crate) struct OneStepLookahead {
     pub(crate) peak: f64,
     /// Every question that can tell anything, but for pointing at improbable classes.
     pub(crate) choices: Vec<Choice>,
-    /// Upper bound on the questions that are not among the choices.
+    /// Picks that can be denied, but for improbable classes; none where picks are final.
+    pub(crate) picks: Vec<AnnouncedPick>,
+    /// Upper bound on the questions and picks that are not among these.
     pub(crate) rest: f64,
+}
+
+/// An announced pick as it looks from one step ahead.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AnnouncedPick {
+    pub(crate) class: u32,
+    pub(crate) price: Price,
+    pub(crate) value: Value,
 }
 
 /// A question as it looks from one step ahead.
@@ -35,8 +50,8 @@ pub(crate) struct Choice {
     pub(crate) information: f64,
 }
 
-/// Most pointing questions that are looked at: those at the most probable classes tell most.
-const POINTED_MAX: usize = 24;
+/// Most classes that are looked at to point at or to announce: the most probable ones tell most.
+const LIKELIEST_MAX: usize = 24;
 
 /// Looks one step ahead from beliefs about one reduced problem.
 #[derive(Debug)]
@@ -56,7 +71,7 @@ impl<'a> OneStepEvaluator<'a> {
     pub(crate) fn new(reduced: &'a Reduced, bound: &'a Bound) -> Self {
         let first = reduced.share[0];
         let alike = reduced.share.iter().all(|share| *share == first);
-        let alike = alike.then(|| (first, bound.worth[0]));
+        let alike = (alike && reduced.doubles.is_empty()).then(|| (first, bound.worth[0]));
         let (classes, all, absent) = (Vec::new(), Block::default(), Block::default());
         Self { reduced, bound, alike, classes, all, absent, entropy: 0.0 }
     }
@@ -66,23 +81,56 @@ impl<'a> OneStepEvaluator<'a> {
         let (share, worth) = (&self.reduced.share, &self.bound.worth);
         self.classes.clear();
         self.classes.extend((0..mass.len()).map(|c| Block::class(mass[c], share[c], worth[c])));
+        self.group_doubles(mass);
         self.all = self.classes.iter().fold(Block::default(), |sum, block| sum.plus(block));
         self.absent = self.reduced.absent.map_or(Block::default(), |class| self.classes[class]);
         let summary = self.all.summary();
         self.entropy = summary.entropy;
-        let stop = self.bound.value(&summary);
-        let class = self.classes.iter().position(|class| class.top >= self.all.top).unwrap_or(0);
+        let value = self.bound.value(&summary);
+        let (stop, class) = self.stop(&value);
         let mut choices = Vec::with_capacity(self.reduced.queries.len());
         self.ask_about_attributes(&mut choices);
-        let rest = self.point(mass, &mut choices);
+        let unpointed = self.point(mass, &mut choices);
+        let (picks, unannounced) = self.announce(mass);
         OneStepLookahead {
+            value,
             stop,
             class,
             entropy: summary.entropy,
             peak: summary.peak,
             choices,
-            rest,
+            picks,
+            rest: unpointed.max(unannounced),
         }
+    }
+
+    /// Lets classes that nothing but announcing tells apart count as one: each has its part of what
+    /// the bound needs of all of them.
+    fn group_doubles(&mut self, mass: &[f64]) {
+        let Some(announced) = &self.reduced.announced else { return };
+        for run in &self.reduced.doubles {
+            let together: f64 = mass[run.clone()].iter().sum();
+            if together <= 0.0 {
+                continue;
+            }
+            let worth = announced.among(&mass[run.clone()]) / together;
+            for class in &mut self.classes[run.clone()] {
+                (class.log, class.worth) = (class.mass * together.ln(), class.mass * worth);
+            }
+        }
+    }
+
+    /// The best that ends the dialogue, and the class to pick then. Where picks are announced, only
+    /// the conclusion that the object is not here is final.
+    fn stop(&self, value: &Value) -> (f64, usize) {
+        if self.reduced.announced.is_none() {
+            let likeliest = self.classes.iter().position(|class| class.top >= self.all.top);
+            return (value.lower, likeliest.unwrap_or(0));
+        }
+        let costs = &self.bound.costs;
+        let concluded = self.reduced.absent.map(|class| costs.pick_value(self.classes[class].top));
+        let stop = concluded.unwrap_or(f64::NEG_INFINITY).max(costs.wait_value());
+        (stop, self.reduced.absent.unwrap_or(0))
     }
 
     fn ask_about_attributes(&self, choices: &mut Vec<Choice>) {
@@ -178,22 +226,8 @@ impl<'a> OneStepEvaluator<'a> {
     /// Pointing questions at the most probable classes, and an upper bound on the others: a user who
     /// points at a less probable class learns less than by pointing at the last of these.
     fn point(&self, mass: &[f64], choices: &mut Vec<Choice>) -> f64 {
-        let mut pointed = self.reduced.pointed.clone();
-        let more = pointed.len() > POINTED_MAX;
-        let cost = |class: &u32| self.reduced.point.of(*class as usize).cost;
-        let rank = |a: &u32, b: &u32| {
-            let likelier = mass[*b as usize].total_cmp(&mass[*a as usize]);
-            likelier.then_with(|| cost(a).total_cmp(&cost(b))).then(a.cmp(b))
-        };
-        if more {
-            pointed.select_nth_unstable_by(POINTED_MAX, rank);
-            pointed.truncate(POINTED_MAX);
-        }
-        pointed.sort_unstable_by(rank);
-        pointed.dedup_by(|next, kept| self.reduced.interchange(*next, *kept, mass));
-        let here = self.classes.iter().enumerate().filter(|(c, _)| Some(*c) != self.reduced.absent);
-        let greatest = TwoGreatest::of(here.map(|(_, class)| class));
-        let here = self.all.without(&self.absent, greatest.but(&Block::default()));
+        let (pointed, more) = self.likeliest(self.reduced.pointed.clone(), mass);
+        let (here, greatest) = self.here();
         for class in pointed {
             let yes = &self.classes[class as usize];
             let no = here.without(yes, greatest.but(yes));
@@ -209,6 +243,76 @@ impl<'a> OneStepEvaluator<'a> {
             let informed = self.bound.informed(&self.all.summary(), last.information);
             self.reduced.cheapest_pointing().price.pay(informed)
         })
+    }
+
+    /// Announced picks of the most probable classes, and an upper bound on the others: what announcing
+    /// a less probable one is worth is linear in its probability, however good what follows a denial.
+    fn announce(&self, mass: &[f64]) -> (Vec<AnnouncedPick>, f64) {
+        let Some(announced) = &self.reduced.announced else {
+            return (Vec::new(), f64::NEG_INFINITY);
+        };
+        let objects = (0..mass.len()).filter(|class| Some(*class) != self.reduced.absent);
+        let (classes, more) = self.likeliest(objects.map(|class| class as u32).collect(), mass);
+        let pick = |class: &u32| {
+            let (price, _) = announced.price(mass[*class as usize]);
+            let mut denied = Outlook::new(self.bound);
+            denied.add(&self.after_denial(announced, *class as usize, mass));
+            AnnouncedPick { class: *class, price, value: denied.value.pay(&price) }
+        };
+        let picks = classes.iter().map(pick).collect();
+        let last = classes.last().filter(|_| more).map(|class| mass[*class as usize]);
+        let rest = last.map_or(f64::NEG_INFINITY, |last| {
+            let value = |right: f64| announced.value(right, self.bound.ceiling());
+            value(0.0).max(value(last))
+        });
+        (picks, rest)
+    }
+
+    /// Sums over the classes after the denial of one of them.
+    fn after_denial(&self, announced: &Announced, class: usize, mass: &[f64]) -> Block {
+        let is_of = |run: &&Range<usize>| run.contains(&class);
+        let run = self.reduced.doubles.iter().find(is_of).cloned().unwrap_or(class..class + 1);
+        let others = self.classes.iter().enumerate().filter(|(c, _)| !run.contains(c));
+        let others = others.fold(Block::default(), |sum, (_, block)| sum.plus(block));
+        let weigh = |c: usize| if c == class { announced.own } else { announced.other };
+        if run.len() == 1 {
+            return self.classes[class].weigh(announced.own).plus(&others.weigh(announced.other));
+        }
+        let group: Vec<f64> = run.map(|c| weigh(c) * mass[c]).collect();
+        let peak = group.iter().copied().fold(0.0, f64::max);
+        let together: f64 = group.iter().sum();
+        let group = Block {
+            worth: announced.among(&group),
+            peak,
+            top: peak,
+            ..Block::class(together, 1.0, 0.0)
+        };
+        group.plus(&others.weigh(announced.other))
+    }
+
+    /// The most probable of some classes, those that cost less to point at first among equals, and
+    /// whether there are more.
+    fn likeliest(&self, mut classes: Vec<u32>, mass: &[f64]) -> (Vec<u32>, bool) {
+        let more = classes.len() > LIKELIEST_MAX;
+        let cost = |class: &u32| self.reduced.point.of(*class as usize).cost;
+        let rank = |a: &u32, b: &u32| {
+            let likelier = mass[*b as usize].total_cmp(&mass[*a as usize]);
+            likelier.then_with(|| cost(a).total_cmp(&cost(b))).then(a.cmp(b))
+        };
+        if more {
+            classes.select_nth_unstable_by(LIKELIEST_MAX, rank);
+            classes.truncate(LIKELIEST_MAX);
+        }
+        classes.sort_unstable_by(rank);
+        classes.dedup_by(|next, kept| self.reduced.interchange(*next, *kept, mass));
+        (classes, more)
+    }
+
+    /// Sums over what is here, and the greatest among it.
+    fn here(&self) -> (Block, TwoGreatest) {
+        let here = self.classes.iter().enumerate().filter(|(c, _)| Some(*c) != self.reduced.absent);
+        let greatest = TwoGreatest::of(here.map(|(_, class)| class));
+        (self.all.without(&self.absent, greatest.but(&Block::default())), greatest)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The beliefs after the answers to a question.
 
+use super::announced::Announced;
 use super::channel::Query;
 use super::partition::Partition;
 use super::reduced::Reduced;
@@ -42,6 +43,17 @@ pub(crate) fn outcomes(reduced: &Reduced, query: Query, mass: &[f64]) -> Vec<(f6
         }
     }
     answers.into_iter().map(|weighed| normalise(reduced, weighed)).collect()
+}
+
+/// Probability that the announced pick of a class is denied, and the class probabilities after it.
+pub(super) fn denial(
+    reduced: &Reduced,
+    announced: &Announced,
+    class: u32,
+    mass: &[f64],
+) -> (f64, Vec<f64>) {
+    let denied = |c: usize| if c == class as usize { announced.own } else { announced.other };
+    normalise(reduced, weigh(mass, denied))
 }
 
 fn weigh(mass: &[f64], factor: impl Fn(usize) -> f64) -> Vec<f64> {

@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use scene::{AttributeId, ObjectId, Question, ValueId};
 
+use super::announced::Announced;
 use super::channel::{Channel, Channels, Query};
 use super::equivalence_classes::EquivalenceClasses;
 use super::partition::Partition;
@@ -35,7 +36,11 @@ pub(crate) struct Reduced {
     pub(crate) pointed: Vec<u32>,
     /// How a pointing question is answered, per class.
     pub(crate) point: Channels,
-    /// Runs of classes that only pointing tells apart, each at the same price, so that the problem
+    /// What announcing a pick pays; none where picks are final.
+    pub(crate) announced: Option<Announced>,
+    /// Runs of classes that nothing but announcing one tells apart.
+    pub(crate) doubles: Vec<Range<usize>>,
+    /// Runs of classes that only pointing, or announcing one, tells apart, each at the same price, so that the problem
     /// is the same however their probabilities are permuted. Each run is in order of falling
     /// probability.
     pub(crate) interchangeable: Vec<Range<usize>>,
@@ -67,8 +72,13 @@ impl Reduced {
             absent,
             pointed,
             point,
+            announced: Announced::of(problem),
+            doubles: Vec::new(),
             interchangeable,
         };
+        if reduced.announced.is_some() && !problem.actions.point() {
+            reduced.doubles.clone_from(&reduced.interchangeable);
+        }
         reduced.find_questions(problem);
         reduced
     }
@@ -76,6 +86,11 @@ impl Reduced {
     /// How many classes there are.
     pub(crate) fn classes(&self) -> usize {
         self.mass.len()
+    }
+
+    /// How many groups of classes there are that questions can tell apart.
+    pub(crate) fn groups(&self) -> usize {
+        self.classes() - self.doubles.iter().map(|run| run.len() - 1).sum::<usize>()
     }
 
     /// The question of the scene that a query stands for.

@@ -1,6 +1,6 @@
 //! Best-first search over the beliefs that a dialogue can reach.
 //!
-//! Beliefs are nodes, questions lead from one to several, and equal beliefs are one node however
+//! Beliefs are nodes, questions and denials of announced picks lead from one to several, and equal beliefs are one node however
 //! they were reached: the order of answers does not matter, so the graph is far smaller than the
 //! tree of dialogues. Every node keeps a certified lower and upper bound, and an estimate between
 //! them that leads the search when it cannot close the bounds.
@@ -8,9 +8,9 @@
 use std::collections::HashMap;
 
 use super::bound::{Bound, Value};
-use super::channel::Query;
-use super::one_step_lookahead::{Choice, OneStepEvaluator, OneStepLookahead};
-use super::outcome::outcomes;
+use super::channel::{Price, Query};
+use super::one_step_lookahead::{AnnouncedPick, Choice, OneStepEvaluator, OneStepLookahead};
+use super::outcome::{denial, outcomes};
 use super::reduced::Reduced;
 use crate::stable_hash::StableHash128;
 
@@ -38,9 +38,9 @@ pub(crate) struct Search<'a> {
 #[derive(Debug)]
 pub(crate) struct Node {
     pub(crate) value: Value,
-    /// Value of the better of picking and waiting.
+    /// Value of the better of waiting and a pick that is final.
     pub(crate) stop: f64,
-    /// The class that would be picked.
+    /// The class of that pick.
     pub(crate) class: usize,
     /// Entropy over classes, nats.
     pub(crate) entropy: f64,
@@ -48,12 +48,22 @@ pub(crate) struct Node {
     rest: f64,
 }
 
-/// A question at a belief.
+/// Something to do that a dialogue can go on after.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Move {
+    /// A question.
+    Ask(Query),
+    /// The announced pick of a class.
+    Announce(u32),
+}
+
+/// A move at a belief.
 #[derive(Debug)]
 pub(crate) struct Branch {
-    pub(crate) query: Query,
+    pub(crate) to: Move,
+    pub(crate) price: Price,
     pub(crate) value: Value,
-    /// Probability and node of each answer; empty until the question is followed.
+    /// Probability and node of each answer; empty until the move is followed.
     pub(crate) answers: Vec<(f64, usize)>,
 }
 
@@ -134,8 +144,7 @@ impl<'a> Search<'a> {
                 break;
             }
             let (probability, next) = self.most_doubtful(&self.nodes[node].branches[branch]);
-            let query = self.nodes[node].branches[branch].query;
-            weight *= probability * self.reduced.channel(query).price.discount;
+            weight *= probability * self.nodes[node].branches[branch].price.discount;
             if weight * self.nodes[next].value.gap() < focus {
                 break;
             }
@@ -156,7 +165,11 @@ impl<'a> Search<'a> {
     fn follow(&mut self, node: usize, branch: usize) {
         let classes = self.reduced.classes();
         let mass = &self.masses[node * classes..(node + 1) * classes];
-        let answers = outcomes(self.reduced, self.nodes[node].branches[branch].query, mass);
+        let answers = match (self.nodes[node].branches[branch].to, &self.reduced.announced) {
+            (Move::Ask(query), _) => outcomes(self.reduced, query, mass),
+            (Move::Announce(class), Some(it)) => vec![denial(self.reduced, it, class, mass)],
+            (Move::Announce(_), None) => Vec::new(),
+        };
         let answers = answers.into_iter().map(|(p, mass)| (p, self.node(&mass))).collect();
         self.nodes[node].branches[branch].answers = answers;
     }
@@ -167,7 +180,7 @@ impl<'a> Search<'a> {
         for &(probability, next) in &followed.answers {
             after.add(probability, &self.nodes[next].value);
         }
-        let fresh = after.pay(&self.reduced.channel(followed.query).price);
+        let fresh = after.pay(&followed.price);
         let node = &mut self.nodes[node];
         let value = &mut node.branches[branch].value;
         value.lower = value.lower.max(fresh.lower);
@@ -183,7 +196,7 @@ impl<'a> Search<'a> {
             return known;
         }
         let number = self.nodes.len();
-        self.nodes.push(Node::new(self.evaluator.look_ahead(mass)));
+        self.nodes.push(Node::new(self.reduced, self.evaluator.look_ahead(mass)));
         self.masses.extend_from_slice(mass);
         self.known.insert(key, number);
         number
@@ -191,17 +204,27 @@ impl<'a> Search<'a> {
 }
 
 impl Node {
-    fn new(one_step: OneStepLookahead) -> Self {
-        let OneStepLookahead { stop, class, entropy, mut choices, mut rest, .. } = one_step;
-        rest = rest.max(drop_unpromising(&mut choices, stop.lower));
-        let branch = |Choice { query, value, .. }| Branch { query, value, answers: Vec::new() };
-        let branches = choices.into_iter().map(branch).collect();
-        let mut node = Self { value: stop, stop: stop.lower, class, entropy, branches, rest };
+    fn new(reduced: &Reduced, one_step: OneStepLookahead) -> Self {
+        let OneStepLookahead { value, stop, class, entropy, choices, picks, mut rest, .. } =
+            one_step;
+        let asked = choices.into_iter().map(|Choice { query, value, .. }| {
+            let price = reduced.channel(query).price;
+            Branch { to: Move::Ask(query), price, value, answers: Vec::new() }
+        });
+        let picked = picks.into_iter().map(|AnnouncedPick { class, price, value }| Branch {
+            to: Move::Announce(class),
+            price,
+            value,
+            answers: Vec::new(),
+        });
+        let mut branches: Vec<Branch> = asked.chain(picked).collect();
+        rest = rest.max(drop_unpromising(&mut branches, stop));
+        let mut node = Self { value, stop, class, entropy, branches, rest };
         node.refresh();
         node
     }
 
-    /// The best question by estimate, if asking is estimated to be better than stopping.
+    /// The best move by estimate, if it is estimated to be better than stopping.
     pub(crate) fn best(&self) -> Option<&Branch> {
         let best = self.leading(Lead::Expectation).map(|branch| &self.branches[branch]);
         best.filter(|branch| branch.value.estimate > self.stop)
@@ -233,16 +256,16 @@ impl Node {
     }
 }
 
-/// Drops the choices that cannot beat stopping and the least promising beyond [`BRANCHES_MAX`];
+/// Drops the moves that cannot beat stopping and the least promising beyond [`BRANCHES_MAX`];
 /// returns the upper bound of what was dropped.
-fn drop_unpromising(choices: &mut Vec<Choice>, stop: f64) -> f64 {
-    choices.sort_by(|a, b| b.value.estimate.total_cmp(&a.value.estimate));
+fn drop_unpromising(branches: &mut Vec<Branch>, stop: f64) -> f64 {
+    branches.sort_by(|a, b| b.value.estimate.total_cmp(&a.value.estimate));
     let mut rest = f64::NEG_INFINITY;
     let mut kept = 0;
-    choices.retain(|choice| {
-        let promising = choice.value.upper > stop && kept < BRANCHES_MAX;
+    branches.retain(|branch| {
+        let promising = branch.value.upper > stop && kept < BRANCHES_MAX;
         kept += usize::from(promising);
-        rest = if promising { rest } else { choice.value.upper.max(rest) };
+        rest = if promising { rest } else { branch.value.upper.max(rest) };
         promising
     });
     rest
