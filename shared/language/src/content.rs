@@ -11,6 +11,8 @@ use crate::lexicon::ValueSense;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Asserted<'a> {
     pub(crate) value: &'a ValueSense,
+    /// Its tag.
+    pub(crate) at: usize,
     /// Probability that something else was meant.
     pub(crate) doubt: f64,
     /// Number of "or" before it.

@@ -157,7 +157,7 @@ impl<'a> Extractor<'a, '_> {
             new.replace(&mut self.content.base, repair::Strength::Stumble);
         }
         let doubt = self.tags[at].word_doubt();
-        self.content.base.push(Asserted { value, doubt, choice: self.choices });
+        self.content.base.push(Asserted { value, at, doubt, choice: self.choices });
     }
 
     /// Returns whether the value asked about is among those said.

@@ -14,7 +14,7 @@
 //! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
 //! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
-//! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs` | the response that counts, the user's intent, what is referred to |
+//! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
 //! | readings | `parsed.rs` (`hedges.rs`) | alternative readings with weights and doubts |
 //!
 //! [`CompletenessJudge`] judges whether a speaker will go on after a pause.
@@ -41,6 +41,7 @@ mod morphology;
 mod negation;
 mod negation_scope;
 mod normalise;
+mod objects;
 mod paper;
 mod parsed;
 mod phonetics;

@@ -5,6 +5,7 @@ use scene::{Doubt, Intent, Reading, Reference, Response};
 use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
 use crate::hedges::MAYBE;
+use crate::objects::objects;
 use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
 use crate::token_class::Class;
@@ -30,7 +31,13 @@ pub(crate) struct ParsedUtterance<'a> {
 impl ParsedUtterance<'_> {
     /// The best reading.
     pub(crate) fn reading(&self) -> Reading {
-        self.reading_of(&self.content.base)
+        let objects = match self.intent {
+            Intent::Inform => objects(&self.tags, &self.content, self.asked),
+            _ => vec![self.content.base.clone()],
+        };
+        let words = |object: &Vec<Asserted<'_>>| object.iter().map(|value| value.word).collect();
+        let further = objects.iter().skip(1).map(words).collect();
+        Reading { further, ..self.reading_of(&objects[0]) }
     }
 
     fn reading_of(&self, base: &[Asserted<'_>]) -> Reading {

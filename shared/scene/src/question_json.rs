@@ -74,10 +74,12 @@ pub fn reading_to_json(scene: &Scene, reading: &Reading) -> Json {
     // What a question is asked of, or what is to be put back, is not what is wanted.
     let intent = published_intent(reading.intent);
     let wants = intent != Intent::AskBack && reading.intent != Intent::PutBack;
-    let base: &[crate::WordId] = if wants { &reading.base } else { &[] };
+    // The published format has one description, of all that is wanted.
+    let said = std::iter::once(&reading.base).chain(&reading.further).filter(|_| wants);
+    let base: Vec<crate::WordId> = said.flatten().copied().collect();
     let excluded: &[Vec<crate::WordId>] = if wants { &reading.excluded } else { &[] };
     json!({
-        "base": words(base),
+        "base": words(&base),
         "response": published_response(reading.response),
         "excluded": excluded.iter().map(|group| words(group)).collect::<Vec<_>>(),
         "intent": intent,
