@@ -96,7 +96,8 @@ impl ClauseAnalysis<'_> {
             return false;
         }
         let is_described = self.is_described_beside(at);
-        if self.clause[..at].iter().any(|tag| tag.is(Class::Preposition)) {
+        let located = self.clause[at].is_located();
+        if located || self.clause[..at].iter().any(|tag| tag.is(Class::Preposition)) {
             let tied = is_described
                 || self.has(SCENE_NAMES)
                 || self.has(classes![Fetch It Pointer Unlisted]);

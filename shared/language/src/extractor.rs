@@ -132,6 +132,9 @@ impl<'a> Extractor<'a, '_> {
         if self.landmark || self.wondering {
             return;
         }
+        if self.tags[at].is_located() {
+            self.in_negation(NegationScope::join);
+        }
         if let Some(scope) = &mut self.scope {
             let adjacent = at > 0 && self.tags[at - 1].is_value();
             if scope.value(value, adjacent, self.tags[at].answer_doubt()) {

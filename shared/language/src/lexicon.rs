@@ -5,15 +5,15 @@
 use std::cmp::Reverse;
 use std::collections::HashMap;
 
-use scene::{AttributeId, Reference, Role, Scene, WordId};
+use scene::{AttributeId, Reference, Role, Scene, Value, WordId};
 
 use crate::hedges::sureness;
 use crate::lookalikes::Lookalikes;
 use crate::morphology::inflected;
-use crate::normalise::normalise;
 use crate::references::by_size;
+use crate::relations::{Form, forms, words};
 use crate::token_class::Class;
-use crate::tokens::{Token, Tokens};
+use crate::tokens::Token;
 use crate::vocabulary;
 
 /// What a word or phrase is taken for.
@@ -171,6 +171,15 @@ impl Lexicon {
         for (place, synonym) in all.iter().flat_map(|(n, v)| v.synonyms.iter().map(|s| (*n, s))) {
             self.add_value(synonym, place);
         }
+        let forms = |(place, value): &(usize, &Value)| {
+            let place = *place;
+            forms(value).into_iter().map(move |form| (place, form))
+        };
+        let forms: Vec<(usize, Form)> = all.iter().flat_map(forms).collect();
+        let (own, alike): (Vec<_>, Vec<_>) = forms.into_iter().partition(|(_, form)| form.own);
+        for (place, form) in own.into_iter().chain(alike) {
+            self.add(&form.words, Meaning::Value(place));
+        }
         for (place, value) in &all {
             for text in std::iter::once(&value.name).chain(&value.synonyms) {
                 self.add_value_forms(text, *place);
@@ -235,7 +244,12 @@ impl Lexicon {
             let words: Vec<String> = phrase.split(' ').map(str::to_owned).collect();
             // "on the left" is a position in a row unless the scene itself knows a left.
             let is_value = |word: &String| matches!(self.word(word), Some(Sense::Value(_)));
-            if class != Class::Ordinal || !words.iter().any(is_value) {
+            let describes = match &words[..] {
+                // "that is right", where something is right of the others
+                [it, is, said] if matches!(&**it, "that" | "it") && is == "is" => is_value(said),
+                words => class == Class::Ordinal && words.iter().any(is_value),
+            };
+            if !describes {
                 let sure = sureness(class, phrase);
                 self.add_phrase(&words, Meaning::Class(class), closing, sure);
             }
@@ -278,10 +292,4 @@ fn matched(rest: &[Box<str>], after: &[Token<'_>]) -> Option<usize> {
         words += 1;
     }
     Some(words)
-}
-
-/// The words of a scene's text, as an utterance's would be read.
-fn words(text: &str) -> Vec<String> {
-    let text = normalise(text);
-    Tokens::of(&text).words.iter().map(|token| token.word.to_owned()).collect()
 }

@@ -11,7 +11,7 @@
 //! |---|---|---|
 //! | normalise | `normalise.rs` | plain lower-case text |
 //! | tokenise | `tokens.rs` | words and the pauses between them |
-//! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
+//! | tag | `tagger.rs` (`disambiguate.rs`, `lexicon.rs`, `lookalikes.rs`, `morphology.rs`, `relations.rs`, `spelling.rs`, `phonetics.rs`, `vocabulary/`) | value or class of each word or phrase |
 //! | clauses | `clauses.rs` (`topic.rs`, `asking_back.rs`, `distractors.rs`) | the parts that are about the objects |
 //! | content | `extractor.rs` (`content.rs`, `negation_scope.rs`, `negation.rs`, `repair.rs`) | values asserted, groups excluded, answers |
 //! | answer, intent | `answer.rs` (`indifference.rs`), `intent.rs` (`questions.rs`), `references.rs`, `objects.rs` | the response that counts, the user's intent, what is referred to, each object asked for |
@@ -49,6 +49,7 @@ mod question_words;
 mod questions;
 mod reader;
 mod references;
+mod relations;
 mod repair;
 mod spelling;
 mod tagger;

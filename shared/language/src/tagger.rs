@@ -5,6 +5,7 @@ use scene::Role;
 
 use crate::disambiguate::disambiguate;
 use crate::lexicon::{Lexicon, Sense, ValueSense};
+use crate::relations::begins_relation;
 use crate::spelling::shortened;
 use crate::token_class::Class;
 use crate::tokens::{Gap, Token};
@@ -112,6 +113,11 @@ impl<'a> Tag<'a> {
         self.value().is_some_and(|value| value.role == role)
     }
 
+    /// Returns whether it is a place with its relation: "next to the sink".
+    pub(crate) fn is_located(&self) -> bool {
+        self.is_role(Role::Place) && self.word != self.last && begins_relation(self.word)
+    }
+
     pub(crate) fn is_unknown(&self) -> bool {
         matches!(self.sense, Sense::Unknown)
     }
@@ -192,7 +198,11 @@ fn written_apart<'a>(lexicon: &'a Lexicon, tokens: &[Token<'_>]) -> Option<Found
             return Some(Found { words, ..Found::word(sense) });
         }
         let whole = matches!(lexicon.word(run[0].word), Some(Sense::Value(_)));
-        let value = lexicon.lookalikes().misspelt_compound(&joined).filter(|_| !whole)?;
+        // "me a cup" is no slip of "tea cup".
+        let listed = matches!(lexicon.word(run[0].word), Some(Sense::Class(_)));
+        let ends = matches!(lexicon.word(run[words - 1].word), Some(Sense::Value(_)));
+        let fits = !(whole || listed && ends);
+        let value = lexicon.lookalikes().misspelt_compound(&joined).filter(|_| fits)?;
         let sense = Sense::Value(lexicon.value(value));
         Some(Found { words, doubt: doubts::SLIP, ..Found::word(sense) })
     })

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use diagnostics::{Report, Table, suggestion};
 
-use crate::{Attribute, Object, Placement, Scene, Value, ValueId, WordId, wording};
+use crate::{Attribute, Object, Placement, Role, Scene, Value, ValueId, WordId, wording};
 
 /// A table while its meaning is checked.
 pub(crate) struct Checks<'a> {
@@ -36,6 +36,7 @@ pub(crate) struct DraftAttribute {
     pub(crate) key: String,
     pub(crate) name: String,
     pub(crate) synonyms: Vec<String>,
+    pub(crate) role: Option<String>,
     pub(crate) ask_yes_no: Vec<String>,
     pub(crate) ask_which: Vec<String>,
     pub(crate) values: Vec<DraftValue>,
@@ -46,11 +47,12 @@ pub(crate) struct DraftValue {
     pub(crate) name: String,
     pub(crate) synonyms: Vec<String>,
     pub(crate) spoken: Option<String>,
+    pub(crate) role: Option<String>,
 }
 
 impl DraftValue {
     pub(crate) fn plain(key: String, name: String) -> Self {
-        Self { key, name, synonyms: Vec::new(), spoken: None }
+        Self { key, name, synonyms: Vec::new(), spoken: None, role: None }
     }
 }
 
@@ -69,6 +71,7 @@ impl Draft {
         for attribute in &self.attributes {
             check_values(attribute, report);
             check_wording(attribute, report);
+            check_roles(attribute, report);
         }
         check_texts("ask_wanted", &self.ask_wanted, &["{noun}"], report);
         check_texts("ask_point", &self.ask_point, &["{noun}"], report);
@@ -187,13 +190,36 @@ impl Draft {
     }
 }
 
+fn role(name: Option<&String>) -> Option<Role> {
+    Role::NAMES
+        .iter()
+        .find(|(known, _)| name.is_some_and(|name| name == known))
+        .map(|(_, role)| *role)
+}
+
+fn check_roles(attribute: &DraftAttribute, report: &mut Checks<'_>) {
+    let own = attribute.values.iter().map(|value| (&value.key, &value.role));
+    for (key, name) in std::iter::once((&attribute.key, &attribute.role)).chain(own) {
+        if let Some(name) = name.as_ref().filter(|name| role(Some(name)).is_none()) {
+            let known = Role::NAMES.iter().map(|(name, _)| *name);
+            let help = suggestion(name, known.clone(), || format!("use one of {}", names(known)));
+            report.add(format!("{key}.role"), format!("unknown role `{name}`"), help);
+        }
+    }
+}
+
 fn build_attribute(attribute: DraftAttribute, ids: &HashMap<String, WordId>) -> Attribute {
     let values = (attribute.values.into_iter())
-        .map(|value| Value {
-            word: ids[&value.name],
-            spoken: value.spoken.unwrap_or_else(|| value.name.clone()),
-            synonyms: value.synonyms.iter().map(|synonym| synonym.to_lowercase()).collect(),
-            name: value.name,
+        .map(|value| {
+            let spoken = value.spoken.unwrap_or_else(|| value.name.clone());
+            let named = role(value.role.as_ref()).or(role(attribute.role.as_ref()));
+            Value {
+                word: ids[&value.name],
+                role: named.unwrap_or_else(|| Role::guess(&spoken)),
+                spoken,
+                synonyms: value.synonyms.iter().map(|synonym| synonym.to_lowercase()).collect(),
+                name: value.name,
+            }
         })
         .collect();
     Attribute {

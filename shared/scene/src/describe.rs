@@ -1,45 +1,139 @@
-//! Short descriptions that distinguish an object.
+//! Objects in words, as a person would name them.
 
+use crate::plural::plural;
 use crate::{AttributeId, ObjectId, Role, Scene, Value, ValueId};
 
+/// Most attributes of which pairs are tried; beyond them the most telling value is taken first.
+const PAIRED_MAX: usize = 24;
+
+type Values = Vec<(AttributeId, ValueId)>;
+
 impl Scene {
-    /// The object in words, e.g. `small white bowl in the dishwasher`: the scene's noun with the
-    /// values that rule out most of the other objects, until none is left or none helps.
+    /// The object in words that no other object shares, e.g. `white bowl in the dishwasher`: the kind
+    /// of thing that it is, with as few of its values as tell it apart, qualities before places.
+    /// Where nothing does, with all that help.
     pub fn describe(&self, object: ObjectId) -> String {
-        let mut rivals: Vec<ObjectId> =
-            (0..self.objects().len()).map(ObjectId::from).filter(|&i| i != object).collect();
-        let mut chosen: Vec<(AttributeId, ValueId)> = Vec::new();
-        while let Some((k, v)) = self.most_telling(object, &rivals) {
-            rivals.retain(|&i| self.has(i, k, v));
-            chosen.push((k, v));
-        }
+        let all: Vec<ObjectId> = (0..self.objects().len()).map(ObjectId::from).collect();
+        self.describe_among(object, &all)
+    }
+
+    /// The object in words that tell it from these others; itself among them does not count.
+    pub fn describe_among(&self, object: ObjectId, others: &[ObjectId]) -> String {
+        let kind = self.kind(object);
+        let alike = |&i: &ObjectId| i != object && kind.is_none_or(|(k, v)| self.has(i, k, v));
+        let rivals: Vec<ObjectId> = others.iter().copied().filter(alike).collect();
+        let mut chosen = self.telling(object, &rivals);
+        chosen.extend(kind);
         chosen.sort_unstable();
         self.compose(&chosen)
     }
 
-    /// The value of the object that the fewest rivals share, if it rules out any.
-    fn most_telling(
-        &self,
-        object: ObjectId,
-        rivals: &[ObjectId],
-    ) -> Option<(AttributeId, ValueId)> {
+    /// The objects as a choice or an enumeration, each told from the others: `the red mug, the blue
+    /// mug or the white cup` for "or". Objects that no words tell apart are named once.
+    pub fn list(&self, objects: &[ObjectId], conjunction: &str) -> String {
+        let mut names: Vec<String> = Vec::new();
+        for &object in objects {
+            let name = format!("the {}", self.describe_among(object, objects));
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        enumerate(&names, conjunction)
+    }
+
+    /// The noun for an object: its kind, or else the scene's noun.
+    pub fn noun_of(&self, object: ObjectId) -> &str {
+        self.kind(object).map_or(self.noun(), |(k, v)| self.value(k, v).bare())
+    }
+
+    /// The nouns for these objects in plural, each once: `mugs and cups`.
+    pub fn plural_nouns(&self, objects: &[ObjectId]) -> String {
+        let mut nouns: Vec<String> = Vec::new();
+        for &object in objects {
+            let noun = plural(self.noun_of(object));
+            if !nouns.contains(&noun) {
+                nouns.push(noun);
+            }
+        }
+        enumerate(&nouns, "and")
+    }
+
+    fn value(&self, k: AttributeId, v: ValueId) -> &Value {
+        &self.attributes()[k.index()].values[v.index()]
+    }
+
+    /// The values of an object by attribute.
+    fn values_of(&self, object: ObjectId) -> impl Iterator<Item = (AttributeId, ValueId)> + '_ {
         let values = self.object(object).values.iter().enumerate();
-        let telling = values.filter_map(|(k, value)| {
-            let (k, v) = (AttributeId::from(k), (*value)?);
-            let left = rivals.iter().filter(|&&i| self.has(i, k, v)).count();
-            (left < rivals.len()).then_some((left, k, v))
-        });
-        telling.min().map(|(_, k, v)| (k, v))
+        values.filter_map(|(k, v)| Some((AttributeId::from(k), (*v)?)))
+    }
+
+    fn kind(&self, object: ObjectId) -> Option<(AttributeId, ValueId)> {
+        self.values_of(object).find(|&(k, v)| self.value(k, v).role() == Role::Kind)
+    }
+
+    /// The fewest values that no rival has all of; where there are none, those that rule out any.
+    fn telling(&self, object: ObjectId, rivals: &[ObjectId]) -> Values {
+        if rivals.is_empty() {
+            return Vec::new();
+        }
+        let is_place = |&(k, v): &(AttributeId, ValueId)| self.value(k, v).role() == Role::Place;
+        let mut values: Values = self
+            .values_of(object)
+            .filter(|&(k, v)| self.value(k, v).role() != Role::Kind)
+            .filter(|&(k, v)| rivals.iter().any(|&i| !self.has(i, k, v)))
+            .collect();
+        values.sort_by_key(is_place);
+        let unique = |chosen: &[(AttributeId, ValueId)]| {
+            !rivals.iter().any(|&i| chosen.iter().all(|&(k, v)| self.has(i, k, v)))
+        };
+        if let Some(one) = values.iter().find(|&&one| unique(&[one])) {
+            return vec![*one];
+        }
+        if values.len() <= PAIRED_MAX {
+            for (n, &one) in values.iter().enumerate() {
+                if let Some(&other) = values[n + 1..].iter().find(|&&other| unique(&[one, other])) {
+                    return vec![one, other];
+                }
+            }
+        }
+        self.most_telling(&values, rivals.to_vec())
+    }
+
+    /// One after the other the value that the fewest of the remaining rivals share.
+    fn most_telling(&self, values: &[(AttributeId, ValueId)], mut rivals: Vec<ObjectId>) -> Values {
+        let mut chosen = Values::new();
+        loop {
+            let left = values
+                .iter()
+                .enumerate()
+                .map(|(n, &(k, v))| (rivals.iter().filter(|&&i| self.has(i, k, v)).count(), n));
+            let Some((_, best)) = left.min().filter(|(left, _)| *left < rivals.len()) else {
+                return chosen;
+            };
+            let (k, v) = values[best];
+            rivals.retain(|&i| self.has(i, k, v));
+            chosen.push((k, v));
+        }
     }
 
     /// Qualities, then the kind (or the scene's noun), then places.
     fn compose(&self, values: &[(AttributeId, ValueId)]) -> String {
-        let values = values.iter().map(|(k, v)| &self.attributes()[k.index()].values[v.index()]);
-        let values: Vec<&Value> = values.collect();
+        let values: Vec<&Value> = values.iter().map(|&(k, v)| self.value(k, v)).collect();
         let of = |role: Role| values.iter().filter(move |value| value.role() == role);
-        let qualities = of(Role::Quality).rev().map(|value| value.name.as_str());
-        let kind = of(Role::Kind).next().map_or(self.noun(), |value| value.name.as_str());
+        let qualities = of(Role::Quality).rev().map(|value| value.bare());
+        let kind = of(Role::Kind).next().map_or(self.noun(), |value| value.bare());
         let places = of(Role::Place).map(|value| value.spoken.as_str());
         qualities.chain([kind]).chain(places).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// `a`, `a or b`, `a, b or c`.
+fn enumerate(names: &[String], conjunction: &str) -> String {
+    match names {
+        [first @ .., last] if !first.is_empty() => {
+            format!("{} {conjunction} {last}", first.join(", "))
+        }
+        _ => names.concat(),
     }
 }

@@ -90,7 +90,7 @@ fn draft(table: &Table, report: &mut Report) -> Draft {
 
 fn plain(key: String, name: String, values: Vec<DraftValue>) -> DraftAttribute {
     let (synonyms, ask_yes_no, ask_which) = (Vec::new(), Vec::new(), Vec::new());
-    DraftAttribute { key, name, synonyms, ask_yes_no, ask_which, values }
+    DraftAttribute { key, name, synonyms, role: None, ask_yes_no, ask_which, values }
 }
 
 /// The attributes of `values`.

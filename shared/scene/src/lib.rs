@@ -10,6 +10,7 @@ mod describe;
 mod ids;
 mod json;
 mod model;
+mod plural;
 mod question;
 mod question_json;
 mod reading;
@@ -22,6 +23,7 @@ mod tests;
 
 pub use ids::{AttributeId, ObjectId, ValueId, WordId};
 pub use model::{Attribute, Object, Placement, Role, Scene, Value};
+pub use plural::plural;
 pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};
 pub use reading::{Doubt, Intent, Reading, Reference, Response};

@@ -70,30 +70,83 @@ pub struct Value {
     pub spoken: String,
     /// The same string in `V`.
     pub word: WordId,
+    pub(crate) role: Role,
 }
 
-/// Grammatical role of a value, determined by its `spoken` form.
+/// Grammatical role of a value: a key of the scene file, or else guessed from the `spoken` form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// "white": stands before a noun, has degrees.
     Quality,
     /// "a marker": is a noun.
     Kind,
-    /// "in the dishwasher": stands after a preposition.
+    /// "in the dishwasher": stands after the noun.
     Place,
+}
+
+impl Role {
+    /// The names of the roles in a scene file.
+    pub(crate) const NAMES: [(&str, Self); 3] =
+        [("quality", Self::Quality), ("kind", Self::Kind), ("place", Self::Place)];
+
+    /// Guesses the role from the first words of a `spoken` form.
+    pub(crate) fn guess(spoken: &str) -> Self {
+        const ARTICLES: &[&str] = &["a", "an"];
+        const RELATIONS: &[&str] = &[
+            "in",
+            "on",
+            "at",
+            "under",
+            "underneath",
+            "inside",
+            "outside",
+            "behind",
+            "near",
+            "by",
+            "beside",
+            "above",
+            "over",
+            "below",
+            "beneath",
+            "between",
+            "alongside",
+            "against",
+            "opposite",
+            "with",
+            "without",
+            "from",
+            "of",
+            "next to",
+            "close to",
+            "left of",
+            "right of",
+            "to the",
+            "made of",
+            "made from",
+        ];
+        let starts =
+            |words: &&str| spoken.strip_prefix(*words).is_some_and(|rest| rest.starts_with(' '));
+        if ARTICLES.iter().any(starts) {
+            Self::Kind
+        } else if RELATIONS.iter().any(starts) {
+            Self::Place
+        } else {
+            Self::Quality
+        }
+    }
 }
 
 impl Value {
     /// Returns the grammatical role of the value.
     pub fn role(&self) -> Role {
-        match self.spoken.split_once(' ') {
-            Some(("a" | "an", _)) => Role::Kind,
-            Some((
-                "in" | "on" | "at" | "under" | "inside" | "behind" | "near" | "by" | "above",
-                _,
-            )) => Role::Place,
-            _ => Role::Quality,
-        }
+        self.role
+    }
+
+    /// The value without an article, as it stands beside a noun or for one: "felt tip" of "a felt
+    /// tip".
+    pub(crate) fn bare(&self) -> &str {
+        let bare = ["a ", "an "].iter().find_map(|article| self.spoken.strip_prefix(article));
+        bare.filter(|_| self.role == Role::Kind).unwrap_or(&self.spoken)
     }
 }
 

@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use serde_json::json;
 
 use crate::{
-    AttributeId, ObjectId, Question, Reading, Scene, ValueId, WordId, question_from_json,
-    question_to_json, reading_to_json,
+    AttributeId, ObjectId, Question, Reading, Role, Scene, Value, ValueId, WordId,
+    question_from_json, question_to_json, reading_to_json,
 };
 
 const BOWLS: &str =
@@ -129,12 +129,64 @@ fn objects_are_described_by_distinguishing_values() {
     let describe = |scene: &Scene, name| scene.describe(scene.object_named(name).expect("there"));
     assert_eq!(describe(&bowls, "white"), "bowl in the dishwasher");
     assert_eq!(describe(&bowls, "clear"), "clear bowl");
-    assert_eq!(describe(&tools, "m_green"), "green tool");
+    assert_eq!(describe(&tools, "m_green"), "green marker");
+    assert_eq!(describe(&tools, "p_black"), "black pen");
     assert_eq!(describe(&tools, "s_blue"), "blue screwdriver");
     let names = |scene: &Scene| -> std::collections::HashSet<String> {
         (0..scene.objects().len()).map(|i| scene.describe(ObjectId::from(i))).collect()
     };
     assert_eq!((names(&bowls).len(), names(&tools).len()), (6, 10));
+}
+
+const MUGS: &str = include_str!("../../../tests/fixtures/utterances/mugs.toml");
+
+#[test]
+fn objects_are_described_as_a_person_would() {
+    let mugs = shipped(MUGS);
+    let named = |name: &str| mugs.object_named(name).expect("there");
+    let describe = |name| mugs.describe(named(name));
+    assert_eq!(describe("green_cup"), "green cup");
+    assert_eq!(describe("blue_mug"), "mug next to the sink");
+    assert_eq!(describe("blue_cup"), "blue cup");
+    let among = |name, others: &[&str]| {
+        let others: Vec<ObjectId> = others.iter().map(|name| named(name)).collect();
+        mugs.describe_among(named(name), &others)
+    };
+    assert_eq!(among("white_cup", &["red_mug", "blue_mug"]), "cup");
+    assert_eq!(among("white_cup", &["green_cup", "red_mug"]), "white cup");
+    assert_eq!(among("red_mug", &[]), "mug");
+    let three = ["red_mug", "blue_mug", "white_cup"].map(named);
+    assert_eq!(mugs.list(&three, "or"), "the red mug, the blue mug or the cup");
+    assert_eq!(mugs.list(&three[..2], "and"), "the red mug and the blue mug");
+    assert_eq!(mugs.list(&three[..1], "or"), "the mug");
+    assert_eq!(mugs.plural_nouns(&three), "mugs and cups");
+    assert_eq!(mugs.noun_of(named("white_cup")), "cup");
+}
+
+#[test]
+fn roles_are_keys_of_the_scene() {
+    let text = r#"
+name = "s"
+noun = "drink"
+[[attributes]]
+name = "kind"
+role = "kind"
+values = ["tea", { name = "hot", role = "quality" }]
+[[attributes]]
+name = "place"
+values = [{ name = "sink", spoken = "next to the sink" }, { name = "Rome", spoken = "Rome", role = "place" }]
+[[objects]]
+name = "a"
+attributes = { kind = "tea", place = "sink" }
+"#;
+    let scene = Scene::from_toml("s", text).expect("a scene");
+    let roles =
+        |k: usize| -> Vec<Role> { scene.attributes()[k].values.iter().map(Value::role).collect() };
+    assert_eq!(roles(0), [Role::Kind, Role::Quality]);
+    assert_eq!(roles(1), [Role::Place, Role::Place]);
+    let wrong = text.replace("\"quality\"", "\"qality\"");
+    let error = Scene::from_toml("s", &wrong).expect_err("an unknown role").to_string();
+    assert!(error.contains("unknown role `qality`") && error.contains("`quality`"), "{error}");
 }
 
 #[test]

@@ -9,6 +9,7 @@
 //! [[attributes]]
 //! name = "color"
 //! synonyms = ["colour"]              # other words for the attribute, optional
+//! role = "quality"                   # or "kind" or "place"; guessed from `spoken` by default
 //! ask_yes_no = ["Is it {value}?", "Is the {noun} {value}?"]
 //! ask_which = "What colour is it?"
 //! values = ["red", { name = "blue", synonyms = ["navy"], spoken = "dark blue" }]
@@ -67,6 +68,7 @@ fn attribute(f: &mut Fields<'_>) -> DraftAttribute {
         key: f.key(),
         name: f.text("name"),
         synonyms: f.texts("synonyms"),
+        role: f.optional_text("role"),
         ask_yes_no: f.one_or_more_texts("ask_yes_no"),
         ask_which: f.one_or_more_texts("ask_which"),
         values: f.list("values", "", value),
@@ -79,6 +81,7 @@ fn value(f: &mut Fields<'_>) -> DraftValue {
         name: f.text("name"),
         synonyms: f.texts("synonyms"),
         spoken: f.optional_text("spoken"),
+        role: f.optional_text("role"),
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod conversation;
 mod formatting;
+mod own_words;
 mod readings;
 mod table;
 
@@ -27,6 +28,7 @@ pub(crate) fn scene(name: &str) -> Scene {
     let text = match name {
         "bowls" => include_str!("../../../../config/scenes/bowls.toml"),
         "tools" => include_str!("../../../../config/scenes/tools.toml"),
+        "markers" => include_str!("../../../../config/scenes/markers.toml"),
         "mugs" => fixture!("mugs.toml"),
         "garments" => fixture!("garments.toml"),
         "pantry" => fixture!("pantry.toml"),

@@ -1,0 +1,132 @@
+//! Places that are relations: "next to the sink" is "by the sink" and "beside it", but not "in" it.
+
+use std::collections::HashSet;
+use std::sync::LazyLock;
+
+use scene::{Role, Value};
+
+use crate::normalise::normalise;
+use crate::tokens::Tokens;
+use crate::vocabulary;
+
+/// Relations that people say for one another.
+const ALIKE: &[&[&str]] = &[
+    &[
+        "next to",
+        "near",
+        "near to",
+        "by",
+        "beside",
+        "close to",
+        "alongside",
+        "adjacent to",
+        "right by",
+        "right next to",
+        "nearby",
+    ],
+    &["under", "underneath", "below", "beneath"],
+    &["above", "over"],
+    &["on", "on top of", "atop", "upon"],
+    &["in", "inside", "inside of", "within"],
+    &["behind", "in back of", "at the back of"],
+    &["in front of", "before"],
+    &["left of", "to the left of", "on the left of"],
+    &["right of", "to the right of", "on the right of"],
+    &["about", "on the subject of"],
+];
+/// Relations after which a noun alone is read as a place.
+const PREPOSITIONS: &[&str] =
+    &["in", "inside", "on", "at", "by", "from", "within", "about", "with"];
+/// What may stand before a noun, its own article or none included.
+const ARTICLES: &[&str] = &["the", "a", "an", "my", "your", "our", "this", "that"];
+
+/// A form of a value, word by word.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Form {
+    pub(crate) words: Vec<String>,
+    /// As the scene has it, not one of those alike.
+    pub(crate) own: bool,
+}
+
+/// Returns the phrases for a value beyond its name and synonyms: what it is called in questions, and
+/// for a place the same with relations that are alike.
+pub(crate) fn forms(value: &Value) -> Vec<Form> {
+    let spoken = words(&value.spoken);
+    let names: Vec<Vec<String>> =
+        std::iter::once(&value.name).chain(&value.synonyms).map(|name| words(name)).collect();
+    if value.role() != Role::Place {
+        let bare = without_article(&spoken).to_vec();
+        let new = !bare.is_empty() && !names.contains(&bare);
+        return new.then_some(Form { words: bare, own: true }).into_iter().collect();
+    }
+    let Some((relation, noun)) = split(&spoken) else {
+        let new = !names.contains(&spoken);
+        return new.then_some(Form { words: spoken, own: true }).into_iter().collect();
+    };
+    let mut forms = Vec::new();
+    if is_listed(&spoken) {
+        // "at the door" means something else in other scenes.
+        forms.push(Form { words: spoken, own: true });
+    }
+    let alike = ALIKE.iter().find(|alike| alike.contains(&relation)).copied();
+    let alike = alike.unwrap_or_default().iter().copied().filter(|other| *other != relation);
+    for name in std::iter::once(&noun).chain(names.iter().filter(|name| **name != noun)) {
+        for said in std::iter::once(relation).chain(alike.clone()) {
+            // "in the dishwasher" is read word by word where the noun is the value's own.
+            if PREPOSITIONS.contains(&said) && names.contains(name) {
+                continue;
+            }
+            for article in std::iter::once(None).chain(ARTICLES.iter().map(Some)) {
+                let lead = said.split(' ').chain(article.copied()).map(str::to_owned);
+                let words = lead.chain(name.iter().cloned()).collect();
+                forms.push(Form { words, own: said == relation && *name == noun });
+            }
+        }
+    }
+    forms
+}
+
+/// Returns whether a phrase for a place that begins with this word names the relation as well.
+pub(crate) fn begins_relation(word: &str) -> bool {
+    ALIKE
+        .iter()
+        .flat_map(|alike| alike.iter())
+        .any(|relation| relation.split(' ').next() == Some(word))
+}
+
+/// Returns whether the words begin with a phrase of the language.
+fn is_listed(words: &[String]) -> bool {
+    static PHRASES: LazyLock<HashSet<&str>> = LazyLock::new(|| {
+        vocabulary::phrases().map(|(_, phrase)| phrase.trim_end_matches(" .")).collect()
+    });
+    (2..=words.len()).any(|length| {
+        let phrase = words[..length].join(" ");
+        PHRASES.contains(&*phrase) && !ALIKE.iter().any(|alike| alike.contains(&&*phrase))
+    })
+}
+
+/// The longest relation that starts the words, and the noun after it without its article.
+fn split(words: &[String]) -> Option<(&'static str, Vec<String>)> {
+    let all = ALIKE.iter().flat_map(|alike| alike.iter()).chain(PREPOSITIONS);
+    let starts = all.filter_map(|relation| {
+        let length = relation.split(' ').count();
+        let begins = words.len() > length && relation.split(' ').eq(words[..length].iter());
+        begins.then_some((length, *relation))
+    });
+    let (length, relation) = starts.max_by_key(|(length, _)| *length)?;
+    let noun = without_article(&words[length..]);
+    (!noun.is_empty()).then(|| (relation, noun.to_vec()))
+}
+
+fn without_article(words: &[String]) -> &[String] {
+    match words {
+        [article, noun @ ..] if ARTICLES.contains(&article.as_str()) && !noun.is_empty() => noun,
+        words => words,
+    }
+}
+
+/// The words of a scene's text, as an utterance's would be read.
+pub(crate) fn words(text: &str) -> Vec<String> {
+    let text = normalise(text);
+    Tokens::of(&text).words.iter().map(|token| token.word.to_owned()).collect()
+}

@@ -1,0 +1,91 @@
+//! Plurals of English nouns.
+
+/// Nouns whose plural follows no rule; of those without a second form it is the same.
+const IRREGULAR: &[(&str, &str)] = &[
+    ("man", "men"),
+    ("woman", "women"),
+    ("child", "children"),
+    ("person", "people"),
+    ("foot", "feet"),
+    ("tooth", "teeth"),
+    ("mouse", "mice"),
+    ("goose", "geese"),
+    ("ox", "oxen"),
+    ("die", "dice"),
+    ("knife", "knives"),
+    ("life", "lives"),
+    ("wife", "wives"),
+    ("leaf", "leaves"),
+    ("loaf", "loaves"),
+    ("shelf", "shelves"),
+    ("half", "halves"),
+    ("calf", "calves"),
+    ("wolf", "wolves"),
+    ("scarf", "scarves"),
+    ("thief", "thieves"),
+    ("potato", "potatoes"),
+    ("tomato", "tomatoes"),
+    ("mango", "mangoes"),
+    ("bus", "buses"),
+    ("gas", "gases"),
+    ("lens", "lenses"),
+    ("quiz", "quizzes"),
+    ("sheep", "sheep"),
+    ("fish", "fish"),
+    ("series", "series"),
+    ("glasses", "glasses"),
+];
+
+/// Returns the plural of a noun or noun phrase: `mugs`, `knives`, `boxes`, `cups of tea`. A noun that
+/// ends in a single s is one already: `scissors`.
+pub fn plural(noun: &str) -> String {
+    for link in [" of ", " with ", " for ", " in "] {
+        if let Some((head, rest)) = noun.split_once(link) {
+            return format!("{}{link}{rest}", plural(head));
+        }
+    }
+    let (lead, word) = noun.rfind([' ', '-']).map_or(("", noun), |at| noun.split_at(at + 1));
+    format!("{lead}{}", of_word(word))
+}
+
+fn of_word(word: &str) -> String {
+    if let Some((_, plural)) = IRREGULAR.iter().find(|(one, _)| *one == word) {
+        return (*plural).to_owned();
+    }
+    let ends = |endings: &[&str]| endings.iter().any(|ending| word.ends_with(ending));
+    match word.strip_suffix('y') {
+        Some(stem) if !stem.ends_with(['a', 'e', 'i', 'o', 'u']) => format!("{stem}ies"),
+        _ if ends(&["ss", "x", "z", "ch", "sh", "us", "is"]) => format!("{word}es"),
+        _ if word.ends_with('s') => word.to_owned(),
+        _ => format!("{word}s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::plural;
+
+    #[test]
+    fn plurals_are_english() {
+        for (one, many) in [
+            ("mug", "mugs"),
+            ("knife", "knives"),
+            ("glass", "glasses"),
+            ("box", "boxes"),
+            ("berry", "berries"),
+            ("tray", "trays"),
+            ("brush", "brushes"),
+            ("wrench", "wrenches"),
+            ("scissors", "scissors"),
+            ("pliers", "pliers"),
+            ("wine glass", "wine glasses"),
+            ("tea-towel", "tea-towels"),
+            ("cup of tea", "cups of tea"),
+            ("bread knife", "bread knives"),
+            ("photo", "photos"),
+            ("octopus", "octopuses"),
+        ] {
+            assert_eq!(plural(one), many);
+        }
+    }
+}
