@@ -102,6 +102,56 @@ fn journal_that_is_empty_or_damaged_is_refused_and_kept() {
     group.down();
 }
 
+/// Delivers an object, copies the journals, delivers another one, and is down.
+fn copied_between_deliveries() -> (Group, tempfile::TempDir) {
+    let group = Group::up(&[]);
+    assert_eq!(group.fetch("get me the bowl", "clear")["object"], "clear");
+    let copies = tempfile::tempdir().unwrap();
+    for service in ["speech", "policy", "arm"] {
+        fs::copy(group.paths().journal_file(service), copies.path().join(service)).unwrap();
+    }
+    assert_eq!(group.fetch("get me the bowl", "metal2")["object"], "metal2");
+    group.must(&["down"]);
+    (group, copies)
+}
+
+#[test]
+fn journal_that_is_older_than_the_others_is_refused() {
+    for service in ["speech", "policy", "arm"] {
+        let (mut group, copies) = copied_between_deliveries();
+        fs::copy(copies.path().join(service), group.paths().journal_file(service)).unwrap();
+        assert_refused(&mut group, service, &format!("{service}.journal is older than"));
+        group.must(&["journal", "set-aside", service]);
+        assert_eq!(group.start(&[]).code, Some(0), "{}", group.logs());
+        group.down();
+    }
+    // All of them from one copy agree.
+    let (mut group, copies) = copied_between_deliveries();
+    for service in ["speech", "policy", "arm"] {
+        fs::copy(copies.path().join(service), group.paths().journal_file(service)).unwrap();
+    }
+    group.verify_journals();
+    assert_eq!(group.start(&[]).code, Some(0), "{}", group.logs());
+    assert_eq!(group.fetch("get me the bowl", "white2")["object"], "white2");
+    group.down();
+}
+
+#[test]
+fn journal_that_is_a_pipe_or_a_device_is_refused_at_once() {
+    let mut group = fetched_and_down();
+    let file = group.paths().journal_file("policy");
+    fs::remove_file(&file).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", &file).unwrap();
+    assert_refused(&mut group, "policy", "not a journal");
+    fs::remove_file(&file).unwrap();
+    let mode = rustix::fs::Mode::RUSR | rustix::fs::Mode::WUSR;
+    rustix::fs::mknodat(rustix::fs::CWD, &file, rustix::fs::FileType::Fifo, mode, 0).unwrap();
+    assert_refused(&mut group, "policy", "not a journal");
+    group.must(&["journal", "set-aside", "policy"]);
+    assert_eq!(group.start(&[]).code, Some(0), "{}", group.logs());
+    group.down();
+}
+
 #[test]
 fn journal_is_verified_without_saying_how_its_group_was_started() {
     let mut group = Group::new();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use config::Settings;
 use dialogue::manager::{Act, Cause, Manager, Record, refold_since};
-use dialogue::{ActKind, Action, PickOutcome, rendering};
+use dialogue::{ActKind, Action, Outcome, PickOutcome, rendering};
 use scene::Scene;
 use service::exit::{Exit, Failure};
 use service::inspection::{Part, SharedFacts, at, count};
@@ -122,7 +122,14 @@ pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
             Some(first) if is_complete(&first) => 0,
             first => first.map_or(0, |record| record.state.last_interaction.0),
         },
+        delivered: records().last().map_or(0, delivered),
     }
+}
+
+/// The latest interaction that ended, if it did with a delivery; else 0.
+fn delivered(record: &Record) -> u64 {
+    let ended = record.state.ended.as_ref().filter(|ended| ended.outcome == Outcome::Delivered);
+    ended.map_or(0, |ended| ended.interaction.0)
 }
 
 fn step(

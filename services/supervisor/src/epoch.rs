@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use service::group::GroupPaths;
-use service::journal_set::{JournalSet, Unusable};
+use service::journal_set::{Behind, JournalSet, Unusable, check_agreement};
 use thiserror::Error;
 
 /// A group's journals cannot be used.
@@ -22,6 +22,9 @@ pub enum EpochError {
     /// Every journal that is missing, damaged, or not of this set.
     #[error("{}", lines(.0))]
     Journals(Vec<Unusable>),
+    /// A journal that is older than another.
+    #[error("{0}")]
+    Behind(#[from] Behind),
 }
 
 fn lines(unusable: &[Unusable]) -> String {
@@ -47,6 +50,9 @@ pub(crate) fn open(paths: &GroupPaths, fresh: bool) -> Result<u64, EpochError> {
     let unusable = set.check(paths);
     if !unusable.is_empty() {
         return Err(EpochError::Journals(unusable));
+    }
+    if !is_new {
+        check_agreement(paths, &set)?;
     }
     // On a full disk a group starts as long as nothing has to be written.
     if is_new {

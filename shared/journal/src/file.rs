@@ -196,11 +196,16 @@ pub fn inspect(path: &Path) -> Result<Inspection, JournalOpenError> {
     Ok(Inspection { header: stored.header, ending })
 }
 
+/// Reads a regular file: the end of a pipe or a device may never come.
 fn load(path: &Path) -> Result<Vec<u8>, JournalOpenError> {
-    fs::read(path).map_err(|error| match error.kind() {
+    let failed = |error: io::Error| match error.kind() {
         io::ErrorKind::NotFound => JournalOpenError::Missing,
         _ => JournalOpenError::io("read the journal")(error),
-    })
+    };
+    if !fs::metadata(path).map_err(failed)?.is_file() {
+        return Err(JournalOpenError::NotAJournal);
+    }
+    fs::read(path).map_err(failed)
 }
 
 fn create<R: Serialize>(

@@ -32,6 +32,9 @@ pub struct SharedFacts {
     pub picks: BTreeSet<(u64, u32, u16)>,
     /// Interactions above this have all their picks listed.
     pub since: u64,
+    /// The latest interaction, if it ended with a delivery by the arm (policy); else 0.
+    #[serde(default)]
+    pub delivered: u64,
 }
 
 /// Result of a verification.
@@ -172,6 +175,8 @@ struct Request {
     /// Folders of settings that were in force, newest first.
     settings: Vec<PathBuf>,
     verify: bool,
+    /// Print what the journal says about the others, unverified.
+    facts: bool,
     json: bool,
 }
 
@@ -182,6 +187,7 @@ impl Request {
         while let Some(word) = words.next() {
             match word.as_str() {
                 "--verify" => request.verify = true,
+                "--facts" => request.facts = true,
                 "--json" => request.json = true,
                 "--settings" => request.settings.extend(words.next().map(PathBuf::from)),
                 file => request.file = file.into(),
@@ -209,10 +215,21 @@ fn examine<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Fa
 }
 
 fn show<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
+    if request.facts {
+        let shared = Some(P::shared_facts(&parts::<P>(request)?));
+        return json_line(out, &Verdict { ok: true, shared, ..Verdict::default() });
+    }
     match request.verify {
         true => verify::<P>(request, out),
         false => print::<P>(request, out),
     }
+}
+
+/// Reads the journal with its older parts, oldest first.
+fn parts<P: Program>(request: &Request) -> Result<Vec<Part<Record<P>>>, Failure> {
+    let older = (1..=journal::KEPT).rev().map(|n| log_file::numbered(&request.file, n));
+    let files = older.filter(|file| file.is_file()).chain([request.file.clone()]);
+    files.map(|file| Part::read(&file)).collect()
 }
 
 fn print<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
@@ -252,11 +269,9 @@ fn check_ending<R>(part: &Part<R>) -> Result<(), Failure> {
     }
 }
 
-/// Checks the journal with its older parts, oldest first.
+/// Checks the journal with its older parts.
 fn verify<P: Program>(request: &Request, out: &mut impl Write) -> Result<(), Failure> {
-    let older = (1..=journal::KEPT).rev().map(|n| log_file::numbered(&request.file, n));
-    let files = older.filter(|file| file.is_file()).chain([request.file.clone()]);
-    let parts: Vec<_> = files.map(|file| Part::read(&file)).collect::<Result<_, _>>()?;
+    let parts = parts::<P>(request)?;
     parts.iter().try_for_each(check_ending)?;
     let records: u64 = parts.iter().map(|part| part.records().len() as u64).sum();
     match P::verify(&request.settings()?, &parts) {

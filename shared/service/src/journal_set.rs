@@ -14,6 +14,10 @@
 //! that makes its journal, and [`set_aside`] while the group is down. It is replaced atomically and
 //! synced.
 
+mod agreement;
+
+pub use agreement::{Behind, agree, check_agreement};
+
 use std::collections::BTreeMap;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, ErrorKind};

@@ -10,7 +10,7 @@ use messages::Service;
 use serde_json::json;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
-use service::inspection::{SharedFacts, Verdict, count};
+use service::inspection::{Verdict, count};
 use service::journal_set::{self, JournalSet};
 use service::{kept_settings, launch};
 
@@ -85,8 +85,7 @@ fn verify_all(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
     let facts =
         |service: Service| verdicts.get(service.name()).and_then(|it: &Verdict| it.shared.clone());
     let shared = Service::JOURNALED.map(|service| facts(service).unwrap_or_default());
-    let together = agree(&set, shared);
-    let together = together.map_err(|broken| Failure::new(Exit::Invariant, broken))?;
+    let together = journal_set::agree(&set, shared)?;
     for service in Service::JOURNALED {
         let Some(Verdict { records, facts, .. }) = verdicts.get(service.name()) else { continue };
         let (records, facts) = (records.unwrap_or(0), facts.clone().unwrap_or_default());
@@ -113,26 +112,6 @@ fn verify(paths: &GroupPaths, service: Service) -> Result<Result<Verdict, Exit>,
     let output = command.output().map_err(|error| failed(&command, &error))?;
     let verdict = serde_json::from_slice::<Verdict>(&output.stdout).ok();
     Ok(verdict.filter(|it| it.ok).ok_or(Exit::of_process(output.status.code())))
-}
-
-/// Checks what the journals say about one another.
-fn agree(set: &JournalSet, [speech, policy, arm]: [SharedFacts; 3]) -> Result<String, String> {
-    let accepted = speech.utterance.max(set.numbers_over);
-    if policy.utterance > accepted {
-        let applied = policy.utterance;
-        return Err(format!(
-            "the policy has applied utterance {applied}, speech accepted {accepted}"
-        ));
-    }
-    let is_listed = |(interaction, ..): &&(u64, u32, u16)| *interaction > policy.since;
-    let known: Vec<_> = arm.picks.iter().filter(is_listed).collect();
-    if let Some((interaction, attempt, object)) = known.iter().find(|it| !policy.picks.contains(it))
-    {
-        let pick = format!("pick {interaction}.{attempt} of object {object}");
-        return Err(format!("the arm took on {pick}, which the policy never ordered"));
-    }
-    let picks = count(known.len() as u64, "pick");
-    Ok(format!("nothing applied that was not accepted, {picks} as ordered, epoch {}", set.epoch))
 }
 
 /// The command line of a service's program for its journal, with the settings in force and those of
@@ -184,29 +163,4 @@ pub(super) fn command(service: &str, verb: &str) -> Command {
 pub(super) fn failed(command: &Command, error: &io::Error) -> Failure {
     let program = Path::new(command.get_program()).display();
     Failure::new(Exit::NotReached, format!("cannot run {program}: {error}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn facts(utterance: u64, picks: &[(u64, u32, u16)], since: u64) -> SharedFacts {
-        SharedFacts { utterance, picks: picks.iter().copied().collect(), since }
-    }
-
-    #[test]
-    fn journals_that_contradict_one_another_are_found() {
-        let set = JournalSet::new(7);
-        let speech = || facts(5, &[], 0);
-        let orders = [(1, 1, 2), (2, 1, 0)];
-        let check = |policy, arm| agree(&set, [speech(), policy, arm]);
-        assert!(check(facts(5, &orders, 0), facts(0, &orders, 0)).is_ok());
-        assert!(check(facts(4, &orders, 0), facts(0, &orders[..1], 0)).is_ok());
-        let replayed = check(facts(6, &orders, 0), facts(0, &[], 0)).unwrap_err();
-        assert_eq!(replayed, "the policy has applied utterance 6, speech accepted 5");
-        let other = check(facts(5, &orders, 0), facts(0, &[(2, 1, 1)], 0)).unwrap_err();
-        assert!(other.contains("pick 2.1 of object 1, which the policy never ordered"), "{other}");
-        // What the policy no longer keeps cannot be compared.
-        assert!(check(facts(5, &orders[1..], 1), facts(0, &orders, 0)).is_ok());
-    }
 }
