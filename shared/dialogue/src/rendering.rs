@@ -1,11 +1,14 @@
 //! English of the robot's lines and actions. Nothing else in the dialogue produces text.
 
+mod foreseen;
 mod remarks;
 
 use scene::{ObjectId, Question, Scene};
 
 use crate::manager::{Act, Content, Preface};
 use crate::{ActKind, Action, PickOutcome};
+
+pub use foreseen::foreseen;
 
 /// Returns the text of an act's line; empty where nothing is said.
 pub fn text(scene: &Scene, act: &Act) -> String {

@@ -19,6 +19,7 @@ pub(super) fn start(
 ) -> Voice {
     let options = VoiceOptions {
         audio_dir: settings.voice_dir(work),
+        foreseen: dialogue::rendering::foreseen(&settings.scene),
         ..VoiceOptions::of(&settings.speech, &work.join("voice"))
     };
     let (voice, events) = Voice::start(options);

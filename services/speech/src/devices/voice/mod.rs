@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, SendError, Sender, unbounded};
+use crossbeam_channel::{Receiver, SendError, Sender, TryRecvError, unbounded};
 
 use crate::devices::child_process::End;
 use crate::devices::worker_thread::{QueueError, WorkerThread};
@@ -30,7 +30,7 @@ pub use player::Player;
 pub use program::Program;
 pub use prompt_audio_cache::CACHED_MAX;
 use prompt_audio_cache::PromptAudioCache;
-use synthesis::Sound;
+use synthesis::{FORESEEN_MAX, Sound};
 pub use synthesis::{SynthesisError, Synthesiser};
 
 /// Output of the voice.
@@ -84,8 +84,11 @@ impl Voice {
             let (mode, cache) = (options.mode, options.audio_dir.as_deref().and_then(cache));
             // Without a receiver of its events the voice has no more to do.
             if events.send(VoiceEvent::Output(output.clone())).is_ok() {
-                let generation = current;
-                Speaker { mode, output, synthesiser, cache, events, generation }.run(prompts);
+                let (generation, mut foreseen) = (current, options.foreseen);
+                foreseen.truncate(FORESEEN_MAX);
+                foreseen.reverse();
+                Speaker { mode, output, synthesiser, cache, events, generation, foreseen }
+                    .run(prompts);
             }
         });
         (Self { generation, thread }, happened)
@@ -145,6 +148,8 @@ struct Speaker {
     cache: Option<PromptAudioCache>,
     events: Sender<VoiceEvent>,
     generation: Arc<AtomicU64>,
+    /// Prompts to synthesise in advance, the most likely last.
+    foreseen: Vec<String>,
 }
 
 /// Time beyond the duration of the audio: opening the device and draining its buffer.
@@ -154,7 +159,7 @@ const POLL_EVERY: Duration = Duration::from_millis(5);
 
 impl Speaker {
     fn run(mut self, prompts: &Receiver<Prompt>) {
-        for prompt in prompts {
+        while let Some(prompt) = self.next(prompts) {
             let state = match self.present(&prompt) {
                 Ok(End::Done) => PlaybackState::Ended,
                 Ok(End::Cancelled) => PlaybackState::Interrupted,
@@ -162,6 +167,32 @@ impl Speaker {
             };
             if self.send(&prompt, state).is_err() {
                 return;
+            }
+        }
+    }
+
+    /// Returns the next prompt. Meanwhile foreseen prompts are synthesised, one at a time, so that a prompt
+    /// waits for one at most.
+    fn next(&mut self, prompts: &Receiver<Prompt>) -> Option<Prompt> {
+        loop {
+            match prompts.try_recv() {
+                Ok(prompt) => return Some(prompt),
+                Err(TryRecvError::Disconnected) => return None,
+                Err(TryRecvError::Empty) => {}
+            }
+            let is_aloud = matches!(self.output, VoiceOutput::Aloud(_));
+            let Some(text) = self.foreseen.pop().filter(|_| is_aloud) else {
+                return prompts.recv().ok();
+            };
+            let is_cancelled = || !prompts.is_empty();
+            match self.synthesiser.speak(&text, is_cancelled) {
+                Ok(_) => {}
+                Err(SynthesisError::Cancelled) => self.foreseen.push(text),
+                // A prompt reports what fails when it is spoken.
+                Err(error) => {
+                    tracing::debug!(%error, "prompts are not synthesised in advance");
+                    self.foreseen.clear();
+                }
             }
         }
     }

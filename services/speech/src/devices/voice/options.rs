@@ -33,6 +33,8 @@ pub struct VoiceOptions {
     pub work: PathBuf,
     /// Folder for the audio of the latest [`super::CACHED_MAX`] prompts, if any.
     pub audio_dir: Option<PathBuf>,
+    /// Prompts that are synthesised in advance while the voice is silent, the most likely first.
+    pub foreseen: Vec<String>,
 }
 
 impl VoiceOptions {
@@ -46,6 +48,7 @@ impl VoiceOptions {
             players: Player::default_players(),
             work: work.into(),
             audio_dir: None,
+            foreseen: Vec::new(),
         }
     }
 
@@ -77,6 +80,7 @@ impl VoiceOptions {
             players,
             work: defaults.work,
             audio_dir: speech.voice_dir.clone(),
+            foreseen: Vec::new(),
         }
     }
 }

@@ -44,8 +44,10 @@ const TEXT_MAX: usize = 500;
 const DEADLINE: Duration = Duration::from_secs(5);
 /// Longest audio: 500 characters at the slowest pace, seconds.
 pub(super) const SOUND_MAX_S: f64 = 120.0;
-/// Cached prompts. The questions of a scene are fewer.
-const CACHED_MAX: usize = 64;
+/// Cached prompts: all that are foreseen, and as many that were not.
+const CACHED_MAX: usize = 2 * FORESEEN_MAX;
+/// Prompts that are synthesised in advance; the questions of most scenes are fewer.
+pub(super) const FORESEEN_MAX: usize = 64;
 
 impl Synthesiser {
     /// Returns a synthesiser with program, voice, pace and folder of the options.
@@ -78,7 +80,7 @@ impl Synthesiser {
         if let Some(known) = self.cached(&text) {
             return Ok(Some(known));
         }
-        let file = self.file(&format!("sentence-{:02}.wav", self.count % (CACHED_MAX + 1)))?;
+        let file = self.file(&format!("sentence-{:03}.wav", self.count % (CACHED_MAX + 1)))?;
         let VoiceOptions { program, voice, words_per_minute, .. } = &self.options;
         let command = program.speak(&text, voice, *words_per_minute, &file);
         self.run(command, is_cancelled)?;

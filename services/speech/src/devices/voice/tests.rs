@@ -49,6 +49,32 @@ impl Stage {
     }
 }
 
+#[test]
+fn voice_synthesises_foreseen_prompts_while_it_is_silent_and_only_once() {
+    let mut stage = Stage::new(VoiceMode::Aloud, "exit 0");
+    let log = stage.folder.path().join("spoken");
+    let Program::EspeakNg(program) = &stage.options.program else { panic!() };
+    let logged = format!(
+        "for last; do :; done; echo \"$last\" >> {}\n{} \"$@\"",
+        log.display(),
+        program.display()
+    );
+    stage.options.program = Program::EspeakNg(script(&stage.folder.path().join("logs"), &logged));
+    let foreseen = ["Is it white?", "Is it big?"].map(str::to_owned);
+    stage.options.foreseen = foreseen.to_vec();
+    let (voice, events, _) = stage.start();
+    let spoken = || fs::read_to_string(&log).unwrap_or_default();
+    let begun = Instant::now();
+    while spoken().lines().count() < 3 {
+        assert!(begun.elapsed() < PATIENCE, "{}", spoken());
+        thread::sleep(Duration::from_millis(5));
+    }
+    // The third was begun, so the second is there.
+    voice.speak(1, "1-1", "Is it white?").unwrap();
+    assert_eq!([events.next(), events.next()], [(1, Started), (1, Ended)]);
+    assert_eq!(spoken().lines().filter(|words| *words == "Is it white?").count(), 1);
+}
+
 struct Events(Receiver<VoiceEvent>);
 
 impl Events {
@@ -106,7 +132,7 @@ fn voice_plays_a_prompt_to_its_end() {
     voice.speak(1, "a", "Is it white?").unwrap();
     assert_eq!((events.next(), events.next()), ((1, Started), (1, Ended)));
     let played = fs::read_to_string(stage.folder.path().join("played")).unwrap();
-    assert!(played.ends_with("work/sentence-01.wav\n"), "{played}");
+    assert!(played.ends_with("work/sentence-001.wav\n"), "{played}");
 }
 
 #[test]
