@@ -24,6 +24,8 @@ pub(crate) fn line(scene: Option<&Scene>, record: &Record) -> String {
             format!("pick {}.{} {outcome:?}", pick.interaction, pick.attempt).to_lowercase()
         }
         Cause::Reconfigured => "reconfigured".to_owned(),
+        Cause::MotionStop(true) => "stopped".to_owned(),
+        Cause::MotionStop(false) => "released".to_owned(),
         Cause::SetAside(over) => format!("set aside, {over} over"),
     };
     let does = match state.act.kind {

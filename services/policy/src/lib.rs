@@ -186,8 +186,12 @@ impl PolicyNode {
         })
     }
 
-    /// Ends the interaction when the arm has ended its pick.
+    /// Ends the interaction when the arm has ended its pick; notes the motion stop.
     fn watch_arm(&mut self, status: &ArmStatus, now: Time, fx: &mut Fx) {
+        let is_stopped = status.stopped != 0;
+        if is_stopped != self.state.stopped {
+            self.apply(Cause::MotionStop(is_stopped), now, fx);
+        }
         let ordered = self.state.open.as_ref().and_then(|open| open.pick);
         let Some((pick, object)) = ordered else { return };
         if status.phase.get() != PickPhase::Done || status.pick() != pick {

@@ -2,6 +2,8 @@
 
 mod concede;
 mod correct;
+mod hand_over;
+mod held_back;
 mod person;
 mod pointing;
 mod prior;

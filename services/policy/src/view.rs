@@ -1,7 +1,7 @@
 //! The state as other services see it.
 
 use dialogue::ids::UtteranceSeq;
-use dialogue::manager::{Act, Interaction, Manager, State};
+use dialogue::manager::{Interaction, Manager, State};
 use dialogue::{ActKind, rendering};
 use messages::{FixedText, PolicyView, RobotAct, WireCode};
 use scene::{Question, Scene};
@@ -17,7 +17,7 @@ pub(crate) fn act(scene: &Scene, state: &State) -> RobotAct {
         prompt: act.prompt.0,
         presentation: act.presentation,
         kind: act.kind.code(),
-        question: answerable(act).into(),
+        question: answerable(state).into(),
         object: act.pick.map_or(0, |(_, object)| object.0.into()),
         attempt: act.pick.map_or(0, |(pick, _)| pick.attempt),
         decided_ns: act.decided.ns(),
@@ -28,12 +28,15 @@ pub(crate) fn act(scene: &Scene, state: &State) -> RobotAct {
 }
 
 /// Returns the question as which the act's line can be answered: "I will get the white bowl" can be
-/// denied like "this one?".
-fn answerable(act: &Act) -> Question {
-    match (act.kind, act.pick) {
-        (ActKind::Pick, Some((_, object))) => Question::Point(object),
-        _ => act.question,
-    }
+/// denied like "this one?", also after the hand-over.
+fn answerable(state: &State) -> Question {
+    let act = &state.act;
+    let spoken_of = match (act.kind, act.pick) {
+        (ActKind::Pick, Some((_, object))) => Some(object),
+        (ActKind::Say, _) => state.refusable(act.prompt).or(state.confirmable(act.prompt)),
+        _ => None,
+    };
+    spoken_of.map_or(act.question, Question::Point)
 }
 
 /// Returns the view that clients get.

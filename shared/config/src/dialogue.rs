@@ -118,6 +118,7 @@ fn turns(f: &mut Fields<'_>) -> TurnTaking {
         response_window_s: f.number("response_window_s", 0.05..=600.0),
         repeats_max: f.whole("repeats_max", 0..=100),
         questions_max: f.whole("questions_max", 0..=1000),
+        refusal_s: f.number("refusal_s", 0.0..=3600.0),
         attribution: f.choice(
             "attribution",
             &[

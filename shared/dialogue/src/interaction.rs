@@ -83,6 +83,8 @@ pub enum PickOutcome {
 pub enum Outcome {
     /// An object was handed over.
     Delivered,
+    /// An object was handed over, and the user refused it.
+    Refused,
     /// The arm failed; the object is named.
     Failed,
     /// The user withdrew the request.

@@ -23,6 +23,11 @@ pub fn text(scene: &Scene, act: &Act) -> String {
         }
         Content::Wanted(time) => wanted(scene, *time),
         Content::Fetching(object) => fetching(object, &act.line.preface),
+        Content::HeldBack(object) => {
+            format!("I have stopped. Shall I get the {object} once you resume?")
+        }
+        Content::AskToRelease(object) => format!("Say yes, and I will get the {object}."),
+        Content::Confirmed => "All right, once you resume.".to_owned(),
         Content::PickEnded(object, outcome) => pick_ended(object, *outcome),
         Content::Remark(it) => remarks::text(scene, it, act.kind),
         Content::Correcting | Content::Cancelled => "All right.".to_owned(),
@@ -84,6 +89,7 @@ fn preface(scene: &Scene, preface: &Preface) -> String {
         }
         Preface::SceneChanged => format!("The {}s here have changed. ", scene.noun()),
         Preface::Remark(it) => format!("{} ", remarks::text(scene, it, ActKind::Ask)),
+        Preface::Sorry => "Sorry. ".to_owned(),
         Preface::Left(objects) => {
             let count = remarks::number(objects.len());
             format!("There are {count}: {}. ", remarks::list(objects))

@@ -13,6 +13,8 @@ pub struct TurnTaking {
     /// Questions of one interaction, repetitions included, after which the robot picks the most
     /// probable object instead of asking.
     pub questions_max: u32,
+    /// Seconds after a hand-over in which the object can be refused.
+    pub refusal_s: f64,
     /// How an utterance is attributed to a question.
     pub attribution: Attribution,
     /// Whether decisions and repetitions are deferred while the user is speaking or an utterance is
@@ -33,6 +35,7 @@ impl Default for TurnTaking {
             response_window_s: 15.0,
             repeats_max: 2,
             questions_max: 20,
+            refusal_s: 60.0,
             attribution: Attribution::Mixture,
             defers: true,
             repeats_same: true,

@@ -40,7 +40,7 @@ impl Verdict {
     pub fn of(outcome: Outcome, right: bool) -> Option<Self> {
         Some(match outcome {
             Outcome::Delivered if right => Self::Right,
-            Outcome::Delivered => Self::Wrong,
+            Outcome::Delivered | Outcome::Refused => Self::Wrong,
             Outcome::Failed => Self::Failed,
             Outcome::Cancelled => Self::Cancelled,
             Outcome::Abandoned => Self::Abandoned,

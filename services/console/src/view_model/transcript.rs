@@ -140,6 +140,7 @@ impl Transcript {
         let object = object.unwrap_or("nothing");
         let what = match ended.outcome {
             Outcome::Delivered => format!("Handed over: {object}"),
+            Outcome::Refused => format!("Refused: {object}"),
             Outcome::Failed => format!("Could not fetch: {object}"),
             Outcome::Cancelled => "The request was withdrawn".to_owned(),
             Outcome::Abandoned => "Given up: no answer came, or no question helped".to_owned(),

@@ -78,6 +78,7 @@ pub(super) fn to_json(ended: &Ended) -> Json {
 pub(super) fn sentence(ended: &Ended) -> String {
     let what = match ended.outcome {
         How::Delivered => "delivered",
+        How::Refused => "delivered, but refused:",
         How::Failed => "failed to fetch",
         How::Cancelled => "cancelled",
         How::Abandoned => "abandoned: no answer",

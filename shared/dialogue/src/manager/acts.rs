@@ -124,7 +124,11 @@ impl Manager {
         preface: Preface,
         reasons: Act,
     ) {
+        if state.stopped {
+            return self.hold_back(state, object, reasons);
+        }
         let Some(open) = &mut state.open else { return };
+        open.held_back = None;
         open.picks += 1;
         let id = PickId { interaction: open.id, attempt: open.picks };
         let pick = Some((id, object));
@@ -164,7 +168,12 @@ impl Manager {
                     open.announced.push(state.last_prompt);
                 }
             }
-            _ => say(state, Content::Remark(remark), at),
+            _ => {
+                say(state, Content::Remark(remark), at);
+                if let Some(handed_over) = &mut state.handed_over {
+                    handed_over.lines.push(state.last_prompt);
+                }
+            }
         }
     }
 }

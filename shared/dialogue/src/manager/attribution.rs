@@ -17,6 +17,7 @@ const NEGLIGIBLE: f64 = 1e-9;
 pub(super) const PLAIN: f64 = 0.8;
 
 /// Content of an utterance in the open interaction.
+#[derive(Default)]
 pub(super) struct Heard<'a> {
     /// Its interpretations with their weights and the question that each answers, likeliest first.
     pub(super) interpretations: Vec<(f64, Question, Reading)>,
@@ -173,7 +174,8 @@ fn content(reading: &Reading) -> std::borrow::Cow<'_, Reading> {
 /// Returns a presentation as a candidate for an answer; none for another interaction's.
 fn candidate(state: &State, put: &Presentation) -> Option<Candidate> {
     question(state, put.prompt)?;
-    let prompt = state.open.as_ref().and_then(|open| open.prompt(put.prompt));
+    let before = || state.handed_over.as_ref().map(|before| &before.interaction);
+    let prompt = state.open.as_ref().or_else(before).and_then(|open| open.prompt(put.prompt));
     Some(Candidate {
         began_s: seconds(put.began),
         ended_s: put.ended.map_or(seconds(put.began) + QUESTION_S, seconds),
@@ -185,13 +187,20 @@ fn candidate(state: &State, put: &Presentation) -> Option<Candidate> {
 /// Returns the question of a prompt of the open interaction. That an object is being fetched can be
 /// denied, like "this one?".
 fn question(state: &State, prompt: PromptId) -> Option<Question> {
-    let open = state.open.as_ref()?;
+    let Some(open) = &state.open else { return answered_after(state, prompt) };
     if let (ActKind::Pick, Some((_, object))) = (state.act.kind, state.act.pick)
         && open.announced.contains(&prompt)
     {
         return Some(Question::Point(object));
     }
     open.prompt(prompt).map(|prompt| prompt.question)
+}
+
+/// Returns the question of a prompt after a hand-over: that this object was handed over can be denied.
+fn answered_after(state: &State, prompt: PromptId) -> Option<Question> {
+    let handed_over = state.handed_over.as_ref()?;
+    let earlier = || handed_over.interaction.prompt(prompt).map(|prompt| prompt.question);
+    state.refusable(prompt).map(Question::Point).or_else(earlier)
 }
 
 fn seconds(time: Time) -> f64 {

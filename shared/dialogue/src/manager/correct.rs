@@ -1,13 +1,13 @@
 //! Corrections: utterances while the arm fetches. They count like every other, and where they speak
 //! against the object, the pick is called off and the interaction continues.
 
-use scene::{ObjectId, Question, Reading, Response, WordId};
+use scene::{ObjectId, Question, Reading, Reference, Response, WordId};
 
 use super::Manager;
 use super::acts::call_off;
 use super::attribution::{Heard, PLAIN};
-use super::evidence::Mark;
 use super::line::Content;
+use super::references::reference;
 use super::state::{Basis, State};
 use crate::ActKind;
 use crate::time::Time;
@@ -20,7 +20,10 @@ impl Manager {
     pub(super) fn reconsider(&self, state: &mut State, heard: Heard, at: Time) {
         let Some(open) = &mut state.open else { return };
         let Some((_, object)) = open.pick else { return };
-        let denial = self.denial(object, &heard.interpretations);
+        let denial = match reference(&heard) {
+            Reference::Other => Some(Heard { mark: Some(self.not(object)), ..Heard::default() }),
+            _ => self.denial(object, &heard.interpretations),
+        };
         let is_denied = denial.is_some();
         self.take_in(open, heard);
         if let Some(denial) = denial {
@@ -36,7 +39,7 @@ impl Manager {
     /// Returns the denial of `object` alone, where it is likely that there is one. It counts in
     /// addition to the utterance that it came with: no user stops the robot on its way to the right
     /// object by a slip of the tongue, as may happen with the answer to a question.
-    fn denial(
+    pub(super) fn denial(
         &self,
         object: ObjectId,
         interpretations: &[(f64, Question, Reading)],
@@ -52,8 +55,7 @@ impl Manager {
         let alone = Reading { response: Response::No, ..Reading::default() };
         let interpretations =
             vec![(no, that, alone), (all - no, Question::None, Reading::default())];
-        let name = || self.setup.scene.object(object).name.clone();
-        let mark = (no >= PLAIN * all).then(|| Mark::Not(name()));
+        let mark = (no >= PLAIN * all).then(|| self.not(object));
         let denial = Heard { interpretations, unknown: "", gesture: None, mark };
         (2.0 * no > all).then_some(denial)
     }

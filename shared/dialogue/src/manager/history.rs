@@ -25,6 +25,15 @@ impl History {
         *self.delivered.entry(name.to_owned()).or_default() += 1;
     }
 
+    /// Takes back a delivery that was refused.
+    pub fn discount(&mut self, name: &str) {
+        let count = self.delivered.get(name).copied().unwrap_or(0);
+        match count {
+            0 | 1 => drop(self.delivered.remove(name)),
+            more => drop(self.delivered.insert(name.to_owned(), more - 1)),
+        }
+    }
+
     /// Returns the deliveries of an object.
     pub fn of(&self, name: &str) -> u64 {
         self.delivered.get(name).copied().unwrap_or(0)
@@ -55,6 +64,8 @@ mod tests {
         let smooth = history.prior(names(), 1e6);
         assert!(smooth.iter().all(|p| (p - 1.0 / 3.0).abs() < 1e-6), "{smooth:?}");
         assert_eq!(history.of("gone"), 1, "it may come back");
+        ["gone", "gone", "bowl"].into_iter().for_each(|name| history.discount(name));
+        assert_eq!((history.of("gone"), history.of("bowl")), (0, 1), "refused ones do not count");
     }
 
     #[test]

@@ -4,8 +4,9 @@ use scene::{Reading, Response};
 
 use super::Manager;
 use super::attribution::Heard;
-use super::evidence::Evidence;
+use super::evidence::{Evidence, Mark};
 use super::line::{Preface, Remark};
+use super::references::reference;
 use super::state::{Basis, Deferred, Interaction, State, Utterance, Wish};
 use crate::ActKind;
 use crate::time::Time;
@@ -19,27 +20,63 @@ impl Manager {
         shares: &[f64],
         at: Time,
     ) {
+        let heard = self.interpret(state, utterance, shares);
+        let refers = reference(&heard);
         if state.open.is_none() {
-            if !self.is_request(utterance) {
+            if let Some(refusal) = self.refusal(state, &heard) {
+                return self.reopen(state, utterance, (heard, refusal), at);
+            }
+            let spoken_of = self.resolve(state, refers);
+            if spoken_of.is_none() && !self.is_request(utterance) {
                 return;
             }
-            self.open(state, utterance);
+            self.begin(state, utterance, &heard, spoken_of);
         }
         let Some(open) = &mut state.open else { return };
         open.utterances.1 = utterance.seq;
         open.silences = 0;
-        let heard = self.interpret(state, utterance, shares);
-        let Some(open) = &mut state.open else { return };
         if open.pick.is_some() {
             return self.reconsider(state, heard, at);
         }
         let wish = self.concede(open, &heard.interpretations);
         let preface = preface(&heard, state.act.kind);
+        if self.confirms(state, &heard, at) {
+            return;
+        }
+        let Some(open) = &mut state.open else { return };
+        let held_back = open.held_back.take();
+        let held_back = held_back.and_then(|it| self.setup.scene.object_named(&it.name));
+        let denial = held_back.and_then(|object| self.denial(object, &heard.interpretations));
         self.take_in(open, heard);
+        denial.into_iter().for_each(|denial| self.take_in(open, denial));
+        if let mark @ Some(_) = self.compared(open, refers) {
+            self.take_in(open, Heard { mark, ..Heard::default() });
+        }
         self.note_answer(state, utterance, shares);
-        defer(state, utterance, wish, preface, at);
+        self.defer(state, utterance, wish, preface, at);
         if !utterance.more {
             self.decide_deferred(state, at);
+        }
+    }
+
+    /// Opens an interaction: where nothing but a reference to what was delivered is said, with
+    /// everything that was said of that.
+    fn begin(
+        &mut self,
+        state: &mut State,
+        utterance: &Utterance,
+        heard: &Heard<'_>,
+        spoken_of: Option<Mark>,
+    ) {
+        let is_bare = heard.interpretations.iter().all(|(.., it)| it.base.is_empty());
+        match state.handed_over.take() {
+            Some(before) if is_bare && spoken_of.is_some() => {
+                self.open_like(state, utterance, before.interaction);
+            }
+            _ => self.open(state, utterance),
+        }
+        if let (Some(open), mark @ Some(_)) = (&mut state.open, spoken_of) {
+            self.take_in(open, Heard { mark, ..Heard::default() });
         }
     }
 
@@ -57,6 +94,26 @@ impl Manager {
         }
     }
 
+    /// Records what the next decision rests on. It waits while the user is still speaking.
+    pub(super) fn defer(
+        &self,
+        state: &mut State,
+        utterance: &Utterance,
+        wish: Wish,
+        preface: Preface,
+        at: Time,
+    ) {
+        let Some(open) = &mut state.open else { return };
+        let before = open.deferred.take();
+        let since = before.as_ref().map_or(at, |before| before.since);
+        let Basis { preface: preface_before, wish: wish_before, .. } =
+            before.map(|before| before.basis).unwrap_or_default();
+        let preface = if preface == Preface::None { preface_before } else { preface };
+        let wish = if wish == Wish::Best { wish_before } else { wish };
+        let basis = Basis { heard: utterance.heard(), preface, utterance: utterance.seq, wish };
+        open.deferred = Some(Deferred { basis, since });
+    }
+
     /// Makes the deferred decision, if there is one.
     pub(super) fn decide_deferred(&mut self, state: &mut State, at: Time) {
         let deferred = state.open.as_mut().and_then(|open| open.deferred.take());
@@ -65,7 +122,8 @@ impl Manager {
         }
     }
 
-    fn open(&mut self, state: &mut State, utterance: &Utterance) {
+    pub(super) fn open(&mut self, state: &mut State, utterance: &Utterance) {
+        state.handed_over = None;
         state.last_interaction = state.last_interaction.next();
         let (id, posterior) = (state.last_interaction, self.beginning(state));
         let mut open = Interaction::new(id, utterance.accepted, posterior, utterance.seq);
@@ -98,19 +156,6 @@ fn preface(heard: &Heard, standing: ActKind) -> Preface {
         "" => Preface::None,
         word => Preface::UnknownWord(word.to_owned()),
     }
-}
-
-/// Records what the next decision rests on. It waits while the user is still speaking.
-fn defer(state: &mut State, utterance: &Utterance, wish: Wish, preface: Preface, at: Time) {
-    let Some(open) = &mut state.open else { return };
-    let before = open.deferred.take();
-    let since = before.as_ref().map_or(at, |before| before.since);
-    let Basis { preface: preface_before, wish: wish_before, .. } =
-        before.map(|before| before.basis).unwrap_or_default();
-    let preface = if preface == Preface::None { preface_before } else { preface };
-    let wish = if wish == Wish::Best { wish_before } else { wish };
-    let basis = Basis { heard: utterance.heard(), preface, utterance: utterance.seq, wish };
-    open.deferred = Some(Deferred { basis, since });
 }
 
 fn is_mere_answer(reading: &Reading) -> bool {

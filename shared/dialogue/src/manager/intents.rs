@@ -16,6 +16,7 @@ impl Manager {
     /// answer.
     pub(super) fn hear(&mut self, state: &mut State, utterance: &Utterance, at: Time) {
         state.applied = utterance.seq;
+        self.expire(state, at);
         let shares = self.attribute(state, utterance);
         let before = state.act.id;
         match intent(utterance, &shares) {
@@ -30,6 +31,7 @@ impl Manager {
             Intent::Cancel => self.cancel(state, at),
             Intent::Repeat if state.act.line.content != Content::Silence => repeat(state, at),
             Intent::StartOver => self.start_over(state, at),
+            Intent::PutBack => self.put_back(state, at),
             intent => {
                 let remark = self.answer(state, utterance, intent);
                 self.reply(state, remark, at);
@@ -44,7 +46,7 @@ impl Manager {
         }
     }
 
-    fn cancel(&self, state: &mut State, at: Time) {
+    pub(super) fn cancel(&self, state: &mut State, at: Time) {
         let Some(open) = &mut state.open else { return say(state, Content::Cancelled, at) };
         // Another object may have been wanted instead of the one being left: no longer.
         open.corrected = false;
@@ -67,7 +69,7 @@ impl Manager {
                 open.forgotten = 0;
                 open.conceded = Conceded::default();
                 open.posterior = beginning;
-                open.deferred = None;
+                (open.deferred, open.held_back) = (None, None);
             }
         }
         self.ask_wanted(state, at);

@@ -38,6 +38,8 @@ pub enum Preface {
     SceneChanged,
     /// A remark of its own: the question that follows was interrupted by it.
     Remark(Remark),
+    /// The object that was handed over was refused.
+    Sorry,
     /// These objects are left, which the user cannot tell apart; descriptions.
     Left(Vec<String>),
 }
@@ -61,6 +63,10 @@ pub enum Remark {
     AllRight,
     /// Nothing is being done.
     Idle,
+    /// The arm takes nothing from a person's hand.
+    PutItDown,
+    /// Nothing was handed over that could be put back.
+    NothingToPutBack,
     /// The object of that description is being fetched.
     Fetching(String),
     /// The object of that description is being left.
@@ -123,6 +129,12 @@ pub enum Content {
     Wanted(u32),
     /// The object of that description is being fetched.
     Fetching(String),
+    /// The object of that description is to be fetched once the motion stop is released.
+    HeldBack(String),
+    /// The motion stop was released: asks whether the object of that description is still wanted.
+    AskToRelease(String),
+    /// The pick that was held back is confirmed.
+    Confirmed,
     /// The pick of the object of that description is over.
     PickEnded(String, PickOutcome),
     /// A remark.

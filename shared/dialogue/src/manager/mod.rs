@@ -8,6 +8,8 @@
 //! | `attribution.rs` | the questions that an utterance answers |
 //! | `inform.rs`, `correct.rs` | content of an utterance: while deciding, and while the arm fetches |
 //! | `concede.rs` | what the user cannot tell, and what does not matter |
+//! | `references.rs` | "the other one", "the smaller one" |
+//! | `hand_over.rs`, `held_back.rs` | refusals after a hand-over; picks while the motion stop is latched |
 //! | `replies.rs` | answers to what the user asks |
 //! | `beliefs.rs`, `pointing.rs` | prior, updates, the user model, gestures |
 //! | `acts.rs` | decisions as standing acts |
@@ -22,12 +24,15 @@ mod concede;
 mod correct;
 mod evidence;
 mod floor;
+mod hand_over;
+mod held_back;
 mod history;
 mod inform;
 mod intents;
 mod line;
 mod pointing;
 mod reconfigure;
+mod references;
 mod refold;
 mod replies;
 mod state;
@@ -35,6 +40,8 @@ mod state;
 pub use concede::Conceded;
 pub use evidence::{Evidence, Mark, NAMES_MAX};
 pub use floor::{Floor, HEARING_MAX};
+pub use hand_over::HandedOver;
+pub use held_back::HeldBack;
 pub use history::History;
 pub use line::{AboutObjects, Content, Line, Preface, Reason, Remark};
 pub use refold::{Mismatch, refold, refold_since};
@@ -167,6 +174,7 @@ impl Manager {
             Cause::Quiet => self.decide_deferred(state, at),
             Cause::PickEnded { pick, outcome } => self.end_pick(state, *pick, *outcome, at),
             Cause::Reconfigured => self.reconfigure(state, at),
+            Cause::MotionStop(stopped) => self.note_stop(state, *stopped, at),
             Cause::SetAside(over) => self.set_aside(state, *over, at),
         }
     }
@@ -330,11 +338,16 @@ impl Manager {
                 return self.choose_another(state, at);
             }
         }
-        if let (PickOutcome::Delivered, Some(open)) = (outcome, &state.open) {
+        let delivered = state.open.as_ref().filter(|_| outcome == PickOutcome::Delivered).cloned();
+        if let Some(open) = &delivered {
             state.history.count(&open.picked);
         }
         let content = Content::PickEnded(self.description(object), outcome);
         self.close(state, ends_as, at, content);
+        state.handed_over = delivered.map(|interaction| {
+            let interaction = Interaction { deferred: None, ..interaction };
+            HandedOver { interaction, at, lines: vec![state.last_prompt] }
+        });
     }
 
     /// Ends the interaction and says so.
@@ -363,6 +376,7 @@ impl Manager {
         state.last_interaction = state.last_interaction.max(InteractionId(over));
         state.last_prompt = state.last_prompt.max(PromptId(over));
         state.act.id = state.act.id.max(ActId(over));
+        state.handed_over = None;
         if state.open.is_some() {
             self.close(state, Outcome::Abandoned, at, Content::Forgotten);
         } else {

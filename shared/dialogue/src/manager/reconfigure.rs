@@ -24,6 +24,7 @@ impl Manager {
         if !same_scene {
             // Their numbers belong to the former scene.
             state.act.alternatives.clear();
+            state.handed_over = None;
         }
         if state.open.is_none() {
             state.act.question = Question::None;

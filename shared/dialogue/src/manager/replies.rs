@@ -17,6 +17,7 @@ impl Manager {
             Intent::Greet => Remark::Greeting,
             Intent::Thank => Remark::Welcome,
             Intent::Stop => Remark::Stopped,
+            Intent::AskStatus if state.stopped => Remark::Stopped,
             Intent::AskHelp => Remark::Help,
             Intent::AskBack => Remark::Inventory,
             Intent::AskCount => self.objects(said, intent, AboutObjects::Count),
@@ -34,6 +35,8 @@ impl Manager {
             (ActKind::Cancel, Some((_, object))) => Remark::Leaving(self.description(object)),
             (_, Some((_, object))) => Remark::Fetching(self.description(object)),
             (ActKind::Ask, None) => Remark::AllRight,
+            (_, None) if state.stopped => Remark::Stopped,
+            (_, None) if state.handed_over.is_some() => Remark::AllRight,
             _ => Remark::Idle,
         }
     }

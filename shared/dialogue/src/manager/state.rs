@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use super::concede::Conceded;
 use super::evidence::Evidence;
+use super::hand_over::HandedOver;
+use super::held_back::HeldBack;
 use super::history::History;
 use super::line::{Line, Preface};
 use crate::answer_attribution::Attributed;
@@ -38,6 +40,10 @@ pub struct State {
     pub attributed: Attributed,
     /// The latest interaction that ended.
     pub ended: Option<Ended>,
+    /// The latest delivery, while it can be refused.
+    pub handed_over: Option<HandedOver>,
+    /// Whether the motion stop is latched.
+    pub stopped: bool,
     /// Deliveries by object.
     pub history: History,
     /// The user as learned in earlier interactions, where the planner uses it.
@@ -92,6 +98,8 @@ pub struct Interaction {
     pub announced: Vec<PromptId>,
     /// Picks ordered so far.
     pub picks: u32,
+    /// A pick that waits for the release of the motion stop.
+    pub held_back: Option<HeldBack>,
     /// Whether the ordered pick is called off for another object: the interaction continues once
     /// the arm has let go of it.
     pub corrected: bool,
@@ -118,6 +126,7 @@ impl Interaction {
             picked: String::new(),
             announced: Vec::new(),
             picks: 0,
+            held_back: None,
             corrected: false,
         }
     }
@@ -250,6 +259,8 @@ pub enum Cause {
     },
     /// The service was started with other settings, perhaps with another scene.
     Reconfigured,
+    /// The motion stop was latched, or released.
+    MotionStop(bool),
     /// A journal of the group was set aside: every number up to this one is over.
     SetAside(u64),
 }

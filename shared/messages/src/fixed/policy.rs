@@ -33,7 +33,8 @@ wire_struct! {
         kind: Code<ActKind>,
         /// Zero.
         reserved: [u8; 3],
-        /// The question of an `Ask`; of a `Pick`, its object: that it is fetched can be denied.
+        /// The question of an `Ask`; of a `Pick`, its object: that it is fetched can be denied; of a
+        /// `Say`, the object that can be refused or confirmed, if any.
         question: WireQuestion,
         /// [`ObjectId`] of a `Pick`.
         object: u32,

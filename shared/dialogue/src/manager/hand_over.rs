@@ -1,0 +1,119 @@
+//! After a hand-over: for a while the object can be refused, and the interaction is taken up again
+//! without it, under a number of its own.
+
+use scene::{ObjectId, Question, Response};
+use serde::{Deserialize, Serialize};
+
+use super::Manager;
+use super::acts::say;
+use super::attribution::Heard;
+use super::evidence::Mark;
+use super::line::{Content, Preface, Remark};
+use super::state::{Interaction, State, Utterance, Wish};
+use crate::Outcome;
+use crate::ids::PromptId;
+use crate::time::{Span, Time};
+
+/// A delivery that can still be refused.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HandedOver {
+    /// The interaction that ended with it.
+    pub interaction: Interaction,
+    /// When it was handed over.
+    pub at: Time,
+    /// Lines said since: each can be answered with a refusal.
+    pub lines: Vec<PromptId>,
+}
+
+impl HandedOver {
+    /// Returns the object.
+    pub fn object(&self) -> Option<ObjectId> {
+        self.interaction.pick.map(|(_, object)| object)
+    }
+}
+
+impl State {
+    /// Returns the object that an answer to that line would refuse, after a hand-over.
+    pub fn refusable(&self, prompt: PromptId) -> Option<ObjectId> {
+        let handed_over = self.handed_over.as_ref().filter(|_| self.open.is_none())?;
+        handed_over.object().filter(|_| handed_over.lines.contains(&prompt))
+    }
+}
+
+impl Manager {
+    /// Forgets a delivery that can no longer be refused.
+    pub(super) fn expire(&self, state: &mut State, at: Time) {
+        let window = Span::from_s(self.setup.turns.refusal_s);
+        if state.handed_over.as_ref().is_some_and(|it| at > it.at + window) {
+            state.handed_over = None;
+        }
+    }
+
+    /// Returns the refusal of what was handed over last, where the utterance is likely to be one.
+    pub(super) fn refusal(&self, state: &State, heard: &Heard<'_>) -> Option<Heard<'static>> {
+        let object = state.handed_over.as_ref().filter(|_| state.open.is_none())?.object()?;
+        let says_no = |(_, question, reading): &(f64, Question, scene::Reading)| {
+            let of_it = *question == Question::Point(object) && reading.response == Response::No;
+            of_it || (reading.base.is_empty() && !reading.excluded.is_empty())
+        };
+        let mut denial = self.denial(object, &heard.interpretations)?;
+        let likeliest = heard.interpretations.first().filter(|it| says_no(it));
+        denial.mark = Some(self.not(object));
+        likeliest.map(|_| denial)
+    }
+
+    pub(super) fn not(&self, object: ObjectId) -> Mark {
+        Mark::Not(self.setup.scene.object(object).name.clone())
+    }
+
+    /// Counts the last delivery as refused.
+    fn refuse(state: &mut State) -> Option<Interaction> {
+        let refused = state.handed_over.take()?.interaction;
+        state.history.discount(&refused.picked);
+        if let Some(ended) = state.ended.as_mut().filter(|it| it.interaction == refused.id) {
+            ended.outcome = Outcome::Refused;
+        }
+        Some(refused)
+    }
+
+    /// Takes up the interaction whose object was refused, without that object.
+    pub(super) fn reopen(
+        &mut self,
+        state: &mut State,
+        utterance: &Utterance,
+        (heard, refusal): (Heard<'_>, Heard<'_>),
+        at: Time,
+    ) {
+        let Some(refused) = Self::refuse(state) else { return };
+        self.open_like(state, utterance, refused);
+        let Some(open) = &mut state.open else { return };
+        self.take_in(open, heard);
+        self.take_in(open, refusal);
+        self.defer(state, utterance, Wish::Best, Preface::Sorry, at);
+        if !utterance.more {
+            self.decide_deferred(state, at);
+        }
+    }
+
+    /// Opens an interaction in which everything counts that was said in another one.
+    pub(super) fn open_like(&mut self, state: &mut State, said: &Utterance, before: Interaction) {
+        self.open(state, said);
+        if let Some(open) = &mut state.open {
+            let Interaction { posterior, evidence, forgotten, conceded, .. } = before;
+            (open.posterior, open.evidence) = (posterior, evidence);
+            (open.forgotten, open.conceded) = (forgotten, conceded);
+        }
+    }
+
+    /// Answers the wish to have an object put back. The arm takes nothing from a person's hand.
+    pub(super) fn put_back(&mut self, state: &mut State, at: Time) {
+        if state.open.is_some() {
+            return self.cancel(state, at);
+        }
+        let remark = match Self::refuse(state) {
+            Some(_) => Remark::PutItDown,
+            None => Remark::NothingToPutBack,
+        };
+        say(state, Content::Remark(remark), at);
+    }
+}

@@ -1,0 +1,113 @@
+//! Picks that are decided while the motion stop is latched: they are announced as such, and ordered
+//! once the user has confirmed them and the stop is released.
+
+use scene::{ObjectId, Question, Response};
+use serde::{Deserialize, Serialize};
+
+use super::Manager;
+use super::acts::{say, set};
+use super::attribution::Heard;
+use super::line::{Content, Preface};
+use super::state::{Act, Prompt, State};
+use crate::ids::PromptId;
+use crate::time::Time;
+use crate::{ActKind, NamedQuestion};
+
+/// A pick that waits for the release of the motion stop.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HeldBack {
+    /// Name of the object.
+    pub name: String,
+    /// Whether the user has confirmed it.
+    pub is_confirmed: bool,
+}
+
+impl State {
+    /// Returns the object that an answer to that line would confirm or deny, where its pick waits for
+    /// the release of the motion stop.
+    pub fn confirmable(&self, prompt: PromptId) -> Option<ObjectId> {
+        let open = self.open.as_ref().filter(|open| open.held_back.is_some())?;
+        match open.prompt(prompt)?.question {
+            Question::Point(object) => Some(object),
+            _ => None,
+        }
+    }
+}
+
+impl Manager {
+    /// Announces a pick that cannot start yet.
+    pub(super) fn hold_back(&mut self, state: &mut State, object: ObjectId, reasons: Act) {
+        let name = self.setup.scene.object(object).name.clone();
+        let content = Content::HeldBack(self.description(object));
+        let preface = Preface::None;
+        let Some(open) = &mut state.open else { return };
+        open.held_back = Some(HeldBack { name, is_confirmed: false });
+        self.ask_for(state, object, super::Line { preface, content }, reasons);
+    }
+
+    /// Says a line that is answered with yes or no to the object, without aiming at it.
+    fn ask_for(&self, state: &mut State, object: ObjectId, line: super::Line, reasons: Act) {
+        state.last_prompt = state.last_prompt.next();
+        let (prompt, question) = (state.last_prompt, Question::Point(object));
+        let named = match self.recall {
+            true => NamedQuestion::new(&self.setup.scene, question),
+            false => NamedQuestion::None,
+        };
+        if let Some(open) = &mut state.open {
+            open.prompts.push(Prompt { id: prompt, question, named, answered: None, times: 0 });
+        }
+        set(state, Act { kind: ActKind::Say, prompt, presentation: 1, line, ..reasons });
+    }
+
+    /// Processes an answer to the announcement of a pick that was held back; returns whether it was
+    /// confirmed.
+    pub(super) fn confirms(&mut self, state: &mut State, heard: &Heard<'_>, at: Time) -> bool {
+        let held = state.open.as_ref().and_then(|open| open.held_back.as_ref());
+        let Some(object) = held.and_then(|held| self.setup.scene.object_named(&held.name)) else {
+            return false;
+        };
+        let yes = heard.interpretations.first().is_some_and(|(_, question, reading)| {
+            let has = |word: &scene::WordId| self.setup.model.has_word(object, *word);
+            *question == Question::Point(object)
+                && reading.response == Response::Yes
+                && reading.base.iter().all(has)
+        });
+        if !yes {
+            return false;
+        }
+        if let Some(held) = state.open.as_mut().and_then(|open| open.held_back.as_mut()) {
+            held.is_confirmed = true;
+        }
+        if state.stopped {
+            say(state, Content::Confirmed, at);
+        } else {
+            self.release(state, object, at);
+        }
+        true
+    }
+
+    /// Notes whether the motion stop is latched.
+    pub(super) fn note_stop(&mut self, state: &mut State, stopped: bool, at: Time) {
+        state.stopped = stopped;
+        let Some(held) = state.open.as_ref().and_then(|open| open.held_back.clone()) else {
+            return;
+        };
+        let Some(object) = self.setup.scene.object_named(&held.name) else { return };
+        match (stopped, held.is_confirmed) {
+            (true, _) => {}
+            (false, true) => self.release(state, object, at),
+            (false, false) => {
+                let content = Content::AskToRelease(self.description(object));
+                let utterance = state.applied;
+                let reasons = Act { utterance, decided: at, ..Act::default() };
+                self.ask_for(state, object, content.into(), reasons);
+            }
+        }
+    }
+
+    fn release(&mut self, state: &mut State, object: ObjectId, at: Time) {
+        let utterance = state.applied;
+        let reasons = Act { utterance, decided: at, ..Act::default() };
+        self.pick(state, object, Preface::None, reasons);
+    }
+}
