@@ -55,7 +55,10 @@ impl Speech {
 
     fn inject(&mut self, after_s: f64, key: u8, sound: Sound) -> Outputs {
         let key = RequestKey([key; 16]);
-        self.take(after_s, In::Injection(Injection { key, onset_ns: 0, end_ns: 0, sound }))
+        self.take(
+            after_s,
+            In::Injection(Injection { key, onset_ns: 0, end_ns: 0, seen_prompt: 0, sound }),
+        )
     }
 
     fn type_in(&mut self, after_s: f64, text: &str) -> Outputs {
@@ -245,6 +248,26 @@ fn player_repeats_an_interrupted_question() {
     let utterance = outputs.utterance().unwrap();
     let asked = utterance.asked().unwrap();
     assert!(asked.iter().any(|a| (a.prompt, a.whole) == (7, 0) && a.ended_ns > 0), "{asked:?}");
+}
+
+#[test]
+fn words_answer_no_question_that_their_client_had_not_shown() {
+    let mut speech = Speech::new();
+    speech.take(0.0, ask(7));
+    speech.playback(0.1, 1, PlaybackState::Started);
+    speech.take(0.5, ask(8));
+    speech.playback(0.1, 2, PlaybackState::Started);
+    let yes = |seen_prompt: u64| Injection {
+        key: RequestKey([seen_prompt as u8 + 1; 16]),
+        onset_ns: 0,
+        end_ns: 0,
+        seen_prompt,
+        sound: Sound::Text("yes".to_owned()),
+    };
+    assert_eq!(speech.take(1.0, In::Injection(yes(7))).asked(), [(7, 1, 0)]);
+    assert_eq!(speech.take(1.0, In::Injection(yes(6))).asked(), []);
+    assert_eq!(speech.take(1.0, In::Injection(yes(8))).asked(), [(8, 1, 0), (7, 1, 0)]);
+    assert_eq!(speech.take(1.0, In::Injection(yes(0))).asked(), [(8, 1, 0), (7, 1, 0)], "unknown");
 }
 
 #[test]

@@ -24,6 +24,9 @@ pub struct Injection {
     /// When the person had ended, monotonic clock; 0: when it arrives. Of a recording it is found
     /// out.
     pub end_ns: u64,
+    /// The latest prompt that the user was shown before; 0: not known. What is said answers no later
+    /// one, however long that has been said already: the client may not have heard of it.
+    pub seen_prompt: u64,
     /// Text to be heard.
     pub sound: Sound,
 }

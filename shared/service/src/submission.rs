@@ -1,7 +1,7 @@
 //! A request to the speech service, resent under one key until its receipts have arrived, so that
 //! a restart in between neither loses nor doubles it.
 
-use messages::{Injection, Receipt, RequestKey, Sound};
+use messages::{Injection, PromptId, Receipt, RequestKey, Sound};
 
 use crate::client::random_key;
 use crate::{Span, Time};
@@ -24,8 +24,15 @@ impl Submission {
     /// `patience`.
     pub fn new(sound: Sound, (began, ended): (Time, Time), now: Time, patience: Span) -> Self {
         let (onset_ns, end_ns) = (began.ns(), ended.ns());
-        let injection = Injection { key: random_key(), onset_ns, end_ns, sound };
+        let injection = Injection { key: random_key(), onset_ns, end_ns, seen_prompt: 0, sound };
         Self { injection, expires: now + patience, sent: None, receipts: Vec::new() }
+    }
+
+    /// Notes the latest prompt that the user was shown before; 0 where that is not known.
+    #[must_use]
+    pub fn after(mut self, seen: PromptId) -> Self {
+        self.injection.seen_prompt = seen.0;
+        self
     }
 
     /// Key of the request, which its receipts repeat.

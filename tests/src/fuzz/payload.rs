@@ -37,8 +37,13 @@ pub(super) fn injections() -> Vec<Injection> {
         Sound::Talk { longest_s: 8.0 },
         Sound::Transcript { hypotheses: vec![heard, Hypothesis::certain("yes")] },
     ];
-    let injection =
-        |(n, sound)| Injection { key: RequestKey([n; 16]), onset_ns: 5, end_ns: 9, sound };
+    let injection = |(n, sound)| Injection {
+        key: RequestKey([n; 16]),
+        onset_ns: 5,
+        end_ns: 9,
+        seen_prompt: 3,
+        sound,
+    };
     (1..).zip(sounds).map(injection).collect()
 }
 

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use messages::{Injection, Outcome, ReceiptStatus, RequestKey, Sound};
+use messages::{Injection, Outcome, PromptId, ReceiptStatus, RequestKey, Sound};
 use scene::Scene;
 use service::submission::Submission;
 use service::view::{Arrived, Latest};
@@ -153,6 +153,7 @@ impl Process {
     fn say(&mut self, text: &str, now: Time) {
         let sound = Sound::Text(text.to_owned());
         let patience = Span(u64::MAX / 2);
-        self.saying.push_back(Submission::new(sound, (now, Time(0)), now, patience));
+        let submission = Submission::new(sound, (now, Time(0)), now, patience);
+        self.saying.push_back(submission.after(PromptId(self.latest.presented.prompt)));
     }
 }

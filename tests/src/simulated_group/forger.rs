@@ -136,7 +136,13 @@ fn injection(rng: &mut Rng) -> Injection {
     };
     let mut key = [0xff; 16];
     key[..8].copy_from_slice(&(rng.uniform() * 1e18).to_le_bytes());
-    Injection { key: RequestKey(key), onset_ns: number(rng), end_ns: number(rng), sound }
+    Injection {
+        key: RequestKey(key),
+        onset_ns: number(rng),
+        end_ns: number(rng),
+        seen_prompt: number(rng),
+        sound,
+    }
 }
 
 fn utterance(rng: &mut Rng) -> Utterance {

@@ -188,7 +188,8 @@ impl GroupUser {
         let typed = matches!(sound, Sound::Text(_) | Sound::Point { .. });
         let end_ns = if typed { 0 } else { time(utterance.end_s).ns() };
         let onset_ns = time(utterance.onset_s).ns();
-        self.unacknowledged.push((Injection { key: key(n), onset_ns, end_ns, sound }, now));
+        self.unacknowledged
+            .push((Injection { key: key(n), onset_ns, end_ns, seen_prompt: 0, sound }, now));
     }
 
     /// Returns what the clients send now: each injection again until it is acknowledged.

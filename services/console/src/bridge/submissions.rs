@@ -28,7 +28,7 @@ impl Submissions {
         if self.0.len() >= WORDS_MAX {
             return Err("too many utterances at a time; help: wait a moment".to_owned());
         }
-        let Words { text, alternatives, spoken, began, ended } = words;
+        let Words { text, alternatives, spoken, began, ended, seen } = words;
         let sound = if spoken {
             let other =
                 |(text, weight): (String, f64)| Hypothesis { weight, ..Hypothesis::certain(text) };
@@ -39,7 +39,7 @@ impl Submissions {
             Sound::Text(text)
         };
         let said = (began.unwrap_or(now), ended.unwrap_or(Time(0)));
-        self.0.push((viewer, Submission::new(sound, said, now, PATIENCE)));
+        self.0.push((viewer, Submission::new(sound, said, now, PATIENCE).after(seen)));
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! Commands of viewers to the main loop.
 
+use messages::PromptId;
 use serde_json::Value as Json;
 use service::Time;
 use service::status::GroupStatus;
@@ -39,11 +40,20 @@ pub struct Words {
     pub spoken: bool,
     pub began: Option<Time>,
     pub ended: Option<Time>,
+    /// The robot's latest prompt that the page had shown before; 0 where that is not known.
+    pub seen: PromptId,
 }
 
 pub fn typed(text: &str) -> Words {
     let alternatives = Vec::new();
-    Words { text: text.to_owned(), alternatives, spoken: false, began: None, ended: None }
+    Words {
+        text: text.to_owned(),
+        alternatives,
+        spoken: false,
+        began: None,
+        ended: None,
+        seen: PromptId(0),
+    }
 }
 
 /// An order to the motion stop; handled before everything else.

@@ -1,5 +1,6 @@
 //! Messages of pages: text frames with JSON, checked key by key.
 
+use messages::PromptId;
 use serde_json::Value as Json;
 use service::Time;
 
@@ -137,7 +138,12 @@ fn words(json: &Json, now: Time) -> Result<Words, String> {
     {
         return Err("ended_ms: lies before began_ms".to_owned());
     }
-    Ok(Words { text, alternatives: alternatives(json)?, spoken, began, ended })
+    let seen = match &json["seen"] {
+        Json::Null => 0,
+        seen => seen.as_u64().ok_or("seen: expected the number of a prompt")?,
+    };
+    let seen = PromptId(seen);
+    Ok(Words { text, alternatives: alternatives(json)?, spoken, began, ended, seen })
 }
 
 /// Returns the words of an utterance, on one line.

@@ -5,6 +5,7 @@ use crate::pending_sounds::PendingSound;
 use crate::record::Accepted;
 use crate::utterance_content::UtteranceContent;
 use dialogue::Presentation;
+use dialogue::ids::PromptId;
 use messages::{FixedText, Injection, Receipt, ReceiptStatus, RequestKey, Source, UtteranceSeq};
 use service::{Span, Time};
 
@@ -17,6 +18,8 @@ pub(super) struct Origin {
     pub(super) source: Source,
     /// Beginning and end of the speech, 0 without speech.
     pub(super) span: (Time, Time),
+    /// The latest prompt that the user was shown before; 0 where that is not known.
+    pub(super) seen: PromptId,
     /// Signal-to-noise ratio, decibels; 0 for text.
     pub(super) snr_db: f32,
 }
@@ -27,20 +30,23 @@ impl Origin {
         let reported = |ns: u64| if ns == 0 { now } else { Time(ns).min(now) };
         let onset = reported(injection.onset_ns);
         let span = (onset, reported(injection.end_ns).max(onset));
-        Self { key: injection.key, segment: (0, 1), source: Source::Text, span, snr_db: 0.0 }
+        let seen = PromptId(injection.seen_prompt);
+        Self { key: injection.key, segment: (0, 1), source: Source::Text, span, seen, snr_db: 0.0 }
     }
 
     /// Returns the origin for the end of a client's stream.
     pub(super) fn closed(key: RequestKey, utterances: u32) -> Self {
         let (segment, span) = ((u32::MAX, utterances), (Time(0), Time(0)));
-        Self { key, segment, source: Source::Microphone, span, snr_db: 0.0 }
+        let seen = PromptId(0);
+        Self { key, segment, source: Source::Microphone, span, seen, snr_db: 0.0 }
     }
 
     /// Returns the origin of segment `number` of `count` in a sound; a live sound is a segment itself.
     pub(super) fn of(sound: &PendingSound, number: u32, count: u32) -> Self {
         let segment = sound.segment.unwrap_or((number, count));
         let span = (sound.onset, sound.end.unwrap_or(Time(0)));
-        Self { key: sound.key, segment, source: sound.source, span, snr_db: 0.0 }
+        let seen = PromptId(0);
+        Self { key: sound.key, segment, source: sound.source, span, seen, snr_db: 0.0 }
     }
 
     /// Adds what the recogniser measured. The times of a live sound are known; those of a recording
@@ -57,10 +63,11 @@ impl Origin {
         self,
         seq: UtteranceSeq,
         UtteranceContent { hypotheses, gesture }: UtteranceContent,
-        asked: Vec<Presentation>,
+        mut asked: Vec<Presentation>,
         now: Time,
     ) -> Accepted {
-        let Self { key, segment, source, span: (onset, end), snr_db } = self;
+        let Self { key, segment, source, span: (onset, end), seen, snr_db } = self;
+        asked.retain(|question| seen == PromptId(0) || question.prompt <= seen);
         let accepted = now;
         Accepted {
             seq,

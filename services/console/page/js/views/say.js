@@ -34,11 +34,12 @@ export function mountSay(element, { link, store, t }) {
   const form = h("form", { class: "say" }, input, send);
   element.append(form, note);
   let beganAt = null;
+  let seen = 0;
 
   input.addEventListener("input", () => {
     note.textContent = "";
     if (input.value === "") beganAt = null;
-    else beganAt ??= performance.now();
+    else if (beganAt === null) [beganAt, seen] = [performance.now(), latestPrompt()];
   });
   // Also while the button is disabled: the reason is shown then.
   input.addEventListener("keydown", (event) => {
@@ -54,6 +55,7 @@ export function mountSay(element, { link, store, t }) {
   async function submit() {
     const text = input.value.trim();
     if (!text) return;
+    if (beganAt === null) seen = latestPrompt();
     const began = beganAt ?? performance.now();
     input.value = "";
     beganAt = null;
@@ -62,12 +64,18 @@ export function mountSay(element, { link, store, t }) {
       await link.up(OUTAGE_MS);
       await ready();
       const times = { began_ms: link.toServer(began), ended_ms: link.serverNow() };
-      const done = await link.do("say", { text, source: "typed", ...times });
+      const done = await link.do("say", { text, source: "typed", seen, ...times });
       note.textContent = waiting(done, t);
     } catch (error) {
       if (input.value === "") input.value = text;
       note.textContent = reason(/** @type {any} */ (error), t);
     }
+  }
+
+  /** The robot's latest prompt that is shown; 0 for none. */
+  function latestPrompt() {
+    const lines = store.get("lines") ?? [];
+    return lines.findLast((line) => line.said)?.said[0] ?? 0;
   }
 
   /** Typing takes control if there is no operator. */
