@@ -8,7 +8,7 @@ use std::time::Instant;
 use rustix::process::{Pid, Resource, Rlimit, Signal, prlimit};
 use serde_json::{Value as Json, json};
 use tungstenite::Message;
-use whichone_tests::console::{Page, Visitor, http};
+use whichone_tests::console::{Console, Page, Visitor, http};
 use whichone_tests::{Group, wait_for};
 
 fn ok(done: &Json) -> bool {
@@ -291,6 +291,8 @@ fn token_is_private_and_can_be_renewed() {
     let token = before.token.clone().expect("a token");
     let file = service::console_link::token_file(group.paths());
     assert_eq!(std::fs::metadata(&file).unwrap().mode() & 0o777, 0o600);
+    let log = group.paths().log_file("supervisor");
+    assert_eq!(std::fs::metadata(log).unwrap().mode() & 0o777, 0o600);
     // Not even in the arguments of a process, which every user can read.
     for process in std::fs::read_dir("/proc").unwrap() {
         let arguments = process.unwrap().path().join("cmdline");
@@ -300,6 +302,16 @@ fn token_is_private_and_can_be_renewed() {
     let renewed = group.must(&["console", "--renew", "--json"]).json();
     assert_ne!(renewed["token"], token.as_str());
     assert_eq!(http(&before, "GET", "/api/state", &[], "").0, 401);
+    assert_eq!(http(&group.console(), "GET", "/api/state", &[], "").0, 200);
+    // A word of the owner's own outlives the logins before the restart that makes it count.
+    std::fs::write(&file, "my-own-word-123\n").unwrap();
+    let running =
+        Console { token: renewed["token"].as_str().map(str::to_owned), ..group.console() };
+    let own = format!("Origin: http://{running}");
+    let form = format!("token={}", running.token.as_deref().unwrap());
+    assert_eq!(http(&running.without_token(), "POST", "/login", &[&own], &form).0, 303);
+    group.must(&["restart", "console"]);
+    assert_eq!(group.console().token.as_deref(), Some("my-own-word-123"));
     assert_eq!(http(&group.console(), "GET", "/api/state", &[], "").0, 200);
     group.down();
 }

@@ -5,6 +5,7 @@ use rustix::process::{Pid, Signal, kill_process};
 use serde_json::Value as Json;
 use service::client::{Client, deliver};
 use service::{Span, Time, clock};
+use whichone_tests::console::http;
 use whichone_tests::shortage::{
     JointWatch, NoDescriptors, SmallDisk, SmallGroup, in_private_mounts,
 };
@@ -138,6 +139,10 @@ mod as_root {
                         row["why"].as_str().filter(|why| why.contains("disk")).map(|_| ())
                     })
                 });
+                wait_for("a status that says so", 10.0, || {
+                    let ended = group.call(&["status", "--json"]);
+                    (ended.code == Some(1) && ended.json()["state"] == "degraded").then_some(())
+                });
                 let ended = group.call(&["say", "hello"]);
                 // Not accepted, or kept until there is space; it says so at once.
                 assert!(ended.stderr.contains("free in"), "{ended:?}");
@@ -153,12 +158,45 @@ mod as_root {
             is_accepted("please").then_some(())
         });
         assert!(clock::now().since(freed) < Span::from_ms(20_000), "it goes on by itself");
+        wait_for("a ready group", 10.0, || (group.call(&["status"]).code == Some(0)).then_some(()));
         let now = services.map(|service| group.incarnation(service));
         assert_eq!(incarnations, now, "nobody died of it");
         let outcome = group.await_pick(Some("clear"));
         assert_delivered(&group, &outcome, "clear");
         assert_eq!(group.dialogue()["last"]["interaction"], asked);
         drop((receipts, writer, client));
+        group.down();
+    }
+
+    #[test]
+    #[ignore = "needs root, for a small disk"]
+    fn full_disk_leaves_token_page_and_settings_as_they_are() {
+        let SmallGroup { group, disk } = SmallGroup::up(&[]);
+        let console = group.console();
+        let incarnation = group.incarnation("console");
+        let files = || {
+            let folders = [group.paths().root().to_owned(), group.paths().run()];
+            let names =
+                |folder| std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path());
+            let half = |path: &std::path::PathBuf| path.extension().is_some_and(|end| end == "new");
+            folders.into_iter().flat_map(names).filter(half).collect::<Vec<_>>()
+        };
+        disk.fill();
+        let renewed = group.call(&["console", "--renew"]);
+        assert_eq!(renewed.code, Some(74), "{renewed:?}");
+        assert!(renewed.stderr.contains("the former token stays"), "{renewed:?}");
+        let reloaded = group.call(&["reload"]);
+        assert_eq!(reloaded.code, Some(74), "{reloaded:?}");
+        for words in ["No space left on device", "KiB free", "nothing was changed"] {
+            assert!(reloaded.stderr.contains(words), "{reloaded:?}");
+        }
+        assert_eq!(files(), [std::path::PathBuf::new(); 0]);
+        assert_eq!(http(&console, "GET", "/api/state", &[], "").0, 200);
+        assert_eq!(group.incarnation("console"), incarnation);
+        disk.free();
+        let renewed = group.must(&["console", "--renew", "--json"]).json();
+        assert_ne!(renewed["token"].as_str(), console.token.as_deref());
+        group.must(&["reload"]);
         group.down();
     }
 

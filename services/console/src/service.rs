@@ -101,7 +101,7 @@ fn access(settings: &Settings, paths: &GroupPaths) -> Result<Access, Failure> {
     }
     let file = console_link::token_file(paths);
     let failed = |error| Failure::new(Exit::Storage, format!("{}: {error}", file.display()));
-    Access::by_token(file.clone()).map_err(failed)
+    Access::by_token(&file, console_link::sessions_file(paths)).map_err(failed)
 }
 
 /// Raises the limit of descriptors as far as allowed, and divides it.

@@ -98,8 +98,9 @@ fn configuration(settings: Settings, options: &Options) -> Configuration {
         directory: options.config.clone(),
         shared_memory_free_min_mib: group.shared_memory_free_min_mib.into(),
         publish: Box::new(move |paths| {
-            settings.write_snapshot(&paths.run())?;
-            kept_settings::keep(paths, &settings)
+            // Those in force change last, when nothing can fail any more.
+            kept_settings::keep(paths, &settings)?;
+            settings.write_snapshot(&paths.run())
         }),
     }
 }

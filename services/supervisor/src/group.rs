@@ -8,7 +8,7 @@ use service::status::GroupState;
 
 use crate::Time;
 use crate::configuration::GroupSpec;
-use crate::machine::{Actual, Effect, Event, HeldBecause, Limits, Machine, Wanted};
+use crate::machine::{Actual, Effect, Event, HeldBecause, Limits, Machine, ServiceState, Wanted};
 use crate::schedule::{Schedule, ScheduleError};
 
 #[cfg(test)]
@@ -92,16 +92,21 @@ impl Group {
             Phase::Stopping => GroupState::Stopping,
             Phase::Starting if self.is_given_up() => GroupState::Degraded,
             Phase::Starting => GroupState::Starting,
-            Phase::Running if self.is_whole() => GroupState::Ready,
+            Phase::Running if self.is_whole() && !self.is_short() => GroupState::Ready,
             Phase::Running => GroupState::Degraded,
         }
     }
 
-    /// Returns true if every service that is wanted up is ready.
+    /// Returns true if every service that is wanted up is ready, be it short of a resource or not.
     pub fn is_whole(&self) -> bool {
         self.machines
             .iter()
             .all(|machine| machine.wanted() == Wanted::Down || machine.actual() == Actual::Ready)
+    }
+
+    /// Returns true if some service is short of a resource: it runs, and does not do its work.
+    fn is_short(&self) -> bool {
+        self.machines.iter().any(|machine| machine.state() == ServiceState::Short)
     }
 
     /// Returns true if some service that is wanted up is held.

@@ -111,6 +111,7 @@ impl Machine {
             State::Down if self.wanted == Wanted::Up => ServiceState::Waiting,
             State::Down => ServiceState::Down,
             State::Starting { .. } => ServiceState::Starting,
+            State::Ready { .. } if self.short => ServiceState::Short,
             State::Ready { .. } => ServiceState::Ready,
             State::Stopping { .. } => ServiceState::Stopping,
             State::Backoff { short: true } => ServiceState::Short,

@@ -158,7 +158,8 @@ impl Supervisor {
         }
         self.check_critical(now);
         self.answer_waits(now);
-        if !self.reported_ready && self.group.state() == service::status::GroupState::Ready {
+        let is_up = self.group.is_whole() && !self.group.is_stopping();
+        if !self.reported_ready && is_up {
             self.reported_ready = true;
             tracing::info!(ms = now.as_millis(), "every service is ready");
             self.init_system.say("READY=1");

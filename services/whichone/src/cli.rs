@@ -67,7 +67,7 @@ pub enum Verb {
     Down(DownArgs),
     /// Show the state of the group and its services.
     ///
-    /// The exit code is 0 if every service that should run is ready, else 1.
+    /// The exit code is 0 if every service that should run is ready and short of nothing, else 1.
     Status,
     /// Start a service or release its hold, and wait until it is ready.
     Start(ServiceArgs),

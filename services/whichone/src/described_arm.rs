@@ -101,7 +101,7 @@ fn subtree(robot: &Robot, first: usize) -> Vec<usize> {
 }
 
 fn read(path: &Path) -> Result<Robot, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| Failure::file(path, &error))?;
+    let text = crate::scene_file::read_file(path)?;
     let urdf = TextFile::new(path.display().to_string(), text);
     Ok(Robot::read(&urdf, None)?)
 }

@@ -1,6 +1,7 @@
 //! Scene files, in TOML or JSON.
 
-use service::exit::Failure;
+use service::exit::{Exit, Failure};
+use std::io::ErrorKind;
 use std::path::Path;
 
 use diagnostics::{Diagnostic, Diagnostics};
@@ -11,8 +12,21 @@ use scene::Scene;
 /// # Errors
 /// The file cannot be read, or every problem of its text.
 pub fn load(path: &Path) -> Result<Scene, Failure> {
-    let text = std::fs::read_to_string(path).map_err(|error| Failure::file(path, &error))?;
+    let text = read_file(path)?;
     Ok(read(&path.display().to_string(), &text)?)
+}
+
+/// Reads a text file that a person has written.
+///
+/// # Errors
+/// The file cannot be read, is too large, or is none.
+pub fn read_file(path: &Path) -> Result<String, Failure> {
+    config::read_file(path).map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge | ErrorKind::InvalidData => {
+            Failure::new(Exit::Config, format!("{}: {error}", path.display()))
+        }
+        _ => Failure::file(path, &error),
+    })
 }
 
 fn read(file: &str, text: &str) -> Result<Scene, Diagnostics> {
@@ -49,5 +63,9 @@ mod tests {
         }
         let trouble = load(Path::new("/nowhere/scene.toml")).unwrap_err();
         assert!(trouble.to_string().starts_with("/nowhere/scene.toml: "));
+        let device = load(Path::new("/dev/zero")).unwrap_err();
+        assert_eq!(device.exit, Exit::Config);
+        let what = "/dev/zero: expected a regular file, found a pipe, socket or device";
+        assert_eq!(device.to_string(), what);
     }
 }

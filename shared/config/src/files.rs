@@ -1,7 +1,7 @@
 //! The files that settings name: the scene and the robot's description.
 
-use std::fs;
-use std::io;
+use std::fs::{self, File, Metadata};
+use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use diagnostics::{Diagnostic, Report, Table, TextFile, suggestion};
@@ -21,6 +21,9 @@ pub(crate) struct Files {
     pub(crate) scene: Option<TextFile>,
     pub(crate) robot: Option<RobotFiles>,
 }
+
+/// Largest file that a person writes, bytes: a scene of a thousand objects has a tenth of a MiB.
+pub(crate) const FILE_BYTES_MAX: u64 = 16 << 20;
 
 /// The robot that needs no files.
 const BUILT_IN: &str = "baxter";
@@ -102,7 +105,10 @@ impl Kind {
 impl Found {
     fn read(&self, report: &mut Report) -> Option<TextFile> {
         let Self::File(path) = self else { return None };
-        Some(TextFile { label: path.display().to_string(), text: read_text(path, report)? })
+        Some(TextFile {
+            label: path.display().to_string(),
+            text: read_text(path, FILE_BYTES_MAX, report)?,
+        })
     }
 }
 
@@ -116,11 +122,46 @@ pub(crate) fn one_of<'a>(known: impl Iterator<Item = &'a str>) -> String {
     }
 }
 
-/// Reads a text file; an absent one is `None` without a problem.
-pub(crate) fn read_text(path: &Path, report: &mut Report) -> Option<String> {
-    match fs::read_to_string(path) {
+/// Reads a text file that a person has written: a regular one of at most 16 MiB, judged before it is read.
+///
+/// # Errors
+/// It cannot be read; it is too large ([`ErrorKind::FileTooLarge`]), no file, or no text
+/// ([`ErrorKind::InvalidData`]).
+pub fn read_file(path: &Path) -> io::Result<String> {
+    read_bounded(path, FILE_BYTES_MAX)
+}
+
+fn read_bounded(path: &Path, bytes_max: u64) -> io::Result<String> {
+    // Before it is opened: opening a pipe waits for a writer.
+    judge(&fs::metadata(path)?, bytes_max)?;
+    let file = File::open(path)?;
+    judge(&file.metadata()?, bytes_max)?;
+    let mut text = String::new();
+    // It may grow meanwhile.
+    let bytes = file.take(bytes_max + 1).read_to_string(&mut text)? as u64;
+    if bytes > bytes_max { Err(too_large(bytes, bytes_max)) } else { Ok(text) }
+}
+
+fn judge(file: &Metadata, bytes_max: u64) -> io::Result<()> {
+    if !file.is_file() {
+        let found = if file.is_dir() { "a folder" } else { "a pipe, socket or device" };
+        let what = format!("expected a regular file, found {found}");
+        return Err(io::Error::new(ErrorKind::InvalidData, what));
+    }
+    if file.len() > bytes_max { Err(too_large(file.len(), bytes_max)) } else { Ok(()) }
+}
+
+fn too_large(bytes: u64, bytes_max: u64) -> io::Error {
+    let (found, most) = (bytes.div_ceil(1 << 20), bytes_max >> 20);
+    let what = format!("expected at most {most} MiB, found {found} MiB ({bytes} bytes)");
+    io::Error::new(ErrorKind::FileTooLarge, what)
+}
+
+/// Reads a text file of at most `bytes_max` bytes; an absent one is `None` without a problem.
+pub(crate) fn read_text(path: &Path, bytes_max: u64, report: &mut Report) -> Option<String> {
+    match read_bounded(path, bytes_max) {
         Ok(text) => Some(text),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => {
             let what = format!("cannot read the file: {error}");
             report.add(Diagnostic::new(path.display().to_string(), "", what, "fix or remove it"));

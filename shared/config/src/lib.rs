@@ -35,7 +35,7 @@ use scene::Scene;
 pub use crate::arm::{Arm, Baxter, Driver, Grasps, Limb, Motion, Simulated};
 pub use crate::console::{Access, Console};
 pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
-pub use crate::files::RobotFiles;
+pub use crate::files::{RobotFiles, read_file};
 pub use crate::group::{Group, Log, RestartLimits};
 pub use crate::manager::ManagerError;
 pub use crate::resolved::{Origin, Section};

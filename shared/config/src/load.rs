@@ -6,7 +6,7 @@ use diagnostics::{Diagnostic, Diagnostics, Fields, Node, Report, Source, Table, 
 use scene::Scene;
 use toml::Value;
 
-use crate::files::{Files, names, one_of, read_text};
+use crate::files::{FILE_BYTES_MAX, Files, names, one_of, read_text};
 use crate::resolved::{self, Resolved, Section};
 use crate::{Settings, arm, console, dialogue, group, services, snapshot, speech, study};
 
@@ -75,7 +75,7 @@ pub(crate) fn check(
 
 fn section_file(dir: &Path, section: Section, report: &mut Report) -> Option<Table> {
     let path = dir.join(section.file());
-    let text = read_text(&path, report)?;
+    let text = read_text(&path, FILE_BYTES_MAX, report)?;
     let source = Source::new(path.display().to_string(), 1);
     let table = Table::parse(&text, &source, report)?;
     Some(wrapped(section.name(), Node::Table(table)))
@@ -92,7 +92,7 @@ fn profile_file(dir: &Path, name: &str, report: &mut Report) -> Option<Table> {
         return None;
     }
     let path = folder.join(format!("{name}.toml"));
-    let text = read_text(&path, report)?;
+    let text = read_text(&path, FILE_BYTES_MAX, report)?;
     Table::parse(&text, &Source::new(path.display().to_string(), 0), report)
 }
 

@@ -10,12 +10,15 @@ use scene::Scene;
 use toml::Value;
 
 use crate::dialogue::CostsFrom;
-use crate::files::{Files, RobotFiles, read_text};
+use crate::files::{FILE_BYTES_MAX, Files, RobotFiles, read_text};
 use crate::resolved::{self, Resolved, to_toml};
 use crate::{Dialogue, Settings, load};
 
 /// Name of the snapshot in a group's run folder.
 pub const SNAPSHOT_FILE: &str = "settings.toml";
+
+/// Largest snapshot, bytes: three files and the values of every section, with escapes.
+const SNAPSHOT_BYTES_MAX: u64 = 32 * FILE_BYTES_MAX;
 
 /// The tables that hold the texts of the named files in a snapshot.
 const SCENE: &str = "scene";
@@ -61,7 +64,7 @@ impl Settings {
         let path = run_dir.join(SNAPSHOT_FILE);
         let label = path.display().to_string();
         let mut report = Report::default();
-        let Some(text) = read_text(&path, &mut report) else {
+        let Some(text) = read_text(&path, SNAPSHOT_BYTES_MAX, &mut report) else {
             report.add(Diagnostic::new(label, "", "no such file", "start the group"));
             return report.verdict(None);
         };

@@ -1,7 +1,7 @@
 //! The console's address for the group's owner: the token in a file that only the owner can read, and
 //! the link that carries it.
 
-use std::fs::{self, OpenOptions};
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
@@ -11,9 +11,15 @@ use crate::group::GroupPaths;
 /// Lengths of a token, characters.
 const TOKEN_LEN: std::ops::RangeInclusive<usize> = 12..=200;
 
-/// Returns the file of the token: the first line. Lines below it are the console's own.
+/// Returns the file of the token: its first line. It is the owner's, who may write a word of his own there; the
+/// console writes it only where there is no token.
 pub fn token_file(paths: &GroupPaths) -> PathBuf {
     paths.root().join("console.token")
+}
+
+/// Returns the file of the browsers' sessions, which is the console's own.
+pub fn sessions_file(paths: &GroupPaths) -> PathBuf {
+    paths.root().join("console.sessions")
 }
 
 /// Returns the group's token; none before the console's first start.
@@ -65,20 +71,43 @@ pub fn read_private(path: &Path) -> Option<String> {
     is_private.then(|| fs::read_to_string(path).ok())?
 }
 
-/// Replaces the content of a file that only this user can read; readers see the old or the new one.
+/// Replaces the content of a file that only this user can read; readers see the old or the new one, and the old
+/// one stays where the new one cannot be written.
 ///
 /// # Errors
 /// The file cannot be written.
 pub fn replace_private(path: &Path, content: &str) -> io::Result<()> {
-    let new = path.with_extension("new");
+    replace(path, content, File::flush)
+}
+
+/// As [`replace_private`], and the new content is on the disk before the file is replaced.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn replace_private_synced(path: &Path, content: &str) -> io::Result<()> {
+    replace(path, content, |file| file.sync_all())
+}
+
+fn replace(
+    path: &Path,
+    content: &str,
+    finish: impl FnOnce(&mut File) -> io::Result<()>,
+) -> io::Result<()> {
+    // Beside it, by a name that belongs to no other file.
+    let mut new = path.as_os_str().to_owned();
+    new.push(".new");
+    let new = Path::new(&new);
     // Never into a file, or through a link, that another has put there.
-    match fs::remove_file(&new) {
+    match fs::remove_file(new) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
         _ => {}
     }
-    let mut file = OpenOptions::new().write(true).create_new(true).mode(0o600).open(&new)?;
-    file.write_all(content.as_bytes())?;
-    fs::rename(new, path)
+    let mut file = OpenOptions::new().write(true).create_new(true).mode(0o600).open(new)?;
+    let written = file.write_all(content.as_bytes()).and_then(|()| finish(&mut file));
+    written.and_then(|()| fs::rename(new, path)).inspect_err(|_| {
+        // What a full disk has left of it.
+        let _ = fs::remove_file(new);
+    })
 }
 
 #[cfg(test)]
@@ -91,8 +120,9 @@ mod tests {
     fn private_file_is_for_its_owner_alone() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("console.token");
-        fs::write(file.with_extension("new"), "left behind").unwrap();
-        replace_private(&file, "secret\n").unwrap();
+        fs::write(folder.path().join("console.token.new"), "left behind").unwrap();
+        replace_private_synced(&file, "secret\n").unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
         assert_eq!(fs::metadata(&file).unwrap().mode() & 0o777, 0o600);
         assert_eq!(read_private(&file).as_deref(), Some("secret\n"));
         for mode in [0o640, 0o602, 0o604] {
@@ -103,6 +133,17 @@ mod tests {
         let link = folder.path().join("link");
         symlink(&file, &link).unwrap();
         assert_eq!(read_private(&link), None);
+    }
+
+    #[test]
+    fn failed_replacement_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("console.token");
+        replace_private(&file, "secret").unwrap();
+        let full = |_: &mut File| Err(io::ErrorKind::StorageFull.into());
+        assert_eq!(replace(&file, "new", full).unwrap_err().kind(), io::ErrorKind::StorageFull);
+        assert_eq!(read_private(&file).as_deref(), Some("secret"));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
     }
 
     #[test]

@@ -142,6 +142,8 @@ pub enum RefusalKind {
     Usage,
     /// An invalid configuration.
     Config,
+    /// A file cannot be written.
+    Storage,
     /// The awaited condition was not reached, or the change was rolled back.
     NotReached,
 }
@@ -157,6 +159,7 @@ impl Refusal {
         match self.kind {
             RefusalKind::Usage => Exit::Usage,
             RefusalKind::Config => Exit::Config,
+            RefusalKind::Storage => Exit::Storage,
             RefusalKind::NotReached => Exit::NotReached,
         }
     }

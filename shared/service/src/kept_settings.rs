@@ -22,8 +22,12 @@ pub fn keep(paths: &GroupPaths, settings: &Settings) -> io::Result<()> {
     hash.text(&settings.snapshot());
     let folder = paths.kept_settings().join(format!("{:016x}", hash.value()));
     fs::create_dir_all(&folder)?;
-    if !folder.join(config::SNAPSHOT_FILE).is_file() {
-        settings.write_snapshot(&folder)?;
+    if !folder.join(config::SNAPSHOT_FILE).is_file()
+        && let Err(error) = settings.write_snapshot(&folder)
+    {
+        // Nothing is left of what was not kept.
+        let _ = fs::remove_dir_all(&folder);
+        return Err(error);
     }
     File::open(&folder)?.set_modified(SystemTime::now())?;
     folders(paths).into_iter().skip(KEPT).try_for_each(fs::remove_dir_all)

@@ -2,14 +2,17 @@
 //! either side dies and no writer waits for a reader. The supervisor only bounds their size.
 
 use std::fmt::Display;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Read, Seek, SeekFrom};
+use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 
 use config::Log;
 
 use crate::printable::one_line;
 
+/// Mode of a log: its owner's alone.
+const PRIVATE: u32 = 0o600;
 /// Lines and bytes of a log's tail that is shown to an operator.
 const TAIL_LINES_MAX: usize = 12;
 const TAIL_BYTES_MAX: u64 = 4096;
@@ -19,6 +22,7 @@ const TAIL_BYTES_MAX: u64 = 4096;
 /// # Errors
 /// The file cannot be opened.
 pub fn open(path: &Path, limits: &Log) -> io::Result<File> {
+    let log = appended(path)?;
     if size(path) > limits.file_bytes_max {
         shift(path, limits.files_kept)?;
         if limits.files_kept > 0 {
@@ -26,8 +30,18 @@ pub fn open(path: &Path, limits: &Log) -> io::Result<File> {
         } else {
             fs::remove_file(path)?;
         }
+        return appended(path);
     }
-    OpenOptions::new().append(true).create(true).open(path)
+    Ok(log)
+}
+
+/// Opens a file that only its owner can read, also one that others could: logs hold what people said.
+fn appended(path: &Path) -> io::Result<File> {
+    let log = OpenOptions::new().append(true).create(true).mode(PRIVATE).open(path)?;
+    if log.metadata()?.permissions().mode() & 0o7777 != PRIVATE {
+        log.set_permissions(Permissions::from_mode(PRIVATE))?;
+    }
+    Ok(log)
 }
 
 /// Puts the newest part of an overgrown log aside and empties it, under the feet of the service
@@ -76,7 +90,9 @@ pub fn size(path: &Path) -> u64 {
 fn copy_end(path: &Path, bytes: u64, bytes_max: u64) -> io::Result<()> {
     let mut log = File::open(path)?;
     log.seek(SeekFrom::Start(bytes.saturating_sub(bytes_max)))?;
-    io::copy(&mut log.take(bytes_max), &mut File::create(numbered(path, 1))?)?;
+    let mut kept = OpenOptions::new();
+    let kept = kept.write(true).create(true).truncate(true).mode(PRIVATE);
+    io::copy(&mut log.take(bytes_max), &mut kept.open(numbered(path, 1))?)?;
     Ok(())
 }
 
@@ -124,6 +140,27 @@ mod tests {
         assert!(read(&numbered(&path, 1)).starts_with('3'));
         assert!(read(&numbered(&path, 2)).starts_with('2'));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 3);
+    }
+
+    #[test]
+    fn log_is_its_owners_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("supervisor.log");
+        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+        // Whatever the umask is: that of a file that every user could write.
+        for old in ["", "small", &"large".repeat(100)] {
+            fs::write(&path, old).unwrap();
+            fs::set_permissions(&path, Permissions::from_mode(0o666)).unwrap();
+            let mut log = open(&path, &limits(1)).unwrap();
+            assert_eq!(mode(&path), 0o600);
+            write!(log, "{}", "x".repeat(200)).unwrap();
+            assert!(bound(&path, &limits(1)).unwrap());
+            assert_eq!(mode(&numbered(&path, 1)), 0o600);
+        }
+        fs::write(&path, "large".repeat(100)).unwrap();
+        fs::set_permissions(&path, Permissions::from_mode(0o666)).unwrap();
+        open(&path, &limits(1)).unwrap();
+        assert_eq!((mode(&path), mode(&numbered(&path, 1))), (0o600, 0o600));
     }
 
     #[test]

@@ -182,9 +182,9 @@ pub struct LastExit {
 pub enum GroupState {
     /// Services are being started for the first time.
     Starting,
-    /// Every service that is wanted up is ready.
+    /// Every service that is wanted up is ready and short of nothing.
     Ready,
-    /// Some service that is wanted up is not ready.
+    /// Some service that is wanted up is not ready, or is short of a resource.
     Degraded,
     /// Services are being stopped in order.
     Stopping,

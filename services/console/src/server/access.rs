@@ -1,14 +1,16 @@
 //! Access rules: the console's own pages, the token, and the sessions of browsers that have shown it.
 //!
 //! Decided by a request's headers. A session is a random name in a cookie; it lives through restarts of
-//! the console, in the token's file.
+//! the console, in a file of the console's own; the token's file belongs to the owner of the group.
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::http::{HeaderMap, header};
-use service::console_link::{is_token, random_secret, read_private, replace_private};
+use service::console_link::{
+    is_token, random_secret, read_private, replace_private, replace_private_synced,
+};
 
 /// Most sessions; the oldest gives way.
 const SESSIONS_MAX: usize = 64;
@@ -19,11 +21,11 @@ const SESSION_S: u64 = 30 * 24 * 3_600;
 #[derive(Debug)]
 pub struct Access(Option<Guard>);
 
-/// The token and the sessions, as in their file.
+/// The token, and the sessions that were begun with it.
 #[derive(Debug)]
 struct Guard {
-    file: PathBuf,
     token: String,
+    sessions_file: PathBuf,
     sessions: Mutex<Vec<Session>>,
 }
 
@@ -44,27 +46,23 @@ impl Access {
     /// replaced by one with a new token.
     ///
     /// # Errors
-    /// The file cannot be written.
-    pub fn by_token(file: PathBuf) -> io::Result<Self> {
-        let text = read_private(&file).unwrap_or_default();
-        let mut lines = text.lines();
-        let token = lines.next().filter(|token| is_token(token)).map(str::to_owned);
-        let (token, is_new) = match token {
-            Some(token) => (token, false),
-            None => (random_secret()?, true),
-        };
-        let session = |line: &str| {
-            let (name, began_s) = line.split_once(' ')?;
-            Some(Session { name: name.to_owned(), began_s: began_s.parse().ok()? })
-        };
-        let sessions = if is_new { Vec::new() } else { lines.filter_map(session).collect() };
-        if is_new {
-            if file.exists() {
-                tracing::warn!(file = %file.display(), "other users could read the token, or it is none: replaced");
+    /// The file of the token cannot be written.
+    pub fn by_token(file: &Path, sessions_file: PathBuf) -> io::Result<Self> {
+        let text = read_private(file).unwrap_or_default();
+        let token = text.lines().next().filter(|token| is_token(token)).map(str::to_owned);
+        let token = match token {
+            Some(token) => token,
+            None => {
+                if file.exists() {
+                    tracing::warn!(file = %file.display(), "other users could read the token, or it is none: replaced");
+                }
+                let token = random_secret()?;
+                replace_private_synced(file, &format!("{token}\n"))?;
+                token
             }
-            write(&file, &token, &[])?;
-        }
-        Ok(Self(Some(Guard { file, token, sessions: Mutex::new(sessions) })))
+        };
+        let sessions = Mutex::new(read(&sessions_file, &token));
+        Ok(Self(Some(Guard { token, sessions_file, sessions })))
     }
 
     /// Returns whether the request is addressed to this console. Without a token it is only reached
@@ -126,7 +124,7 @@ impl Guard {
         }
         sessions.push(session);
         // Without it the session ends with this process.
-        if let Err(error) = write(&self.file, &self.token, &sessions) {
+        if let Err(error) = write(&self.sessions_file, &self.token, &sessions) {
             tracing::warn!(%error, "a browser's session is not stored");
         }
     }
@@ -141,6 +139,20 @@ impl Session {
     fn is_alive(&self, now_s: u64) -> bool {
         now_s < self.began_s.saturating_add(SESSION_S)
     }
+}
+
+/// Reads the sessions that were begun with this token; those of another one are over.
+fn read(file: &Path, token: &str) -> Vec<Session> {
+    let text = read_private(file).unwrap_or_default();
+    let mut lines = text.lines();
+    if !lines.next().is_some_and(|begun_with| same(begun_with, token)) {
+        return Vec::new();
+    }
+    let session = |line: &str| {
+        let (name, began_s) = line.split_once(' ')?;
+        Some(Session { name: name.to_owned(), began_s: began_s.parse().ok()? })
+    };
+    lines.filter_map(session).collect()
 }
 
 fn write(file: &Path, token: &str, sessions: &[Session]) -> io::Result<()> {
@@ -191,6 +203,10 @@ mod tests {
         pairs.iter().map(|(name, value)| (name.parse().unwrap(), value.parse().unwrap())).collect()
     }
 
+    fn by_token(file: &Path) -> Access {
+        Access::by_token(file, file.with_file_name("console.sessions")).unwrap()
+    }
+
     fn guarded() -> (tempfile::TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("console.token");
@@ -210,7 +226,7 @@ mod tests {
     #[test]
     fn open_access_is_for_this_machine_only() {
         let (_folder, file) = guarded();
-        let (open, guarded) = (Access::open(), Access::by_token(file).unwrap());
+        let (open, guarded) = (Access::open(), by_token(&file));
         for host in ["localhost:8377", "127.0.0.1:9", "[::1]:8377", "LOCALHOST", "127.0.0.1"] {
             assert!(open.is_addressed(&headers(&[("host", host)])), "{host}");
         }
@@ -226,7 +242,7 @@ mod tests {
     #[test]
     fn token_is_a_bearer_or_begins_a_session() {
         let (_folder, file) = guarded();
-        let access = Access::by_token(file.clone()).unwrap();
+        let access = by_token(&file);
         let bearer = |token: &str| headers(&[("authorization", &format!("Bearer {token}"))]);
         assert!(access.is_known(&bearer(TOKEN), 0));
         assert!(!access.is_known(&bearer("correct-hors"), 0));
@@ -237,22 +253,23 @@ mod tests {
         let cookie = format!("whichone_8377={TOKEN}");
         let token_as_cookie = headers(&[("host", "localhost:8377"), ("cookie", &cookie)]);
         assert!(!access.is_known(&token_as_cookie, 100));
-        let again = Access::by_token(file).unwrap();
+        let again = by_token(&file);
         assert!(again.is_known(&browser, 200), "it lives through a restart");
     }
 
     #[test]
     fn sessions_are_bounded_and_end_with_the_token() {
         let (_folder, file) = guarded();
-        let access = Access::by_token(file.clone()).unwrap();
+        let access = by_token(&file);
         let first = logged_in(&access, "localhost:1", 0);
         let others: Vec<HeaderMap> =
             (1..=SESSIONS_MAX as u64).map(|n| logged_in(&access, "localhost:1", n)).collect();
         assert!(!access.is_known(&first, 100), "the oldest has given way");
         assert!(others.iter().all(|other| access.is_known(other, 100)));
-        assert_eq!(fs::read_to_string(&file).unwrap().lines().count(), 1 + SESSIONS_MAX);
+        let stored = fs::read_to_string(file.with_file_name("console.sessions")).unwrap();
+        assert_eq!(stored.lines().count(), 1 + SESSIONS_MAX);
         replace_private(&file, "another-token").unwrap();
-        let renewed = Access::by_token(file).unwrap();
+        let renewed = by_token(&file);
         assert!(others.iter().all(|other| !renewed.is_known(other, 100)));
     }
 
@@ -260,13 +277,28 @@ mod tests {
     fn token_that_others_could_read_is_replaced() {
         let (_folder, file) = guarded();
         fs::set_permissions(&file, fs::Permissions::from_mode(0o644)).unwrap();
-        let access = Access::by_token(file.clone()).unwrap();
+        let access = by_token(&file);
         assert!(!access.is_known(&headers(&[("authorization", "Bearer correct-horse")]), 0));
         let token = read_private(&file).unwrap();
         assert!(is_token(token.trim()), "{token}");
         fs::remove_file(&file).unwrap();
-        Access::by_token(file.clone()).unwrap();
+        by_token(&file);
         assert_ne!(read_private(&file).unwrap(), token);
+    }
+
+    #[test]
+    fn word_of_the_owners_own_survives_a_login() {
+        let (_folder, file) = guarded();
+        let running = by_token(&file);
+        replace_private(&file, "my-own-word-123\n").unwrap();
+        let browser = logged_in(&running, "localhost:8377", 0);
+        assert_eq!(read_private(&file).as_deref(), Some("my-own-word-123\n"));
+        let restarted = by_token(&file);
+        let bearer = headers(&[("authorization", "Bearer my-own-word-123")]);
+        assert!(restarted.is_known(&bearer, 1));
+        assert!(!restarted.is_known(&browser, 1), "sessions of the former token are over");
+        let browser = restarted.log_in(&HeaderMap::new(), "my-own-word-123", 1);
+        assert!(browser.is_some());
     }
 
     #[test]

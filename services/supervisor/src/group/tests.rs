@@ -81,6 +81,19 @@ fn restart_does_not_affect_dependent_services() {
 }
 
 #[test]
+fn group_is_degraded_while_a_running_service_is_short_of_a_resource() {
+    let mut group = group(CHAIN);
+    up(&mut group);
+    group.on(1, Event::Short(true), NOW);
+    assert_eq!(group.machine(1).state(), ServiceState::Short);
+    assert_eq!(group.machine(1).actual(), Actual::Ready);
+    assert_eq!(group.state(), GroupState::Degraded);
+    assert!(group.is_whole(), "it runs: what waits for it goes on");
+    group.on(1, Event::Short(false), NOW);
+    assert_eq!(group.state(), GroupState::Ready);
+}
+
+#[test]
 fn service_that_crashes_while_stopping_is_not_restarted() {
     let mut group = group(CHAIN);
     up(&mut group);

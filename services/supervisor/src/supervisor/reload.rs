@@ -1,11 +1,14 @@
 //! Taking notice of a changed configuration.
 
+use std::io;
+
 use super::Supervisor;
 use super::waits::Goal;
 use crate::Time;
 use crate::configuration::Configuration;
 use crate::configuration::ServiceSpec;
 use crate::machine::{Event, HeldBecause, Wanted};
+use crate::schedule::Schedule;
 use crate::server::Client;
 use service::control::{Refusal, RefusalKind, Reply};
 
@@ -28,11 +31,13 @@ impl Supervisor {
         };
         let configuration = (self.load)().map_err(wrong)?;
         self.check_same_services(&configuration.spec.services)?;
+        let orderly = Schedule::new(&configuration.spec.services);
+        orderly.map_err(|error| wrong(vec![error.to_string()]))?;
+        if let Err(error) = (configuration.publish)(&self.around.paths) {
+            return Err(self.not_written(&error));
+        }
         let adopted = self.group.adopt(&configuration.spec);
         adopted.map_err(|error| wrong(vec![error.to_string()]))?;
-        if let Err(error) = (configuration.publish)(&self.around.paths) {
-            return Err(wrong(vec![error.to_string()]));
-        }
         let changed = self.put_into_force(configuration);
         let restarted: Vec<usize> =
             changed.into_iter().filter(|&service| self.is_to_restart(service)).collect();
@@ -45,6 +50,18 @@ impl Supervisor {
         tracing::info!(?restarted, "configuration reloaded");
         self.wait_for(client, goal, wait_ms, Reply::Reloaded { restarted }, now);
         Ok(())
+    }
+
+    /// The settings in force stay what they are where the new ones cannot be written.
+    fn not_written(&self, error: &io::Error) -> Refusal {
+        let run = self.around.paths.run();
+        let free = rustix::fs::statvfs(&run).map(|stat| (stat.f_bavail * stat.f_frsize) >> 10);
+        let free = free.map(|kib| format!(", {kib} KiB free")).unwrap_or_default();
+        let message = format!(
+            "the settings cannot be written to {}: {error}{free}; nothing was changed",
+            run.display()
+        );
+        Refusal::new(RefusalKind::Storage, message)
     }
 
     /// The set of services is fixed for the life of a group: its topics and journals are.

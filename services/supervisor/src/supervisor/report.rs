@@ -38,10 +38,7 @@ impl Supervisor {
         let machine = self.group.machine(service);
         let running = entry.running.as_ref();
         let pid = running.map(|running| running.child.pid());
-        let state = match machine.state() {
-            ServiceState::Ready if entry.shortage().is_some() => ServiceState::Short,
-            state => state,
-        };
+        let state = machine.state();
         let log_tail = match state {
             ServiceState::Failed | ServiceState::Short => entry.log_tail(&self.around.paths),
             _ => Vec::new(),

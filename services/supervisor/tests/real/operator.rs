@@ -1,5 +1,6 @@
 use serde_json::json;
 use service::control::{RefusalKind, Reply, Request, Target};
+use service::exit::Exit;
 use service::status::{Actual, Wanted};
 
 use crate::harness::{Group, WAIT_MS, service, with};
@@ -66,6 +67,25 @@ fn reload_restarts_only_affected_services() {
     assert_eq!((group.service("arm").incarnation, group.service("policy").incarnation), (1, 2));
     let published = std::fs::read_to_string(group.paths.run().join("published")).unwrap();
     assert!(published.contains("6000"));
+}
+
+#[test]
+fn reload_that_cannot_be_written_says_so_and_changes_nothing() {
+    let description = |fingerprint: &str| json!({ "services": [with(service("arm", &[]), "fingerprint", json!(fingerprint))] });
+    let group = Group::start_with(description("a"));
+    group.done(&Request::WaitReady { wait_ms: WAIT_MS });
+    let published = group.paths.run().join("published");
+    std::fs::remove_file(&published).unwrap();
+    std::fs::create_dir(&published).unwrap();
+    group.describe(&description("b"));
+    let reload = Request::Reload { wait_ms: WAIT_MS };
+    let refusal = group.refused(&reload);
+    assert_eq!((refusal.kind, refusal.exit()), (RefusalKind::Storage, Exit::Storage));
+    for words in ["settings cannot be written to", "KiB free", "nothing was changed"] {
+        assert!(refusal.message.contains(words), "{}", refusal.message);
+    }
+    std::fs::remove_dir(&published).unwrap();
+    assert_eq!(group.ask(&reload), Reply::Reloaded { restarted: vec!["arm".into()] });
 }
 
 #[test]

@@ -1,13 +1,11 @@
 //! `console`: the link to the console's page.
 
-use std::fs;
-use std::io;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use serde::Serialize;
-use service::console_link::{self, replace_private};
-use service::control::{Request, Target};
+use service::console_link::{self, random_secret, replace_private, replace_private_synced};
+use service::control::Request;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
 
@@ -47,19 +45,24 @@ pub(super) fn console(paths: &GroupPaths, args: &ConsoleArgs, out: &mut Output<'
     Ok(Exit::Ok)
 }
 
-/// Replaces the token: the console makes a new one when it starts without its file.
+/// Replaces the token, and then has the console read it. The page is not touched where the new token cannot be
+/// written.
 fn renew(paths: &GroupPaths) -> Result<(), Failure> {
-    let target = || Target { service: "console".to_owned(), wait_ms: PATIENCE.as_millis() as u64 };
-    operate::ask(paths, &Request::Stop(target()), PATIENCE)?;
+    operate::status_of(paths)?;
     let file = console_link::token_file(paths);
-    let removed = match fs::remove_file(&file) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
-        _ => Ok(()),
+    let written =
+        random_secret().and_then(|token| replace_private_synced(&file, &format!("{token}\n")));
+    written.map_err(|error| {
+        let what = format!("{}: {error}; the former token stays", file.display());
+        Failure::new(Exit::Storage, what)
+    })?;
+    let restart = Request::Restart {
+        service: "console".to_owned(),
+        original: false,
+        wait_ms: PATIENCE.as_millis() as u64,
     };
-    // It is started again in any case.
-    operate::ask(paths, &Request::Start(target()), PATIENCE)?;
-    let failed = |error| Failure::new(Exit::Storage, format!("{}: {error}", file.display()));
-    removed.map_err(failed)
+    operate::ask(paths, &restart, PATIENCE)?;
+    Ok(())
 }
 
 /// Opens the link by a file that only the owner can read: every user can read the arguments with which

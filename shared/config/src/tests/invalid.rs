@@ -84,3 +84,27 @@ fn errors_of_all_layers_are_reported_at_once() {
         --set: arm.restock: expected a boolean, found a string; help: write `true` or `false`
         scenes/bowls.toml:15: objects[0].colour_blind: unknown key; help: remove it; the keys here are name, attributes, xyz, size, grasp_width, yaw"#]].assert_eq(&complaints.join("\n"));
 }
+
+#[test]
+fn huge_files_and_those_that_are_none_are_rejected_unread() {
+    let folder = Folder::new(&[("arm.toml", ""), ("console.toml", ""), ("huge.toml", "")]);
+    // As much as no memory holds, without taking any space on the disk.
+    for name in ["arm.toml", "scenes/bowls.toml"] {
+        let file = std::fs::File::options().write(true).open(folder.path().join(name)).unwrap();
+        file.set_len(1 << 40).unwrap();
+    }
+    // Opening it would wait for a writer.
+    let pipe = folder.path().join("console.toml");
+    std::fs::remove_file(&pipe).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let large = "cannot read the file: expected at most 16 MiB, found 1048576 MiB (1099511627776 bytes); help: fix or remove it";
+    let none = "cannot read the file: expected a regular file, found a pipe, socket or device; help: fix or remove it";
+    assert_eq!(
+        folder.complaints(None, &[]),
+        [
+            format!("arm.toml: {large}"),
+            format!("console.toml: {none}"),
+            format!("scenes/bowls.toml: {large}")
+        ]
+    );
+}
