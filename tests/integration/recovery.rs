@@ -2,6 +2,7 @@
 //! object is picked once, and the journal folds to the same belief.
 
 use rustix::process::Signal;
+use service::shm_cleanup::leftovers;
 use std::io::{BufRead, BufReader};
 use std::process::Stdio;
 use whichone_tests::{Group, wait_for};
@@ -105,6 +106,42 @@ fn belief_is_restored_bit_for_bit() {
     let after = group.wait_for_decision("ask");
     assert_eq!(before, after, "belief, question and reasons are the very same");
     group.down();
+}
+
+/// Removes the group's files in shared memory, or only those of topics.
+fn clear_shared_memory(group: &Group, topics_only: bool) {
+    for file in leftovers(group.paths()) {
+        let is_topic = file.extension().is_some_and(|extension| extension == "dynamic");
+        match file.is_dir() {
+            _ if topics_only && !is_topic => {}
+            true => std::fs::remove_dir_all(file).unwrap(),
+            false => std::fs::remove_file(file).unwrap(),
+        }
+    }
+}
+
+#[test]
+fn cleared_shared_memory_is_noticed_whatever_was_made_again() {
+    for topics_only in [false, true] {
+        let group = Group::up(&[]);
+        let before = group.incarnation("policy");
+        if !topics_only {
+            // What the successors make hides what is gone.
+            for service in SERVICES {
+                kill(&group, service);
+            }
+        }
+        clear_shared_memory(&group, topics_only);
+        let log = group.paths().log().join("supervisor.log");
+        wait_for("the supervisor to notice", 30.0, || {
+            let text = std::fs::read_to_string(&log).unwrap();
+            text.contains("files of the running group are gone").then_some(())
+        });
+        group.wait_for_restart("policy", before);
+        assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
+        group.verify_journals();
+        group.down();
+    }
 }
 
 #[test]

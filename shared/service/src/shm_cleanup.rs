@@ -31,8 +31,31 @@ pub struct Admin {
     _topics: Topics,
     paths: GroupPaths,
     place: ShmName,
-    management: PathBuf,
+    /// What every process of the group opens.
+    shared: Vec<SharedFile>,
     spare: File,
+}
+
+/// A file in shared memory as it was made: one that is cut short or was made again is not the one that
+/// the running processes have mapped.
+#[derive(Debug)]
+struct SharedFile {
+    path: PathBuf,
+    inode: u64,
+    bytes: u64,
+}
+
+impl SharedFile {
+    /// Returns the file as it is now; none where it is gone already.
+    fn now(path: PathBuf) -> Option<Self> {
+        let found = path.symlink_metadata().ok()?;
+        Some(Self { path, inode: found.ino(), bytes: found.len() })
+    }
+
+    fn is_whole(&self) -> io::Result<bool> {
+        let found = self.path.symlink_metadata()?;
+        Ok(found.ino() == self.inode && found.len() >= self.bytes)
+    }
 }
 
 /// Too little free shared memory for the group.
@@ -75,9 +98,12 @@ impl Admin {
         let identity = Identity { epoch, ..Identity::default() };
         let bus = Bus::open(paths, messages::SUPERVISOR, identity)?;
         let topics = Topics::create(&bus)?;
-        let management = entries(place.prefix()).find(|path| is_management(path));
-        let management = management.ok_or_else(|| failed(ErrorKind::NotFound.into()))?;
-        Ok(Self { bus, _topics: topics, paths: paths.clone(), place, management, spare })
+        let is_shared = |path: &PathBuf| is_management(path) || is_topic(path);
+        let files = entries(place.prefix()).filter(is_shared).filter_map(SharedFile::now);
+        // A folder's size says nothing.
+        let folder = SharedFile::now(place.folder()).map(|it| SharedFile { bytes: 0, ..it });
+        let shared = files.chain(folder).collect();
+        Ok(Self { bus, _topics: topics, paths: paths.clone(), place, shared, spare })
     }
 
     /// Removes what dead processes left behind.
@@ -99,16 +125,17 @@ impl Admin {
         }
     }
 
-    /// Returns false if the files by which new processes find the group are known to be gone or
-    /// damaged: new processes would create a second group of the same name, or none could start.
+    /// Returns false if the files by which new processes find the group are known to be gone,
+    /// damaged or made again: new processes would join a second group of the same name, or none could
+    /// start.
     /// What cannot be looked at for now, e.g. for want of a descriptor, counts as whole.
     pub fn intact(&self) -> bool {
         let unless_gone =
             |looked: io::Result<bool>| looked.unwrap_or_else(|error| !is_gone(&error));
         let is_named = self.paths.shm_name().map(|place| place == self.place);
         let is_filled = fs::read_dir(self.place.folder()).map(|mut all| all.next().is_some());
-        let is_managed = self.management.metadata().map(|file| file.len() > 0);
-        [is_named, is_filled, is_managed].into_iter().all(unless_gone)
+        [is_named, is_filled].into_iter().all(unless_gone)
+            && self.shared.iter().map(SharedFile::is_whole).all(unless_gone)
     }
 }
 
@@ -169,6 +196,11 @@ pub fn leftovers(paths: &GroupPaths) -> Vec<PathBuf> {
 
 fn is_management(path: &Path) -> bool {
     path.to_string_lossy().ends_with(MANAGEMENT)
+}
+
+/// Returns whether the file is iceoryx2's bookkeeping of a topic.
+fn is_topic(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "dynamic")
 }
 
 /// Entries of shared memory whose names begin with `prefix`.
