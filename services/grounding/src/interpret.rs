@@ -82,9 +82,12 @@ fn blend(a: &Doubt, b: &Doubt, part: f64) -> Doubt {
     }
 }
 
-/// A word of the best hypothesis that the scene does not have, for the robot's reply.
+/// A word of the best hypothesis that the scene does not have, for the robot's reply: a thing with
+/// the indefinite article, or else a quality.
 pub(crate) fn unknown(config: &Config, best: &Hypothesis) -> Option<String> {
-    config.reader.unknown_words(&best.text).into_iter().next()
+    let words = config.reader.unknown_words(&best.text);
+    let word = words.iter().find(|word| word.noun).or(words.first())?;
+    Some(if word.noun { format!("a {}", word.text) } else { word.text.clone() })
 }
 
 #[cfg(test)]

@@ -79,10 +79,22 @@ pub fn object(scene: &Scene, object: ObjectId) -> String {
     scene.describe(object)
 }
 
+/// "There are no plates here, only mugs and cups. ", or of a quality that it is not known.
+fn unknown(scene: &Scene, word: &str) -> String {
+    match word.strip_prefix("a ") {
+        Some(noun) => {
+            let all: Vec<ObjectId> = (0..scene.objects().len()).map(ObjectId::from).collect();
+            let there = scene.plural_nouns(&all);
+            format!("There are no {} here, only {there}. ", scene::plural(noun))
+        }
+        None => format!("I do not know \"{word}\" here. "),
+    }
+}
+
 fn preface(scene: &Scene, preface: &Preface) -> String {
     match preface {
         Preface::None => String::new(),
-        Preface::UnknownWord(word) => format!("I do not know \"{word}\" here. "),
+        Preface::UnknownWord(word) => unknown(scene, word),
         Preface::ObjectsChanged { gone, new } => {
             let noun = scene.noun();
             format!("{}{}", changed(noun, gone, "gone"), changed(noun, new, "new"))

@@ -5,7 +5,7 @@ use scene::Response;
 use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
 use crate::question_words::QuestionWords;
-use crate::tagger::Tag;
+use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
 
 /// An answer to the question asked, or the lack of one.
@@ -116,7 +116,9 @@ pub(crate) fn answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> Option<Ans
         Class::PutBack => Some(Answer::No),
         Class::Be | Class::Auxiliary if is_affirmed(tags, clause, at) => Some(Answer::Yes),
         Class::WeakYes if is_judged(tags, clause, at) => Some(Answer::Yes),
-        Class::WeakNo if is_judged(tags, clause, at) => Some(Answer::No),
+        Class::WeakNo if is_judged(tags, clause, at) || is_wrong_thing(tags, at) => {
+            Some(Answer::No)
+        }
         _ => None,
     }
 }
@@ -139,6 +141,13 @@ fn is_other_one(tags: &[Tag<'_>], clause: &Clause, at: usize) -> bool {
     });
     let plain = tags[clause.span.clone()].iter().all(|tag| !tag.is_unknown() && !tag.is_value());
     whole && plain && !before.is_some_and(|before| before.is_any(classes![Quantifier AskBack]))
+}
+
+/// "the wrong spoon", "wrong medicine": what stands after it is refused.
+pub(crate) fn is_wrong_thing(tags: &[Tag<'_>], at: usize) -> bool {
+    tags[at].word == "wrong"
+        && after(tags, at)
+            .is_some_and(|next| next.is_value() || next.is_any(classes![Head Attribute Unlisted]))
 }
 
 /// "drawer is right", "white would be wrong".

@@ -39,7 +39,22 @@ impl ClauseAnalysis<'_> {
     pub(crate) fn asks_about_something_else(&self) -> bool {
         let which = self.clause[0].word == "which";
         let to_us = self.unknown == 1 && (which || self.clause.iter().any(|tag| tag.word == "me"));
-        self.unknown > 0 && self.values == 0 && !self.has(SCENE_NAMES) && !to_us
+        self.unknown > 0
+            && self.values == 0
+            && !self.has(SCENE_NAMES)
+            && !to_us
+            && !self.asks_for_unknown()
+    }
+
+    /// "do you have a novel"
+    fn asks_for_unknown(&self) -> bool {
+        let [have, article, rest @ ..] = self.clause else { return false };
+        have.is(Class::AskBack)
+            && matches!((have.word, have.last), ("do", "have") | ("have", "got"))
+            && article.is_any(classes![Determiner Quantifier])
+            && self.unknown == 1
+            && rest.first().is_some_and(Tag::is_unknown)
+            && rest[1..].iter().all(|tag| tag.is_any(classes![Courtesy Filler Plain]))
     }
 
     /// "are you pointing at the clear one", "is the pen on the table".

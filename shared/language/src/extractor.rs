@@ -129,7 +129,8 @@ impl<'a> Extractor<'a, '_> {
     }
 
     fn value(&mut self, at: usize, value: &'a ValueSense) {
-        if self.landmark || self.wondering {
+        let refused = at > 0 && answer::is_wrong_thing(self.tags, at - 1);
+        if self.landmark || self.wondering || refused {
             return;
         }
         if self.tags[at].is_located() {
@@ -283,8 +284,11 @@ impl<'a> Extractor<'a, '_> {
 /// "not sure if it is white", "I don't care what colour", "it doesn't have to be white".
 pub(crate) fn wonders_after(tags: &[Tag<'_>], at: usize) -> bool {
     let open = matches!(tags[at].word, "does" | "do" | "need" | "it" | "i" | "at");
+    let ends = after(tags, at + 1).is_none_or(|tag| tag.is_any(classes![Courtesy Filler]));
     after(tags, at).is_some_and(|next| {
-        next.is_any(classes![Join Question Preposition])
+        // "I don't care which"
+        next.is_any(classes![Join Preposition])
+            || next.is(Class::Question) && !ends
             || open && (next.is_value() || next.is(Class::Determiner))
     })
 }

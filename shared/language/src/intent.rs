@@ -1,11 +1,11 @@
 //! The intent of an utterance.
 
-use scene::Intent;
+use scene::{Intent, Role};
 
 use crate::clauses::{Clause, Topic};
 use crate::content::Content;
 use crate::question_words::QuestionWords;
-use crate::tagger::{Tag, before};
+use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 
 /// The intent of an utterance whose content is known.
@@ -36,7 +36,7 @@ pub(crate) fn intent(
         Intent::Repeat
     } else if says_nothing && clauses.iter().any(|clause| clause.topic == Topic::AskBack) {
         Intent::AskBack
-    } else if says_nothing && new && tags.iter().any(|tag| tag.is(Class::PutBack))
+    } else if new && clauses.iter().any(|clause| puts_it_back(tags, clause))
         || clauses.iter().any(|clause| puts_back(tags, clause))
     {
         Intent::PutBack
@@ -86,17 +86,24 @@ fn declines(tags: &[Tag<'_>], clause: &Clause) -> bool {
     clause.topic == Topic::On && denies && fetches && noun && plain
 }
 
+/// "put it back", "put it back on the shelf".
+fn puts_it_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
+    let described = |tag: &Tag<'_>| tag.is_value() && !tag.is_role(Role::Place);
+    tags[clause.span.clone()].iter().any(|tag| tag.is(Class::PutBack))
+        && !tags.iter().any(described)
+}
+
 /// "put the red mug back", but not "put it back on".
 fn puts_back(tags: &[Tag<'_>], clause: &Clause) -> bool {
     let [verb, rest @ ..] = after_leads(&tags[clause.span.clone()]) else { return false };
-    let values = tags.iter().filter(|tag| tag.is_value()).count();
     let Some(back) = rest.iter().position(|tag| tag.word == "back") else { return false };
     let things = classes![Determiner Pointer Possessive It Head];
+    let count = |tags: &[Tag<'_>]| tags.iter().filter(|tag| tag.is_value()).count();
     matches!(verb.word, "put" | "take" | "bring" | "return")
         && rest[..back].iter().all(|tag| tag.is_value() || tag.is_any(things))
         && rest[..back].iter().any(|tag| tag.is_value() || tag.is_any(classes![Pointer It Head]))
-        && rest[..back].iter().filter(|tag| tag.is_value()).count() == values
         && rest[back + 1..].iter().all(|tag| tag.is_any(classes![Courtesy Filler]))
+        && count(tags) == count(&rest[..back])
 }
 
 /// What is said after words that say nothing.
@@ -189,26 +196,4 @@ pub(crate) fn is_side_talk(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
     };
     let side_talk = tags.iter().any(|tag| tag.is(Class::SideTalk)) || clauses.iter().any(plans);
     side_talk && !clauses.iter().any(|clause| clause.requests)
-}
-
-/// Attribute and object words that the scene does not have, for the robot's reply.
-pub(crate) fn unknown_words(tags: &[Tag<'_>], clauses: &[Clause]) -> Vec<String> {
-    let mut words: Vec<String> = Vec::new();
-    for clause in clauses.iter().filter(|clause| clause.topic != Topic::Off) {
-        for at in clause.span.clone() {
-            let tag = &tags[at];
-            let new = tag.is(Class::Unlisted) || clause.requests && is_in_noun_phrase(tags, at);
-            if new && !words.iter().any(|word| word == tag.word) {
-                words.push(tag.word.to_owned());
-            }
-        }
-    }
-    words
-}
-
-/// An unknown word where a value or noun belongs: "the purpure one", "get me a foobar".
-fn is_in_noun_phrase(tags: &[Tag<'_>], at: usize) -> bool {
-    tags[at].is_unknown()
-        && before(tags, at)
-            .is_some_and(|before| before.is_value() || before.is_any(classes![Determiner Unlisted]))
 }

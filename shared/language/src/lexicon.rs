@@ -171,9 +171,13 @@ impl Lexicon {
         for (place, synonym) in all.iter().flat_map(|(n, v)| v.synonyms.iter().map(|s| (*n, s))) {
             self.add_value(synonym, place);
         }
+        let common = common_synonyms(&all);
         let forms = |(place, value): &(usize, &Value)| {
             let place = *place;
-            forms(value).into_iter().map(move |form| (place, form))
+            let also = common.iter().filter(|(other, _)| *other == place);
+            forms(value, also.map(|(_, synonym)| *synonym))
+                .into_iter()
+                .map(move |form| (place, form))
         };
         let forms: Vec<(usize, Form)> = all.iter().flat_map(forms).collect();
         let (own, alike): (Vec<_>, Vec<_>) = forms.into_iter().partition(|(_, form)| form.own);
@@ -184,6 +188,10 @@ impl Lexicon {
             for text in std::iter::once(&value.name).chain(&value.synonyms) {
                 self.add_value_forms(text, *place);
             }
+        }
+        for (place, synonym) in common {
+            self.add_value(synonym, place);
+            self.add_value_forms(synonym, place);
         }
     }
 
@@ -292,4 +300,27 @@ fn matched(rest: &[Box<str>], after: &[Token<'_>]) -> Option<usize> {
         words += 1;
     }
     Some(words)
+}
+
+/// What is said for one of the scene's values without a list in the scene: "crimson" for red. Values
+/// are given with their places.
+fn common_synonyms(all: &[(usize, &Value)]) -> Vec<(usize, &'static str)> {
+    let names = |value: &Value| -> Vec<String> {
+        let names = std::iter::once(&value.name).chain(&value.synonyms);
+        names.map(|name| words(name).join(" ")).collect()
+    };
+    let named: Vec<(usize, Role, Vec<String>)> =
+        all.iter().map(|(place, value)| (*place, value.role(), names(value))).collect();
+    let mut synonyms = Vec::new();
+    for (role, group) in vocabulary::synonyms() {
+        let mut known = named.iter().filter(|(_, other, names)| {
+            *other == role && names.iter().any(|name| group.contains(&&**name))
+        });
+        let Some((place, ..)) = known.next() else { continue };
+        // Of two values either may be meant.
+        if known.all(|(other, ..)| other == place) {
+            synonyms.extend(group.iter().map(|synonym| (*place, *synonym)));
+        }
+    }
+    synonyms
 }

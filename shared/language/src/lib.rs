@@ -56,6 +56,7 @@ mod tagger;
 mod token_class;
 mod tokens;
 mod topic;
+mod unknown;
 mod vocabulary;
 
 #[cfg(test)]
@@ -66,3 +67,4 @@ pub use confusion::confusion;
 pub use normalise::TEXT_CHARS_MAX;
 pub use parsed::READINGS_MAX;
 pub use reader::{Language, Reader};
+pub use unknown::UnknownWord;

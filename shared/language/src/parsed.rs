@@ -1,6 +1,6 @@
 //! From one utterance's content to the ways in which it can be understood.
 
-use scene::{Doubt, Intent, Reading, Reference, Response};
+use scene::{Doubt, Intent, Reading, Reference, Response, WordId};
 
 use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
@@ -8,7 +8,7 @@ use crate::hedges::MAYBE;
 use crate::objects::objects;
 use crate::question_words::QuestionWords;
 use crate::tagger::Tag;
-use crate::token_class::Class;
+use crate::token_class::{Class, classes};
 
 /// Most readings of one utterance.
 pub const READINGS_MAX: usize = 4;
@@ -35,9 +35,38 @@ impl ParsedUtterance<'_> {
             Intent::Inform => objects(&self.tags, &self.content, self.asked),
             _ => vec![self.content.base.clone()],
         };
-        let words = |object: &Vec<Asserted<'_>>| object.iter().map(|value| value.word).collect();
-        let further = objects.iter().skip(1).map(words).collect();
-        Reading { further, ..self.reading_of(&objects[0]) }
+        let words = |object: &Vec<Asserted<'_>>| -> Vec<WordId> {
+            object.iter().map(|value| value.word).collect()
+        };
+        let mut reading = self.reading_of(&objects[0]);
+        reading.further = objects.iter().skip(1).map(words).collect();
+        if objects.len() == 1
+            && reading.response == Response::None
+            && let Some(more) = self.more_of_them()
+        {
+            // "both cups": whichever comes first.
+            reading.further = vec![words(&objects[0]); more];
+            reading.response = Response::DoesNotMatter;
+        }
+        reading
+    }
+
+    /// How many beside the first, of what is described: "both cups", "two red mugs".
+    fn more_of_them(&self) -> Option<usize> {
+        let request = self.intent == Intent::Inform
+            && matches!(self.asked, QuestionWords::Nothing)
+            && self.content.excluded.is_empty();
+        let value = self.content.base.first().filter(|_| request)?;
+        let lead = |tag: &&Tag<'_>| {
+            tag.is_value() || tag.is_any(classes![Determiner Possessive Preposition])
+        };
+        let count = self.tags[..value.at].iter().rev().find(|tag| !lead(tag))?;
+        match count.word {
+            _ if !count.is(Class::Quantifier) => None,
+            "both" | "two" => Some(1),
+            "three" => Some(2),
+            _ => None,
+        }
     }
 
     fn reading_of(&self, base: &[Asserted<'_>]) -> Reading {

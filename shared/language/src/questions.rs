@@ -23,6 +23,15 @@ pub(crate) fn question<'a>(tags: &[Tag<'a>], clauses: &[Clause]) -> (Intent, Con
     (intent, content)
 }
 
+/// "have you seen my red pen? bring it please": what was asked about is asked for.
+pub(crate) fn fetches_it(tags: &[Tag<'_>], clauses: &[Clause]) -> bool {
+    let on_topic = clauses.iter().filter(|clause| clause.topic == Topic::On);
+    on_topic.map(|clause| &tags[clause.span.clone()]).any(|clause| {
+        clause.iter().any(|tag| tag.is(Class::Yes) && tag.last == "it" && tag.word != "that")
+            || clause.windows(2).any(|pair| pair[0].is(Class::Fetch) && pair[1].is(Class::It))
+    })
+}
+
 /// The clause as it is read for what a question is asked of: nothing in it describes another thing.
 fn of_question(clause: &Clause) -> Clause {
     let topic = if clause.topic == Topic::AskBack { Topic::On } else { Topic::Off };

@@ -8,16 +8,17 @@ use crate::content::Content;
 use crate::extractor::extract;
 use crate::hedges::hedge;
 use crate::indifference::indifference;
-use crate::intent::{intent, is_side_talk, unknown_words};
+use crate::intent::{intent, is_side_talk};
 use crate::lexicon::Lexicon;
 use crate::normalise::normalise;
 use crate::paper::WordSpotter;
 use crate::parsed::ParsedUtterance;
 use crate::question_words::SceneQuestions;
-use crate::questions::question;
+use crate::questions::{fetches_it, question};
 use crate::references::reference;
 use crate::tagger::tag;
 use crate::tokens::Tokens;
+use crate::unknown::{UnknownWord, unknown_words};
 
 /// Options of the reader.
 #[derive(
@@ -71,7 +72,7 @@ impl Reader {
 
     /// Returns the attribute and object words in an utterance that the scene lacks, for the robot's
     /// reply; none in the paper's language.
-    pub fn unknown_words(&self, text: &str) -> Vec<String> {
+    pub fn unknown_words(&self, text: &str) -> Vec<UnknownWord> {
         match self.language {
             Language::Paper => Vec::new(),
             Language::Careful => {
@@ -130,6 +131,9 @@ impl Reader {
         };
         if intent == Intent::AskBack {
             (intent, content) = question(&tags, &clauses);
+            if intent != Intent::AskHelp && fetches_it(&tags, &clauses) {
+                intent = Intent::Inform;
+            }
         }
         ParsedUtterance { content, response, intent, refers, asked, tags, clauses }
     }

@@ -49,11 +49,11 @@ pub(crate) struct Form {
 }
 
 /// Returns the phrases for a value beyond its name and synonyms: what it is called in questions, and
-/// for a place the same with relations that are alike.
-pub(crate) fn forms(value: &Value) -> Vec<Form> {
+/// for a place the same with relations that are alike. `common`: other words for it.
+pub(crate) fn forms<'a>(value: &'a Value, common: impl Iterator<Item = &'a str>) -> Vec<Form> {
     let spoken = words(&value.spoken);
-    let names: Vec<Vec<String>> =
-        std::iter::once(&value.name).chain(&value.synonyms).map(|name| words(name)).collect();
+    let names = std::iter::once(&value.name).chain(&value.synonyms).map(String::as_str);
+    let names: Vec<Vec<String>> = names.chain(common).map(words).collect();
     if value.role() != Role::Place {
         let bare = without_article(&spoken).to_vec();
         let new = !bare.is_empty() && !names.contains(&bare);

@@ -249,9 +249,32 @@ impl<'a> ClauseAnalysis<'a> {
             || self.has(classes![Unlisted])
                 && (self.unknown == 0 || self.is_fragment() && self.ends_unlisted())
             || self.has(classes![Fetch Want]) && named
+            || self.wants_unknown()
+            || self.is_unknown_please()
             || self.fetches_for_me()
             || self.is_bare_noun()
             || self.has(classes![Ordinal Other]) && self.unknown == 0
+    }
+
+    /// "I would like a newspaper", "can I have the dinosaur".
+    fn wants_unknown(&self) -> bool {
+        let verb = self.clause.iter().position(|tag| {
+            tag.is(Class::Want) && matches!(tag.last, "like" | "have" | "get" | "want" | "need")
+        });
+        let Some([article, rest @ ..]) = verb.map(|at| &self.clause[at + 1..]) else {
+            return false;
+        };
+        let named = rest.iter().take_while(|tag| tag.is_unknown()).count();
+        article.is_any(classes![Determiner Quantifier])
+            && named == self.unknown
+            && (1..=2).contains(&named)
+            && rest[named..].iter().all(|tag| tag.is_any(classes![Courtesy Filler]))
+    }
+
+    /// "penicillin please"
+    fn is_unknown_please(&self) -> bool {
+        matches!(self.clause, [thing, please] if thing.is_unknown() && please.word == "please")
+            && self.is_everything
     }
 
     /// "get me …"

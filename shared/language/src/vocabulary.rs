@@ -1,7 +1,9 @@
 //! English words and phrases of a dialogue about things to fetch, from the folder `vocabulary`.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::LazyLock;
+
+use scene::Role;
 
 use crate::token_class::Class;
 
@@ -11,11 +13,41 @@ pub(crate) fn phrases() -> impl Iterator<Item = (Class, &'static str)> {
     let lines = include_str!("vocabulary/phrases.txt").lines();
     lines.filter(|line| !line.starts_with('#')).flat_map(move |line| {
         let heading = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
-        class = heading.map_or(class, Class::named);
+        class = heading.map_or(class, |heading| Class::named(class_of(heading)));
         let listed = class.filter(|_| heading.is_none() && !line.is_empty());
         let phrases = line.trim_end_matches(',').split(", ");
         phrases.filter_map(move |phrase| Some((listed?, phrase)))
     })
+}
+
+/// Returns the groups of words that mean nearly the same, with the role of the values that they name.
+pub(crate) fn synonyms() -> impl Iterator<Item = (Role, Vec<&'static str>)> {
+    let mut role = Role::Quality;
+    let lines = include_str!("vocabulary/synonyms.txt").lines();
+    lines.filter(|line| !line.starts_with('#') && !line.is_empty()).filter_map(move |line| {
+        match line {
+            "[quality]" => role = Role::Quality,
+            "[place]" => role = Role::Place,
+            group => return Some((role, group.split(", ").collect())),
+        }
+        None
+    })
+}
+
+/// The class of a heading; what follows its name parts the class.
+fn class_of(heading: &str) -> &str {
+    heading.split(' ').next().unwrap_or(heading)
+}
+
+/// Returns whether a word that people ask for is a quality of things: "purple", "wooden".
+pub(crate) fn is_unlisted_quality(word: &str) -> bool {
+    static QUALITIES: LazyLock<HashSet<&str>> = LazyLock::new(|| {
+        let text = include_str!("vocabulary/phrases.txt");
+        let section = text.split_once("[Unlisted quality]\n").map_or("", |(_, rest)| rest);
+        let section = section.split_once("\n\n").map_or(section, |(section, _)| section);
+        section.split([',', '\n']).map(str::trim).filter(|word| !word.is_empty()).collect()
+    });
+    QUALITIES.contains(word)
 }
 
 /// Everyday words that a misspelt value could be taken for; they are never corrected.

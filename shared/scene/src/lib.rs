@@ -5,6 +5,7 @@
 //! well: [`Question`] (section 3.2 of the publication) and [`Reading`], an understood utterance
 //! (section 3.6).
 
+mod ambiguity;
 mod check;
 mod describe;
 mod ids;

@@ -42,7 +42,7 @@ pub(super) fn run(input: &[u8]) {
     assert_eq!(plain(&readings[0].1), plain(&careful.read(&text, question)));
     readings.into_iter().chain(spotted).for_each(|reading| travels(reading, scene));
     let unknown = careful.unknown_words(&text);
-    assert!(unknown.iter().all(|word| !word.is_empty()), "{unknown:?}");
+    assert!(unknown.iter().all(|word| !word.text.is_empty()), "{unknown:?}");
 }
 
 /// Checks that a reading is about the scene and that the policy would accept it.

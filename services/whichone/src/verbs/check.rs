@@ -26,6 +26,9 @@ pub(super) fn check(args: &CheckArgs, out: &mut Output<'_>) -> Outcome {
             for line in summary(&settings) {
                 out.line(line)?;
             }
+            for ambiguity in settings.scene.ambiguities() {
+                note(format_args!("warning: scene {}: {ambiguity}", settings.scene.name()));
+            }
             if args.values {
                 values(&settings, out)?;
             }
@@ -115,6 +118,7 @@ fn as_json(settings: &Settings, values: bool) -> Json {
     let mut json = json!({
         "ok": true,
         "scene": { "name": settings.scene.name(), "objects": settings.scene.objects().len() },
+        "warnings": settings.scene.ambiguities(),
         "planner": settings.dialogue.planner,
         "params": settings.dialogue.params,
         "costs": settings.dialogue.costs,

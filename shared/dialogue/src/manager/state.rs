@@ -282,7 +282,8 @@ pub struct Utterance {
     pub accepted: Time,
     /// Interpretations as an answer to each of the presentations, and to none.
     pub interpretations: Vec<Interpretation>,
-    /// A word that the scene does not have; may be empty.
+    /// What the scene does not have, a thing with its article ("a plate") or a quality ("wooden"); may
+    /// be empty.
     pub unknown: String,
     /// The point that the user points at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,

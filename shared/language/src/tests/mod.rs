@@ -138,8 +138,34 @@ fn reader_names_unknown_words() {
         ("the white one", vec![]),
         ("my phone is ringing", vec![]),
     ] {
-        assert_eq!(reader.unknown_words(text), unknown, "{text}");
+        let words = reader.unknown_words(text).into_iter().map(|word| word.text);
+        assert_eq!(words.collect::<Vec<_>>(), unknown, "{text}");
     }
+}
+
+#[test]
+fn reader_tells_an_unknown_thing_from_an_unknown_quality() {
+    let scene = scene("mugs");
+    let reader = Reader::new(&scene, Language::Careful);
+    for (text, word, noun) in [
+        ("can you bring me a plate", "plate", true),
+        ("get me the frying pan", "frying pan", true),
+        ("I would like a newspaper", "newspaper", true),
+        ("can I have the dinosaur", "dinosaur", true),
+        ("do you have a novel?", "novel", true),
+        ("have you got any rivets", "rivets", true),
+        ("a wooden mug", "wooden", false),
+        ("the yellow mug", "yellow", false),
+        ("get me the purpure one", "purpure", false),
+        ("the mug in the garage", "garage", false),
+        ("is there a yellow mug?", "yellow", false),
+        ("penicillin please", "penicillin", true),
+    ] {
+        let words = reader.unknown_words(text);
+        let first = words.first().map(|word| (word.text.as_str(), word.noun));
+        assert_eq!(first, Some((word, noun)), "{text}");
+    }
+    assert_eq!(reader.unknown_words("the red mug please"), []);
 }
 
 #[test]

@@ -200,7 +200,8 @@ wire_struct! {
         reserved: [u8; 5],
         /// Possible meanings: for each question asked and for none, most likely first.
         readings: [WireReading; READINGS_MAX],
-        /// A word that the scene does not have, for the robot's reply; may be empty.
+        /// What the scene does not have, for the robot's reply: a thing with its article ("a plate") or
+        /// a quality ("wooden"); may be empty.
         unknown: FixedText<60>,
     }
 }
