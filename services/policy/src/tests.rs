@@ -7,6 +7,7 @@ mod held_back;
 mod person;
 mod pointing;
 mod prior;
+mod queue;
 mod reconfigure;
 mod replies;
 mod seconds;

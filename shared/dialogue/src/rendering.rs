@@ -101,6 +101,12 @@ fn preface(scene: &Scene, preface: &Preface) -> String {
         }
         Preface::SceneChanged => format!("The {}s here have changed. ", scene.noun()),
         Preface::Remark(it) => format!("{} ", remarks::text(scene, it, ActKind::Ask)),
+        Preface::InTurn(objects) => {
+            let objects: Vec<String> =
+                objects.iter().map(|words| remarks::group(scene, words, None)).collect();
+            format!("First the {}. ", objects.join(", then the "))
+        }
+        Preface::PickEnded(object, outcome) => format!("{} ", pick_ended(object, *outcome)),
         Preface::Sorry => "Sorry. ".to_owned(),
         Preface::Left(objects) => {
             let count = remarks::number(objects.len());

@@ -50,3 +50,13 @@ fn is_any(clause: &[Tag<'_>], at: usize, answers: bool) -> bool {
     let of_attribute = named.iter().any(|tag| tag.is(Class::Attribute));
     !two && (answers || !of_attribute) && after.first().is_none_or(|tag| tag.is_any(AFTER))
 }
+
+/// Whether it is said of what was asked ("it does not matter", "any colour"), and not of the object
+/// ("I do not care", "either").
+pub(crate) fn is_of_attribute(tags: &[Tag<'_>], at: usize) -> bool {
+    const WORDS: &[&str] =
+        &["matter", "difference", "important", "irrelevant", "immaterial", "odds"];
+    let said = tags[at..].iter().position(Tag::pauses).map_or(tags.len(), |end| at + end + 1);
+    WORDS.contains(&tags[at].last)
+        || tags[at..said].iter().any(|tag| tag.is(Class::Attribute) || tag.word == "be")
+}

@@ -7,7 +7,7 @@ use crate::clauses::clauses;
 use crate::content::Content;
 use crate::extractor::extract;
 use crate::hedges::hedge;
-use crate::indifference::indifference;
+use crate::indifference::{indifference, is_of_attribute};
 use crate::intent::{intent, is_side_talk};
 use crate::lexicon::Lexicon;
 use crate::normalise::normalise;
@@ -121,6 +121,12 @@ impl Reader {
         let refers = reference(&tags, &clauses, asked);
         let careless = indifference(&tags, &clauses, asked);
         let response = response(&content, &tags, asked, careless);
+        let refers = match (refers, response.0, careless) {
+            (Reference::None, Response::DoesNotMatter, Some(at)) if !is_of_attribute(&tags, at) => {
+                Reference::Any
+            }
+            (refers, ..) => refers,
+        };
         let mut intent = match intent(&tags, &clauses, &content, asked, tokens.code) {
             Intent::Inform if side_talk => Intent::None,
             Intent::None if response.0 == Response::DoesNotMatter => Intent::Inform,

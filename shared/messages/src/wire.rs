@@ -217,5 +217,6 @@ wire_codes! {
         Larger = 4,
         Smallest = 5,
         Largest = 6,
+        Any = 7,
     }
 }

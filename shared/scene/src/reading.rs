@@ -84,6 +84,8 @@ pub enum Reference {
     Smallest,
     /// "the biggest one", of those that the words describe.
     Largest,
+    /// "either", "you choose": any of those that may be meant.
+    Any,
 }
 
 /// One way to understand an utterance.

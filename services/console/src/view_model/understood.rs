@@ -124,6 +124,7 @@ fn words(scene: &Scene, reading: &Reading) -> String {
         Reference::Larger => Some("the bigger one"),
         Reference::Smallest => Some("the smallest one"),
         Reference::Largest => Some("the biggest one"),
+        Reference::Any => Some("any one"),
     };
     let given = [intent, response, refers].into_iter().flatten();
     let mut parts: Vec<String> = given.map(str::to_owned).collect();

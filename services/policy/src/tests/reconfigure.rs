@@ -180,9 +180,10 @@ fn where_nothing_is_left_the_interaction_ends() {
 #[test]
 fn a_word_that_nothing_had_counts_for_what_has_it_now() {
     let mut manager = manager();
-    let utterance = typed(1, PromptId(0), Reading::default());
+    let state = asked(&mut manager);
+    let utterance = typed(2, PromptId(0), Reading::default());
     let cause = Cause::Utterance(Utterance { unknown: "copper".to_owned(), ..utterance });
-    let state = manager.next(&manager.first(), &cause, at(1));
+    let state = manager.next(&state, &cause, at(2));
     let copper =
         SEVENTH.replace("white4", "copper1").replace("color = \"white\"", "color = \"copper\"");
     let folder = tempfile::tempdir().unwrap();
@@ -192,7 +193,7 @@ fn a_word_that_nothing_had_counts_for_what_has_it_now() {
     let path = folder.path().join("copper.toml");
     std::fs::write(&path, text).unwrap();
     let changed = settings_with(&[("group.scene", path.to_str().unwrap())]);
-    let after = manager_of(&changed).next(&state, &Cause::Reconfigured, at(2));
+    let after = manager_of(&changed).next(&state, &Cause::Reconfigured, at(3));
     let p = |name| probability(&changed, &after, name);
     assert!(p("copper1") > 2.0 * p("white"), "{:?}", belief(&after));
 }

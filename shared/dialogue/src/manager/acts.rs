@@ -125,7 +125,7 @@ impl Manager {
         reasons: Act,
     ) {
         if state.stopped {
-            return self.hold_back(state, object, reasons);
+            return self.hold_back(state, object, preface, reasons);
         }
         let Some(open) = &mut state.open else { return };
         open.held_back = None;

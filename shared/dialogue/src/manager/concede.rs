@@ -1,6 +1,6 @@
 //! What the user cannot tell, and what does not matter to the user.
 
-use scene::{AttributeId, Question, Reading, Response, Scene};
+use scene::{AttributeId, Question, Reading, Reference, Response, Scene};
 use serde::{Deserialize, Serialize};
 
 use super::Manager;
@@ -46,7 +46,9 @@ impl Manager {
                 add(&mut open.conceded.unknown, name);
                 Wish::Otherwise
             }
-            (Response::DoesNotMatter, Some(name)) if reading.base.is_empty() => {
+            (Response::DoesNotMatter, Some(name))
+                if reading.base.is_empty() && reading.refers != Reference::Any =>
+            {
                 add(&mut open.conceded.indifferent, Some(name));
                 Wish::Best
             }

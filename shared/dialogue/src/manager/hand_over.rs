@@ -52,9 +52,12 @@ impl Manager {
     /// Returns the refusal of what was handed over last, where the utterance is likely to be one.
     pub(super) fn refusal(&self, state: &State, heard: &Heard<'_>) -> Option<Heard<'static>> {
         let object = state.handed_over.as_ref().filter(|_| state.open.is_none())?.object()?;
+        // Words of another object are the next request, and no refusal.
         let says_no = |(_, question, reading): &(f64, Question, scene::Reading)| {
             let of_it = *question == Question::Point(object) && reading.response == Response::No;
-            of_it || (reading.base.is_empty() && !reading.excluded.is_empty())
+            let has = |word: &scene::WordId| self.setup.model.has_word(object, *word);
+            let excludes = reading.base.is_empty() && !reading.excluded.is_empty();
+            (of_it && reading.base.iter().all(has)) || excludes
         };
         let mut denial = self.denial(object, &heard.interpretations)?;
         let likeliest = heard.interpretations.first().filter(|it| says_no(it));

@@ -36,10 +36,15 @@ impl State {
 
 impl Manager {
     /// Announces a pick that cannot start yet.
-    pub(super) fn hold_back(&mut self, state: &mut State, object: ObjectId, reasons: Act) {
+    pub(super) fn hold_back(
+        &mut self,
+        state: &mut State,
+        object: ObjectId,
+        preface: Preface,
+        reasons: Act,
+    ) {
         let name = self.setup.scene.object(object).name.clone();
         let content = Content::HeldBack(self.description(object));
-        let preface = Preface::None;
         let Some(open) = &mut state.open else { return };
         open.held_back = Some(HeldBack { name, is_confirmed: false });
         self.ask_for(state, object, super::Line { preface, content }, reasons);

@@ -1,11 +1,12 @@
 //! Content of an utterance about the wanted object.
 
-use scene::{Reading, Response};
+use scene::{Question, Reading, Response};
 
 use super::Manager;
+use super::acts::say;
 use super::attribution::Heard;
 use super::evidence::{Evidence, Mark};
-use super::line::{Preface, Remark};
+use super::line::{Content, Preface, Remark};
 use super::references::reference;
 use super::state::{Basis, Deferred, Interaction, State, Utterance, Wish};
 use crate::ActKind;
@@ -20,7 +21,7 @@ impl Manager {
         shares: &[f64],
         at: Time,
     ) {
-        let heard = self.interpret(state, utterance, shares);
+        let mut heard = self.interpret(state, utterance, shares);
         let refers = reference(&heard);
         if state.open.is_none() {
             if let Some(refusal) = self.refusal(state, &heard) {
@@ -30,7 +31,13 @@ impl Manager {
             if spoken_of.is_none() && !self.is_request(utterance) {
                 return;
             }
+            if spoken_of.is_none() && !heard.unknown.is_empty() && says_nothing(&heard) {
+                let word = Remark::Unknown(heard.unknown.to_owned());
+                return say(state, Content::Remark(word), at);
+            }
             self.begin(state, utterance, &heard, spoken_of);
+            // What was asked before is over.
+            heard.interpretations.iter_mut().for_each(|(_, asked, _)| *asked = Question::None);
         }
         let Some(open) = &mut state.open else { return };
         open.utterances.1 = utterance.seq;
@@ -39,7 +46,10 @@ impl Manager {
             return self.reconsider(state, heard, at);
         }
         let wish = self.concede(open, &heard.interpretations);
-        let preface = preface(&heard, state.act.kind);
+        let preface = match self.enqueue(state, &heard) {
+            Preface::None => preface(&heard, state.act.kind),
+            queued => queued,
+        };
         if self.confirms(state, &heard, at) {
             return;
         }
@@ -146,11 +156,14 @@ impl Manager {
     }
 }
 
+fn says_nothing(heard: &Heard) -> bool {
+    heard.interpretations.iter().all(|(.., it)| *it == Reading::default())
+}
+
 /// Returns what is said before the next question about an utterance that was not understood.
 fn preface(heard: &Heard, standing: ActKind) -> Preface {
-    let says_nothing = heard.interpretations.iter().all(|(.., it)| *it == Reading::default());
     match heard.unknown {
-        "" if says_nothing && heard.gesture.is_none() && standing == ActKind::Ask => {
+        "" if says_nothing(heard) && heard.gesture.is_none() && standing == ActKind::Ask => {
             Preface::Remark(Remark::NotUnderstood)
         }
         "" => Preface::None,

@@ -48,6 +48,7 @@ impl Manager {
 
     pub(super) fn cancel(&self, state: &mut State, at: Time) {
         let Some(open) = &mut state.open else { return say(state, Content::Cancelled, at) };
+        state.queue.clear();
         // Another object may have been wanted instead of the one being left: no longer.
         open.corrected = false;
         if open.pick.is_none() {
@@ -70,6 +71,7 @@ impl Manager {
                 open.conceded = Conceded::default();
                 open.posterior = beginning;
                 (open.deferred, open.held_back) = (None, None);
+                state.queue.clear();
             }
         }
         self.ask_wanted(state, at);

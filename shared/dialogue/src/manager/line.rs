@@ -38,6 +38,10 @@ pub enum Preface {
     SceneChanged,
     /// A remark of its own: the question that follows was interrupted by it.
     Remark(Remark),
+    /// Several objects are fetched, described by these words, in this order.
+    InTurn(Vec<Vec<String>>),
+    /// The pick of the object of that description is over, and the next one's turn has come.
+    PickEnded(String, PickOutcome),
     /// The object that was handed over was refused.
     Sorry,
     /// These objects are left, which the user cannot tell apart; descriptions.
@@ -61,6 +65,8 @@ pub enum Remark {
     NotUnderstood,
     /// Agreement.
     AllRight,
+    /// The scene has nothing of this name.
+    Unknown(String),
     /// Nothing is being done.
     Idle,
     /// The arm takes nothing from a person's hand.

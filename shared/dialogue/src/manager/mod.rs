@@ -10,6 +10,7 @@
 //! | `concede.rs` | what the user cannot tell, and what does not matter |
 //! | `references.rs` | "the other one", "the smaller one" |
 //! | `hand_over.rs`, `held_back.rs` | refusals after a hand-over; picks while the motion stop is latched |
+//! | `queue.rs` | requests for several objects |
 //! | `replies.rs` | answers to what the user asks |
 //! | `beliefs.rs`, `pointing.rs` | prior, updates, the user model, gestures |
 //! | `acts.rs` | decisions as standing acts |
@@ -31,6 +32,7 @@ mod inform;
 mod intents;
 mod line;
 mod pointing;
+mod queue;
 mod reconfigure;
 mod references;
 mod refold;
@@ -342,17 +344,25 @@ impl Manager {
         if let Some(open) = &delivered {
             state.history.count(&open.picked);
         }
-        let content = Content::PickEnded(self.description(object), outcome);
+        let description = self.description(object);
+        let content = Content::PickEnded(description.clone(), outcome);
+        let queue = std::mem::take(&mut state.queue);
         self.close(state, ends_as, at, content);
         state.handed_over = delivered.map(|interaction| {
             let interaction = Interaction { deferred: None, ..interaction };
             HandedOver { interaction, at, lines: vec![state.last_prompt] }
         });
+        let goes_on = [PickOutcome::Delivered, PickOutcome::Unreachable, PickOutcome::Missed];
+        if !queue.is_empty() && goes_on.contains(&outcome) {
+            state.queue = queue;
+            self.serve_queue(state, (description, outcome), at);
+        }
     }
 
     /// Ends the interaction and says so.
     fn close(&self, state: &mut State, outcome: Outcome, at: Time, content: Content) {
         let Some(open) = state.open.take() else { return };
+        state.queue.clear();
         let questions = open.questions();
         if let Some(person) = open.posterior.person() {
             state.person = Some(person.clone());

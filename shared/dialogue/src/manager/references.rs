@@ -40,7 +40,7 @@ impl Manager {
             Reference::Same => {
                 Some(Mark::OneOf(vec![self.setup.scene.object(delivered).name.clone()]))
             }
-            Reference::None | Reference::Smallest | Reference::Largest => None,
+            Reference::None | Reference::Any | Reference::Smallest | Reference::Largest => None,
         }
     }
 
@@ -49,7 +49,7 @@ impl Manager {
         let wants_large = match reference {
             Reference::Smaller | Reference::Smallest => false,
             Reference::Larger | Reference::Largest => true,
-            Reference::None | Reference::Other | Reference::Same => return None,
+            Reference::None | Reference::Any | Reference::Other | Reference::Same => return None,
         };
         let left = self.left(&open.belief());
         let sizes = self.sizes(&left)?;

@@ -34,6 +34,8 @@ pub struct State {
     pub last_prompt: PromptId,
     /// The open interaction.
     pub open: Option<Interaction>,
+    /// Words of each further object that was asked for, in order.
+    pub queue: Vec<Vec<String>>,
     /// The standing decision.
     pub act: Act,
     /// The questions that the latest utterance was attributed to.

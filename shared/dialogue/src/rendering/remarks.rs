@@ -25,6 +25,9 @@ pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
             }
         }
         Remark::AllRight => "All right.".to_owned(),
+        Remark::Unknown(word) => {
+            format!("I know of no {word} here, only {}.", all_nouns(scene))
+        }
         Remark::PutItDown => {
             "Please put it on the table; I cannot take it from your hand.".to_owned()
         }
@@ -52,27 +55,40 @@ pub(super) fn inventory(scene: &Scene) -> String {
         format!("{} {}", k.name, names.join(" or "))
     });
     let values: Vec<String> = values.collect();
-    format!("I see {} {}s: {}.", scene.objects().len(), scene.noun(), values.join(", "))
+    format!("I see {} {}: {}.", scene.objects().len(), all_nouns(scene), values.join(", "))
+}
+
+/// "mugs and cups": everything that there is.
+fn all_nouns(scene: &Scene) -> String {
+    let all: Vec<ObjectId> = (0..scene.objects().len()).map(ObjectId::from).collect();
+    scene.plural_nouns(&all)
 }
 
 fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[String]) -> String {
     let objects: Vec<ObjectId> = names.iter().filter_map(|name| scene.object_named(name)).collect();
-    let descriptions: Vec<String> = objects.iter().map(|i| scene.describe(*i)).collect();
-    let verb = if objects.len() == 1 { "is" } else { "are" };
-    let group = group(scene, words, objects.len() != 1);
+    let group = group(scene, words, Some(&objects));
+    let listed = || {
+        let list = match objects[..] {
+            [one] => format!("the {}", scene.describe(one)),
+            _ => scene.list(&objects, "and"),
+        };
+        if list.len() > LIST_MAX { None } else { Some(list) }
+    };
+    let count = number(objects.len());
     match (asked, &objects[..]) {
         (_, []) => format!("There are no {group} here."),
         (AboutObjects::Where, _) => places(scene, &objects),
-        (AboutObjects::Count, _) => {
-            let count = number(objects.len());
-            format!("There {verb} {count} {group}: {}.", list(&descriptions))
-        }
-        (AboutObjects::Which, _) => format!("I see {}.", list(&descriptions)),
+        (AboutObjects::Which, _) => format!("I see {}.", listed().unwrap_or(group)),
+        (AboutObjects::Count, [one]) => format!("There is one: the {}.", scene.describe(*one)),
+        (AboutObjects::Count, _) => match listed() {
+            Some(list) => format!("There are {count} {group}: {list}."),
+            None => format!("There are {count} {group}."),
+        },
     }
 }
 
-/// "red cups on the shelf": the objects that the words describe.
-fn group(scene: &Scene, words: &[String], is_plural: bool) -> String {
+/// "red cups on the shelf": what the words describe; in plural for these objects, or else one.
+pub(super) fn group(scene: &Scene, words: &[String], plural_of: Option<&[ObjectId]>) -> String {
     let values = || {
         let all = scene.attributes().iter().flat_map(|attribute| &attribute.values);
         all.filter(|value| words.contains(&value.name))
@@ -80,9 +96,13 @@ fn group(scene: &Scene, words: &[String], is_plural: bool) -> String {
     let of = |role: Role| values().filter(move |value: &&Value| value.role() == role);
     let qualities = of(Role::Quality).map(|value| value.name.clone());
     let kind = of(Role::Kind).next().map_or(scene.noun(), |value| value.name.as_str());
-    let kind = if is_plural { format!("{kind}s") } else { kind.to_owned() };
+    let noun = match plural_of {
+        None => kind.to_owned(),
+        Some([]) => scene::plural(kind),
+        Some(objects) => scene.plural_nouns(objects),
+    };
     let places = of(Role::Place).map(|value| value.spoken.clone());
-    let parts: Vec<String> = qualities.chain([kind]).chain(places).collect();
+    let parts: Vec<String> = qualities.chain([noun]).chain(places).collect();
     parts.join(" ")
 }
 

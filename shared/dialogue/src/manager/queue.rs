@@ -1,0 +1,51 @@
+//! Requests for several objects: one after the other.
+
+use scene::{Question, Reading, WordId};
+
+use super::Manager;
+use super::attribution::Heard;
+use super::line::Preface;
+use super::state::{Basis, State, Utterance};
+use crate::PickOutcome;
+use crate::time::Time;
+
+/// Most objects that wait for their turn.
+const QUEUE_MAX: usize = 8;
+
+impl Manager {
+    /// Puts the further objects of a request in the queue, and returns what is said about it.
+    pub(super) fn enqueue(&self, state: &mut State, heard: &Heard<'_>) -> Preface {
+        let Some((.., reading)) = heard.interpretations.first() else { return Preface::None };
+        let words = self.setup.scene.words();
+        let names = |group: &[WordId]| -> Vec<String> {
+            group.iter().map(|word| words[word.index()].clone()).collect()
+        };
+        let room = QUEUE_MAX.saturating_sub(state.queue.len());
+        let further: Vec<_> = reading.further.iter().take(room).map(|it| names(it)).collect();
+        if further.is_empty() {
+            return Preface::None;
+        }
+        state.queue.extend(further.iter().cloned());
+        Preface::InTurn([vec![names(&reading.base)], further].concat())
+    }
+
+    /// Turns to the next object of the queue once a pick has ended, where the arm is fit for it.
+    pub(super) fn serve_queue(
+        &mut self,
+        state: &mut State,
+        (description, outcome): (String, PickOutcome),
+        at: Time,
+    ) {
+        let words = state.queue.remove(0);
+        let (seq, accepted) = (state.applied, at);
+        self.open(state, &Utterance { seq, accepted, ..Utterance::default() });
+        let base = words.iter().filter_map(|word| self.setup.scene.word_named(word)).collect();
+        let reading = Reading { base, ..Reading::default() };
+        let interpretations = vec![(1.0, Question::None, reading)];
+        if let Some(open) = &mut state.open {
+            self.take_in(open, Heard { interpretations, ..Heard::default() });
+        }
+        let preface = Preface::PickEnded(description, outcome);
+        self.decide(state, Basis { preface, utterance: seq, ..Basis::default() }, at);
+    }
+}
