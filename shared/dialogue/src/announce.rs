@@ -1,14 +1,15 @@
 //! The announced pick: "I will get the clear bowl" can be denied until the object is gripped.
 //!
-//! With `c` ([`Announce::heard`]) the probability that a denial is said and heard in time, and `ε` that
-//! of an erroneous one as everywhere, a denial is heard with `c·ε` if the announced object is wanted
-//! and with `c·(1−ε)` if it is not (what is not here is denied like any other). Announcing `i` at
-//! belief `b` is worth
+//! With `c` ([`Announce::heard`]) the probability that a denial is said and heard in time, and `η` that
+//! of an erroneous one, a denial is heard with `c·η` if the announced object is wanted and with
+//! `c·(1−η)` if it is not (what is not here is denied like any other). Announcing `i` at belief `b` is
+//! worth
 //!
-//! `b_i (1−cε)·correct − Σ_{j≠i} b_j (1−c(1−ε))·wrong + P(denial) (−cost_s + γ V(b'))`,
+//! `b_i (1−cη)·correct − Σ_{j≠i} b_j (1−c(1−η))·wrong + P(denial) (−cost_s + γ V(b'))`,
 //!
-//! where `b'` is the belief after "no" to [`Question::Point`](scene::Question::Point) of `i`. With
-//! `c = 0` a pick is final, as in the publication.
+//! where `b'` is the belief after the denial, which the dialogue manager counts twice: as "no" to
+//! [`Question::Point`](scene::Question::Point) of `i`, and as what stops a moving robot, which is no
+//! slip of the tongue. So `η/(1−η) = (ε/(1−ε))²`. With `c = 0` a pick is final, as in the publication.
 
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +31,9 @@ pub struct Announce {
 impl Announce {
     /// Picks that end the interaction.
     pub const FINAL: Self = Self { heard: 0.0, cost_s: 0.0 };
+
+    /// Cost of a denied pick where none is configured, seconds.
+    pub const COST_S: f64 = 8.0;
 
     /// Whether picks are final.
     pub fn is_final(&self) -> bool {
@@ -53,7 +57,9 @@ impl Announce {
 
     /// Probability of a denial if the announced object is wanted, and if another one is.
     pub fn denials(&self, epsilon: f64) -> (f64, f64) {
-        (self.heard * epsilon, self.heard * (1.0 - epsilon))
+        let odds = (epsilon / (1.0 - epsilon)).powi(2);
+        let erroneous = odds / (1.0 + odds);
+        (self.heard * erroneous, self.heard * (1.0 - erroneous))
     }
 
     /// Expected reward of announcing an object that is wanted with that probability, up to the

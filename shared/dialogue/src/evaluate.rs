@@ -141,7 +141,9 @@ impl Walk<'_> {
         self.total.value += discount * reached * settled;
         self.total.success += reached * right * (1.0 - announce.denials(epsilon).0);
         self.total.denied += reached * denied;
-        let (_, after) = hear(self.problem, belief, Question::Point(i), Answer::No);
+        // The manager counts a denial twice.
+        let no = |belief| hear(self.problem, belief, Question::Point(i), Answer::No).1;
+        let after = no(&no(belief));
         next.entry(after.key()).or_insert((0.0, after)).0 += reached * denied;
     }
 }

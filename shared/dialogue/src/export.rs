@@ -1,7 +1,8 @@
 //! The decision problem in Cassandra's `.pomdp` text, which public solvers read.
 //!
 //! The state is the wanted object (or `absent`, where the model allows for that), and one more: a
-//! pick ends the interaction, so it leads to `end`, where nothing is paid or heard. Waiting and
+//! pick ends the interaction, so it leads to `end`, where nothing is paid or heard; one that can be
+//! denied ([`Announce`](crate::Announce)) may leave the state as it is, with the observation `denied`. Waiting and
 //! asking leave the state unchanged (eq. (2), (3)); the answer depends on it by
 //! [`Answer::probability`]. The format: A. R. Cassandra, "The POMDP file format".
 
@@ -73,7 +74,7 @@ struct Writer<'a> {
     /// Names of the states; the last one is the end.
     states: Vec<String>,
     actions: Vec<(Action, String)>,
-    answers: Vec<(Answer, String)>,
+    answers: Vec<(Option<Answer>, String)>,
 }
 
 impl<'a> Writer<'a> {
@@ -117,6 +118,11 @@ impl<'a> Writer<'a> {
                 Action::Pick(_) => writeln!(text, "T: {name} : * : {} 1.0", self.end()),
                 Action::Wait | Action::Ask(_) => writeln!(text, "T: {name}\nidentity"),
             };
+            for (state, denied) in self.denials(*action) {
+                let kept = 1.0 - denied;
+                let _ = writeln!(text, "T: {name} : {state} : {} {kept:?}", self.end());
+                let _ = writeln!(text, "T: {name} : {state} : {state} {denied:?}");
+            }
         }
         text.push('\n');
         for (action, name) in &self.actions {
@@ -139,6 +145,19 @@ impl<'a> Writer<'a> {
         let _ = writeln!(text, "start: {uniform}0.0\n");
     }
 
+    /// Returns the states in which an action can be denied, with the probability of that.
+    fn denials(&self, action: Action) -> Vec<(&str, f64)> {
+        let DecisionProblem { model, announce, .. } = *self.problem;
+        let Action::Pick(picked) = action else { return Vec::new() };
+        if announce.is_final() {
+            return Vec::new();
+        }
+        let (own, other) = announce.denials(model.params().epsilon);
+        let denied = |state: usize| if state == picked.index() { own } else { other };
+        let states = self.states[..model.hypotheses()].iter().enumerate();
+        states.map(|(state, name)| (name.as_str(), denied(state))).collect()
+    }
+
     /// Writes the most frequent row for all states, then what differs from it.
     fn write_observations(&self, text: &mut String, action: Action, name: &str) {
         let silence: Row = vec![(0, 1.0)];
@@ -151,6 +170,10 @@ impl<'a> Writer<'a> {
             let _ = writeln!(text, "O: {name} : {state} : {} {p:?}", self.answers[answer].1);
         };
         common.iter().for_each(|&(answer, p)| line("*", answer, p));
+        for (state, _) in self.denials(action) {
+            line(state, 0, 0.0);
+            line(state, self.answers.len() - 1, 1.0);
+        }
         for (state, row) in self.states.iter().zip(&rows) {
             let changed = row.iter().filter(|entry| !common.contains(entry));
             changed.for_each(|&(answer, p)| line(state, answer, p));
@@ -165,8 +188,8 @@ impl<'a> Writer<'a> {
         let possible = Answer::possible(model, question);
         let numbered = self.answers.iter().enumerate();
         let heard: Vec<(usize, Answer)> = numbered
-            .filter(|(_, (answer, _))| possible.contains(answer))
-            .map(|(number, (answer, _))| (number, *answer))
+            .filter_map(|(number, (answer, _))| Some((number, (*answer)?)))
+            .filter(|(_, answer)| possible.contains(answer))
             .collect();
         (0..model.hypotheses()).map(ObjectId::from).map(move |wanted| {
             let of = |&(number, answer): &(usize, Answer)| {
@@ -188,13 +211,18 @@ impl<'a> Writer<'a> {
                 let wanted = &self.states[object.index()];
                 let _ = writeln!(text, "R: {name} : {wanted} : * : * {:?}", costs.correct);
             }
+            for (state, _) in self.denials(*action) {
+                let cost_s = -self.problem.announce.cost_s;
+                let _ = writeln!(text, "R: {name} : {state} : {state} : * {cost_s:?}");
+            }
         }
         let _ = writeln!(text, "R: * : {} : * : * 0.0", self.end());
     }
 }
 
-/// Returns every answer that a question can get, silence first.
-fn answers(problem: &DecisionProblem<'_>, questions: &[Question]) -> Vec<Answer> {
+/// Returns every answer that a question can get, silence first, and last the denial of a pick (none),
+/// where there is one.
+fn answers(problem: &DecisionProblem<'_>, questions: &[Question]) -> Vec<Option<Answer>> {
     let is_open = |question: &&Question| matches!(question, Question::Which(_));
     let mut answers = vec![Answer::Silence];
     if !questions.iter().all(|question| is_open(&question)) {
@@ -204,7 +232,8 @@ fn answers(problem: &DecisionProblem<'_>, questions: &[Question]) -> Vec<Answer>
         let values = Answer::possible(problem.model, *question).into_iter();
         answers.extend(values.filter(|answer| *answer != Answer::Silence));
     }
-    answers
+    let denied = (!problem.announce.is_final()).then_some(None);
+    answers.into_iter().map(Some).chain(denied).collect()
 }
 
 /// Returns the row that most states have; among equals the first one.
@@ -231,12 +260,15 @@ fn action_name(scene: &Scene, action: Action) -> String {
     }
 }
 
-fn answer_name(scene: &Scene, answer: Answer) -> String {
+fn answer_name(scene: &Scene, answer: Option<Answer>) -> String {
     match answer {
-        Answer::Silence => escape("silence", &[]),
-        Answer::Yes => escape("yes", &[]),
-        Answer::No => escape("no", &[]),
-        Answer::Value(k, v) => escape("says", &[attribute_name(scene, k), value_name(scene, k, v)]),
+        None => escape("denied", &[]),
+        Some(Answer::Silence) => escape("silence", &[]),
+        Some(Answer::Yes) => escape("yes", &[]),
+        Some(Answer::No) => escape("no", &[]),
+        Some(Answer::Value(k, v)) => {
+            escape("says", &[attribute_name(scene, k), value_name(scene, k, v)])
+        }
     }
 }
 

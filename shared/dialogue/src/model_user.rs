@@ -2,7 +2,7 @@
 
 use scene::{ObjectId, Question};
 
-use crate::{Answer, Model, Rng};
+use crate::{Announce, Answer, Model, Rng};
 
 /// A person who answers with the probabilities of eq. (6) and (7): silent with `1 − p_l`, wrong
 /// with `ε`. The same seed answers the same.
@@ -35,6 +35,15 @@ impl ModelUser {
         let probability = |answer: &Answer| answer.probability(model, question, self.wanted);
         let drawn = self.rng.index(answers.iter().map(probability));
         drawn.map_or(Answer::Silence, |index| answers[index])
+    }
+
+    /// Draws whether the announced pick of an object is denied in time.
+    pub fn denies(&mut self, model: &Model, announce: Announce, object: ObjectId) -> bool {
+        if announce.is_final() {
+            return false;
+        }
+        let (own, other) = announce.denials(model.params().epsilon);
+        self.rng.uniform() < if object == self.wanted { own } else { other }
     }
 }
 

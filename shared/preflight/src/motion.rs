@@ -13,6 +13,8 @@ pub struct Motions {
     /// Per object, seconds from the decision to its hand-over: from rest first, then from aiming
     /// at each object.
     picks: Vec<Vec<f64>>,
+    /// Per object, seconds from the decision until the fingers close on it; in the same order.
+    grips: Vec<Vec<f64>>,
     /// Per object, seconds until the arm aims at it; in the same order. Empty without pointing.
     points: Vec<Vec<f64>>,
 }
@@ -88,8 +90,9 @@ impl Motions {
         };
         let rest = Posture { arms: robot.neutral(), away: None };
         let from_rest = |i| planner.pick(&rest, i).map_err(failed("fetch", i));
-        let picks: Vec<f64> = (0..count).map(from_rest).collect::<Result<_, _>>()?;
-        let mut motions = Self { picks: vec![picks], points: Vec::new() };
+        let rows = (0..count).map(from_rest).collect::<Result<Vec<_>, _>>()?;
+        let (picks, grips) = rows.into_iter().unzip();
+        let mut motions = Self { picks: vec![picks], grips: vec![grips], points: Vec::new() };
         if extent != Extent::Picks {
             let aim = |i| planner.aim(&rest, i).map_err(failed("point at", i));
             let aims = (0..count).map(aim).collect::<Result<Vec<_>, _>>()?;
@@ -110,14 +113,16 @@ impl Motions {
         let count = self.picks[0].len();
         let tried = count <= OBJECTS_MAX;
         let home_s = planner.home_s(aimed)?;
-        let (picks, points) = (&self.picks[0], &self.points[0]);
+        let (picks, grips, points) = (&self.picks[0], &self.grips[0], &self.points[0]);
         let pick = |i| tried.then(|| planner.pick(aimed, i).ok()).flatten();
         let aim = |i| tried.then(|| planner.aim(aimed, i).ok()).flatten();
-        let pick_s = |i: usize| pick(i).unwrap_or(home_s + picks[i]);
+        let pick_s = |i: usize| pick(i).unwrap_or((home_s + picks[i], home_s + grips[i]));
         let aim_s = |i: usize| aim(i).map_or(home_s + points[i], |(seconds, ..)| seconds);
-        let rows: (Vec<f64>, Vec<f64>) = (0..count).map(|i| (pick_s(i), aim_s(i))).unzip();
-        self.picks.push(rows.0);
-        self.points.push(rows.1);
+        let (picks, grips) = (0..count).map(pick_s).unzip();
+        let points = (0..count).map(aim_s).collect();
+        self.picks.push(picks);
+        self.grips.push(grips);
+        self.points.push(points);
         Ok(())
     }
 
@@ -126,6 +131,13 @@ impl Motions {
     pub fn pick_s(&self, aimed: Option<ObjectId>, object: ObjectId) -> f64 {
         let row = aimed.map_or(0, |i| i.index() + 1);
         self.picks.get(row).unwrap_or(&self.picks[0])[object.index()]
+    }
+
+    /// Seconds from the decision to pick `object` until the fingers close on it: until then it can be
+    /// called off. From rest or from aiming at `aimed`.
+    pub fn grip_s(&self, aimed: Option<ObjectId>, object: ObjectId) -> f64 {
+        let row = aimed.map_or(0, |i| i.index() + 1);
+        self.grips.get(row).unwrap_or(&self.grips[0])[object.index()]
     }
 
     /// Seconds until the arm aims at `object`, from rest or from aiming at `aimed`; none where
@@ -145,14 +157,15 @@ impl Planner<'_> {
         standing.map(|(_, place)| place.cuboid()).collect()
     }
 
-    /// Seconds to the end of the release.
-    fn pick(&self, from: &Posture, i: usize) -> Result<f64, Refusal> {
+    /// Seconds to the end of the release, and until the fingers close.
+    fn pick(&self, from: &Posture, i: usize) -> Result<(f64, f64), Refusal> {
         let others = self.others(Some(i));
         let plan =
             plan_pick(self.robot, &self.places[i], self.limb, &from.arms, &others, self.settings)?;
         from.refuse_other(plan.limb())?;
         let (_, released_s) = plan.span_s(Phase::Release).unwrap_or_default();
-        Ok(released_s)
+        let (closing_s, _) = plan.span_s(Phase::Close).unwrap_or_default();
+        Ok((released_s, closing_s))
     }
 
     /// Seconds until the arm aims, with which limb, and where both are then.
@@ -227,6 +240,8 @@ mod tests {
             let pick = plan_pick(robot, place, None, rest, &others, &settings).unwrap();
             let (_, released_s) = pick.span_s(Phase::Release).unwrap();
             assert_eq!(motions.pick_s(None, i.into()), released_s);
+            let (_, approached_s) = pick.span_s(Phase::Approach).unwrap();
+            assert_eq!(motions.grip_s(None, i.into()), approached_s);
             assert!(released_s < pick.duration_s(), "going home is not waited for");
             let point = plan_point(robot, place.xyz_m, None, rest, &all, &settings).unwrap();
             let (_, aimed_s) = point.span_s(Phase::Aim).unwrap();

@@ -56,7 +56,8 @@ struct Line {
     belief: Vec<f64>,
 }
 
-/// Answers each belief with `{"id","action","value","micros"}`.
+/// Answers each belief with `{"id","action","value","micros"}`, and the planner's `bounds` where an
+/// announced pick can be denied.
 ///
 /// # Errors
 /// See [`run`].
@@ -83,7 +84,12 @@ impl Decider {
         let decision = self.planner.decide(&self.problem.decision(), &belief, Step::default());
         let micros = started.elapsed().as_secs_f64() * 1e6;
         let action = action_to_json(&self.problem.scene, decision.action);
-        Ok(json!({ "id": line.id, "action": action, "value": decision.value, "micros": micros }))
+        let mut answer =
+            json!({ "id": line.id, "action": action, "value": decision.value, "micros": micros });
+        if let (false, Some(bounds)) = (self.problem.announce.is_final(), decision.bounds) {
+            answer["bounds"] = json!(bounds);
+        }
+        Ok(answer)
     }
 }
 

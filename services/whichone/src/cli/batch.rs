@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use dialogue::{Costs, Mode};
+use dialogue::{Announce, Costs, Mode};
 use language::Language;
 use manipulation::Limb;
 
@@ -47,6 +47,10 @@ pub struct ProblemArgs {
     /// Costs of actions and rewards of picks [default: the configuration's].
     #[arg(long, value_name = "PRESET", value_parser = cost_names())]
     pub costs: Option<String>,
+    /// Probability that a user who hears the wrong object announced denies it in time, 0 to below 1
+    /// [default: 0, every pick is final; a study without a preset: the configuration's].
+    #[arg(long, value_name = "C", value_parser = heard)]
+    pub announce: Option<f64>,
     /// The configuration, for everything else.
     #[command(flatten)]
     pub config: ConfigArgs,
@@ -160,6 +164,12 @@ pub(super) fn planner_names(others: &[PossibleValue]) -> PossibleValuesParser {
     let planners = dialogue::registry::entries();
     let planners = planners.iter().map(|entry| PossibleValue::new(entry.name).help(entry.about));
     PossibleValuesParser::new(others.iter().cloned().chain(planners))
+}
+
+fn heard(text: &str) -> Result<f64, String> {
+    let heard = text.parse().map_err(|error| format!("{error}"))?;
+    let fault = Announce { heard, cost_s: 0.0 }.check().into_iter().next();
+    fault.map_or(Ok(heard), |(_, what, help)| Err(format!("{what}; help: {help}")))
 }
 
 fn cost_names() -> PossibleValuesParser {

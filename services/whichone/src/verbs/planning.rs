@@ -60,7 +60,8 @@ fn problem(scene: Scene, args: &ProblemArgs) -> Result<Problem, Failure> {
                 .map_err(|error| Failure::new(Exit::Config, error.to_string()))
         })
         .transpose()?;
-    let announce = Announce::FINAL;
+    let cost_s = configured.map_or(Announce::COST_S, |dialogue| dialogue.announce.cost_s);
+    let announce = Announce { heard: args.announce.unwrap_or_default(), cost_s };
     Ok(Problem { scene, model, costs, durations, actions, announce, settings })
 }
 

@@ -26,6 +26,11 @@ fn announced<'a>(
     DecisionProblem { announce, ..DecisionProblem::new(model, costs, actions) }
 }
 
+/// A denial is wrong as often as two answers are that agree.
+fn erroneous(epsilon: f64) -> f64 {
+    epsilon.powi(2) / (epsilon.powi(2) + (1.0 - epsilon).powi(2))
+}
+
 /// Value iteration over beliefs to a depth, from the observation model and the equation alone. A
 /// leaf is worth waiting for ever at least, and a right pick at most.
 struct Exact<'a> {
@@ -60,7 +65,7 @@ impl Exact<'_> {
 
     fn pick(&mut self, belief: &[f64], i: usize, depth: u32) -> (f64, f64) {
         let DecisionProblem { model, costs, announce, .. } = *self.problem;
-        let epsilon = model.params().epsilon;
+        let epsilon = erroneous(model.params().epsilon);
         let denies = |j: usize| announce.heard * if j == i { epsilon } else { 1.0 - epsilon };
         let paid = |j: usize| if j == i { costs.correct } else { -costs.wrong };
         let objects = || belief.iter().enumerate();

@@ -116,7 +116,9 @@ fn announced(problem: &DecisionProblem<'_>, model: &Model, joint: &Joint) -> Vec
         let question = Question::Point(ObjectId::from(*i));
         let (settled, denied) =
             problem.announce.settle(&problem.costs, model.params().epsilon, chances[*i]);
-        let after = after(problem, model, joint, question, Answer::No);
+        let mut once = joint.clone();
+        once.update_mixture(model, &[(1.0, question, Answer::No.reading(model))]);
+        let after = after(problem, model, &once, question, Answer::No);
         (Action::Pick(ObjectId::from(*i)), settled + problem.costs.discount * denied * after)
     };
     likeliest.iter().map(value).collect()

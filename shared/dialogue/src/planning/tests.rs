@@ -331,6 +331,7 @@ fn announced(
 ) -> f64 {
     let (Announce { heard, cost_s }, costs) = (problem.announce, problem.costs);
     let epsilon = problem.model.params().epsilon;
+    let epsilon = epsilon.powi(2) / (epsilon.powi(2) + (1.0 - epsilon).powi(2));
     let denies = |c: usize| heard * if c == class { epsilon } else { 1.0 - epsilon };
     let denied: f64 = mass.iter().enumerate().map(|(c, m)| m * denies(c)).sum();
     let then: Vec<f64> = mass.iter().enumerate().map(|(c, m)| m * denies(c) / denied).collect();

@@ -5,7 +5,7 @@
 mod parser;
 
 use dialogue::export::{self, Pomdp};
-use dialogue::{Action, Actions, Answer, Costs, DecisionProblem, Mode, Model, Params};
+use dialogue::{Action, Actions, Announce, Answer, Costs, DecisionProblem, Mode, Model, Params};
 use scene::{ObjectId, Question, Scene};
 use serde_json::json;
 
@@ -112,6 +112,37 @@ fn check_end(parsed: &Parsed, end: usize) {
         assert_eq!(parsed.observation[action][end][0], 1.0);
         assert_eq!(parsed.reward[action][end], 0.0);
     }
+}
+
+/// A pick leads to the end, or is denied and leaves everything as it is.
+#[test]
+fn denied_picks_are_exported_as_planners_have_them() {
+    let announce = Announce { heard: 0.8, cost_s: 7.5 };
+    for_every_problem(|scene, problem, before| {
+        let problem = DecisionProblem { announce, ..*problem };
+        let exported = export::pomdp(scene, &problem, "").unwrap();
+        assert_eq!(exported.observations, before.observations + 1);
+        let parsed = parse(&exported.text);
+        let (model, costs) = (problem.model, problem.costs);
+        let (end, denied) = (model.hypotheses(), parsed.observations.len() - 1);
+        assert_eq!(parsed.observations[denied], "denied");
+        let first = parsed.actions.len() - model.objects();
+        let (own, other) = announce.denials(model.params().epsilon);
+        for (picked, action) in (0..model.objects()).zip(first..) {
+            for state in 0..end {
+                let is_wanted = picked == state;
+                let d = if is_wanted { own } else { other };
+                let reached = &parsed.transition[action][state];
+                assert_eq!((reached[end], reached[state]), (1.0 - d, d));
+                let worth = if is_wanted { costs.correct } else { -costs.wrong };
+                let paid = worth * (1.0 - d) - d * announce.cost_s;
+                let off = (parsed.reward[action][state] - paid).abs();
+                assert!(off <= 1e-12 * worth.abs().max(1.0), "{paid}");
+                assert_eq!(parsed.observation[action][state][denied], 1.0);
+            }
+        }
+        check_end(&parsed, end);
+    });
 }
 
 #[test]

@@ -13,7 +13,7 @@ pub(crate) struct Parsed {
     pub(crate) transition: Vec<Vec<Vec<f64>>>,
     /// `O(s', a, o)` as `[a][s'][o]`.
     pub(crate) observation: Vec<Vec<Vec<f64>>>,
-    /// `R(s, a)` as `[a][s]`.
+    /// `R(s, a)` as `[a][s]`: expected, where it depends on `s'`.
     pub(crate) reward: Vec<Vec<f64>>,
 }
 
@@ -65,7 +65,7 @@ pub(crate) fn parse(text: &str) -> Parsed {
     let by_observation = Names::new(&observations);
     let table = |columns: usize| vec![vec![vec![0.0_f64; columns]; states.len()]; actions.len()];
     let (mut transition, mut observation) = (table(states.len()), table(observations.len()));
-    let mut reward = vec![vec![0.0; states.len()]; actions.len()];
+    let mut rewards = table(states.len());
     while let Some(line) = lines.next() {
         let (key, rest) = line.split_once(": ").unwrap();
         let parts: Vec<&str> = rest.split(" : ").collect();
@@ -96,9 +96,11 @@ pub(crate) fn parse(text: &str) -> Parsed {
             }
             ("R", 4) => {
                 let (name, value) = last(3);
-                assert_eq!((parts[2], name), ("*", "*"), "{line}");
+                assert_eq!(name, "*", "{line}");
                 for a in chosen {
-                    by_state.all(parts[1]).into_iter().for_each(|s| reward[a][s] = value);
+                    for s in by_state.all(parts[1]) {
+                        by_state.all(parts[2]).into_iter().for_each(|to| rewards[a][s][to] = value);
+                    }
                 }
             }
             _ => panic!("not an entry: {line}"),
@@ -109,5 +111,11 @@ pub(crate) fn parse(text: &str) -> Parsed {
         let sum: f64 = row.iter().sum();
         assert!((sum - 1.0).abs() < 1e-5, "a row sums to {sum}");
     }
+    let expected = |(paid, reached): (&Vec<f64>, &Vec<f64>)| {
+        paid.iter().zip(reached).filter(|(_, p)| **p > 0.0).map(|(r, p)| r * p).sum()
+    };
+    let reward = rewards.iter().zip(&transition);
+    let reward = reward.map(|(paid, reached)| paid.iter().zip(reached).map(expected).collect());
+    let reward = reward.collect();
     Parsed { discount, states, actions, observations, start, transition, observation, reward }
 }

@@ -4,8 +4,8 @@
 use dialogue::manager::{Cause, Manager, Setup, State, Utterance};
 use dialogue::time::{Span, Time};
 use dialogue::{
-    ActKind, Action, Attribution, DecisionProblem, Interpretation, Planner, Presentation, Prior,
-    PriorObjects, Rng, TurnTaking, rendering,
+    ActKind, Action, Attribution, DecisionProblem, Interpretation, PickOutcome, Planner,
+    Presentation, Prior, PriorObjects, Rng, TurnTaking, rendering,
 };
 use language::Reader;
 use preflight::{Motions, Pace, Voice};
@@ -34,6 +34,8 @@ pub struct Room<'a> {
     pub motions: Option<&'a Motions>,
     /// `true` if people begin with a request; else the robot begins without knowledge.
     pub request: bool,
+    /// Whether people deny a wrong object that the robot announces, as they can until it is gripped.
+    pub denials: bool,
 }
 
 impl<'a> Room<'a> {
@@ -69,7 +71,9 @@ pub struct SimulatedInteraction {
     pub verdict: Verdict,
     /// Questions asked, repetitions included.
     pub questions: u32,
-    /// Seconds from the request understood to the decision to pick, or to the end without one.
+    /// Announced picks that were denied in time.
+    pub denied: u32,
+    /// Seconds from the request understood to the last decision to pick, or to the end without one.
     pub talk_s: f64,
     /// Seconds to the hand-over, or to the end without one.
     pub seconds: f64,
@@ -97,6 +101,7 @@ pub fn interact(
         state,
         aimed: None,
         questions: 0,
+        denied: 0,
         waits: 0,
         answers: 0,
         seconds: 0.0,
@@ -105,10 +110,14 @@ pub fn interact(
     };
     play.begin(&user.request(room.domain()));
     loop {
-        let act = &play.state.act;
-        let verdict = match (act.kind, act.pick) {
-            (ActKind::Pick, Some((_, object))) => return play.pick(object, user.wanted()),
-            (ActKind::Ask, _) => play.ask(act.question, user),
+        let (kind, pick, question) =
+            (play.state.act.kind, play.state.act.pick, play.state.act.question);
+        let verdict = match (kind, pick) {
+            (ActKind::Pick, Some((_, object))) if !play.is_denied(object, user) => {
+                return play.pick(object, user.wanted());
+            }
+            (ActKind::Pick, Some(_)) => None,
+            (ActKind::Ask, _) => play.ask(question, user),
             (ActKind::Wait, _) => play.wait(user),
             _ => Some(play.closed()),
         };
@@ -126,6 +135,7 @@ struct Play<'r, 'a> {
     state: State,
     aimed: Option<ObjectId>,
     questions: u32,
+    denied: u32,
     waits: u32,
     answers: u32,
     seconds: f64,
@@ -278,6 +288,54 @@ impl<'r, 'a> Play<'r, 'a> {
         ended.and_then(|ended| Verdict::of(ended.outcome, false)).unwrap_or(Verdict::Cancelled)
     }
 
+    /// Announces the pick. Where the user denies it and is heard before the object is gripped, the arm
+    /// leaves it and comes back, as far as it had got. What is not understood as a denial, or too late,
+    /// changes nothing.
+    fn is_denied(&mut self, object: ObjectId, user: &mut SimulatedUser) -> bool {
+        if !self.room.denials {
+            return false;
+        }
+        let announce = self.room.problem.announce;
+        let turn = user.objection(self.room.domain(), announce, object);
+        if turn.reply == Reply::Silence {
+            return false;
+        }
+        let (announced_s, said_s) = (self.seconds, self.said_s());
+        let reaction_s = self.room.pace.reaction_s(self.clock) + turn.late_s;
+        let speech_s = self.room.pace.speech_s(self.clock, turn.reply.words());
+        let heard_s = said_s + reaction_s + speech_s + self.room.pace.recogniser_s(self.clock);
+        let grip_s = self.room.motions.map_or(0.0, |motions| motions.grip_s(self.aimed, object));
+        // A user who is no more than probabilities denies in time: that is what `heard` counts.
+        if heard_s > grip_s && !matches!(turn.reply, Reply::Answer(_)) {
+            return false;
+        }
+        let began = self.now();
+        self.seconds += said_s;
+        let presentation = Presentation {
+            prompt: self.state.act.prompt,
+            number: self.state.act.presentation,
+            question: Question::Point(object),
+            scene: self.state.scene_key,
+            began,
+            ended: Some(self.now()),
+            complete: true,
+        };
+        let onset_s = self.seconds + reaction_s;
+        self.seconds = announced_s + heard_s;
+        self.hear(&turn.reply, Some(presentation), onset_s, speech_s);
+        let (ActKind::Cancel, Some((pick, _))) = (self.state.act.kind, self.state.act.pick) else {
+            self.seconds = announced_s;
+            return false;
+        };
+        self.denied += 1;
+        self.seconds += heard_s.min(grip_s);
+        self.aimed = None;
+        self.value -= self.discount * announce.cost_s;
+        self.discount *= self.room.problem.costs.discount;
+        self.step(&Cause::PickEnded { pick, outcome: PickOutcome::Cancelled });
+        true
+    }
+
     fn pick(self, object: ObjectId, wanted: Option<ObjectId>) -> SimulatedInteraction {
         let verdict = if Some(object) == wanted { Verdict::Right } else { Verdict::Wrong };
         self.end(verdict, Some(object))
@@ -292,6 +350,7 @@ impl<'r, 'a> Play<'r, 'a> {
         SimulatedInteraction {
             verdict,
             questions: self.questions,
+            denied: self.denied,
             talk_s,
             seconds: self.seconds,
             value: self.value,
@@ -302,8 +361,13 @@ impl<'r, 'a> Play<'r, 'a> {
 
     /// Returns the seconds of a pick. The robot says what it fetches while it sets out.
     fn fetch_s(&self, object: ObjectId) -> f64 {
-        let said_s = self.room.voice.seconds(&rendering::text(self.room.scene, &self.state.act));
+        let said_s = self.said_s();
         self.room.motions.map_or(said_s, |motions| motions.pick_s(self.aimed, object).max(said_s))
+    }
+
+    /// Returns the seconds that the standing line takes.
+    fn said_s(&self) -> f64 {
+        self.room.voice.seconds(&rendering::text(self.room.scene, &self.state.act))
     }
 }
 

@@ -15,6 +15,8 @@ pub struct Tally {
     pub without: u64,
     /// Questions asked, repetitions included.
     pub questions: Mean,
+    /// Announced picks that were denied in time.
+    pub denied: Mean,
     /// Seconds from the request to the robot's decision to pick, or to its giving up.
     pub talk_s: Mean,
     /// Seconds from the request to the hand-over, or to the giving up.
@@ -41,6 +43,7 @@ impl Tally {
             _ => self.without += 1,
         }
         self.questions.add(f64::from(ended.questions));
+        self.denied.add(f64::from(ended.denied));
         self.talk_s.add(ended.talk_s);
         self.seconds.add(ended.seconds);
         self.value.add(ended.value);
@@ -55,6 +58,7 @@ impl Tally {
         self.wrong += other.wrong;
         self.without += other.without;
         self.questions.merge(&other.questions);
+        self.denied.merge(&other.denied);
         self.talk_s.merge(&other.talk_s);
         self.seconds.merge(&other.seconds);
         self.value.merge(&other.value);
@@ -98,6 +102,7 @@ mod tests {
         SimulatedInteraction {
             verdict,
             questions,
+            denied: 0,
             talk_s: 1.0,
             seconds: f64::from(questions),
             value: -1.0,

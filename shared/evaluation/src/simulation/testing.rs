@@ -54,6 +54,7 @@ impl House {
             pace: &self.pace,
             motions: None,
             request: true,
+            denials: true,
         }
     }
 }

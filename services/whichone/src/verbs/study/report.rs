@@ -26,6 +26,7 @@ pub(super) fn to_json(args: &StudyArgs, setup: &Setup, results: &[(&Row, Tally)]
         "actions": room.problem.actions,
         "params": room.problem.model.params(),
         "costs": room.problem.costs,
+        "announce": room.problem.announce,
         "costs_measured": room.problem.durations.is_some(),
         "durations": seconds::to_json(setup),
         "rows": results.iter().map(row).collect::<Vec<_>>(),
@@ -64,6 +65,7 @@ fn columns(row: &Row, tally: &Tally) -> Vec<(&'static str, Json)> {
     ];
     let means = [
         (["questions", "questions_low", "questions_high"], &tally.questions),
+        (["denied", "denied_low", "denied_high"], &tally.denied),
         (["talk_s", "talk_s_low", "talk_s_high"], &tally.talk_s),
         (["seconds", "seconds_low", "seconds_high"], &tally.seconds),
         (["return", "return_low", "return_high"], &tally.value),

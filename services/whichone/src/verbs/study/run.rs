@@ -37,8 +37,8 @@ pub(super) fn run(
     let pieces: Vec<Piece> = (0..rows.len())
         .flat_map(|row| (0..chunks).map(move |chunk| Piece { row, chunk }))
         .collect();
-    let shared: HashMap<&str, Arc<SharedDecisions>> =
-        rows.iter().map(|row| (row.policy.as_str(), Arc::default())).collect();
+    let shared: HashMap<Decider<'_>, Arc<SharedDecisions>> =
+        rows.iter().map(|row| (decider(row), Arc::default())).collect();
     let next = AtomicUsize::new(0);
     let (counted, arrived) = mpsc::channel();
     let mut done: Vec<Option<Tally>> = vec![None; pieces.len()];
@@ -81,29 +81,41 @@ fn merge(rows: usize, pieces: &[Piece], done: &[Option<Tally>]) -> Vec<Tally> {
     tallies
 }
 
+/// What decides in a row: its policy, and whether in real time, where a pick is final.
+type Decider<'a> = (&'a str, bool);
+
+fn decider(row: &Row) -> Decider<'_> {
+    (row.policy.as_str(), row.people.in_real_time())
+}
+
 /// One thread's side.
 struct Worker<'a> {
     room: Room<'a>,
     rows: &'a [Row],
     count: u64,
     seed: u64,
-    shared: &'a HashMap<&'a str, Arc<SharedDecisions>>,
-    managers: HashMap<&'a str, Manager>,
+    shared: &'a HashMap<Decider<'a>, Arc<SharedDecisions>>,
+    managers: HashMap<Decider<'a>, Manager>,
 }
 
 impl Worker<'_> {
     fn count(&mut self, piece: Piece) -> Tally {
-        let Row { policy, people } = &self.rows[piece.row];
-        if !self.managers.contains_key(policy.as_str()) {
+        let row = &self.rows[piece.row];
+        let (Row { policy, people }, decider) = (row, decider(row));
+        if !self.managers.contains_key(&decider) {
             // The command line has accepted only known names.
             let Ok(planner) = registry::planner(policy) else { return Tally::default() };
             let mut planner = CachedPlanner::new(planner);
-            if let Some(shared) = self.shared.get(policy.as_str()) {
+            if let Some(shared) = self.shared.get(&decider) {
                 planner = planner.sharing(Arc::clone(shared));
             }
-            self.managers.insert(policy, self.room.manager(planner));
+            let mut room = self.room;
+            if people.in_real_time() {
+                room.problem = room.problem.with_final_picks();
+            }
+            self.managers.insert(decider, room.manager(planner));
         }
-        let Some(manager) = self.managers.get_mut(policy.as_str()) else {
+        let Some(manager) = self.managers.get_mut(&decider) else {
             return Tally::default();
         };
         let first = piece.chunk * CHUNK;

@@ -23,6 +23,8 @@ pub(super) struct Setup {
     pace: Pace,
     motions: Option<Motions>,
     request: bool,
+    /// In the publication's evaluations a pick was final.
+    denials: bool,
 }
 
 /// The scene of the paper's evaluations.
@@ -38,6 +40,9 @@ impl Setup {
             let configured = settings.dialogue.actions;
             problem.actions.attribute &= configured.attribute;
             problem.actions.which &= configured.which;
+            if args.problem.announce.is_none() {
+                problem.announce = settings.dialogue.announce;
+            }
         }
         let settings = problem.settings.as_ref();
         let turns = settings.map_or_else(TurnTaking::default, |it| it.dialogue.turns);
@@ -47,7 +52,8 @@ impl Setup {
         let language = settings.map_or(Language::default(), |s| s.dialogue.language);
         let (reader, request) = (Reader::new(&problem.scene, language), !args.no_request);
         let (motions, pace) = (motions(&problem)?, Pace::default());
-        let mut setup = Self { reader, problem, turns, voice, pace, motions, request };
+        let denials = args.preset.is_none();
+        let mut setup = Self { reader, problem, turns, voice, pace, motions, request, denials };
         if args.measured_costs {
             setup.problem.durations = Some(setup.durations());
         }
@@ -65,6 +71,7 @@ impl Setup {
             pace: &self.pace,
             motions: self.motions.as_ref(),
             request: self.request,
+            denials: self.denials,
         }
     }
 

@@ -13,8 +13,17 @@ pub(super) fn lines(setup: &Setup, results: &[(&Row, Tally)]) -> Vec<String> {
     let mut lines = Vec::new();
     if !in_turns.is_empty() {
         let seconds = if setup.moves() { "SECONDS" } else { "SECONDS (NO ARM)" };
-        let heads =
-            ["POLICY", "PEOPLE", "SUCCESS %", "95 %", "QUESTIONS", seconds, "RETURN", "95 %"];
+        let heads = [
+            "POLICY",
+            "PEOPLE",
+            "SUCCESS %",
+            "95 %",
+            "QUESTIONS",
+            seconds,
+            "DENIED",
+            "RETURN",
+            "95 %",
+        ];
         let rows: Vec<_> = in_turns.iter().map(|(row, tally)| cells(row, tally)).collect();
         lines.extend(table(&heads, &rows));
     }
@@ -31,6 +40,7 @@ pub(super) fn lines(setup: &Setup, results: &[(&Row, Tally)]) -> Vec<String> {
 fn cells(row: &Row, tally: &Tally) -> Vec<String> {
     let mut cells = vec![row.policy.clone()];
     cells.extend(common(row, tally, &tally.seconds));
+    cells.push(format!("{:.3}", tally.denied.mean()));
     cells.push(format!("{:.3}", tally.value.mean()));
     cells.push(interval(tally.value.interval(), 1.0, 3));
     cells

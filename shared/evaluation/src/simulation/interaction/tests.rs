@@ -1,7 +1,7 @@
 use super::*;
 use crate::simulation::testing::{House, planner as planner_of};
 use crate::simulation::{UserKind, interactions};
-use dialogue::{Actions, Belief, Costs, Mode, evaluate, registry};
+use dialogue::{Actions, Announce, Belief, Costs, Mode, evaluate, registry};
 
 fn play(house: &House, planner: &str, wanted: &str, turns: Vec<Turn>) -> SimulatedInteraction {
     let mut manager = house.room().manager(planner_of(planner));
@@ -20,8 +20,9 @@ fn play(house: &House, planner: &str, wanted: &str, turns: Vec<Turn>) -> Simulat
 fn simulation_average_matches_the_exact_evaluation() {
     let (seed, n) = (20_261, 20_000);
     let house = House::new();
-    let mut rooms = vec![house.room(), house.room()];
+    let mut rooms = vec![house.room(), house.room(), house.room()];
     rooms[1].problem.actions = Actions { mode: Mode::Present, attribute: false, which: true };
+    rooms[2].problem.announce = Announce { heard: 0.8, cost_s: 8.0 };
     for room in &rooms {
         for name in registry::names() {
             let mut planner = registry::planner(name).unwrap();
@@ -35,8 +36,12 @@ fn simulation_average_matches_the_exact_evaluation() {
             let spread = (exact.success * (1.0 - exact.success) / n as f64).sqrt();
             let off = (tally.success() - exact.success).abs();
             assert!(off <= 5.0 * spread + 1e-6, "{case}, success {}", tally.success());
-            for (mean, exact) in [(&tally.questions, exact.questions), (&tally.value, exact.value)]
-            {
+            let means = [
+                (&tally.questions, exact.questions),
+                (&tally.denied, exact.denied),
+                (&tally.value, exact.value),
+            ];
+            for (mean, exact) in means {
                 let off = (mean.mean() - exact).abs();
                 assert!(off <= 5.0 * mean.error() + 1e-3, "{case}, {} not {exact}", mean.mean());
             }
@@ -63,10 +68,11 @@ fn interaction_repeats_a_question_into_silence_and_then_gives_up() {
         (outcome.verdict, outcome.questions),
         (Verdict::Abandoned, patience.repeats_max + 1)
     );
-    assert!(outcome.talk_s > 4.0 * patience.response_window_s);
+    assert!(outcome.talk_s > 3.0 * patience.response_window_s);
     let costs = Costs::SECONDS;
-    let asked: f64 = (0..4).map(|k| -4.0 * costs.discount.powi(k)).sum();
-    let value = asked + costs.discount.powi(4) * costs.wait_value();
+    let times = outcome.questions.cast_signed();
+    let asked: f64 = (0..times).map(|k| -4.0 * costs.discount.powi(k)).sum();
+    let value = asked + costs.discount.powi(times) * costs.wait_value();
     assert!((outcome.value - value).abs() < 1e-9, "{outcome:?} not {value}");
 }
 
@@ -109,4 +115,36 @@ fn interaction_without_an_end_has_the_value_of_waiting() {
     assert!(
         (outcome.value - (-1.0 + 0.9 * 10.0)).abs() < 1e-9 || outcome.verdict != Verdict::Right
     );
+}
+
+/// "No" while the arm is on its way: it comes back, and the robot goes on knowing better.
+#[test]
+fn denied_pick_costs_time_and_teaches() {
+    let house = House::new();
+    let (robot, settings) = (manipulation::Robot::baxter(), manipulation::PlanSettings::default());
+    let extent = preflight::Extent::Picks;
+    let motions = Motions::plan(robot, &house.scene, None, &settings, extent).unwrap();
+    // A quick voice, user and recogniser: "no" is heard before the fingers close.
+    let voice = preflight::Voice { words_per_minute: 330.0 };
+    let pace =
+        preflight::Pace { reaction_s: (0.4, 0.05), recogniser_s: (0.1, 0.2), ..Pace::default() };
+    let room = Room { motions: Some(&motions), voice, pace: &pace, ..house.room() };
+    let wanted = house.scene.object_named("white").unwrap();
+    let request = Turn::words("get me the small white plastic bowl on the counter");
+    let play = |room: &Room<'_>, turns: Vec<Turn>| {
+        let mut manager = room.manager(planner_of("never-ask"));
+        interact(room, &mut manager, &mut SimulatedUser::scripted(wanted, turns), &mut Rng::new(1))
+    };
+    let wrong = play(&room, vec![request.clone()]);
+    assert_eq!((wrong.verdict, wrong.denied), (Verdict::Wrong, 0));
+    let no = Turn::words("no");
+    let denied = play(&room, vec![request.clone(), no.clone()]);
+    assert_eq!((denied.verdict, denied.denied), (Verdict::Right, 1), "{denied:?}");
+    assert!(denied.talk_s > 3.0 && denied.seconds > wrong.seconds + 1.0, "{denied:?} {wrong:?}");
+    // Too late, or in an evaluation in which a pick is final.
+    let late = play(&room, vec![request.clone(), Turn { late_s: 20.0, ..no.clone() }]);
+    assert_eq!((late.verdict, late.denied), (Verdict::Wrong, 0));
+    assert_eq!(late.seconds, wrong.seconds);
+    let unheard = play(&Room { denials: false, ..room }, vec![request, no]);
+    assert_eq!(unheard, wrong);
 }

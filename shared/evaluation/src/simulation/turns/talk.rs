@@ -224,6 +224,7 @@ impl Talk<'_> {
         SimulatedInteraction {
             verdict,
             questions: self.put.len() as u32,
+            denied: 0,
             talk_s: self.now_s,
             seconds: self.now_s,
             value: self.value,

@@ -33,6 +33,8 @@ pub struct Manners {
     late: f64,
     /// Probability of saying something while the robot waits.
     speaks_up: f64,
+    /// Probability of attending to what the robot announces.
+    attends: f64,
     /// Answers to a yes/no question: plain, by value, hedged, corrected, with another value, asking
     /// for a repetition.
     closed: [f64; 6],
@@ -57,6 +59,7 @@ impl Manners {
         silent: 0.05,
         late: 0.08,
         speaks_up: 0.7,
+        attends: 0.85,
         closed: [0.52, 0.22, 0.08, 0.05, 0.10, 0.03],
         open: [0.40, 0.30, 0.08, 0.07, 0.12, 0.03],
         value_alone: 0.5,
@@ -76,6 +79,7 @@ impl Manners {
         silent: 0.0,
         late: 0.0,
         speaks_up: 1.0,
+        attends: 1.0,
         closed: [0.6, 0.3, 0.0, 0.0, 0.1, 0.0],
         open: [0.5, 0.5, 0.0, 0.0, 0.0, 0.0],
         value_alone: 0.17,
@@ -129,6 +133,20 @@ impl Speaker<'_> {
             dialogue::Answer::Silence => "i don't know".to_owned(),
         };
         self.say(&text)
+    }
+
+    /// What is said to the announcement of an object: nothing to the right one, but for a slip.
+    pub(super) fn objection(&mut self, object: ObjectId) -> Turn {
+        let manners = self.manners;
+        let (model, question) = (self.domain.model, Question::Point(object));
+        let attends = chance(self.rng, manners.attends);
+        match answer_or_slip(model, question, self.wanted, manners.slip, self.rng) {
+            dialogue::Answer::No if attends => {
+                let text = self.yes_or_no(question, false);
+                self.say(&text)
+            }
+            _ => Turn::SILENT,
+        }
     }
 
     /// Yes or no to `question`, in words.

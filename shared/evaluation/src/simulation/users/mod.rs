@@ -19,7 +19,7 @@ mod recogniser;
 mod timing;
 mod wording;
 
-use dialogue::{Answer, Model, Rng};
+use dialogue::{Announce, Answer, Model, Rng};
 use scene::{ObjectId, Question, Scene};
 
 pub use manners::Manners;
@@ -35,6 +35,9 @@ const NOISY_WRONG: (f64, f64) = (0.05, 0.20);
 const NOISY_SILENT: (f64, f64) = (0.20, 0.30);
 /// Probabilities that a noisy user's request names no, one, and two values.
 const NOISY_REQUEST: [f64; 3] = [0.5, 0.3, 0.2];
+
+/// Share of the announcements that a noisy user attends to.
+const NOISY_ATTENDS: f64 = 0.6;
 
 /// The objects that a user talks about.
 #[derive(Clone, Copy, Debug)]
@@ -268,6 +271,39 @@ impl SimulatedUser {
                 manners.speaker(domain, wanted, &mut self.rng).request()
             }
             _ => Turn::words(&format!("get me the {}", domain.scene.noun())),
+        }
+    }
+
+    /// Returns what is said to the announcement that the robot gets an object: nothing where it is
+    /// taken for the wanted one, or not attended to. Users who answer as the model has it object with
+    /// its probabilities; how others attend to the robot does not depend on what it expects.
+    pub fn objection(&mut self, domain: Domain<'_>, announce: Announce, object: ObjectId) -> Turn {
+        let this = Question::Point(object);
+        let rng = &mut self.rng;
+        match (&mut self.traits, self.wanted) {
+            (Traits::Scripted(turns), _) => turns.pop_front().unwrap_or(Turn::SILENT),
+            (Traits::Model(user), _) => match user.denies(domain.model, announce, object) {
+                true => Reply::Answer(Answer::No).into(),
+                false => Turn::SILENT,
+            },
+            (Traits::Noisy { wrong, .. }, Some(wanted)) => {
+                let attends = chance(rng, NOISY_ATTENDS);
+                match answer_or_slip(domain.model, this, wanted, *wrong, rng) {
+                    Answer::No if attends => Recogniser::BAD
+                        .hear(Answer::No.text(domain.scene), domain.scene, rng)
+                        .into(),
+                    _ => Turn::SILENT,
+                }
+            }
+            (Traits::Talkative(manners), Some(wanted)) => {
+                manners.speaker(domain, wanted, rng).objection(object)
+            }
+            (Traits::Unreliable { .. }, _) => match self.answer(domain, this) {
+                turn if turn.reply == Reply::Answer(Answer::No) => turn,
+                _ => Turn::SILENT,
+            },
+            (_, wanted) if wanted == Some(object) => Turn::SILENT,
+            _ => Turn::words(Answer::No.text(domain.scene)),
         }
     }
 

@@ -11,6 +11,7 @@ fn tally(right: u32, wrong: u32) -> Tally {
         tally.add(&SimulatedInteraction {
             verdict: if n < right { Verdict::Right } else { Verdict::Wrong },
             questions: n % 7,
+            denied: 0,
             talk_s: 10.0 + f64::from(n % 3),
             seconds: 20.0 + f64::from(n % 5),
             value: 1.0,
