@@ -72,6 +72,9 @@ fn measure(options: &Options, report: &mut Report) {
     if all || options.speech {
         speech::measure(report, options.quick);
     }
+    if all || options.endings {
+        speech::measure_endings(report, options.quick);
+    }
     if all || options.turns {
         turns::measure(report, options);
     }

@@ -24,6 +24,9 @@ pub(crate) struct Options {
     /// Only spoken input: what is understood of spoken sentences, how late
     #[arg(long)]
     pub(crate) speech: bool,
+    /// Only ends of utterances: how soon after the voice, how often in the middle of a sentence
+    #[arg(long)]
+    pub(crate) endings: bool,
     /// Only stops of the arm, in each shortage
     #[arg(long)]
     pub(crate) stops: bool,
@@ -57,8 +60,8 @@ impl Options {
     /// Returns whether all parts are selected.
     pub(crate) fn wants_all(&self) -> bool {
         let Self { core, kinematics, processes, joints, stops, .. } = *self;
-        let Self { speech, turns, console, spoken, .. } = *self;
+        let Self { speech, endings, turns, console, spoken, .. } = *self;
         let measured = core || kinematics || processes || joints || stops;
-        !(measured || speech || turns || console || spoken)
+        !(measured || speech || endings || turns || console || spoken)
     }
 }

@@ -80,12 +80,23 @@ pub(super) fn measure(report: &mut Report, voices: &Voices, quick: bool) {
     ];
     let mut cut_rows = Vec::new();
     let mut end_rows = Vec::new();
-    for rule in &rules {
-        let mut room = match Room::open(&scene, voices, rule) {
-            Ok(room) => room,
+    let voices_each = if quick { 1 } else { VOICES };
+    // Decoding counts by processor time, so rules may be measured side by side.
+    let heard = std::thread::scope(|scope| {
+        let hear = |rule| {
+            let (scene, sentences) = (&scene, &sentences);
+            scope.spawn(move || {
+                Room::open(scene, voices, rule).map(|mut room| room.hear(sentences, voices_each))
+            })
+        };
+        let rooms: Vec<_> = rules.iter().map(hear).collect();
+        rooms.into_iter().map(|room| room.join().expect("a room")).collect::<Vec<_>>()
+    });
+    for (rule, heard) in rules.iter().zip(heard) {
+        let (cuts, ends) = match heard {
+            Ok(tables) => tables,
             Err(error) => return print(&format!("ends of utterances are left out: {error}")),
         };
-        let (cuts, ends) = room.hear(&sentences, if quick { 1 } else { VOICES });
         cut_rows.push(std::iter::once(rule.name.to_owned()).chain(cuts).collect());
         end_rows.push(std::iter::once(rule.name.to_owned()).chain(ends).collect());
     }

@@ -32,7 +32,6 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
         return print(&format!("spoken input is left out: {missing} is not installed"));
     }
     let voices = Voices::new().expect("a folder for what is spoken");
-    endings::measure(report, &voices, quick);
     let levels: &[f64] = if quick { &[25.0, 10.0] } else { &[25.0, 20.0, 15.0, 10.0] };
     for corpus in [Corpus::main(), Corpus::fresh(), Corpus::utterances()] {
         let mut ears = match Ears::open(&corpus) {
@@ -44,6 +43,14 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
         let what = format!("start of the recogniser: {}", corpus.name);
         report.add(&what, "ms", &ears.starts_ms, "from the scene to ready for the first sound");
     }
+}
+
+pub(crate) fn measure_endings(report: &mut Report, quick: bool) {
+    if let Some(missing) = Voices::missing() {
+        return print(&format!("ends of utterances are left out: {missing} is not installed"));
+    }
+    let voices = Voices::new().expect("a folder for what is spoken");
+    endings::measure(report, &voices, quick);
 }
 
 /// The ears of one robot for each scene of a corpus.
