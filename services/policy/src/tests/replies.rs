@@ -164,3 +164,19 @@ fn who_starts_over_is_asked_what_is_wanted() {
     let clear = remark(&mut manager, &over, words(&["clear"]));
     assert_eq!(clear.act.kind, ActKind::Pick);
 }
+
+/// Nothing begins with a request for what is not here; of another way to say a quality it may.
+#[test]
+fn what_the_scene_has_nothing_of_is_said_at_once() {
+    let mut manager = manager();
+    let request = |unknown: &str| {
+        let said = typed(1, PromptId(0), Reading::default());
+        let said = dialogue::manager::Utterance { unknown: unknown.to_owned(), ..said };
+        Cause::Utterance(said)
+    };
+    let plate = manager.next(&manager.first(), &request("a plate"), at(1));
+    assert_eq!(text(&plate), "There are no plates here, only bowls.");
+    assert!(plate.open.is_none());
+    let purple = manager.next(&manager.first(), &request("purple"), at(1));
+    assert_eq!(purple.act.kind, ActKind::Ask);
+}

@@ -70,7 +70,8 @@ impl Evidence {
         let mut all: Vec<(f64, Question, Reading)> = self.interpretations.iter().map(of).collect();
         // The unknown word belongs to the best reading. Whether it was negated is not known, so it
         // counts only where nothing was.
-        if let (Some((_, _, best)), Some(word)) = (all.first_mut(), scene.word_named(&self.unknown))
+        let unknown = self.unknown.strip_prefix("a ").unwrap_or(&self.unknown);
+        if let (Some((_, _, best)), Some(word)) = (all.first_mut(), scene.word_named(unknown))
             && best.response != Response::No
             && best.excluded.is_empty()
         {

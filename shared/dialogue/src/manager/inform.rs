@@ -31,9 +31,11 @@ impl Manager {
             if spoken_of.is_none() && !self.is_request(utterance) {
                 return;
             }
-            if spoken_of.is_none() && !heard.unknown.is_empty() && says_nothing(&heard) {
-                let word = Remark::Unknown(heard.unknown.to_owned());
-                return say(state, Content::Remark(word), at);
+            // A thing that is not here; of a quality there may be another way to say it.
+            let is_thing = heard.unknown.starts_with("a ");
+            if spoken_of.is_none() && is_thing && says_nothing(&heard) {
+                let thing = Remark::Unknown(heard.unknown.to_owned());
+                return say(state, Content::Remark(thing), at);
             }
             self.begin(state, utterance, &heard, spoken_of);
             // What was asked before is over.

@@ -25,9 +25,7 @@ pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
             }
         }
         Remark::AllRight => "All right.".to_owned(),
-        Remark::Unknown(word) => {
-            format!("I know of no {word} here, only {}.", all_nouns(scene))
-        }
+        Remark::Unknown(thing) => super::unknown(scene, thing).trim_end().to_owned(),
         Remark::PutItDown => {
             "Please put it on the table; I cannot take it from your hand.".to_owned()
         }
