@@ -175,7 +175,22 @@ fn all_misread(scene: &Scene) -> Vec<String> {
 
 #[test]
 fn reader_understands_the_robots_words_in_shipped_scenes() {
-    for name in ["bowls", "tools", "markers", "garments", "pantry", "mugs"] {
+    for name in [
+        "bowls",
+        "tools",
+        "markers",
+        "garments",
+        "pantry",
+        "mugs",
+        "talk_books",
+        "talk_clothes",
+        "talk_cutlery",
+        "talk_medicine",
+        "talk_mugs",
+        "talk_office",
+        "talk_toys",
+        "talk_workshop",
+    ] {
         let failures = all_misread(&scene(name));
         assert!(failures.is_empty(), "{name}: {failures:#?}");
     }
