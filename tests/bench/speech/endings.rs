@@ -150,6 +150,10 @@ fn question(scene: &Scene, name: &str) -> Option<Question> {
     Some(Question::Attribute(k, scene.value_named(k, value)?))
 }
 
+/// One pause within an utterance: its length in milliseconds, how complete the words before it are,
+/// whether they deny, and whether the utterance was ended there.
+type Cut = (u32, Completeness, bool, bool);
+
 impl Hesitant {
     fn pauses(&self) -> bool {
         !self.parts[1].is_empty()
@@ -196,7 +200,7 @@ impl<'a> Room<'a> {
 
     /// Returns the cells of both tables.
     fn hear(&mut self, sentences: &[Hesitant], voices: usize) -> (Vec<String>, Vec<String>) {
-        let mut cuts: Vec<(u32, Completeness, bool, bool)> = Vec::new();
+        let mut cuts: Vec<Cut> = Vec::new();
         let (mut delays, mut complete, mut right, mut heard) = (Vec::new(), Vec::new(), 0, 0);
         for (n, sentence) in sentences.iter().enumerate() {
             for voice in 0..voices {
@@ -221,7 +225,7 @@ impl<'a> Room<'a> {
                 }
             }
         }
-        let share = |of: &dyn Fn(&(u32, Completeness, bool, bool)) -> bool| {
+        let share = |of: &dyn Fn(&Cut) -> bool| {
             let among: Vec<_> = cuts.iter().filter(|cut| of(cut)).collect();
             let cut = among.iter().filter(|cut| cut.3).count();
             format!("{:.0} % of {}", 100.0 * cut as f64 / among.len().max(1) as f64, among.len())
@@ -362,7 +366,8 @@ impl Decoder {
     }
 
     fn take_done(&mut self, now_s: f64) -> Option<Job> {
-        let job = self.jobs.pop_front_if(|job| job.done_s <= now_s)?;
+        self.jobs.front().filter(|job| job.done_s <= now_s)?;
+        let job = self.jobs.pop_front()?;
         let Job { sound, segment, result, done_s } = &job;
         let (sound, done_s) = (*sound, *done_s);
         let known = Job { sound, segment: segment.clone(), result: result.clone(), done_s };

@@ -74,7 +74,7 @@ impl Manager {
             let value = scene.object(*i).values[k]?;
             let value = &scene.attributes()[k].values[value.index()];
             let is_named = |names: &&[&str]| names.contains(&value.name.as_str());
-            SIZES.iter().position(|names| is_named(&names)).map(|rank| rank as f64 + 1.0)
+            SIZES.iter().position(is_named).map(|rank| rank as f64 + 1.0)
         };
         let differ = |sizes: &Vec<f64>| {
             let most = sizes.iter().copied().fold(0.0, f64::max);
