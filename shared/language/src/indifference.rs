@@ -56,7 +56,7 @@ fn is_any(clause: &[Tag<'_>], at: usize, answers: bool) -> bool {
 pub(crate) fn is_of_attribute(tags: &[Tag<'_>], at: usize) -> bool {
     const WORDS: &[&str] =
         &["matter", "difference", "important", "irrelevant", "immaterial", "odds"];
-    let said = tags[at..].iter().position(Tag::pauses).map_or(tags.len(), |end| at + end + 1);
+    let said = tags[at + 1..].iter().position(Tag::pauses).map_or(tags.len(), |end| at + 1 + end);
     WORDS.contains(&tags[at].last)
         || tags[at..said].iter().any(|tag| tag.is(Class::Attribute) || tag.word == "be")
 }

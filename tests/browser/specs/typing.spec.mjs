@@ -15,7 +15,7 @@ test("a person gets the right bowl by typing", async ({ console: page, group }) 
 test("the belief's bars follow the words", async ({ console: page, group }) => {
   const bars = page.getByRole("meter");
   await expect(bars).toHaveCount(6);
-  await type(page, "the clear bowl");
+  await type(page, "the big bowl");
   await expect(question(page)).not.toContainText(t("question.idle", { noun: "bowl" }));
   const { scene, dialogue } = await group.state();
   const { label } = scene.objects.find((object) => object.name === "clear");
