@@ -130,7 +130,11 @@ pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
 
 /// The latest interaction that ended, if it did with a delivery; else 0.
 fn delivered(record: &Record) -> u64 {
-    let ended = record.state.ended.as_ref().filter(|ended| matches!(ended.outcome, Outcome::Delivered | Outcome::Refused));
+    let ended = record
+        .state
+        .ended
+        .as_ref()
+        .filter(|ended| matches!(ended.outcome, Outcome::Delivered | Outcome::Refused));
     ended.map_or(0, |ended| ended.interaction.0)
 }
 
