@@ -27,6 +27,14 @@ pub(crate) fn act(scene: &Scene, state: &State) -> RobotAct {
     }
 }
 
+/// Returns the question that waits for an answer: that of the act, or whether a pick that was decided
+/// while the motion stop was latched shall start.
+fn asked(state: &State) -> Question {
+    let act = &state.act;
+    let confirmable = (act.kind == ActKind::Say).then(|| state.confirmable(act.prompt)).flatten();
+    confirmable.map_or(act.question, Question::Point)
+}
+
 /// Returns the question as which the act's line can be answered: "I will get the white bowl" can be
 /// denied like "this one?", also after the hand-over.
 fn answerable(state: &State) -> Question {
@@ -55,7 +63,7 @@ pub(crate) fn view(manager: &Manager, state: &State, rejected: u64) -> PolicyVie
         belief,
         absent,
         person: manager.user_params(state),
-        question: state.act.question,
+        question: asked(state),
         prompt: state.act.prompt.0,
         text: rendering::text(manager.scene(), &state.act),
         decision: state.act.kind,

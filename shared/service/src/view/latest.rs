@@ -2,6 +2,7 @@ use messages::{
     ActKind, Activity, ArmStatus, Hearing, PolicyView, PresentationState, Presented, Receipt,
     ReceiptStatus, topics,
 };
+use scene::Question;
 
 use crate::Time;
 use crate::bus::{Bus, BusError, EncodedReader, PortError, Reader, WireMessage};
@@ -117,8 +118,10 @@ impl Latest {
     pub fn open_question(&self) -> Option<PromptId> {
         let view = self.view.as_ref()?;
         let Presented { prompt, presentation, state, .. } = self.presented;
+        // "Say yes, and I will get the white bowl."
+        let is_confirmation = view.decision == ActKind::Say && view.question != Question::None;
         let is_asked = view.interaction != 0
-            && view.decision == ActKind::Ask
+            && (view.decision == ActKind::Ask || is_confirmation)
             && prompt == view.prompt
             && state == PresentationState::Ended;
         is_asked.then_some((prompt, presentation))
