@@ -14,6 +14,8 @@ const MARK: u8 = 0xA5;
 pub(crate) const PREFIX_BYTES: usize = 21;
 /// Checksum and length after the body.
 const SUFFIX_BYTES: usize = 8;
+/// Bytes of a frame without a body.
+pub(crate) const FRAME_BYTES_MIN: usize = PREFIX_BYTES + SUFFIX_BYTES;
 
 /// A frame whose checksum matches.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use serde::de::DeserializeOwned;
 
 use crate::JournalOpenError;
-use crate::frame::{self, Frame, PREFIX_BYTES};
+use crate::frame::{self, FRAME_BYTES_MIN, Frame, PREFIX_BYTES};
 use crate::header::StoredHeader;
 
 /// Endings of a journal file.
@@ -127,7 +127,9 @@ fn ending_of(rest: &[u8], position: &Position) -> Ending {
     let expected = position.next_seq;
     let plausible = |seq| seq >= expected && seq - expected <= u64::from(u32::MAX);
     let last_start = rest.len().saturating_sub(PREFIX_BYTES);
-    let starts = 0..=last_start;
+    // No frame begins within the shortest one. Without this, a frame of which a sector's last byte was
+    // the first and is lost would be found again one byte later, behind the next sector's mark.
+    let starts = std::iter::once(0).chain(FRAME_BYTES_MIN..=last_start);
     let valid = |i: &usize| frame::parse(at + *i as u64, &rest[*i..], plausible).is_some();
     let end = rest.len();
     let complete = || frame::was_complete(at, rest).then_some(end);

@@ -156,6 +156,24 @@ fn journal_drops_an_unacknowledged_batch_of_which_any_sectors_were_written() {
     }
 }
 
+/// Its first byte is the last one of a sector: what follows begins with that sector's mark, and looks
+/// like a frame that was written after a lost one.
+#[test]
+fn journal_drops_a_batch_whose_first_byte_alone_is_lost() {
+    let found = (0..600).find_map(|length| {
+        let test = TestJournal::new();
+        let filler = Entry { text: "x".repeat(length), ..entry(1) };
+        let lens = test.write(&[&[filler], &[entry(2), entry(3)]]);
+        (lens[1] % 512 == 511).then_some((test, lens))
+    });
+    let (test, lens) = found.expect("a length at which the batch begins there");
+    let mut bytes = test.bytes();
+    bytes[lens[1] as usize] = 0;
+    test.overwrite(&bytes);
+    let recovered = test.recover();
+    assert_eq!((recovered.records.len(), recovered.truncated_bytes), (1, lens[2] - lens[1]));
+}
+
 #[test]
 fn journal_without_its_snapshot_is_rejected() {
     let test = TestJournal::new();
