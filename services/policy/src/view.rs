@@ -39,12 +39,12 @@ fn asked(state: &State) -> Question {
 /// denied like "this one?", also after the hand-over.
 fn answerable(state: &State) -> Question {
     let act = &state.act;
-    let spoken_of = match (act.kind, act.pick) {
+    let deniable = match (act.kind, act.pick) {
         (ActKind::Pick, Some((_, object))) => Some(object),
-        (ActKind::Say, _) => state.refusable(act.prompt).or(state.confirmable(act.prompt)),
+        (ActKind::Say, _) => state.refusable(act.prompt),
         _ => None,
     };
-    spoken_of.map_or(act.question, Question::Point)
+    deniable.map_or_else(|| asked(state), Question::Point)
 }
 
 /// Returns the view that clients get.

@@ -11,8 +11,8 @@ use crate::group::GroupPaths;
 /// Lengths of a token, characters.
 const TOKEN_LEN: std::ops::RangeInclusive<usize> = 12..=200;
 
-/// Returns the file of the token: its first line. It is the owner's, who may write a word of his own there; the
-/// console writes it only where there is no token.
+/// Returns the file of the token: its first line. It is the owner's, who may write a word of
+/// their own there; the console writes it only where there is no token.
 pub fn token_file(paths: &GroupPaths) -> PathBuf {
     paths.root().join("console.token")
 }

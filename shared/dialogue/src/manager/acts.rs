@@ -9,6 +9,11 @@ use crate::ids::{PickId, PromptId};
 use crate::time::Time;
 use crate::{ActKind, Belief, NamedQuestion};
 
+/// Share of the likeliest object's probability from which another one may well be wanted.
+const LEFT_SHARE: f64 = 0.1;
+/// Most values that are read out as choices.
+const CHOICES_MAX: usize = 4;
+
 /// Makes `act` the standing decision.
 pub(super) fn set(state: &mut State, act: Act) {
     state.act = Act { id: state.act.id.next(), ..act };
@@ -47,16 +52,25 @@ impl Manager {
             set_reasons(state, reasons);
             return self.put_again(state, basis.preface, at);
         }
+        let prompt = self.new_prompt(state, question);
+        let Some(open) = &mut state.open else { return };
+        // The wording is a function of the state: a replay says the same.
+        let line = Line { preface: basis.preface, content: self.wording(open, prompt) };
+        set(state, Act { kind: ActKind::Ask, prompt, presentation: 1, question, line, ..reasons });
+    }
+
+    /// Numbers a prompt, and notes its question in the open interaction.
+    pub(super) fn new_prompt(&self, state: &mut State, question: Question) -> PromptId {
         state.last_prompt = state.last_prompt.next();
-        let prompt = state.last_prompt;
         let named = match self.recall {
             true => NamedQuestion::new(&self.setup.scene, question),
             false => NamedQuestion::None,
         };
-        open.prompts.push(Prompt { id: prompt, question, named, answered: None, times: 0 });
-        // The wording is a function of the state: a replay says the same.
-        let line = Line { preface: basis.preface, content: self.wording(open, prompt) };
-        set(state, Act { kind: ActKind::Ask, prompt, presentation: 1, question, line, ..reasons });
+        let id = state.last_prompt;
+        if let Some(open) = &mut state.open {
+            open.prompts.push(Prompt { id, question, named, answered: None, times: 0 });
+        }
+        id
     }
 
     /// Puts the standing question once more, in other words.
@@ -114,7 +128,7 @@ impl Manager {
     pub(super) fn left(&self, belief: &Belief) -> Vec<ObjectId> {
         let objects = || (0..self.setup.scene.objects().len()).map(ObjectId::from);
         let most = objects().map(|i| belief.probability(i)).fold(0.0, f64::max);
-        objects().filter(|i| belief.probability(*i) >= LIKELY * most).collect()
+        objects().filter(|i| belief.probability(*i) >= LEFT_SHARE * most).collect()
     }
 
     pub(super) fn pick(
@@ -177,11 +191,6 @@ impl Manager {
         }
     }
 }
-
-/// Share of the likeliest object's probability from which another one may well be wanted.
-const LIKELY: f64 = 0.1;
-/// Most values that are read out as choices.
-const CHOICES_MAX: usize = 4;
 
 /// Orders the same pick under a new key.
 pub(super) fn order_again(state: &mut State, at: Time) {

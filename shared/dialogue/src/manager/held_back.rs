@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 use super::Manager;
 use super::acts::{say, set};
 use super::attribution::Heard;
-use super::line::{Content, Preface};
-use super::state::{Act, Prompt, State};
+use super::line::{Content, Line, Preface};
+use super::state::{Act, State};
+use crate::ActKind;
 use crate::ids::PromptId;
 use crate::time::Time;
-use crate::{ActKind, NamedQuestion};
 
 /// A pick that waits for the release of the motion stop.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,20 +47,12 @@ impl Manager {
         let content = Content::HeldBack(self.description(object));
         let Some(open) = &mut state.open else { return };
         open.held_back = Some(HeldBack { name, is_confirmed: false });
-        self.ask_for(state, object, super::Line { preface, content }, reasons);
+        self.ask_for(state, object, Line { preface, content }, reasons);
     }
 
     /// Says a line that is answered with yes or no to the object, without aiming at it.
-    fn ask_for(&self, state: &mut State, object: ObjectId, line: super::Line, reasons: Act) {
-        state.last_prompt = state.last_prompt.next();
-        let (prompt, question) = (state.last_prompt, Question::Point(object));
-        let named = match self.recall {
-            true => NamedQuestion::new(&self.setup.scene, question),
-            false => NamedQuestion::None,
-        };
-        if let Some(open) = &mut state.open {
-            open.prompts.push(Prompt { id: prompt, question, named, answered: None, times: 0 });
-        }
+    fn ask_for(&self, state: &mut State, object: ObjectId, line: Line, reasons: Act) {
+        let prompt = self.new_prompt(state, Question::Point(object));
         set(state, Act { kind: ActKind::Say, prompt, presentation: 1, line, ..reasons });
     }
 

@@ -19,6 +19,9 @@ const SIZES: [&[&str]; 5] = [
     &["huge", "giant", "gigantic", "enormous"],
 ];
 
+/// Relative difference up to which sizes are the same.
+const SAME: f64 = 0.01;
+
 /// Returns what the likeliest reading points to.
 pub(super) fn reference(heard: &Heard<'_>) -> Reference {
     heard.interpretations.first().map_or(Reference::None, |(.., reading)| reading.refers)
@@ -86,6 +89,3 @@ impl Manager {
         volumes.filter(differ).or_else(|| ranks.find(differ))
     }
 }
-
-/// Relative difference up to which sizes are the same.
-const SAME: f64 = 0.01;

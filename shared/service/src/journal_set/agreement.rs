@@ -73,7 +73,7 @@ pub fn agree(set: &JournalSet, [speech, policy, arm]: [SharedFacts; 3]) -> Resul
 pub fn check_agreement(paths: &GroupPaths, set: &JournalSet) -> Result<(), Behind> {
     let started = Service::JOURNALED.map(|service| start_reading(paths, service));
     let facts = started.map(|child| child.and_then(facts));
-    // Compared only where both are known.
+    // What one of them does not tell cannot contradict the others.
     let [Some(speech), Some(policy), Some(arm)] = facts else { return Ok(()) };
     agree(set, [speech, policy, arm]).map(drop)
 }
