@@ -102,6 +102,22 @@ fn journal_that_is_empty_or_damaged_is_refused_and_kept() {
     group.down();
 }
 
+#[test]
+fn set_of_journals_that_is_lost_is_refused_until_a_fresh_start() {
+    let mut group = fetched_and_down();
+    fs::remove_file(group.paths().epoch_file()).unwrap();
+    let why = "the file is missing beside journals";
+    for refused in [group.start(&[]), group.call(&["journal", "--verify"])] {
+        assert_eq!(refused.code, Some(74), "{refused:?}");
+        assert!(refused.stderr.contains(why), "{refused:?}");
+        assert!(refused.stderr.contains("`whichone up --fresh`"), "{refused:?}");
+    }
+    let fresh = group.start_fresh();
+    assert_eq!(fresh.code, Some(0), "{fresh:?}\n{}", group.logs());
+    group.verify_journals();
+    group.down();
+}
+
 /// Delivers an object, copies the journals, delivers another one, and is down.
 fn copied_between_deliveries() -> (Group, tempfile::TempDir) {
     let group = Group::up(&[]);

@@ -84,23 +84,32 @@ impl JournalSet {
     /// Reads the set; none before the first start.
     ///
     /// # Errors
-    /// The file cannot be read, or is damaged or of another version (`InvalidData`).
+    /// The file cannot be read, is damaged or of another version, or is missing beside journals
+    /// (`InvalidData`).
     pub fn load(paths: &GroupPaths) -> io::Result<Option<Self>> {
         let path = paths.epoch_file();
+        let failed = |kind, what: &str| io::Error::new(kind, format!("{}: {what}", path.display()));
+        let invalid = |what: &str| {
+            let help = "help: start over with `whichone up --fresh`, which keeps the old journals";
+            failed(ErrorKind::InvalidData, &format!("{what}; {help}"))
+        };
+        let is_there = |service: &Service| paths.journal_file(service.name()).exists();
         let text = match fs::read_to_string(&path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            text => text?,
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                return Err(failed(error.kind(), &error.to_string()));
+            }
+            Err(_) if Service::JOURNALED.iter().any(is_there) => {
+                return Err(invalid("the file is missing beside journals that it describes"));
+            }
+            Err(_) => return Ok(None),
+            Ok(text) => text,
         };
         let read = text.split_once('\n').and_then(|(line, sum)| {
             let is_whole = sum.trim() == checksum(line);
             is_whole.then(|| serde_json::from_str(line).ok()).flatten()
         });
-        let invalid = || {
-            let what = "expected the set of journals, found damage or another version";
-            let help = "help: start over with `whichone up --fresh`, which keeps the old journals";
-            io::Error::new(ErrorKind::InvalidData, format!("{}: {what}; {help}", path.display()))
-        };
-        read.map(Some).ok_or_else(invalid)
+        let damaged = "expected the set of journals, found damage or another version";
+        read.map(Some).ok_or_else(|| invalid(damaged))
     }
 
     /// Writes the set.
@@ -181,7 +190,8 @@ pub(crate) fn open<R: Serialize + DeserializeOwned>(
     let paths = &environment.paths;
     let file = paths.epoch_file();
     let none = || Failure::new(Exit::Storage, format!("{}: the file is missing", file.display()));
-    let load = || JournalSet::load(paths).map_err(|error| Failure::file(&file, &error));
+    let load =
+        || JournalSet::load(paths).map_err(|error| Failure::new(Exit::Storage, error.to_string()));
     let mut set = load()?.ok_or_else(none)?;
     if set.epoch != environment.epoch.0 {
         let (ours, theirs) = (environment.epoch, set.epoch);
@@ -255,7 +265,8 @@ fn open_lock(path: &Path) -> io::Result<File> {
 pub fn set_aside(paths: &GroupPaths, services: &[Service]) -> Result<Option<PathBuf>, Failure> {
     let none = || Failure::new(Exit::NotReached, format!("group {} has no journals", paths.name()));
     let file = paths.epoch_file();
-    let load = || JournalSet::load(paths).map_err(|error| Failure::file(&file, &error));
+    let load =
+        || JournalSet::load(paths).map_err(|error| Failure::new(Exit::Storage, error.to_string()));
     load()?.ok_or_else(none)?;
     let _locks = [paths.supervisor_lock(), paths.alive_lock()]
         .map(|path| lock_idle(paths, &path))

@@ -13,6 +13,9 @@ use whichone::verbs::{TruthfulUser, Waiting};
 /// Receipts that a new client still gets.
 const RECEIPTS: usize = messages::topics::WINDOW;
 
+/// A client that runs for so long without a break has had time to answer.
+const TIME_TO_ANSWER: Span = Span::from_ms(3_000);
+
 /// A person who wants one object after another, and their client.
 pub struct Client {
     wanted: VecDeque<String>,
@@ -29,12 +32,16 @@ pub struct Client {
     pub(super) history: Arrived,
     /// Keys of all accepted utterances, in order.
     pub accepted: Vec<RequestKey>,
-    /// Times that the person had to ask again because the robot had given up.
-    pub abandoned: u32,
+    /// Whether the person has had time to answer since their last accepted words.
+    could_answer: bool,
+    /// Times that the robot gave up a person who had time to answer.
+    pub given_up: u32,
 }
 
 /// The memory of the client.
 struct Process {
+    /// When it started, or its last words were accepted.
+    quiet_since: Time,
     latest: Latest,
     user: TruthfulUser,
     waiting: Waiting,
@@ -52,7 +59,8 @@ impl Client {
             arrived: Arrived::default(),
             history: Arrived::default(),
             accepted: Vec::new(),
-            abandoned: 0,
+            could_answer: false,
+            given_up: 0,
         }
     }
 
@@ -86,7 +94,7 @@ impl Client {
     pub(super) fn look(&mut self, scene: &Scene, now: Time) -> (Vec<Injection>, Option<String>) {
         let Some(wanted) = self.wanted.front().cloned() else { return Default::default() };
         if self.restart.take_if(|at| *at <= now).is_some() {
-            self.start(scene, &wanted);
+            self.start(scene, &wanted, now);
         }
         let arrived = std::mem::take(&mut self.arrived);
         let Some(process) = &mut self.process else { return Default::default() };
@@ -102,6 +110,8 @@ impl Client {
                 self.accepted.push(receipt.request());
                 process.saying.pop_front();
                 self.has_asked = true;
+                self.could_answer = false;
+                process.quiet_since = now;
             }
         }
         let story = self.next(scene, now);
@@ -110,10 +120,11 @@ impl Client {
         (due.into_iter().collect(), story)
     }
 
-    fn start(&mut self, scene: &Scene, wanted: &str) {
+    fn start(&mut self, scene: &Scene, wanted: &str, now: Time) {
         let user = TruthfulUser::new(scene, wanted, false).expect("an object of the scene");
         self.arrived = self.history.clone();
         self.process = Some(Process {
+            quiet_since: now,
             latest: Latest::default(),
             user,
             waiting: Waiting::new(self.reported),
@@ -136,13 +147,14 @@ impl Client {
             self.has_asked = false;
             match ended.outcome {
                 Outcome::Delivered => drop(self.wanted.pop_front()),
-                _ => self.abandoned += 1,
+                _ => self.given_up += u32::from(self.could_answer),
             }
             if let Some(wanted) = self.wanted.front().cloned() {
-                self.start(scene, &wanted);
+                self.start(scene, &wanted, now);
             }
             return Some(format!("user: learns of {:?}, {:?}", ended.outcome, ended.name));
         }
+        self.could_answer |= now.since(process.quiet_since) >= TIME_TO_ANSWER;
         let answer = process.user.answer(&process.latest)?;
         process.say(&answer, now);
         Some(format!("user: {answer} (to {:?})", process.latest.open_question()))

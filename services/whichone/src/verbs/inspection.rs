@@ -61,7 +61,7 @@ fn set_aside(paths: &GroupPaths, services: &[Service], out: &mut Output<'_>) -> 
 
 /// Verifies every journal, and that they agree with one another.
 fn verify_all(paths: &GroupPaths, out: &mut Output<'_>) -> Outcome {
-    let unreadable = |error| Failure::file(&paths.epoch_file(), &error);
+    let unreadable = |error: std::io::Error| Failure::new(Exit::Storage, error.to_string());
     let Some(set) = JournalSet::load(paths).map_err(unreadable)? else {
         let what = format!("group {} has no journals yet", paths.name());
         return Err(Failure::new(Exit::NotReached, format!("{what}; help: `whichone up`")));
