@@ -34,7 +34,10 @@ struct Value<'a> {
 #[derive(Debug, Serialize)]
 struct Object<'a> {
     name: &'a str,
+    /// Unique: objects with the same description are numbered.
     label: &'a str,
+    /// The robot's own words for it, which it also understands.
+    description: String,
     #[serde(serialize_with = "map")]
     attributes: Vec<(&'a str, &'a str)>,
     xyz: Option<[f64; 3]>,
@@ -50,11 +53,12 @@ impl<'a> SceneSection<'a> {
                 .map(|value| Value { name: &value.name, spoken: &value.spoken })
                 .collect(),
         });
-        let objects = scene.objects().iter().zip(labels).map(|(object, label)| {
+        let objects = scene.objects().iter().zip(labels).enumerate().map(|(i, (object, label))| {
             let values = scene.attributes().iter().zip(&object.values);
             Object {
                 name: &object.name,
                 label,
+                description: scene.describe(ObjectId::from(i)),
                 attributes: values
                     .filter_map(|(attribute, value)| {
                         let value = &attribute.values[(*value)?.index()];

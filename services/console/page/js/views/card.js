@@ -3,17 +3,21 @@ import { h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
 import { drawingOf } from "../model/drawing.js";
 import { readable } from "../model/ranking.js";
+import { objectWords } from "../speak.js";
 import { drawObject } from "./drawing.js";
+import { pressObject } from "./press.js";
 
 const MARKS = { held: "hand", picking: "arm", pointed: "arm", delivered: "check" };
 
 /**
- * A card: drawing, label, attributes, bar, percentage, mark.
+ * A card: drawing, label, attributes, bar, percentage, mark. A button that
+ * says the object covers it, for the operator.
  * @param {{object: any}} item
  * @param {any} scene
- * @param {(key: string) => string} t
+ * @param {any} context
  */
-export function makeCard({ object }, scene, t) {
+export function makeCard({ object }, scene, context) {
+  const { t } = context;
   const drawn = drawObject(drawingOf(object, scene.noun));
   const tags = Object.entries(object.attributes).map(([attribute, value]) =>
     h("span", {
@@ -30,9 +34,12 @@ export function makeCard({ object }, scene, t) {
     "aria-valuemax": 100,
     "aria-label": t("objects.meter", { object: object.label }),
   };
+  const name = t("objects.say", { words: objectWords(object) });
+  const onclick = () => pressObject(object, context);
   return h(
     "li",
     { class: "card" },
+    h("button", { type: "button", class: "card-say", "aria-label": name, title: name, onclick }),
     drawn,
     h(
       "div",
@@ -58,11 +65,12 @@ function spoken(scene, attribute, value) {
 
 /**
  * @param {HTMLElement} node made by `makeCard`
- * @param {{p: number, mark: string|null, leads: boolean}} item
+ * @param {{p: number, mark: string|null, leads: boolean, sayable: boolean}} item
  * @param {{attribute: string, value: string|null}|null} asked
  * @param {any} t
  */
-export function updateCard(node, { p, mark, leads }, asked, t) {
+export function updateCard(node, { p, mark, leads, sayable }, asked, t) {
+  /** @type {HTMLElement} */ (node.firstElementChild).hidden = !sayable;
   const bar = /** @type {HTMLElement} */ (node.querySelector(".bar"));
   const { sign, share } = readable(p);
   const text = sign + t.percent(share);

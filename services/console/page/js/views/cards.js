@@ -1,6 +1,7 @@
 // @ts-check
 import { calm, eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
 import { density, likely, marks, rank, readable } from "../model/ranking.js";
+import { whoControls } from "../model/turn.js";
 import { makeCard, updateCard } from "./card.js";
 
 /** Most cards that are shown until all are requested. */
@@ -12,11 +13,12 @@ const FIXED =
   "(min-width: 1101px) and (min-height: 640px), (max-width: 640px) and (min-height: 700px), (min-width: 641px) and (max-width: 1100px)";
 
 /**
- * The objects with what the robot believes, the likely ones first.
+ * The objects with what the robot believes, the likely ones first. The operator says one by a press.
  * @param {HTMLElement} element
- * @param {{store: any, t: any}} context
+ * @param {{link: any, store: any, t: any}} context
  */
-export function mountCards(element, { store, t }) {
+export function mountCards(element, context) {
+  const { store, t } = context;
   const list = h("ol", { class: "card-list" });
   const absent = h("p", { class: "absent", hidden: true });
   const more = h("button", { type: "button", class: "more", hidden: true });
@@ -63,16 +65,18 @@ export function mountCards(element, { store, t }) {
     const pinned = new Set([...marked].filter(([, mark]) => mark !== "delivered").map(([i]) => i));
     const { shown, others, rest } = likely(order, belief, all ? ALL_MOST : MOST, pinned);
     const best = belief.reduce((top, p) => Math.max(top, p), 0);
+    const mine = whoControls(store.get("control"), store.get("welcome")) === "mine";
     const items = shown.map((i) => ({
       index: i,
       object: scene.objects[i],
       p: belief[i],
       mark: marked.get(i) ?? null,
+      sayable: mine && marked.get(i) !== "delivered",
       leads: best > 1.5 / belief.length && belief[i] >= best - 1e-9,
     }));
     setAttribute(list, "data-density", density(items.length, height));
     const asked = askedValue(dialogue);
-    const make = (item) => makeCard(item, scene, t);
+    const make = (item) => makeCard(item, scene, context);
     const update = (node, item) => updateCard(node, item, asked, t);
     const change = () => keyed(list, items, (item) => item.index, make, update);
     const standing = shown.join();
@@ -86,7 +90,7 @@ export function mountCards(element, { store, t }) {
     const { sign, share } = readable(dialogue?.absent ?? 0);
     setText(absent, t("objects.absent", { share: sign + t.percent(share) }));
   });
-  store.subscribe(["scene", "dialogue", "arm", "world"], draw);
+  store.subscribe(["scene", "dialogue", "arm", "world", "control", "welcome"], draw);
   draw();
 }
 

@@ -4,7 +4,7 @@ import { icon } from "../icons.js";
 import { keep, recall } from "../kept.js";
 import { answers } from "../model/reasons.js";
 import { LANGUAGES } from "../strings.js";
-import { attempt } from "./attempt.js";
+import { press } from "./press.js";
 
 /**
  * The dialog that explains the keys, and the keys themselves.
@@ -98,15 +98,15 @@ function languages(t) {
 }
 
 /** The action of a single key outside of text fields. */
-function act(event, { link, store, t }, open) {
+function act(event, context, open) {
+  const { store, t } = context;
   const key = event.key.toLowerCase();
   const given = answers(store.get("dialogue"), store.get("scene"));
-  const say = (text) => attempt(link.do("say", { text, source: "typed" }), { t });
   const yesNo = given.length === 2 && given[0].text === "yes";
   if (key === "?") open();
   else if (key === "/") document.getElementById("say-text")?.focus();
-  else if (yesNo && key === t("keys.yes_key").toLowerCase()) say("yes");
-  else if (yesNo && key === t("keys.no_key").toLowerCase()) say("no");
+  else if (yesNo && key === t("keys.yes_key").toLowerCase()) press("yes", context);
+  else if (yesNo && key === t("keys.no_key").toLowerCase()) press("no", context);
   else return;
   event.preventDefault();
 }

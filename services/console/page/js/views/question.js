@@ -4,6 +4,7 @@ import { icon } from "../icons.js";
 import { answers } from "../model/reasons.js";
 import { whoControls } from "../model/turn.js";
 import { attempt } from "./attempt.js";
+import { press } from "./press.js";
 
 /** A question shows without its voice after this time: there may be none. */
 const VOICE_MS = 1_500;
@@ -24,16 +25,16 @@ export function mountQuestion(element, context) {
   element.append(kicker, words, h("div", { class: "question-row" }, quick, correct));
 
   function correction(verb, drawing) {
-    const press = () => attempt(link.do(verb), context);
+    const correct = () => attempt(link.do(verb), context);
     return h(
       "button",
-      { type: "button", class: "small", id: verb, onclick: press },
+      { type: "button", class: "small", id: verb, onclick: correct },
       icon(drawing, 17),
       t(`act.${verb}`),
     );
   }
   const answer = (item) => {
-    const say = () => attempt(link.do("say", { text: item.text, source: "typed" }), context);
+    const say = () => press(item.text, context);
     const words = item.key ? t(item.key) : item.text;
     return h("button", { type: "button", class: "answer", onclick: say, text: words });
   };

@@ -2,19 +2,19 @@
 import { eachFrame, h, setAttribute } from "../dom.js";
 import { icon } from "../icons.js";
 import { whoControls } from "../model/turn.js";
+import { shownPrompt, speak } from "../speak.js";
 import { reason, waiting } from "./attempt.js";
 
 /** Longest text, characters. */
 const TEXT_MAX = 500;
-/** Longest wait of typed text for a connection that has just broken, milliseconds. */
-const OUTAGE_MS = 4_000;
 
 /**
  * The line for typing. What was refused comes back into it, with the reason.
  * @param {HTMLElement} element
  * @param {{link: any, store: any, t: any}} context
  */
-export function mountSay(element, { link, store, t }) {
+export function mountSay(element, context) {
+  const { store, t } = context;
   const input = h("input", {
     id: "say-text",
     type: "text",
@@ -39,7 +39,7 @@ export function mountSay(element, { link, store, t }) {
   input.addEventListener("input", () => {
     note.textContent = "";
     if (input.value === "") beganAt = null;
-    else if (beganAt === null) [beganAt, seen] = [performance.now(), latestPrompt()];
+    else if (beganAt === null) [beganAt, seen] = [performance.now(), shownPrompt(store)];
   });
   // Also while the button is disabled: the reason is shown then.
   input.addEventListener("keydown", (event) => {
@@ -55,33 +55,15 @@ export function mountSay(element, { link, store, t }) {
   async function submit() {
     const text = input.value.trim();
     if (!text) return;
-    if (beganAt === null) seen = latestPrompt();
-    const began = beganAt ?? performance.now();
+    const when = beganAt === null ? {} : { began: beganAt, seen };
     input.value = "";
     beganAt = null;
     note.textContent = "";
     try {
-      await link.up(OUTAGE_MS);
-      await ready();
-      const times = { began_ms: link.toServer(began), ended_ms: link.serverNow() };
-      const done = await link.do("say", { text, source: "typed", seen, ...times });
-      note.textContent = waiting(done, t);
+      note.textContent = waiting(await speak(text, context, when), t);
     } catch (error) {
       if (input.value === "") input.value = text;
       note.textContent = reason(/** @type {any} */ (error), t);
-    }
-  }
-
-  /** The robot's latest prompt that is shown; 0 for none. */
-  function latestPrompt() {
-    const lines = store.get("lines") ?? [];
-    return lines.findLast((line) => line.said)?.said[0] ?? 0;
-  }
-
-  /** Typing takes control if there is no operator. */
-  async function ready() {
-    if (whoControls(store.get("control"), store.get("welcome")) === "free") {
-      await link.do("take_control");
     }
   }
 
