@@ -3,8 +3,9 @@
 use dialogue::ids::UtteranceSeq;
 use dialogue::manager::{Interaction, Manager, State};
 use dialogue::{ActKind, rendering};
-use messages::{FixedText, PolicyView, RobotAct, WireCode};
+use messages::{Delivery, FixedText, PolicyView, RobotAct, WireCode};
 use scene::{Question, Scene};
+use service::Span;
 
 /// Returns the standing decision as it is published.
 pub(crate) fn act(scene: &Scene, state: &State) -> RobotAct {
@@ -47,6 +48,17 @@ fn answerable(state: &State) -> Question {
     deniable.map_or_else(|| asked(state), Question::Point)
 }
 
+/// Returns what was handed over last, while it can be refused.
+fn delivery(manager: &Manager, state: &State) -> Option<Delivery> {
+    let handed_over = state.handed_over.as_ref().filter(|_| state.open.is_none())?;
+    let window = Span::from_s(manager.turns().refusal_s);
+    Some(Delivery {
+        interaction: handed_over.interaction.id.0,
+        object: handed_over.object()?.0,
+        until_ns: (handed_over.at + window).ns(),
+    })
+}
+
 /// Returns the view that clients get.
 pub(crate) fn view(manager: &Manager, state: &State, rejected: u64) -> PolicyView {
     let open = state.open.as_ref();
@@ -75,6 +87,7 @@ pub(crate) fn view(manager: &Manager, state: &State, rejected: u64) -> PolicyVie
         questions: open.map_or(0, Interaction::questions),
         utterances: utterances.map(|(UtteranceSeq(a), UtteranceSeq(b))| (a, b)).unwrap_or_default(),
         last: state.ended.clone(),
+        refusable: delivery(manager, state),
         refused: rejected,
         planner: manager.planner().to_owned(),
     }

@@ -98,10 +98,23 @@ pub struct PolicyView {
     pub utterances: (u64, u64),
     /// The latest interaction that ended.
     pub last: Option<Ended>,
+    /// The latest delivery, while it can be refused.
+    pub refusable: Option<Delivery>,
     /// Observations refused because they made no sense.
     pub refused: u64,
     /// The planner that decides, by its name.
     pub planner: String,
+}
+
+/// A hand-over that can be refused for a while.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Delivery {
+    /// The interaction that ended with it.
+    pub interaction: u64,
+    /// The object, numbered as in the scene.
+    pub object: u16,
+    /// End of the time for a refusal, monotonic clock.
+    pub until_ns: u64,
 }
 
 /// Object poses in the simulated world. Arm to clients.

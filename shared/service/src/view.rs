@@ -12,7 +12,9 @@ use messages::{
 use scene::Scene;
 use serde::Serialize;
 
-pub use dialogue::{ActionView, AlternativeView, DialogueView, EndedView, QuestionView, UserView};
+pub use dialogue::{
+    ActionView, AlternativeView, DeliveryView, DialogueView, EndedView, QuestionView, UserView,
+};
 pub use latest::{Arrived, Latest, LatestTopics, PromptId, drain, quiet};
 
 use crate::Time;

@@ -72,7 +72,20 @@ describe("the tables", () => {
     }
   });
 
+  it("have words for whose turn it is, and for what is offered", () => {
+    const states = "idle listening hearing asked speaking".split(" ").map((s) => `theirs_${s}`);
+    const turns = states.flatMap((state) => [`turn.${state}`, `turn.${state}.more`]);
+    const offered = [...read("js/model/answers.js").matchAll(/"((?:answer|delivery)\.\w+)"/g)];
+    assert.equal(offered.length, 7);
+    for (const key of [...turns, ...offered.map(([, key]) => key)]) assert.ok(english[key], key);
+  });
+
   for (const language of LANGUAGES.slice(1)) {
+    it(`of ${language} are complete`, () => {
+      const missing = Object.keys(english).filter((key) => !(key in table(language)));
+      assert.deepEqual(missing, []);
+    });
+
     it(`of ${language} have the arguments of the English one, and no key beyond it`, () => {
       const names = (text) => [...text.matchAll(/\{(\w+)\}/g)].map(([, name]) => name).sort();
       for (const [key, text] of Object.entries(table(language))) {

@@ -12,7 +12,6 @@ import {
 } from "../../../services/console/page/js/model/ranking.js";
 import {
   actionWords,
-  answers,
   proof,
   ranked,
   toCome,
@@ -147,24 +146,30 @@ describe("reasons", () => {
     }
   });
 
-  it("are the best first, the chosen one before its equals, with bars of their worth", () => {
-    const rows = ranked(dialogue);
+  it("are the best first, the chosen one before its equals, with bars of what they lose", () => {
+    const rows = ranked(dialogue, null, 4);
     const types = rows.map((row) => row.action.type);
     assert.deepEqual(types, ["attr", "wait", "attr", "pick"]);
     assert.deepEqual(
       rows.map((row) => row.chosen),
       [true, false, false, false],
     );
-    assert.equal(rows[0].length, 1);
-    assert.ok(rows[3].length > 0 && rows[3].length < 0.1);
-    assert.ok(rows.every((row, i) => i === 0 || row.length <= rows[i - 1].length));
+    assert.deepEqual(
+      rows.map((row) => row.loss),
+      [0, 0, 1, 50],
+    );
+    assert.deepEqual(
+      rows.map((row) => row.length),
+      [0, 0, 0.02, 1],
+    );
+    assert.equal(ranked(dialogue, null, 3)[2].length, 1, "of those that are shown");
   });
 
   it("of a pick name what is picked", () => {
     const picks = { ...dialogue, decision: "pick", alternatives: [] };
-    assert.deepEqual(ranked(picks)[0].action, { type: "pick", object: "clear" });
-    assert.deepEqual(ranked(picks, "metal")[0].action, { type: "pick", object: "metal" });
-    assert.equal(ranked(picks)[0].length, 1);
+    assert.deepEqual(ranked(picks, null, 4)[0].action, { type: "pick", object: "clear" });
+    assert.deepEqual(ranked(picks, "metal", 4)[0].action, { type: "pick", object: "metal" });
+    assert.equal(ranked(picks, null, 4)[0].length, 0);
   });
 
   it("say what is proven", () => {
@@ -180,21 +185,6 @@ describe("reasons", () => {
     assert.equal(toCome(0).key, "why.none");
     assert.equal(toCome(Number.NaN).key, "why.none");
     assert.deepEqual(toCome(1.234), { key: "why.expected", args: { n: 1.2 } });
-  });
-});
-
-describe("answers with one press", () => {
-  const of = (question, decision = "ask") =>
-    answers({ decision, question }, SCENE).map((a) => a.text);
-
-  it("fit the question", () => {
-    assert.deepEqual(of({ type: "attr" }), ["yes", "no"]);
-    assert.deepEqual(of({ type: "point" }), ["yes", "no"]);
-    assert.deepEqual(of({ type: "which", attribute: "color" }), ["see-through"]);
-    assert.deepEqual(of({ type: "which", attribute: "gone" }), []);
-    assert.deepEqual(of({ type: "attr" }, "pick"), []);
-    assert.deepEqual(of(null), []);
-    assert.deepEqual(answers(undefined, SCENE), []);
   });
 });
 
@@ -216,6 +206,17 @@ describe("the sign of the turn", () => {
     }
     assert.equal(banner(up, { state: "down" }, { stopped: true }).key, "down");
     assert.equal(banner(up, { state: "unheard of" }, {}).key, "idle");
+  });
+
+  it("is the operator's turn for viewers", () => {
+    for (const state of ["idle", "listening", "hearing", "asked", "speaking"]) {
+      assert.equal(banner(up, { state }, {}, "theirs").key, `theirs_${state}`);
+      assert.equal(banner(up, { state }, {}, "asked").key, `theirs_${state}`);
+      assert.equal(banner(up, { state }, {}, "mine").key, state);
+      assert.equal(banner(up, { state }, {}, "free").key, state);
+    }
+    assert.equal(banner(up, { state: "moving" }, {}, "theirs").key, "moving");
+    assert.equal(banner(up, { state: "asked" }, { stopped: true }, "theirs").key, "stopped");
   });
 
   it("shows the operator", () => {

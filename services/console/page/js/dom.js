@@ -101,6 +101,16 @@ export function eachFrame(draw) {
   };
 }
 
+/**
+ * The time of day, where this page is.
+ * @param {{unix_ms: number}} event
+ * @param {string} language
+ */
+export function clockOf({ unix_ms }, language) {
+  const form = { hour: "2-digit", minute: "2-digit", second: "2-digit", hourCycle: "h23" };
+  return new Date(unix_ms).toLocaleTimeString(language, /** @type {any} */ (form));
+}
+
 /** Returns whether the person asked for reduced motion. */
 export function calm() {
   return matchMedia("(prefers-reduced-motion: reduce)").matches;

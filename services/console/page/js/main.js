@@ -1,5 +1,6 @@
 // @ts-check
 
+import { keepDelivery } from "./delivery.js";
 import { keptLanguage, tabStorage } from "./kept.js";
 import { sessionId } from "./link/session.js";
 import { connect } from "./link.js";
@@ -34,6 +35,7 @@ const link = connect({
   lastLine: () => store.resumeAfter,
 });
 keep(store, link);
+keepDelivery({ link, store });
 
 const wished = [await setLanguage(), ...navigator.languages];
 await loadStrings(chooseLanguage(location.search, keptLanguage(), wished));

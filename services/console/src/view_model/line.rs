@@ -32,9 +32,28 @@ pub struct Line {
     /// Outcome of the interaction that has ended.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outcome: Option<Outcome>,
+    /// What a note of the system is about.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub note: Option<Note>,
     /// The robot's prompt, and which presentation of it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub said: Option<(u64, u32)>,
+}
+
+/// What a note of the system is about, in values: a page puts them into its own language.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum Note {
+    /// An interaction has ended, with the line's `outcome`.
+    Ended { object: Option<String>, questions: u32, seconds: f64 },
+    /// The motion stop was latched.
+    Stopped,
+    /// The motion stop was released.
+    Released,
+    /// A service is not running.
+    ServiceLost { service: String },
+    /// A service is back, after its previous run ended like that.
+    ServiceBack { service: String, exit: Option<String> },
 }
 
 /// One way to understand an utterance.

@@ -3,6 +3,7 @@
 //! Pure: no IO, no clock, no thread. Messages come in any order and more than once (a service that is
 //! restarted repeats its latest); folding one twice changes nothing.
 
+mod examples;
 mod latency;
 mod line;
 mod prompts;

@@ -6,6 +6,7 @@ use scene::{ObjectId, Scene};
 use serde::{Serialize, Serializer};
 use service::Time;
 
+use super::examples::examples;
 use super::prompts::Prompt;
 use super::turn::{Actor, Turn, TurnState};
 use crate::hub::ms;
@@ -17,6 +18,8 @@ pub(super) struct SceneSection<'a> {
     noun: &'a str,
     attributes: Vec<Attribute<'a>>,
     objects: Vec<Object<'a>>,
+    /// Requests that the robot understands, for who does not know what to say.
+    examples: Vec<String>,
 }
 
 #[derive(Debug, Serialize)]
@@ -76,6 +79,7 @@ impl<'a> SceneSection<'a> {
             noun: scene.noun(),
             attributes: attributes.collect(),
             objects: objects.collect(),
+            examples: examples(scene),
         }
     }
 }

@@ -9,7 +9,7 @@ use service::status::ServiceStatus;
 use service::view::Speaker;
 
 use super::Now;
-use super::line::Line;
+use super::line::{Line, Note};
 use super::prompts::Prompt;
 use super::understood::Understood;
 use crate::hub::board::LINES_MAX;
@@ -137,6 +137,11 @@ impl Transcript {
             let object = scene.object_named(name).map(ObjectId::index);
             object.and_then(|at| labels.get(at)).map_or(name, String::as_str)
         });
+        let note = Note::Ended {
+            object: object.map(str::to_owned),
+            questions: ended.questions,
+            seconds: ended.seconds,
+        };
         let object = object.unwrap_or("nothing");
         let what = match ended.outcome {
             Outcome::Delivered => format!("Handed over: {object}"),
@@ -152,24 +157,32 @@ impl Transcript {
         let s = if ended.questions == 1 { "" } else { "s" };
         let text = format!("{what} ({} question{s}, {:.1} s)", ended.questions, ended.seconds);
         let line = self.blank(Speaker::System, &text, now);
-        self.push(Line { outcome: Some(ended.outcome), ..line });
+        self.push(Line { outcome: Some(ended.outcome), note: Some(note), ..line });
     }
 
     pub(super) fn on_motion_stop(&mut self, stopped: bool, now: Now) {
-        self.note(if stopped { "The arm was stopped" } else { "The arm may move again" }, now);
+        let (text, note) = match stopped {
+            true => ("The arm was stopped", Note::Stopped),
+            false => ("The arm may move again", Note::Released),
+        };
+        self.note(text, note, now);
     }
 
     pub(super) fn on_service(&mut self, service: &ServiceStatus, is_back: bool, now: Now) {
-        let name = &service.name;
-        let exit = service.last_exit.as_ref().filter(|_| is_back);
-        let how = exit.map(|exit| format!(" (previous run ended with {})", exit.text));
-        let what = if is_back { "is back" } else { "is not running" };
-        self.note(&format!("{name} {what}{}", how.unwrap_or_default()), now);
+        let name = service.name.clone();
+        if !is_back {
+            let text = format!("{name} is not running");
+            return self.note(&text, Note::ServiceLost { service: name }, now);
+        }
+        let exit = service.last_exit.as_ref().map(|exit| exit.text.clone());
+        let how = exit.as_ref().map(|exit| format!(" (previous run ended with {exit})"));
+        let text = format!("{name} is back{}", how.unwrap_or_default());
+        self.note(&text, Note::ServiceBack { service: name, exit }, now);
     }
 
-    fn note(&mut self, text: &str, now: Now) {
+    fn note(&mut self, text: &str, note: Note, now: Now) {
         let line = self.blank(Speaker::System, text, now);
-        self.push(line);
+        self.push(Line { note: Some(note), ..line });
     }
 
     fn blank(&self, who: Speaker, text: &str, now: Now) -> Line {
@@ -185,6 +198,7 @@ impl Transcript {
             understood: Vec::new(),
             answers: Vec::new(),
             outcome: None,
+            note: None,
             said: None,
         }
     }

@@ -66,6 +66,23 @@ fn a_refusal_counts_for_a_while() {
     assert_eq!(late.ended.map(|ended| ended.outcome), Some(Outcome::Delivered));
 }
 
+/// Clients learn what can be refused, and until when.
+#[test]
+fn the_view_shows_what_can_be_refused() {
+    let mut manager = manager();
+    let (end, _) = handed_over(&mut manager, &["clear"]);
+    let refusable = |state: &State| crate::view::view(&manager, state, 0).refusable;
+    let delivery = refusable(&end).expect("a delivery");
+    assert_eq!(delivery.object, settings().scene.object_named("clear").unwrap().0);
+    assert_eq!(Some(delivery.interaction), end.ended.as_ref().map(|ended| ended.interaction.0));
+    let handed_at = end.handed_over.as_ref().expect("a delivery").at;
+    let window = Span::from_s(manager.turns().refusal_s);
+    assert_eq!(delivery.until_ns, (handed_at + window).ns());
+    let mut manager = self::manager();
+    let next = remark(&mut manager, &end, words(&["metallic"]));
+    assert_eq!(refusable(&next), None, "a request is open");
+}
+
 #[test]
 fn thanks_and_another_wish_are_no_refusals() {
     let mut manager = manager();

@@ -1,7 +1,10 @@
 use dialogue::{Action, Attributed};
-use messages::{ActKind, Outcome, PolicyView};
+use messages::{ActKind, Delivery, Outcome, PolicyView};
 use scene::{Question, Scene};
 use serde::ser::{Serialize, Serializer};
+
+use super::ms;
+use crate::Time;
 
 /// Belief and decision of the policy.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -41,6 +44,8 @@ pub struct DialogueView<'a> {
     pub expected_questions: f64,
     /// The latest interaction that has ended.
     pub last: Option<EndedView<'a>>,
+    /// The latest delivery, while it can be refused.
+    pub refusable: Option<DeliveryView<'a>>,
 }
 
 /// User model learnt by the robot.
@@ -119,6 +124,17 @@ pub struct EndedView<'a> {
     pub seconds: f64,
 }
 
+/// A hand-over that can be refused for a while.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct DeliveryView<'a> {
+    /// Number of the interaction that ended with it.
+    pub interaction: u64,
+    /// Name of the object.
+    pub object: &'a str,
+    /// End of the time for a refusal, milliseconds of the monotonic clock.
+    pub until_ms: f64,
+}
+
 impl<'a> DialogueView<'a> {
     /// Makes the view of what the policy has published; objects by their names in `scene`.
     pub fn new(scene: &'a Scene, view: &'a PolicyView) -> Self {
@@ -154,7 +170,17 @@ impl<'a> DialogueView<'a> {
                 questions: last.questions,
                 seconds: last.seconds,
             }),
+            refusable: view.refusable.and_then(|it| DeliveryView::new(scene, it)),
         }
+    }
+}
+
+impl<'a> DeliveryView<'a> {
+    /// Names the object; none where it is not of this scene.
+    fn new(scene: &'a Scene, delivery: Delivery) -> Option<Self> {
+        let Delivery { interaction, object, until_ns } = delivery;
+        let object = scene.objects().get(usize::from(object))?;
+        Some(Self { interaction, object: &object.name, until_ms: ms(Time(until_ns)) })
     }
 }
 

@@ -5,8 +5,8 @@ use super::*;
 use ::dialogue::Action;
 use ::dialogue::{Attributed, QuestionShare};
 use messages::{
-    ActKind, Activity, Ended, FixedText, InteractionId, Outcome, PolicyView, PresentationState,
-    Presented, PromptId, Receipt, ReceiptStatus, UtteranceSeq,
+    ActKind, Activity, Delivery, Ended, FixedText, InteractionId, Outcome, PolicyView,
+    PresentationState, Presented, PromptId, Receipt, ReceiptStatus, UtteranceSeq,
 };
 use scene::{AttributeId, Question, ValueId};
 
@@ -50,6 +50,7 @@ fn policy_view(scene: &Scene) -> PolicyView {
             seconds: 12.5,
             utterances: (UtteranceSeq(1), UtteranceSeq(2)),
         }),
+        refusable: Some(Delivery { interaction: 6, object: 1, until_ns: 90_000_000_000 }),
         ..PolicyView::default()
     }
 }

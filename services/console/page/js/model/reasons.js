@@ -47,25 +47,26 @@ function mostLikely(belief) {
   return others.reduce((best, one) => (one[1] > best[1] ? one : best), first)[0];
 }
 
-/** Shortest bar, as a share of the longest: the worst action has a visible one. */
-const SHORTEST = 0.04;
-
 /**
- * The decision and the best others, best first, with the lengths of their bars.
+ * The decision and the best others, best first, each with what it loses against the best.
  * @param {any} dialogue
- * @param {string|null} [aim]
- * @returns {{action: Action, value: number, length: number, chosen: boolean}[]}
+ * @param {string|null|undefined} aim
+ * @param {number} most
+ * @returns {{action: Action, value: number, loss: number, length: number, chosen: boolean}[]} `loss` in
+ *   seconds of the person's time; `length`: of its bar, a share of the longest
  */
-export function ranked(dialogue, aim) {
+export function ranked(dialogue, aim, most) {
   const chosen = { action: decidedAction(dialogue, aim), value: dialogue.value, chosen: true };
   const others = (dialogue.alternatives ?? []).map((other) => ({ ...other, chosen: false }));
   const all = [chosen, ...others].filter((one) => Number.isFinite(one.value));
   all.sort((a, b) => b.value - a.value || Number(b.chosen) - Number(a.chosen));
-  const top = Math.max(...all.map((one) => one.value));
-  const low = Math.min(...all.map((one) => one.value), 0);
-  const span = top - low;
-  const length = (value) => (span > 0 ? SHORTEST + (1 - SHORTEST) * ((value - low) / span) : 1);
-  return all.map((one) => ({ ...one, length: length(one.value) }));
+  const shown = all.slice(0, most);
+  const top = shown[0]?.value ?? 0;
+  const widest = top - (shown.at(-1)?.value ?? 0);
+  return shown.map((one) => {
+    const loss = top - one.value;
+    return { ...one, loss, length: widest > 0 ? loss / widest : 0 };
+  });
 }
 
 /** Bounds closer than this are shown as one figure. */
@@ -98,24 +99,4 @@ export function toCome(expected) {
 
 function round(value) {
   return Math.round(value * 10) / 10;
-}
-
-/**
- * Answers that can be given with one click.
- * @param {any} dialogue
- * @param {any} scene
- * @returns {{key: string|null, text: string}[]} `text` is submitted; `key` is the string to show for it
- */
-export function answers(dialogue, scene) {
-  const question = dialogue?.question;
-  if (dialogue?.decision !== "ask" || !question) return [];
-  if (question.type === "attr" || question.type === "point") {
-    return [
-      { key: "answer.yes", text: "yes" },
-      { key: "answer.no", text: "no" },
-    ];
-  }
-  if (question.type !== "which") return [];
-  const attribute = scene?.attributes.find((one) => one.name === question.attribute);
-  return (attribute?.values ?? []).slice(0, 8).map((value) => ({ key: null, text: value.spoken }));
 }

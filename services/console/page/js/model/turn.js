@@ -19,14 +19,18 @@ const STATES = {
   down: ["down", "down", "down"],
 };
 
+/** States in which the sign speaks to the operator. */
+const TO_OPERATOR = ["idle", "listening", "hearing", "asked", "speaking"];
+
 /**
  * Summarises whose turn it is in one sign. Without a connection nothing else is known.
  * @param {{state: string}|undefined} link
  * @param {{state: string}|undefined} turn
  * @param {{stopped?: boolean}|undefined} arm a stop outranks whose turn it is
+ * @param {ReturnType<typeof whoControls>} [who] for viewers it is the operator's turn
  * @returns {Banner}
  */
-export function banner(link, turn, arm) {
+export function banner(link, turn, arm, who) {
   if (link?.state === "replaced" || link?.state === "gave_way") {
     return { key: link.state, tone: "down", icon: "down" };
   }
@@ -37,7 +41,8 @@ export function banner(link, turn, arm) {
   if (!turn) return { key: "connecting", tone: "idle", icon: "think" };
   const stopped = arm?.stopped === true && turn.state !== "down";
   const [key, tone, icon] = STATES[stopped ? "stopped" : turn.state] ?? STATES.idle;
-  return { key, tone, icon };
+  const theirs = (who === "theirs" || who === "asked") && TO_OPERATOR.includes(key);
+  return { key: theirs ? `theirs_${key}` : key, tone, icon };
 }
 
 /**

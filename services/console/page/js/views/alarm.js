@@ -1,7 +1,7 @@
 // @ts-check
 import { h, setText } from "../dom.js";
 import { icon } from "../icons.js";
-import { banner } from "../model/turn.js";
+import { banner, whoControls } from "../model/turn.js";
 
 /** A connection that is back sooner is not worth a word, milliseconds. */
 const GRACE_MS = 1_200;
@@ -56,10 +56,11 @@ export function mountAlarm(element, polite, { link, store, t }) {
 
   let turn = "";
   store.subscribe(["turn", "link"], () => {
-    const { key, tone } = banner(store.get("link"), store.get("turn"), store.get("arm"));
+    const who = whoControls(store.get("control"), store.get("welcome"));
+    const { key, tone } = banner(store.get("link"), store.get("turn"), store.get("arm"), who);
     if (key === turn || tone === "down") return;
     turn = key;
-    if (tone === "arm" || key === "idle") setText(polite, t(`turn.${key}`));
+    if (tone === "arm" || key.endsWith("idle")) setText(polite, t(`turn.${key}`));
   });
   let heard = Number.POSITIVE_INFINITY;
   store.subscribe("lines", (lines) => {

@@ -2,6 +2,7 @@
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
 import { health } from "../model/health.js";
 import { duration } from "./duration.js";
+import { mountEvents } from "./events.js";
 import { mountLatency } from "./latency.js";
 import { mountServices } from "./services.js";
 
@@ -11,7 +12,7 @@ import { mountServices } from "./services.js";
 const ROOMY = "(min-height: 1300px), (max-width: 1100px)";
 
 /**
- * In a line how the group is doing; opened, its services and how soon it answers.
+ * In a line how the group is doing; opened, its services, how soon it answers, and what has happened.
  * @param {HTMLElement} element
  * @param {{link: any, store: any, t: any}} context
  */
@@ -22,12 +23,14 @@ export function mountHealth(element, context) {
   const answer = h("span", { class: "health-answer" });
   const services = h("div", { class: "services" });
   const latency = h("div", { class: "latency" });
+  const events = h("div", { class: "events" });
   const summary = h("summary", {}, lamp, words, answer);
-  const details = h("details", { class: "health" }, summary, services, latency);
+  const details = h("details", { class: "health" }, summary, services, latency, events);
   details.open = matchMedia(ROOMY).matches;
   element.append(details);
   mountServices(services, context);
   mountLatency(latency, context);
+  mountEvents(events, context);
 
   const draw = eachFrame(() => {
     const now = health(store.get("group")?.services);

@@ -2,7 +2,7 @@
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
 import { keep, recall } from "../kept.js";
-import { answers } from "../model/reasons.js";
+import { answers } from "../model/answers.js";
 import { LANGUAGES } from "../strings.js";
 import { press } from "./press.js";
 
@@ -101,8 +101,8 @@ function languages(t) {
 function act(event, context, open) {
   const { store, t } = context;
   const key = event.key.toLowerCase();
-  const given = answers(store.get("dialogue"), store.get("scene"));
-  const yesNo = given.length === 2 && given[0].text === "yes";
+  const given = answers(store.get("dialogue"), store.get("scene")).map(({ text }) => text);
+  const yesNo = given.includes("yes");
   if (key === "?") open();
   else if (key === "/") document.getElementById("say-text")?.focus();
   else if (yesNo && key === t("keys.yes_key").toLowerCase()) press("yes", context);

@@ -1,5 +1,6 @@
 // @ts-check
-import { h } from "../dom.js";
+import { clockOf, h } from "../dom.js";
+import { noteWords } from "../model/notes.js";
 
 /** Smaller shares of a question are not shown. */
 const SMALL = 0.05;
@@ -7,26 +8,23 @@ const SMALL = 0.05;
 const SURE = 0.995;
 
 /**
- * A line of the conversation.
- * @param {any} line
+ * A line of the conversation, and how often it was said in a row.
+ * @param {{line: any, lines: any[]}} item
  * @param {any} t
  * @returns {HTMLElement}
  */
-export function makeLine(line, t) {
+export function makeLine({ line, lines }, t) {
   const speaker = h("span", { class: "hidden", text: `${t(`who.${line.who}`)}: ` });
-  const text = line.text || t("talk.nothing");
+  const text = noteWords(line, t) || t("talk.nothing");
   const words = h("p", { class: "words" }, speaker, text);
   const notes = [...understood(line, t), ...circumstances(line, t)];
-  const time = clockOf(line, t.language());
+  if (lines.length > 1) {
+    notes.push(h("span", { class: "note", text: t("line.times", { n: lines.length }) }));
+  }
+  const time = clockOf(lines.at(-1), t.language());
   const clock = time ? h("time", { class: "clock", text: time }) : null;
   const below = notes.length || clock ? h("p", { class: "notes" }, ...notes, clock) : null;
   return h("div", { class: "line", "data-who": line.who }, words, below);
-}
-
-/** The time of day, where this page is. */
-function clockOf(line, language) {
-  const form = { hour: "2-digit", minute: "2-digit", second: "2-digit", hourCycle: "h23" };
-  return new Date(line.unix_ms).toLocaleTimeString(language, form);
 }
 
 /** The meanings, each a chip with its probability. */

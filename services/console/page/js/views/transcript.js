@@ -1,5 +1,6 @@
 // @ts-check
 import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
+import { conversation } from "../model/conversation.js";
 import { makeLine } from "./line.js";
 
 /** So near to its end the transcript follows what is added, pixels. */
@@ -43,20 +44,22 @@ export function mountTranscript(element, { store, t }) {
   }
   new ResizeObserver(() => follows && toEnd()).observe(list);
 
-  /** A line that was sent again is another object: it is redrawn. */
+  /** A line that was sent again is another object: what it is part of is redrawn. */
   const versions = new WeakMap();
   let version = 0;
-  const key = (line) => {
-    if (!versions.has(line)) versions.set(line, `${line.id}.${++version}`);
+  const versionOf = (line) => {
+    if (!versions.has(line)) versions.set(line, ++version);
     return versions.get(line);
   };
+  const key = ({ lines }) => lines.map(versionOf).join();
 
   let last = 0;
   const draw = eachFrame(() => {
     const lines = store.get("lines") ?? [];
     const partial = store.get("partial");
-    empty.hidden = lines.length > 0 || Boolean(partial?.text);
-    keyed(place, lines, key, (line) => makeLine(line, t));
+    const items = conversation(lines);
+    keyed(place, items, key, (item) => makeLine(item, t), mark);
+    empty.hidden = items.length > 0 || Boolean(partial?.text);
     live.hidden = !partial?.text;
     setText(words, partial?.text ?? "");
     const newest = lines.at(-1)?.id ?? 0;
@@ -65,6 +68,12 @@ export function mountTranscript(element, { store, t }) {
     last = newest;
     setAttribute(element, "data-empty", lines.length === 0);
   });
-  store.subscribe(["lines", "partial"], draw);
+  /** The question that stands is marked: a narrow page shows it once, in large type. */
+  function mark(node, { line }) {
+    const dialogue = store.get("dialogue");
+    const stands = dialogue?.interaction > 0 && line.said?.[0] === dialogue.prompt;
+    setAttribute(node, "data-stands", stands);
+  }
+  store.subscribe(["lines", "partial", "dialogue"], draw);
   draw();
 }

@@ -1,7 +1,7 @@
 // @ts-check
 import { eachFrame, h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
-import { banner } from "../model/turn.js";
+import { banner, whoControls } from "../model/turn.js";
 
 /**
  * The sign that says whose turn it is.
@@ -16,7 +16,8 @@ export function mountTurn(element, { store, t }) {
   let drawn = "";
 
   const draw = eachFrame(() => {
-    const now = banner(store.get("link"), store.get("turn"), store.get("arm"));
+    const who = whoControls(store.get("control"), store.get("welcome"));
+    const now = banner(store.get("link"), store.get("turn"), store.get("arm"), who);
     setAttribute(element, "data-tone", now.tone);
     setAttribute(element, "data-state", now.key);
     setText(words, t(`turn.${now.key}`));
@@ -24,6 +25,6 @@ export function mountTurn(element, { store, t }) {
     if (drawn !== now.icon) lamp.replaceChildren(icon(/** @type {any} */ (now.icon), 26));
     drawn = now.icon;
   });
-  store.subscribe(["link", "turn", "arm"], draw);
+  store.subscribe(["link", "turn", "arm", "control", "welcome"], draw);
   draw();
 }

@@ -1,0 +1,39 @@
+// @ts-check
+/**
+ * What is shown of the conversation: words and ends of requests. Presentations of one prompt that follow
+ * each other are one item, with the fullest of their texts. Other notes are events.
+ * @template {{who: string, text: string, said?: [number, number], outcome?: string}} L
+ * @param {L[]} lines oldest first
+ * @returns {{line: L, lines: L[]}[]} `line`: the one to show; `lines`: all that it stands for
+ */
+export function conversation(lines) {
+  /** @type {{line: L, lines: L[]}[]} */
+  const items = [];
+  for (const line of lines.filter((line) => !isEvent(line))) {
+    const before = items.at(-1);
+    if (before && line.said && line.said[0] === before.line.said?.[0]) {
+      before.lines.push(line);
+      if (line.text.length > before.line.text.length) before.line = line;
+    } else {
+      items.push({ line, lines: [line] });
+    }
+  }
+  return items;
+}
+
+/**
+ * The notes that are no part of the conversation, newest first.
+ * @template {{who: string, outcome?: string, unix_ms: number}} L
+ * @param {L[]} lines
+ * @param {L[]} own the page's own
+ * @param {number} most
+ */
+export function events(lines, own, most) {
+  const all = [...lines.filter(isEvent), ...own];
+  return all.sort((a, b) => b.unix_ms - a.unix_ms).slice(0, most);
+}
+
+/** @param {{who: string, outcome?: string}} line */
+function isEvent({ who, outcome }) {
+  return who === "system" && outcome === undefined;
+}
