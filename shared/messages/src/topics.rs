@@ -65,7 +65,7 @@ pub const INJECTION: Topic = Topic {
 pub const AUDIO: Topic = Topic {
     readers: &[Service::Speech],
     writers_max: CLIENTS_MAX,
-    buffer: 2 * WINDOW,
+    buffer: 4 * WINDOW,
     history: 0,
     ..topic::<AudioChunk>("speech/audio", None)
 };

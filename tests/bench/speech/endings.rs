@@ -44,8 +44,8 @@ struct Hesitant {
 /// How utterances end.
 struct Rule {
     name: &'static str,
-    /// Pauses that end a complete utterance, any other one, and an open one, milliseconds.
-    pauses_ms: [u64; 3],
+    /// Pauses that end a complete utterance, any other one, and an open one.
+    pauses: [Duration; 3],
     interrupts: bool,
     options: SegmenterOptions,
 }
@@ -61,22 +61,16 @@ struct Found {
 pub(super) fn measure(report: &mut Report, voices: &Voices, quick: bool) {
     let scene = crate::core::scenes::configured("bowls");
     let sentences = sentences(&scene);
-    let former = SegmenterOptions { early_roll_s: 0.2, ..SegmenterOptions::default() };
-    let now = SegmenterOptions::default();
+    let config = whichone_tests::settings(&[]).speech;
+    let by_meaning = [config.complete_pause, config.closing_pause, config.open_pause];
+    let rule = |name, pauses, interrupts| {
+        let options = SegmenterOptions::of(&config);
+        Rule { name, pauses, interrupts, options }
+    };
     let rules = [
-        Rule { name: "500 ms always", pauses_ms: [500; 3], interrupts: false, options: former },
-        Rule {
-            name: "by meaning",
-            pauses_ms: [120, 500, 900],
-            interrupts: false,
-            options: now.clone(),
-        },
-        Rule {
-            name: "by meaning, the robot can be interrupted",
-            pauses_ms: [120, 500, 900],
-            interrupts: true,
-            options: now,
-        },
+        rule("the closing pause always", [config.closing_pause; 3], false),
+        rule("by meaning", by_meaning, false),
+        rule("by meaning, the robot can be interrupted", by_meaning, true),
     ];
     let mut cut_rows = Vec::new();
     let mut end_rows = Vec::new();
@@ -180,7 +174,7 @@ impl<'a> Room<'a> {
     fn open(scene: &Scene, voices: &'a Voices, rule: &'a Rule) -> Result<Self, String> {
         let work = tempfile::tempdir().map_err(|error| error.to_string())?;
         let options = PocketSphinxOptions::debian(work.path());
-        let [complete, closing, open] = rule.pauses_ms.map(Duration::from_millis);
+        let [complete, closing, open] = rule.pauses;
         Ok(Self {
             voices,
             recogniser: PocketSphinx::open(scene, &options).map_err(|error| error.to_string())?,

@@ -22,7 +22,7 @@ use crate::stream_events::{Began, StreamEvent, next_sound};
 /// Simultaneous streams; further ones are closed before they begin.
 pub(crate) const STREAMS_MAX: usize = 8;
 /// Chunks that may wait for the thread: more than three seconds of one stream.
-const CHUNKS_MAX: usize = 64;
+const CHUNKS_MAX: usize = 160;
 /// Longest gap that is filled with silence within an utterance, samples: half a second.
 const GAP_MAX: u64 = 8_000;
 /// Polling interval for paused streams.
@@ -75,6 +75,8 @@ struct OpenStream {
     lost: u64,
     utterances: u32,
     is_held: bool,
+    /// Whether the utterance in progress was begun with the button held, which is released.
+    is_released: bool,
     last_chunk: Instant,
 }
 
@@ -127,6 +129,7 @@ impl Streams {
             lost: 0,
             utterances: 0,
             is_held: false,
+            is_released: false,
             last_chunk: Instant::now(),
         }
     }
@@ -177,18 +180,26 @@ impl OpenStream {
         let released = std::mem::replace(&mut self.is_held, held) && !held;
         let gap = chunk.first_sample - self.next;
         self.lost = self.lost.saturating_add(gap);
-        if gap > GAP_MAX || released {
+        if gap > GAP_MAX {
             events.extend(self.stream.finish());
         }
-        let duplex =
-            if held || chunk.is(AudioChunk::ECHO_FREE) { Duplex::Full } else { Duplex::Half };
-        if (1..=GAP_MAX).contains(&gap) && !released {
+        if released {
+            self.stream.release();
+        }
+        self.is_released = (released || self.is_released) && self.is_speaking();
+        let is_full = held || self.is_released || chunk.is(AudioChunk::ECHO_FREE);
+        let duplex = if is_full { Duplex::Full } else { Duplex::Half };
+        if (1..=GAP_MAX).contains(&gap) {
             let silence = vec![0; gap as usize];
             events.extend(self.push(shifted(at, -(gap as i64)), &silence, self.next, duplex));
         }
         events.extend(self.push(at, samples, chunk.first_sample, duplex));
         self.next = chunk.first_sample.saturating_add(samples.len() as u64);
         events
+    }
+
+    fn is_speaking(&self) -> bool {
+        self.stream.sound_in_progress().is_some()
     }
 
     /// Processes samples, the first of which is number `first` of the stream.

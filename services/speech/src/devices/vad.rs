@@ -3,11 +3,14 @@
 //! Invariant: segments are ordered and do not overlap; every frame of speech that opened a segment lies
 //! in exactly one. The state advances by samples alone, never by a clock.
 
+mod loudness;
+
 use std::ops::Range;
 
 use earshot::Detector;
 
 use crate::devices::audio::RATE_HZ;
+use loudness::Loudness;
 
 /// Samples per decision of the detector: 16 ms.
 const FRAME: usize = 256;
@@ -15,7 +18,7 @@ const FRAME: usize = 256;
 /// Settings of segmentation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SegmenterOptions {
-    /// Score above which a frame is speech, 0 to 1. 0.5 finds onsets within 44 ms (median) and yields
+    /// Score above which a frame may be speech, 0 to 1. 0.5 finds onsets within 44 ms (median) and yields
     /// no false alarms at 25 dB; higher values lose the ends of words.
     pub threshold: f32,
     /// Consecutive frames of speech that open a segment; fewer admit clicks.
@@ -51,7 +54,7 @@ impl Default for SegmenterOptions {
         Self {
             threshold: 0.5,
             opening_frames: 3,
-            closing_pause_s: 0.5,
+            closing_pause_s: 0.6,
             pre_roll_s: 0.5,
             post_roll_s: 0.2,
             early_roll_s: 0.048,
@@ -100,6 +103,7 @@ pub enum VadEvent {
 pub struct Segmenter {
     options: SegmenterOptions,
     detector: Box<Detector>,
+    loudness: Loudness,
     /// Samples of an incomplete frame.
     rest: Vec<i16>,
     track: Track,
@@ -108,8 +112,13 @@ pub struct Segmenter {
 impl Segmenter {
     /// Returns a segmenter at the start of a stream.
     pub fn new(options: SegmenterOptions) -> Self {
-        let detector = Box::new(Detector::default());
-        Self { options, detector, rest: Vec::with_capacity(FRAME), track: Track::default() }
+        Self {
+            options,
+            detector: Box::default(),
+            loudness: Loudness::default(),
+            rest: Vec::with_capacity(FRAME),
+            track: Track::default(),
+        }
     }
 
     /// Processes the next samples.
@@ -119,8 +128,9 @@ impl Segmenter {
         let rest = std::mem::take(&mut self.rest);
         let mut frames = rest.chunks_exact(FRAME);
         for frame in &mut frames {
-            let speech = self.detector.predict_i16(frame) > self.options.threshold;
-            self.track.frame(speech, &self.options, &mut events);
+            let is_speech = self.detector.predict_i16(frame) > self.options.threshold;
+            let is_loud = self.loudness.is_voice(frame, self.track.open.is_some());
+            self.track.frame(is_speech && is_loud, &self.options, &mut events);
         }
         self.rest = frames.remainder().to_vec();
         events
@@ -135,12 +145,21 @@ impl Segmenter {
         }
     }
 
+    /// Ends the open segment with its voice: whoever lets go of the button has nothing to add. Without a
+    /// voice it ends with the next frame.
+    pub fn release(&mut self) {
+        if let Some(open) = &mut self.track.open {
+            open.is_released = true;
+        }
+    }
+
     /// Ends the stream and an open segment with it, and resets the segmenter.
     pub fn finish(&mut self) -> Option<VadEvent> {
         let track = std::mem::take(&mut self.track);
         let end = track.at + self.rest.len();
         self.rest.clear();
         self.detector.reset();
+        self.loudness = Loudness::default();
         let open = track.open?;
         // Speech in the last frame may continue in the incomplete one.
         let speech_end = if open.speech_end == track.at { end } else { open.speech_end };
@@ -171,6 +190,8 @@ struct Open {
     speech_end: usize,
     /// What was judged since.
     closing: Option<Closing>,
+    /// Whether it ends with the voice; see [`Segmenter::release`].
+    is_released: bool,
 }
 
 impl Open {
@@ -199,6 +220,9 @@ impl Open {
     }
 
     fn closing_pause(&self, options: &SegmenterOptions) -> usize {
+        if self.is_released {
+            return roll(options.early_roll_s);
+        }
         samples(self.closing.map_or(options.closing_pause_s, |closing| closing.pause_s))
     }
 }
@@ -211,7 +235,9 @@ impl Track {
             None if self.streak >= options.opening_frames.max(1) => {
                 let onset = self.at - self.streak * FRAME;
                 let start = onset.saturating_sub(samples(options.pre_roll_s)).max(self.free_from);
-                self.open = Some(Open { start, onset, speech_end: self.at, closing: None });
+                let speech_end = self.at;
+                let (closing, is_released) = (None, false);
+                self.open = Some(Open { start, onset, speech_end, closing, is_released });
                 events.push(VadEvent::Onset { at_sample: onset });
             }
             None => {}
@@ -246,163 +272,4 @@ fn roll(seconds: f64) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::devices::random::{Rng, signed};
-
-    /// Processes frames written as `#` (speech) and `.` (none).
-    fn track(frames: &str, options: &SegmenterOptions) -> Vec<VadEvent> {
-        let (mut track, mut events) = (Track::default(), Vec::new());
-        for frame in frames.chars() {
-            track.frame(frame == '#', options, &mut events);
-        }
-        events
-    }
-
-    /// Returns settings by which three frames open and two close, with one frame of pre-roll and eight frames
-    /// at most.
-    fn short() -> SegmenterOptions {
-        let frame_s = FRAME as f64 / f64::from(RATE_HZ);
-        SegmenterOptions {
-            closing_pause_s: 2.0 * frame_s,
-            pre_roll_s: frame_s,
-            post_roll_s: 2.0 * frame_s,
-            early_roll_s: 2.0 * frame_s,
-            longest_s: 8.0 * frame_s,
-            ..SegmenterOptions::default()
-        }
-    }
-
-    fn onset(frame: usize) -> VadEvent {
-        VadEvent::Onset { at_sample: frame * FRAME }
-    }
-
-    fn end(range: Range<usize>, speech: Range<usize>) -> VadEvent {
-        let samples = |r: Range<usize>| r.start * FRAME..r.end * FRAME;
-        VadEvent::End { range: samples(range), speech: samples(speech) }
-    }
-
-    fn pause(range: Range<usize>, speech: Range<usize>) -> VadEvent {
-        match end(range, speech) {
-            VadEvent::End { range, speech } => VadEvent::Pause { range, speech },
-            event => event,
-        }
-    }
-
-    #[test]
-    fn vad_segments_follow_the_frames() {
-        let frame_s = FRAME as f64 / f64::from(RATE_HZ);
-        let pausing =
-            SegmenterOptions { closing_pause_s: 4.0 * frame_s, longest_s: 1.0, ..short() };
-        let long_pauses = vec![
-            onset(1),
-            pause(0..10, 1..8),
-            pause(0..13, 1..11),
-            end(0..13, 1..11),
-            onset(15),
-            pause(14..20, 15..18),
-            end(14..20, 15..18),
-        ];
-        for (what, frames, options, expected) in [
-            ("a pause closes", "..####.#..", short(), vec![onset(2), end(1..10, 2..8)]),
-            ("a pause precedes its end", ".####.##..#....###....", pausing, long_pauses),
-            ("clicks", ".##.#.##..", short(), vec![]),
-            (
-                "pre-roll does not overlap",
-                "###..###..",
-                short(),
-                vec![onset(0), end(0..5, 0..3), onset(5), end(5..10, 5..8)],
-            ),
-            (
-                "endless speech is split",
-                "############..",
-                short(),
-                vec![onset(0), end(0..8, 0..8), onset(8), end(8..14, 8..12)],
-            ),
-        ] {
-            assert_eq!(track(frames, &options), expected, "{what}");
-        }
-    }
-
-    /// Processes frames; `judged` is known after frame `after`, of the pause at which it was decoded.
-    fn judged(frames: &str, after: usize, pause_frames: usize, roll: usize) -> Vec<VadEvent> {
-        let frame_s = FRAME as f64 / f64::from(RATE_HZ);
-        let options = SegmenterOptions {
-            early_roll_s: frame_s,
-            post_roll_s: 3.0 * frame_s,
-            closing_pause_s: 6.0 * frame_s,
-            longest_s: 1.0,
-            ..short()
-        };
-        let mut segmenter = Segmenter::new(options.clone());
-        let mut events = Vec::new();
-        for (n, frame) in frames.chars().enumerate() {
-            segmenter.track.frame(frame == '#', &options, &mut events);
-            if n + 1 == after {
-                let pause_s = pause_frames as f64 * frame_s;
-                segmenter.set_closing(Closing { speech: 4 * FRAME, roll: roll * FRAME, pause_s });
-            }
-        }
-        events
-    }
-
-    #[test]
-    fn vad_segments_close_by_what_was_judged() {
-        let early = || vec![onset(0), pause(0..5, 0..4)];
-        let late = || [early(), vec![pause(0..7, 0..4)]].concat();
-        for (what, events, expected) in [
-            (
-                "complete: after two frames, with the range that was decoded",
-                judged("####..........", 5, 2, 1),
-                [early(), vec![end(0..5, 0..4)]].concat(),
-            ),
-            (
-                "judged late: at once, with the range that was decoded",
-                judged("####..........", 8, 2, 1),
-                [late(), vec![end(0..5, 0..4)]].concat(),
-            ),
-            (
-                "open: after nine frames",
-                judged("####.........###", 6, 9, 1),
-                [late(), vec![end(0..7, 0..4), onset(13)]].concat(),
-            ),
-            (
-                "speech has continued: as if nothing was judged",
-                judged("####.#.......###", 6, 1, 1),
-                vec![
-                    onset(0),
-                    pause(0..5, 0..4),
-                    pause(0..7, 0..6),
-                    pause(0..9, 0..6),
-                    end(0..9, 0..6),
-                    onset(13),
-                ],
-            ),
-            (
-                "speech continues after it was judged",
-                judged("####..#......###", 5, 4, 1),
-                vec![
-                    onset(0),
-                    pause(0..5, 0..4),
-                    pause(0..8, 0..7),
-                    pause(0..10, 0..7),
-                    end(0..10, 0..7),
-                    onset(13),
-                ],
-            ),
-        ] {
-            assert_eq!(events, expected, "{what}");
-        }
-    }
-
-    #[test]
-    fn vad_ignores_silence_and_noise() {
-        let mut segmenter = Segmenter::new(SegmenterOptions::default());
-        assert_eq!(segmenter.push(&vec![0; samples(2.0)]), []);
-        let mut rng = Rng::new(1);
-        let noise: Vec<i16> =
-            (0..samples(3.0)).map(|_| (signed(&mut rng) * 128.0) as i16).collect();
-        assert_eq!(segmenter.push(&noise), []);
-        assert_eq!(segmenter.finish(), None);
-    }
-}
+mod tests;

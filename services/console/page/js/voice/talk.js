@@ -5,7 +5,7 @@ import { microphoneFault, recognitionFault, standingFault } from "./faults.js";
 import { idle, pressed, talks } from "./press.js";
 import { Recording } from "./recording.js";
 
-/** Sound from behind the release that belongs to what was said. */
+/** Sound from behind the release that belongs to what was said: the robot ends it with the voice. */
 const TAIL_MS = 250;
 /** Longest talk after a click. */
 const LATCHED_MS = 30_000;
@@ -203,8 +203,8 @@ export class Talk {
   #end() {
     clearTimeout(this.#tail);
     if (!this.#handsFree) this.#dictation.stop();
+    this.#recording.held = false;
     this.#tail = window.setTimeout(() => {
-      this.#recording.held = false;
       if (!this.#handsFree && this.#recording.isSending) this.#recording.end();
       this.#notify();
     }, TAIL_MS);

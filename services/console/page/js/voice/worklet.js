@@ -2,8 +2,8 @@
 import { Resampler } from "./resampler.js";
 import { Chunker, RATE } from "./sound.js";
 
-/** Samples of a piece: 50 ms. */
-const PIECE = 800;
+/** Samples of a piece: 20 ms, so that the end of a voice arrives soon. */
+const PIECE = 320;
 
 const scope = /** @type {any} */ (globalThis);
 

@@ -145,6 +145,20 @@ fn client_stream_push_to_talk_interrupts_and_ends_on_release() {
 }
 
 #[test]
+fn client_stream_that_is_released_too_soon_ends_with_the_voice() {
+    let mut client = Client::new();
+    client.flags = AudioChunk::HELD;
+    client.send(&request()[..16_000], &[]);
+    let StreamEvent::Began(began) = client.event() else { panic!() };
+    client.flags = 0;
+    client.send(&request()[16_000..28_800], &[]);
+    let StreamEvent::Ended { sound, segment } = client.event() else { panic!() };
+    assert_eq!(sound, began.sound);
+    let spoken_s = segment.end.since(segment.onset).s();
+    assert!((0.7..1.3).contains(&spoken_s), "the whole voice: {spoken_s} s");
+}
+
+#[test]
 fn client_stream_ends_when_the_client_dies() {
     let mut client = Client::new();
     client.send(&request()[..20_000], &[]);

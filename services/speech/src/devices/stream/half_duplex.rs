@@ -61,6 +61,11 @@ impl MaskedStream {
         events
     }
 
+    /// Ends the utterance in progress with its voice; see [`Stream::release`].
+    pub fn release(&mut self) {
+        self.stream.release();
+    }
+
     /// Ends the stream; see [`Stream::finish`].
     pub fn finish(&mut self) -> Option<StreamEvent> {
         self.is_muted = false;

@@ -108,6 +108,11 @@ impl Stream {
         events
     }
 
+    /// Ends the utterance in progress with its voice; see [`Segmenter::release`].
+    pub fn release(&mut self) {
+        self.segmenter.release();
+    }
+
     /// Ends the stream and an utterance in progress with it. Further samples start a new stream.
     pub fn finish(&mut self) -> Option<StreamEvent> {
         let event = match self.segmenter.finish() {
