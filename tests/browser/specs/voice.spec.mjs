@@ -120,7 +120,7 @@ test("an unavailable microphone is reported with help", async ({ page, group, wa
   });
   await button.click();
   await expect(fault).toContainText("Plug one in");
-  await page.getByRole("button", { name: "Voice settings" }).click();
+  await page.getByRole("button", { name: "Settings", exact: true }).click();
   await page.getByRole("radio", { name: /This browser/ }).check();
   await page.keyboard.press("Escape");
   await button.click();
@@ -182,12 +182,12 @@ test.describe("a robot without a recogniser", () => {
 test("its settings are there for everybody", async ({ page, group, watched }) => {
   void watched;
   await page.goto(group.link());
-  await page.getByRole("button", { name: "Voice settings" }).click();
+  await page.getByRole("button", { name: "Settings", exact: true }).click();
   await expect(page.getByRole("radio", { name: /^The robot/ })).toBeChecked();
   await expectAccessible(page);
   await page.getByRole("checkbox", { name: /headset/ }).check();
   await page.keyboard.press("Escape");
   await page.reload();
-  await page.getByRole("button", { name: "Voice settings" }).click();
+  await page.getByRole("button", { name: "Settings", exact: true }).click();
   await expect(page.getByRole("checkbox", { name: /headset/ })).toBeChecked();
 });

@@ -14,7 +14,6 @@ import {
 } from "../../../services/console/page/js/arm/cameras.js";
 import { Fineness, Rolling } from "../../../services/console/page/js/arm/figures.js";
 import { lookOf, partsOf } from "../../../services/console/page/js/arm/looks.js";
-import { placeLabels } from "../../../services/console/page/js/arm/overlay.js";
 import { armWords, indexOf, thoughtsOf } from "../../../services/console/page/js/arm/words.js";
 import { translator } from "../../../services/console/page/js/strings.js";
 
@@ -147,31 +146,6 @@ describe("looks", () => {
         assert.ok(forms.includes(form) && !["box", "rod"].includes(form), `${scene}: ${kind}`);
       }
     }
-  });
-});
-
-describe("labels", () => {
-  const frame = { width: 300, height: 200 };
-  const label = (x, y, weight) => ({ x, y, width: 80, height: 20, weight });
-
-  it("do not cover each other, and stay in the picture", () => {
-    const wishes = [label(50, 100, 1), label(60, 102, 3), label(70, 104, 2), label(10, 30, 0)];
-    const places = placeLabels(wishes, frame);
-    const put = places.filter(Boolean);
-    assert.equal(put.length, 4);
-    for (const [n, a] of put.entries()) {
-      assert.ok(a.x >= 0 && a.x + 80 <= 300 && a.y >= 0 && a.y + 20 <= 200);
-      for (const b of put.slice(n + 1)) {
-        assert.ok(Math.abs(a.x - b.x) >= 80 || Math.abs(a.y - b.y) >= 20);
-      }
-    }
-    assert.deepEqual(places[1], { x: 20, y: 82 }, "the weightiest is where it wants to be");
-  });
-
-  it("leave out what finds no room", () => {
-    const many = Array.from({ length: 20 }, (_, n) => label(150, 100, n));
-    const places = placeLabels(many, frame);
-    assert.ok(places.includes(null) && places[19] !== null);
   });
 });
 

@@ -111,7 +111,8 @@ export function clockOf({ unix_ms }, language) {
   return new Date(unix_ms).toLocaleTimeString(language, /** @type {any} */ (form));
 }
 
-/** Returns whether the person asked for reduced motion. */
+/** Returns whether the person asked for reduced motion, in the settings of the page or of the system. */
 export function calm() {
-  return matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const isLess = document.documentElement.dataset.motion === "less";
+  return isLess || matchMedia("(prefers-reduced-motion: reduce)").matches;
 }

@@ -1,7 +1,9 @@
-// The theme that was chosen, before anything is painted.
+// The look that was chosen (see settings/look.js), before anything is painted.
 try {
-  const theme = localStorage.getItem("whichone.theme");
-  if (theme === "light" || theme === "dark") document.documentElement.dataset.theme = theme;
+  for (const name of ["theme", "text", "motion"]) {
+    const value = localStorage.getItem(`whichone.${name}`);
+    if (value !== null) document.documentElement.dataset[name] = value;
+  }
 } catch {
-  // Storage is refused in some private windows: the system's theme it is.
+  // Storage is refused in some private windows: the system's look it is.
 }

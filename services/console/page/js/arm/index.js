@@ -1,10 +1,14 @@
 // @ts-check
+import { calm } from "../dom.js";
+import { whoControls } from "../model/turn.js";
+import { pressObject } from "../views/press.js";
 import { VIEWS } from "./cameras.js";
 import { followDescription } from "./description.js";
 import { forwardInput } from "./input.js";
 import { Overlay } from "./overlay.js";
 import { build } from "./parts.js";
 import { openPicture } from "./picture.js";
+import { watchPointing } from "./pointing.js";
 import { watchSeen, watchSize, watchTheme } from "./watch.js";
 import { armWords, thoughtsOf } from "./words.js";
 
@@ -20,7 +24,7 @@ const QUESTIONS = ["stats", "clearStats", "shown", "forward", "spin", "lose", "r
 export async function mountArm(element, { link, store, t }) {
   const parts = build(element, t);
   sayInWords(element, parts, store, t);
-  const overlay = new Overlay(parts.labels);
+  const overlay = new Overlay(parts);
   const picture = await openPicture(parts, hearing(element, parts, overlay, t));
   if (!picture) {
     element.dataset.state = "words";
@@ -32,6 +36,7 @@ export async function mountArm(element, { link, store, t }) {
   Object.assign(element, { armView: Object.fromEntries(asks) });
   watch(picture, parts, overlay);
   follow(picture, overlay, store, link);
+  letChoose(overlay, parts.canvas, { link, store, t });
   drawRobot(picture, element, parts, link, t);
 }
 
@@ -60,7 +65,7 @@ function hearing(element, { notice }, overlay, t) {
       notice.textContent = t("arm.lost");
       return;
     }
-    overlay.place(picture.labels, picture.held);
+    overlay.place(picture.boxes, picture.held);
     if (!picture.robot) return;
     element.dataset.picture = picture.fine ? "fine" : "coarse";
     notice.hidden = true;
@@ -94,6 +99,22 @@ function follow(picture, overlay, store, link) {
   });
 }
 
+/** Names what the pointer is over; the operator chooses an object by a click, as in the list. */
+function letChoose(overlay, canvas, page) {
+  const { store } = page;
+  const isMine = () => whoControls(store.get("control"), store.get("welcome")) === "mine";
+  const choose = (n) => isMine() && pressObject(store.get("scene")?.objects[n], page);
+  store.subscribe(["control", "welcome"], () => overlay.setChooser(isMine() ? choose : null));
+  watchPointing(canvas, {
+    find: (point) => overlay.at(point),
+    hover: (n) => {
+      overlay.hover(n);
+      canvas.classList.toggle("arm-choosable", n >= 0 && isMine());
+    },
+    choose,
+  });
+}
+
 /** Has the picture follow the page: its size, its theme, whether it is seen, and who looks at it. */
 function watch(picture, { stage, canvas, buttons }, overlay) {
   watchTheme(stage, (dark) => picture.call("setTheme", dark));
@@ -103,9 +124,8 @@ function watch(picture, { stage, canvas, buttons }, overlay) {
   });
   watchSeen(stage, (seen) => picture.call("setSeen", seen));
   forwardInput(stage, canvas, (what, ...args) => picture.call(what, ...args));
-  const calm = matchMedia("(prefers-reduced-motion: reduce)");
   for (const button of buttons.filter(({ dataset }) => VIEWS.includes(dataset.view ?? ""))) {
-    button.addEventListener("click", () => picture.call("look", button.dataset.view, calm.matches));
+    button.addEventListener("click", () => picture.call("look", button.dataset.view, calm()));
   }
 }
 

@@ -1,25 +1,43 @@
 // @ts-check
 import { Vector3 } from "../../vendor/three/build/three.module.js";
 
-/** Height of a label's foot above its object, metres. */
-const ABOVE_M = 0.02;
+/** Where an object behind the camera is said to be: outside the picture, in halves of it. */
+const OUTSIDE = 1.2;
 
 /**
- * Places of the objects' labels in the picture.
+ * Where the objects are in the picture: the box around each, pixels of the page. That of an object behind
+ * the camera is a point outside, on the side to which one would turn.
  * @param {import("./things.js").Things} things
  * @param {any} camera
- * @param {{width: number, height: number}} size of the picture, pixels of the page
- * @returns {({x: number, y: number}|null)[]} pixels of the page; null: not seen
+ * @param {{width: number, height: number}} size of the picture
+ * @returns {import("./placement.js").Rect[]}
  */
-export function labelPlaces(things, camera, { width, height }) {
-  const point = new Vector3();
+export function objectBoxes(things, camera, size) {
   return Array.from({ length: things.count }, (_, n) => {
-    things.placeOf(n, point);
-    point.z += things.heightOf(n) / 2 + ABOVE_M;
-    point.project(camera);
-    if (point.z > 1) return null;
-    return { x: tenths(((point.x + 1) / 2) * width), y: tenths(((1 - point.y) / 2) * height) };
+    const corners = things.cornersOf(n).map((corner) => corner.project(camera));
+    if (corners.some(({ z }) => z > 1))
+      return behind(things.placeOf(n, new Vector3()), camera, size);
+    return around(corners, size);
   });
+}
+
+function around(points, { width, height }) {
+  const xs = points.map(({ x }) => ((x + 1) / 2) * width);
+  const ys = points.map(({ y }) => ((1 - y) / 2) * height);
+  const [x, y] = [Math.min(...xs), Math.min(...ys)];
+  return {
+    x: tenths(x),
+    y: tenths(y),
+    width: tenths(Math.max(...xs) - x),
+    height: tenths(Math.max(...ys) - y),
+  };
+}
+
+function behind(place, camera, size) {
+  const { x, y, z } = place.project(camera);
+  const sign = z > 1 ? -1 : 1;
+  const scale = (sign * OUTSIDE) / Math.max(Math.abs(x), Math.abs(y), 1e-6);
+  return around([{ x: x * scale, y: y * scale }], size);
 }
 
 /** Smaller changes are invisible and are not sent. */

@@ -1,87 +1,72 @@
 // @ts-check
-/**
- * @typedef {object} Wish of a label
- * @property {number} x its middle, pixels
- * @property {number} y its foot
- * @property {number} width
- * @property {number} height
- * @property {number} weight the heavier goes first
- */
+import { eachFrame, h, s, setAttribute } from "../dom.js";
+import { placeLabels } from "./placement.js";
+import { objectAt } from "./pointing.js";
 
-/** Space between two labels. */
-const GAP = 3;
-/** In a picture that is narrower only what matters is labelled. */
-const NARROW = 480;
-/** Largest upward shift of a label to find room, in label heights. */
-const STEPS = [0, 1, 2, -1.9];
+/** Labels that would fill more than this share of the picture are made smaller. */
+const DENSE = 0.22;
 
-/**
- * Places for labels that do not cover each other.
- * @param {Wish[]} wishes
- * @param {{width: number, height: number}} frame
- * @returns {({x: number, y: number}|null)[]} left upper corners; null where there is no room
- */
-export function placeLabels(wishes, frame) {
-  const taken = [];
-  const places = wishes.map(() => null);
-  const order = wishes.map((_, n) => n).sort((a, b) => wishes[b].weight - wishes[a].weight);
-  for (const n of order) {
-    const { x, y, width, height } = wishes[n];
-    for (const step of STEPS) {
-      const at = { x: x - width / 2, y: y - height - step * (height + GAP), width, height };
-      at.x = Math.min(Math.max(at.x, GAP), frame.width - width - GAP);
-      const inside = at.x >= 0 && at.y >= 0 && at.y + height <= frame.height;
-      if (!inside || taken.some((other) => covers(at, other))) continue;
-      taken.push(at);
-      places[n] = { x: at.x, y: at.y };
-      break;
-    }
-  }
-  return places;
-}
-
-function covers(a, b) {
-  const apart = (at, long) => at < long + GAP;
-  const overX = apart(a.x - b.x, b.width) && apart(b.x - a.x, a.width);
-  return overX && apart(a.y - b.y, b.height) && apart(b.y - a.y, a.height);
-}
-
-/** Names of the objects over the picture. */
+/** Names of the objects over the picture, and the lines that lead to them. */
 export class Overlay {
-  /** @type {{node: HTMLElement, share: HTMLElement, width: number, height: number, weight: number}[]} */
+  /** @type {{node: HTMLElement, share: HTMLElement, leader: SVGElement, width: number, height: number, weight: number}[]} */
   #labels = [];
   /** @type {{belief: number|null, best: boolean, asked: boolean}[]} */
   #thoughts = [];
-  /** Which object is in the gripper, -1 for none. */
+  /** Which object is in the gripper, and which is pointed at; -1 for none. */
   #held = -1;
-  /**
-   * Places of the objects in the picture; null: not visible.
-   * @type {({x: number, y: number}|null)[]}
-   */
+  #hovered = -1;
+  /** @type {import("./placement.js").Rect[]} */
+  #boxes = [];
+  /** @type {(import("./placement.js").Place|null)[]} */
   #places = [];
   #frame = { width: 0, height: 0 };
+  #scene = null;
+  /** @type {((n: number) => void)|null} */
+  #choose = null;
+  #placeSoon = eachFrame(() => this.#place());
 
-  /** @param {HTMLElement} list */
-  constructor(list) {
-    this.list = list;
+  /** @param {{labels: HTMLElement, leaders: SVGElement, notices: HTMLElement[]}} parts */
+  constructor({ labels, leaders, notices }) {
+    this.list = labels;
+    this.leaders = leaders;
+    this.notices = notices;
   }
 
   /** @param {any} scene section `scene` */
   setScene(scene) {
-    this.#labels = scene.objects.map(({ label, name }) => {
-      const node = document.createElement("li");
-      const text = document.createElement("span");
-      const share = document.createElement("span");
-      text.textContent = label ?? name;
-      share.className = "arm-share";
-      node.className = "arm-label";
-      node.append(text, share);
-      return { node, share, width: 0, height: 0, weight: 0 };
-    });
+    this.#scene = scene;
+    this.#boxes = [];
+    this.#build();
+  }
+
+  /**
+   * Makes the names buttons, or plain text again.
+   * @param {((n: number) => void)|null} choose called with the object's place in the scene
+   */
+  setChooser(choose) {
+    const isOther = (choose === null) !== (this.#choose === null);
+    this.#choose = choose;
+    if (isOther && this.#scene) this.#build();
+  }
+
+  #build() {
+    const make = (object, n) => {
+      const share = h("span", { class: "arm-share" });
+      const name = object.label ?? object.name;
+      const onclick = () => this.#choose?.(n);
+      const words = this.#choose
+        ? h("button", { type: "button", class: "arm-name", onclick }, name, share)
+        : h("span", { class: "arm-name" }, name, share);
+      const leader = s("line", {});
+      return { node: h("li", { class: "arm-label" }, words), share, leader };
+    };
+    const none = { width: 0, height: 0, weight: 0 };
+    this.#labels = this.#scene.objects.map((object, n) => ({ ...make(object, n), ...none }));
     this.#places = [];
     this.list.replaceChildren(...this.#labels.map(({ node }) => node));
-    this.#measure();
+    this.leaders.replaceChildren(...this.#labels.map(({ leader }) => leader));
     this.#mark();
+    this.#measure();
   }
 
   /** @param {{belief: number|null, best: boolean, asked: boolean}[]} thoughts */
@@ -93,19 +78,35 @@ export class Overlay {
   /** @param {{width: number, height: number}} frame of the picture */
   setSize(frame) {
     this.#frame = frame;
+    this.#places = [];
     this.#measure();
   }
 
   /**
-   * Puts the labels over what they name.
-   * @param {({x: number, y: number}|null)[]} places in the picture; null: not seen
+   * Puts the labels beside what they name.
+   * @param {import("./placement.js").Rect[]} boxes of the objects in the picture
    * @param {number} held which object is in the gripper, -1 for none
    */
-  place(places, held) {
-    this.#places = places;
-    if (held === this.#held) return this.#place();
+  place(boxes, held) {
+    this.#boxes = boxes;
+    if (held === this.#held) return this.#placeSoon();
     this.#held = held;
     this.#mark();
+  }
+
+  /** The object at a point of the picture, -1 for none. @param {{x: number, y: number}} point */
+  at(point) {
+    const targets = this.#boxes.map((box, n) => ({ box, label: this.#rectOf(n) }));
+    return objectAt(targets, point);
+  }
+
+  /** Emphasises the name of an object. @param {number} n -1 for none */
+  hover(n) {
+    if (n === this.#hovered) return;
+    this.#hovered = n;
+    for (const [k, { node }] of this.#labels.entries()) {
+      setAttribute(node, "data-hover", k === n);
+    }
   }
 
   #mark() {
@@ -123,39 +124,59 @@ export class Overlay {
       isOther = true;
     }
     if (isOther) this.#measure();
-    else this.#place();
+    else this.#placeSoon();
   }
 
-  /** Measures all labels again. */
+  /** Measures all labels again; small ones where the picture has no room for large ones. */
   #measure() {
+    setAttribute(this.list, "data-dense", false);
+    this.#read();
+    const area = this.#labels.reduce((sum, { width, height }) => sum + width * height, 0);
+    if (area > DENSE * this.#frame.width * this.#frame.height) {
+      setAttribute(this.list, "data-dense", true);
+      this.#read();
+    }
+    this.#placeSoon();
+  }
+
+  #read() {
     for (const label of this.#labels) {
       label.width = label.node.offsetWidth;
       label.height = label.node.offsetHeight;
     }
-    this.#place();
+  }
+
+  #rectOf(n) {
+    const place = this.#places[n];
+    const { width, height } = this.#labels[n] ?? { width: 0, height: 0 };
+    return place ? { x: place.x, y: place.y, width, height } : null;
   }
 
   #place() {
-    const seen = this.#labels.map((label, n) => ({ label, at: this.#places[n] ?? null }));
-    const isWanted = ({ label, at }) =>
-      at !== null && (this.#frame.width >= NARROW || label.node.dataset.mark);
-    const shown = seen.filter(isWanted);
-    const wishes = shown.map(({ label: { width, height, weight }, at }) => ({
-      ...at,
+    if (this.#boxes.length !== this.#labels.length || !this.#frame.width) return;
+    const wishes = this.#labels.map(({ width, height, weight }, n) => ({
+      box: this.#boxes[n],
       width,
       height,
       weight,
     }));
-    const places = placeLabels(/** @type {Wish[]} */ (wishes), this.#frame);
-    for (const entry of seen) if (!isWanted(entry)) entry.label.node.dataset.hidden = "true";
-    for (const [n, { label }] of shown.entries()) {
-      const at = places[n];
-      label.node.dataset.hidden = String(at === null);
-      if (at)
-        label.node.style.setProperty(
-          "transform",
-          `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px)`,
-        );
+    const notices = this.notices.filter(({ hidden }) => !hidden).map(rectOf);
+    this.#places = placeLabels(wishes, this.#frame, notices, this.#places);
+    for (const [n, { node, leader }] of this.#labels.entries()) {
+      const { x, y, leader: line } = /** @type {any} */ (this.#places[n]);
+      node.style.setProperty("transform", `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`);
+      const ends = line ?? [0, 0, 0, 0];
+      for (const [k, name] of ["x1", "y1", "x2", "y2"].entries()) {
+        setAttribute(leader, name, ends[k].toFixed(1));
+      }
+      setAttribute(leader, "data-mark", node.dataset.mark ?? "");
+      setAttribute(leader, "visibility", line ? "visible" : "hidden");
     }
+    setAttribute(this.list, "data-placed", true);
   }
+}
+
+/** @param {HTMLElement} node @returns {import("./placement.js").Rect} */
+function rectOf({ offsetLeft, offsetTop, offsetWidth, offsetHeight }) {
+  return { x: offsetLeft, y: offsetTop, width: offsetWidth, height: offsetHeight };
 }

@@ -1,4 +1,5 @@
 // @ts-check
+import { s } from "../dom.js";
 import { icon } from "../icons.js";
 import { VIEWS } from "./cameras.js";
 
@@ -18,7 +19,8 @@ export function build(element, t) {
   badge.hidden = true;
   const caption = make("p", "arm-caption");
   caption.id = "arm-caption";
-  const stage = make("div", "arm-stage", canvas, labels, badge, notice);
+  const leaders = s("svg", { class: "arm-leaders", "aria-hidden": "true" });
+  const stage = make("div", "arm-stage", canvas, leaders, labels, badge, notice);
   stage.tabIndex = 0;
   stage.setAttribute("role", "group");
   stage.setAttribute("aria-label", t("arm.stage"));
@@ -36,7 +38,8 @@ export function build(element, t) {
   element.replaceChildren(stage, caption);
   element.classList.add("arm-view");
   element.dataset.state = "loading";
-  return { canvas, labels, notice, badge, caption, stage, buttons };
+  const notices = [badge, tools];
+  return { canvas, labels, leaders, notice, notices, badge, caption, stage, buttons };
 }
 
 /**

@@ -91,9 +91,14 @@ export class Things {
     return into.setFromMatrixPosition(this.#things[n].object.matrixWorld);
   }
 
-  /** Height of an object, metres. @param {number} n */
-  heightOf(n) {
-    return this.#things[n].size[2];
+  /** Corners of the box around an object, metres. @param {number} n @returns {Vector3[]} */
+  cornersOf(n) {
+    const { object, size } = this.#things[n];
+    const sign = (corner, axis) => ((corner >> axis) & 1 ? 0.5 : -0.5);
+    return Array.from({ length: 8 }, (_, corner) => {
+      const [x, y, z] = size.map((side, axis) => side * sign(corner, axis));
+      return new Vector3(x, y, z).applyMatrix4(object.matrixWorld);
+    });
   }
 
   /** Which object moves with a gripper, -1 for none. */

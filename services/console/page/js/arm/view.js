@@ -4,7 +4,7 @@ import { boundsOf, FIELD_DEG, viewOf } from "./cameras.js";
 import { CameraControls } from "./controls.js";
 import { MotionFigures } from "./figures.js";
 import { JointBuffer } from "./joints.js";
-import { labelPlaces } from "./labels.js";
+import { objectBoxes } from "./labels.js";
 import { Loop } from "./loop.js";
 import { Painter } from "./painter.js";
 import { Pointed } from "./pointed.js";
@@ -43,7 +43,7 @@ export class ArmView {
 
   /**
    * @param {HTMLCanvasElement|OffscreenCanvas} canvas
-   * @param {(message: object) => void} say notifies the page of a new `picture`: the labels' places,
+   * @param {(message: object) => void} say notifies the page of a new `picture`: the objects' boxes,
    *   the held object, whether it has a robot and is fine; or that the graphics card is `lost`
    */
   constructor(canvas, say) {
@@ -195,7 +195,7 @@ export class ArmView {
   #paint(how) {
     this.painter.draw(this.tableau, this.camera, how);
     const picture = {
-      labels: labelPlaces(this.tableau.things, this.camera, this.#size),
+      boxes: objectBoxes(this.tableau.things, this.camera, this.#size),
       held: this.tableau.things.held,
       robot: this.tableau.robot !== null,
       fine: how === "still",

@@ -1,9 +1,8 @@
 // @ts-check
 import { h } from "../dom.js";
 import { icon } from "../icons.js";
-import { keep, recall } from "../kept.js";
+import { recall } from "../kept.js";
 import { answers } from "../model/answers.js";
-import { LANGUAGES } from "../strings.js";
 import { press } from "./press.js";
 
 /**
@@ -13,13 +12,6 @@ import { press } from "./press.js";
  */
 export function mountHelp(context) {
   const { t } = context;
-  let single = recall("keys") !== "off";
-  const toggle = h("input", { type: "checkbox", id: "keys-on" });
-  toggle.checked = single;
-  toggle.addEventListener("change", () => {
-    single = toggle.checked;
-    keep("keys", single ? null : "off");
-  });
   const close = { type: "button", class: "tool", "aria-label": t("help.close") };
   const dialog = h(
     "dialog",
@@ -32,20 +24,13 @@ export function mountHelp(context) {
     ),
     h("p", { text: t("help.stop") }),
     keys(t),
-    h(
-      "p",
-      { class: "help-option" },
-      toggle,
-      h("label", { for: "keys-on", text: t("help.single") }),
-    ),
-    languages(t),
   );
   document.body.append(dialog);
   const open = () => dialog.open || dialog.showModal();
   addEventListener("keydown", (event) => {
-    if (!single || event.defaultPrevented || event.repeat) return;
-    if (event.ctrlKey || event.metaKey || event.altKey || typing(event.target) || dialog.open)
-      return;
+    if (event.defaultPrevented || event.repeat || recall("keys") === "off") return;
+    if (event.ctrlKey || event.metaKey || event.altKey || typing(event.target)) return;
+    if (document.querySelector("dialog[open]")) return;
     act(event, context, open);
   });
   return open;
@@ -71,29 +56,6 @@ function keys(t) {
         h("dd", { text: t(what) }),
       ),
     ),
-  );
-}
-
-function languages(t) {
-  const address = (code) => {
-    const query = new URLSearchParams(location.search);
-    query.set("lang", code);
-    return `?${query}`;
-  };
-  const names = { en: "English", de: "Deutsch" };
-  const link = (code) =>
-    h("a", {
-      href: address(code),
-      lang: code,
-      text: names[code] ?? code,
-      "aria-current": code === t.language() ? "true" : null,
-      onclick: () => keep("language", code),
-    });
-  return h(
-    "p",
-    { class: "languages" },
-    h("span", { text: t("help.language") }),
-    ...LANGUAGES.map(link),
   );
 }
 

@@ -13,10 +13,10 @@ export { playback, REPLY } from "./playback.js";
 /**
  * Voice both ways: a button to talk with, and the robot's voice.
  * @param {HTMLElement} element
- * @param {{link: any, store: any, t: any}} context
+ * @param {{link: any, store: any, t: any, settings: any}} context
  * @returns {{talk: Talk, playback: ReturnType<typeof makePlayback>}}
  */
-export function mountVoice(element, { link, store, t }) {
+export function mountVoice(element, { link, store, t, settings }) {
   const storage = stored();
   let draw = () => {};
   const notify = () => draw();
@@ -24,6 +24,7 @@ export function mountVoice(element, { link, store, t }) {
   const talk = new Talk({ link, store, playback, choices: kept(storage), notify });
   const view = build(element, {
     t,
+    settings,
     hasBrowser: recognitionOf() !== null,
     choices: talk.choices,
     choose: (change) => {

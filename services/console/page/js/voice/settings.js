@@ -1,14 +1,14 @@
 // @ts-check
 import { h } from "../dom.js";
-import { icon } from "../icons.js";
 
 /**
- * The dialog in which a person chooses who recognises, and what the browser does with the sound.
- * @param {{t: any, hasBrowser: boolean, choose: (change: object) => void,
+ * The settings of the voice: whether the robot is heard here, who recognises, and what the browser does
+ * with the sound.
+ * @param {{t: any, hasBrowser: boolean, choose: (change: object) => void, toggleSound: () => void,
  *   choices: import("./choices.js").Choices}} context
- * @returns {HTMLDialogElement}
+ * @returns {{nodes: HTMLElement[], sound: HTMLInputElement}}
  */
-export function settingsDialog({ t, hasBrowser, choose, choices }) {
+export function voiceSettings({ t, hasBrowser, choose, toggleSound, choices }) {
   const choice = (input, name, more) => {
     const words = h("span", {}, h("span", { text: t(name) }), h("small", { text: t(more) }));
     return h("label", { class: "voice-choice" }, input, words);
@@ -26,21 +26,15 @@ export function settingsDialog({ t, hasBrowser, choose, choices }) {
     return choice(h("input", { ...properties, onchange }), `voice.engine.${name}`, more);
   };
   const group = (name, ...children) =>
-    h("fieldset", {}, h("legend", { text: t(name) }), ...children);
-  const close = { type: "button", class: "tool", "aria-label": t("voice.settings.close") };
-  const head = h(
-    "div",
-    { class: "help-head" },
-    h("h2", { id: "voice-settings-title", text: t("voice.settings") }),
-    h("button", { ...close, onclick: () => dialog.close() }, icon("close", 22)),
-  );
+    h("div", { role: "group", "aria-label": t(name), class: "voice-group" }, ...children);
+  const sound = h("input", { type: "checkbox", onchange: toggleSound });
   const boxes = ["headset", "echoCancellation", "noiseSuppression", "autoGainControl"].map(box);
-  const dialog = h(
-    "dialog",
-    { class: "help voice-settings", "aria-labelledby": "voice-settings-title" },
-    head,
+  const nodes = [
+    h("label", { class: "settings-box" }, sound, h("span", { text: t("voice.sound") })),
+    h("p", { class: "voice-group-title", text: t("voice.engine") }),
     group("voice.engine", engine("robot", false), engine("browser", !hasBrowser)),
+    h("p", { class: "voice-group-title", text: t("voice.microphone") }),
     group("voice.microphone", ...boxes),
-  );
-  return dialog;
+  ];
+  return { nodes, sound };
 }

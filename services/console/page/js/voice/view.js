@@ -2,16 +2,16 @@
 import { h, setAttribute, setText } from "../dom.js";
 import { icon } from "../icons.js";
 import { microphone } from "./icon.js";
-import { settingsDialog } from "./settings.js";
+import { voiceSettings } from "./settings.js";
 import { meterShare } from "./sound.js";
 
 /**
  * The elements of the voice part.
  * @param {HTMLElement} element
  * @param {{t: any, hasBrowser: boolean, toggle: (what: string) => void,
- *   choose: (change: object) => void, choices: import("./choices.js").Choices}} context
+ *   choose: (change: object) => void, choices: import("./choices.js").Choices, settings: any}} context
  */
-export function build(element, { t, hasBrowser, toggle, choose, choices }) {
+export function build(element, { t, hasBrowser, toggle, choose, choices, settings }) {
   const words = h("span", { class: "voice-words" });
   const more = h("span", { class: "voice-more" });
   const meter = h("span", { class: "voice-meter", "aria-hidden": "true" }, h("span", {}));
@@ -42,23 +42,12 @@ export function build(element, { t, hasBrowser, toggle, choose, choices }) {
   open.append(off);
   const note = h("p", { class: "voice-note", role: "status" });
   const fault = h("p", { class: "voice-fault", role: "alert" });
-  const settings = settingsDialog({ t, hasBrowser, choose, choices });
-  const adjust = h("button", {
-    type: "button",
-    class: "voice-adjust",
-    text: t("voice.settings"),
-    onclick: () => settings.showModal(),
-  });
+  const toggleSound = () => toggle("sound");
+  const { nodes, sound: heard } = voiceSettings({ t, hasBrowser, choose, toggleSound, choices });
+  settings.add(t("settings.voice"), ...nodes);
   const row = h("div", { class: "voice-row" }, talk, handsFree, sound);
-  document.body.append(settings);
-  element.replaceChildren(
-    row,
-    unlock,
-    fault,
-    note,
-    h("div", { class: "voice-foot" }, adjust, open),
-  );
-  return { talk, words, more, meter, handsFree, sound, unlock, open, note, fault };
+  element.replaceChildren(row, unlock, fault, note, open);
+  return { talk, words, more, meter, handsFree, sound, heard, unlock, open, note, fault };
 }
 
 /**
@@ -80,6 +69,7 @@ export function show(view, { sign, talk, playback, t }) {
   setAttribute(view.handsFree, "aria-pressed", String(talk.handsFree));
   setAttribute(view.sound, "aria-pressed", String(!playback.muted));
   setAttribute(view.sound, "data-sounding", playback.sounds);
+  view.heard.checked = !playback.muted;
   view.meter.style.setProperty("--level", meterShare(talk.levelDb).toFixed(2));
   view.unlock.hidden = !playback.locked;
   view.open.hidden = !talk.isOpen || talk.talks || talk.handsFree;
