@@ -22,7 +22,7 @@ use service::{Span, Time};
 
 use crate::bridge::{self, Bridge, Inbox};
 use crate::hub::command::{Command, Motion};
-use crate::hub::outbound::{PageSettings, VoiceSettings};
+use crate::hub::outbound::{CameraSettings, PageSettings, VoiceSettings};
 use crate::hub::{Channels, Hub};
 use crate::server::connections::Limits;
 use crate::server::web::Web;
@@ -126,6 +126,11 @@ fn page_settings(settings: &Settings, study: bool) -> PageSettings {
             voice: settings.speech.voice != Voice::Print,
         },
         study,
+        camera: settings.console.camera.as_ref().map(|camera| CameraSettings {
+            url: camera.url.clone(),
+            every_ms: camera.every.map(|every| every.as_secs_f64() * 1e3),
+            origin: camera.origin.clone(),
+        }),
     }
 }
 

@@ -27,6 +27,19 @@ pub struct Console {
     pub handover: Duration,
     /// Language of the page, e.g. `en`.
     pub language: String,
+    /// A camera whose picture the page shows.
+    pub camera: Option<Camera>,
+}
+
+/// A camera that browsers fetch pictures from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    /// Address of the picture or stream.
+    pub url: String,
+    /// Scheme, host and port of the address, as in a content security policy.
+    pub origin: String,
+    /// Time between two single pictures; none for a stream (MJPEG).
+    pub every: Option<Duration>,
 }
 
 pub(crate) fn read(f: &mut Fields<'_>) -> Console {
@@ -42,7 +55,56 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Console {
         viewers_max: usize::from(f.whole::<u16>("viewers_max", 2..=200)),
         handover: f.seconds("handover_s", 1.0..=300.0),
         language: language(f),
+        camera: camera(f),
     }
+}
+
+fn camera(f: &mut Fields<'_>) -> Option<Camera> {
+    let url = f.optional_text("camera");
+    let every = f.seconds("camera_every_s", 0.0..=3600.0);
+    let url = url?;
+    match origin(&url) {
+        Ok(origin) => Some(Camera { url, origin, every: (!every.is_zero()).then_some(every) }),
+        Err(why) => {
+            f.problem(
+                "camera",
+                format!("`{url}`: {why}"),
+                "write e.g. \"http://camera:8080/stream\"",
+            );
+            None
+        }
+    }
+}
+
+/// Returns scheme, host and port of a web address.
+fn origin(url: &str) -> Result<String, &'static str> {
+    let (scheme, rest) =
+        url.split_once("://").ok_or("expected an address that begins with http://")?;
+    if !matches!(scheme, "http" | "https") {
+        return Err("expected http:// or https://");
+    }
+    // It goes into the page, and its origin into the page's content security policy.
+    let is_plain = |b: u8| b.is_ascii_graphic() && !br#""'<>\;,"#.contains(&b);
+    if !url.bytes().all(is_plain) {
+        return Err("expected no spaces, quotes, commas and semicolons: escape them, e.g. %20");
+    }
+    let authority = rest.split(['/', '?', '#']).next().unwrap_or_default();
+    if authority.contains('@') {
+        return Err("expected no user and password: every viewer would see them");
+    }
+    let (host, port) = match authority.split_once(':') {
+        Some((host, port)) => (host, Some(port)),
+        None => (authority, None),
+    };
+    // A policy names no IPv6 addresses.
+    let is_host = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'.' | b'-');
+    if host.is_empty() || !host.bytes().all(is_host) {
+        return Err("expected a host's name or IPv4 address after ://");
+    }
+    if port.is_some_and(|port| port.parse::<u16>().unwrap_or(0) == 0) {
+        return Err("expected a port from 1 to 65535");
+    }
+    Ok(format!("{scheme}://{authority}"))
 }
 
 fn listen(f: &mut Fields<'_>) -> SocketAddr {

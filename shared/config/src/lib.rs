@@ -33,7 +33,7 @@ use messages::Service;
 use scene::Scene;
 
 pub use crate::arm::{Arm, Baxter, Driver, Grasps, Limb, Motion, Simulated};
-pub use crate::console::{Access, Console};
+pub use crate::console::{Access, Camera, Console};
 pub use crate::dialogue::{CostsFrom, Dialogue, Gesture};
 pub use crate::files::{RobotFiles, read_file};
 pub use crate::group::{Group, Log, RestartLimits};

@@ -8,6 +8,7 @@ import { keep, Store } from "./store.js";
 import { chooseLanguage, loadStrings, t, translate } from "./strings.js";
 import { mountActions } from "./views/actions.js";
 import { mountAlarm } from "./views/alarm.js";
+import { notify } from "./views/attempt.js";
 import { mountCards } from "./views/cards.js";
 import { mountControl } from "./views/control.js";
 import { mountHealth } from "./views/health.js";
@@ -15,7 +16,7 @@ import { mountPart } from "./views/part.js";
 import { mountQuestion } from "./views/question.js";
 import { mountSay } from "./views/say.js";
 import { mountTabs } from "./views/tabs.js";
-import { mountTools } from "./views/tools.js";
+import { mountTools, toolButton } from "./views/tools.js";
 import { mountTranscript } from "./views/transcript.js";
 import { mountTurn } from "./views/turn.js";
 import { mountWhy } from "./views/why.js";
@@ -52,6 +53,7 @@ mountTranscript(at("transcript"), context);
 mountSay(at("say"), context);
 mountControl(at("control"), context);
 mountTools(at("tools"), context);
+at("tools").prepend(toolButton("history", t("history.show"), "history", openHistory));
 mountTabs(at("tabs"), at("page"), context);
 mountHealth(at("health"), context);
 store.subscribe("welcome", ({ group }) => {
@@ -67,6 +69,20 @@ afterPaint(() => mountPart(at("arm"), () => import("./arm/index.js"), "mountArm"
 function afterPaint(f) {
   const idle = globalThis.requestIdleCallback ?? ((g) => setTimeout(g, 200));
   requestAnimationFrame(() => setTimeout(() => idle(f, { timeout: 1_000 }), 0));
+}
+
+/** @type {Promise<() => void>|null} */
+let history = null;
+
+/** Opens the history, which is loaded when it is wanted first. */
+async function openHistory() {
+  try {
+    history ??= import("./history/index.js").then((part) => part.mountHistory(context));
+    (await history)();
+  } catch {
+    history = null;
+    notify(t("history.unavailable"));
+  }
 }
 
 /** The language that the console is set to, if it says so soon enough. */

@@ -2,10 +2,10 @@
 //! commands of viewers, and puts what has changed on the board.
 
 mod corrections;
+mod line_store;
 mod motion;
 mod submissions;
 pub(crate) mod supervisor;
-mod transcript_store;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -31,11 +31,11 @@ use crate::hub::{Hub, ViewerId};
 use crate::server::App;
 use crate::server::routes::sound_file;
 use crate::study::Study;
-use crate::view_model::{Now, Transcript, ViewModel};
+use crate::view_model::{History, Now, Transcript, ViewModel};
 use crate::voice::Voice;
+use line_store::LineStore;
 use motion::Motions;
 use submissions::Submissions;
-use transcript_store::TranscriptStore;
 
 /// Most commands of one pass; the rest waits for the next.
 const COMMANDS_MAX: usize = 128;
@@ -58,7 +58,8 @@ pub struct Bridge {
     study: Option<Study>,
     submissions: Submissions,
     motions: Motions,
-    store: TranscriptStore,
+    lines: LineStore,
+    past: LineStore,
     voice_dir: Option<PathBuf>,
     /// The joints that were sent last, and when.
     joints: Option<(JointStates, Time)>,
@@ -109,17 +110,20 @@ impl Bridge {
         let bus = client.bus();
         let failed =
             |error| Failure::new(Exit::NotReached, format!("the motion stop's socket: {error}"));
-        let store = TranscriptStore::in_folder(&paths.run());
-        let transcript = Transcript::after(store.read(), now().unix_ms);
+        let lines = LineStore::in_folder(&paths.run(), "console.lines");
+        let past = LineStore::in_folder(&paths.run(), "console.history");
+        let transcript = Transcript::after(lines.read(), now().unix_ms);
+        let history = History::after(past.read());
         Ok(Self {
             topics: Topics::open(bus)?,
             injections: bus.encoded_writer(&topics::INJECTION)?,
-            model: ViewModel::new(settings.scene.clone(), transcript),
+            model: ViewModel::new(settings.scene.clone(), transcript, history),
             voice: Voice::default(),
             study,
             submissions: Submissions::default(),
             motions: Motions::open(paths).map_err(failed)?,
-            store,
+            lines,
+            past,
             voice_dir: app.voice_dir.clone(),
             paths: paths.clone(),
             app,
@@ -275,10 +279,17 @@ impl Bridge {
         let motion = serde_json::to_string(&motion).unwrap_or_default();
         self.hub().board.section("motion", &motion);
         for line in self.model.transcript().take_changed() {
-            self.store.mark_changed();
+            self.lines.mark_changed();
             self.hub().board.line(line.id, &line.to_text());
         }
-        self.store.write(self.model.transcript().lines(), now.at);
+        self.lines.write(self.model.transcript().lines(), now.at);
+        for past in self.model.history().take_changed() {
+            self.past.mark_changed();
+            // Every interaction can be written.
+            let text = serde_json::to_string(&past).unwrap_or_default();
+            self.hub().board.past(past.interaction, &text);
+        }
+        self.past.write(self.model.history().past(), now.at);
         for [.., total_ms] in self.model.latency().take_news() {
             self.hub().metrics.latency.observe(total_ms / 1e3);
         }

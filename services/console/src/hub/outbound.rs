@@ -38,6 +38,17 @@ pub struct PageSettings {
     pub language: String,
     pub voice: VoiceSettings,
     pub study: bool,
+    pub camera: Option<CameraSettings>,
+}
+
+/// The camera that pages show.
+#[derive(Clone, Debug, Serialize)]
+pub struct CameraSettings {
+    pub url: String,
+    /// Time between two single pictures; none for a stream.
+    pub every_ms: Option<f64>,
+    #[serde(skip)]
+    pub origin: String,
 }
 
 #[derive(Clone, Copy, Debug, Default, Serialize)]

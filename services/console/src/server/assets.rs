@@ -22,6 +22,7 @@ pub(super) fn find(path: &str) -> Option<&'static Asset> {
         "" => "index.html",
         "study" => "study.html",
         "results" => "results.html",
+        "audience" => "audience.html",
         "login" => "login.html",
         other => other,
     };

@@ -74,6 +74,7 @@ fn router(app: Arc<App>) -> Router {
     Router::new()
         .route("/ws", get(routes::socket))
         .route("/api/state", get(routes::state))
+        .route("/api/history", get(routes::history))
         .route("/metrics", get(routes::metrics))
         .route("/robot.urdf", get(routes::urdf))
         .route("/voice/{line}", get(routes::voice))
@@ -134,19 +135,21 @@ async fn address(State(app): State<Arc<App>>, request: Request, next: Next) -> R
             "this console serves its own machine only; help: use http://localhost and its port\n";
         (StatusCode::MISDIRECTED_REQUEST, why).into_response()
     };
-    secure(response.headers_mut(), host.as_deref());
+    let camera = app.settings.camera.as_ref().map(|camera| camera.origin.as_str());
+    secure(response.headers_mut(), host.as_deref(), camera);
     response
 }
 
 /// Adds security headers to an answer to a request that was addressed to `host`: no foreign scripts, no
-/// framing.
-fn secure(headers: &mut HeaderMap, host: Option<&str>) {
+/// framing, and no foreign pictures but those of the camera's origin.
+fn secure(headers: &mut HeaderMap, host: Option<&str>, camera: Option<&str>) {
     // `'self'` covers sockets of the same host in newer browsers only.
     let plain =
         |host: &&str| host.bytes().all(|b| b.is_ascii_alphanumeric() || b".-:[]".contains(&b));
     let sockets = host.filter(plain).map(|host| format!(" ws://{host} wss://{host}"));
+    let camera = camera.map(|origin| format!(" {origin}")).unwrap_or_default();
     let policy = format!(
-        "default-src 'self'; img-src 'self' data: blob:; media-src 'self' blob:; \
+        "default-src 'self'; img-src 'self' data: blob:{camera}; media-src 'self' blob:; \
          connect-src 'self'{}; worker-src 'self' blob:; object-src 'none'; base-uri 'none'; \
          form-action 'self'; frame-ancestors 'none'",
         sockets.unwrap_or_default()
@@ -174,12 +177,24 @@ mod tests {
     #[test]
     fn headers_forbid_foreign_scripts() {
         let mut headers = HeaderMap::new();
-        secure(&mut headers, Some("localhost:8377"));
+        secure(&mut headers, Some("localhost:8377"), None);
         let policy = headers[header::CONTENT_SECURITY_POLICY].to_str().unwrap().to_owned();
         assert!(policy.contains("connect-src 'self' ws://localhost:8377 wss://localhost:8377;"));
         assert!(!policy.contains("unsafe"));
-        secure(&mut headers, Some("x; script-src *"));
+        secure(&mut headers, Some("x; script-src *"), None);
         let policy = headers[header::CONTENT_SECURITY_POLICY].to_str().unwrap();
         assert!(!policy.contains("script-src"), "{policy}");
+    }
+
+    #[test]
+    fn headers_allow_pictures_of_the_cameras_origin_only() {
+        let mut headers = HeaderMap::new();
+        let policy = |headers: &HeaderMap| {
+            headers[header::CONTENT_SECURITY_POLICY].to_str().unwrap().to_owned()
+        };
+        secure(&mut headers, None, Some("http://camera:8080"));
+        assert!(policy(&headers).contains("img-src 'self' data: blob: http://camera:8080;"));
+        secure(&mut headers, None, None);
+        assert!(policy(&headers).contains("img-src 'self' data: blob:;"));
     }
 }

@@ -46,6 +46,11 @@ pub(super) async fn state(State(app): State<Arc<App>>) -> Response<Body> {
     (json, app.hub.board.all()).into_response()
 }
 
+pub(super) async fn history(State(app): State<Arc<App>>) -> Response<Body> {
+    let json = [(header::CONTENT_TYPE, "application/json"), (header::CACHE_CONTROL, "no-store")];
+    (json, app.hub.board.history()).into_response()
+}
+
 pub(super) async fn metrics(State(app): State<Arc<App>>) -> Response<Body> {
     let kind = "application/openmetrics-text; version=1.0.0; charset=utf-8";
     ([(header::CONTENT_TYPE, kind)], app.hub.metrics.text()).into_response()

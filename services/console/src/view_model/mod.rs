@@ -4,6 +4,7 @@
 //! restarted repeats its latest); folding one twice changes nothing.
 
 mod examples;
+pub mod history;
 mod latency;
 mod line;
 mod prompts;
@@ -28,8 +29,8 @@ use service::status::{GroupStatus, ServiceStatus};
 use service::view::{ArmView, DialogueView, HearingView, Latest};
 use service::{Span, Time};
 
+pub use history::History;
 pub use latency::Latency;
-pub use line::Line;
 pub use transcript::Transcript;
 use turn::Turn;
 
@@ -82,6 +83,7 @@ pub struct ViewModel {
     prompts: prompts::Prompts,
     readings: VecDeque<understood::Readings>,
     transcript: Transcript,
+    history: History,
     latency: Latency,
     /// The turn, and when its state began.
     turn: Option<(Turn, Time)>,
@@ -92,8 +94,8 @@ pub struct ViewModel {
 }
 
 impl ViewModel {
-    /// Makes the view model of a dialogue about `scene`, continuing a transcript.
-    pub fn new(scene: Scene, transcript: Transcript) -> Self {
+    /// Makes the view model of a dialogue about `scene`, continuing a transcript and a history.
+    pub fn new(scene: Scene, transcript: Transcript, history: History) -> Self {
         Self {
             labels: labels(&scene),
             scene,
@@ -107,6 +109,7 @@ impl ViewModel {
             prompts: prompts::Prompts::default(),
             readings: VecDeque::new(),
             transcript,
+            history,
             latency: Latency::default(),
             turn: None,
             events: Vec::new(),
@@ -139,6 +142,10 @@ impl ViewModel {
         &mut self.transcript
     }
 
+    pub fn history(&mut self) -> &mut History {
+        &mut self.history
+    }
+
     pub fn latency(&mut self) -> &mut Latency {
         &mut self.latency
     }
@@ -158,6 +165,9 @@ impl ViewModel {
         self.is_changed = true;
         if let Some(ended) = &view.last {
             self.transcript.on_end(&self.scene, &self.labels, ended, now);
+        }
+        if view.scene_key == self.scene.key() {
+            self.history.on_view(&view, &self.labels, now);
         }
         self.latest.view = Some(view);
         self.attribute();
@@ -188,6 +198,7 @@ impl ViewModel {
     pub fn on_receipt(&mut self, receipt: &Receipt, now: Now) {
         self.is_changed = true;
         self.latency.on_receipt(receipt);
+        self.history.on_receipt(receipt);
         self.latest.on_receipt(receipt);
         if self.transcript.on_receipt(receipt, now) && receipt.seq > 0 {
             self.events.push(DialogueEvent::Heard(Box::new(*receipt)));

@@ -1,5 +1,6 @@
 //! Messages folded into the view model, in the order and number in which services really send them.
 
+use super::line::Line;
 use super::*;
 use dialogue::{Attributed, QuestionShare};
 use messages::{
@@ -18,7 +19,7 @@ fn scene() -> Scene {
 }
 
 fn model() -> ViewModel {
-    ViewModel::new(scene(), Transcript::after(Vec::new(), 1_000))
+    ViewModel::new(scene(), Transcript::after(Vec::new(), 1_000), History::default())
 }
 
 fn now(s: u64) -> Now {
@@ -179,7 +180,8 @@ fn transcript_continues_its_predecessor() {
     let mut model = model();
     model.on_receipt(&receipt(1, ReceiptStatus::Accepted, "get me the bowl"), now(1));
     let kept: Vec<Line> = model.transcript().lines().cloned().collect();
-    let mut again = ViewModel::new(scene(), Transcript::after(kept.clone(), 9_000));
+    let mut again =
+        ViewModel::new(scene(), Transcript::after(kept.clone(), 9_000), History::default());
     again.on_receipt(&receipt(1, ReceiptStatus::Accepted, "get me the bowl"), now(1));
     again.on_receipt(&receipt(2, ReceiptStatus::Accepted, "the white one"), now(2));
     let ids: Vec<u64> = again.transcript().lines().map(|line| line.id).collect();

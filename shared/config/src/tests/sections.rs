@@ -17,6 +17,18 @@ fn console_default_serves_this_machine_only() {
 }
 
 #[test]
+fn console_camera_is_a_stream_or_single_pictures_of_one_origin() {
+    let camera =
+        |text: &str| Folder::new(&[("console.toml", text)]).load(None, &[]).unwrap().console.camera;
+    assert_eq!(camera(""), None);
+    let stream = camera("camera = 'https://cam.local:8080/stream?size=2'").unwrap();
+    assert_eq!((stream.origin.as_str(), stream.every), ("https://cam.local:8080", None));
+    let still = camera("camera = 'http://10.0.0.7/now.jpg'\ncamera_every_s = 0.5").unwrap();
+    assert_eq!(still.origin, "http://10.0.0.7");
+    assert_eq!(still.every, Some(Duration::from_millis(500)));
+}
+
+#[test]
 fn console_serves_other_machines_by_token() {
     let settings =
         Folder::new(&[("console.toml", "listen = '0.0.0.0:80'")]).load(None, &[]).unwrap();

@@ -2,6 +2,7 @@
 import { calm } from "../dom.js";
 import { whoControls } from "../model/turn.js";
 import { pressObject } from "../views/press.js";
+import { mountCamera } from "./camera.js";
 import { VIEWS } from "./cameras.js";
 import { followDescription } from "./description.js";
 import { forwardInput } from "./input.js";
@@ -24,6 +25,7 @@ const QUESTIONS = ["stats", "clearStats", "shown", "forward", "spin", "lose", "r
 export async function mountArm(element, { link, store, t }) {
   const parts = build(element, t);
   sayInWords(element, parts, store, t);
+  mountCamera(element, parts.stage, { store, t });
   const overlay = new Overlay(parts);
   const picture = await openPicture(parts, hearing(element, parts, overlay, t));
   if (!picture) {

@@ -5,6 +5,18 @@ import { makeSettings } from "../settings/sheet.js";
 import { mountHelp } from "./help.js";
 
 /**
+ * A button with an icon.
+ * @param {string} id
+ * @param {string} label
+ * @param {Parameters<typeof icon>[0]} drawing
+ * @param {() => void} onclick
+ */
+export function toolButton(id, label, drawing, onclick) {
+  const button = { type: "button", class: "tool", id, "aria-label": label, title: label, onclick };
+  return h("button", button, icon(drawing, 22));
+}
+
+/**
  * Settings and help; other parts add their own settings to `context.settings`.
  * @param {HTMLElement} element
  * @param {{store: any, link: any, t: any, settings?: ReturnType<typeof makeSettings>}} context
@@ -12,19 +24,8 @@ import { mountHelp } from "./help.js";
 export function mountTools(element, context) {
   const { t } = context;
   context.settings = makeSettings(t);
-  const tool = (id, label, drawing, onclick) => {
-    const button = {
-      type: "button",
-      class: "tool",
-      id,
-      "aria-label": label,
-      title: label,
-      onclick,
-    };
-    return h("button", button, icon(drawing, 22));
-  };
   element.append(
-    tool("settings", t("settings.open"), "settings", context.settings.open),
-    tool("help", t("help.open"), "help", mountHelp(context)),
+    toolButton("settings", t("settings.open"), "settings", context.settings.open),
+    toolButton("help", t("help.open"), "help", mountHelp(context)),
   );
 }

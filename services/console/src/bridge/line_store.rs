@@ -1,30 +1,30 @@
-//! The transcript on disk, for the console's next incarnation.
+//! Lines on disk, for the console's next incarnation: the transcript and the history.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use service::{Span, Time};
-
-use crate::view_model::Line;
 
 /// Shortest time between two writes.
 const WRITE_EVERY: Span = Span::from_ms(500);
 
-/// A file with the latest lines in the group's run folder, which is removed with the group.
+/// A file with JSON lines in the group's run folder, which is removed with the group.
 #[derive(Debug)]
-pub(super) struct TranscriptStore {
+pub(super) struct LineStore {
     path: PathBuf,
     written: Time,
     is_due: bool,
 }
 
-impl TranscriptStore {
-    pub(super) fn in_folder(run: &Path) -> Self {
-        Self { path: run.join("console.lines"), written: Time(0), is_due: false }
+impl LineStore {
+    pub(super) fn in_folder(run: &Path, name: &str) -> Self {
+        Self { path: run.join(name), written: Time(0), is_due: false }
     }
 
     /// Reads the lines of the previous incarnation; unreadable ones are left out.
-    pub(super) fn read(&self) -> Vec<Line> {
+    pub(super) fn read<T: DeserializeOwned>(&self) -> Vec<T> {
         let text = fs::read_to_string(&self.path).unwrap_or_default();
         text.lines().filter_map(|line| serde_json::from_str(line).ok()).collect()
     }
@@ -35,14 +35,20 @@ impl TranscriptStore {
     }
 
     /// Writes the lines if they have changed and a write is due.
-    pub(super) fn write<'a>(&mut self, lines: impl Iterator<Item = &'a Line>, now: Time) {
+    pub(super) fn write<'a, T: Serialize + 'a>(
+        &mut self,
+        lines: impl Iterator<Item = &'a T>,
+        now: Time,
+    ) {
         if !self.is_due || now < self.written + WRITE_EVERY {
             return;
         }
         (self.written, self.is_due) = (now, false);
-        let text: String = lines.map(|line| line.to_text() + "\n").collect();
+        // Every line can be written.
+        let lines = lines.filter_map(|line| serde_json::to_string(line).ok());
+        let text: String = lines.map(|line| line + "\n").collect();
         if let Err(error) = journal::replace_file(&self.path, text) {
-            tracing::debug!(%error, "transcript not stored");
+            tracing::debug!(%error, file = %self.path.display(), "not stored");
         }
     }
 }

@@ -1,0 +1,82 @@
+// @ts-check
+import { eachFrame, h, keyed, setAttribute, setText } from "../dom.js";
+import { keptLanguage, tabStorage } from "../kept.js";
+import { sessionId } from "../link/session.js";
+import { connect } from "../link.js";
+import { rank, readable } from "../model/ranking.js";
+import { keep, Store } from "../store.js";
+import { chooseLanguage, loadStrings, t, translate } from "../strings.js";
+import { mountPart } from "../views/part.js";
+import { mountTurn } from "../views/turn.js";
+import { lastHeard, sentence, sizeOf } from "./model.js";
+
+/** Most bars: they are large. */
+const BARS_MAX = 6;
+
+/** @param {string} id @returns {HTMLElement} */
+const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
+const store = new Store();
+// A screen has the rights of a viewer, and never gets control.
+const link = connect({
+  session: sessionId(tabStorage()),
+  role: "screen",
+  lastLine: () => store.resumeAfter,
+});
+keep(store, link);
+await loadStrings(chooseLanguage(location.search, keptLanguage(), navigator.languages));
+translate(document);
+store.subscribe("welcome", ({ group }) => {
+  document.title = `whichone · ${group}`;
+});
+
+const context = { link, store, t };
+mountTurn(at("turn"), context);
+mountPart(at("arm"), () => import("../arm/index.js"), "mountArm", context);
+
+const drawWords = eachFrame(() => {
+  const sections = ["link", "turn", "arm", "dialogue", "scene"];
+  const now = Object.fromEntries(sections.map((name) => [name, store.get(name)]));
+  const words = sentence(/** @type {any} */ (now), t);
+  setText(at("sentence"), words);
+  at("sentence").style.setProperty("font-size", `${sizeOf(words)}dvh`);
+  const heard = lastHeard(store.get("lines"));
+  setText(at("heard"), heard ? t("audience.heard", { text: heard }) : "");
+});
+store.subscribe(["link", "turn", "arm", "dialogue", "scene", "lines"], drawWords);
+
+/** @type {number[]} */
+let order = [];
+const drawBars = eachFrame(() => {
+  const scene = store.get("scene");
+  const dialogue = store.get("dialogue");
+  if (!scene) return;
+  const belief = scene.objects.map(({ name }) => dialogue?.belief?.[name] ?? 0);
+  order = rank(order, belief);
+  const items = order.slice(0, BARS_MAX).map((n) => ({ id: `${scene.key}.${n}`, n, p: belief[n] }));
+  const best = Math.max(...belief, 0);
+  const make = () =>
+    h(
+      "li",
+      {},
+      h("span", { class: "audience-name" }),
+      h("span", { class: "audience-bar", "aria-hidden": "true" }, h("span", {})),
+      h("span", { class: "audience-share" }),
+    );
+  keyed(
+    at("bars"),
+    items,
+    ({ id }) => id,
+    make,
+    (node, { n, p }) => {
+      const [name, bar, share] = node.children;
+      const { sign, share: part } = readable(p);
+      setText(name, scene.objects[n].label ?? scene.objects[n].name);
+      setText(share, sign + t.percent(part));
+      bar.firstElementChild.style.setProperty("inline-size", `${100 * p}%`);
+      setAttribute(node, "data-best", p === best && p > 1.5 / belief.length);
+    },
+  );
+});
+store.subscribe(["scene", "dialogue"], drawBars);
+document.documentElement.dataset.ready = "";
