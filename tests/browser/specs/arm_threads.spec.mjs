@@ -38,7 +38,7 @@ for (const [thread, make] of Object.entries(BROWSERS_BY_THREAD)) {
     test("has names over it, and is turned by keys, mouse and wheel", async ({ page, group }) => {
       await page.setViewportSize({ width: 1900, height: 1000 });
       const { scene } = await group.state();
-      const label = page.locator('.arm-label');
+      const label = page.locator(".arm-label");
       await expect(label.first()).toContainText(scene.objects[0].label ?? scene.objects[0].name);
 
       const { eye } = await shown(page);

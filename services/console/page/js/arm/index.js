@@ -20,13 +20,13 @@ const QUESTIONS = ["stats", "clearStats", "shown", "forward", "spin", "lose", "r
  * Shows the arm in 3D. The page has the elements, what a person does to them, and the connection;
  * the picture itself is drawn elsewhere (see `openPicture`).
  * @param {HTMLElement} element gets `armView`, which tests ask
- * @param {{link: any, store: any, t: (key: string, args?: object) => string}} page
+ * @param {{link: any, store: any, t: any}} page
  */
 export async function mountArm(element, { link, store, t }) {
   const parts = build(element, t);
   sayInWords(element, parts, store, t);
   mountCamera(element, parts.stage, { store, t });
-  const overlay = new Overlay(parts);
+  const overlay = new Overlay(parts, t);
   const picture = await openPicture(parts, hearing(element, parts, overlay, t));
   if (!picture) {
     element.dataset.state = "words";

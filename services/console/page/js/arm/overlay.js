@@ -1,5 +1,6 @@
 // @ts-check
 import { eachFrame, h, s, setAttribute } from "../dom.js";
+import { readable } from "../model/ranking.js";
 import { placeLabels } from "./placement.js";
 import { objectAt } from "./pointing.js";
 
@@ -25,8 +26,12 @@ export class Overlay {
   #choose = null;
   #placeSoon = eachFrame(() => this.#place());
 
-  /** @param {{labels: HTMLElement, leaders: SVGElement, notices: HTMLElement[]}} parts */
-  constructor({ labels, leaders, notices }) {
+  /**
+   * @param {{labels: HTMLElement, leaders: SVGElement, notices: HTMLElement[]}} parts
+   * @param {{percent: (share: number) => string}} t
+   */
+  constructor({ labels, leaders, notices }, t) {
+    this.t = t;
     this.list = labels;
     this.leaders = leaders;
     this.notices = notices;
@@ -114,7 +119,7 @@ export class Overlay {
     for (const [n, label] of this.#labels.entries()) {
       const { belief = null, best = false, asked = false } = this.#thoughts[n] ?? {};
       const isHeld = n === this.#held;
-      const percent = belief === null ? "" : ` ${Math.round(100 * belief)} %`;
+      const percent = belief === null ? "" : ` ${this.#percent(belief)}`;
       const mark = isHeld ? "held" : asked ? "asked" : best ? "best" : "";
       label.weight = (isHeld ? 4 : 0) + (asked ? 2 : 0) + (best ? 1 : 0) + (belief ?? 0);
       label.node.dataset.faint = String(belief !== null && belief < 0.02 && !isHeld);
@@ -125,6 +130,11 @@ export class Overlay {
     }
     if (isOther) this.#measure();
     else this.#placeSoon();
+  }
+
+  #percent(belief) {
+    const { sign, share } = readable(belief);
+    return sign + this.t.percent(share);
   }
 
   /** Measures all labels again; small ones where the picture has no room for large ones. */

@@ -39,7 +39,7 @@ const drawWords = eachFrame(() => {
   const now = Object.fromEntries(sections.map((name) => [name, store.get(name)]));
   const words = sentence(/** @type {any} */ (now), t);
   setText(at("sentence"), words);
-  at("sentence").style.setProperty("font-size", `${sizeOf(words)}dvh`);
+  at("sentence").style.setProperty("--size", String(sizeOf(words)));
   const heard = lastHeard(store.get("lines"));
   setText(at("heard"), heard ? t("audience.heard", { text: heard }) : "");
 });

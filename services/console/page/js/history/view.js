@@ -60,8 +60,9 @@ export function buildView(t, go) {
     drawStep(when, talk, shown, at, t);
     drawBars(bars, shown, t);
     const is = (a, b) => a.interaction === b.interaction && a.step === b.step;
-    back.disabled = is(step(history, at, -1), at);
-    on.disabled = is(step(history, at, 1), at);
+    // Not `disabled`: the focus stays on them, and with it the keys.
+    setAttribute(back, "aria-disabled", is(step(history, at, -1), at) ? "true" : null);
+    setAttribute(on, "aria-disabled", is(step(history, at, 1), at) ? "true" : null);
   }
   const fail = (failed) => {
     isFailed = failed;
@@ -83,8 +84,8 @@ function fillPast(node, past, isCurrent, t) {
   setText(more, [clock(past.unix_ms, t), summary(past, t)].filter(Boolean).join(" · "));
 }
 
-function headline({ end, steps }, t) {
-  if (!end) return steps.at(-1)?.text || t("history.open");
+function headline({ end }, t) {
+  if (!end) return t("history.open");
   return t(`history.${end.outcome}`, { object: end.object ?? "" });
 }
 
