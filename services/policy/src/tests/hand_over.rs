@@ -92,6 +92,14 @@ fn thanks_and_another_wish_are_no_refusals() {
     assert_eq!(text(&thanked), "You are welcome.");
     let agreed = reply(&mut manager, &end, answer(Response::Yes));
     assert_eq!((agreed.open.is_none(), text(&agreed).as_str()), (true, "All right."));
+    // "Yes" means nothing where it answers nothing.
+    let Cause::Utterance(mut yes) = heard(end.applied.0 + 1, end.act.prompt, answer(Response::Yes))
+    else {
+        unreachable!("an utterance")
+    };
+    yes.interpretations.last_mut().expect("for no question").reading = Reading::default();
+    let agreed = manager.next(&end, &Cause::Utterance(yes), at(end.applied.0 + 1));
+    assert_eq!((agreed.open.is_none(), text(&agreed).as_str()), (true, "All right."));
     let next = remark(&mut manager, &thanked, words(&["metallic"]));
     assert_eq!(next.ended.as_ref().map(|ended| ended.outcome), Some(Outcome::Delivered));
     assert!(next.handed_over.is_none(), "the next request ends the time for refusals");

@@ -151,10 +151,14 @@ impl Manager {
     /// Returns whether the utterance can open an interaction: a mere answer means nothing where no
     /// question was asked, and neither does a gesture that does not count.
     fn is_request(&self, utterance: &Utterance) -> bool {
-        let mut all = utterance.interpretations.iter().map(|it| &it.reading);
+        let all = utterance.interpretations.iter().map(|it| &it.reading);
         let only_gesture =
             utterance.gesture.is_some() && all.clone().all(|it| *it == Reading::default());
-        self.is_pointing(utterance) || !(all.all(is_mere_answer) || only_gesture)
+        // An answer has no content where it is not taken for one.
+        let is_empty = |it: &Reading| *it == Reading::default();
+        let is_answer = all.clone().all(|it| is_mere_answer(it) || is_empty(it))
+            && !(all.len() > 0 && all.clone().all(is_empty));
+        self.is_pointing(utterance) || !(is_answer || only_gesture)
     }
 }
 
