@@ -66,8 +66,18 @@ export async function answerUntilPicked(page, group, name) {
 export async function expectDelivered(page, group, name) {
   const last = await until("the hand-over", async () => (await group.state()).dialogue.last);
   expect(last).toMatchObject({ object: name, outcome: "delivered" });
-  await expect(question(page)).toContainText(t("last.delivered.other").split(":")[0]);
+  await expect(question(page)).toContainText(delivered);
 }
+
+/** What the page says of a hand-over, while it can be refused and after. */
+const delivered = new RegExp(`${t("delivery.kicker")}|${t("last.delivered.other").split(":")[0]}`);
+
+/**
+ * A button that says something to the robot, beside its question.
+ * @param {import("@playwright/test").Page} page
+ * @param {string} name
+ */
+export const offer = (page, name) => question(page).getByRole("button", { name, exact: true });
 
 /**
  * Presses Escape twice, and again as a person would, until the stop button has become another: a page that

@@ -99,10 +99,13 @@ describe("what was handed over", () => {
     const store = new Store();
     let now = 0;
     keepDelivery({ link: { serverNow: () => now }, store });
-    store.apply({ dialogue, scene: SCENE });
+    store.apply({ dialogue: { interaction: 4, belief: { b: 0.9 } }, scene: SCENE });
+    store.apply({ dialogue: { ...dialogue, belief: { b: 0.3 } } });
     assert.equal(store.get("delivery").object.name, "b");
+    assert.deepEqual(store.get("belief"), { b: 0.9 }, "what was believed still stands");
     now = 10_000;
     test.mock.timers.tick(10_000);
     assert.equal(store.get("delivery"), null);
+    assert.deepEqual(store.get("belief"), { b: 0.3 });
   });
 });

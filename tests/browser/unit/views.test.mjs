@@ -9,6 +9,7 @@ import {
   marks,
   rank,
   readable,
+  strip,
 } from "../../../services/console/page/js/model/ranking.js";
 import {
   actionWords,
@@ -76,6 +77,12 @@ describe("many objects", () => {
 
   it("are not cut for one more", () => {
     assert.equal(likely(order.slice(0, 13), belief, 12, new Set()).others, 0);
+  });
+
+  it("keep their places in a line", () => {
+    assert.deepEqual(strip([0.1, 0.5, 0.1, 0.3], 2), [1, 3]);
+    assert.deepEqual(strip([0.3, 0.1, 0.3, 0.3], 2), [0, 2]);
+    assert.deepEqual(strip([], 6), []);
   });
 
   it("are set closely", () => {

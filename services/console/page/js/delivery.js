@@ -1,5 +1,6 @@
 // @ts-check
-// What was handed over, for as long as it can be refused: the store's section `delivery`.
+// What was handed over, for as long as it can be refused: the store's section `delivery`. The section
+// `belief` is what is believed now; until that time is over, what was believed at the end.
 
 /** Longest delay of a timer, milliseconds. */
 const TIMER_MAX_MS = 2 ** 31 - 1;
@@ -25,7 +26,7 @@ export function deliveryOf(dialogue, scene, nowMs, settled) {
 }
 
 /**
- * Keeps the section `delivery`. Setting `settled` to its interaction ends it for this page.
+ * Keeps the sections `delivery` and `belief`. Setting `settled` to its interaction ends it for this page.
  * @param {{link: any, store: any}} context
  */
 export function keepDelivery({ link, store }) {
@@ -36,6 +37,7 @@ export function keepDelivery({ link, store }) {
     const delivery = deliveryOf(dialogue, scene, link.serverNow(), store.get("settled"));
     if (delivery) timer = setTimeout(look, Math.min(delivery.leftMs, TIMER_MAX_MS));
     if (delivery || store.get("delivery")) store.set("delivery", delivery);
+    if (!delivery || !store.get("belief")) store.set("belief", dialogue?.belief ?? null);
   };
   store.subscribe(["dialogue", "scene", "settled"], look);
 }

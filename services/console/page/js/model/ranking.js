@@ -42,6 +42,17 @@ export function likely(order, belief, most, pinned) {
 }
 
 /**
+ * The most probable objects in the scene's order, so that each keeps its place.
+ * @param {number[]} belief
+ * @param {number} most
+ * @returns {number[]}
+ */
+export function strip(belief, most) {
+  const likeliest = [...belief.keys()].sort((a, b) => belief[b] - belief[a] || a - b);
+  return likeliest.slice(0, most).sort((a, b) => a - b);
+}
+
+/**
  * A probability as a share that is read off easily: never "100 %" or "0 %" where it is not.
  * @param {number} p
  * @returns {{sign: ""|"<"|">", share: number}}

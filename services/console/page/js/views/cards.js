@@ -28,8 +28,6 @@ export function mountCards(element, context) {
   element.tabIndex = 0;
   element.setAttribute("role", "group");
   element.setAttribute("aria-labelledby", "objects-heading");
-  /** @type {Record<string, number>|null} */
-  let believed = null;
   let order = [];
   let stands = "";
   let sceneKey = null;
@@ -58,12 +56,9 @@ export function mountCards(element, context) {
     if (scene.key !== sceneKey) {
       keyed(list, [], String, () => h("li"));
       order = [];
-      believed = null;
       sceneKey = scene.key;
     }
-    // After a hand-over what was believed still stands, until that is over.
-    if (!believed || !store.get("delivery")) believed = dialogue?.belief ?? null;
-    const belief = scene.objects.map(({ name }) => believed?.[name] ?? 0);
+    const belief = scene.objects.map(({ name }) => store.get("belief")?.[name] ?? 0);
     const now = { dialogue, arm: store.get("arm"), world: store.get("world") };
     const marked = marks(scene, now);
     order = rank(order, belief);
@@ -95,7 +90,7 @@ export function mountCards(element, context) {
     const { sign, share } = readable(dialogue?.absent ?? 0);
     setText(absent, t("objects.absent", { share: sign + t.percent(share) }));
   });
-  store.subscribe(["scene", "dialogue", "arm", "world", "delivery", "control", "welcome"], draw);
+  store.subscribe(["scene", "dialogue", "arm", "world", "belief", "control", "welcome"], draw);
   draw();
 }
 
