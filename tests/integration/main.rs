@@ -20,6 +20,7 @@ mod journal_format;
 mod journal_loss;
 mod planners;
 mod pointing;
+mod put_back;
 mod python;
 mod recovery;
 mod reload;

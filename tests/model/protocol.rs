@@ -12,7 +12,7 @@
 use messages::inbox::{Inbox, Verdict};
 use messages::outbox::Outbox;
 use messages::pick::{Order, Pick, judge};
-use messages::{InteractionId, PickId, PickOutcome, PickPhase, UtteranceSeq};
+use messages::{InteractionId, PickId, PickOutcome, PickPhase, Task, UtteranceSeq};
 use scene::ObjectId;
 
 use crate::search::System;
@@ -620,7 +620,7 @@ impl Protocol {
     fn on_order(&self, state: &State, arm: Arm, order: Ordered, visit: Visit<'_>) {
         let latest = latest(arm);
         let id = id(order);
-        let judged = judge(latest.as_ref(), id, ObjectId(order.object.into()));
+        let judged = judge(latest.as_ref(), id, ObjectId(order.object.into()), Some(Task::Fetch));
         let again = judged == Order::Known && self.is(Broken::RepeatOrder);
         let is_over = !matches!(arm.phase, Phase::Accepted | Phase::Holding);
         let by_id = judged == Order::Conflict && self.is(Broken::ReuseAndCompareIdOnly);
@@ -826,7 +826,8 @@ fn latest(arm: Arm) -> Option<Pick> {
         Phase::Delivered => (PickPhase::Done, PickOutcome::Delivered),
         Phase::Failed => (PickPhase::Done, PickOutcome::Interrupted),
     };
-    Some(Pick { id: id(arm.pick), object: ObjectId(arm.pick.object.into()), phase, outcome })
+    let object = ObjectId(arm.pick.object.into());
+    Some(Pick { id: id(arm.pick), object, task: Task::Fetch, phase, outcome })
 }
 
 /// The arm closes its gripper on the object of its pick.

@@ -3,7 +3,7 @@
 use config::Settings;
 use dialogue::Ended;
 use dialogue::manager::{Cause, refold, refold_since};
-use messages::{Outcome, PickOutcome, PickPhase};
+use messages::{InteractionId, Outcome, PickOutcome, PickPhase};
 use scene::ObjectId;
 use speech::record::Record as Spoken;
 use whichone_tests::simulated_group::SimulatedGroup;
@@ -17,6 +17,7 @@ pub(crate) fn check(group: &SimulatedGroup, wanted: &[ObjectId]) -> Verdict {
     if group.client.is_some() {
         delivered_in_order(group, wanted)?;
         deliveries_are_picks(group)?;
+        put_back_once(group)?;
     } else {
         delivered_the_right_one(group)?;
         picked_once(group)?;
@@ -74,6 +75,32 @@ fn deliveries_are_picks(group: &SimulatedGroup) -> Verdict {
         ensure(held <= 1, || format!("{pick:?} was held {held} times"))?;
     }
     Ok(())
+}
+
+/// What was refused after its delivery is back in its place, put there once; nothing else was, and no
+/// order is open.
+fn put_back_once(group: &SimulatedGroup) -> Verdict {
+    let Some(arm) = &group.arm else { return Err("no arm".to_owned()) };
+    let mut refused: Vec<(InteractionId, Option<ObjectId>)> = Vec::new();
+    for ended in group.policy.journal().iter().filter_map(|record| record.state.ended.as_ref()) {
+        let is_new = refused.iter().all(|(interaction, _)| *interaction != ended.interaction);
+        if ended.outcome == Outcome::Refused && is_new {
+            refused.push((ended.interaction, ended.object));
+        }
+    }
+    let mut picks: Vec<_> = arm.journal().iter().filter_map(|r| r.state.pick).collect();
+    picks.retain(|pick| pick.outcome == PickOutcome::PutBack);
+    picks.dedup();
+    let done: Vec<_> = picks.iter().map(|pick| (pick.id.interaction, Some(pick.object))).collect();
+    ensure(done == refused, || format!("refused {refused:?}, put back {done:?}"))?;
+    let learned = group.policy.journal().iter().filter(|record| {
+        matches!(record.cause, Cause::PickEnded { outcome: PickOutcome::PutBack, .. })
+    });
+    ensure(learned.count() == done.len(), || "the policy has not learned of it once".to_owned())?;
+    let open = group.policy.journal().last().and_then(|record| record.state.putting_back.as_ref());
+    ensure(open.is_none(), || format!("{open:?} is still under way"))?;
+    let told = group.client.as_ref().map_or(0, |client| client.put_back);
+    ensure(told as usize <= done.len(), || format!("{told} reported, {done:?} put back"))
 }
 
 /// At most one grasp that holds and one end for each interaction (I4), of the ordered object (I5).

@@ -79,6 +79,9 @@ pub(crate) enum Check {
     FetchesNothing,
     /// Nothing is handed over before the person's next words.
     DeliversNothing,
+    /// This object is back in its place before the person's next words.
+    PutsBack(String),
+    PutsNothingBack,
     /// One of these phrases.
     Says(Vec<String>),
     /// None of these phrases.
@@ -185,6 +188,8 @@ fn clause(text: &str, place: &str) -> Clause {
         ("asks", "nothing") => Check::AsksNothing,
         ("fetches", "nothing") => Check::FetchesNothing,
         ("delivers", "nothing") => Check::DeliversNothing,
+        ("puts", "nothing back") => Check::PutsNothingBack,
+        ("puts", _) if rest.starts_with("back ") => Check::PutsBack(rest[5..].to_owned()),
         ("fetches", _) => Check::Fetches(alternatives(rest, " or ")),
         ("says", _) if rest.starts_with("not ") => Check::SaysNot(alternatives(&rest[4..], "|")),
         ("says", _) => Check::Says(alternatives(rest, "|")),

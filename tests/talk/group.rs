@@ -50,6 +50,8 @@ pub(crate) struct Seen {
     /// Announced picks.
     pub(crate) picks: Vec<(Time, PickId, ObjectId)>,
     pub(crate) delivered: Vec<(Time, ObjectId)>,
+    /// Objects that are back in their places.
+    pub(crate) put_back: Vec<(Time, ObjectId)>,
     pub(crate) is_fetching: bool,
     pub(crate) is_stopped: bool,
     /// Texts that were refused.
@@ -255,6 +257,12 @@ impl Group {
         if act.kind == ActKind::Cancel {
             self.seen.is_fetching = false;
         }
+        if let Some((id, _)) = act.put_back()
+            && self.latest_pick < Some(id)
+        {
+            self.latest_pick = Some(id);
+            self.seen.is_fetching = true;
+        }
         if let Some((id, object)) = act.pick()
             && self.latest_pick < Some(id)
         {
@@ -280,12 +288,13 @@ impl Group {
             return;
         }
         self.seen.is_fetching = false;
-        if status.outcome == PickOutcome::Delivered
-            && self.latest_delivery < Some(status.pick())
-            && let Ok(object) = u16::try_from(status.object)
-        {
-            self.latest_delivery = Some(status.pick());
-            self.seen.delivered.push((self.now, ObjectId(object)));
+        let is_new = self.latest_delivery < Some(status.pick());
+        let Ok(object) = u16::try_from(status.object).map(ObjectId) else { return };
+        match status.outcome.get() {
+            PickOutcome::Delivered if is_new => self.seen.delivered.push((self.now, object)),
+            PickOutcome::PutBack if is_new => self.seen.put_back.push((self.now, object)),
+            _ => return,
         }
+        self.latest_delivery = Some(status.pick());
     }
 }

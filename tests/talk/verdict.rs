@@ -83,6 +83,10 @@ fn judge_reply(
         deliveries: (seen.delivered.iter())
             .filter(|(at, _)| *at >= said.at && next.is_none_or(|next| *at < next.at))
             .count(),
+        put_back: (seen.put_back.iter())
+            .filter(|(at, _)| *at >= said.at && next.is_none_or(|next| *at < next.at))
+            .map(|(_, object)| name(scene, *object))
+            .collect(),
         rest: &seen.lines[said.line..],
         before: &seen.lines[..said.line],
     };
@@ -114,6 +118,7 @@ struct Reply<'a> {
     lines: &'a [Line],
     picks: Vec<&'a str>,
     deliveries: usize,
+    put_back: Vec<&'a str>,
     /// Its lines from then to the end of the dialogue.
     rest: &'a [Line],
     before: &'a [Line],
@@ -149,6 +154,8 @@ impl Reply<'_> {
             }
             Check::FetchesNothing => self.picks.is_empty(),
             Check::DeliversNothing => self.deliveries == 0,
+            Check::PutsBack(object) => self.put_back == [object],
+            Check::PutsNothingBack => self.put_back.is_empty(),
             Check::Says(phrases) => says(phrases),
             Check::SaysNot(phrases) => !says(phrases),
         }

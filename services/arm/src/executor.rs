@@ -12,7 +12,7 @@ const FLOWS_RAD_S: f64 = 1e-6;
 /// Purpose of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// Fetch the ordered object.
+    /// Fetch the ordered object, or put it back.
     Pick(PickId),
     /// Aim at an object.
     Aim(ObjectId),
@@ -173,11 +173,12 @@ impl Executor {
         (program.duration_s() - t_s).max(0.0)
     }
 
-    /// Returns the simulated seconds until the handover.
-    pub(crate) fn seconds_to_hand_over(&self) -> f64 {
+    /// Returns the simulated seconds until the object is let go.
+    pub(crate) fn seconds_to_release(&self) -> f64 {
         let Self::Running { program, t_s, .. } = self else { return 0.0 };
-        let before = program.steps.iter().take_while(|step| step.kind != MotionPhase::Return);
-        let total: f64 = before.map(|step| step.motion.duration_s()).sum();
+        let release = program.steps.iter().position(|step| step.kind == MotionPhase::Release);
+        let steps = program.steps.iter().take(release.map_or(0, |release| release + 1));
+        let total: f64 = steps.map(|step| step.motion.duration_s()).sum();
         (total - t_s).max(0.0)
     }
 }

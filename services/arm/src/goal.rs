@@ -49,8 +49,7 @@ impl ArmNode {
             // A plan starts at the present posture, so the joints must stand still.
             Executor::Standing if !self.can_start() => {}
             Executor::Standing => {
-                let restocks = self.config.arm.restock && !self.state.gone.is_empty();
-                if restocks && self.limb_away().is_none() {
+                if self.restocks() && self.limb_away().is_none() {
                     self.rest(now, fx);
                 }
                 if let Some(purpose) = wanted {
@@ -96,11 +95,13 @@ impl ArmNode {
     }
 
     /// Returns whether the arm must rest first: no plan was found from elsewhere, or the object is still
-    /// with the person, who puts it back once the arm is at rest.
+    /// with the person, who puts it back by hand once the arm is at rest.
     fn comes_after_rest(&self, goal: Purpose) -> bool {
         let object = self.object_of(goal);
         let with_person = object.is_some_and(|object| self.state.gone.contains(&object));
-        self.plan_failures.from_rest == Some(goal) || self.config.arm.restock && with_person
+        let restocked =
+            self.config.arm.restock && with_person && object != self.state.to_put_back();
+        self.plan_failures.from_rest == Some(goal) || restocked
     }
 
     fn object_of(&self, purpose: Purpose) -> Option<ObjectId> {
@@ -152,21 +153,21 @@ impl ArmNode {
         let pick = *self.state.open_pick()?;
         let (limb, held) = (self.state.limb, self.state.held);
         let holding = limb.and_then(|limb| self.driver.measured().holds(limb));
-        let at_hand_over =
-            limb.is_some_and(|limb| self.planner_with(|planner| planner.is_at_hand_over(limb)));
-        match (next(pick.phase, holding, at_hand_over), held, limb) {
-            (Next::Fetch, ..) => Some(self.planner_with(|planner| planner.fetch(&pick))),
-            (Next::Deliver, Some(held), _) => {
-                Some(self.planner_with(|planner| planner.deliver(pick.id, &held)))
+        let at_goal =
+            limb.is_some_and(|limb| self.planner_with(|planner| planner.is_at_goal(&pick, limb)));
+        match (next(pick.phase, holding, at_goal), held, limb) {
+            (Next::Take, ..) => Some(self.planner_with(|planner| planner.take(&pick))),
+            (Next::Carry, Some(held), _) => {
+                Some(self.planner_with(|planner| planner.carry(&pick, &held)))
             }
             (Next::Release, Some(held), _) => {
                 Some(Ok(self.planner_with(|planner| planner.release(pick.id, &held))))
             }
-            (Next::Deliver, None, Some(limb)) if pick.phase == PickPhase::Closing => {
+            (Next::Carry, None, Some(limb)) if pick.phase == PickPhase::Closing => {
                 self.hold(limb, now, fx);
                 None
             }
-            (Next::Interrupt | Next::Deliver | Next::Release, ..) => {
+            (Next::Interrupt | Next::Carry | Next::Release, ..) => {
                 self.end(PickOutcome::Interrupted, now, fx);
                 None
             }
@@ -206,7 +207,7 @@ impl ArmNode {
             Purpose::Pick(_) => {
                 let Some(pick) = self.state.open_pick().copied() else { return };
                 let name = self.name(pick.object);
-                tracing::error!(name, %refusal, "cannot fetch the object");
+                tracing::error!(name, task = ?pick.task, %refusal, "no way with the object");
                 let holds = pick.phase == PickPhase::Holding;
                 let outcome =
                     if holds { PickOutcome::Interrupted } else { PickOutcome::Unreachable };

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use messages::pick::Pick;
-use messages::{PickId, PickOutcome, PickPhase};
+use messages::{PickId, PickOutcome, PickPhase, Task};
 use service::exit::Failure;
 use service::inspection::{Part, SharedFacts, at, count};
 
@@ -14,7 +14,12 @@ pub(crate) fn line(record: &Record) -> String {
     let pick = record.state.pick.as_ref().map_or("no pick".to_owned(), |pick| {
         let PickId { interaction, attempt } = pick.id;
         let object = pick.object.index();
-        format!("pick {interaction}.{attempt} of object {object}: {:?}", pick.phase).to_lowercase()
+        let what = match pick.task {
+            Task::Fetch => "pick",
+            Task::PutBack => "putting back",
+        };
+        format!("{what} {interaction}.{attempt} of object {object}: {:?}", pick.phase)
+            .to_lowercase()
             + &match pick.outcome {
                 PickOutcome::Pending => String::new(),
                 outcome => format!(", {outcome:?}").to_lowercase(),
@@ -37,10 +42,12 @@ pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
 struct Tally {
     lifted: u32,
     delivered: u32,
+    /// Deliveries put back.
+    put_back: u32,
 }
 
-/// One object per pick, no step back, and in each interaction at most one grasp that lifts and one
-/// delivery.
+/// One object and task per pick, no step back, and in each interaction at most one grasp that lifts to
+/// fetch, one delivery, and one object put back.
 pub(crate) fn verify(parts: &[Part<Record>]) -> Result<Vec<String>, Failure> {
     let mut tallies: BTreeMap<u64, Tally> = BTreeMap::new();
     let mut before: Option<Pick> = None;
@@ -70,22 +77,27 @@ fn step(
     if same.is_some_and(|before| before.object != pick.object) {
         return Err(format!("{name} is of two objects"));
     }
+    if same.is_some_and(|before| before.task != pick.task) {
+        return Err(format!("{name} is of two tasks"));
+    }
     if same.is_some_and(|before| before.phase > pick.phase) {
         return Err(format!("{name} goes back to {:?}", pick.phase));
     }
     let phase_before = same.map(|before| before.phase);
     let tally = tallies.entry(interaction.0).or_default();
-    if pick.phase == PickPhase::Holding && phase_before != Some(PickPhase::Holding) {
+    let lifts = pick.phase == PickPhase::Holding && phase_before != Some(PickPhase::Holding);
+    if lifts && pick.task == Task::Fetch {
         tally.lifted += 1;
     }
-    let is_new = phase_before != Some(PickPhase::Done);
-    if pick.phase == PickPhase::Done && is_new && pick.outcome == PickOutcome::Delivered {
-        tally.delivered += 1;
+    if pick.phase == PickPhase::Done && phase_before != Some(PickPhase::Done) {
+        tally.delivered += u32::from(pick.outcome == PickOutcome::Delivered);
+        tally.put_back += u32::from(pick.outcome == PickOutcome::PutBack);
     }
-    match (tally.lifted, tally.delivered) {
-        (0..=1, 0..=1) => Ok(()),
-        (lifted, delivered) => Err(format!(
-            "interaction {interaction} lifted {lifted} times and delivered {delivered} times"
+    match tally {
+        Tally { lifted: 0..=1, delivered: 0..=1, put_back: 0..=1 } => Ok(()),
+        Tally { lifted, delivered, put_back } => Err(format!(
+            "interaction {interaction} lifted {lifted} times, delivered {delivered} times and put \
+             back {put_back} times"
         )),
     }
 }
@@ -103,7 +115,15 @@ mod tests {
             _ => PickOutcome::Pending,
         };
         let id = PickId { interaction: InteractionId(interaction), attempt };
-        Pick { id, object: ObjectId(1), phase, outcome }
+        Pick { id, object: ObjectId(1), task: Task::Fetch, phase, outcome }
+    }
+
+    fn put_back(attempt: u32, phase: PickPhase) -> Pick {
+        let pick = Pick { task: Task::PutBack, ..pick(3, attempt, phase) };
+        match phase {
+            PickPhase::Done => Pick { outcome: PickOutcome::PutBack, ..pick },
+            _ => pick,
+        }
     }
 
     fn check(picks: &[Pick]) -> Result<(), String> {
@@ -123,12 +143,17 @@ mod tests {
         let picks: Vec<Pick> = phases.map(|phase| pick(3, 1, phase)).to_vec();
         assert_eq!(check(&picks), Ok(()));
         assert_eq!(check(&[picks.clone(), vec![pick(4, 1, Done)]].concat()), Ok(()));
+        let and_back = [picks, vec![put_back(2, Holding), put_back(2, Done)]].concat();
+        assert_eq!(check(&and_back), Ok(()));
+        let twice = [and_back, vec![put_back(3, Holding), put_back(3, Done)]].concat();
+        assert!(check(&twice).is_err());
         let wrong = [
             vec![pick(3, 1, Moving), pick(3, 1, Accepted)],
             vec![pick(3, 1, Done), pick(3, 2, Done)],
             vec![pick(3, 1, Holding), pick(3, 2, Holding)],
             vec![pick(3, 1, Moving), pick(2, 1, Moving)],
             vec![pick(3, 1, Moving), Pick { object: ObjectId(2), ..pick(3, 1, Closing) }],
+            vec![pick(3, 1, Moving), put_back(1, Closing)],
         ];
         for picks in wrong {
             assert!(check(&picks).is_err(), "{picks:?}");

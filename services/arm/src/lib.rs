@@ -1,4 +1,5 @@
-//! The arm service: fetches the ordered object exactly once, points at objects, and stops on request.
+//! The arm service: fetches the ordered object exactly once, or puts it back, points at objects, and
+//! stops on request.
 //!
 //! [`ArmNode`] is the reducer. Invariant: a motion that belongs to a phase of a pick is commanded
 //! only once that phase is durable, and the next action depends on durable facts and

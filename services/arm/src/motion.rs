@@ -85,7 +85,12 @@ impl ArmNode {
         if measured.holds(limb) == Some(false) {
             return self.miss(now, fx);
         }
-        self.state.held = self.world.grasped(object, limb, &measured);
+        self.state.held = match self.state.to_put_back() {
+            None => self.world.grasped(object, limb, &measured),
+            // The user gives it back as it was handed over.
+            Some(_) => self.state.handed_over(object).copied(),
+        };
+        self.state.gone.retain(|gone| *gone != object);
         self.enter(PickPhase::Holding, limb, now, fx);
     }
 
@@ -145,9 +150,8 @@ impl ArmNode {
     fn ended(&mut self, kind: MotionPhase, purpose: Option<Purpose>, now: Time, fx: &mut Fx) {
         match (kind, purpose) {
             (MotionPhase::Release, Some(Purpose::Pick(_))) => {
-                self.state.gone.extend(self.state.held.take().map(|held| held.object));
                 self.executor.change_purpose(Purpose::Return);
-                self.end(PickOutcome::Delivered, now, fx);
+                self.let_go(now, fx);
             }
             (MotionPhase::Aim, Some(Purpose::Aim(object))) => {
                 self.aimed = Some(object);
@@ -161,10 +165,35 @@ impl ArmNode {
         }
     }
 
-    /// Handles the arm at rest: with restocking, people have put the objects back.
+    /// Handles fingers that have opened where the object was to be let go.
+    fn let_go(&mut self, now: Time, fx: &mut Fx) {
+        let held = self.state.held.take();
+        let outcome = match self.state.to_put_back() {
+            Some(object) => {
+                self.state.handed_over.retain(|other| other.object != object);
+                PickOutcome::PutBack
+            }
+            None => {
+                self.state.gone.extend(held.map(|held| held.object));
+                held.into_iter().for_each(|held| self.state.remember(held));
+                PickOutcome::Delivered
+            }
+        };
+        self.end(outcome, now, fx);
+    }
+
+    /// Returns whether people may put objects back by themselves.
+    pub(crate) fn restocks(&self) -> bool {
+        let given_back = self.state.to_put_back();
+        self.config.arm.restock && self.state.gone.iter().any(|gone| Some(*gone) != given_back)
+    }
+
+    /// Handles the arm at rest: with restocking, people have put the objects back, except one that
+    /// the arm is to put back.
     pub(crate) fn rest(&mut self, now: Time, fx: &mut Fx) {
-        if self.config.arm.restock && self.limb_away().is_none() {
-            self.state.gone.clear();
+        if self.restocks() && self.limb_away().is_none() {
+            let given_back = self.state.to_put_back();
+            self.state.gone.retain(|gone| Some(*gone) == given_back);
         }
         self.record(Cause::Rested, now, fx);
     }

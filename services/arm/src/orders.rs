@@ -4,7 +4,7 @@ use crate::state::Cause;
 use crate::{ArmNode, Fx};
 use messages::pick::{Order, Pick, judge};
 use messages::{
-    ActId, ActKind, MotionCommand, MotionOrder, PickId, PickOutcome, PickPhase, RobotAct,
+    ActId, ActKind, MotionCommand, MotionOrder, PickId, PickOutcome, PickPhase, RobotAct, Task,
 };
 use scene::{ObjectId, Question};
 use service::Time;
@@ -45,29 +45,49 @@ impl ArmNode {
         }
         self.act = StandingAct { id, aim };
         match (kind, u16::try_from(act.object).map(ObjectId)) {
-            (ActKind::Pick, Ok(object)) => self.order(act.pick_id(), object, is_new, now, fx),
+            (ActKind::Pick, Ok(object)) => {
+                self.order((act.pick_id(), object, Task::Fetch), is_new, now, fx);
+            }
+            (ActKind::PutBack, Ok(object)) => {
+                self.order((act.pick_id(), object, Task::PutBack), is_new, now, fx);
+            }
             (ActKind::Cancel, Ok(object)) => self.cancel(act.pick_id(), object, now, fx),
             _ => {}
         }
     }
 
-    fn order(&mut self, id: PickId, object: ObjectId, is_new: bool, now: Time, fx: &mut Fx) {
-        match judge(self.state.pick.as_ref(), id, object) {
+    fn order(
+        &mut self,
+        (id, object, task): (PickId, ObjectId, Task),
+        is_new: bool,
+        now: Time,
+        fx: &mut Fx,
+    ) {
+        match judge(self.state.pick.as_ref(), id, object, Some(task)) {
             Order::Accept => {
-                self.take_on(id, object, (PickPhase::Accepted, PickOutcome::Pending));
-                tracing::info!(?id, object = object.0, "pick accepted");
+                let accepted = (PickPhase::Accepted, PickOutcome::Pending);
+                self.take_on((id, object, task), accepted);
+                // Whoever asks for it to be put back has it, whatever a simulated world restocks.
+                if task == Task::PutBack && !self.state.gone.contains(&object) {
+                    self.state.gone.push(object);
+                }
+                tracing::info!(?id, object = object.0, ?task, "pick accepted");
                 self.record(Cause::Ordered, now, fx);
             }
             Order::Conflict if is_new => {
-                tracing::error!(?id, object = object.0, "pick id already used with another object");
+                tracing::error!(
+                    ?id,
+                    object = object.0,
+                    "pick id already used with another object or task"
+                );
             }
             Order::Conflict | Order::Known | Order::Busy | Order::Obsolete => {}
         }
     }
 
-    /// Cancels the pick, unless the gripper already closes on the object: then it is delivered.
+    /// Cancels the pick, unless the gripper already closes on the object: then it is carried out.
     fn cancel(&mut self, id: PickId, object: ObjectId, now: Time, fx: &mut Fx) {
-        match judge(self.state.pick.as_ref(), id, object) {
+        match judge(self.state.pick.as_ref(), id, object, None) {
             Order::Known => {
                 let phase = self.state.open_pick().map(|pick| pick.phase);
                 if matches!(phase, Some(PickPhase::Accepted | PickPhase::Moving)) {
@@ -76,7 +96,8 @@ impl ArmNode {
             }
             // The order itself has not arrived yet. It must be ignored when it does.
             Order::Accept => {
-                self.take_on(id, object, (PickPhase::Done, PickOutcome::Cancelled));
+                let cancelled = (PickPhase::Done, PickOutcome::Cancelled);
+                self.take_on((id, object, Task::Fetch), cancelled);
                 tracing::info!(?id, "pick cancelled before its order arrived");
                 self.record(Cause::Ordered, now, fx);
             }
@@ -86,12 +107,11 @@ impl ArmNode {
 
     fn take_on(
         &mut self,
-        id: PickId,
-        object: ObjectId,
+        (id, object, task): (PickId, ObjectId, Task),
         (phase, outcome): (PickPhase, PickOutcome),
     ) {
         self.acknowledge_interruption();
-        self.state.pick = Some(Pick { id, object, phase, outcome });
+        self.state.pick = Some(Pick { id, object, task, phase, outcome });
         (self.state.limb, self.state.misses) = (None, 0);
         self.urgent = true;
     }

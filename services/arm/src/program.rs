@@ -8,10 +8,11 @@ use config::Grasps;
 use dialogue::Rng;
 use manipulation::{
     ArmShape, Cuboid, Joints, Limb, MotionLimits, Phase, PlanError, PlanSettings, Robot, Stage,
-    Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_return,
+    Trajectory, gripper, plan_delivery, plan_pick, plan_point, plan_put_back, plan_put_down,
+    plan_return,
 };
 use messages::pick::Pick;
-use messages::{MotionPhase, PickId, PickPhase};
+use messages::{MotionPhase, PickId, PickPhase, Task};
 use nalgebra::Translation3;
 use scene::ObjectId;
 use std::collections::VecDeque;
@@ -38,6 +39,9 @@ pub(crate) enum Refusal {
     /// A user took it.
     #[error("it was handed over and has not been put back (arm.restock is off)")]
     Gone,
+    /// It cannot be put back.
+    #[error("it is not known how it was handed over")]
+    NotHandedOver,
     /// The other limb is away from rest and must return first.
     #[error("the other limb is away from rest")]
     OtherLimb,
@@ -60,8 +64,8 @@ struct Start {
 const DESCENT_S: f64 = 1.0;
 /// Pause after opening the fingers, seconds.
 const SETTLE_S: f64 = 0.2;
-/// Largest distance from the handover position that counts as at it, metres.
-const HAND_OVER_M: f64 = 0.005;
+/// Largest distance from where the object is let go that counts as there, metres.
+const AT_GOAL_M: f64 = 0.005;
 /// Largest motion of the gripper with a joint, metres per radian.
 const REACH_M: f64 = 1.2;
 /// Rises of the gripper before it returns to rest, tried in turn until a path is found, metres.
@@ -70,9 +74,33 @@ const RISES_M: [f64; 2] = [0.05, 0.15];
 const BLEND_RAD: f64 = 0.15;
 
 impl Planner<'_> {
+    /// Takes the object of a pick: from its place to hand it over, or from the user to put it back.
+    pub(crate) fn take(&self, pick: &Pick) -> Result<Program, Refusal> {
+        match pick.task {
+            Task::Fetch => self.fetch(pick),
+            Task::PutBack => self.take_back(pick),
+        }
+    }
+
+    /// Carries the held object on to where it is let go.
+    pub(crate) fn carry(&self, pick: &Pick, held: &Held) -> Result<Program, Refusal> {
+        let object = self.world.place(held.object).ok_or(Refusal::NoPlace)?;
+        let in_gripper = from_array(&held.in_gripper);
+        let others = self.world.obstacles(self.state, None);
+        let (robot, limb, arms) = (self.robot, held.limb, &self.measured.posture.joints);
+        let plan = self.with_reduced_margin(|settings| match pick.task {
+            Task::Fetch => plan_delivery(robot, object, &in_gripper, limb, arms, &others, settings),
+            Task::PutBack => {
+                plan_put_down(robot, object, &in_gripper, limb, arms, &others, settings)
+            }
+        })?;
+        let steps = plan.stages().iter().map(|stage| self.step(stage)).collect();
+        Ok(Program { purpose: Purpose::Pick(pick.id), limb, steps })
+    }
+
     /// Fetches `pick.object`: clear of what the arm touches, approach, close, lift, hand over,
     /// release, return.
-    pub(crate) fn fetch(&self, pick: &Pick) -> Result<Program, Refusal> {
+    fn fetch(&self, pick: &Pick) -> Result<Program, Refusal> {
         let object = self.world.place(pick.object).ok_or(Refusal::NoPlace)?;
         if self.state.gone.contains(&pick.object) {
             return Err(Refusal::Gone);
@@ -92,17 +120,22 @@ impl Planner<'_> {
         Ok(Program { purpose: Purpose::Pick(pick.id), limb: plan.limb(), steps })
     }
 
-    /// Delivers the held object: lift, hand over, release, return.
-    pub(crate) fn deliver(&self, pick: PickId, held: &Held) -> Result<Program, Refusal> {
-        let object = self.world.place(held.object).ok_or(Refusal::NoPlace)?;
-        let in_gripper = from_array(&held.in_gripper);
-        let others = self.world.obstacles(self.state, None);
-        let arms = &self.measured.posture.joints;
+    /// Takes `pick.object` from the user, with the gripper that handed it over, and puts it back:
+    /// clear of what the arm touches, take, close, carry back, lower, release, raise, return.
+    fn take_back(&self, pick: &Pick) -> Result<Program, Refusal> {
+        let object = self.world.place(pick.object).ok_or(Refusal::NoPlace)?;
+        let held = self.state.handed_over(pick.object).ok_or(Refusal::NotHandedOver)?;
+        let (limb, in_gripper) = (held.limb, from_array(&held.in_gripper));
+        self.refuse_other(limb)?;
+        let start = self.start(None, 0.0);
         let plan = self.with_reduced_margin(|settings| {
-            plan_delivery(self.robot, object, &in_gripper, held.limb, arms, &others, settings)
+            let Start { arms, obstacles, .. } = &start;
+            plan_put_back(self.robot, object, &in_gripper, limb, arms, obstacles, settings)
         })?;
-        let steps = plan.stages().iter().map(|stage| self.step(stage)).collect();
-        Ok(Program { purpose: Purpose::Pick(pick), limb: held.limb, steps })
+        let mut steps = start.steps;
+        steps.iter_mut().for_each(|step| step.phase = Some(PickPhase::Moving));
+        steps.extend(plan.stages().iter().map(|stage| self.step(stage)));
+        Ok(Program { purpose: Purpose::Pick(pick.id), limb, steps })
     }
 
     /// Opens the fingers where the gripper is.
@@ -149,10 +182,20 @@ impl Planner<'_> {
         Ok(Program { purpose: Purpose::Return, limb, steps })
     }
 
-    /// Returns whether the gripper of `limb` is at the handover position.
-    pub(crate) fn is_at_hand_over(&self, limb: Limb) -> bool {
-        let within_m = HAND_OVER_M + REACH_M * self.measured.accuracy_rad;
-        self.settings.is_hand_over(limb, &self.tip(limb).vector, within_m)
+    /// Returns whether the gripper of `limb` is where the pick's object is let go.
+    pub(crate) fn is_at_goal(&self, pick: &Pick, limb: Limb) -> bool {
+        let within_m = AT_GOAL_M + REACH_M * self.measured.accuracy_rad;
+        let tip = self.tip(limb).vector;
+        match pick.task {
+            Task::Fetch => self.settings.is_hand_over(limb, &tip, within_m),
+            Task::PutBack => {
+                let held = self.state.held.as_ref().filter(|held| held.limb == limb);
+                let goal = held
+                    .zip(self.world.place(pick.object))
+                    .map(|(held, place)| place.isometry() * from_array(&held.in_gripper).inverse());
+                goal.is_some_and(|goal| (goal.translation.vector - tip).norm() < within_m)
+            }
+        }
     }
 
     /// Plans with the configured margin or, if something blocks a limb that is away
@@ -260,6 +303,10 @@ impl Planner<'_> {
             Phase::Lift => (MotionPhase::Lift, Some(PickPhase::Holding), grip),
             Phase::HandOver => (MotionPhase::HandOver, Some(PickPhase::Holding), grip),
             Phase::Release => (MotionPhase::Release, Some(PickPhase::Holding), open),
+            Phase::Take => (MotionPhase::Take, Some(PickPhase::Moving), open),
+            Phase::CarryBack => (MotionPhase::CarryBack, Some(PickPhase::Holding), grip),
+            Phase::Lower => (MotionPhase::Lower, Some(PickPhase::Holding), grip),
+            Phase::Raise => (MotionPhase::Clear, None, open),
             Phase::Aim | Phase::Hold => (MotionPhase::Aim, None, open),
             Phase::Return => (MotionPhase::Return, None, open),
         };

@@ -122,7 +122,7 @@ impl Publisher {
     fn status(&self, facts: &Facts<'_>) -> ArmStatus {
         let Facts { state, executor, .. } = facts;
         let fetching = matches!(executor.purpose(), Some(Purpose::Pick(_)));
-        let seconds = if fetching { executor.seconds_to_hand_over() } else { 0.0 };
+        let seconds = if fetching { executor.seconds_to_release() } else { 0.0 };
         let status = ArmStatus {
             aimed_act: facts.aimed.map_or(0, |act| act.0),
             stopped: state.stopped.into(),
@@ -138,6 +138,7 @@ impl Publisher {
             object: pick.object.0.into(),
             phase: pick.phase.code(),
             outcome: pick.outcome.code(),
+            task: pick.task.code(),
             ..status
         }
     }

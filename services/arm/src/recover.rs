@@ -13,27 +13,27 @@ use service::NodeError;
 /// Next action of an open pick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Next {
-    /// Fetch the object from the present posture. Nothing has been grasped, so closing (again) is
-    /// not a second grasp.
-    Fetch,
-    /// Bring the held object to the person.
-    Deliver,
-    /// Open the fingers: the gripper is at the handover.
+    /// Take the object: fetch it, or go where the user gives it back. Nothing has been grasped, so
+    /// closing (again) is not a second grasp.
+    Take,
+    /// Bring the held object to the person, or to its place.
+    Carry,
+    /// Open the fingers: the gripper is there.
     Release,
     /// Stop and report an interruption: a person must check.
     Interrupt,
 }
 
-/// Decision table. `holding` is the gripper's sensor reading, `at_hand_over` whether the gripper is
-/// where objects are handed over.
-pub fn next(phase: PickPhase, holding: Option<bool>, at_hand_over: bool) -> Next {
+/// Decision table. `holding` is the gripper's sensor reading, `at_goal` whether the gripper is where
+/// the object is let go: at the handover, or at its place.
+pub fn next(phase: PickPhase, holding: Option<bool>, at_goal: bool) -> Next {
     match (phase, holding) {
-        (PickPhase::Closing, Some(true)) => Next::Deliver,
+        (PickPhase::Closing, Some(true)) => Next::Carry,
         (PickPhase::Closing, None) => Next::Interrupt,
-        (PickPhase::Holding, _) if at_hand_over => Next::Release,
+        (PickPhase::Holding, _) if at_goal => Next::Release,
         (PickPhase::Holding, Some(false)) => Next::Interrupt,
-        (PickPhase::Holding, _) => Next::Deliver,
-        _ => Next::Fetch,
+        (PickPhase::Holding, _) => Next::Carry,
+        _ => Next::Take,
     }
 }
 
@@ -66,6 +66,7 @@ pub fn other_scene(state: &ArmState, scene: &Scene) -> Option<ArmState> {
     }
     let mut next = ArmState { scene_key: scene.key(), held: None, ..state.clone() };
     next.gone.clear();
+    next.handed_over.clear();
     next.waits_for_person = false;
     next.pick =
         state.pick.map(|pick| Pick { outcome: outcome(&pick), phase: PickPhase::Done, ..pick });
@@ -86,20 +87,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn recovery_fetches_before_a_grasp_delivers_after_it_and_leaves_the_unknown_to_a_person() {
-        use Next::{Deliver, Fetch, Interrupt, Release};
+    fn recovery_takes_before_a_grasp_carries_after_it_and_leaves_the_unknown_to_a_person() {
+        use Next::{Carry, Interrupt, Release, Take};
         use PickPhase::{Accepted, Closing, Holding, Moving};
-        for (phase, at_hand_over, expected) in [
+        for (phase, at_goal, expected) in [
             // With the gripper's sensor empty, holding and unknown.
-            (Accepted, false, [Fetch, Fetch, Fetch]),
-            (Moving, false, [Fetch, Fetch, Fetch]),
-            (Closing, false, [Fetch, Deliver, Interrupt]),
-            (Closing, true, [Fetch, Deliver, Interrupt]),
-            (Holding, false, [Interrupt, Deliver, Deliver]),
+            (Accepted, false, [Take, Take, Take]),
+            (Moving, false, [Take, Take, Take]),
+            (Closing, false, [Take, Carry, Interrupt]),
+            (Closing, true, [Take, Carry, Interrupt]),
+            (Holding, false, [Interrupt, Carry, Carry]),
             (Holding, true, [Release, Release, Release]),
         ] {
-            let found = [Some(false), Some(true), None].map(|own| next(phase, own, at_hand_over));
-            assert_eq!(found, expected, "{phase:?} at the hand over: {at_hand_over}");
+            let found = [Some(false), Some(true), None].map(|own| next(phase, own, at_goal));
+            assert_eq!(found, expected, "{phase:?} at the goal: {at_goal}");
         }
     }
 }

@@ -25,8 +25,9 @@ pub struct ArmProgram;
 
 impl Program for ArmProgram {
     const SERVICE: Service = Service::Arm;
-    const RECORD: Option<&'static str> = Some("arm/2");
-    const ABOUT: &'static str = "fetches objects, points at them, and stops on request";
+    const RECORD: Option<&'static str> = Some("arm/3");
+    const ABOUT: &'static str =
+        "fetches objects, puts them back, points at them, and stops on request";
     type Node = ArmNode;
     type Shell = ArmShell;
 

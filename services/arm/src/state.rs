@@ -3,10 +3,13 @@
 
 use manipulation::{Joints, Limb, Robot};
 use messages::pick::Pick;
-use messages::{MotionOrder, PickPhase};
+use messages::{MotionOrder, PickPhase, Task};
 use scene::ObjectId;
 use serde::{Deserialize, Serialize};
 use service::Time;
+
+/// Objects of which is remembered how they were handed over.
+const HANDED_OVER_MAX: usize = 4;
 
 /// The arm's state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,6 +28,9 @@ pub struct ArmState {
     pub held: Option<Held>,
     /// Objects that a person has taken and not put back, in order.
     pub gone: Vec<ObjectId>,
+    /// The objects handed over last as they were held, the latest last: so they are taken again to be
+    /// put back.
+    pub handed_over: Vec<Held>,
     /// True if the motion stop is latched.
     pub stopped: bool,
     /// Time at which the latest applied motion order was given.
@@ -117,10 +123,31 @@ impl ArmState {
             misses: 0,
             held: None,
             gone: Vec::new(),
+            handed_over: Vec::new(),
             stopped: false,
             obeyed: Time(0),
             waits_for_person: false,
         }
+    }
+
+    /// Returns how an object was held when it was handed over, if that is remembered.
+    pub fn handed_over(&self, object: ObjectId) -> Option<&Held> {
+        self.handed_over.iter().find(|held| held.object == object)
+    }
+
+    /// Remembers how an object was held when it was handed over.
+    pub(crate) fn remember(&mut self, held: Held) {
+        self.handed_over.retain(|other| other.object != held.object);
+        if self.handed_over.len() == HANDED_OVER_MAX {
+            self.handed_over.remove(0);
+        }
+        self.handed_over.push(held);
+    }
+
+    /// Returns the object that is to be put back, while that is in progress.
+    pub(crate) fn to_put_back(&self) -> Option<ObjectId> {
+        let pick = self.open_pick().filter(|pick| pick.task == Task::PutBack);
+        pick.map(|pick| pick.object)
     }
 
     /// Returns the pick in progress.

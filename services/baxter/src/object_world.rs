@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 const BESIDE_M: [f64; 2] = [0.012, 0.02];
 /// An object released higher than this above its place is taken by a person, metres.
 const HANDED_OVER_M: f64 = 0.05;
+/// Distance from where it was handed over within which a person gives an object back, metres.
+const GIVEN_BACK_M: f64 = 0.05;
 
 /// Location of one object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,6 +32,8 @@ pub struct ObjectWorld {
     places: Vec<Option<ObjectPose>>,
     /// Locations of the objects.
     pub now: Vec<Whereabouts>,
+    /// Where each object was handed over last, metres: a person gives it back there.
+    handed_over: Vec<Option<[f64; 3]>>,
 }
 
 impl ObjectWorld {
@@ -41,11 +45,12 @@ impl ObjectWorld {
             Some(place) => Whereabouts::Stands(place.xyz_m),
             None => Whereabouts::Gone,
         };
-        Self { now: places.iter().map(stands).collect(), places }
+        let handed_over = vec![None; places.len()];
+        Self { now: places.iter().map(stands).collect(), handed_over, places }
     }
 
     /// Returns the object between fingers that are `opening_m` apart at `tip`, with its width: one
-    /// that stands `offset_m` beside its place across the fingers.
+    /// that stands `offset_m` beside its place across the fingers, or one that a person gives back.
     pub fn between(
         &self,
         tip: &Isometry3<f64>,
@@ -53,7 +58,7 @@ impl ObjectWorld {
         offset_m: f64,
     ) -> Option<(usize, f64)> {
         let standing = self.places.iter().zip(&self.now).enumerate();
-        standing.into_iter().find_map(|(i, (place, now))| {
+        let stands = standing.into_iter().find_map(|(i, (place, now))| {
             let Whereabouts::Stands(xyz_m) = *now else { return None };
             let object = ObjectPose { xyz_m, ..(*place)? };
             let at = object.grasps().ok()?.into_iter().any(|grasp| {
@@ -62,7 +67,24 @@ impl ObjectWorld {
                 along && gripper::catches(opening_m, object.grasp_width_m, beside.y + offset_m)
             });
             at.then_some((i, object.grasp_width_m))
-        })
+        });
+        stands.or_else(|| self.given_back(tip, opening_m, offset_m))
+    }
+
+    /// Returns the object that was handed over last at `tip`: the person holds it there as it was.
+    fn given_back(
+        &self,
+        tip: &Isometry3<f64>,
+        opening_m: f64,
+        offset_m: f64,
+    ) -> Option<(usize, f64)> {
+        let is_there = |place: &[f64; 3]| {
+            (tip.translation.vector - nalgebra::Vector3::from(*place)).norm() < GIVEN_BACK_M
+        };
+        let i = self.handed_over.iter().position(|place| place.as_ref().is_some_and(is_there))?;
+        let width_m = self.places[i]?.grasp_width_m;
+        let is_held = matches!(self.now[i], Whereabouts::Held(_));
+        (!is_held && gripper::catches(opening_m, width_m, offset_m)).then_some((i, width_m))
     }
 
     /// A limb has taken hold of the object.
@@ -73,17 +95,16 @@ impl ObjectWorld {
     /// A limb with its gripper at `tip` lets go: a person takes what is held up, and what is not
     /// stands below the gripper.
     pub fn let_go(&mut self, limb: Limb, tip: &Isometry3<f64>) {
-        for (now, place) in self.now.iter_mut().zip(&self.places) {
-            let Some(place) = place.filter(|_| *now == Whereabouts::Held(limb as u8)) else {
-                continue;
-            };
-            let top_m = place.top_z_m() + HANDED_OVER_M;
-            *now = if tip.translation.z > top_m {
-                Whereabouts::Gone
-            } else {
-                Whereabouts::Stands(place.xyz_m)
-            };
+        let Some(object) = self.held(limb) else { return };
+        let Some(place) = self.places[object] else { return };
+        let is_held_up = tip.translation.z > place.top_z_m() + HANDED_OVER_M;
+        self.now[object] =
+            if is_held_up { Whereabouts::Gone } else { Whereabouts::Stands(place.xyz_m) };
+        if is_held_up {
+            // A person holds out what was handed over last.
+            self.handed_over.fill(None);
         }
+        self.handed_over[object] = is_held_up.then(|| tip.translation.vector.into());
     }
 
     /// Users put back the objects that they were handed.

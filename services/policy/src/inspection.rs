@@ -110,7 +110,7 @@ fn since_set_aside(applied: Option<u64>) -> u64 {
 pub(crate) fn shared_facts(parts: &[Part<Record>]) -> SharedFacts {
     let records = || parts.iter().flat_map(|part| part.records());
     let order = |record: &Record| {
-        let (id, object) = record.state.open.as_ref()?.pick?;
+        let (id, object) = record.state.ordered()?;
         Some((id.interaction.0, id.attempt, object.0))
     };
     let is_complete = |record: &&Record| {

@@ -186,14 +186,13 @@ impl PolicyNode {
         })
     }
 
-    /// Ends the interaction when the arm has ended its pick; notes the motion stop.
+    /// Goes on when the arm has ended its order; notes the motion stop.
     fn watch_arm(&mut self, status: &ArmStatus, now: Time, fx: &mut Fx) {
         let is_stopped = status.stopped != 0;
         if is_stopped != self.state.stopped {
             self.apply(Cause::MotionStop(is_stopped), now, fx);
         }
-        let ordered = self.state.open.as_ref().and_then(|open| open.pick);
-        let Some((pick, object)) = ordered else { return };
+        let Some((pick, object)) = self.state.ordered() else { return };
         if status.phase.get() != PickPhase::Done || status.pick() != pick {
             return;
         }
@@ -202,10 +201,16 @@ impl PolicyNode {
             // Done without an outcome is no end.
             return;
         }
-        if outcome == PickOutcome::Delivered && status.object != u32::from(object.0) {
-            // The order has two parts. Whatever the arm delivered, it was not what this one names.
+        let done = match self.state.to_put_back() {
+            Some(_) => PickOutcome::PutBack,
+            None => PickOutcome::Delivered,
+        };
+        let is_done = matches!(outcome, PickOutcome::Delivered | PickOutcome::PutBack);
+        if is_done && (status.object != u32::from(object.0) || outcome != done) {
+            // The order has a key, an object and a task. Whatever the arm did, it was not what this
+            // one names.
             self.rejected += 1;
-            tracing::error!(?pick, ordered = object.0, found = status.object, "another object");
+            tracing::error!(?pick, ordered = object.0, found = status.object, "another order");
             outcome = PickOutcome::Interrupted;
         }
         self.apply(Cause::PickEnded { pick, outcome }, now, fx);

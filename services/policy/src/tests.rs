@@ -7,6 +7,7 @@ mod held_back;
 mod person;
 mod pointing;
 mod prior;
+mod put_back;
 mod queue;
 mod reconfigure;
 mod replies;

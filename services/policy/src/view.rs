@@ -28,11 +28,12 @@ pub(crate) fn act(scene: &Scene, state: &State) -> RobotAct {
     }
 }
 
-/// Returns the question that waits for an answer: that of the act, or whether a pick that was decided
-/// while the motion stop was latched shall start.
+/// Returns the question that waits for an answer: that of the act, or whether what was decided while
+/// the motion stop was latched shall start.
 fn asked(state: &State) -> Question {
     let act = &state.act;
-    let confirmable = (act.kind == ActKind::Say).then(|| state.confirmable(act.prompt)).flatten();
+    let confirmable = || state.confirmable(act.prompt).or_else(|| state.goes_back(act.prompt));
+    let confirmable = (act.kind == ActKind::Say).then(confirmable).flatten();
     confirmable.map_or(act.question, Question::Point)
 }
 
@@ -41,7 +42,7 @@ fn asked(state: &State) -> Question {
 fn answerable(state: &State) -> Question {
     let act = &state.act;
     let deniable = match (act.kind, act.pick) {
-        (ActKind::Pick, Some((_, object))) => Some(object),
+        (ActKind::Pick | ActKind::PutBack, Some((_, object))) => Some(object),
         (ActKind::Say, _) => state.refusable(act.prompt),
         _ => None,
     };

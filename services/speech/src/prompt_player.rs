@@ -95,7 +95,7 @@ impl PromptPlayer {
         if self.is_known(prompt, number) {
             return;
         }
-        let is_answerable = matches!(kind, ActKind::Ask | ActKind::Pick | ActKind::Say);
+        let is_answerable = !matches!(kind, ActKind::Wait | ActKind::Cancel);
         let question = if is_answerable { question } else { Question::None };
         let scene = act.scene_key;
         let presentation =

@@ -45,14 +45,14 @@ id! {
     PromptId
 }
 
-/// One attempt to fetch one object. The pair is the idempotency key of the motion.
+/// One attempt to fetch one object, or to put it back. The pair is the idempotency key of the motion.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize,
 )]
 pub struct PickId {
     /// The interaction that decided it.
     pub interaction: InteractionId,
-    /// 1 for the first attempt. Another follows only where the previous one ended without a grasp,
-    /// because the scene changed or the user wants another object.
+    /// 1 for the first order. Another follows only where the previous one ended without a grasp,
+    /// because the scene changed or the user wants another object, or to put an object back.
     pub attempt: u32,
 }

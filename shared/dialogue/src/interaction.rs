@@ -18,8 +18,10 @@ pub enum ActKind {
     Say,
     /// Picks an object and says so.
     Pick,
-    /// Calls a pick off, unless the object is already grasped.
+    /// Calls a pick, or putting back, off, unless the object is already grasped.
     Cancel,
+    /// Puts the object that was handed over back in its place and says so.
+    PutBack,
 }
 
 impl ActKind {
@@ -31,8 +33,21 @@ impl ActKind {
             Self::Say => "say",
             Self::Pick => "pick",
             Self::Cancel => "cancel",
+            Self::PutBack => "put_back",
         }
     }
+}
+
+/// What the arm is ordered to do with an object. Both kinds of order have one numbering, the phases
+/// and the outcomes of a pick, and the same rules.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Task {
+    /// Fetch it from its place and hand it over.
+    #[default]
+    Fetch,
+    /// Take it from the user, where it was handed over, and put it back in its place.
+    PutBack,
 }
 
 /// Phase of a pick. Each is durable before the arm acts on it.
@@ -50,7 +65,7 @@ pub enum PickPhase {
     Moving,
     /// The gripper closes on the object.
     Closing,
-    /// The object is held: lifted and carried to the user.
+    /// The object is held: lifted and carried to the user, or carried to its place and put down.
     Holding,
     /// Over; see the outcome.
     Done,
@@ -75,6 +90,8 @@ pub enum PickOutcome {
     Missed,
     /// The robot did not follow its motion, or did not arrive; a person must look.
     Blocked,
+    /// The object is back in its place.
+    PutBack,
 }
 
 /// Outcome of an interaction.
@@ -101,7 +118,8 @@ impl Outcome {
     /// Returns what a pick's outcome means for its interaction; none while it is pending.
     pub fn of_pick(outcome: PickOutcome) -> Option<Self> {
         match outcome {
-            PickOutcome::Pending => None,
+            // Putting back is no interaction's end.
+            PickOutcome::Pending | PickOutcome::PutBack => None,
             PickOutcome::Delivered => Some(Self::Delivered),
             PickOutcome::Unreachable
             | PickOutcome::Interrupted

@@ -52,7 +52,7 @@ pub use confusion::{Confusion, NotAConfusion};
 pub use costs::Costs;
 pub use durations::Durations;
 pub use evaluate::{Evaluation, evaluate};
-pub use interaction::{ActKind, Ended, Outcome, PickOutcome, PickPhase};
+pub use interaction::{ActKind, Ended, Outcome, PickOutcome, PickPhase, Task};
 pub use interpretation::{Interpretation, NamedReading};
 pub use model::Model;
 pub use model_user::ModelUser;

@@ -27,6 +27,14 @@ pub fn text(scene: &Scene, act: &Act) -> String {
             format!("I have stopped. Shall I get the {object} once you resume?")
         }
         Content::AskToRelease(object) => format!("Say yes, and I will get the {object}."),
+        Content::PuttingBack(object) => {
+            format!("I will put the {object} back. Please hold it between my fingers.")
+        }
+        Content::PutBackHeldBack(object) => {
+            format!("I have stopped. Shall I put the {object} back once you resume?")
+        }
+        Content::AskToPutBack(object) => format!("Say yes, and I will put the {object} back."),
+        Content::PutBackEnded(object, outcome) => put_back_ended(object, *outcome),
         Content::Confirmed => "All right, once you resume.".to_owned(),
         Content::PickEnded(object, outcome) => pick_ended(object, *outcome),
         Content::Remark(it) => remarks::text(scene, it, act.kind),
@@ -107,6 +115,7 @@ fn preface(scene: &Scene, preface: &Preface) -> String {
             format!("First the {}. ", objects.join(", then the "))
         }
         Preface::PickEnded(object, outcome) => format!("{} ", pick_ended(object, *outcome)),
+        Preface::PutBackEnded(object, outcome) => format!("{} ", put_back_ended(object, *outcome)),
         Preface::Sorry => "Sorry. ".to_owned(),
         Preface::Left(objects) => {
             let count = remarks::number(objects.len());
@@ -141,6 +150,25 @@ fn pick_ended(it: &str, outcome: PickOutcome) -> String {
             "My arm did not move as it should. Please look before you ask again.".to_owned()
         }
         PickOutcome::Cancelled => "I have left it where it was.".to_owned(),
-        PickOutcome::Pending => String::new(),
+        PickOutcome::Pending | PickOutcome::PutBack => String::new(),
+    }
+}
+
+fn put_back_ended(it: &str, outcome: PickOutcome) -> String {
+    match outcome {
+        PickOutcome::PutBack => format!("I have put the {it} back."),
+        PickOutcome::Cancelled => format!("The {it} stays with you."),
+        PickOutcome::Missed => {
+            format!(
+                "I could not take hold of the {it}. Please hold it between my fingers next time."
+            )
+        }
+        PickOutcome::Unreachable => format!("I cannot put the {it} back where it was."),
+        PickOutcome::Pending
+        | PickOutcome::Delivered
+        | PickOutcome::Interrupted
+        | PickOutcome::Blocked => format!(
+            "I was interrupted while putting the {it} back. Please look before you ask again."
+        ),
     }
 }

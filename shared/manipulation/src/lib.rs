@@ -1,5 +1,6 @@
 //! Motion planning for a robot with two arms of seven joints, such as Baxter: forward and inverse
-//! kinematics, collision checking, trajectories, and plans that fetch or point at an object.
+//! kinematics, collision checking, trajectories, and plans that fetch an object, put it back or
+//! point at it.
 //!
 //! | module | contents |
 //! |---|---|
@@ -36,7 +37,7 @@ pub use kinematics::limb::{JOINTS, Joints, Limb};
 pub use kinematics::limits::{MotionLimits, PositionLimits};
 pub use planning::{
     Grasp, GraspError, ObjectPose, PlanError, PlanSettings, check_reachable, plan_delivery,
-    plan_pick, plan_point, plan_return,
+    plan_pick, plan_point, plan_put_back, plan_put_down, plan_return,
 };
 pub use robot::{Arm, Robot, Unsuitable};
 pub use trajectory::{

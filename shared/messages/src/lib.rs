@@ -20,7 +20,7 @@ pub mod topics;
 pub mod wire;
 
 pub use dialogue::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
-pub use dialogue::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPhase};
+pub use dialogue::{ActKind, Ended, Interpretation, Outcome, PickOutcome, PickPhase, Task};
 pub use fixed::*;
 pub use ids::{Epoch, Incarnation, RequestKey};
 pub use payloads::*;

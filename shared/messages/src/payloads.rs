@@ -184,4 +184,10 @@ pub enum MotionPhase {
     Aim,
     /// Back to rest.
     Return,
+    /// To where the user gives an object back, and still there.
+    Take,
+    /// To above the place of an object that is put back.
+    CarryBack,
+    /// Straight down to that place.
+    Lower,
 }

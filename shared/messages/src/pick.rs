@@ -1,6 +1,6 @@
 //! The arm's answers to an ordered pick: the idempotent half of "never picks twice".
 
-use crate::{PickId, PickOutcome, PickPhase};
+use crate::{PickId, PickOutcome, PickPhase, Task};
 use scene::ObjectId;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +11,8 @@ pub struct Pick {
     pub id: PickId,
     /// The object.
     pub object: ObjectId,
+    /// What is done with it.
+    pub task: Task,
     /// Progress of the pick.
     pub phase: PickPhase,
     /// Outcome of the pick.
@@ -28,16 +30,20 @@ pub enum Order {
     Busy,
     /// An older interaction than the latest; obsolete.
     Obsolete,
-    /// The same key for another object: an invariant broke upstream.
+    /// The same key for another object or task: an invariant broke upstream.
     Conflict,
 }
 
-/// Judges the order `id` for `object` against the latest pick. A repeated key is known, whatever
-/// became of it: that is what makes a re-sent order harmless.
-pub fn judge(latest: Option<&Pick>, id: PickId, object: ObjectId) -> Order {
+/// Judges the order `id` of `task` for `object` against the latest pick. A repeated key is known,
+/// whatever became of it: that is what makes a re-sent order harmless. An order that is called off
+/// has no task.
+pub fn judge(latest: Option<&Pick>, id: PickId, object: ObjectId, task: Option<Task>) -> Order {
     let Some(pick) = latest else { return Order::Accept };
     if id == pick.id {
-        return if object == pick.object { Order::Known } else { Order::Conflict };
+        // What was called off before its order arrived never had a task.
+        let called_off = pick.outcome == PickOutcome::Cancelled;
+        let same_task = called_off || task.is_none_or(|task| task == pick.task);
+        return if object == pick.object && same_task { Order::Known } else { Order::Conflict };
     }
     if id < pick.id {
         return Order::Obsolete;
@@ -55,7 +61,12 @@ mod tests {
     }
 
     fn latest(phase: PickPhase) -> Pick {
-        Pick { id: id(5, 1), object: ObjectId(2), phase, outcome: PickOutcome::Pending }
+        let (object, outcome) = (ObjectId(2), PickOutcome::Pending);
+        Pick { id: id(5, 1), object, task: Task::Fetch, phase, outcome }
+    }
+
+    fn judge(latest: Option<&Pick>, id: PickId, object: ObjectId) -> Order {
+        super::judge(latest, id, object, Some(Task::Fetch))
     }
 
     #[test]
@@ -79,5 +90,16 @@ mod tests {
         assert_eq!(judge(Some(&pick), id(4, 1), ObjectId(2)), Order::Obsolete);
         assert_eq!(judge(Some(&pick), id(5, 1), ObjectId(3)), Order::Conflict);
         assert_eq!(judge(None, id(1, 1), ObjectId(3)), Order::Accept);
+    }
+
+    #[test]
+    fn pick_key_is_of_one_task_and_what_was_called_off_has_none() {
+        let judge = |pick: &Pick, task| super::judge(Some(pick), id(5, 1), ObjectId(2), task);
+        let moving = latest(PickPhase::Moving);
+        assert_eq!(judge(&moving, Some(Task::PutBack)), Order::Conflict);
+        assert_eq!(judge(&moving, None), Order::Known);
+        let outcome = PickOutcome::Cancelled;
+        let called_off = Pick { outcome, ..latest(PickPhase::Done) };
+        assert_eq!(judge(&called_off, Some(Task::PutBack)), Order::Known);
     }
 }

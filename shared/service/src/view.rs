@@ -7,7 +7,7 @@ mod dialogue;
 mod latest;
 
 use messages::{
-    ArmStatus, EarState, Hearing, MicrophoneState, MotionInhibit, PickOutcome, PickPhase,
+    ArmStatus, EarState, Hearing, MicrophoneState, MotionInhibit, PickOutcome, PickPhase, Task,
 };
 use scene::Scene;
 use serde::Serialize;
@@ -66,6 +66,8 @@ pub struct ArmView<'a> {
     pub attempt: u32,
     /// Name of the object that it picks or picked.
     pub object: Option<&'a str>,
+    /// Whether it is fetched or put back.
+    pub task: Task,
     /// Phase of the pick.
     pub phase: PickPhase,
     /// Outcome of the latest pick.
@@ -90,6 +92,7 @@ impl<'a> ArmView<'a> {
             interaction: arm.interaction,
             attempt: arm.attempt,
             object: object.map(|object| object.name.as_str()),
+            task: arm.task.get(),
             phase: arm.phase.get(),
             outcome: arm.outcome.get(),
             moving: arm.moving != 0,

@@ -182,6 +182,7 @@ describe("words and thoughts", () => {
         states.push(
           { ...idle, phase, object: "a", remaining_s: 4.2 },
           { ...idle, phase, object: "a" },
+          { ...idle, task: "put_back", phase, object: "a" },
         );
       }
       for (const outcome of [
@@ -191,8 +192,10 @@ describe("words and thoughts", () => {
         "cancelled",
         "missed",
         "blocked",
+        "put_back",
       ]) {
         states.push({ ...idle, phase: "done", outcome, object: "b" });
+        states.push({ ...idle, task: "put_back", phase: "done", outcome, object: "b" });
       }
       for (const hindrance of [
         "stopped",

@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use messages::{Injection, Outcome, PromptId, ReceiptStatus, RequestKey, Sound};
+use messages::{ActKind, Injection, Outcome, PromptId, ReceiptStatus, RequestKey, Sound};
 use scene::Scene;
 use service::submission::Submission;
 use service::view::{Arrived, Latest};
@@ -36,6 +36,20 @@ pub struct Client {
     could_answer: bool,
     /// Times that the robot gave up a person who had time to answer.
     pub given_up: u32,
+    /// Whether the person regrets the first delivery.
+    regrets: bool,
+    regret: Option<Regret>,
+    /// Objects that the robot has said to have put back.
+    pub put_back: u32,
+}
+
+/// How far a person has come who has what was delivered put back.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Regret {
+    /// The wish was not submitted as far as the person knows.
+    Felt,
+    /// It was.
+    Said,
 }
 
 /// The memory of the client.
@@ -49,7 +63,7 @@ struct Process {
 }
 
 impl Client {
-    pub(super) fn new(wanted: Vec<String>) -> Self {
+    pub(super) fn new(wanted: Vec<String>, regrets: bool) -> Self {
         Self {
             wanted: wanted.into(),
             process: None,
@@ -61,6 +75,9 @@ impl Client {
             accepted: Vec::new(),
             could_answer: false,
             given_up: 0,
+            regrets,
+            regret: None,
+            put_back: 0,
         }
     }
 
@@ -109,7 +126,10 @@ impl Client {
                 );
                 self.accepted.push(receipt.request());
                 process.saying.pop_front();
-                self.has_asked = true;
+                match &mut self.regret {
+                    Some(regret) => *regret = Regret::Said,
+                    None => self.has_asked = true,
+                }
                 self.could_answer = false;
                 process.quiet_since = now;
             }
@@ -134,6 +154,9 @@ impl Client {
 
     /// Takes in the outcome, or says what there is to say.
     fn next(&mut self, scene: &Scene, now: Time) -> Option<String> {
+        if self.regret.is_some() {
+            return self.regret(now);
+        }
         let process = self.process.as_mut()?;
         if !self.has_asked {
             if process.saying.is_empty() {
@@ -146,7 +169,10 @@ impl Client {
             self.reported = ended.interaction.0;
             self.has_asked = false;
             match ended.outcome {
-                Outcome::Delivered => drop(self.wanted.pop_front()),
+                Outcome::Delivered => {
+                    self.wanted.pop_front();
+                    self.regret = std::mem::take(&mut self.regrets).then_some(Regret::Felt);
+                }
                 _ => self.given_up += u32::from(self.could_answer),
             }
             if let Some(wanted) = self.wanted.front().cloned() {
@@ -158,6 +184,28 @@ impl Client {
         let answer = process.user.answer(&process.latest)?;
         process.say(&answer, now);
         Some(format!("user: {answer} (to {:?})", process.latest.open_question()))
+    }
+}
+
+impl Client {
+    /// Has what was delivered put back, and waits until it is.
+    fn regret(&mut self, now: Time) -> Option<String> {
+        const WISH: &str = "put it back";
+        let process = self.process.as_mut()?;
+        if self.regret == Some(Regret::Felt) {
+            if !process.saying.is_empty() {
+                return None;
+            }
+            process.say(WISH, now);
+            return Some(format!("user: {WISH}"));
+        }
+        let view = process.latest.view.as_ref().filter(|_| process.latest.is_settled())?;
+        if view.decision == ActKind::PutBack {
+            return None;
+        }
+        self.put_back += u32::from(view.text.starts_with("I have put"));
+        self.regret = None;
+        Some(format!("user: learns that {:?}", view.text))
     }
 }
 

@@ -151,10 +151,16 @@ impl SimulatedGroup {
         self
     }
 
-    /// A group whose user, at a terminal, wants these objects one after another.
-    pub fn with_client(settings: Settings, wanted: &[usize], faults: Faults) -> Self {
+    /// A group whose user, at a terminal, wants these objects one after another; one who regrets has
+    /// the first one put back.
+    pub fn with_client(
+        settings: Settings,
+        wanted: &[usize],
+        regrets: bool,
+        faults: Faults,
+    ) -> Self {
         let name = |object: &usize| settings.scene.object(ObjectId::from(*object)).name.clone();
-        let client = Client::new(wanted.iter().map(name).collect());
+        let client = Client::new(wanted.iter().map(name).collect(), regrets);
         let group = Self::new(settings, GroupUser::typing(0), faults);
         Self { client: Some(client), ..group }
     }

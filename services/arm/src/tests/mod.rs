@@ -7,6 +7,7 @@ mod kills;
 mod orders;
 mod point;
 mod publish;
+mod put_back;
 mod robot;
 mod set_aside;
 mod stop;

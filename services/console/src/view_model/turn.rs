@@ -84,8 +84,8 @@ pub(super) fn turn(latest: &Latest, group: Option<&GroupStatus>) -> Turn {
                 && presented.state == PresentationState::Ended;
             if said { plain(Person, Asked) } else { plain(Robot, Understanding) }
         }
-        // A pick that is called off is the arm's turn, too, until it has left the object.
-        Some(ActKind::Pick | ActKind::Cancel) => plain(Arm, Moving),
+        // An order that is called off is the arm's turn, too, until it has left the object.
+        Some(ActKind::Pick | ActKind::Cancel | ActKind::PutBack) => plain(Arm, Moving),
         _ if arm.is_some_and(|arm| arm.moving != 0) => plain(Arm, Moving),
         _ => {
             let listens =

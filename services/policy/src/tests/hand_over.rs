@@ -1,4 +1,4 @@
-//! After the hand-over: refusals, "the other one", "the same again", "put it back".
+//! After the hand-over: refusals, "the other one", "the same again".
 
 use super::{answer, at, belief, delivered, first, heard, manager, remark, reply, settings};
 use super::{text, words};
@@ -106,22 +106,6 @@ fn thanks_and_another_wish_are_no_refusals() {
     // Until then every line after the hand-over can be answered so.
     let refused = reply(&mut manager, &thanked, answer(Response::No));
     assert_eq!(refused.ended.map(|ended| ended.outcome), Some(Outcome::Refused));
-}
-
-#[test]
-fn the_arm_takes_nothing_back_and_says_so() {
-    let mut manager = manager();
-    let (end, _) = handed_over(&mut manager, &["clear"]);
-    let put_back = || Reading { intent: Intent::PutBack, ..Reading::default() };
-    let after = remark(&mut manager, &end, put_back());
-    assert!(text(&after).contains("I cannot take it from your hand"), "{}", text(&after));
-    assert_eq!(after.ended.as_ref().map(|ended| ended.outcome), Some(Outcome::Refused));
-    assert!(after.open.is_none());
-    let again = remark(&mut manager, &after, put_back());
-    assert_eq!(text(&again), "I have nothing to put back.");
-    let fetching = first(&mut manager, words(&["clear"]));
-    let called_off = remark(&mut manager, &fetching, put_back());
-    assert_eq!(called_off.act.kind, ActKind::Cancel);
 }
 
 #[test]

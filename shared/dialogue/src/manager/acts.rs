@@ -141,10 +141,9 @@ impl Manager {
         if state.stopped {
             return self.hold_back(state, object, preface, reasons);
         }
+        let id = next_key(state);
         let Some(open) = &mut state.open else { return };
         open.held_back = None;
-        open.picks += 1;
-        let id = PickId { interaction: open.id, attempt: open.picks };
         let pick = Some((id, object));
         open.pick = pick;
         open.picked.clone_from(&self.setup.scene.object(object).name);
@@ -172,13 +171,15 @@ impl Manager {
             ActKind::Ask if state.open.is_some() => {
                 self.put_again(state, Preface::Remark(remark), at);
             }
-            ActKind::Pick | ActKind::Cancel if state.open.is_some() => {
+            ActKind::Pick | ActKind::Cancel | ActKind::PutBack if state.ordered().is_some() => {
                 state.last_prompt = state.last_prompt.next();
                 let act = &mut state.act;
                 (act.id, act.prompt, act.presentation) = (act.id.next(), state.last_prompt, 1);
                 act.line = Content::Remark(remark).into();
                 (act.decided, act.utterance) = (at, state.applied);
-                if let Some(open) = &mut state.open {
+                if state.to_put_back().is_some() {
+                    state.note_putting_back(state.last_prompt);
+                } else if let Some(open) = &mut state.open {
                     open.announced.push(state.last_prompt);
                 }
             }
@@ -194,10 +195,10 @@ impl Manager {
 
 /// Orders the same pick under a new key.
 pub(super) fn order_again(state: &mut State, at: Time) {
+    let id = next_key(state);
     let Some(open) = &mut state.open else { return };
-    let Some((id, object)) = open.pick else { return };
-    open.picks += 1;
-    open.pick = Some((PickId { attempt: open.picks, ..id }, object));
+    let Some((_, object)) = open.pick else { return };
+    open.pick = Some((id, object));
     state.act.pick = open.pick;
     state.act.decided = at;
     state.act.id = state.act.id.next();
@@ -214,7 +215,16 @@ pub(super) fn say(state: &mut State, content: Content, at: Time) {
     say_with(state, ActKind::Say, content, at);
 }
 
-fn say_with(state: &mut State, kind: ActKind, content: Content, at: Time) {
+/// Returns the key of the next order to the arm: of the latest interaction, and higher than every
+/// earlier one.
+pub(super) fn next_key(state: &mut State) -> PickId {
+    let (interaction, last) = (state.last_interaction, state.last_order);
+    let attempt = if last.interaction == interaction { last.attempt + 1 } else { 1 };
+    state.last_order = PickId { interaction, attempt };
+    state.last_order
+}
+
+pub(super) fn say_with(state: &mut State, kind: ActKind, content: Content, at: Time) {
     state.last_prompt = state.last_prompt.next();
     let (prompt, utterance) = (state.last_prompt, state.applied);
     let line = content.into();

@@ -187,6 +187,9 @@ fn candidate(state: &State, put: &Presentation) -> Option<Candidate> {
 /// Returns the question of a prompt of the open interaction. That an object is being fetched can be
 /// denied, like "this one?".
 fn question(state: &State, prompt: PromptId) -> Option<Question> {
+    if let Some(object) = state.goes_back(prompt) {
+        return Some(Question::Point(object));
+    }
     let Some(open) = &state.open else { return answered_after(state, prompt) };
     if let (ActKind::Pick, Some((_, object))) = (state.act.kind, state.act.pick)
         && open.announced.contains(&prompt)

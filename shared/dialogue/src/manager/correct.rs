@@ -6,7 +6,7 @@ use scene::{ObjectId, Question, Reading, Reference, Response, WordId};
 use super::Manager;
 use super::acts::call_off;
 use super::attribution::{Heard, PLAIN};
-use super::line::Content;
+use super::line::{Content, Preface};
 use super::references::reference;
 use super::state::{Basis, State};
 use crate::ActKind;
@@ -71,6 +71,9 @@ impl Manager {
         (open.pick, open.corrected) = (None, false);
         open.picked.clear();
         open.announced.clear();
+        if state.putting_back.is_some() {
+            return self.put_back_now(state, Preface::None, at);
+        }
         let utterance = open.utterances.1;
         self.decide(state, Basis { utterance, ..Basis::default() }, at);
     }

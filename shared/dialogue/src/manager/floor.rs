@@ -42,6 +42,7 @@ impl Manager {
     /// Returns whether [`Quiet`](super::Cause::Quiet) is due: a deferred decision can be made.
     pub fn quiet_is_due(&self, state: &State, floor: &Floor, now: Time) -> bool {
         let deferred = state.open.as_ref().and_then(|open| open.deferred.as_ref());
+        let deferred = deferred.filter(|_| state.to_put_back().is_none());
         deferred.is_some_and(|it| !floor.is_taken(now) || now >= it.since + HEARING_MAX)
     }
 

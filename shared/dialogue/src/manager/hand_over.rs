@@ -5,12 +5,11 @@ use scene::{ObjectId, Question, Response};
 use serde::{Deserialize, Serialize};
 
 use super::Manager;
-use super::acts::say;
 use super::attribution::Heard;
 use super::evidence::Mark;
-use super::line::{Content, Preface, Remark};
+use super::line::Preface;
+use super::put_back::{WithUser, refuse};
 use super::state::{Interaction, State, Utterance, Wish};
-use crate::Outcome;
 use crate::ids::PromptId;
 use crate::time::{Span, Time};
 
@@ -47,6 +46,7 @@ impl Manager {
         if state.handed_over.as_ref().is_some_and(|it| at > it.at + window) {
             state.handed_over = None;
         }
+        self.expire_with_user(state, at);
     }
 
     /// Returns the refusal of what was handed over last, where the utterance is likely to be one.
@@ -69,16 +69,6 @@ impl Manager {
         Mark::Not(self.setup.scene.object(object).name.clone())
     }
 
-    /// Counts the last delivery as refused.
-    fn refuse(state: &mut State) -> Option<Interaction> {
-        let refused = state.handed_over.take()?.interaction;
-        state.history.discount(&refused.picked);
-        if let Some(ended) = state.ended.as_mut().filter(|it| it.interaction == refused.id) {
-            ended.outcome = Outcome::Refused;
-        }
-        Some(refused)
-    }
-
     /// Takes up the interaction whose object was refused, without that object.
     pub(super) fn reopen(
         &mut self,
@@ -87,7 +77,9 @@ impl Manager {
         (heard, refusal): (Heard<'_>, Heard<'_>),
         at: Time,
     ) {
-        let Some(refused) = Self::refuse(state) else { return };
+        let Some(refused) = state.handed_over.take().map(|it| it.interaction) else { return };
+        let (name, interaction) = (refused.picked.clone(), refused.id);
+        refuse(state, &WithUser { name, interaction, at });
         self.open_like(state, utterance, refused);
         let Some(open) = &mut state.open else { return };
         self.take_in(open, heard);
@@ -106,17 +98,5 @@ impl Manager {
             (open.posterior, open.evidence) = (posterior, evidence);
             (open.forgotten, open.conceded) = (forgotten, conceded);
         }
-    }
-
-    /// Answers the wish to have an object put back. The arm takes nothing from a person's hand.
-    pub(super) fn put_back(&mut self, state: &mut State, at: Time) {
-        if state.open.is_some() {
-            return self.cancel(state, at);
-        }
-        let remark = match Self::refuse(state) {
-            Some(_) => Remark::PutItDown,
-            None => Remark::NothingToPutBack,
-        };
-        say(state, Content::Remark(remark), at);
     }
 }

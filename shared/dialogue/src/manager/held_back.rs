@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::Manager;
 use super::acts::{say, set};
 use super::attribution::Heard;
-use super::line::{Content, Line, Preface};
+use super::line::{Content, Line, Preface, Remark};
 use super::state::{Act, State};
 use crate::ActKind;
 use crate::ids::PromptId;
@@ -75,7 +75,10 @@ impl Manager {
         if let Some(held) = state.open.as_mut().and_then(|open| open.held_back.as_mut()) {
             held.is_confirmed = true;
         }
-        if state.stopped {
+        if state.to_put_back().is_some() {
+            // Its turn comes once the other object is back.
+            self.reply(state, Remark::AllRight, at);
+        } else if state.stopped {
             say(state, Content::Confirmed, at);
         } else {
             self.release(state, object, at);
@@ -86,6 +89,9 @@ impl Manager {
     /// Notes whether the motion stop is latched.
     pub(super) fn note_stop(&mut self, state: &mut State, stopped: bool, at: Time) {
         state.stopped = stopped;
+        if !stopped && self.release_put_back(state, at) {
+            return;
+        }
         let Some(held) = state.open.as_ref().and_then(|open| open.held_back.clone()) else {
             return;
         };
@@ -93,13 +99,25 @@ impl Manager {
         match (stopped, held.is_confirmed) {
             (true, _) => {}
             (false, true) => self.release(state, object, at),
-            (false, false) => {
-                let content = Content::AskToRelease(self.description(object));
-                let utterance = state.applied;
-                let reasons = Act { utterance, decided: at, ..Act::default() };
-                self.ask_for(state, object, content.into(), reasons);
-            }
+            (false, false) => self.ask_to_release(state, object, Preface::None, at),
         }
+    }
+
+    /// Asks whether an object is still wanted whose pick was held back.
+    pub(super) fn ask_to_release(
+        &mut self,
+        state: &mut State,
+        object: ObjectId,
+        preface: Preface,
+        at: Time,
+    ) {
+        let content = match state.stopped {
+            true => Content::HeldBack(self.description(object)),
+            false => Content::AskToRelease(self.description(object)),
+        };
+        let utterance = state.applied;
+        let reasons = Act { utterance, decided: at, ..Act::default() };
+        self.ask_for(state, object, Line { preface, content }, reasons);
     }
 
     fn release(&mut self, state: &mut State, object: ObjectId, at: Time) {

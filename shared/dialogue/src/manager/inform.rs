@@ -3,10 +3,9 @@
 use scene::{Question, Reading, Response};
 
 use super::Manager;
-use super::acts::say;
 use super::attribution::Heard;
 use super::evidence::{Evidence, Mark};
-use super::line::{Content, Preface, Remark};
+use super::line::{Preface, Remark};
 use super::references::reference;
 use super::state::{Basis, Deferred, Interaction, State, Utterance, Wish};
 use crate::ActKind;
@@ -23,6 +22,9 @@ impl Manager {
     ) {
         let mut heard = self.interpret(state, utterance, shares);
         let refers = reference(&heard);
+        if self.answers_put_back(state, &heard, at) {
+            return;
+        }
         if state.open.is_none() {
             if let Some(refusal) = self.refusal(state, &heard) {
                 return self.reopen(state, utterance, (heard, refusal), at);
@@ -35,7 +37,7 @@ impl Manager {
             let is_thing = heard.unknown.starts_with("a ");
             if spoken_of.is_none() && is_thing && says_nothing(&heard) {
                 let thing = Remark::Unknown(heard.unknown.to_owned());
-                return say(state, Content::Remark(thing), at);
+                return self.reply(state, thing, at);
             }
             self.begin(state, utterance, &heard, spoken_of);
             // What was asked before is over.
@@ -126,8 +128,11 @@ impl Manager {
         open.deferred = Some(Deferred { basis, since });
     }
 
-    /// Makes the deferred decision, if there is one.
+    /// Makes the deferred decision, if there is one, unless the arm puts an object back first.
     pub(super) fn decide_deferred(&mut self, state: &mut State, at: Time) {
+        if state.to_put_back().is_some() {
+            return;
+        }
         let deferred = state.open.as_mut().and_then(|open| open.deferred.take());
         if let Some(Deferred { basis, .. }) = deferred {
             self.decide(state, basis, at);

@@ -7,6 +7,7 @@ use super::acts::{call_off, repeat, say};
 use super::attribution::share_of;
 use super::concede::Conceded;
 use super::line::{Content, Remark};
+use super::put_back::{Progress, PuttingBack};
 use super::state::{State, Utterance};
 use crate::time::Time;
 use crate::{ActKind, Outcome};
@@ -19,7 +20,11 @@ impl Manager {
         self.expire(state, at);
         let shares = self.attribute(state, utterance);
         let before = state.act.id;
-        match intent(utterance, &shares) {
+        let intent = match intent(utterance, &shares) {
+            Intent::Inform if self.asks_to_put_back(state, utterance) => Intent::PutBack,
+            intent => intent,
+        };
+        match intent {
             Intent::Inform => self.inform(state, utterance, &shares, at),
             // "That one over there" has no word of the scene, but the gesture counts.
             Intent::None if self.is_pointing(utterance) => {
@@ -31,7 +36,7 @@ impl Manager {
             Intent::Cancel => self.cancel(state, at),
             Intent::Repeat if state.act.line.content != Content::Silence => repeat(state, at),
             Intent::StartOver => self.start_over(state, at),
-            Intent::PutBack => self.put_back(state, at),
+            Intent::PutBack => self.put_back(state, utterance, at),
             intent => {
                 let remark = self.answer(state, utterance, intent);
                 self.reply(state, remark, at);
@@ -40,13 +45,18 @@ impl Manager {
         let is_deferred = state.open.as_ref().is_some_and(|open| open.deferred.is_some());
         // The standing question is on its way.
         let is_asked = state.open.is_some() && state.act.kind == ActKind::Ask;
+        let is_deferred = is_deferred && state.to_put_back().is_none();
         if utterance.typed && state.act.id == before && !is_deferred && !is_asked {
             let remark = self.status(state);
             self.reply(state, remark, at);
         }
     }
 
-    pub(super) fn cancel(&self, state: &mut State, at: Time) {
+    pub(super) fn cancel(&mut self, state: &mut State, at: Time) {
+        let is_in_turn = |it: &PuttingBack| it.progress == Progress::InTurn;
+        if state.putting_back.as_ref().is_some_and(|it| !is_in_turn(it)) {
+            return self.withdraw_put_back(state, at);
+        }
         let Some(open) = &mut state.open else { return say(state, Content::Cancelled, at) };
         state.queue.clear();
         // Another object may have been wanted instead of the one being left: no longer.
@@ -61,7 +71,9 @@ impl Manager {
     /// Forgets what was said of the wanted object, and waits for it.
     fn start_over(&mut self, state: &mut State, at: Time) {
         let beginning = self.beginning(state);
+        let is_putting_back = state.to_put_back().is_some();
         match &mut state.open {
+            None if is_putting_back => {}
             None => return say(state, Content::Wanted(1), at),
             Some(open) if open.pick.is_some() => return,
             Some(open) => {
@@ -73,6 +85,11 @@ impl Manager {
                 (open.deferred, open.held_back) = (None, None);
                 state.queue.clear();
             }
+        }
+        if is_putting_back {
+            // It asks once the object is back.
+            let remark = self.about_putting_back(state);
+            return self.reply(state, remark, at);
         }
         self.ask_wanted(state, at);
     }

@@ -44,6 +44,8 @@ pub enum Preface {
     PickEnded(String, PickOutcome),
     /// The object that was handed over was refused.
     Sorry,
+    /// Putting back the object of that description is over.
+    PutBackEnded(String, PickOutcome),
     /// These objects are left, which the user cannot tell apart; descriptions.
     Left(Vec<String>),
 }
@@ -69,14 +71,16 @@ pub enum Remark {
     Unknown(String),
     /// Nothing is being done.
     Idle,
-    /// The arm takes nothing from a person's hand.
-    PutItDown,
     /// Nothing was handed over that could be put back.
     NothingToPutBack,
     /// The object of that description is being fetched.
     Fetching(String),
     /// The object of that description is being left.
     Leaving(String),
+    /// The object of that description is being put back, or will be.
+    PuttingBack(String),
+    /// The object of the first description is being fetched; that of the second is put back then.
+    PutBackInTurn(String, String),
     /// The answer to a question about the scene.
     Objects {
         /// What was asked.
@@ -139,7 +143,15 @@ pub enum Content {
     HeldBack(String),
     /// The motion stop was released: asks whether the object of that description is still wanted.
     AskToRelease(String),
-    /// The pick that was held back is confirmed.
+    /// The object of that description is being put back.
+    PuttingBack(String),
+    /// The object of that description is to be put back once the motion stop is released.
+    PutBackHeldBack(String),
+    /// The motion stop was released: asks whether to put back the object of that description.
+    AskToPutBack(String),
+    /// Putting back the object of that description is over.
+    PutBackEnded(String, PickOutcome),
+    /// What was held back is confirmed.
     Confirmed,
     /// The pick of the object of that description is over.
     PickEnded(String, PickOutcome),

@@ -14,6 +14,7 @@
 //! | `replies.rs` | answers to what the user asks |
 //! | `beliefs.rs`, `pointing.rs` | prior, updates, the user model, gestures |
 //! | `acts.rs` | decisions as standing acts |
+//! | `put_back.rs` | putting back what was handed over |
 //! | `floor.rs` | deferred decisions and response windows |
 //! | `reconfigure.rs`, `evidence.rs` | an interaction under another scene or other settings |
 //! | `refold.rs` | check of a journal |
@@ -32,6 +33,7 @@ mod inform;
 mod intents;
 mod line;
 mod pointing;
+mod put_back;
 mod queue;
 mod reconfigure;
 mod references;
@@ -46,6 +48,7 @@ pub use hand_over::HandedOver;
 pub use held_back::HeldBack;
 pub use history::History;
 pub use line::{AboutObjects, Content, Line, Preface, Reason, Remark};
+pub use put_back::{Progress, PuttingBack, WithUser};
 pub use refold::{Mismatch, refold, refold_since};
 pub use state::{
     Act, Basis, Cause, Deferred, Interaction, KnownObject, Prompt, Record, State, Timing,
@@ -174,7 +177,10 @@ impl Manager {
             Cause::Utterance(utterance) => self.hear(state, utterance, at),
             Cause::Silence => self.silence(state, at),
             Cause::Quiet => self.decide_deferred(state, at),
-            Cause::PickEnded { pick, outcome } => self.end_pick(state, *pick, *outcome, at),
+            Cause::PickEnded { pick, outcome } => match state.to_put_back() {
+                Some((id, _)) if id == *pick => self.end_put_back(state, *outcome, at),
+                _ => self.end_pick(state, *pick, *outcome, at),
+            },
             Cause::Reconfigured => self.reconfigure(state, at),
             Cause::MotionStop(stopped) => self.note_stop(state, *stopped, at),
             Cause::SetAside(over) => self.set_aside(state, *over, at),
@@ -348,14 +354,23 @@ impl Manager {
         let content = Content::PickEnded(description.clone(), outcome);
         let queue = std::mem::take(&mut state.queue);
         self.close(state, ends_as, at, content);
+        if let Some(interaction) = &delivered {
+            let (name, interaction) = (interaction.picked.clone(), interaction.id);
+            state.with_user = Some(WithUser { name, interaction, at });
+        }
         state.handed_over = delivered.map(|interaction| {
             let interaction = Interaction { deferred: None, ..interaction };
             HandedOver { interaction, at, lines: vec![state.last_prompt] }
         });
         let goes_on = [PickOutcome::Delivered, PickOutcome::Unreachable, PickOutcome::Missed];
-        if !queue.is_empty() && goes_on.contains(&outcome) {
+        if goes_on.contains(&outcome) {
             state.queue = queue;
-            self.serve_queue(state, (description, outcome), at);
+        }
+        let preface = Preface::PickEnded(description, outcome);
+        if state.putting_back.is_some() {
+            self.put_back_in_turn(state, (preface, outcome), at);
+        } else if !state.queue.is_empty() {
+            self.serve_queue(state, preface, at);
         }
     }
 
@@ -363,6 +378,9 @@ impl Manager {
     fn close(&self, state: &mut State, outcome: Outcome, at: Time, content: Content) {
         let Some(open) = state.open.take() else { return };
         state.queue.clear();
+        if let Some(with_user) = &mut state.with_user {
+            with_user.at = at;
+        }
         let questions = open.questions();
         if let Some(person) = open.posterior.person() {
             state.person = Some(person.clone());
@@ -386,7 +404,7 @@ impl Manager {
         state.last_interaction = state.last_interaction.max(InteractionId(over));
         state.last_prompt = state.last_prompt.max(PromptId(over));
         state.act.id = state.act.id.max(ActId(over));
-        state.handed_over = None;
+        (state.handed_over, state.with_user, state.putting_back) = (None, None, None);
         if state.open.is_some() {
             self.close(state, Outcome::Abandoned, at, Content::Forgotten);
         } else {

@@ -6,7 +6,6 @@ use super::Manager;
 use super::attribution::Heard;
 use super::line::Preface;
 use super::state::{Basis, State, Utterance};
-use crate::PickOutcome;
 use crate::time::Time;
 
 /// Most objects that wait for their turn.
@@ -30,12 +29,7 @@ impl Manager {
     }
 
     /// Turns to the next object of the queue once a pick has ended, where the arm is fit for it.
-    pub(super) fn serve_queue(
-        &mut self,
-        state: &mut State,
-        (description, outcome): (String, PickOutcome),
-        at: Time,
-    ) {
+    pub(super) fn serve_queue(&mut self, state: &mut State, preface: Preface, at: Time) {
         let words = state.queue.remove(0);
         let (seq, accepted) = (state.applied, at);
         self.open(state, &Utterance { seq, accepted, ..Utterance::default() });
@@ -45,7 +39,6 @@ impl Manager {
         if let Some(open) = &mut state.open {
             self.take_in(open, Heard { interpretations, ..Heard::default() });
         }
-        let preface = Preface::PickEnded(description, outcome);
         self.decide(state, Basis { preface, utterance: seq, ..Basis::default() }, at);
     }
 }

@@ -25,6 +25,11 @@ impl Manager {
             // Their numbers belong to the former scene.
             state.act.alternatives.clear();
             state.handed_over = None;
+            if state.to_put_back().is_some() {
+                // The arm gives up the order.
+                (state.act.kind, state.act.pick) = (ActKind::Wait, None);
+            }
+            (state.with_user, state.putting_back) = (None, None);
         }
         if state.open.is_none() {
             state.act.question = Question::None;
@@ -43,7 +48,7 @@ impl Manager {
         self.translate(state, open);
         // Where neither belief nor objects have changed, the standing question still stands; other
         // costs count from the next utterance on.
-        let is_ordered = matches!(state.act.kind, ActKind::Pick | ActKind::Cancel);
+        let is_ordered = state.ordered().is_some();
         if is_ordered || (same_scene && same_belief) {
             return;
         }

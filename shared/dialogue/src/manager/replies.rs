@@ -30,6 +30,9 @@ impl Manager {
 
     /// Returns what the robot is doing.
     pub(super) fn status(&mut self, state: &State) -> Remark {
+        if state.to_put_back().is_some() {
+            return self.about_putting_back(state);
+        }
         let picked = state.open.as_ref().and_then(|open| open.pick);
         match (state.act.kind, picked) {
             (ActKind::Cancel, Some((_, object))) => Remark::Leaving(self.description(object)),

@@ -10,6 +10,7 @@ use super::hand_over::HandedOver;
 use super::held_back::HeldBack;
 use super::history::History;
 use super::line::{Line, Preface};
+use super::put_back::{PuttingBack, WithUser};
 use crate::answer_attribution::Attributed;
 use crate::ids::{ActId, InteractionId, PickId, PromptId, UtteranceSeq};
 use crate::time::Time;
@@ -30,6 +31,8 @@ pub struct State {
     pub applied: UtteranceSeq,
     /// Last interaction number assigned.
     pub last_interaction: InteractionId,
+    /// Last key given to an order to the arm.
+    pub last_order: PickId,
     /// Last prompt number assigned.
     pub last_prompt: PromptId,
     /// The open interaction.
@@ -44,6 +47,10 @@ pub struct State {
     pub ended: Option<Ended>,
     /// The latest delivery, while it can be refused.
     pub handed_over: Option<HandedOver>,
+    /// What was handed over last, while it can be put back.
+    pub with_user: Option<WithUser>,
+    /// The object that goes back to its place.
+    pub putting_back: Option<PuttingBack>,
     /// Whether the motion stop is latched.
     pub stopped: bool,
     /// Deliveries by object.
@@ -98,8 +105,6 @@ pub struct Interaction {
     pub picked: String,
     /// Lines said since it was ordered: each can be denied.
     pub announced: Vec<PromptId>,
-    /// Picks ordered so far.
-    pub picks: u32,
     /// A pick that waits for the release of the motion stop.
     pub held_back: Option<HeldBack>,
     /// Whether the ordered pick is called off for another object: the interaction continues once
@@ -127,7 +132,6 @@ impl Interaction {
             pick: None,
             picked: String::new(),
             announced: Vec::new(),
-            picks: 0,
             held_back: None,
             corrected: false,
         }

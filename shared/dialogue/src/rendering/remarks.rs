@@ -26,13 +26,14 @@ pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
         }
         Remark::AllRight => "All right.".to_owned(),
         Remark::Unknown(thing) => super::unknown(scene, thing).trim_end().to_owned(),
-        Remark::PutItDown => {
-            "Please put it on the table; I cannot take it from your hand.".to_owned()
-        }
         Remark::NothingToPutBack => "I have nothing to put back.".to_owned(),
         Remark::Idle => "I am waiting.".to_owned(),
         Remark::Fetching(object) => format!("I am getting the {object}."),
         Remark::Leaving(object) => format!("I am leaving the {object}."),
+        Remark::PuttingBack(object) => format!("I am putting the {object} back."),
+        Remark::PutBackInTurn(fetched, object) => {
+            format!("I am getting the {fetched}. Then I will put the {object} back.")
+        }
         Remark::Objects { asked, words, objects } => about_objects(scene, *asked, words, objects),
         Remark::Why(reason) => why(reason),
     };

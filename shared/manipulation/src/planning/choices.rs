@@ -4,7 +4,7 @@ use super::error::{Furthest, PlanError};
 use super::fetch::{ABOVE, GRASP, LIFT};
 use super::planning_scene::PlanningScene;
 use crate::kinematics::limb::Joints;
-use crate::planning::grasp::{Grasp, GraspError, ObjectPose};
+use crate::planning::grasp::{Grasp, ObjectPose};
 
 /// A limb, a grasp for it, and a clear posture above it.
 #[derive(Clone, Copy)]
@@ -39,17 +39,16 @@ struct Turn {
 pub(crate) struct Choices<'a>(Vec<Choosable<'a>>);
 
 impl<'a> Choices<'a> {
-    /// Every limb of `scenes` with every grasp of `object` that it reaches; the others are
-    /// added to `furthest`.
+    /// Every limb of `scenes` with every one of `grasps` that it reaches; the others are added to
+    /// `furthest`.
     pub(crate) fn new(
-        object: &ObjectPose,
+        grasps: &[Grasp],
         scenes: &'a [PlanningScene<'a>],
         furthest: &mut Furthest,
-    ) -> Result<Self, GraspError> {
-        let grasps = object.grasps()?;
+    ) -> Self {
         let mut options = Vec::new();
         for scene in scenes {
-            for grasp in &grasps {
+            for grasp in grasps {
                 match scene.postures(&grasp.raised(scene.settings.hover_m), &scene.q) {
                     Ok(postures) => {
                         let postures = postures.into_iter();
@@ -64,7 +63,7 @@ impl<'a> Choices<'a> {
                 }
             }
         }
-        Ok(Self(options))
+        Self(options)
     }
 
     /// Returns the cheapest choice that has not been tried. A grasp comes back with its next

@@ -119,7 +119,7 @@ pub(crate) fn deliver(
 }
 
 /// Returns the joint path to the neutral posture; straight up first if the direct one is blocked.
-fn home(
+pub(crate) fn home(
     scene: &PlanningScene<'_>,
     from: &Joints,
     search: Search,

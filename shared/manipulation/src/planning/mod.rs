@@ -1,4 +1,4 @@
-//! Plans with a purpose: fetching an object, pointing at one, returning to rest.
+//! Plans with a purpose: fetching an object, putting it back, pointing at one, returning to rest.
 
 mod choices;
 mod deliver;
@@ -10,6 +10,7 @@ mod pick;
 mod planning_scene;
 mod point;
 mod posture;
+mod put_back;
 mod static_obstacles;
 
 pub use deliver::{plan_delivery, plan_return};
@@ -18,4 +19,5 @@ pub use grasp::{Grasp, GraspError, ObjectPose};
 pub use pick::{check_reachable, plan_pick};
 pub use planning_scene::PlanSettings;
 pub use point::plan_point;
+pub use put_back::{plan_put_back, plan_put_down};
 pub(crate) use static_obstacles::Obstacle;

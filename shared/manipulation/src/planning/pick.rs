@@ -8,7 +8,7 @@ use super::planning_scene::{PlanSettings, PlanningScene, Search};
 use crate::collision::Cuboid;
 use crate::gripper;
 use crate::kinematics::limb::{Joints, Limb};
-use crate::planning::grasp::ObjectPose;
+use crate::planning::grasp::{Grasp, ObjectPose};
 use crate::robot::Robot;
 use crate::trajectory::{Phase, Stage, Timeline};
 
@@ -41,12 +41,21 @@ pub fn plan_pick(
     settings: &PlanSettings,
 ) -> Result<Timeline, PlanError> {
     let scenes = planning_scenes(robot, object, limb, arms, others, settings)?;
+    cheapest(&object.grasps()?, &scenes, |choice, search| choice.plan(object, search))
+}
+
+/// Returns the cheapest of the complete plans that `plan` makes of choices; see [`plan_pick`].
+pub(crate) fn cheapest<'a>(
+    grasps: &[Grasp],
+    scenes: &'a [PlanningScene<'a>],
+    plan: impl Fn(&Choice<'a>, Search) -> Result<Timeline, (usize, PlanError)>,
+) -> Result<Timeline, PlanError> {
     let mut furthest = Furthest::default();
-    let mut choices = Choices::new(object, &scenes, &mut furthest)?;
+    let mut choices = Choices::new(grasps, scenes, &mut furthest);
     let (mut best, mut found, mut lost) = (None::<(f64, Timeline)>, 0, Vec::new());
     for _ in 0..TRIES {
         let Some(choice) = choices.next(&mut furthest) else { break };
-        match choice.plan(object, Search::No) {
+        match plan(&choice, Search::No) {
             Ok(plan) => {
                 let low_s = choice.scene.plan_lowness_s(&plan);
                 let cost_s = plan.duration_s() + low_s;
@@ -72,7 +81,7 @@ pub fn plan_pick(
         return Ok(plan);
     }
     for choice in lost {
-        match choice.plan(object, Search::Yes) {
+        match plan(&choice, Search::Yes) {
             Ok(plan) => return Ok(plan),
             Err((progress, error)) => furthest.add(progress, error),
         }
@@ -97,10 +106,10 @@ pub fn check_reachable(
         others.remove(i);
         let scenes =
             planning_scenes(robot, &objects[i], limb, &robot.neutral(), &others, settings)?;
+        let grasps = objects[i].grasps()?;
         let mut furthest = Furthest::default();
         for scene in &scenes {
-            let mut choices =
-                Choices::new(&objects[i], std::slice::from_ref(scene), &mut furthest)?;
+            let mut choices = Choices::new(&grasps, std::slice::from_ref(scene), &mut furthest);
             while let Some(choice) = choices.next(&mut furthest) {
                 let carrying = choice.carrying(&objects[i]);
                 let fetched = choice.descent(&carrying).and_then(|_| {

@@ -6,7 +6,8 @@ use crate::gripper;
 use crate::kinematics::limb::{Joints, Limb};
 use crate::trajectory::joint_trajectory::Trajectory;
 
-/// The stages of plans. A pick goes from `Approach` to `Return`; pointing is `Aim`, `Hold`, `Return`.
+/// The stages of plans. A pick goes from `Approach` to `Return`; pointing is `Aim`, `Hold`, `Return`;
+/// putting back is `Take`, `Close`, `CarryBack`, `Lower`, `Release`, `Raise`, `Return`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Phase {
@@ -24,6 +25,14 @@ pub enum Phase {
     Aim,
     /// Still, pointing.
     Hold,
+    /// To where the user gives the object back, and still there, fingers open.
+    Take,
+    /// To above the object's place.
+    CarryBack,
+    /// Straight down to it.
+    Lower,
+    /// Straight up, fingers open.
+    Raise,
     /// Back to the neutral posture.
     Return,
 }

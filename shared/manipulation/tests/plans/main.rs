@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test ends at what it does not expect")]
 
 mod errors;
+mod put_back;
 mod resume;
 mod shipped;
 mod support;

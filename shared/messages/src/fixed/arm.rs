@@ -2,7 +2,7 @@
 
 use crate::schema::wire_struct;
 use crate::wire::{Code, wire_codes, wire_enum};
-use crate::{ActId, InteractionId, PickId, PickOutcome, PickPhase};
+use crate::{ActId, InteractionId, PickId, PickOutcome, PickPhase, Task};
 use iceoryx2::prelude::ZeroCopySend;
 
 /// Joints of a joint state: 7 a limb, head pan and nod, torso.
@@ -24,7 +24,9 @@ wire_codes!(PickOutcome {
     Cancelled = 4,
     Missed = 5,
     Blocked = 6,
+    PutBack = 7,
 });
+wire_codes!(Task { Fetch = 0, PutBack = 1, });
 
 wire_enum! {
     /// Reason why the robot cannot move at all, the gravest of several.
@@ -69,8 +71,10 @@ wire_struct! {
         moving: u8,
         /// [`MotionInhibit`].
         hindrance: Code<MotionInhibit>,
+        /// [`Task`] of the latest pick.
+        task: Code<Task>,
         /// Zero.
-        reserved: [u8; 3],
+        reserved: [u8; 2],
         /// Expected seconds until the pick is done, 0 where none runs.
         remaining_s: f64,
     }

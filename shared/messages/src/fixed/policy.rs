@@ -16,7 +16,7 @@ wire_struct! {
     }
 }
 
-wire_codes!(ActKind { Wait = 0, Ask = 1, Say = 2, Pick = 3, Cancel = 4, });
+wire_codes!(ActKind { Wait = 0, Ask = 1, Say = 2, Pick = 3, Cancel = 4, PutBack = 5, });
 
 wire_struct! {
     /// The policy's standing decision. Policy to speech and arm, sent again until superseded.
@@ -33,12 +33,11 @@ wire_struct! {
         kind: Code<ActKind>,
         /// Zero.
         reserved: [u8; 3],
-        /// The question of an `Ask`; of a `Pick`, its object: that it is fetched can be denied; of a
-        /// `Say`, the object that can be refused or confirmed, if any.
+        /// The question of an `Ask`; of a `Pick` or `PutBack`, its object: it can be denied; of a `Say`, the object that can be refused or confirmed, if any.
         question: WireQuestion,
-        /// [`ObjectId`] of a `Pick`.
+        /// [`ObjectId`] of a `Pick` or `PutBack`.
         object: u32,
-        /// Attempt of a `Pick`.
+        /// Attempt of a `Pick` or `PutBack`.
         attempt: u32,
         /// [`scene::Scene::key`] of the scene whose objects and attributes are meant.
         scene_key: u64,
@@ -56,6 +55,12 @@ impl RobotAct {
     pub fn pick(&self) -> Option<(PickId, ObjectId)> {
         let object = u16::try_from(self.object).ok()?;
         (self.kind == ActKind::Pick).then_some((self.pick_id(), ObjectId(object)))
+    }
+
+    /// The order to put an object back, if it is one.
+    pub fn put_back(&self) -> Option<(PickId, ObjectId)> {
+        let object = u16::try_from(self.object).ok()?;
+        (self.kind == ActKind::PutBack).then_some((self.pick_id(), ObjectId(object)))
     }
 
     /// Judges what the policy alone can know: its numbers, its question and its text.

@@ -20,6 +20,9 @@ export const PHASE_COLOURS = {
   release: 0xec4899,
   return: 0x94a3b8,
   aim: 0xa855f7,
+  take: 0x3b82f6,
+  carry_back: 0xf97316,
+  lower: 0x22c55e,
 };
 
 const CORE_M = 0.0045;

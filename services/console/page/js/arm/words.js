@@ -1,6 +1,16 @@
 // @ts-check
 /** Ends of a pick that the picture says in words. */
-const OUTCOMES = ["delivered", "unreachable", "interrupted", "cancelled", "missed", "blocked"];
+const OUTCOMES = [
+  "delivered",
+  "unreachable",
+  "interrupted",
+  "cancelled",
+  "missed",
+  "blocked",
+  "put_back",
+];
+/** Ends of an order that read otherwise where the object was to be put back. */
+const OUTCOMES_OF_PUT_BACK = ["unreachable", "cancelled", "missed"];
 
 /**
  * Describes the arm's state in one sentence.
@@ -17,14 +27,16 @@ export function armWords(arm, scene, trajectory, t) {
   const hindrance = arm.hindrance && arm.hindrance !== "none" ? arm.hindrance : null;
   if (hindrance) return t("arm.hindered", { what: t(`arm.hindrance.${hindrance}`) });
   if (arm.phase && arm.phase !== "idle" && arm.phase !== "done") {
-    const what = t(`arm.phase.${arm.phase}`, { object });
+    const task = arm.task === "put_back" ? "arm.put_back" : "arm.phase";
+    const what = t(`${task}.${arm.phase}`, { object });
     const n = Math.round(arm.remaining_s ?? 0);
     return n > 0 ? t("arm.with_time", { what, n }) : what;
   }
   if (arm.aimed) return t("arm.aimed");
   if (arm.moving) return t(trajectory && !trajectory.pick ? "arm.moving" : "arm.returning");
   if (arm.phase === "done" && OUTCOMES.includes(arm.outcome)) {
-    return t(`arm.outcome.${arm.outcome}`, { object });
+    const own = arm.task === "put_back" && OUTCOMES_OF_PUT_BACK.includes(arm.outcome);
+    return t(own ? `arm.put_back.${arm.outcome}` : `arm.outcome.${arm.outcome}`, { object });
   }
   return t("arm.resting");
 }

@@ -1,7 +1,7 @@
 //! `watch` as lines of text.
 
 use ::dialogue::rendering;
-use messages::{ArmStatus, PickOutcome, PickPhase, PolicyView};
+use messages::{ArmStatus, PickOutcome, PickPhase, PolicyView, Task};
 use scene::Scene;
 use service::status::GroupState;
 use service::status::{GroupStatus, ServiceStatus};
@@ -163,16 +163,24 @@ fn said(model: &WatchModel, style: Style, columns: usize) -> Vec<String> {
 fn arm_line(scene: &Scene, arm: &ArmStatus, style: Style) -> String {
     let object = object_name(scene, arm.object).unwrap_or("?");
     let left = words::time(arm.remaining_s);
+    let puts_back = arm.task == Task::PutBack;
     let does = match arm.phase.get() {
         PickPhase::Idle => "rests".to_owned(),
+        PickPhase::Accepted if puts_back => format!("is to put {object} back"),
+        PickPhase::Moving if puts_back => format!("comes for {object}, {left} to go"),
+        PickPhase::Closing if puts_back => format!("takes {object}, {left} to go"),
+        PickPhase::Holding if puts_back => format!("puts {object} back, {left} to go"),
         PickPhase::Accepted => format!("sets out for {object}"),
         PickPhase::Moving => format!("moves to {object}, {left} to go"),
         PickPhase::Closing => format!("grasps {object}, {left} to go"),
         PickPhase::Holding => format!("brings {object}, {left} to go"),
         PickPhase::Done => match arm.outcome.get() {
             PickOutcome::Delivered => format!("has delivered {object}"),
+            PickOutcome::PutBack => format!("has put {object} back"),
+            PickOutcome::Unreachable if puts_back => format!("cannot put {object} back"),
             PickOutcome::Unreachable => format!("cannot reach {object}"),
             PickOutcome::Interrupted => format!("was interrupted at {object}"),
+            PickOutcome::Cancelled if puts_back => format!("has left {object} with the user"),
             PickOutcome::Cancelled => format!("has left {object} where it was"),
             PickOutcome::Missed => format!("could not get hold of {object}"),
             PickOutcome::Blocked => format!("was kept from moving to {object}"),

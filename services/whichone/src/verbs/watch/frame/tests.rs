@@ -65,6 +65,9 @@ fn watch_frame_shows_a_stopped_arm_in_every_phase() {
     assert_eq!(moving_line, "arm moves to o1, 3.2 s to go, moving");
     let stopped = arm_line(&scene(2), &ArmStatus { stopped: 1, ..moving }, Style::default());
     assert!(stopped.contains("STOPPED"), "{stopped}");
+    let task = messages::Task::PutBack.into();
+    let back = arm_line(&scene(2), &ArmStatus { task, ..moving }, Style::default());
+    assert_eq!(back, "arm comes for o1, 3.2 s to go, moving");
     let unknown = ArmStatus { object: 9, ..ArmStatus::default() };
     assert!(!arm_line(&scene(2), &unknown, Style::default()).is_empty());
 }
