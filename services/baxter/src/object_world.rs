@@ -32,8 +32,9 @@ pub struct ObjectWorld {
     places: Vec<Option<ObjectPose>>,
     /// Locations of the objects.
     pub now: Vec<Whereabouts>,
-    /// Where each object was handed over last, metres: a person gives it back there.
-    handed_over: Vec<Option<[f64; 3]>>,
+    /// Where the object that was handed over last was let go, metres: a person gives it back there.
+    /// None for the others.
+    pub handed_over: Vec<Option<[f64; 3]>>,
 }
 
 impl ObjectWorld {

@@ -32,6 +32,8 @@ pub struct Body {
     pub assembly: Assembly,
     /// Locations of the objects, in the scene's order.
     pub objects: Vec<Whereabouts>,
+    /// Where the one that was handed over last was let go, metres; none for the others.
+    pub handed_over: Vec<Option<[f64; 3]>>,
     /// Number of closings of the fingers.
     pub closings: u64,
 }
@@ -65,11 +67,12 @@ impl Robot {
             fingers: Default::default(),
             assembly: Assembly::new(config.simulated.enabled),
             objects: ObjectWorld::new(&config.scene).now,
+            handed_over: ObjectWorld::new(&config.scene).handed_over,
             closings: 0,
         });
         let mut objects = ObjectWorld::new(&config.scene);
         if body.scene_key == scene_key && body.objects.len() == objects.now.len() {
-            objects.now = body.objects;
+            (objects.now, objects.handed_over) = (body.objects, body.handed_over);
         }
         Self {
             servos: Limb::BOTH.map(|limb| {
@@ -98,6 +101,7 @@ impl Robot {
             fingers: self.fingers.clone(),
             assembly: self.assembly,
             objects: self.objects.now.clone(),
+            handed_over: self.objects.handed_over.clone(),
             closings: self.closings,
         }
     }

@@ -22,7 +22,7 @@ pub struct BaxterProgram;
 
 impl Program for BaxterProgram {
     const SERVICE: Service = Service::Robot;
-    const RECORD: Option<&'static str> = Some("baxter/1");
+    const RECORD: Option<&'static str> = Some("baxter/2");
     const ABOUT: &'static str = "a simulated Baxter behind the robot's own topics\n\n\
          whichone-baxter DRILL [AMOUNT] has something happen to the one in $WHICHONE_GROUP:\n  \
          enable, disable, reset, press-estop, release-estop, fail,\n  \
