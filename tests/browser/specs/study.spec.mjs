@@ -96,3 +96,36 @@ test("a second participant waits, and the first one withdraws", async ({
   await screen(other, "welcome");
   await elsewhere.close();
 });
+
+test.describe("the belief", () => {
+  test.use({
+    settings: [
+      "study.enabled=true",
+      "study.show_belief=true",
+      "study.consent=I agree to take part.",
+    ],
+  });
+
+  test("is shown to participants, who can press nothing of it", async ({
+    page,
+    group,
+    watched,
+  }) => {
+    void watched;
+    await page.goto(group.link("/study"));
+    await press(page, "study.begin");
+    await screen(page, "consent");
+    await page.getByRole("checkbox", { name: t("study.agree") }).focus();
+    await page.keyboard.press("Space");
+    await press(page, "study.continue");
+    await screen(page, "instructions");
+    await press(page, "study.continue");
+    await request(page);
+    await expect(page.getByRole("meter")).toHaveCount(6);
+    const first = page.getByRole("meter").first();
+    await expect
+      .poll(async () => Number(await first.getAttribute("aria-valuenow")))
+      .toBeGreaterThan(1);
+    for (const button of await page.locator(".card-say").all()) await expect(button).toBeHidden();
+  });
+});

@@ -139,7 +139,9 @@ function drawRunning(person, scene) {
   }
   if (person.show_belief && at("belief").hidden) {
     at("belief").hidden = false;
-    mountPart(at("cards"), () => import("../views/cards.js"), "mountCards", context);
+    // A participant asks in words of their own.
+    const readOnly = { ...context, readOnly: true };
+    mountPart(at("cards"), () => import("../views/cards.js"), "mountCards", readOnly);
   }
   setAttribute(at("running"), "data-belief", person.show_belief);
   setText(at("words"), robotWords(store.get("dialogue"), person.trial) || t("study.speak"));

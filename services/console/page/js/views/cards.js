@@ -15,7 +15,7 @@ const FIXED =
 /**
  * The objects with what the robot believes, the likely ones first. The operator says one by a press.
  * @param {HTMLElement} element
- * @param {{link: any, store: any, t: any}} context
+ * @param {{link: any, store: any, t: any, readOnly?: boolean}} context
  */
 export function mountCards(element, context) {
   const { store, t } = context;
@@ -58,14 +58,16 @@ export function mountCards(element, context) {
       order = [];
       sceneKey = scene.key;
     }
-    const belief = scene.objects.map(({ name }) => store.get("belief")?.[name] ?? 0);
+    const believed = store.get("belief") ?? dialogue?.belief;
+    const belief = scene.objects.map(({ name }) => believed?.[name] ?? 0);
     const now = { dialogue, arm: store.get("arm"), world: store.get("world") };
     const marked = marks(scene, now);
     order = rank(order, belief);
     const pinned = new Set([...marked].filter(([, mark]) => mark !== "delivered").map(([i]) => i));
     const { shown, others, rest } = likely(order, belief, all ? ALL_MOST : MOST, pinned);
     const best = belief.reduce((top, p) => Math.max(top, p), 0);
-    const mine = whoControls(store.get("control"), store.get("welcome")) === "mine";
+    const who = whoControls(store.get("control"), store.get("welcome"));
+    const mine = !context.readOnly && who === "mine";
     const items = shown.map((i) => ({
       index: i,
       object: scene.objects[i],
