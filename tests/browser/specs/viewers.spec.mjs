@@ -15,7 +15,7 @@ test("one talks, the other watches, and control is handed over", async ({
   await second.goto(group.link());
   await expect(second.getByRole("textbox", { name: t("say.label") })).toBeDisabled();
 
-  await expect(second.getByText(t("turn.theirs_idle"))).toBeVisible();
+  await expect(second.locator("#turn")).toContainText(t("turn.theirs_idle"));
   await type(first, "get me the bowl");
   await expect(transcript(second)).toContainText("get me the bowl");
 
