@@ -36,6 +36,8 @@ fn assert_puts_back(plan: &Timeline, object: &ObjectPose, in_gripper: &Isometry3
 
 #[test]
 fn shipped_objects_go_back_to_their_places() {
+    use Phase::{CarryBack, Close, Lower, Raise, Release, Return, Take};
+
     for scene in ["bowls", "markers"] {
         let objects: Vec<_> = scenes::read(scene).into_iter().map(|(_, pose)| pose).collect();
         for (i, object) in objects.iter().enumerate() {
@@ -48,7 +50,6 @@ fn shipped_objects_go_back_to_their_places() {
                 let plan =
                     plan_put_back(robot(), object, &in_gripper, limb, &arms, &others, &settings())
                         .unwrap_or_else(|error| panic!("{what}: {error}"));
-                use Phase::{CarryBack, Close, Lower, Raise, Release, Return, Take};
                 let phases: Vec<Phase> = plan.stages().iter().map(|stage| stage.phase).collect();
                 let expected = [Take, Take, Close, CarryBack, Lower, Release, Raise, Return];
                 assert_eq!(phases, expected, "{what}");
