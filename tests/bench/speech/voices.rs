@@ -3,11 +3,14 @@
 use ::speech::devices::audio::RATE_HZ;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 use whichone_tests::spoken::Speaker;
 
 /// Speaks, and keeps what was spoken in `target/bench/speech`.
 pub(super) struct Voices {
     folder: PathBuf,
+    /// Held while a sentence is synthesised: the programs write to files of the same name.
+    speaking: Mutex<()>,
 }
 
 /// Loudest sample of a sentence: 6 dB below full scale.
@@ -21,7 +24,7 @@ impl Voices {
     pub(super) fn new() -> std::io::Result<Self> {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../target/bench/speech");
         std::fs::create_dir_all(folder)?;
-        Ok(Self { folder: folder.into() })
+        Ok(Self { folder: folder.into(), speaking: Mutex::default() })
     }
 
     /// The first of the programs that is not installed.
@@ -44,6 +47,7 @@ impl Voices {
             name += &text.len().to_string();
         }
         let cached = self.folder.join(name).with_extension("s16");
+        let _speaking = self.speaking.lock().unwrap_or_else(PoisonError::into_inner);
         if let Ok(bytes) = std::fs::read(&cached) {
             return bytes.chunks_exact(2).map(|b| i16::from_le_bytes([b[0], b[1]])).collect();
         }
