@@ -3,7 +3,7 @@
 
 use crate::Config;
 use messages::{AskedQuestion, Hypothesis, Interpretation, READINGS_MAX, WireError};
-use scene::{Doubt, Question, Reading};
+use scene::{Doubt, Question, Reading, Role, UnknownWord};
 
 /// The interpretations for each of the questions asked and for none, most likely first. Each
 /// question's weights sum to 1.
@@ -82,12 +82,12 @@ fn blend(a: &Doubt, b: &Doubt, part: f64) -> Doubt {
     }
 }
 
-/// A word of the best hypothesis that the scene does not have, for the robot's reply: a thing with
-/// the indefinite article, or else a quality.
-pub(crate) fn unknown(config: &Config, best: &Hypothesis) -> Option<String> {
-    let words = config.reader.unknown_words(&best.text);
-    let word = words.iter().find(|word| word.noun).or(words.first())?;
-    Some(if word.noun { format!("a {}", word.text) } else { word.text.clone() })
+/// A word of the best hypothesis that the scene does not have, for the robot's reply: a kind of thing
+/// rather than a quality.
+pub(crate) fn unknown(config: &Config, best: &Hypothesis) -> Option<UnknownWord> {
+    let mut words = config.reader.unknown_words(&best.text);
+    let kind = words.iter().position(|word| word.role == Role::Kind);
+    (!words.is_empty()).then(|| words.swap_remove(kind.unwrap_or(0)))
 }
 
 #[cfg(test)]

@@ -93,7 +93,8 @@ impl GroundingNode {
             *slot = wire;
         }
         if let Some(word) = heard.first().and_then(|best| interpret::unknown(&self.config, best)) {
-            observation.unknown = FixedText::truncated(&word);
+            observation.unknown = FixedText::truncated(&word.text);
+            observation.unknown_role = word.role.into();
         }
         Ok(observation)
     }

@@ -180,7 +180,7 @@ impl PolicyNode {
             end: Time(observation.end_ns.max(begun)).min(now),
             accepted: Time(observation.accepted_ns).min(now),
             interpretations: observation.interpretations(scene.words().len()).ok()?,
-            unknown: observation.unknown.as_str().unwrap_or_default().to_owned(),
+            unknown: observation.unknown(),
             gesture: observation.gesture.target_m().ok()?,
             more: false,
         })

@@ -3,7 +3,7 @@
 mod foreseen;
 mod remarks;
 
-use scene::{ObjectId, Question, Scene};
+use scene::{ObjectId, Question, Role, Scene, UnknownWord};
 
 use crate::manager::{Act, Content, Preface};
 use crate::{ActKind, Action, PickOutcome};
@@ -88,14 +88,14 @@ pub fn object(scene: &Scene, object: ObjectId) -> String {
 }
 
 /// "There are no plates here, only mugs and cups. ", or of a quality that it is not known.
-fn unknown(scene: &Scene, word: &str) -> String {
-    match word.strip_prefix("a ") {
-        Some(noun) => {
+fn unknown(scene: &Scene, UnknownWord { text, role }: &UnknownWord) -> String {
+    match role {
+        Role::Kind => {
             let all: Vec<ObjectId> = (0..scene.objects().len()).map(ObjectId::from).collect();
             let there = scene.plural_nouns(&all);
-            format!("There are no {} here, only {there}. ", scene::plural(noun))
+            format!("There are no {} here, only {there}. ", scene::plural(text))
         }
-        None => format!("I do not know \"{word}\" here. "),
+        Role::Quality | Role::Place => format!("I do not know \"{text}\" here. "),
     }
 }
 

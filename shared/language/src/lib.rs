@@ -67,4 +67,3 @@ pub use confusion::confusion;
 pub use normalise::TEXT_CHARS_MAX;
 pub use parsed::READINGS_MAX;
 pub use reader::{Language, Reader};
-pub use unknown::UnknownWord;

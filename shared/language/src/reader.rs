@@ -1,6 +1,6 @@
 //! The reader: runs the pipeline on an utterance.
 
-use scene::{Intent, Question, Reading, Reference, Response, Scene};
+use scene::{Intent, Question, Reading, Reference, Response, Scene, UnknownWord};
 
 use crate::answer::response;
 use crate::clauses::clauses;
@@ -18,7 +18,7 @@ use crate::questions::{fetches_it, question};
 use crate::references::reference;
 use crate::tagger::tag;
 use crate::tokens::Tokens;
-use crate::unknown::{UnknownWord, unknown_words};
+use crate::unknown::unknown_words;
 
 /// Options of the reader.
 #[derive(

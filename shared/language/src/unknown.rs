@@ -1,18 +1,11 @@
 //! Words for things and qualities that the scene does not have.
 
+use scene::{Role, UnknownWord};
+
 use crate::clauses::{Clause, Topic};
 use crate::tagger::{Tag, after, before};
 use crate::token_class::{Class, classes};
 use crate::vocabulary::is_unlisted_quality;
-
-/// A word that the scene does not have.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownWord {
-    /// The word as it was said, or the words of a compound: "frying pan".
-    pub text: String,
-    /// It names a kind of thing that is asked for; otherwise a quality or a place.
-    pub noun: bool,
-}
 
 /// Most words of a compound.
 const COMPOUND_MAX: usize = 3;
@@ -68,8 +61,14 @@ fn named(tags: &[Tag<'_>], at: usize) -> UnknownWord {
         .rev()
         .find(|tag| !in_phrase(tag))
         .is_some_and(|tag| tag.is_any(classes![Preposition Landmark Destination Than]));
-    let quality = is_unlisted_quality(tags[last].word);
-    UnknownWord { text, noun: !describes && !is_place && !quality }
+    let role = if is_place {
+        Role::Place
+    } else if describes || is_unlisted_quality(tags[last].word) {
+        Role::Quality
+    } else {
+        Role::Kind
+    };
+    UnknownWord { text, role }
 }
 
 /// The words of a tag as far as it keeps them.

@@ -1,6 +1,6 @@
 //! Enums as bytes in fixed layouts, and the check of bytes that another process wrote.
 
-use scene::{Intent, Reference, Response};
+use scene::{Intent, Reference, Response, Role};
 use std::marker::PhantomData;
 
 /// An invalid value on the wire.
@@ -187,6 +187,7 @@ macro_rules! wire_enum {
 }
 pub(crate) use wire_enum;
 
+wire_codes! { Role { Quality = 0, Kind = 1, Place = 2, } }
 wire_codes! { Response { None = 0, Yes = 1, No = 2, CannotTell = 3, DoesNotMatter = 4, } }
 wire_codes! {
     Intent {

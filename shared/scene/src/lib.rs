@@ -27,5 +27,5 @@ pub use model::{Attribute, Object, Placement, Role, Scene, Value};
 pub use plural::plural;
 pub use question::Question;
 pub use question_json::{QuestionError, question_from_json, question_to_json, reading_to_json};
-pub use reading::{Doubt, Intent, Reading, Reference, Response};
+pub use reading::{Doubt, Intent, Reading, Reference, Response, UnknownWord};
 pub use stable_hash::StableHash;

@@ -74,9 +74,11 @@ pub struct Value {
 }
 
 /// Grammatical role of a value: a key of the scene file, or else guessed from the `spoken` form.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Role {
     /// "white": stands before a noun, has degrees.
+    #[default]
     Quality,
     /// "a marker": is a noun.
     Kind,

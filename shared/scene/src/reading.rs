@@ -1,7 +1,7 @@
 //! Understood utterances: `(l_b, l_r)` of section 3.6, extended by excluded values, references and
 //! intents.
 
-use crate::WordId;
+use crate::{Role, WordId};
 
 /// The answer to a question, `l_r`.
 #[derive(
@@ -106,6 +106,15 @@ pub struct Reading {
     pub further: Vec<Vec<WordId>>,
     /// Doubts about its parts.
     pub doubt: Doubt,
+}
+
+/// A word that was said and that the scene does not have.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub struct UnknownWord {
+    /// The word as it was said, without an article, or the words of a compound: "frying pan".
+    pub text: String,
+    /// Its role in the sentence; a kind only where a thing is asked for by it.
+    pub role: Role,
 }
 
 /// Doubts about the parts of a reading: for each the probability that something else was said, from 0

@@ -2,6 +2,7 @@
 
 use super::*;
 use dialogue::manager::NAMES_MAX;
+use scene::{Role, UnknownWord};
 
 /// The shipped bowls without those in `gone`, and with these TOML lines behind them.
 fn bowls(gone: &[&str], more: &str) -> Settings {
@@ -182,7 +183,8 @@ fn a_word_that_nothing_had_counts_for_what_has_it_now() {
     let mut manager = manager();
     let state = asked(&mut manager);
     let utterance = typed(2, PromptId(0), Reading::default());
-    let cause = Cause::Utterance(Utterance { unknown: "copper".to_owned(), ..utterance });
+    let unknown = Some(UnknownWord { text: "copper".to_owned(), role: Role::Quality });
+    let cause = Cause::Utterance(Utterance { unknown, ..utterance });
     let state = manager.next(&state, &cause, at(2));
     let copper =
         SEVENTH.replace("white4", "copper1").replace("color = \"white\"", "color = \"copper\"");

@@ -3,7 +3,7 @@
 use super::{answer, at, first, heard, manager, remark, reply, text, typed, words};
 use dialogue::manager::{Cause, Manager, State};
 use messages::{ActKind, PromptId};
-use scene::{Intent, Reading, Response};
+use scene::{Intent, Reading, Response, Role, UnknownWord};
 
 fn intent(intent: Intent) -> Reading {
     Reading { intent, ..Reading::default() }
@@ -169,14 +169,15 @@ fn who_starts_over_is_asked_what_is_wanted() {
 #[test]
 fn what_the_scene_has_nothing_of_is_said_at_once() {
     let mut manager = manager();
-    let request = |unknown: &str| {
+    let request = |text: &str, role: Role| {
         let said = typed(1, PromptId(0), Reading::default());
-        let said = dialogue::manager::Utterance { unknown: unknown.to_owned(), ..said };
+        let unknown = Some(UnknownWord { text: text.to_owned(), role });
+        let said = dialogue::manager::Utterance { unknown, ..said };
         Cause::Utterance(said)
     };
-    let plate = manager.next(&manager.first(), &request("a plate"), at(1));
+    let plate = manager.next(&manager.first(), &request("plate", Role::Kind), at(1));
     assert_eq!(text(&plate), "There are no plates here, only bowls.");
     assert!(plate.open.is_none());
-    let purple = manager.next(&manager.first(), &request("purple"), at(1));
+    let purple = manager.next(&manager.first(), &request("purple", Role::Quality), at(1));
     assert_eq!(purple.act.kind, ActKind::Ask);
 }

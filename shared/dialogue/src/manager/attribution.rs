@@ -1,6 +1,6 @@
 //! The questions that an utterance answers.
 
-use scene::{Intent, Question, Reading};
+use scene::{Intent, Question, Reading, UnknownWord};
 
 use super::Manager;
 use super::evidence::Mark;
@@ -21,8 +21,8 @@ pub(super) const PLAIN: f64 = 0.8;
 pub(super) struct Heard<'a> {
     /// Its interpretations with their weights and the question that each answers, likeliest first.
     pub(super) interpretations: Vec<(f64, Question, Reading)>,
-    /// A word that the scene does not have; may be empty.
-    pub(super) unknown: &'a str,
+    /// A word that the scene does not have.
+    pub(super) unknown: Option<&'a UnknownWord>,
     /// The point that the user points at, metres, frame `base`.
     pub(super) gesture: Option<[f64; 3]>,
     /// Objects that it plainly refused or meant.
@@ -111,7 +111,7 @@ impl Manager {
             }
         }
         all.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let (unknown, gesture) = (utterance.unknown.as_str(), utterance.gesture);
+        let (unknown, gesture) = (utterance.unknown.as_ref(), utterance.gesture);
         Heard { interpretations: all, unknown, gesture, mark: None }
     }
 

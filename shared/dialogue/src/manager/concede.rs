@@ -4,7 +4,7 @@ use scene::{AttributeId, Question, Reading, Reference, Response, Scene};
 use serde::{Deserialize, Serialize};
 
 use super::Manager;
-use super::state::{Interaction, Wish};
+use super::state::{Interaction, Preference};
 use crate::Concessions;
 
 /// What the user said of attributes rather than of values, by names: it outlives a change of the scene.
@@ -34,8 +34,8 @@ impl Manager {
         &self,
         open: &mut Interaction,
         heard: &[(f64, Question, Reading)],
-    ) -> Wish {
-        let Some((question, reading)) = likeliest(heard) else { return Wish::Best };
+    ) -> Preference {
+        let Some((question, reading)) = likeliest(heard) else { return Preference::Best };
         let attribute = match question {
             Question::Attribute(k, _) | Question::Which(k) => Some(k),
             Question::None | Question::Point(_) => None,
@@ -44,16 +44,16 @@ impl Manager {
         match (reading.response, name) {
             (Response::CannotTell, name) => {
                 add(&mut open.conceded.unknown, name);
-                Wish::Otherwise
+                Preference::Otherwise
             }
             (Response::DoesNotMatter, Some(name))
                 if reading.base.is_empty() && reading.refers != Reference::Any =>
             {
                 add(&mut open.conceded.indifferent, Some(name));
-                Wish::Best
+                Preference::Best
             }
-            (Response::DoesNotMatter, _) => Wish::Any,
-            _ => Wish::Best,
+            (Response::DoesNotMatter, _) => Preference::Any,
+            _ => Preference::Best,
         }
     }
 }

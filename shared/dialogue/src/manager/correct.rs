@@ -56,7 +56,7 @@ impl Manager {
         let interpretations =
             vec![(no, that, alone), (all - no, Question::None, Reading::default())];
         let mark = (no >= PLAIN * all).then(|| self.not(object));
-        let denial = Heard { interpretations, unknown: "", gesture: None, mark };
+        let denial = Heard { interpretations, unknown: None, gesture: None, mark };
         (2.0 * no > all).then_some(denial)
     }
 

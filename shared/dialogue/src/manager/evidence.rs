@@ -1,7 +1,7 @@
 //! Evidence of an interaction by names instead of numbers: it outlives a change of the scene, under
 //! which every object, attribute, value and word may get another number.
 
-use scene::{Question, Reading, Response, Scene};
+use scene::{Question, Reading, Response, Scene, UnknownWord};
 use serde::{Deserialize, Serialize};
 
 use super::state::Interaction;
@@ -19,8 +19,8 @@ const ENTRY: usize = 4;
 pub struct Evidence {
     /// Its interpretations with the question that each answers and its weight, the likeliest first.
     pub interpretations: Vec<(f64, NamedQuestion, NamedReading)>,
-    /// A word that the scene did not have; may be empty. Another scene may have it.
-    pub unknown: String,
+    /// A word that the scene did not have. Another scene may have it.
+    pub unknown: Option<UnknownWord>,
     /// The point that the user points at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
     /// Objects that it plainly refused or meant.
@@ -70,8 +70,8 @@ impl Evidence {
         let mut all: Vec<(f64, Question, Reading)> = self.interpretations.iter().map(of).collect();
         // The unknown word belongs to the best reading. Whether it was negated is not known, so it
         // counts only where nothing was.
-        let unknown = self.unknown.strip_prefix("a ").unwrap_or(&self.unknown);
-        if let (Some((_, _, best)), Some(word)) = (all.first_mut(), scene.word_named(unknown))
+        let unknown = self.unknown.as_ref().and_then(|unknown| scene.word_named(&unknown.text));
+        if let (Some((_, _, best)), Some(word)) = (all.first_mut(), unknown)
             && best.response != Response::No
             && best.excluded.is_empty()
         {

@@ -9,7 +9,7 @@ use super::attribution::Heard;
 use super::evidence::Mark;
 use super::line::Preface;
 use super::put_back::{WithUser, refuse};
-use super::state::{Interaction, State, Utterance, Wish};
+use super::state::{Interaction, Preference, State, Utterance};
 use crate::ids::PromptId;
 use crate::time::{Span, Time};
 
@@ -84,7 +84,7 @@ impl Manager {
         let Some(open) = &mut state.open else { return };
         self.take_in(open, heard);
         self.take_in(open, refusal);
-        self.defer(state, utterance, Wish::Best, Preface::Sorry, at);
+        self.defer(state, utterance, Preference::Best, Preface::Sorry, at);
         if !utterance.more {
             self.decide_deferred(state, at);
         }

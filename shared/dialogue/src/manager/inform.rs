@@ -1,13 +1,13 @@
 //! Content of an utterance about the wanted object.
 
-use scene::{Question, Reading, Response};
+use scene::{Question, Reading, Response, Role};
 
 use super::Manager;
 use super::attribution::Heard;
 use super::evidence::{Evidence, Mark};
 use super::line::{Preface, Remark};
 use super::references::reference;
-use super::state::{Basis, Deferred, Interaction, State, Utterance, Wish};
+use super::state::{Basis, Deferred, Interaction, Preference, State, Utterance};
 use crate::ActKind;
 use crate::time::Time;
 
@@ -33,11 +33,10 @@ impl Manager {
             if spoken_of.is_none() && !self.is_request(utterance) {
                 return;
             }
-            // A thing that is not here; of a quality there may be another way to say it.
-            let is_thing = heard.unknown.starts_with("a ");
-            if spoken_of.is_none() && is_thing && says_nothing(&heard) {
-                let thing = Remark::Unknown(heard.unknown.to_owned());
-                return self.reply(state, thing, at);
+            // Of a quality there may be another way to say it.
+            let thing = heard.unknown.filter(|word| word.role == Role::Kind);
+            if let (Some(thing), None, true) = (thing, &spoken_of, says_nothing(&heard)) {
+                return self.reply(state, Remark::Unknown(thing.clone()), at);
             }
             self.begin(state, utterance, &heard, spoken_of);
             // What was asked before is over.
@@ -49,7 +48,7 @@ impl Manager {
         if open.pick.is_some() {
             return self.reconsider(state, heard, at);
         }
-        let wish = self.concede(open, &heard.interpretations);
+        let preference = self.concede(open, &heard.interpretations);
         let preface = match self.enqueue(state, &heard) {
             Preface::None => preface(&heard, state.act.kind),
             queued => queued,
@@ -67,7 +66,7 @@ impl Manager {
             self.take_in(open, Heard { mark, ..Heard::default() });
         }
         self.note_answer(state, utterance, shares);
-        self.defer(state, utterance, wish, preface, at);
+        self.defer(state, utterance, preference, preface, at);
         if !utterance.more {
             self.decide_deferred(state, at);
         }
@@ -103,7 +102,7 @@ impl Manager {
                 .iter()
                 .map(|(weight, question, reading)| self.named(*weight, *question, reading));
             let interpretations = interpretations.collect();
-            let unknown = unknown.to_owned();
+            let unknown = unknown.cloned();
             open.remember(Evidence { interpretations, unknown, gesture, mark });
         }
     }
@@ -113,18 +112,20 @@ impl Manager {
         &self,
         state: &mut State,
         utterance: &Utterance,
-        wish: Wish,
+        preference: Preference,
         preface: Preface,
         at: Time,
     ) {
         let Some(open) = &mut state.open else { return };
         let before = open.deferred.take();
         let since = before.as_ref().map_or(at, |before| before.since);
-        let Basis { preface: preface_before, wish: wish_before, .. } =
+        let Basis { preface: preface_before, preference: preference_before, .. } =
             before.map(|before| before.basis).unwrap_or_default();
         let preface = if preface == Preface::None { preface_before } else { preface };
-        let wish = if wish == Wish::Best { wish_before } else { wish };
-        let basis = Basis { heard: utterance.heard(), preface, utterance: utterance.seq, wish };
+        let preference =
+            if preference == Preference::Best { preference_before } else { preference };
+        let basis =
+            Basis { heard: utterance.heard(), preface, utterance: utterance.seq, preference };
         open.deferred = Some(Deferred { basis, since });
     }
 
@@ -174,11 +175,11 @@ fn says_nothing(heard: &Heard) -> bool {
 /// Returns what is said before the next question about an utterance that was not understood.
 fn preface(heard: &Heard, standing: ActKind) -> Preface {
     match heard.unknown {
-        "" if says_nothing(heard) && heard.gesture.is_none() && standing == ActKind::Ask => {
+        Some(word) => Preface::UnknownWord(word.clone()),
+        None if says_nothing(heard) && heard.gesture.is_none() && standing == ActKind::Ask => {
             Preface::Remark(Remark::NotUnderstood)
         }
-        "" => Preface::None,
-        word => Preface::UnknownWord(word.to_owned()),
+        None => Preface::None,
     }
 }
 

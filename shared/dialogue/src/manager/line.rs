@@ -1,5 +1,6 @@
 //! Lines of the robot. They are typed; [`rendering`](crate::rendering) turns them into English.
 
+use scene::UnknownWord;
 use serde::{Deserialize, Serialize};
 
 use crate::PickOutcome;
@@ -26,7 +27,7 @@ pub enum Preface {
     #[default]
     None,
     /// The user said a word that the scene does not have.
-    UnknownWord(String),
+    UnknownWord(UnknownWord),
     /// The objects changed; descriptions of those that are gone and of those that are new.
     ObjectsChanged {
         /// Objects that are gone.
@@ -67,8 +68,8 @@ pub enum Remark {
     NotUnderstood,
     /// Agreement.
     AllRight,
-    /// The scene has nothing of this name.
-    Unknown(String),
+    /// The scene has nothing of this kind.
+    Unknown(UnknownWord),
     /// Nothing is being done.
     Idle,
     /// Nothing was handed over that could be put back.

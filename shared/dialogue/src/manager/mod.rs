@@ -51,8 +51,8 @@ pub use line::{AboutObjects, Content, Line, Preface, Reason, Remark};
 pub use put_back::{Progress, PuttingBack, WithUser};
 pub use refold::{Mismatch, refold, refold_since};
 pub use state::{
-    Act, Basis, Cause, Deferred, Interaction, KnownObject, Prompt, Record, State, Timing,
-    Utterance, Wish,
+    Act, Basis, Cause, Deferred, Interaction, KnownObject, Preference, Prompt, Record, State,
+    Timing, Utterance,
 };
 
 use acts::{order_again, say, set, set_reasons};
@@ -228,12 +228,14 @@ impl Manager {
         let standing = Action::Ask(state.act.question);
         let others = decision.alternatives.iter().map(|(action, _)| *action);
         let mut questions = others.filter(|action| matches!(action, Action::Ask(_)));
-        let action = match (basis.wish, decision.action) {
-            (Wish::Any, action) => state
+        let action = match (basis.preference, decision.action) {
+            (Preference::Any, action) => state
                 .open
                 .as_ref()
                 .map_or(action, |open| Action::Pick(self.likeliest_object(&open.belief()))),
-            (Wish::Otherwise, action) if action == standing => questions.next().unwrap_or(action),
+            (Preference::Otherwise, action) if action == standing => {
+                questions.next().unwrap_or(action)
+            }
             (_, action) => action,
         };
         self.carry_out(state, action, decision, basis, at);
@@ -327,8 +329,9 @@ impl Manager {
             open.presentations += 1;
             self.put_again(state, Preface::None, at);
         } else {
-            let (heard, utterance, wish) = (state.act.prompt, state.applied, Wish::Otherwise);
-            self.decide(state, Basis { heard, utterance, wish, ..Basis::default() }, at);
+            let (heard, utterance, preference) =
+                (state.act.prompt, state.applied, Preference::Otherwise);
+            self.decide(state, Basis { heard, utterance, preference, ..Basis::default() }, at);
         }
     }
 

@@ -1,7 +1,7 @@
 //! State of the dialogue: everything that must outlive a restart. It is small, so each journal record
 //! holds it whole, and recovery reads one record.
 
-use scene::{ObjectId, Question};
+use scene::{ObjectId, Question, UnknownWord};
 use serde::{Deserialize, Serialize};
 
 use super::concede::Conceded;
@@ -166,12 +166,12 @@ pub struct Basis {
     /// The latest utterance.
     pub utterance: UtteranceSeq,
     /// What the user wants to be decided.
-    pub wish: Wish,
+    pub preference: Preference,
 }
 
 /// What the user wants to be decided.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Wish {
+pub enum Preference {
     /// Whatever is best.
     #[default]
     Best,
@@ -288,9 +288,8 @@ pub struct Utterance {
     pub accepted: Time,
     /// Interpretations as an answer to each of the presentations, and to none.
     pub interpretations: Vec<Interpretation>,
-    /// What the scene does not have, a thing with its article ("a plate") or a quality ("wooden"); may
-    /// be empty.
-    pub unknown: String,
+    /// A word that the scene does not have.
+    pub unknown: Option<UnknownWord>,
     /// The point that the user points at, metres, frame `base`.
     pub gesture: Option<[f64; 3]>,
     /// Whether the user is still speaking, or more speech is being recognised.

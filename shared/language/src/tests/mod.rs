@@ -9,7 +9,7 @@ mod table;
 use std::sync::LazyLock;
 use std::time::Instant;
 
-use scene::{Question, Scene, question_from_json};
+use scene::{Question, Role, Scene, question_from_json};
 use serde_json::Value as Json;
 
 use crate::{Language, Reader};
@@ -155,23 +155,23 @@ fn reader_names_unknown_words() {
 fn reader_tells_an_unknown_thing_from_an_unknown_quality() {
     let scene = scene("mugs");
     let reader = Reader::new(&scene, Language::Careful);
-    for (text, word, noun) in [
-        ("can you bring me a plate", "plate", true),
-        ("get me the frying pan", "frying pan", true),
-        ("I would like a newspaper", "newspaper", true),
-        ("can I have the dinosaur", "dinosaur", true),
-        ("do you have a novel?", "novel", true),
-        ("have you got any rivets", "rivets", true),
-        ("a wooden mug", "wooden", false),
-        ("the yellow mug", "yellow", false),
-        ("get me the purpure one", "purpure", false),
-        ("the mug in the garage", "garage", false),
-        ("is there a yellow mug?", "yellow", false),
-        ("penicillin please", "penicillin", true),
+    for (text, word, role) in [
+        ("can you bring me a plate", "plate", Role::Kind),
+        ("get me the frying pan", "frying pan", Role::Kind),
+        ("I would like a newspaper", "newspaper", Role::Kind),
+        ("can I have the dinosaur", "dinosaur", Role::Kind),
+        ("do you have a novel?", "novel", Role::Kind),
+        ("have you got any rivets", "rivets", Role::Kind),
+        ("a wooden mug", "wooden", Role::Quality),
+        ("the yellow mug", "yellow", Role::Quality),
+        ("get me the purpure one", "purpure", Role::Quality),
+        ("the mug in the garage", "garage", Role::Place),
+        ("is there a yellow mug?", "yellow", Role::Quality),
+        ("penicillin please", "penicillin", Role::Kind),
     ] {
         let words = reader.unknown_words(text);
-        let first = words.first().map(|word| (word.text.as_str(), word.noun));
-        assert_eq!(first, Some((word, noun)), "{text}");
+        let first = words.first().map(|word| (word.text.as_str(), word.role));
+        assert_eq!(first, Some((word, role)), "{text}");
     }
     assert_eq!(reader.unknown_words("the red mug please"), []);
 }

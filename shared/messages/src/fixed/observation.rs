@@ -7,7 +7,7 @@ use crate::text::FixedText;
 use crate::wire::{Code, WireError, WireField};
 use dialogue::Interpretation;
 use iceoryx2::prelude::ZeroCopySend;
-use scene::{Doubt, Intent, Reading, Reference, Response, WordId};
+use scene::{Doubt, Intent, Reading, Reference, Response, Role, UnknownWord, WordId};
 
 /// Readings of one utterance, for all questions together.
 pub const READINGS_MAX: usize = 32;
@@ -196,12 +196,13 @@ wire_struct! {
         asked_count: u8,
         /// [`Source`] of the utterance.
         source: Code<Source>,
+        /// [`scene::Role`] of `unknown`.
+        unknown_role: Code<Role>,
         /// Zero.
-        reserved: [u8; 5],
+        reserved: [u8; 4],
         /// Possible meanings: for each question asked and for none, most likely first.
         readings: [WireReading; READINGS_MAX],
-        /// What the scene does not have, for the robot's reply: a thing with its article ("a plate") or
-        /// a quality ("wooden"); may be empty.
+        /// A word that the scene does not have, for the robot's reply ("plate"); may be empty.
         unknown: FixedText<60>,
     }
 }
@@ -218,6 +219,12 @@ impl Observation {
             return Err(WireError::new("reading count", 0));
         }
         readings.iter().map(|reading| reading.interpretation(words, asked)).collect()
+    }
+
+    /// The word that the scene does not have, if there is one.
+    pub fn unknown(&self) -> Option<UnknownWord> {
+        let text = self.unknown.as_str().ok().filter(|text| !text.is_empty())?;
+        Some(UnknownWord { text: text.to_owned(), role: self.unknown_role.get() })
     }
 
     /// The questions that the utterance may answer, newest first.
