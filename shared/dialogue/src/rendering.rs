@@ -95,7 +95,8 @@ fn unknown(scene: &Scene, UnknownWord { text, role }: &UnknownWord) -> String {
             let there = scene.plural_nouns(&all);
             format!("There are no {} here, only {there}. ", scene::plural(text))
         }
-        Role::Quality | Role::Place => format!("I do not know \"{text}\" here. "),
+        Role::Quality => format!("I know of no {text} one here. "),
+        Role::Place => format!("I do not know \"{text}\" here. "),
     }
 }
 
@@ -110,9 +111,12 @@ fn preface(scene: &Scene, preface: &Preface) -> String {
         Preface::SceneChanged => format!("The {}s here have changed. ", scene.noun()),
         Preface::Remark(it) => format!("{} ", remarks::text(scene, it, ActKind::Ask)),
         Preface::InTurn(objects) => {
-            let objects: Vec<String> =
-                objects.iter().map(|words| remarks::group(scene, words, None)).collect();
-            format!("First the {}. ", objects.join(", then the "))
+            let name = |(n, words): (usize, &Vec<String>)| match n.checked_sub(1) {
+                Some(before) if objects[before] == *words => "another".to_owned(),
+                _ => format!("the {}", remarks::group(scene, words, None)),
+            };
+            let objects: Vec<String> = objects.iter().enumerate().map(name).collect();
+            format!("First {}. ", objects.join(", then "))
         }
         Preface::PickEnded(object, outcome) => format!("{} ", pick_ended(object, *outcome)),
         Preface::PutBackEnded(object, outcome) => format!("{} ", put_back_ended(object, *outcome)),

@@ -1,5 +1,7 @@
 //! Questions to the robot: "which ones are white", "what can you get me".
 
+use scene::Role;
+
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 use crate::tokens::Gap;
@@ -46,12 +48,13 @@ impl ClauseAnalysis<'_> {
             && !self.asks_for_unknown()
     }
 
-    /// "do you have a novel"
+    /// "do you have a novel", "where are my trousers"
     fn asks_for_unknown(&self) -> bool {
         let [have, article, rest @ ..] = self.clause else { return false };
         have.is(Class::AskBack)
-            && matches!((have.word, have.last), ("do", "have") | ("have", "got"))
-            && article.is_any(classes![Determiner Quantifier])
+            && (matches!((have.word, have.last), ("do", "have") | ("have", "got"))
+                || have.word == "where")
+            && article.is_any(classes![Determiner Quantifier Possessive])
             && self.unknown == 1
             && rest.first().is_some_and(Tag::is_unknown)
             && rest[1..].iter().all(|tag| tag.is_any(classes![Courtesy Filler Plain]))
@@ -68,10 +71,17 @@ impl ClauseAnalysis<'_> {
             return rest.iter().any(Tag::is_value) || self.has(SCENE_NAMES);
         }
         let place = rest.iter().position(|tag| tag.is(Class::Preposition));
+        // "is the red book thick"
+        let ends_in_value = || {
+            let is_noun = |tag: &Tag<'_>| tag.is(Class::Head) || tag.is_role(Role::Kind);
+            let noun = rest.iter().position(is_noun);
+            noun.is_some_and(|at| at + 1 < rest.len() && rest[at + 1..].iter().all(Tag::is_value))
+        };
         subject.is(Class::Determiner)
-            && place.is_some_and(|at| {
-                rest[..at].iter().any(Tag::is_value) && rest[at..].iter().any(Tag::is_value)
-            })
+            && (ends_in_value()
+                || place.is_some_and(|at| {
+                    rest[..at].iter().any(Tag::is_value) && rest[at..].iter().any(Tag::is_value)
+                }))
     }
 
     /// "which ones are white", but not "what I want" or "what a mess".

@@ -8,6 +8,7 @@ use crate::lexicon::{Sense, ValueSense};
 use crate::negation::{self, NoUse};
 use crate::negation_scope::NegationScope;
 use crate::question_words::QuestionWords;
+use crate::references::too_much;
 use crate::repair;
 use crate::tagger::{Tag, after};
 use crate::token_class::{Class, classes};
@@ -131,6 +132,10 @@ impl<'a> Extractor<'a, '_> {
     fn value(&mut self, at: usize, value: &'a ValueSense) {
         let refused = at > 0 && answer::is_wrong_thing(self.tags, at - 1);
         if self.landmark || self.wondering || refused {
+            return;
+        }
+        if too_much(self.tags, at).is_some() {
+            self.content.answers.push(Answer::No, self.tags, at);
             return;
         }
         if self.tags[at].is_located() {

@@ -96,7 +96,14 @@ fn sureness_of(tag: &Tag<'_>) -> f64 {
 /// it in the same sentence, or else to what follows: "the white one, I think".
 pub(crate) fn hedge(tags: &mut [Tag<'_>], clauses: &[Clause]) {
     for (n, clause) in clauses.iter().enumerate().filter(|(_, clause)| clause.topic == Topic::On) {
-        let sure = tags[clause.span.clone()].iter().map(sureness_of).fold(1.0, f64::min);
+        let said = &tags[clause.span.clone()];
+        // "could you possibly bring me": the request is polite, its content is certain.
+        let polite = said
+            .iter()
+            .position(|tag| tag.is(Class::Fetch))
+            .filter(|&verb| said[..verb].iter().any(|tag| tag.is(Class::Second)));
+        let hedging = &said[polite.unwrap_or(0)..];
+        let sure = hedging.iter().map(sureness_of).fold(1.0, f64::min);
         if sure == 1.0 {
             continue;
         }

@@ -113,7 +113,7 @@ fn after_leads<'t, 'a>(tags: &'t [Tag<'a>]) -> &'t [Tag<'a>] {
     &tags[leads..]
 }
 
-/// A greeting or thanks, and nothing that asks for anything.
+/// A greeting, a farewell or thanks, and nothing that asks for anything.
 fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
     const BESIDE: &[Class] = classes![
         Courtesy Filler WeakYes Reply Plain Second It Be First Determiner Preposition Pointer Head
@@ -131,6 +131,8 @@ fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
         || said(&["i"])
     {
         Some(Intent::Thank)
+    } else if strange == 0 && said(&["goodbye", "bye", "see", "farewell"]) {
+        Some(Intent::Leave)
     } else if strange == 0
         && said(&[
             "hello",
@@ -139,12 +141,8 @@ fn courtesy(tags: &[Tag<'_>]) -> Option<Intent> {
             "hiya",
             "howdy",
             "good",
-            "goodbye",
-            "bye",
             "greetings",
-            "see",
             "take",
-            "farewell",
             "welcome",
             "nice",
             "how",

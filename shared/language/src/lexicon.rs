@@ -3,7 +3,7 @@
 //! equally long ones the scene's.
 
 use std::cmp::Reverse;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use scene::{AttributeId, Reference, Role, Scene, Value, WordId};
 
@@ -91,6 +91,7 @@ impl Lexicon {
         let mut lexicon = Self { phrases: HashMap::new(), values: Vec::new(), lookalikes };
         lexicon.add_values(scene);
         lexicon.add_names(scene);
+        lexicon.add_parts(scene);
         lexicon.add_phrases();
         for phrases in lexicon.phrases.values_mut() {
             phrases.sort_by_key(|phrase| Reverse(phrase.rest.len()));
@@ -217,6 +218,32 @@ impl Lexicon {
             // Of three sizes "smaller" need not be small.
             if self.values[place].one_of_two || by_size(&form) == Reference::None {
                 self.add(&[lead, &[form]].concat(), Meaning::Value(place));
+            }
+        }
+    }
+
+    /// "teddy" for a teddy bear, "syrup" for cough syrup: a part of a name that is in no other value,
+    /// and no word of a dialogue. Only the last part may be an everyday word.
+    fn add_parts(&mut self, scene: &Scene) {
+        let values = || scene.attributes().iter().flat_map(|attribute| &attribute.values);
+        let spoken: Vec<Vec<String>> =
+            values().map(|value| words(&format!("{} {}", value.name, value.spoken))).collect();
+        let classed: HashSet<&str> = vocabulary::phrases().map(|(_, phrase)| phrase).collect();
+        for value in values().filter(|value| value.role() != Role::Place) {
+            let name = words(&value.name);
+            let parts = name.iter().enumerate().filter(|_| name.len() > 1);
+            for (at, part) in parts {
+                let owners = spoken.iter().filter(|words| words.contains(part)).count();
+                let is_last = at + 1 == name.len();
+                let is_own = part.len() > 2
+                    && owners == 1
+                    && !classed.contains(&**part)
+                    && (is_last || !self.lookalikes.is_common(part));
+                let place = self.values.iter().position(|it| it.word == value.word);
+                if let Some(place) = place.filter(|_| is_own) {
+                    self.add_inflected(vec![part.clone()], false, Meaning::Value(place));
+                    self.add(std::slice::from_ref(part), Meaning::Value(place));
+                }
             }
         }
     }

@@ -6,12 +6,14 @@ use crate::clauses::Clause;
 use crate::content::{Asserted, Content};
 use crate::hedges::MAYBE;
 use crate::objects::objects;
-use crate::question_words::QuestionWords;
+use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::tagger::Tag;
 use crate::token_class::{Class, classes};
 
 /// Most readings of one utterance.
 pub const READINGS_MAX: usize = 4;
+/// Most further objects that "all" stands for.
+const MORE_MAX: usize = 4;
 /// Weight as a yes of a "maybe" that is not an answer, judged. That yes is doubted as well, so that
 /// it moves the odds little.
 const MAYBE_WEIGHT: f64 = 0.4;
@@ -26,6 +28,7 @@ pub(crate) struct ParsedUtterance<'a> {
     pub(crate) asked: QuestionWords<'a>,
     pub(crate) tags: Vec<Tag<'a>>,
     pub(crate) clauses: Vec<Clause>,
+    pub(crate) questions: &'a SceneQuestions,
 }
 
 impl ParsedUtterance<'_> {
@@ -51,7 +54,8 @@ impl ParsedUtterance<'_> {
         reading
     }
 
-    /// How many beside the first, of what is described: "both cups", "two red mugs".
+    /// How many beside the first, of what is described: "both cups", "two red mugs", "all the cars",
+    /// "the socks, both of them".
     fn more_of_them(&self) -> Option<usize> {
         let request = self.intent == Intent::Inform
             && matches!(self.asked, QuestionWords::Nothing)
@@ -60,11 +64,22 @@ impl ParsedUtterance<'_> {
         let lead = |tag: &&Tag<'_>| {
             tag.is_value() || tag.is_any(classes![Determiner Possessive Preposition])
         };
-        let count = self.tags[..value.at].iter().rev().find(|tag| !lead(tag))?;
+        let before = self.tags[..value.at].iter().rposition(|tag| !lead(&tag));
+        let is_led = before.is_some_and(|at| at + 1 < value.at);
+        let count = before.map(|at| &self.tags[at]).filter(|tag| tag.is(Class::Quantifier));
+        let last = &self.tags[self.content.base.last()?.at..];
+        let of_them = last.windows(3).find(|three| {
+            three[0].is(Class::Quantifier) && three[1].word == "of" && three[2].is(Class::It)
+        });
+        let count = count.or(of_them.map(|three| &three[0]))?;
         match count.word {
-            _ if !count.is(Class::Quantifier) => None,
             "both" | "two" => Some(1),
             "three" => Some(2),
+            "all" if is_led || of_them.is_some() => {
+                let words: Vec<WordId> = self.content.base.iter().map(|it| it.word).collect();
+                let more = self.questions.described(&words).saturating_sub(1);
+                (1..=MORE_MAX).contains(&more).then_some(more)
+            }
             _ => None,
         }
     }

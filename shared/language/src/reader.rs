@@ -13,7 +13,7 @@ use crate::lexicon::Lexicon;
 use crate::normalise::normalise;
 use crate::paper::WordSpotter;
 use crate::parsed::ParsedUtterance;
-use crate::question_words::SceneQuestions;
+use crate::question_words::{QuestionWords, SceneQuestions};
 use crate::questions::{fetches_it, question};
 use crate::references::reference;
 use crate::tagger::tag;
@@ -122,7 +122,11 @@ impl Reader {
         let careless = indifference(&tags, &clauses, asked);
         let response = response(&content, &tags, asked, careless);
         let refers = match (refers, response.0, careless) {
-            (Reference::None, Response::DoesNotMatter, Some(at)) if !is_of_attribute(&tags, at) => {
+            (Reference::None, Response::DoesNotMatter, Some(at))
+                if !is_of_attribute(&tags, at)
+                    && (!matches!(asked, QuestionWords::Nothing)
+                        || clauses.iter().any(|clause| clause.requests)) =>
+            {
                 Reference::Any
             }
             (refers, ..) => refers,
@@ -141,6 +145,7 @@ impl Reader {
                 intent = Intent::Inform;
             }
         }
-        ParsedUtterance { content, response, intent, refers, asked, tags, clauses }
+        let questions = &self.questions;
+        ParsedUtterance { content, response, intent, refers, asked, tags, clauses, questions }
     }
 }

@@ -14,6 +14,14 @@ pub(crate) fn reference(
     clauses: &[Clause],
     asked: QuestionWords<'_>,
 ) -> Reference {
+    // "again!"
+    let bare = |tag: &Tag<'_>| tag.word == "again" || tag.is_any(classes![Filler Courtesy]);
+    if matches!(asked, QuestionWords::Nothing)
+        && tags.iter().any(|tag| tag.word == "again")
+        && tags.iter().all(bare)
+    {
+        return Reference::Same;
+    }
     let again = tags.iter().any(|tag| tag.is_any(classes![Huh Repeat]) && tag.word == "again");
     let new = matches!(asked, QuestionWords::Nothing) || again;
     let spoken = clauses.iter().filter(|clause| clause.topic != Topic::Off);
@@ -32,7 +40,7 @@ fn refers(tags: &[Tag<'_>], at: usize, new: bool) -> Reference {
     if is_denied(tags, at) {
         return Reference::None;
     }
-    let size = by_size(tag.word);
+    let size = too_much(tags, at).unwrap_or(by_size(tag.word));
     if size != Reference::None {
         let relative = matches!(size, Reference::Smaller | Reference::Larger);
         return if relative && is_compared(tags, at) { Reference::None } else { size };
@@ -43,6 +51,18 @@ fn refers(tags: &[Tag<'_>], at: usize, new: bool) -> Reference {
         "a" | "some" | "try" | "next" if tag.is(Class::No) => Reference::Other,
         "same" if tag.is_any(classes![Plain Yes]) && new && is_whole(tags, at) => Reference::Same,
         _ => Reference::None,
+    }
+}
+
+/// "too big": a smaller one is wanted.
+pub(crate) fn too_much(tags: &[Tag<'_>], at: usize) -> Option<Reference> {
+    let is_too = before(tags, at).is_some_and(|before| before.last == "too");
+    let is_noun = after(tags, at).is_some_and(|next| next.is(Class::Head) || next.is_value());
+    match tags[at].word {
+        _ if !is_too || is_noun => None,
+        "big" | "large" | "huge" | "long" | "tall" | "thick" | "wide" => Some(Reference::Smaller),
+        "small" | "little" | "tiny" | "short" | "thin" | "narrow" => Some(Reference::Larger),
+        _ => None,
     }
 }
 

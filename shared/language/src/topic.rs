@@ -265,7 +265,7 @@ impl<'a> ClauseAnalysis<'a> {
             return false;
         };
         let named = rest.iter().take_while(|tag| tag.is_unknown()).count();
-        article.is_any(classes![Determiner Quantifier])
+        article.is_any(classes![Determiner Quantifier Possessive])
             && named == self.unknown
             && (1..=2).contains(&named)
             && rest[named..].iter().all(|tag| tag.is_any(classes![Courtesy Filler]))

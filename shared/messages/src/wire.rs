@@ -207,6 +207,7 @@ wire_codes! {
         Greet = 13,
         Thank = 14,
         PutBack = 15,
+        Leave = 16,
     }
 }
 wire_codes! {

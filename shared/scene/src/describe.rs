@@ -28,12 +28,37 @@ impl Scene {
         self.compose(&chosen)
     }
 
+    /// The same with a quality of the object, even where none is needed: people name what strikes the
+    /// eye.
+    fn describe_with_quality(&self, object: ObjectId, others: &[ObjectId]) -> String {
+        let kind = self.kind(object);
+        let alike = |&i: &ObjectId| i != object && kind.is_none_or(|(k, v)| self.has(i, k, v));
+        let rivals: Vec<ObjectId> = others.iter().copied().filter(alike).collect();
+        let is_quality = |&(k, v): &(AttributeId, ValueId)| {
+            let is_shared = (0..self.objects().len()).all(|i| self.has(i.into(), k, v));
+            self.value(k, v).role() == Role::Quality && !is_shared
+        };
+        let mut chosen = self.telling(object, &rivals);
+        if !chosen.iter().any(is_quality) {
+            chosen.extend(self.values_of(object).find(is_quality));
+            if let Some(quality) = chosen.last().filter(|chosen| is_quality(chosen)).copied() {
+                let left: Vec<ObjectId> =
+                    rivals.into_iter().filter(|&i| self.has(i, quality.0, quality.1)).collect();
+                chosen = [self.telling(object, &left), vec![quality]].concat();
+            }
+        }
+        chosen.extend(kind);
+        chosen.sort_unstable();
+        chosen.dedup();
+        self.compose(&chosen)
+    }
+
     /// The objects as a choice or an enumeration, each told from the others: `the red mug, the blue
     /// mug or the white cup` for "or". Objects that no words tell apart are named once.
     pub fn list(&self, objects: &[ObjectId], conjunction: &str) -> String {
         let mut names: Vec<String> = Vec::new();
         for &object in objects {
-            let name = format!("the {}", self.describe_among(object, objects));
+            let name = format!("the {}", self.describe_with_quality(object, objects));
             if !names.contains(&name) {
                 names.push(name);
             }

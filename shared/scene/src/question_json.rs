@@ -103,7 +103,7 @@ fn published_intent(intent: Intent) -> Intent {
         | Intent::AskWhy
         | Intent::AskStatus
         | Intent::AskHelp => Intent::AskBack,
-        Intent::Greet | Intent::Thank | Intent::PutBack => Intent::None,
+        Intent::Greet | Intent::Thank | Intent::PutBack | Intent::Leave => Intent::None,
         other => other,
     }
 }

@@ -55,12 +55,14 @@ pub enum Intent {
     AskStatus,
     /// Ask what one can say to the robot.
     AskHelp,
-    /// Greet, or take leave.
+    /// Greet.
     Greet,
     /// Thank.
     Thank,
     /// Have the delivered object put back.
     PutBack,
+    /// Take leave.
+    Leave,
 }
 
 /// An object that an utterance points to by what was spoken of.

@@ -106,6 +106,7 @@ fn words(scene: &Scene, reading: &Reading) -> String {
         | Intent::AskStatus
         | Intent::AskHelp => Some("a question to me"),
         Intent::Greet => Some("a greeting"),
+        Intent::Leave => Some("a farewell"),
         Intent::Thank => Some("thanks"),
         Intent::PutBack => Some("put it back"),
     };

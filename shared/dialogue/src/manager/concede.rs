@@ -58,11 +58,19 @@ impl Manager {
     }
 }
 
-/// Returns the interpretation that is likelier than all others together.
-fn likeliest(heard: &[(f64, Question, Reading)]) -> Option<(Question, &Reading)> {
+/// Returns the interpretation that is likelier than all others together, or one of several that
+/// concede the same.
+pub(super) fn likeliest(heard: &[(f64, Question, Reading)]) -> Option<(Question, &Reading)> {
     let all: f64 = heard.iter().map(|(weight, ..)| weight).sum();
-    let (weight, question, reading) = heard.first()?;
-    (2.0 * weight > all).then_some((*question, reading))
+    let (_, question, first) = heard.first()?;
+    // "the red one or the blue one, I don't mind": what is conceded is the same in both.
+    let agrees = |reading: &Reading| {
+        let concedes = matches!(first.response, Response::CannotTell | Response::DoesNotMatter);
+        reading == first || concedes && reading.response == first.response
+    };
+    let agreeing = heard.iter().filter(|(_, asked, reading)| asked == question && agrees(reading));
+    let weight: f64 = agreeing.map(|(weight, ..)| weight).sum();
+    (2.0 * weight > all).then_some((*question, first))
 }
 
 fn add(names: &mut Vec<String>, name: Option<String>) {

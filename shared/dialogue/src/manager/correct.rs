@@ -1,11 +1,12 @@
 //! Corrections: utterances while the arm fetches. They count like every other, and where they speak
 //! against the object, the pick is called off and the interaction continues.
 
-use scene::{ObjectId, Question, Reading, Reference, Response, WordId};
+use scene::{AttributeId, Doubt, ObjectId, Question, Reading, Reference, Response, WordId};
 
 use super::Manager;
 use super::acts::call_off;
 use super::attribution::{Heard, PLAIN};
+use super::concede::likeliest;
 use super::line::{Content, Preface};
 use super::references::reference;
 use super::state::{Basis, State};
@@ -18,6 +19,7 @@ const LIKELY: f64 = 0.5;
 impl Manager {
     /// Processes an utterance while the arm fetches.
     pub(super) fn reconsider(&self, state: &mut State, heard: Heard, at: Time) {
+        self.retract(state, &heard);
         let Some(open) = &mut state.open else { return };
         let Some((_, object)) = open.pick else { return };
         let denial = match reference(&heard) {
@@ -34,6 +36,34 @@ impl Manager {
             open.corrected = true;
             call_off(state, Content::Correcting, at);
         }
+    }
+
+    /// Takes back words that the user replaces by others of the same attribute: "a mug", and then "make
+    /// it a cup". Only where both are certain: what is misheard replaces nothing.
+    pub(super) fn retract(&self, state: &mut State, heard: &Heard<'_>) {
+        let Some((_, reading)) = likeliest(&heard.interpretations) else { return };
+        if state.open.is_none() || reading.base.is_empty() || reading.doubt != Doubt::default() {
+            return;
+        }
+        let (scene, model) = (&self.setup.scene, &self.setup.model);
+        let of = |word: WordId| model.meanings(word).iter().map(|(k, _)| *k);
+        let said: Vec<AttributeId> = reading.base.iter().flat_map(|word| of(*word)).collect();
+        let is_replaced = |name: &String| {
+            let word = scene.word_named(name).filter(|word| !reading.base.contains(word));
+            word.is_some_and(|word| of(word).any(|k| said.contains(&k)))
+        };
+        let Some(mut open) = state.open.take() else { return };
+        let mut is_changed = false;
+        for (.., earlier) in open.evidence.iter_mut().flat_map(|it| &mut it.interpretations) {
+            if earlier.doubt == Doubt::default() && earlier.base.iter().any(is_replaced) {
+                earlier.base.retain(|name| !is_replaced(name));
+                is_changed = true;
+            }
+        }
+        if is_changed {
+            open.posterior = self.fold(state, &open);
+        }
+        state.open = Some(open);
     }
 
     /// Returns the denial of `object` alone, where it is likely that there is one. It counts in

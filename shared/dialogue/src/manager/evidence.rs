@@ -36,21 +36,23 @@ pub enum Mark {
     OneOf(Vec<String>),
 }
 
-/// Factor of what a mark rules out: beyond what words of the scene can make up for in one utterance.
-const RULED_OUT: f64 = 1e-9;
+/// Factor of an object that was refused: beyond what any words can make up for.
+const REFUSED: f64 = 1e-30;
+/// Factor of what is not pointed to: beyond what words of the scene can make up for in one utterance.
+const NOT_MEANT: f64 = 1e-9;
 
 impl Mark {
     /// Returns the logarithm of its likelihood for each hypothesis.
     pub(super) fn log_likelihood(&self, scene: &Scene, hypotheses: usize) -> Vec<f64> {
-        let is_ruled_out = |i: usize| {
+        let factor = |i: usize| {
             let name = scene.objects().get(i).map(|object| &object.name);
             match self {
-                Self::Not(refused) => name == Some(refused),
-                Self::OneOf(meant) => name.is_none_or(|name| !meant.contains(name)),
+                Self::Not(refused) if name == Some(refused) => REFUSED,
+                Self::OneOf(meant) if name.is_none_or(|name| !meant.contains(name)) => NOT_MEANT,
+                Self::Not(_) | Self::OneOf(_) => 1.0,
             }
         };
-        let log = |i: usize| if is_ruled_out(i) { RULED_OUT.ln() } else { 0.0 };
-        (0..hypotheses).map(log).collect()
+        (0..hypotheses).map(|i| factor(i).ln()).collect()
     }
 
     fn names(&self) -> usize {

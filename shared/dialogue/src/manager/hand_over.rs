@@ -69,6 +69,14 @@ impl Manager {
         Mark::Not(self.setup.scene.object(object).name.clone())
     }
 
+    /// Counts the last delivery as refused, and returns its interaction.
+    pub(super) fn refuse_last(state: &mut State, at: Time) -> Option<Interaction> {
+        let refused = state.handed_over.take()?.interaction;
+        let (name, interaction) = (refused.picked.clone(), refused.id);
+        refuse(state, &WithUser { name, interaction, at });
+        Some(refused)
+    }
+
     /// Takes up the interaction whose object was refused, without that object.
     pub(super) fn reopen(
         &mut self,
@@ -77,10 +85,9 @@ impl Manager {
         (heard, refusal): (Heard<'_>, Heard<'_>),
         at: Time,
     ) {
-        let Some(refused) = state.handed_over.take().map(|it| it.interaction) else { return };
-        let (name, interaction) = (refused.picked.clone(), refused.id);
-        refuse(state, &WithUser { name, interaction, at });
+        let Some(refused) = Self::refuse_last(state, at) else { return };
         self.open_like(state, utterance, refused);
+        self.retract(state, &heard);
         let Some(open) = &mut state.open else { return };
         self.take_in(open, heard);
         self.take_in(open, refusal);

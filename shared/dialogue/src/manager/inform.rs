@@ -1,11 +1,12 @@
 //! Content of an utterance about the wanted object.
 
-use scene::{Question, Reading, Response, Role};
+use scene::{AttributeId, Question, Reading, Reference, Response, Role, WordId};
 
 use super::Manager;
 use super::attribution::Heard;
+use super::concede::likeliest;
 use super::evidence::{Evidence, Mark};
-use super::line::{Preface, Remark};
+use super::line::{AboutObjects, Preface, Remark};
 use super::references::reference;
 use super::state::{Basis, Deferred, Interaction, Preference, State, Utterance};
 use crate::ActKind;
@@ -25,12 +26,20 @@ impl Manager {
         if self.answers_put_back(state, &heard, at) {
             return;
         }
+        let mut is_refused = false;
         if state.open.is_none() {
+            let is_request = self.is_request(utterance);
+            let mut spoken_of = self.resolve(state, &heard);
             if let Some(refusal) = self.refusal(state, &heard) {
-                return self.reopen(state, utterance, (heard, refusal), at);
+                if spoken_of.is_none() {
+                    return self.reopen(state, utterance, (heard, refusal), at);
+                }
+                // "and the other one" refuses nothing.
+                is_refused = refers != Reference::Other;
+            } else if is_request && spoken_of.is_none() {
+                spoken_of = self.listed(state, &heard);
             }
-            let spoken_of = self.resolve(state, refers);
-            if spoken_of.is_none() && !self.is_request(utterance) {
+            if spoken_of.is_none() && !is_request {
                 return;
             }
             // Of a quality there may be another way to say it.
@@ -38,7 +47,9 @@ impl Manager {
             if let (Some(thing), None, true) = (thing, &spoken_of, says_nothing(&heard)) {
                 return self.reply(state, Remark::Unknown(thing.clone()), at);
             }
-            self.begin(state, utterance, &heard, spoken_of);
+            let refused = is_refused.then(|| Self::refuse_last(state, at)).flatten();
+            let refused = refused.map(|it| Mark::Not(it.picked));
+            self.begin(state, utterance, spoken_of.into_iter().chain(refused));
             // What was asked before is over.
             heard.interpretations.iter_mut().for_each(|(_, asked, _)| *asked = Question::None);
         }
@@ -50,9 +61,11 @@ impl Manager {
         }
         let preference = self.concede(open, &heard.interpretations);
         let preface = match self.enqueue(state, &heard) {
-            Preface::None => preface(&heard, state.act.kind),
+            _ if is_refused => Preface::Sorry,
+            Preface::None => self.preface(&heard, state.act.kind),
             queued => queued,
         };
+        self.retract(state, &heard);
         if self.confirms(state, &heard, at) {
             return;
         }
@@ -72,24 +85,17 @@ impl Manager {
         }
     }
 
-    /// Opens an interaction: where nothing but a reference to what was delivered is said, with
-    /// everything that was said of that.
+    /// Opens an interaction with what is known of its object: what was spoken of, or refused.
     fn begin(
         &mut self,
         state: &mut State,
         utterance: &Utterance,
-        heard: &Heard<'_>,
-        spoken_of: Option<Mark>,
+        marks: impl Iterator<Item = Mark>,
     ) {
-        let is_bare = heard.interpretations.iter().all(|(.., it)| it.base.is_empty());
-        match state.handed_over.take() {
-            Some(before) if is_bare && spoken_of.is_some() => {
-                self.open_like(state, utterance, before.interaction);
-            }
-            _ => self.open(state, utterance),
-        }
-        if let (Some(open), mark @ Some(_)) = (&mut state.open, spoken_of) {
-            self.take_in(open, Heard { mark, ..Heard::default() });
+        self.open(state, utterance);
+        let Some(open) = &mut state.open else { return };
+        for mark in marks {
+            self.take_in(open, Heard { mark: Some(mark), ..Heard::default() });
         }
     }
 
@@ -160,27 +166,55 @@ impl Manager {
         let all = utterance.interpretations.iter().map(|it| &it.reading);
         let only_gesture =
             utterance.gesture.is_some() && all.clone().all(|it| *it == Reading::default());
+        // "just any book", but not "I don't care" out of the blue.
+        let takes_any = utterance
+            .interpretations
+            .iter()
+            .any(|it| it.answers.is_none() && it.reading.refers == Reference::Any);
         // An answer has no content where it is not taken for one.
         let is_empty = |it: &Reading| *it == Reading::default();
         let is_answer = all.clone().all(|it| is_mere_answer(it) || is_empty(it))
             && !(all.len() > 0 && all.clone().all(is_empty));
-        self.is_pointing(utterance) || !(is_answer || only_gesture)
+        takes_any || self.is_pointing(utterance) || !(is_answer || only_gesture)
+    }
+}
+
+impl Manager {
+    /// Returns what is said before the next question about an utterance that was not understood, or
+    /// that describes nothing.
+    fn preface(&self, heard: &Heard<'_>, standing: ActKind) -> Preface {
+        match heard.unknown {
+            Some(word) => Preface::UnknownWord(word.clone()),
+            None if says_nothing(heard) && heard.gesture.is_none() && standing == ActKind::Ask => {
+                Preface::Remark(Remark::NotUnderstood)
+            }
+            None => self.nothing_described(heard).map_or(Preface::None, Preface::Remark),
+        }
+    }
+
+    /// "There are no blue cups here.": each word is the scene's, but no object has all of them.
+    fn nothing_described(&self, heard: &Heard<'_>) -> Option<Remark> {
+        let (_, reading) = likeliest(&heard.interpretations)?;
+        let model = &self.setup.model;
+        let is_rival = |one: &WordId, other: &WordId| {
+            let shares =
+                |(k, _): &(AttributeId, _)| model.meanings(*other).iter().any(|(l, _)| l == k);
+            one != other && model.meanings(*one).iter().any(shares)
+        };
+        let base = &reading.base;
+        let is_consistent = !base.iter().any(|one| base.iter().any(|other| is_rival(one, other)));
+        let is_described = (0..model.objects()).any(|i| self.fits(reading, i.into()));
+        let words = self.setup.scene.words();
+        (base.len() > 1 && is_consistent && !is_described).then(|| Remark::Objects {
+            asked: AboutObjects::Which,
+            words: base.iter().map(|word| words[word.index()].clone()).collect(),
+            objects: Vec::new(),
+        })
     }
 }
 
 fn says_nothing(heard: &Heard) -> bool {
     heard.interpretations.iter().all(|(.., it)| *it == Reading::default())
-}
-
-/// Returns what is said before the next question about an utterance that was not understood.
-fn preface(heard: &Heard, standing: ActKind) -> Preface {
-    match heard.unknown {
-        Some(word) => Preface::UnknownWord(word.clone()),
-        None if says_nothing(heard) && heard.gesture.is_none() && standing == ActKind::Ask => {
-            Preface::Remark(Remark::NotUnderstood)
-        }
-        None => Preface::None,
-    }
 }
 
 fn is_mere_answer(reading: &Reading) -> bool {

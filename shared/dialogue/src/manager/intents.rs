@@ -1,6 +1,6 @@
 //! Dispatch of an utterance by the user's intent.
 
-use scene::Intent;
+use scene::{Intent, Reading, Reference};
 
 use super::Manager;
 use super::acts::{call_off, repeat, say};
@@ -10,7 +10,7 @@ use super::line::{Content, Remark};
 use super::put_back::{Progress, PuttingBack};
 use super::state::{State, Utterance};
 use crate::time::Time;
-use crate::{ActKind, Outcome};
+use crate::{ActKind, Interpretation, Outcome};
 
 impl Manager {
     /// Processes one utterance. Whatever its content, it counts as applied, and what was typed gets an
@@ -20,7 +20,12 @@ impl Manager {
         self.expire(state, at);
         let shares = self.attribute(state, utterance);
         let before = state.act.id;
-        let intent = match intent(utterance, &shares) {
+        if self.asks_for_another(state, utterance) {
+            let alone = alone(utterance);
+            self.inform(state, utterance, &alone, at);
+            return;
+        }
+        let intent = match intent(utterance, &shares, state.open.is_some()) {
             Intent::Inform if self.asks_to_put_back(state, utterance) => Intent::PutBack,
             intent => intent,
         };
@@ -35,7 +40,12 @@ impl Manager {
             Intent::None => self.reply(state, Remark::NotUnderstood, at),
             Intent::Cancel => self.cancel(state, at),
             Intent::Repeat if state.act.line.content != Content::Silence => repeat(state, at),
-            Intent::StartOver => self.start_over(state, at),
+            Intent::StartOver => {
+                self.start_over(state, at);
+                if let Some(request) = request_after(utterance) {
+                    self.inform(state, &request, &alone(&request), at);
+                }
+            }
             Intent::PutBack => self.put_back(state, utterance, at),
             intent => {
                 let remark = self.answer(state, utterance, intent);
@@ -68,6 +78,17 @@ impl Manager {
         }
     }
 
+    /// "again!" after a hand-over.
+    fn asks_for_another(&self, state: &State, utterance: &Utterance) -> bool {
+        let is_again = |it: &Interpretation| {
+            it.answers.is_none()
+                && it.reading.refers == Reference::Same
+                && it.reading.base.is_empty()
+        };
+        let is_over = state.open.is_none() && state.handed_over.is_some();
+        is_over && utterance.interpretations.iter().any(is_again)
+    }
+
     /// Forgets what was said of the wanted object, and waits for it.
     fn start_over(&mut self, state: &mut State, at: Time) {
         let beginning = self.beginning(state);
@@ -95,8 +116,35 @@ impl Manager {
     }
 }
 
-/// Returns the most probable intent, over all interpretations.
-fn intent(utterance: &Utterance, shares: &[f64]) -> Intent {
+/// Returns the shares of an utterance that answers nothing.
+fn alone(utterance: &Utterance) -> Vec<f64> {
+    let mut shares = vec![0.0; utterance.presentations.len()];
+    shares.push(1.0);
+    shares
+}
+
+/// Returns what is asked for beside starting over: "start over, I want the ladle".
+fn request_after(utterance: &Utterance) -> Option<Utterance> {
+    let asks = |it: &&Interpretation| {
+        it.answers.is_none()
+            && it.reading.intent == Intent::StartOver
+            && !it.reading.base.is_empty()
+    };
+    let asked = utterance.interpretations.iter().find(asks)?;
+    let reading = Reading { intent: Intent::Inform, ..asked.reading.clone() };
+    let interpretations = vec![Interpretation { reading, ..asked.clone() }];
+    Some(Utterance { interpretations, ..utterance.clone() })
+}
+
+/// Returns the most probable intent, over all interpretations. Where nothing is open, "thank you, that
+/// is perfect" is thanks and no answer.
+fn intent(utterance: &Utterance, shares: &[f64], is_open: bool) -> Intent {
+    let mut alone = utterance.interpretations.iter().filter(|it| it.answers.is_none());
+    if let Some(intent @ (Intent::Thank | Intent::Greet | Intent::Leave)) =
+        alone.next().map(|it| it.reading.intent).filter(|_| !is_open)
+    {
+        return intent;
+    }
     let mut sums: Vec<(Intent, f64)> = Vec::new();
     for interpretation in &utterance.interpretations {
         let share = interpretation.weight * share_of(interpretation, shares);

@@ -60,6 +60,8 @@ pub enum Remark {
     Inventory,
     /// A greeting.
     Greeting,
+    /// The answer to a farewell.
+    Goodbye,
     /// The answer to thanks.
     Welcome,
     /// What one can say.

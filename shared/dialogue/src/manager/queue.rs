@@ -4,8 +4,9 @@ use scene::{Question, Reading, WordId};
 
 use super::Manager;
 use super::attribution::Heard;
+use super::evidence::Mark;
 use super::line::Preface;
-use super::state::{Basis, State, Utterance};
+use super::state::{Basis, Interaction, Preference, State, Utterance};
 use crate::time::Time;
 
 /// Most objects that wait for their turn.
@@ -31,6 +32,8 @@ impl Manager {
     /// Turns to the next object of the queue once a pick has ended, where the arm is fit for it.
     pub(super) fn serve_queue(&mut self, state: &mut State, preface: Preface, at: Time) {
         let words = state.queue.remove(0);
+        let before = state.handed_over.take().map(|it| it.interaction);
+        let before = before.filter(|before| is_described(before, &words));
         let (seq, accepted) = (state.applied, at);
         self.open(state, &Utterance { seq, accepted, ..Utterance::default() });
         let base = words.iter().filter_map(|word| self.setup.scene.word_named(word)).collect();
@@ -38,7 +41,25 @@ impl Manager {
         let interpretations = vec![(1.0, Question::None, reading)];
         if let Some(open) = &mut state.open {
             self.take_in(open, Heard { interpretations, ..Heard::default() });
+            // "both mugs": another one, whichever.
+            for mark in before.iter().flat_map(|before| self.fetched(before)) {
+                self.take_in(open, Heard { mark: Some(mark), ..Heard::default() });
+            }
         }
-        self.decide(state, Basis { preface, utterance: seq, ..Basis::default() }, at);
+        let preference = if before.is_some() { Preference::Any } else { Preference::Best };
+        self.decide(state, Basis { preface, utterance: seq, preference, ..Basis::default() }, at);
     }
+
+    /// Returns the objects that are no longer meant by the words of an interaction: the one fetched in
+    /// it, and those before.
+    fn fetched(&self, before: &Interaction) -> Vec<Mark> {
+        let earlier = before.evidence.iter().filter_map(|evidence| evidence.mark.clone());
+        earlier.chain([Mark::Not(before.picked.clone())]).collect()
+    }
+}
+
+/// Returns whether these words described the object of an interaction.
+fn is_described(interaction: &Interaction, words: &[String]) -> bool {
+    let likeliest = interaction.evidence.iter().filter_map(|it| it.interpretations.first());
+    likeliest.into_iter().any(|(.., reading)| reading.base == words)
 }

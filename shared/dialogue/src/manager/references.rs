@@ -1,11 +1,13 @@
 //! What an utterance points to by what was spoken of: "the other one", "the same again", "the smaller
 //! one".
 
-use scene::{ObjectId, Reference};
+use scene::{ObjectId, Reference, Role, WordId};
 
 use super::Manager;
 use super::attribution::Heard;
 use super::evidence::Mark;
+use super::line::{Content, Remark};
+use super::replies::said;
 use super::state::{Interaction, State};
 use crate::Outcome;
 
@@ -35,16 +37,92 @@ impl Manager {
         self.setup.scene.object_named(ended.name.as_deref()?)
     }
 
-    /// Returns what a request points to that was spoken of before it.
-    pub(super) fn resolve(&self, state: &State, reference: Reference) -> Option<Mark> {
+    /// Returns the objects that a request points to by the one delivered last: of those that its words
+    /// describe, or else of those that are most like it.
+    pub(super) fn resolve(&self, state: &State, heard: &Heard<'_>) -> Option<Mark> {
         let delivered = self.delivered(state)?;
-        match reference {
-            Reference::Other | Reference::Smaller | Reference::Larger => Some(self.not(delivered)),
-            Reference::Same => {
-                Some(Mark::OneOf(vec![self.setup.scene.object(delivered).name.clone()]))
-            }
-            Reference::None | Reference::Any | Reference::Smallest | Reference::Largest => None,
+        let (.., reading) = heard.interpretations.first()?;
+        let is_bare = reading.base.is_empty();
+        let fits = |i: &ObjectId| self.fits(reading, *i);
+        let objects = (0..self.setup.scene.objects().len()).map(ObjectId::from);
+        let others: Vec<ObjectId> = objects.filter(|i| *i != delivered && fits(i)).collect();
+        let meant = match reading.refers {
+            Reference::Same if fits(&delivered) => vec![delivered],
+            Reference::Same | Reference::Other => others,
+            Reference::Smaller => self.of_other_size(delivered, others, |size, own| size < own),
+            Reference::Larger => self.of_other_size(delivered, others, |size, own| size > own),
+            Reference::Smallest | Reference::Largest if is_bare => self.of_kind(delivered),
+            _ => return None,
+        };
+        let is_alike = is_bare || reading.refers == Reference::Same;
+        let meant = if is_alike { self.most_alike(state, delivered, meant) } else { meant };
+        match meant[..] {
+            [] => Some(self.not(delivered)),
+            _ => Some(self.one_of(&meant)),
         }
+    }
+
+    /// Returns the objects that the robot has just listed, where a request without a kind of thing
+    /// fits one of them: "where is the red mug?" … "bring it".
+    pub(super) fn listed(&self, state: &State, heard: &Heard<'_>) -> Option<Mark> {
+        let Content::Remark(Remark::Objects { objects, .. }) = &state.act.line.content else {
+            return None;
+        };
+        let (.., reading) = heard.interpretations.first().filter(|_| heard.unknown.is_none())?;
+        let scene = &self.setup.scene;
+        let names_kind = reading
+            .base
+            .iter()
+            .flat_map(|word| self.setup.model.meanings(*word))
+            .any(|(k, v)| scene.attributes()[k.index()].values[v.index()].role() == Role::Kind);
+        let listed = objects.iter().filter_map(|name| scene.object_named(name));
+        let meant: Vec<ObjectId> = listed.filter(|i| self.fits(reading, *i)).collect();
+        (!names_kind && !meant.is_empty()).then(|| self.one_of(&meant))
+    }
+
+    fn one_of(&self, objects: &[ObjectId]) -> Mark {
+        let name = |i: &ObjectId| self.setup.scene.object(*i).name.clone();
+        Mark::OneOf(objects.iter().map(name).collect())
+    }
+
+    /// Returns the objects whose size compares so with that of `object`; all where sizes are not known.
+    fn of_other_size(
+        &self,
+        object: ObjectId,
+        others: Vec<ObjectId>,
+        compares: impl Fn(f64, f64) -> bool,
+    ) -> Vec<ObjectId> {
+        let all = [vec![object], others.clone()].concat();
+        let Some(sizes) = self.sizes(&all) else { return others };
+        let Some(own) = sizes[0] else { return others };
+        let sized = others.into_iter().zip(&sizes[1..]);
+        let fits = |size: &Option<f64>| size.is_some_and(|size| compares(size, own));
+        sized.filter(|(_, size)| fits(size)).map(|(i, _)| i).collect()
+    }
+
+    /// Returns the objects of the same kind, itself included.
+    fn of_kind(&self, object: ObjectId) -> Vec<ObjectId> {
+        let scene = &self.setup.scene;
+        let objects = (0..scene.objects().len()).map(ObjectId::from);
+        objects.filter(|i| scene.noun_of(*i) == scene.noun_of(object)).collect()
+    }
+
+    /// Returns those of the objects that are most like `object`: in kind, in what was said of it, and
+    /// in their values.
+    fn most_alike(&self, state: &State, object: ObjectId, others: Vec<ObjectId>) -> Vec<ObjectId> {
+        let scene = &self.setup.scene;
+        let said = state.handed_over.as_ref().map(|it| said(&it.interaction)).unwrap_or_default();
+        let said: Vec<WordId> = said.iter().filter_map(|word| scene.word_named(word)).collect();
+        let likeness = |i: &ObjectId| {
+            let values = scene.object(*i).values.iter().zip(&scene.object(object).values);
+            (
+                scene.noun_of(*i) == scene.noun_of(object),
+                said.iter().filter(|word| scene.has_word(*i, **word)).count(),
+                values.filter(|(one, other)| one.is_some() && one == other).count(),
+            )
+        };
+        let most = others.iter().map(likeness).max();
+        others.into_iter().filter(|i| Some(likeness(i)) == most).collect()
     }
 
     /// Returns the objects that a comparison points to, of those that are left.
@@ -56,19 +134,17 @@ impl Manager {
         };
         let left = self.left(&open.belief());
         let sizes = self.sizes(&left)?;
-        let extreme =
-            |best: f64, size: &f64| if wants_large { best.max(*size) } else { best.min(*size) };
-        let first = *sizes.first()?;
-        let best = sizes.iter().fold(first, extreme);
-        let meant =
-            left.iter().zip(&sizes).filter(|(_, size)| (**size - best).abs() <= SAME * best);
-        let names = meant.map(|(i, _)| self.setup.scene.object(*i).name.clone()).collect();
-        Some(Mark::OneOf(names))
+        let known = sizes.iter().flatten().copied();
+        let best = if wants_large { known.reduce(f64::max) } else { known.reduce(f64::min) }?;
+        let is_best = |size: &f64| (size - best).abs() <= SAME * best;
+        let meant = left.iter().zip(&sizes).filter(|(_, size)| size.as_ref().is_some_and(is_best));
+        let meant: Vec<ObjectId> = meant.map(|(i, _)| *i).collect();
+        Some(self.one_of(&meant))
     }
 
-    /// Returns the size of each object: in cubic metres where they differ, else the rank of its value
-    /// in an attribute of sizes; none where neither tells them apart.
-    fn sizes(&self, objects: &[ObjectId]) -> Option<Vec<f64>> {
+    /// Returns the size of each object as far as it is known: in cubic metres where they differ, else
+    /// the rank of its value in an attribute of sizes; none where neither tells them apart.
+    fn sizes(&self, objects: &[ObjectId]) -> Option<Vec<Option<f64>>> {
         let scene = &self.setup.scene;
         let volume = |i: &ObjectId| {
             scene.object(*i).placement.map(|placement| placement.size.iter().product::<f64>())
@@ -79,13 +155,13 @@ impl Manager {
             let is_named = |names: &&[&str]| names.contains(&value.name.as_str());
             SIZES.iter().position(is_named).map(|rank| rank as f64 + 1.0)
         };
-        let differ = |sizes: &Vec<f64>| {
-            let most = sizes.iter().copied().fold(0.0, f64::max);
-            sizes.iter().any(|size| (most - size) > SAME * most)
+        let differ = |sizes: &Vec<Option<f64>>| {
+            let most = sizes.iter().flatten().copied().fold(0.0, f64::max);
+            sizes.iter().flatten().any(|size| (most - size) > SAME * most)
         };
-        let ranked = |k: usize| objects.iter().map(|i| rank_in(k, i)).collect::<Option<Vec<f64>>>();
-        let volumes: Option<Vec<f64>> = objects.iter().map(volume).collect();
-        let mut ranks = (0..scene.attributes().len()).filter_map(ranked);
-        volumes.filter(differ).or_else(|| ranks.find(differ))
+        let ranked = |k: usize| objects.iter().map(|i| rank_in(k, i)).collect::<Vec<_>>();
+        let volumes: Vec<Option<f64>> = objects.iter().map(volume).collect();
+        let mut ranks = (0..scene.attributes().len()).map(ranked);
+        Some(volumes).filter(differ).or_else(|| ranks.find(differ))
     }
 }

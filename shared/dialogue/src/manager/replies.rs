@@ -13,8 +13,16 @@ const RIVALS_MAX: usize = 3;
 impl Manager {
     /// Returns the answer to an utterance that is not about the wanted object.
     pub(super) fn answer(&mut self, state: &State, said: &Utterance, intent: Intent) -> Remark {
+        let is_about_objects = matches!(
+            intent,
+            Intent::AskBack | Intent::AskCount | Intent::AskWhich | Intent::AskWhere
+        );
+        if let Some(word) = said.unknown.as_ref().filter(|_| is_about_objects) {
+            return Remark::Unknown(word.clone());
+        }
         match intent {
             Intent::Greet => Remark::Greeting,
+            Intent::Leave => Remark::Goodbye,
             Intent::Thank => Remark::Welcome,
             Intent::Stop => Remark::Stopped,
             Intent::AskStatus if state.stopped => Remark::Stopped,
@@ -56,14 +64,16 @@ impl Manager {
         Remark::Objects { asked, words: reading.base.iter().map(name).collect(), objects }
     }
 
-    fn fits(&self, reading: &Reading, object: ObjectId) -> bool {
+    /// Returns whether the words of a reading describe the object.
+    pub(super) fn fits(&self, reading: &Reading, object: ObjectId) -> bool {
         let has = |word: &WordId| self.setup.model.has_word(object, *word);
         let is_excluded = |group: &Vec<WordId>| !group.is_empty() && group.iter().all(has);
         reading.base.iter().all(has) && !reading.excluded.iter().any(is_excluded)
     }
 
     fn reason(&mut self, state: &State) -> Reason {
-        let Some(open) = &state.open else { return Reason::None };
+        let delivered = || state.handed_over.as_ref().map(|it| &it.interaction);
+        let Some(open) = state.open.as_ref().or_else(delivered) else { return Reason::None };
         if open.pick.is_none() {
             let belief = open.belief();
             let mut left = self.left(&belief);
@@ -79,7 +89,7 @@ impl Manager {
 }
 
 /// Returns the scene's words that were said, each once.
-fn said(open: &Interaction) -> Vec<String> {
+pub(super) fn said(open: &Interaction) -> Vec<String> {
     let likeliest = open.evidence.iter().filter_map(|it| it.interpretations.first());
     let mut words: Vec<String> = Vec::new();
     for word in likeliest.flat_map(|(.., reading)| &reading.base) {

@@ -15,8 +15,11 @@ pub(super) fn text(scene: &Scene, remark: &Remark, kind: ActKind) -> String {
         Remark::Stopped => "I have stopped. Release the motion stop to go on.".to_owned(),
         Remark::Inventory => inventory(scene),
         Remark::Greeting => "Hello!".to_owned(),
+        Remark::Goodbye => "Goodbye!".to_owned(),
         Remark::Welcome => "You are welcome.".to_owned(),
-        Remark::Help => format!("{} You can also say \"stop\".", example(scene)),
+        Remark::Help => {
+            format!("I can get things for you. {} You can also say \"stop\".", example(scene))
+        }
         Remark::NotUnderstood => {
             let sorry = "Sorry, I did not understand that.";
             match kind {
