@@ -28,7 +28,7 @@ fn what_was_handed_over_is_put_back() {
 
     // It stands there again, and the arm may be killed at any time.
     assert_eq!(group.fetch("the clear bowl", "clear")["object"], "clear");
-    group.say("bring it back");
+    group.say("take it back");
     let before = group.incarnation("arm");
     group.signal("arm", Signal::KILL);
     group.wait_for_restart("arm", before);
