@@ -93,12 +93,16 @@ impl JournalSet {
             let help = "help: start over with `whichone up --fresh`, which keeps the old journals";
             failed(ErrorKind::InvalidData, &format!("{what}; {help}"))
         };
-        let is_there = |service: &Service| paths.journal_file(service.name()).exists();
+        // Journals of an earlier format have no set; they are refused by their own headers.
+        let has_set = |service: &Service| {
+            let found = journal::inspect(&paths.journal_file(service.name()));
+            !matches!(found, Err(JournalOpenError::Missing | JournalOpenError::Foreign(_)))
+        };
         let text = match fs::read_to_string(&path) {
             Err(error) if error.kind() != ErrorKind::NotFound => {
                 return Err(failed(error.kind(), &error.to_string()));
             }
-            Err(_) if Service::JOURNALED.iter().any(is_there) => {
+            Err(_) if Service::JOURNALED.iter().any(has_set) => {
                 return Err(invalid("the file is missing beside journals that it describes"));
             }
             Err(_) => return Ok(None),
