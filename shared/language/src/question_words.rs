@@ -47,8 +47,8 @@ impl SceneQuestions {
 
     /// The number of objects that have all of the words.
     pub(crate) fn described(&self, words: &[WordId]) -> usize {
-        let has_all = |object: &&Box<[WordId]>| words.iter().all(|word| object.contains(word));
-        self.objects.iter().filter(has_all).count()
+        let has_all = |object: &[WordId]| words.iter().all(|word| object.contains(word));
+        self.objects.iter().filter(|object| has_all(object)).count()
     }
 
     /// The question in words; one that the scene does not have asks nothing.
