@@ -156,9 +156,9 @@ fn objects_are_described_as_a_person_would() {
     assert_eq!(among("white_cup", &["green_cup", "red_mug"]), "white cup");
     assert_eq!(among("red_mug", &[]), "mug");
     let three = ["red_mug", "blue_mug", "white_cup"].map(named);
-    assert_eq!(mugs.list(&three, "or"), "the red mug, the blue mug or the cup");
+    assert_eq!(mugs.list(&three, "or"), "the red mug, the blue mug or the white cup");
     assert_eq!(mugs.list(&three[..2], "and"), "the red mug and the blue mug");
-    assert_eq!(mugs.list(&three[..1], "or"), "the mug");
+    assert_eq!(mugs.list(&three[..1], "or"), "the red mug");
     assert_eq!(mugs.plural_nouns(&three), "mugs and cups");
     assert_eq!(mugs.noun_of(named("white_cup")), "cup");
 }
