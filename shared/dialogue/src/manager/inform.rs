@@ -171,15 +171,14 @@ impl Manager {
             .interpretations
             .iter()
             .any(|it| it.answers.is_none() && it.reading.refers == Reference::Any);
-        // An answer has no content where it is not taken for one.
+        // An answer has no content where it is not taken for one; what has none anywhere is no answer.
         let is_empty = |it: &Reading| *it == Reading::default();
-        let is_answer = all.clone().all(|it| is_mere_answer(it) || is_empty(it))
-            && !(all.len() > 0 && all.clone().all(is_empty));
+        let is_answer = all.clone().all(|it| is_mere_answer(it) || is_empty(it));
+        let is_silent = all.len() > 0 && all.clone().all(is_empty);
+        let is_answer = is_answer && !is_silent;
         takes_any || self.is_pointing(utterance) || !(is_answer || only_gesture)
     }
-}
 
-impl Manager {
     /// Returns what is said before the next question about an utterance that was not understood, or
     /// that describes nothing.
     fn preface(&self, heard: &Heard<'_>, standing: ActKind) -> Preface {
