@@ -172,6 +172,12 @@ describe("reasons", () => {
     assert.equal(ranked(dialogue, null, 3)[2].length, 1, "of those that are shown");
   });
 
+  it("have next to no bar where what is lost is shown as nothing", () => {
+    const equal = { action: { type: "pick", object: "white" }, value: 40.99 };
+    const rows = ranked({ ...dialogue, alternatives: [equal] }, null, 4);
+    assert.ok(rows[1].length < 0.02, `${rows[1].length}`);
+  });
+
   it("of a pick name what is picked", () => {
     const picks = { ...dialogue, decision: "pick", alternatives: [] };
     assert.deepEqual(ranked(picks, null, 4)[0].action, { type: "pick", object: "clear" });

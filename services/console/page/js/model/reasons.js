@@ -47,13 +47,16 @@ function mostLikely(belief) {
   return others.reduce((best, one) => (one[1] > best[1] ? one : best), first)[0];
 }
 
+/** Least loss that a whole bar stands for, seconds: one that is shown as none has no bar. */
+const BAR_MIN_S = 1;
+
 /**
  * The decision and the best others, best first, each with what it loses against the best.
  * @param {any} dialogue
  * @param {string|null|undefined} aim
  * @param {number} most
  * @returns {{action: Action, value: number, loss: number, length: number, chosen: boolean}[]} `loss` in
- *   seconds of the person's time; `length`: of its bar, a share of the longest
+ *   seconds of the person's time; `length`: of its bar, a share of the longest or of one second
  */
 export function ranked(dialogue, aim, most) {
   const chosen = { action: decidedAction(dialogue, aim), value: dialogue.value, chosen: true };
@@ -62,10 +65,10 @@ export function ranked(dialogue, aim, most) {
   all.sort((a, b) => b.value - a.value || Number(b.chosen) - Number(a.chosen));
   const shown = all.slice(0, most);
   const top = shown[0]?.value ?? 0;
-  const widest = top - (shown.at(-1)?.value ?? 0);
+  const widest = Math.max(top - (shown.at(-1)?.value ?? 0), BAR_MIN_S);
   return shown.map((one) => {
     const loss = top - one.value;
-    return { ...one, loss, length: widest > 0 ? loss / widest : 0 };
+    return { ...one, loss, length: loss / widest };
   });
 }
 

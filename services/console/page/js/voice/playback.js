@@ -30,8 +30,10 @@ class Playback {
   #playing = { key: "", source: null };
   #hushed = "";
   #muted;
-  /** Page time at which the person had last ended, and whether a reply to it was measured. */
+  /** Page time at which the person ended whose reply is not measured yet. */
   #endedAt = NaN;
+  /** Page time of the first sound of the robot's latest line. */
+  #soundedAt = NaN;
 
   constructor(link, store, storage, notify) {
     this.#link = link;
@@ -82,9 +84,13 @@ class Playback {
     );
   }
 
-  /** A person has ended at this page time: what sounds next is the answer to it. */
+  /**
+   * A person has ended at this page time: what sounds after it is the answer to it, which may have
+   * arrived before the receipt of what was said.
+   */
   heard(endedAt) {
     this.#endedAt = endedAt;
+    this.#measure();
   }
 
   #wanted() {
@@ -139,7 +145,9 @@ class Playback {
       };
       this.#playing.source = source;
       source.start(0, offset);
-      this.#measure(context);
+      const latencyS = context.baseLatency + (context.outputLatency || 0);
+      this.#soundedAt = performance.now() + latencyS * 1_000;
+      this.#measure();
     } catch (error) {
       console.warn(`${speaking.url}: ${error}`);
     } finally {
@@ -160,11 +168,10 @@ class Playback {
   }
 
   /** From the end of what the person said to the first sound that leaves the loudspeaker. */
-  #measure(context) {
-    const start = this.#endedAt;
-    this.#endedAt = NaN;
-    const end = performance.now() + (context.baseLatency + (context.outputLatency || 0)) * 1_000;
+  #measure() {
+    const [start, end] = [this.#endedAt, this.#soundedAt];
     if (!(end > start)) return;
+    this.#endedAt = NaN;
     const { duration } = performance.measure(REPLY, { start: Math.max(0, start), end });
     document.documentElement.dataset.voiceReplyMs = duration.toFixed(0);
   }
