@@ -14,6 +14,8 @@ use loudness::Loudness;
 
 /// Samples per decision of the detector: 16 ms.
 const FRAME: usize = 256;
+/// Frames after a segment that was released in which the detector may still find its speech.
+const TAIL: usize = 12;
 
 /// Settings of segmentation.
 #[derive(Clone, Debug, PartialEq)]
@@ -177,6 +179,9 @@ struct Track {
     streak: usize,
     /// End of the last segment; the next one begins no earlier.
     free_from: usize,
+    /// Frames of speech that still belong to the last segment, which was released: the detector
+    /// notices the end of a voice later than its level shows it.
+    tail: usize,
     open: Option<Open>,
 }
 
@@ -230,7 +235,8 @@ impl Open {
 impl Track {
     fn frame(&mut self, speech: bool, options: &SegmenterOptions, events: &mut Vec<VadEvent>) {
         self.at += FRAME;
-        self.streak = if speech { self.streak + 1 } else { 0 };
+        self.tail = if speech { self.tail.saturating_sub(1) } else { 0 };
+        self.streak = if speech && self.tail == 0 { self.streak + 1 } else { 0 };
         match &mut self.open {
             None if self.streak >= options.opening_frames.max(1) => {
                 let onset = self.at - self.streak * FRAME;
@@ -252,6 +258,7 @@ impl Track {
                 if paused || full {
                     self.free_from = range.end;
                     self.streak = 0;
+                    self.tail = if open.is_released { TAIL } else { 0 };
                     self.open = None;
                     events.push(VadEvent::End { range, speech });
                 } else if [options.early_roll_s, options.post_roll_s].map(roll).contains(&pause) {

@@ -15,7 +15,7 @@ use super::{
     Recognition,
 };
 use crate::Hypothesis;
-use crate::devices::audio::{denoised, with_noise_floor};
+use crate::devices::audio::{RATE_HZ, denoised, with_noise_floor};
 
 /// Files and settings of the recogniser.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,6 +125,9 @@ impl PocketSphinx {
     }
 }
 
+/// Audio before the voice that is decoded: 0.2 s. The rest of the lead serves to estimate the noise; to
+/// decode it too costs an eighth of the time, and no accuracy is gained.
+const LEAD: usize = RATE_HZ as usize / 5;
 /// Paths through the lattice that are examined: the same words recur with other times.
 const PATHS_MAX: usize = 100;
 
@@ -132,7 +135,8 @@ impl Recogniser for PocketSphinx {
     fn recognise(&mut self, pcm: &[i16], speech: Range<usize>) -> Recognition {
         let clear = denoised(pcm, &speech);
         let pcm = with_noise_floor(&clear);
-        let decoded = self.decoder.decode(&pcm, PATHS_MAX).ok_or_else(failed)?;
+        let near = &pcm[speech.start.saturating_sub(LEAD)..];
+        let decoded = self.decoder.decode(near, PATHS_MAX).ok_or_else(failed)?;
         Ok(weighed(&decoded))
     }
 

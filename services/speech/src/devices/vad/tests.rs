@@ -170,6 +170,24 @@ fn vad_segment_that_is_released_ends_with_its_voice() {
 }
 
 #[test]
+fn vad_segment_that_was_released_is_not_followed_by_its_own_tail() {
+    let options = SegmenterOptions { early_roll_s: 0.016, ..SegmenterOptions::default() };
+    // The level has fallen for one frame; then the detector alone goes on for six.
+    for (frames, onsets) in [("####!.######....", 1), ("####!.######.###....", 2)] {
+        let mut segmenter = Segmenter::new(options.clone());
+        let mut events = Vec::new();
+        for frame in frames.chars() {
+            match frame {
+                '!' => segmenter.release(),
+                frame => segmenter.track.frame(frame == '#', &options, &mut events),
+            }
+        }
+        let found = events.iter().filter(|event| matches!(event, VadEvent::Onset { .. }));
+        assert_eq!(found.count(), onsets, "{frames}: {events:?}");
+    }
+}
+
+#[test]
 fn vad_ignores_silence_and_noise() {
     let mut segmenter = Segmenter::new(SegmenterOptions::default());
     assert_eq!(segmenter.push(&vec![0; samples(2.0)]), []);
