@@ -208,6 +208,7 @@ wire_codes! {
         Thank = 14,
         PutBack = 15,
         Leave = 16,
+        AskWhether = 17,
     }
 }
 wire_codes! {

@@ -99,6 +99,7 @@ fn published_intent(intent: Intent) -> Intent {
     match intent {
         Intent::AskCount
         | Intent::AskWhich
+        | Intent::AskWhether
         | Intent::AskWhere
         | Intent::AskWhy
         | Intent::AskStatus

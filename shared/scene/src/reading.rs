@@ -63,6 +63,8 @@ pub enum Intent {
     PutBack,
     /// Take leave.
     Leave,
+    /// Ask whether there is an object that the words describe ("is there a red mug?").
+    AskWhether,
 }
 
 /// An object that an utterance points to by what was spoken of.

@@ -101,6 +101,7 @@ fn words(scene: &Scene, reading: &Reading) -> String {
         Intent::AskBack
         | Intent::AskCount
         | Intent::AskWhich
+        | Intent::AskWhether
         | Intent::AskWhere
         | Intent::AskWhy
         | Intent::AskStatus

@@ -13,7 +13,7 @@ fn about(intent: Intent, said: &[&str]) -> Reading {
     Reading { intent, ..words(said) }
 }
 
-const TALK: [Intent; 14] = [
+const TALK: [Intent; 15] = [
     Intent::None,
     Intent::Stop,
     Intent::Cancel,
@@ -22,6 +22,7 @@ const TALK: [Intent; 14] = [
     Intent::AskBack,
     Intent::AskCount,
     Intent::AskWhich,
+    Intent::AskWhether,
     Intent::AskWhere,
     Intent::AskWhy,
     Intent::AskStatus,
@@ -105,6 +106,10 @@ fn questions_about_the_scene_are_answered_from_it() {
     assert_eq!(none, "There are no white metallic bowls here.");
     let which = ask(about(Intent::AskWhich, &["dishwasher"]));
     assert!(which.starts_with("I see the ") && which.contains("dishwasher"), "{which}");
+    let whether = ask(about(Intent::AskWhether, &["dishwasher"]));
+    assert!(whether.starts_with("Yes, I see the "), "{whether}");
+    let not = ask(about(Intent::AskWhether, &["white", "metallic"]));
+    assert_eq!(not, "No, there are no white metallic bowls here.");
     assert_eq!(ask(about(Intent::AskWhere, &["clear"])), "It is on the counter.");
     assert!(ask(intent(Intent::AskHelp)).contains("for example: the "));
     assert_eq!(ask(intent(Intent::Greet)), "Hello! What would you like?");

@@ -106,6 +106,8 @@ pub enum AboutObjects {
     Which,
     /// Where they are.
     Where,
+    /// Whether there are any.
+    Whether,
 }
 
 /// Reason of what the robot does.

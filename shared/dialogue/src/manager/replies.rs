@@ -15,7 +15,11 @@ impl Manager {
     pub(super) fn answer(&mut self, state: &State, said: &Utterance, intent: Intent) -> Remark {
         let is_about_objects = matches!(
             intent,
-            Intent::AskBack | Intent::AskCount | Intent::AskWhich | Intent::AskWhere
+            Intent::AskBack
+                | Intent::AskCount
+                | Intent::AskWhich
+                | Intent::AskWhether
+                | Intent::AskWhere
         );
         if let Some(word) = said.unknown.as_ref().filter(|_| is_about_objects) {
             return Remark::Unknown(word.clone());
@@ -30,6 +34,7 @@ impl Manager {
             Intent::AskBack => Remark::Inventory,
             Intent::AskCount => self.objects(said, intent, AboutObjects::Count),
             Intent::AskWhich => self.objects(said, intent, AboutObjects::Which),
+            Intent::AskWhether => self.objects(said, intent, AboutObjects::Whether),
             Intent::AskWhere => self.objects(said, intent, AboutObjects::Where),
             Intent::AskWhy => Remark::Why(self.reason(state)),
             _ => self.status(state),

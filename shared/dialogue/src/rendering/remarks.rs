@@ -78,8 +78,10 @@ fn about_objects(scene: &Scene, asked: AboutObjects, words: &[String], names: &[
     };
     let count = number(objects.len());
     match (asked, &objects[..]) {
+        (AboutObjects::Whether, []) => format!("No, there are no {group} here."),
         (_, []) => format!("There are no {group} here."),
         (AboutObjects::Where, _) => places(scene, &objects),
+        (AboutObjects::Whether, _) => format!("Yes, I see {}.", listed().unwrap_or(group)),
         (AboutObjects::Which, _) => format!("I see {}.", listed().unwrap_or(group)),
         (AboutObjects::Count, [one]) => format!("There is one: the {}.", scene.describe(*one)),
         (AboutObjects::Count, _) => match listed() {
