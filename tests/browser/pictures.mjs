@@ -17,6 +17,8 @@ const FOLDER = process.argv[2] ?? join(ROOT, "docs/pictures");
 const DESKTOP = { width: 1440, height: 900 };
 const PHONE = { width: 390, height: 844 };
 const POLICIES = ["lookahead", "information-seeking"];
+/** Frames without an animation after which a page has come to rest. */
+const FRAMES_OF_REST = 20;
 /** Those of a participant, with each policy. */
 const INTERACTIONS = 2;
 const STUDY = [
@@ -38,13 +40,16 @@ async function open(path, viewport, colorScheme) {
   return page;
 }
 
-/** Takes a picture once the fonts are there and nothing glides any more. */
+/** Takes a picture once the fonts are there and nothing has glided for some frames. */
 async function take(page, name) {
-  await page.evaluate(async () => {
+  await page.evaluate(async (framesOfRest) => {
     await document.fonts.ready;
-    // One that is broken off has come to its end, too.
-    await Promise.allSettled(document.getAnimations().map((animation) => animation.finished));
-  });
+    for (let rest = 0; rest < framesOfRest; rest += 1) {
+      await new Promise(requestAnimationFrame);
+      const runs = document.getAnimations().some(({ playState }) => playState === "running");
+      if (runs) rest = 0;
+    }
+  }, FRAMES_OF_REST);
   await page.screenshot({ path: join(FOLDER, `${name}.png`) });
 }
 
