@@ -70,7 +70,7 @@ fn measure(options: &Options, report: &mut Report) {
         stops::measure(report, options.quick);
     }
     if all || options.speech {
-        speech::measure(report, options.quick);
+        speech::measure(report, options.quick, options.kept_apart);
     }
     if all || options.endings {
         speech::measure_endings(report, options.quick);

@@ -24,6 +24,9 @@ pub(crate) struct Options {
     /// Only spoken input: what is understood of spoken sentences, how late
     #[arg(long)]
     pub(crate) speech: bool,
+    /// With --speech: the sentences and voices that are kept apart, instead of the others
+    #[arg(long, requires = "speech")]
+    pub(crate) kept_apart: bool,
     /// Only ends of utterances: how soon after the voice, how often in the middle of a sentence
     #[arg(long)]
     pub(crate) endings: bool,

@@ -1,12 +1,11 @@
-//! The corpora: sentences, voices, noise.
+//! The corpora: sentences, the questions that they answer, voices.
 
+use super::conditions::{Condition, LEAD_S, Noise};
+use super::noise::samples;
+use super::score::has_content;
 use super::voices::Voices;
-use ::speech::devices::audio::RATE_HZ;
-use dialogue::Rng;
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
-use scene::{Question, Scene};
-use std::f64::consts::TAU;
+use language::{Language, Reader};
+use scene::{ObjectId, Question, Scene};
 use std::ops::Range;
 use whichone_tests::spoken::{SPEAKERS, Speaker};
 
@@ -40,25 +39,35 @@ pub(super) struct Clip {
 const FRESH_SPEAKERS: &[Speaker] = &[
     Speaker::espeak("en-us+f4", 160),
     Speaker::espeak("en-gb-scotland", 150),
-    Speaker::flite("awb"),
     Speaker::flite("kal16"),
 ];
 
-/// Quiet before and behind the voice, seconds.
-const LEAD_S: f64 = 0.5;
-const TAIL_S: f64 = 0.8;
+/// Voices that speak nothing but the sentences that are kept apart.
+const KEPT_APART_SPEAKERS: &[Speaker] = &[
+    Speaker::espeak("en-us-nyc+m3", 155),
+    Speaker::espeak("en-us+f5", 160),
+    Speaker::flite("awb"),
+];
+
+/// Other speakers at once in babble.
+const BABBLERS: usize = 6;
 
 impl Corpus {
-    /// The corpus on which the service was tuned, by half.
+    /// Sentences and voices that the service is tuned on.
     pub(super) fn main() -> Self {
         let everything = fixture("everything.toml");
         let scene = Scene::from_toml("everything.toml", &everything).expect("a scene that holds");
-        Self::of("main", vec![scene], &fixture("main.txt"), &SPEAKERS)
+        Self::of("main", vec![scene], "main.txt", &SPEAKERS)
     }
 
-    /// Sentences and voices on which nothing was tuned.
+    /// Other sentences and voices, which are scored at every change.
     pub(super) fn fresh() -> Self {
-        Self::of("fresh", configured(), &fixture("fresh.txt"), FRESH_SPEAKERS)
+        Self::of("fresh", configured(), "fresh.txt", FRESH_SPEAKERS)
+    }
+
+    /// Sentences and voices that are scored at the end of a change only.
+    pub(super) fn kept_apart() -> Self {
+        Self::of("kept apart", configured(), "kept-apart.txt", KEPT_APART_SPEAKERS)
     }
 
     /// The public utterances, as far as they can be spoken.
@@ -69,41 +78,62 @@ impl Corpus {
         Self { name: "utterances", scenes, sentences, voices: FRESH_SPEAKERS }
     }
 
-    fn of(name: &'static str, scenes: Vec<Scene>, text: &str, voices: &'static [Speaker]) -> Self {
-        let lines = text.lines().filter(|line| !line.starts_with('#'));
-        let lines = lines.filter_map(|line| line.split_once(" | "));
-        let sentence = |(n, (to, text)): (usize, (&str, &str))| {
+    fn of(name: &'static str, scenes: Vec<Scene>, file: &str, voices: &'static [Speaker]) -> Self {
+        let text = fixture(file);
+        let lines = text.lines().filter(|line| !line.starts_with('#') && !line.is_empty());
+        let sentence = |(n, line): (usize, &str)| {
+            let mut columns = line.split(" | ");
+            let (to, asked, text) = (columns.next()?, columns.next()?, columns.next()?);
             let scene = scenes.iter().position(|scene| scene.name() == to);
-            // Talk about other things is heard by each of the robots in turn.
-            let turn = n % scenes.len();
-            let question = Question::None;
             let for_the_robot = scene.is_some();
-            Sentence {
-                scene: scene.unwrap_or(turn),
-                for_the_robot,
-                text: text.to_owned(),
-                question,
-            }
+            // Talk about other things is heard by each of the robots in turn.
+            let scene = scene.unwrap_or(n % scenes.len());
+            let question = question(&scenes[scene], asked)?;
+            Some(Sentence { scene, for_the_robot, text: text.to_owned(), question })
         };
-        let sentences = lines.enumerate().map(sentence).collect();
+        let sentence = |at: (usize, &str)| sentence(at).unwrap_or_else(|| panic!("{file}: {at:?}"));
+        let sentences: Vec<Sentence> = lines.enumerate().map(sentence).collect();
+        let readers: Vec<Reader> =
+            scenes.iter().map(|scene| Reader::new(scene, Language::Careful)).collect();
+        for said in sentences.iter().filter(|said| said.for_the_robot) {
+            // Whatever is not heard would count as right.
+            assert!(
+                has_content(&readers[said.scene], said),
+                "{file}: `{}` means nothing; help: give it the question that it answers",
+                said.text
+            );
+        }
         Self { name, scenes, sentences, voices }
     }
 
-    /// Sentence `n` in a voice with noise `snr_db` below it: the same samples in every run.
-    pub(super) fn clip(&self, voices: &Voices, n: usize, voice: usize, snr_db: f64) -> Clip {
-        let text = &self.sentences[n].text;
-        let spoken = voices.speak(&self.voices[voice], text);
-        let (lead, tail) = (samples(LEAD_S), samples(TAIL_S));
-        let level = rms(&spoken) / 10_f64.powf(snr_db / 20.0);
-        let seed = (n * self.voices.len() + voice) as u64 * 1_000 + snr_db as u64;
-        let noise = pink(lead + spoken.len() + tail, seed);
-        let mixed = noise.iter().enumerate().map(|(at, noise)| {
-            let voice = at.checked_sub(lead).and_then(|at| spoken.get(at)).copied().unwrap_or(0);
-            // The cast saturates: what exceeds full scale is clipped.
-            (f64::from(voice) + level * noise) as i16
-        });
-        Clip { samples: mixed.collect(), speech: lead..lead + spoken.len() }
+    /// Sentence `n` in a voice as it reaches the microphone: the same samples in every run.
+    pub(super) fn clip(&self, voices: &Voices, n: usize, voice: usize, at: &Condition) -> Clip {
+        let speak = |n: usize, voice: usize| {
+            let (n, voice) = (n % self.sentences.len(), voice % self.voices.len());
+            voices.speak(&self.voices[voice], at, &self.sentences[n].text)
+        };
+        let spoken = speak(n, voice);
+        let babblers = if at.noise == Noise::Babble { BABBLERS } else { 0 };
+        let others: Vec<Vec<i16>> = (1..=babblers).map(|k| speak(n + 7 * k, voice + k)).collect();
+        let seed = (n * self.voices.len() + voice) as u64 * 1_000 + at.snr_db as u64;
+        let lead = samples(LEAD_S);
+        let samples = at.heard(&spoken, &others, seed);
+        Clip { samples, speech: lead..lead + spoken.len() }
     }
+}
+
+/// Returns the question of a fixture: `-` (none), `this` (this one?), `color=white` (is it white?) or
+/// `color` (which colour is it?).
+pub(super) fn question(scene: &Scene, name: &str) -> Option<Question> {
+    Some(match (name, name.split_once('=')) {
+        ("-", _) => Question::None,
+        ("this", _) => Question::Point(ObjectId(0)),
+        (name, None) => Question::Which(scene.attribute_named(name)?),
+        (_, Some((attribute, value))) => {
+            let k = scene.attribute_named(attribute)?;
+            Question::Attribute(k, scene.value_named(k, value)?)
+        }
+    })
 }
 
 /// A line of the public utterances; `None` where it exists only in writing, as an empty text or a
@@ -131,31 +161,4 @@ fn configured() -> Vec<Scene> {
 fn fixture(name: &str) -> String {
     let path = format!("{}/fixtures/speech/{name}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
-
-/// So many samples of noise of power 1 that falls by 3 dB an octave, as that of most rooms does; the
-/// same for the same seed. Every frequency gets a random amplitude and phase (Box and Muller),
-/// divided by the root of the frequency.
-fn pink(len: usize, seed: u64) -> Vec<f64> {
-    let transform = RealFftPlanner::new().plan_fft_inverse(len.next_power_of_two());
-    let (mut spectrum, mut noise) = (transform.make_input_vec(), transform.make_output_vec());
-    let mut rng = Rng::new(seed);
-    let [_, bins @ .., _] = &mut spectrum[..] else { unreachable!("a spectrum has two ends") };
-    for (bin, k) in bins.iter_mut().zip(1..) {
-        let radius = (-2.0 * (1.0 - rng.uniform()).ln()).sqrt();
-        *bin = Complex::from_polar(radius / f64::from(k).sqrt(), TAU * rng.uniform());
-    }
-    transform.process(&mut spectrum, &mut noise).expect("vectors of the transform's own lengths");
-    noise.truncate(len);
-    let power = noise.iter().map(|x| x * x).sum::<f64>() / len as f64;
-    noise.into_iter().map(|x| x / power.sqrt()).collect()
-}
-
-fn samples(seconds: f64) -> usize {
-    (seconds * f64::from(RATE_HZ)) as usize
-}
-
-fn rms(samples: &[i16]) -> f64 {
-    let squares = samples.iter().map(|&s| f64::from(s) * f64::from(s));
-    (squares.sum::<f64>() / samples.len().max(1) as f64).sqrt()
 }

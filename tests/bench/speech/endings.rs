@@ -19,6 +19,8 @@ use scene::{Question, Reading, Scene};
 use service::{Span, Time};
 use whichone_tests::spoken::{Pink, SPEAKERS, SPEECH_RMS, levelled};
 
+use super::conditions::QUIET;
+use super::corpus::question;
 use super::voices::Voices;
 use crate::report::{Report, percentile, print};
 
@@ -132,16 +134,6 @@ fn sentences(scene: &Scene) -> Vec<Hesitant> {
     };
     let lines = text.lines().filter(|line| !line.starts_with('#'));
     lines.map(|line| sentence(line).unwrap_or_else(|| panic!("{path}: {line}"))).collect()
-}
-
-fn question(scene: &Scene, name: &str) -> Option<Question> {
-    let (attribute, value) = match name.split_once('=') {
-        None if name == "-" => return Some(Question::None),
-        None => return Some(Question::Which(scene.attribute_named(name)?)),
-        Some(pair) => pair,
-    };
-    let k = scene.attribute_named(attribute)?;
-    Some(Question::Attribute(k, scene.value_named(k, value)?))
 }
 
 /// One pause within an utterance: its length in milliseconds, how complete the words before it are,
@@ -260,7 +252,7 @@ impl<'a> Room<'a> {
         let quiet = |s: f64| vec![0; (s * f64::from(RATE_HZ)) as usize];
         let speak = |text: &str| match text {
             "" => Vec::new(),
-            text => levelled(&self.voices.speak(&SPEAKERS[voice], text)),
+            text => levelled(&self.voices.speak(&SPEAKERS[voice], &QUIET, text)),
         };
         let [first, second] = sentence.parts.each_ref().map(|part| speak(part));
         let before = [quiet(LEAD_S), first, quiet(f64::from(pause_ms) / 1e3)].concat();

@@ -20,15 +20,19 @@ pub(super) struct Heard {
     pub(super) decoded_at: usize,
     /// Best first, as the gate lets them pass or not.
     pub(super) hypotheses: Vec<Hypothesis>,
-    pub(super) accepted: bool,
+    /// Whether the gate lets them pass at each of [`THRESHOLDS`].
+    pub(super) accepted: [bool; THRESHOLDS.len()],
     /// Seconds from there to the hypotheses, by the clock and of processor.
     pub(super) took_s: (f64, f64),
 }
 
+/// Thresholds of the gate that are compared; the first is the one in use.
+pub(super) const THRESHOLDS: [f32; 7] = [Gate::THRESHOLD, 0.15, 0.25, 0.35, 0.45, 0.55, 0.7];
+
 /// One robot's ears.
 pub(super) struct Listener {
     recogniser: PocketSphinx,
-    gate: Gate,
+    gates: [Gate; THRESHOLDS.len()],
     /// Seconds from nothing to a recogniser that is ready.
     pub(super) start_s: f64,
 }
@@ -38,18 +42,23 @@ impl Listener {
         let started = Instant::now();
         let recogniser = PocketSphinx::open(scene, &PocketSphinxOptions::debian(work))?;
         let start_s = started.elapsed().as_secs_f64();
-        Ok(Self { recogniser, gate: Gate::new(scene, Gate::THRESHOLD), start_s })
+        let gates = THRESHOLDS.map(|threshold| Gate::new(scene, threshold));
+        Ok(Self { recogniser, gates, start_s })
     }
 
     pub(super) fn hear(&mut self, clip: &Clip) -> Vec<Heard> {
+        self.hear_samples(&clip.samples)
+    }
+
+    pub(super) fn hear_samples(&mut self, samples: &[i16]) -> Vec<Heard> {
         let mut segmenter = Segmenter::new(SegmenterOptions::default());
-        let mut events = segmenter.push(&clip.samples);
+        let mut events = segmenter.push(samples);
         events.extend(segmenter.finish());
         let ends = events.into_iter().filter_map(|event| match event {
             VadEvent::End { range, speech } => Some((range, speech)),
             VadEvent::Onset { .. } | VadEvent::Pause { .. } => None,
         });
-        ends.map(|(range, speech)| self.decode(&clip.samples, range, speech)).collect()
+        ends.map(|(range, speech)| self.decode(samples, range, speech)).collect()
     }
 
     fn decode(&mut self, samples: &[i16], range: Range<usize>, speech: Range<usize>) -> Heard {
@@ -57,8 +66,10 @@ impl Listener {
         let decoded_at = range.end;
         let voice = speech.start - range.start..speech.end - range.start;
         let hypotheses = self.recogniser.recognise(&samples[range], voice).unwrap_or_default();
-        let accepted = self.gate.judge(hypotheses.clone()).is_ok();
+        let [gate, ..] = &self.gates;
+        let _ = gate.judge(hypotheses.clone());
         let took_s = (started.elapsed().as_secs_f64(), thread_s() - cpu_s);
+        let accepted = self.gates.each_ref().map(|gate| gate.judge(hypotheses.clone()).is_ok());
         Heard { speech, decoded_at, hypotheses, accepted, took_s }
     }
 }

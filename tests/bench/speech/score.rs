@@ -1,7 +1,7 @@
 //! One clip's outcome: the intended meaning beside the understood one, and the latencies.
 
 use super::corpus::{Clip, Sentence};
-use super::listener::Heard;
+use super::listener::{Heard, THRESHOLDS};
 use ::speech::Hypothesis;
 use ::speech::devices::audio::seconds;
 use ::speech::devices::language_model::words;
@@ -18,11 +18,10 @@ pub(super) struct Score {
     pub(super) best: bool,
     pub(super) weighed: bool,
     pub(super) oracle: bool,
-    /// True if the gate let all of it pass and the weightiest meaning is right.
-    pub(super) passed: bool,
-    /// True if the robot acts on a misrecognised utterance.
-    pub(super) wrong_action: bool,
-    pub(super) acted_on: bool,
+    /// What the robot does at each threshold of the gate.
+    pub(super) gated: [Gated; THRESHOLDS.len()],
+    /// Share of the weightiest meaning.
+    pub(super) meaning_share: f32,
     /// Seconds from the voice's end to the hypotheses without the closing pause, and of processor
     /// to decode.
     pub(super) delay_s: f64,
@@ -36,7 +35,22 @@ pub(super) struct Score {
     pub(super) sure: Vec<(f32, bool)>,
 }
 
+/// What the robot does behind the gate.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Gated {
+    /// True if the gate let it pass and the weightiest meaning is right.
+    pub(super) passed: bool,
+    /// True if the robot acts on a misrecognised utterance.
+    pub(super) wrong_action: bool,
+    pub(super) acted_on: bool,
+}
+
 impl Score {
+    /// What the robot does at the threshold in use.
+    pub(super) fn gated(&self) -> Gated {
+        self.gated[0]
+    }
+
     pub(super) fn of(
         reader: &Reader,
         sentence: &Sentence,
@@ -44,25 +58,29 @@ impl Score {
         heard: &[Heard],
         pause_s: f64,
     ) -> Self {
-        // What the robot reacts to.
-        let is_acted_on = |meant: &Meaning| *meant != Meaning::default();
         let truth = meaning(reader, sentence, &sentence.text);
         let all = together(heard.iter());
-        let passed = together(heard.iter().filter(|heard| heard.accepted));
-        let accepted = heard.iter().any(|heard| heard.accepted);
+        let gated = std::array::from_fn(|n| {
+            let passed = together(heard.iter().filter(|heard| heard.accepted[n]));
+            let (acted, _) = weightiest(reader, sentence, &passed);
+            let acted_on = acted != Meaning::default();
+            Gated {
+                passed: !passed.is_empty() && acted == truth,
+                wrong_action: acted_on && acted != truth,
+                acted_on,
+            }
+        });
         let right = |text: &str| meaning(reader, sentence, text) == truth;
         let best = all.first().map_or("", |h| h.text.as_str());
-        let weighed = weightiest(reader, sentence, &all);
-        let acted = weightiest(reader, sentence, &passed);
+        let (weighed, meaning_share) = weightiest(reader, sentence, &all);
         let timing = Timing::of(clip, heard, pause_s);
         Self {
             for_the_robot: sentence.for_the_robot,
             best: right(best),
             weighed: weighed == truth,
             oracle: right("") || all.iter().any(|h| right(&h.text)),
-            passed: accepted && acted == truth,
-            wrong_action: is_acted_on(&acted) && acted != truth,
-            acted_on: is_acted_on(&acted),
+            gated,
+            meaning_share: meaning_share as f32,
             delay_s: timing.delay_s,
             cpu_s: heard.iter().map(|heard| heard.took_s.1).sum(),
             sound_s: seconds(clip.samples.len()),
@@ -148,8 +166,19 @@ fn meaning(reader: &Reader, sentence: &Sentence, text: &str) -> Meaning {
     }
 }
 
-/// The meaning with the largest sum of weights. The earlier hypothesis decides a tie.
-fn weightiest(reader: &Reader, sentence: &Sentence, heard: &[Hypothesis]) -> Meaning {
+/// Whether the robot reacts to a sentence that is heard as it was said.
+pub(super) fn has_content(reader: &Reader, said: &Sentence) -> bool {
+    meaning(reader, said, &said.text) != Meaning::default()
+}
+
+/// Whether the robot reacts to what it heard and accepted.
+pub(super) fn is_acted_on(reader: &Reader, sentence: &Sentence, heard: &[Heard]) -> bool {
+    let passed = together(heard.iter().filter(|heard| heard.accepted[0]));
+    weightiest(reader, sentence, &passed).0 != Meaning::default()
+}
+
+/// The meaning with the largest sum of weights, and its share. The earlier hypothesis decides a tie.
+fn weightiest(reader: &Reader, sentence: &Sentence, heard: &[Hypothesis]) -> (Meaning, f64) {
     let mut sums: Vec<(Meaning, f64)> = Vec::new();
     for hypothesis in heard {
         let meant = meaning(reader, sentence, &hypothesis.text);
@@ -158,9 +187,10 @@ fn weightiest(reader: &Reader, sentence: &Sentence, heard: &[Hypothesis]) -> Mea
             None => sums.push((meant, hypothesis.weight)),
         }
     }
+    let total: f64 = sums.iter().map(|(_, sum)| sum).sum();
     // The last of equals is the maximum.
     let best = sums.into_iter().rev().max_by(|(_, a), (_, b)| a.total_cmp(b));
-    best.map(|(meant, _)| meant).unwrap_or_default()
+    best.map(|(meant, sum)| (meant, sum / total)).unwrap_or_default()
 }
 
 /// Marks the words of `heard` that were said: those of the longest sequence of words that both texts

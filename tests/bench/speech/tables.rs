@@ -1,41 +1,38 @@
 //! The trials of one corpus as tables.
 
-use super::Trial;
-use super::corpus::Corpus;
-use super::score::Score;
+use super::conditions::Condition;
+use super::listener::THRESHOLDS;
+use super::score::{Gated, Score};
+use super::{Trial, corpus::Corpus};
 use crate::report::{Report, percentile};
 
-/// Title of a row and filter of its trials.
-type Of<'a> = (String, Box<dyn Fn(&Trial) -> bool + 'a>);
+/// A row's name, and what it is about.
+type Row<'t> = (&'static str, Vec<&'t Score>);
 
-pub(super) fn add(report: &mut Report, corpus: &Corpus, levels: &[f64], trials: &[Trial]) {
-    let mut rows: Vec<Of<'_>> = Vec::new();
-    for &level in levels {
-        rows.push((format!("{level} dB"), Box::new(move |t| t.snr_db == level)));
-    }
-    let ends = [levels.first(), levels.last()].into_iter().flatten();
-    for &level in ends {
-        for (half, name) in [(0, "even"), (1, "odd")] {
-            let of = move |t: &Trial| t.snr_db == level && t.sentence % 2 == half;
-            rows.push((format!("{level} dB, {name} sentences"), Box::new(of)));
-        }
-    }
-    let of = |rows: &[Of<'_>]| -> Vec<Row> {
-        let scores = |is: &dyn Fn(&Trial) -> bool| {
-            trials.iter().filter(|t| is(t)).map(|t| t.score.clone()).collect()
-        };
-        rows.iter().map(|(name, is)| (name.clone(), scores(is))).collect()
+pub(super) fn add(
+    report: &mut Report,
+    corpus: &Corpus,
+    conditions: &[Condition],
+    trials: &[Trial],
+) {
+    let row = |condition: &Condition| {
+        let among = trials.iter().filter(|trial| trial.condition == *condition);
+        (condition.name, among.map(|trial| &trial.score).collect())
     };
-    understood(report, corpus.name, &of(&rows));
-    rows.truncate(levels.len());
-    timed(report, corpus.name, &of(&rows));
-    reliable(report, corpus.name, &of(&rows));
+    let rows: Vec<Row<'_>> = conditions.iter().map(row).collect();
+    understood(report, corpus.name, &rows);
+    gated(report, corpus.name, &rows);
+    timed(report, corpus.name, &rows);
+    words_reliable(report, corpus.name, &rows);
+    meanings_reliable(report, corpus.name, &rows);
 }
 
-/// A row's name, and what it is about.
-type Row = (String, Vec<Score>);
+/// Scores of what is for the robot, and of what is not.
+fn parted<'t>(scores: &[&'t Score]) -> (Vec<&'t Score>, Vec<&'t Score>) {
+    scores.iter().partition(|score| score.for_the_robot)
+}
 
-fn understood(report: &mut Report, corpus: &str, rows: &[Row]) {
+fn understood(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
     let heads = [
         "noise",
         "for the robot",
@@ -47,30 +44,49 @@ fn understood(report: &mut Report, corpus: &str, rows: &[Row]) {
         "about other things",
         "acted on",
     ];
-    let row = |(name, scores): &Row| {
-        let (meant, other): (Vec<Score>, Vec<Score>) =
-            scores.iter().cloned().partition(|score| score.for_the_robot);
+    let row = |(name, scores): &Row<'_>| {
+        let (meant, other) = parted(scores);
         vec![
-            name.clone(),
+            (*name).to_owned(),
             meant.len().to_string(),
             share(&meant, |s| s.best),
             share(&meant, |s| s.weighed),
             share(&meant, |s| s.oracle),
-            share(&meant, |s| s.passed),
-            share(&meant, |s| s.wrong_action),
+            interval(&meant, |s| s.gated().passed),
+            interval(&meant, |s| s.gated().wrong_action),
             other.len().to_string(),
-            share(&other, |s| s.acted_on),
+            interval(&other, |s| s.gated().acted_on),
         ]
     };
     let note = "Right: values asserted, groups ruled out, answer and order all equal those of the true \
                 text. Best: of the best hypothesis; weighed: the meaning with the largest sum of \
                 weights over the five; any: one of the five is right; these three with the gate open. \
                 Passed: the gate lets it in and the weighed meaning is right; wrong action: it lets it \
-                in and the robot would act on another meaning.";
+                in and the robot would act on another meaning. In brackets: 95 % interval (Wilson).";
     report.table(format!("Spoken input: {corpus}"), note, heads, rows.iter().map(row).collect());
 }
 
-fn timed(report: &mut Report, corpus: &str, rows: &[Row]) {
+fn gated(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
+    let heads = ["noise", "threshold", "passed and right", "wrong action", "other talk acted on"];
+    let row = |name: &str, scores: &[&Score], n: usize| {
+        let (meant, other) = parted(scores);
+        let of = |scores: &[&Score], is: fn(&Gated) -> bool| share(scores, |s| is(&s.gated[n]));
+        vec![
+            name.to_owned(),
+            format!("{:.2}", THRESHOLDS[n]),
+            of(&meant, |gated| gated.passed),
+            of(&meant, |gated| gated.wrong_action),
+            of(&other, |gated| gated.acted_on),
+        ]
+    };
+    let rows = rows
+        .iter()
+        .flat_map(|(name, scores)| (1..THRESHOLDS.len()).map(move |n| row(name, scores, n)));
+    let note = "The same trials at other thresholds (`accept_score_min`).";
+    report.table(format!("Spoken input, gate: {corpus}"), note, heads, rows.collect());
+}
+
+fn timed(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
     let heads = [
         "noise",
         "onset late by, ms, p50",
@@ -79,25 +95,21 @@ fn timed(report: &mut Report, corpus: &str, rows: &[Row]) {
         "p95",
         "voice's end to result less the closing pause, ms, p50",
         "p95",
+        "decoding, CPU ms, p50",
+        "p95",
         "decoding, CPU over sound",
     ];
-    let row = |(name, scores): &Row| {
+    let row = |(name, scores): &Row<'_>| {
         let of = |value: fn(&Score) -> f64| -> Vec<f64> {
-            scores.iter().map(value).filter(|x| x.is_finite()).map(|x| x * 1e3).collect()
+            scores.iter().map(|s| value(s)).filter(|x| x.is_finite()).map(|x| x * 1e3).collect()
         };
-        let at = |samples: &[f64], share| format!("{:.0}", percentile(samples, share));
-        let [onset, release, delay] = [of(|s| s.onset_s), of(|s| s.release_s), of(|s| s.delay_s)];
-        let sum = |value: fn(&Score) -> f64| scores.iter().map(value).sum::<f64>();
-        vec![
-            name.clone(),
-            at(&onset, 0.5),
-            at(&onset, 0.95),
-            at(&release, 0.5),
-            at(&release, 0.95),
-            at(&delay, 0.5),
-            at(&delay, 0.95),
-            format!("{:.3}", sum(|s| s.cpu_s) / sum(|s| s.sound_s)),
-        ]
+        let columns = [of(|s| s.onset_s), of(|s| s.release_s), of(|s| s.delay_s), of(|s| s.cpu_s)];
+        let times = columns.iter().flat_map(|column| {
+            [0.5, 0.95].map(|share| format!("{:.0}", percentile(column, share)))
+        });
+        let sum = |value: fn(&Score) -> f64| scores.iter().map(|s| value(s)).sum::<f64>();
+        let load = format!("{:.3}", sum(|s| s.cpu_s) / sum(|s| s.sound_s));
+        std::iter::once((*name).to_owned()).chain(times).chain([load]).collect()
     };
     let title = format!("Spoken input, times: {corpus}");
     let note = "Onset and release: the detector's edges against the voice's.";
@@ -105,31 +117,63 @@ fn timed(report: &mut Report, corpus: &str, rows: &[Row]) {
 }
 
 /// Share of right words by the recogniser's confidence.
-fn reliable(report: &mut Report, corpus: &str, rows: &[Row]) {
-    const BOUNDS: [f32; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.001];
-    let cell = |words: &[(f32, bool)], from: f32, to: f32| {
-        let within: Vec<&(f32, bool)> = words.iter().filter(|w| from <= w.0 && w.0 < to).collect();
-        let right = within.iter().filter(|(_, right)| *right).count();
-        let mean = within.iter().map(|w| w.0).sum::<f32>() / within.len().max(1) as f32;
-        match within.len() {
-            0 => "–".to_owned(),
-            n => format!("{mean:.2}: {:.2} ({n})", right as f64 / n as f64),
-        }
+fn words_reliable(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
+    let row = |(name, scores): &Row<'_>| {
+        let (meant, _) = parted(scores);
+        curve(name, &meant.iter().flat_map(|score| score.sure.clone()).collect::<Vec<_>>())
     };
-    let row = |(name, scores): &Row| {
-        let meant = scores.iter().filter(|score| score.for_the_robot);
-        let words: Vec<(f32, bool)> = meant.flat_map(|score| score.sure.clone()).collect();
-        let cells = BOUNDS.windows(2).map(|bounds| cell(&words, bounds[0], bounds[1]));
-        std::iter::once(name.clone()).chain(cells).collect()
-    };
-    let heads = ["noise", "below 0.2", "0.2 to 0.4", "0.4 to 0.6", "0.6 to 0.8", "from 0.8"];
     let title = format!("Spoken input, confidence of words: {corpus}");
     let note = "Words of the best hypotheses of what is for the robot, by their confidence: its mean, the \
                 share of words that were said (number of words).";
-    report.table(title, note, heads, rows.iter().map(row).collect());
+    report.table(title, note, CURVE_HEADS, rows.iter().map(row).collect());
 }
 
-fn share(scores: &[Score], is: fn(&Score) -> bool) -> String {
+/// Share of right meanings by their share of the weight.
+fn meanings_reliable(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
+    let row = |(name, scores): &Row<'_>| {
+        let (meant, _) = parted(scores);
+        let heard = meant.iter().filter(|score| score.meaning_share > 0.0);
+        curve(name, &heard.map(|score| (score.meaning_share, score.weighed)).collect::<Vec<_>>())
+    };
+    let title = format!("Spoken input, confidence of meanings: {corpus}");
+    let note = "Weighed meanings of what is for the robot, by their share of the weight: its mean, the share \
+                of meanings that are right (number of utterances).";
+    report.table(title, note, CURVE_HEADS, rows.iter().map(row).collect());
+}
+
+const CURVE_HEADS: [&str; 8] = [
+    "noise",
+    "below 0.2",
+    "0.2 to 0.4",
+    "0.4 to 0.6",
+    "0.6 to 0.8",
+    "from 0.8",
+    "all",
+    "calibration error",
+];
+
+/// A reliability curve: in each bin the mean confidence, the share that is right and the number; and the
+/// mean distance of the two.
+fn curve(name: &str, sure: &[(f32, bool)]) -> Vec<String> {
+    const BOUNDS: [f32; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.001];
+    let bin = |from: f32, to: f32| -> (usize, f64, f64) {
+        let within: Vec<&(f32, bool)> = sure.iter().filter(|w| from <= w.0 && w.0 < to).collect();
+        let n = within.len().max(1) as f64;
+        let right = within.iter().filter(|(_, right)| *right).count() as f64;
+        (within.len(), within.iter().map(|w| f64::from(w.0)).sum::<f64>() / n, right / n)
+    };
+    let cell = |(len, mean, right): (usize, f64, f64)| match len {
+        0 => "–".to_owned(),
+        n => format!("{mean:.2}: {right:.2} ({n})"),
+    };
+    let bins: Vec<_> = BOUNDS.windows(2).map(|bounds| bin(bounds[0], bounds[1])).collect();
+    let off = bins.iter().map(|(n, mean, right)| *n as f64 * (mean - right).abs()).sum::<f64>();
+    let cells = bins.iter().map(|bin| cell(*bin)).chain([cell(bin(0.0, 1.001))]);
+    let off = format!("{:.3}", off / sure.len().max(1) as f64);
+    std::iter::once(name.to_owned()).chain(cells).chain([off]).collect()
+}
+
+fn share(scores: &[&Score], is: impl Fn(&Score) -> bool) -> String {
     percent(scores.iter().filter(|score| is(score)).count(), scores.len())
 }
 
@@ -137,5 +181,38 @@ fn percent(part: usize, whole: usize) -> String {
     match whole {
         0 => "–".to_owned(),
         _ => format!("{:.1} %", 100.0 * part as f64 / whole as f64),
+    }
+}
+
+/// A share with its 95 % interval.
+fn interval(scores: &[&Score], is: impl Fn(&Score) -> bool) -> String {
+    let (part, whole) = (scores.iter().filter(|score| is(score)).count(), scores.len());
+    let (low, high) = wilson(part, whole);
+    format!("{} ({:.1}–{:.1})", percent(part, whole), 100.0 * low, 100.0 * high)
+}
+
+/// The 95 % interval of a share (Wilson 1927).
+fn wilson(part: usize, whole: usize) -> (f64, f64) {
+    const Z: f64 = 1.96;
+    let n = whole.max(1) as f64;
+    let p = part as f64 / n;
+    let centre = p + Z * Z / (2.0 * n);
+    let spread = Z * (p * (1.0 - p) / n + (Z / (2.0 * n)).powi(2)).sqrt();
+    let bound = |edge: f64| (edge / (1.0 + Z * Z / n)).clamp(0.0, 1.0);
+    (bound(centre - spread), bound(centre + spread))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::wilson;
+
+    #[test]
+    fn wilson_intervals_match_the_literature() {
+        for ((part, whole), (low, high)) in
+            [((0, 20), (0.0, 0.161_1)), ((81, 263), (0.255_3, 0.366_2)), ((9, 9), (0.700_9, 1.0))]
+        {
+            let found = wilson(part, whole);
+            assert!((found.0 - low).abs() < 1e-4 && (found.1 - high).abs() < 1e-4, "{found:?}");
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! Synthesised sentences.
 
+use super::conditions::Condition;
 use ::speech::devices::audio::RATE_HZ;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -36,10 +37,23 @@ impl Voices {
         ["espeak-ng", "flite"].into_iter().find(|program| !starts(program))
     }
 
-    /// The sentence, without silence around it, as 16 kHz samples.
-    pub(super) fn speak(&self, speaker: &Speaker, text: &str) -> Vec<i16> {
+    /// The sentence in a condition's manner of speaking, without silence around it, as 16 kHz samples.
+    pub(super) fn speak(&self, speaker: &Speaker, manner: &Condition, text: &str) -> Vec<i16> {
+        // What is played faster is higher: it is spoken the slower before.
+        let spoken = self.speak_at(speaker, manner.pace / manner.pitch, text);
+        if manner.pitch == 1.0 {
+            return spoken;
+        }
+        let samples: Vec<f32> = spoken.iter().map(|&s| f32::from(s)).collect();
+        let played_hz = (f64::from(RATE_HZ) * manner.pitch) as u32;
+        let higher = audio::resample(&samples, played_hz, RATE_HZ).expect("rates above zero");
+        higher.into_iter().map(|s| s as i16).collect()
+    }
+
+    fn speak_at(&self, speaker: &Speaker, pace: f64, text: &str) -> Vec<i16> {
         let letters = |c: char| if c.is_ascii_alphanumeric() { c } else { '-' };
-        let name = format!("{} {text}", speaker.title());
+        let pace_name = if pace == 1.0 { String::new() } else { format!(" {pace:.2}") };
+        let name = format!("{}{pace_name} {text}", speaker.title());
         let mut name: String = name.chars().map(letters).collect();
         // What is longer may share its beginning with another sentence; so its length stands there.
         if name.len() > 150 {
@@ -51,7 +65,7 @@ impl Voices {
         if let Ok(bytes) = std::fs::read(&cached) {
             return bytes.chunks_exact(2).map(|b| i16::from_le_bytes([b[0], b[1]])).collect();
         }
-        let spoken = speaker.synthesiser(&self.folder).samples(text);
+        let spoken = speaker.at_pace(pace).synthesiser(&self.folder).samples(text);
         let spoken = spoken.unwrap_or_else(|error| panic!("{text:?}: {error}"));
         let samples = trimmed(&normalised(&spoken));
         let bytes: Vec<u8> = samples.iter().flat_map(|s| s.to_le_bytes()).collect();

@@ -38,6 +38,12 @@ impl Speaker {
         Self { name, flite: true, words_per_minute: 165 }
     }
 
+    /// The voice at `factor` times its pace.
+    pub fn at_pace(self, factor: f64) -> Self {
+        let words_per_minute = (f64::from(self.words_per_minute) * factor).round() as u16;
+        Self { words_per_minute, ..self }
+    }
+
     /// Program and name: `espeak-ng en-gb`.
     pub fn title(&self) -> String {
         format!("{} {}", if self.flite { "flite" } else { "espeak-ng" }, self.name)
