@@ -174,7 +174,7 @@ export class Overlay {
     this.#places = placeLabels(wishes, this.#frame, notices, this.#places);
     for (const [n, { node, leader }] of this.#labels.entries()) {
       const { x, y, leader: line } = /** @type {any} */ (this.#places[n]);
-      node.style.setProperty("transform", `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`);
+      node.style.setProperty("transform", `translate(${Math.round(x)}px, ${Math.round(y)}px)`);
       const ends = line ?? [0, 0, 0, 0];
       for (const [k, name] of ["x1", "y1", "x2", "y2"].entries()) {
         setAttribute(leader, name, ends[k].toFixed(1));
