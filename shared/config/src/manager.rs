@@ -4,7 +4,7 @@ use dialogue::manager::{Manager, Setup};
 use dialogue::registry::{self, UnknownPlanner};
 use dialogue::{Confusion, Model, NotAConfusion};
 use language::Language;
-use scene::StableHash;
+use scene::{Scene, StableHash};
 
 use crate::{Section, Settings};
 
@@ -64,7 +64,7 @@ impl Settings {
         let gesture = dialogue.gesture;
         Ok(Setup {
             scene: self.scene.clone(),
-            model: self.model().with_confusion(confusion),
+            model: self.model_of(&self.scene).with_confusion(confusion),
             costs: dialogue.costs,
             durations: self.durations.clone(),
             actions: dialogue.actions,
@@ -75,8 +75,9 @@ impl Settings {
         })
     }
 
-    fn model(&self) -> Model {
-        let model = Model::new(&self.scene, self.dialogue.params);
+    /// Returns the observation model of a scene under these settings, without similar words.
+    pub fn model_of(&self, scene: &Scene) -> Model {
+        let model = Model::new(scene, self.dialogue.params);
         match self.dialogue.language {
             Language::Paper => model,
             Language::Careful => model.with_certain_words(self.dialogue.alpha_typed),

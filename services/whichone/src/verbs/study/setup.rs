@@ -37,6 +37,7 @@ impl Setup {
         let mut problem = of_scene(scene, &preset(args))?;
         if let (None, Some(settings)) = (args.preset, &problem.settings) {
             // A study compares planners of the robot that runs.
+            problem.model = settings.model_of(&problem.scene);
             let configured = settings.dialogue.actions;
             problem.actions.attribute &= configured.attribute;
             problem.actions.which &= configured.which;
