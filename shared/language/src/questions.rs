@@ -38,9 +38,6 @@ fn of_question(clause: &Clause) -> Clause {
     Clause { topic, distractors: Vec::new(), ..clause.clone() }
 }
 
-/// First words of questions that are not answered by yes or no.
-const CHOOSING: [&str; 4] = ["what", "which", "who", "anything"];
-
 /// The intent of a question; `describes`: it names objects of the scene.
 fn kind(tags: &[Tag<'_>], describes: bool) -> Intent {
     let says = |class| tags.iter().any(|tag| tag.is(class));
@@ -64,7 +61,7 @@ fn kind(tags: &[Tag<'_>], describes: bool) -> Intent {
         Intent::AskCount
     } else if opens("where") || ends(&["where"]) {
         Intent::AskWhere
-    } else if describes && tags.iter().any(|tag| is_asking(tag) && CHOOSING.contains(&tag.word)) {
+    } else if describes && (opens("what") || opens("which")) {
         Intent::AskWhich
     } else if describes {
         Intent::AskWhether

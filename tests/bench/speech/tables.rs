@@ -5,6 +5,7 @@ use super::listener::THRESHOLDS;
 use super::score::{Gated, Score};
 use super::{Trial, corpus::Corpus};
 use crate::report::{Report, percentile};
+use evaluation::simulation::{Interval, wilson};
 
 /// A row's name, and what it is about.
 type Row<'t> = (&'static str, Vec<&'t Score>);
@@ -187,32 +188,6 @@ fn percent(part: usize, whole: usize) -> String {
 /// A share with its 95 % interval.
 fn interval(scores: &[&Score], is: impl Fn(&Score) -> bool) -> String {
     let (part, whole) = (scores.iter().filter(|score| is(score)).count(), scores.len());
-    let (low, high) = wilson(part, whole);
+    let Interval { low, high } = wilson(part as u64, whole as u64);
     format!("{} ({:.1}–{:.1})", percent(part, whole), 100.0 * low, 100.0 * high)
-}
-
-/// The 95 % interval of a share (Wilson 1927).
-fn wilson(part: usize, whole: usize) -> (f64, f64) {
-    const Z: f64 = 1.96;
-    let n = whole.max(1) as f64;
-    let p = part as f64 / n;
-    let centre = p + Z * Z / (2.0 * n);
-    let spread = Z * (p * (1.0 - p) / n + (Z / (2.0 * n)).powi(2)).sqrt();
-    let bound = |edge: f64| (edge / (1.0 + Z * Z / n)).clamp(0.0, 1.0);
-    (bound(centre - spread), bound(centre + spread))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::wilson;
-
-    #[test]
-    fn wilson_intervals_match_the_literature() {
-        for ((part, whole), (low, high)) in
-            [((0, 20), (0.0, 0.161_1)), ((81, 263), (0.255_3, 0.366_2)), ((9, 9), (0.700_9, 1.0))]
-        {
-            let found = wilson(part, whole);
-            assert!((found.0 - low).abs() < 1e-4 && (found.1 - high).abs() < 1e-4, "{found:?}");
-        }
-    }
 }

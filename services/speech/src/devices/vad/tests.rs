@@ -145,6 +145,19 @@ fn vad_segments_close_by_what_was_judged() {
     }
 }
 
+/// Processes frames; the button is let go at `!`.
+fn released(frames: &str, options: &SegmenterOptions) -> Vec<VadEvent> {
+    let mut segmenter = Segmenter::new(options.clone());
+    let mut events = Vec::new();
+    for frame in frames.chars() {
+        match frame {
+            '!' => segmenter.release(),
+            frame => segmenter.track.frame(frame == '#', options, &mut events),
+        }
+    }
+    events
+}
+
 #[test]
 fn vad_segment_that_is_released_ends_with_its_voice() {
     let frame_s = FRAME as f64 / f64::from(RATE_HZ);
@@ -154,14 +167,7 @@ fn vad_segment_that_is_released_ends_with_its_voice() {
         ("released in the pause", "####.!.........", (0..6, 0..4)),
         ("released long after the voice", "####.......!...", (0..6, 0..4)),
     ] {
-        let mut segmenter = Segmenter::new(options.clone());
-        let mut events = Vec::new();
-        for frame in frames.chars() {
-            match frame {
-                '!' => segmenter.release(),
-                frame => segmenter.track.frame(frame == '#', &options, &mut events),
-            }
-        }
+        let events = released(frames, &options);
         let expected = end(expected.0, expected.1);
         assert_eq!(events.last(), Some(&expected), "{what}: {events:?}");
         let ends = events.iter().filter(|event| matches!(event, VadEvent::End { .. }));
@@ -174,14 +180,7 @@ fn vad_segment_that_was_released_is_not_followed_by_its_own_tail() {
     let options = SegmenterOptions { early_roll_s: 0.016, ..SegmenterOptions::default() };
     // The level has fallen for one frame; then the detector alone goes on for six.
     for (frames, onsets) in [("####!.######....", 1), ("####!.######.###....", 2)] {
-        let mut segmenter = Segmenter::new(options.clone());
-        let mut events = Vec::new();
-        for frame in frames.chars() {
-            match frame {
-                '!' => segmenter.release(),
-                frame => segmenter.track.frame(frame == '#', &options, &mut events),
-            }
-        }
+        let events = released(frames, &options);
         let found = events.iter().filter(|event| matches!(event, VadEvent::Onset { .. }));
         assert_eq!(found.count(), onsets, "{frames}: {events:?}");
     }
