@@ -10,6 +10,7 @@ use std::time::Instant;
 use config::{Recogniser, Settings, Voice};
 use messages::Service;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
+use service::bus::WakeListener;
 use service::client::Client;
 use service::clock;
 use service::console_link;
@@ -29,7 +30,7 @@ use crate::server::web::Web;
 use crate::server::{Access, App};
 use crate::study::{self, Study};
 
-/// Longest sleep with and without viewers.
+/// Longest sleep with and without viewers. Most topics are polled: only a prompt wakes the console.
 const LOOK_EVERY: (Span, Span) = (Span::from_ms(10), Span::from_ms(50));
 /// Most restarts that wait for the supervisor.
 const RESTARTS_MAX: usize = 8;
@@ -54,6 +55,7 @@ struct Console {
     app: Arc<App>,
     bridge: Bridge,
     inbox: Inbox,
+    wake_listener: WakeListener,
     web: Web,
     is_ending: bool,
 }
@@ -65,6 +67,9 @@ impl Console {
             move |e: std::io::Error| Failure::new(Exit::NotReached, format!("{what}: {e}"))
         };
         let client = Client::of_service(environment, Service::Console.name())?;
+        let wake_listener = client.bus().wake_listener(Service::Console).map_err(|error| {
+            Failure::new(Exit::NotReached, format!("wake-ups of the console: {error}"))
+        })?;
         let (commands, command_inbox) =
             worker_channel::channel::<Command>().map_err(failed("inbox"))?;
         let (motions, motion_inbox) =
@@ -90,7 +95,7 @@ impl Console {
             .map_err(failed("web server's threads"))?;
         let bridge = Bridge::open(Arc::clone(&app), client, paths, settings, study)?;
         let inbox = Inbox { commands: command_inbox, motions: motion_inbox };
-        Ok(Self { app, bridge, inbox, web, is_ending: false })
+        Ok(Self { app, bridge, inbox, wake_listener, web, is_ending: false })
     }
 }
 
@@ -139,7 +144,8 @@ impl Cycle for Console {
         let (watched, alone) = LOOK_EVERY;
         let is_watched = self.app.hub.viewers() > 0 || self.bridge.is_busy();
         let longest = if is_watched { watched } else { alone };
-        (vec![self.inbox.motions.fd(), self.inbox.commands.fd()], now + longest)
+        let fds = [self.inbox.motions.fd(), self.inbox.commands.fd(), self.wake_listener.fd()];
+        (fds.to_vec(), now + longest)
     }
 
     fn shut_down(&mut self) {
@@ -152,6 +158,7 @@ impl Cycle for Console {
             return Ok(ControlFlow::Break(()));
         }
         let began = Instant::now();
+        self.wake_listener.clear();
         self.bridge.pass(&self.inbox);
         self.app.hub.metrics.pass.observe(began.elapsed().as_secs_f64());
         let now = clock::now();

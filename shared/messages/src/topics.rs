@@ -82,9 +82,9 @@ pub const UTTERANCE: Topic = Topic {
     history: WINDOW,
     ..topic::<Utterance>("speech/utterance", Some(Service::Speech))
 };
-/// Speech to policy.
+/// Speech to policy, and to the console, whose pages play it.
 pub const PRESENTED: Topic = Topic {
-    readers: &[Service::Policy],
+    readers: &[Service::Policy, Service::Console],
     ..topic::<Presented>("speech/presented", Some(Service::Speech))
 };
 /// Speech to policy.

@@ -59,7 +59,7 @@ impl Default for SegmenterOptions {
             closing_pause_s: 0.6,
             pre_roll_s: 0.5,
             post_roll_s: 0.2,
-            early_roll_s: 0.048,
+            early_roll_s: 0.032,
             longest_s: 15.0,
         }
     }

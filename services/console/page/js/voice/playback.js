@@ -5,6 +5,9 @@ import { keyOf, offsetS, plan } from "./schedule.js";
 const MUTED = "whichone.voice.muted";
 /** Sounds that are kept: a question is often asked again. */
 const KEPT_MAX = 8;
+/** Sound between the page and the loudspeaker, seconds: as little as the browser can do. Its own choice for
+ *  answers to a person is 42 ms. */
+const LATENCY_S = 0;
 /** Name of the measure from the end of what a person said to the first sound of the answer. */
 export const REPLY = "voice:reply";
 
@@ -125,7 +128,7 @@ class Playback {
     const key = keyOf(speaking);
     this.#playing = { key, source: null };
     try {
-      this.#context ??= new AudioContext();
+      this.#context ??= new AudioContext({ latencyHint: LATENCY_S });
       const context = this.#context;
       const sound = await this.#sound(speaking.url);
       if (context.state === "suspended") await Promise.race([context.resume(), shortly()]);

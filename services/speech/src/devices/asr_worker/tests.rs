@@ -2,7 +2,6 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use super::worker::snr_db;
 use super::*;
 use crate::Hypothesis;
 use crate::devices::audio::write_wav;
@@ -153,21 +152,6 @@ fn asr_worker_reports_a_crash_of_its_thread() {
         assert!(start.elapsed() < PATIENCE);
         thread::sleep(Duration::from_millis(5));
     }
-}
-
-#[test]
-fn asr_worker_measures_noise_around_the_speech() {
-    let noise = |n: usize| if n.is_multiple_of(2) { 100 } else { -100 };
-    let mut samples: Vec<i16> = (0..32_000).map(noise).collect();
-    let speech = 12_000..20_000;
-    for n in speech.clone() {
-        samples[n] = if n.is_multiple_of(2) { 1_000 } else { -1_000 };
-    }
-    // The speech has 100 times the power of the noise, which is part of it.
-    let snr = snr_db(&samples, &(4_000..28_000), &speech);
-    assert!((snr - 10.0 * 99_f32.log10()).abs() < 0.1, "{snr}");
-    assert_eq!(snr_db(&samples, &speech, &speech), 60.0);
-    assert_eq!(snr_db(&[0; 1_000], &(0..1_000), &(200..800)), 0.0);
 }
 
 /// Starts a worker whose decoding waits for permission.

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Sender, TryRecvError, select};
 
-use crate::devices::audio::{read_wav, seconds};
+use crate::devices::audio::{read_wav, seconds, snr_db};
 use crate::devices::recogniser::{Gate, RecogniseError, Recogniser};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
@@ -187,22 +187,4 @@ fn recognise_range(
         snr_db,
         hypotheses,
     })
-}
-
-/// Returns the power of the speech over that of its surroundings in the segment. The detector's edges
-/// are some 50 ms wide; samples this close to the speech count as neither.
-pub(super) fn snr_db(samples: &[i16], range: &Range<usize>, speech: &Range<usize>) -> f32 {
-    const EDGE: usize = 1_600;
-    const LARGEST_DB: f64 = 60.0;
-    let power = |parts: [&[i16]; 2]| {
-        let len = parts.iter().map(|part| part.len()).sum::<usize>().max(1) as f64;
-        let squares = parts.into_iter().flatten().map(|&s| f64::from(s) * f64::from(s));
-        squares.sum::<f64>() / len
-    };
-    let before = range.start..speech.start.saturating_sub(EDGE).max(range.start);
-    let after = (speech.end + EDGE).min(range.end)..range.end;
-    // Half a step of the samples' scale: digital silence.
-    let noise = power([&samples[before], &samples[after]]).max(0.25);
-    let signal = (power([&samples[speech.clone()], &[]]) - noise).max(noise);
-    (10.0 * (signal / noise).log10()).min(LARGEST_DB) as f32
 }

@@ -2,12 +2,14 @@
 
 mod denoise;
 mod noise_floor;
+mod snr;
 
 use std::path::Path;
 
 pub use audio::{RATE_HZ, read_wav, seconds};
 pub use denoise::denoised;
 pub use noise_floor::with_noise_floor;
+pub use snr::snr_db;
 
 /// Writes samples as a WAV file of the service's own format.
 pub(crate) fn write_wav(path: &Path, samples: &[i16]) -> Result<(), hound::Error> {

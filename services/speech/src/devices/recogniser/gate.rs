@@ -34,7 +34,7 @@ pub struct Gate {
 
 impl Gate {
     /// Default threshold; `docs/speech.md` lists what it accepts and rejects.
-    pub const THRESHOLD: f32 = 0.25;
+    pub const THRESHOLD: f32 = 0.45;
 
     /// Returns a gate for the scene; `threshold` from 0 (accept everything) to 1.
     pub fn new(scene: &Scene, threshold: f32) -> Self {
