@@ -87,7 +87,7 @@ pub(crate) fn is_whole_answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> b
     if tags[at].word == "forget" || before.iter().any(|tag| tag.is_unknown()) {
         return false;
     }
-    if is_not_what(tags, clause, at) || is_not_by_far(tags, clause, at) {
+    if is_not_what(tags, clause, at) || is_not_by_far(tags, clause, at) || begins_anew(tags, at) {
         return true;
     }
     let mut rest = tags[at + 1..].iter().peekable();
@@ -103,6 +103,11 @@ pub(crate) fn is_whole_answer(tags: &[Tag<'_>], clause: &Clause, at: usize) -> b
         ]),
         Some(next) => next.is_any(classes![No Yes Repair But Hedge]),
     }
+}
+
+/// "it isn't it is in the cabinet": nobody hears the comma behind the "not".
+fn begins_anew(tags: &[Tag<'_>], at: usize) -> bool {
+    matches!(&tags[at + 1..], [it, verb, ..] if it.is(Class::It) && !it.pauses() && is_verb(verb))
 }
 
 /// "not what I'm after", "that's not where it is".
