@@ -17,6 +17,7 @@ test("hands-free speech is recognised with interim results", async ({ page, grou
   await writeWav(wav, Buffer.concat([quiet(1), request, quiet(3)]));
   await page.goto(group.link());
   await hears(group);
+  await page.locator("#transcript .partial").waitFor({ state: "attached" });
   await page.evaluate(() => {
     window.partials = [];
     const words = document.querySelector("#transcript .partial");
