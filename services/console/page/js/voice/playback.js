@@ -5,8 +5,8 @@ import { keyOf, offsetS, plan } from "./schedule.js";
 const MUTED = "whichone.voice.muted";
 /** Sounds that are kept: a question is often asked again. */
 const KEPT_MAX = 8;
-/** Sound between the page and the loudspeaker, seconds: as little as the browser can do. Its own choice for
- *  answers to a person is 42 ms. */
+/** Buffer between the page and the loudspeaker, seconds: the shortest that the browser has. By default
+ *  Chromium's is 42 ms, which a person waits for. */
 const LATENCY_S = 0;
 /** Name of the measure from the end of what a person said to the first sound of the answer. */
 export const REPLY = "voice:reply";

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 /// The detector's edges are some 50 ms wide: samples this close to the speech count as neither.
 const EDGE: usize = 1_600;
+/// Beyond it the noise is that of rounding.
 const LARGEST_DB: f64 = 60.0;
 
 /// Returns the power of the speech over that of its surroundings within `range`, decibels, at most 60.

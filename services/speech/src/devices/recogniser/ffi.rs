@@ -271,8 +271,8 @@ impl Drop for Decoder {
     }
 }
 
-/// Weight of the language model beside the acoustic model. With the library's own (6.5) no more is
-/// understood, decoding takes a sixth longer, and more often another meaning is acted on.
+/// Weight of the language model beside the acoustic model. With the library's own (6.5) decoding takes
+/// a sixth longer and no more is understood; `docs/speech.md` compares values.
 const LANGUAGE_WEIGHT: &CStr = c"8.5";
 
 /// The library divides path scores by 2^10 so that they fit into 32 bits (`SENSCR_SHIFT`).
