@@ -1,7 +1,7 @@
 //! Checks of recogniser, voice and microphone for `whichone doctor`.
 
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, mpsc};
 use std::time::{Duration, Instant};
 
@@ -11,13 +11,16 @@ use service::inspection::Finding;
 
 use crate::In;
 use crate::devices::microphone::{Microphone, MicrophoneOptions, MicrophoneState};
-use crate::devices::recogniser::Backend;
+use crate::devices::recogniser::{Backend, second_opinion};
 use crate::devices::stream::PlaybackMask;
 use crate::devices::voice::{self, VoiceEvent, VoiceOptions, VoiceOutput};
 
 /// Checks all devices as the service opens them.
 pub(crate) fn examine(settings: &Settings) -> Vec<Finding> {
-    vec![recogniser(settings), voice(settings), microphone(settings)]
+    let second = settings.speech.whisper_model.as_deref();
+    let second = second.map(|model| second_recogniser(model, settings));
+    let found = vec![recogniser(settings), voice(settings), microphone(settings)];
+    found.into_iter().chain(second).collect()
 }
 
 /// A temporary folder for the devices. Dropping it removes the folder.
@@ -51,9 +54,6 @@ fn recogniser(settings: &Settings) -> Finding {
                 Backend::PocketSphinx(options) => {
                     format!("pocketsphinx with {}", options.model.display())
                 }
-                Backend::Whisper(options) => {
-                    format!("whisper.cpp with {}", options.model.display())
-                }
                 Backend::Command(options) => options.command.join(" "),
             },
         ),
@@ -62,6 +62,15 @@ fn recogniser(settings: &Settings) -> Finding {
             Finding::poor(WHAT, format!("words of the scene that cannot be recognised: {words}"))
         }
         Err(error) => Finding::poor(WHAT, format!("{error}; without it only typed text works")),
+    }
+}
+
+/// Loads the second recogniser's model as the service does.
+fn second_recogniser(model: &Path, settings: &Settings) -> Finding {
+    const WHAT: &str = "second recogniser";
+    match second_opinion::load(model, &settings.scene) {
+        Ok(_) => Finding::good(WHAT, format!("whisper.cpp with {}", model.display())),
+        Err(error) => Finding::poor(WHAT, format!("{error}; without it the first one decides")),
     }
 }
 

@@ -28,8 +28,13 @@ const SNR_MIN_DB: f32 = 15.0;
 
 impl Endpointing {
     /// Returns how complete an utterance is that follows `question`: that of its least complete
-    /// hypothesis.
+    /// hypothesis, and not complete before all recognisers have been heard.
     pub fn judge(&self, result: &RecognisedSegment, question: Question) -> Completeness {
+        let judged = self.judge_words(result, question);
+        if result.awaits_second { judged.max(Completeness::Unclear) } else { judged }
+    }
+
+    fn judge_words(&self, result: &RecognisedSegment, question: Question) -> Completeness {
         let judge = |hypothesis: &Hypothesis| self.judge.judge(&hypothesis.text, question);
         match &result.hypotheses {
             _ if result.snr_db < SNR_MIN_DB => Completeness::Unclear,
@@ -41,7 +46,7 @@ impl Endpointing {
                 let others = hypotheses.iter().skip(1).filter(counts).map(judge);
                 best.max(others.max().unwrap_or(best).min(Completeness::Unclear))
             }
-            Err(text) => self.judge.judge(text, question).max(Completeness::Unclear),
+            Err(rejected) => self.judge.judge(&rejected.text, question).max(Completeness::Unclear),
         }
     }
 

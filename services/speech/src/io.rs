@@ -8,6 +8,7 @@ use service::Span;
 
 use crate::Hypothesis;
 use crate::devices::microphone::MicrophoneStatus;
+use crate::devices::recogniser::{Heard, Rejected, SecondView};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::Closing;
 use crate::stream_events::StreamEvent;
@@ -43,7 +44,7 @@ pub enum In {
         /// The pause after which it was decoded.
         at: Closing,
         /// The result; `None` if decoding failed.
-        result: Option<RecognisedSegment>,
+        result: Option<Box<RecognisedSegment>>,
     },
     /// State of the recogniser.
     RecogniserState(EarState),
@@ -144,16 +145,26 @@ pub struct RecognisedSegment {
     pub span_s: (f64, f64),
     /// Signal-to-noise ratio, decibels, 0 to 60. Recognition is good from 20 on and poor below 15.
     pub snr_db: f32,
-    /// The hypotheses, best first; or the text of speech that is not meant for the robot.
-    pub hypotheses: Result<Vec<Hypothesis>, String>,
+    /// The hypotheses, best first; or why the speech is not acted on.
+    pub hypotheses: Result<Vec<Hypothesis>, Rejected>,
+    /// What each recogniser thought.
+    pub heard: Heard,
+    /// `true` if the second recogniser's opinion is still to come.
+    pub awaits_second: bool,
 }
 
 impl RecognisedSegment {
+    /// Returns the result of one recogniser that passed the gate.
+    pub fn accepted(span_s: (f64, f64), snr_db: f32, hypotheses: Vec<Hypothesis>) -> Self {
+        let heard = Heard { first: hypotheses.clone(), second: SecondView::NotAsked };
+        Self { span_s, snr_db, hypotheses: Ok(hypotheses), heard, awaits_second: false }
+    }
+
     /// Returns the best words, if any were recognised.
     pub fn text(&self) -> Option<&str> {
         match &self.hypotheses {
             Ok(hypotheses) => hypotheses.first().map(|best| best.text.as_str()),
-            Err(text) => Some(text),
+            Err(rejected) => Some(&rejected.text),
         }
     }
 }

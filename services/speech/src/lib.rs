@@ -132,7 +132,7 @@ impl SpeechNode {
             }
             In::InterimResult { sound, text } => self.intake.interim_result(sound, &text, fx),
             In::EarlyResult { sound, at, result } => {
-                self.intake.early_result(sound, at, result.as_ref(), self.player.standing(), fx);
+                self.intake.early_result(sound, at, result.as_deref(), self.player.standing(), fx);
             }
             In::Microphone(status) => self.intake.set_microphone(&status, fx),
             In::RecogniserState(state) => self.intake.set_recogniser(state, fx),

@@ -2,6 +2,7 @@
 
 mod set_aside;
 
+use crate::devices::recogniser::Rejected;
 use crate::devices::stream::SpeechSegment;
 use crate::devices::testing;
 use crate::record::Record;
@@ -12,8 +13,8 @@ use crate::{
 };
 use language::{CompletenessJudge, Language, Reader};
 use messages::{
-    ActKind, Activity, AppliedMark, FixedText, Injection, PresentationState, Receipt, RequestKey,
-    RobotAct, Sound, Source, Utterance, WireCode,
+    ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, PresentationState, Receipt,
+    RequestKey, RobotAct, Sound, Source, Utterance, WireCode,
 };
 use scene::{AttributeId, Question, ValueId};
 use service::{Effects, Event, Node, Span, Time};
@@ -154,11 +155,7 @@ fn ended(onset: Time) -> In {
 
 /// Returns a result of the recogniser with these hypotheses, or without speech.
 fn recognised(sound: u64, hypotheses: Option<Vec<Hypothesis>>) -> In {
-    let segment = |hypotheses| RecognisedSegment {
-        span_s: (0.2, 0.7),
-        snr_db: 30.0,
-        hypotheses: Ok(hypotheses),
-    };
+    let segment = |hypotheses| RecognisedSegment::accepted((0.2, 0.7), 30.0, hypotheses);
     let segments = Ok(hypotheses.map(segment).into_iter().collect());
     In::Recognised(Recognised { sound, segments })
 }
@@ -382,10 +379,13 @@ fn interim_results_are_published_until_the_result() {
 
 /// Returns the result for the pause at the end of [`segment`].
 fn early(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> In {
-    let hypotheses = words.map_err(str::to_owned);
-    let result = RecognisedSegment { span_s: (0.2, 0.7), snr_db, hypotheses };
+    let (reason, score) = (GateVerdict::OtherTalk, 0.1);
+    let rejected = |text: &str| Rejected { text: text.to_owned(), reason, score };
+    let hypotheses = words.map_err(rejected);
+    let result = RecognisedSegment::accepted((0.2, 0.7), snr_db, Vec::new());
+    let result = Some(Box::new(RecognisedSegment { hypotheses, ..result }));
     let at = segment(Time(0)).closing(std::time::Duration::ZERO);
-    In::EarlyResult { sound: SOUND, at, result: Some(result) }
+    In::EarlyResult { sound: SOUND, at, result }
 }
 
 #[test]

@@ -17,7 +17,9 @@ use crate::{Config, Fx, Hypothesis, Out, Recognised, RecognisedSegment, Recognit
 use accepted::{AcceptedUtterances, Receipts};
 use hearing_status::HearingStatus;
 use language::Completeness;
-use messages::{EarState, Injection, MotionCommand, MotionOrder, ReceiptStatus, Sound, Source};
+use messages::{
+    EarState, Injection, MotionCommand, MotionOrder, Receipt, ReceiptStatus, Sound, Source,
+};
 use origin::Origin;
 use scene::Question;
 use service::{Span, Time};
@@ -101,7 +103,7 @@ impl UtteranceIntake {
         if !TALK_S.contains(&longest_s) {
             let (least, most) = (TALK_S.start(), TALK_S.end());
             let reason = format!("duration {longest_s} s is out of range ({least} to {most} s)");
-            return self.reject(origin, &reason, fx);
+            return self.reject(&origin, &reason, fx);
         }
         let sound = self.pending.add(origin.key, Source::Microphone, now);
         fx.publish(Out::OpenMicrophone(sound, Span::from_s(longest_s)));
@@ -142,7 +144,7 @@ impl UtteranceIntake {
             }
             StreamEvent::Silent { sound, reason } => {
                 if let Some(sound) = self.pending.remove(sound) {
-                    self.reject(Origin::of(&sound, 0, 1), &reason, fx);
+                    self.reject(&Origin::of(&sound, 0, 1), &reason, fx);
                 }
             }
         }
@@ -156,7 +158,7 @@ impl UtteranceIntake {
                 0 => String::new(),
                 lost => format!("{lost} samples lost in transit"),
             };
-            self.report(Origin::closed(key, utterances), ReceiptStatus::Over, &note, fx);
+            self.report(Origin::closed(key, utterances).rejection(ReceiptStatus::Over, &note), fx);
         }
     }
 
@@ -238,7 +240,7 @@ impl UtteranceIntake {
             segments => segments,
         };
         let segments = segments.unwrap_or_else(|reason| {
-            self.reject(Origin::of(&sound, 0, 1), &reason, fx);
+            self.reject(&Origin::of(&sound, 0, 1), &reason, fx);
             Vec::new()
         });
         let count = segments.len() as u32;
@@ -249,7 +251,14 @@ impl UtteranceIntake {
                 Ok(hypotheses) => {
                     self.accept(origin, Ok(UtteranceContent::words(hypotheses)), player, now, fx);
                 }
-                Err(text) => self.report(origin, ReceiptStatus::NotForMe, &text, fx),
+                Err(rejected) => {
+                    let receipt = Receipt {
+                        gate_score: rejected.score as f32,
+                        verdict: rejected.reason.code(),
+                        ..origin.rejection(ReceiptStatus::NotForMe, &rejected.text)
+                    };
+                    self.report(receipt, fx);
+                }
             }
         }
         self.report_closed_streams(fx);
@@ -274,7 +283,7 @@ impl UtteranceIntake {
         let numbered = content.and_then(|content| Ok((content, self.accepted.next()?)));
         let (content, seq) = match numbered {
             Ok(numbered) => numbered,
-            Err(reason) => return self.reject(origin, &reason, fx),
+            Err(reason) => return self.reject(&origin, &reason, fx),
         };
         if content.is_stop(&self.config) {
             let order = MotionOrder::Stop.code();
@@ -284,21 +293,20 @@ impl UtteranceIntake {
         }
         let accepted = origin.accepted(seq, content, player.asked(), now);
         fx.append(Record::Accepted(accepted.clone()));
-        fx.publish(Out::Receipt(Box::new(accepted.receipt())));
+        self.report(origin.with_views(accepted.receipt()), fx);
         fx.publish(Out::Utterance(Box::new(accepted.utterance())));
-        self.restore(accepted);
+        self.accepted.add(accepted);
         self.publish_activity(fx);
         true
     }
 
     /// Reports why there is no new utterance. Returns `false`.
-    fn reject(&mut self, origin: Origin, reason: &str, fx: &mut Fx) -> bool {
-        self.report(origin, ReceiptStatus::Refused, reason, fx);
+    fn reject(&mut self, origin: &Origin, reason: &str, fx: &mut Fx) -> bool {
+        self.report(origin.rejection(ReceiptStatus::Refused, reason), fx);
         false
     }
 
-    fn report(&mut self, origin: Origin, status: ReceiptStatus, note: &str, fx: &mut Fx) {
-        let receipt = origin.rejection(status, note);
+    fn report(&mut self, receipt: Receipt, fx: &mut Fx) {
         fx.publish(Out::Receipt(Box::new(receipt)));
         self.receipts.record(receipt);
     }

@@ -27,7 +27,7 @@ pub struct Speech {
     /// The program, with its arguments, that turns audio into words; there if `recogniser` is
     /// [`Recogniser::Command`].
     pub recogniser_command: Option<Vec<String>>,
-    /// The model file of whisper.cpp; there if `recogniser` is [`Recogniser::Whisper`].
+    /// The model file of a second recogniser, whisper.cpp, in builds that have it; `None`: there is none.
     pub whisper_model: Option<PathBuf>,
     /// Folder of the recogniser's acoustic model; `None` to detect it.
     pub model_dir: Option<PathBuf>,
@@ -98,8 +98,6 @@ pub enum Recogniser {
     PocketSphinx,
     /// A program of the operator's.
     Command,
-    /// whisper.cpp with a model file of the operator's, in builds that have it.
-    Whisper,
     /// None: typed text only.
     None,
 }
@@ -121,7 +119,6 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
             ("auto", Recogniser::Auto),
             ("pocketsphinx", Recogniser::PocketSphinx),
             ("command", Recogniser::Command),
-            ("whisper", Recogniser::Whisper),
             ("none", Recogniser::None),
         ],
     );
@@ -134,7 +131,7 @@ pub(crate) fn read(f: &mut Fields<'_>) -> Speech {
         player: f.optional_command("player"),
         recogniser,
         recogniser_command: recogniser_command(f, recogniser),
-        whisper_model: whisper_model(f, recogniser),
+        whisper_model: f.absolute("whisper_model"),
         model_dir: f.absolute("model_dir"),
         accept_score_min: f.number("accept_score_min", 0.0..=1.0),
         complete_pause: Duration::from_millis(f.whole("complete_pause_ms", 50..=5000)),
@@ -202,13 +199,4 @@ fn recogniser_command(f: &mut Fields<'_>, recogniser: Recogniser) -> Option<Vec<
         f.problem("recogniser", "`command` needs a recogniser_command", help);
     }
     command
-}
-
-fn whisper_model(f: &mut Fields<'_>, recogniser: Recogniser) -> Option<PathBuf> {
-    let model = f.absolute("whisper_model");
-    if recogniser == Recogniser::Whisper && model.is_none() {
-        let help = "write `whisper_model = \"/path/to/ggml-model.bin\"`";
-        f.problem("recogniser", "`whisper` needs a whisper_model", help);
-    }
-    model
 }

@@ -8,7 +8,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use ::speech::devices::audio::RATE_HZ;
-use ::speech::devices::recogniser::{Gate, PocketSphinx, PocketSphinxOptions, Recogniser};
+use ::speech::devices::recogniser::{
+    Gate, Heard, PocketSphinx, PocketSphinxOptions, Recogniser, SecondView,
+};
 use ::speech::devices::stream::{Closings, SpeechSegment, Stream};
 use ::speech::devices::vad::SegmenterOptions;
 use ::speech::stream_events::{Began, LIVE_FROM, StreamEvent};
@@ -314,11 +316,13 @@ impl<'a> Room<'a> {
     fn decode(&mut self, segment: &SpeechSegment) -> (RecognisedSegment, f64) {
         self.decodings += 1;
         let cpu_s = crate::arm::thread_s();
-        let heard = self.recogniser.recognise(&segment.samples, segment.speech.clone());
-        let hypotheses =
-            self.gate.judge(heard.unwrap_or_default()).map_err(|rejected| rejected.text);
+        let first = self.recogniser.recognise(&segment.samples, segment.speech.clone());
+        let first = first.unwrap_or_default();
+        let heard = Heard { first: first.clone(), second: SecondView::NotAsked };
+        let hypotheses = self.gate.judge(&heard);
         let took_s = crate::arm::thread_s() - cpu_s;
-        (RecognisedSegment { span_s: (0.0, 0.0), snr_db: SNR_DB as f32, hypotheses }, took_s)
+        let result = RecognisedSegment::accepted((0.0, 0.0), SNR_DB as f32, first);
+        (RecognisedSegment { hypotheses, ..result }, took_s)
     }
 }
 

@@ -1,15 +1,16 @@
-//! The service's own way from samples to hypotheses: detector of speech, recogniser, gate.
+//! The service's own way from samples to hypotheses: detector of speech, recognisers, gate.
 
 use super::corpus::Clip;
 use crate::arm::thread_s;
 use ::speech::Hypothesis;
 use ::speech::devices::recogniser::{
-    Gate, PocketSphinx, PocketSphinxOptions, Recogniser, RecogniserUnavailable,
+    Ensemble, Gate, PocketSphinx, PocketSphinxOptions, RecogniserUnavailable, SecondOpinion,
+    SecondView,
 };
 use ::speech::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
 use scene::Scene;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// A stretch of a clip that was taken for speech.
@@ -22,16 +23,27 @@ pub(super) struct Heard {
     pub(super) hypotheses: Vec<Hypothesis>,
     /// Whether the gate lets them pass at each of [`THRESHOLDS`].
     pub(super) accepted: [bool; THRESHOLDS.len()],
-    /// Seconds from there to the hypotheses, by the clock and of processor.
+    /// Seconds from there to the hypotheses, by the clock and of processor; the latter without the
+    /// second recogniser's.
     pub(super) took_s: (f64, f64),
+    /// Whether the second recogniser was asked.
+    pub(super) asked: bool,
 }
 
 /// Thresholds of the gate that are compared; the first is the one in use.
 pub(super) const THRESHOLDS: [f32; 7] = [Gate::THRESHOLD, 0.15, 0.25, 0.35, 0.45, 0.55, 0.7];
 
+/// Names the model of the second recogniser.
+const MODEL: &str = "WHICHONE_WHISPER_MODEL";
+
+/// Returns the model of the second recogniser, if one is to be measured.
+pub(super) fn second_model() -> Option<PathBuf> {
+    std::env::var_os(MODEL).map(PathBuf::from)
+}
+
 /// One robot's ears.
 pub(super) struct Listener {
-    recogniser: PocketSphinx,
+    recognisers: Ensemble,
     gates: [Gate; THRESHOLDS.len()],
     /// Seconds from nothing to a recogniser that is ready.
     pub(super) start_s: f64,
@@ -40,10 +52,13 @@ pub(super) struct Listener {
 impl Listener {
     pub(super) fn new(scene: &Scene, work: &Path) -> Result<Self, RecogniserUnavailable> {
         let started = Instant::now();
-        let recogniser = PocketSphinx::open(scene, &PocketSphinxOptions::debian(work))?;
+        let first = PocketSphinx::open(scene, &PocketSphinxOptions::debian(work))?;
         let start_s = started.elapsed().as_secs_f64();
+        let second = second_model().map(|model| SecondOpinion::start(model, scene.clone()));
+        let gate = Gate::new(scene, Gate::THRESHOLD);
+        let recognisers = Ensemble::new(Box::new(first), second, gate);
         let gates = THRESHOLDS.map(|threshold| Gate::new(scene, threshold));
-        Ok(Self { recogniser, gates, start_s })
+        Ok(Self { recognisers, gates, start_s })
     }
 
     pub(super) fn hear(&mut self, clip: &Clip) -> Vec<Heard> {
@@ -58,18 +73,27 @@ impl Listener {
             VadEvent::End { range, speech } => Some((range, speech)),
             VadEvent::Onset { .. } | VadEvent::Pause { .. } => None,
         });
-        ends.map(|(range, speech)| self.decode(samples, range, speech)).collect()
+        ends.filter_map(|(range, speech)| self.decode(samples, range, speech)).collect()
     }
 
-    fn decode(&mut self, samples: &[i16], range: Range<usize>, speech: Range<usize>) -> Heard {
+    /// Returns what is heard; nothing where the library fails.
+    fn decode(
+        &mut self,
+        samples: &[i16],
+        range: Range<usize>,
+        speech: Range<usize>,
+    ) -> Option<Heard> {
         let (started, cpu_s) = (Instant::now(), thread_s());
         let decoded_at = range.end;
         let voice = speech.start - range.start..speech.end - range.start;
-        let hypotheses = self.recogniser.recognise(&samples[range], voice).unwrap_or_default();
-        let [gate, ..] = &self.gates;
-        let _ = gate.judge(hypotheses.clone());
+        let pcm = &samples[range];
+        let heard = self.recognisers.recognise(pcm, voice.clone()).ok()?;
+        let _ = self.recognisers.judge(&heard, pcm, &voice);
         let took_s = (started.elapsed().as_secs_f64(), thread_s() - cpu_s);
-        let accepted = self.gates.each_ref().map(|gate| gate.judge(hypotheses.clone()).is_ok());
-        Heard { speech, decoded_at, hypotheses, accepted, took_s }
+        let hypotheses = heard.hypotheses();
+        let is_voice = self.recognisers.is_voice(&hypotheses, pcm, &voice);
+        let accepted = self.gates.each_ref().map(|gate| is_voice && gate.judge(&heard).is_ok());
+        let asked = heard.second != SecondView::NotAsked;
+        Some(Heard { speech, decoded_at, hypotheses, accepted, took_s, asked })
     }
 }

@@ -26,6 +26,10 @@ pub(super) struct Score {
     /// to decode.
     pub(super) delay_s: f64,
     pub(super) cpu_s: f64,
+    /// Seconds from the beginning of decoding to the hypotheses.
+    pub(super) wall_s: f64,
+    /// True if the second recogniser was asked.
+    pub(super) asked: bool,
     /// Seconds of sound.
     pub(super) sound_s: f64,
     /// Seconds by which the detector is late.
@@ -83,6 +87,8 @@ impl Score {
             meaning_share: meaning_share as f32,
             delay_s: timing.delay_s,
             cpu_s: heard.iter().map(|heard| heard.took_s.1).sum(),
+            wall_s: heard.iter().map(|heard| heard.took_s.0).sum(),
+            asked: heard.iter().any(|heard| heard.asked),
             sound_s: seconds(clip.samples.len()),
             onset_s: timing.onset_s,
             release_s: timing.release_s,

@@ -99,6 +99,9 @@ fn timed(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
         "decoding, CPU ms, p50",
         "p95",
         "decoding, CPU over sound",
+        "second recogniser asked",
+        "then to result, ms, p50",
+        "p95",
     ];
     let row = |(name, scores): &Row<'_>| {
         let of = |value: fn(&Score) -> f64| -> Vec<f64> {
@@ -110,10 +113,20 @@ fn timed(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
         });
         let sum = |value: fn(&Score) -> f64| scores.iter().map(|s| value(s)).sum::<f64>();
         let load = format!("{:.3}", sum(|s| s.cpu_s) / sum(|s| s.sound_s));
-        std::iter::once((*name).to_owned()).chain(times).chain([load]).collect()
+        let asked = share(scores, |s| s.asked);
+        let doubtful = scores.iter().filter(|s| s.asked && s.wall_s.is_finite());
+        let doubtful: Vec<f64> = doubtful.map(|s| s.wall_s * 1e3).collect();
+        let second = [0.5, 0.95].map(|share| match doubtful.is_empty() {
+            true => String::new(),
+            false => format!("{:.0}", percentile(&doubtful, share)),
+        });
+        let row = std::iter::once((*name).to_owned()).chain(times).chain([load, asked]);
+        row.chain(second).collect()
     };
     let title = format!("Spoken input, times: {corpus}");
-    let note = "Onset and release: the detector's edges against the voice's.";
+    let note = "Onset and release: the detector's edges against the voice's. Decoding and its load are \
+                those of the first recogniser; the last columns are the time from the beginning of \
+                decoding to the result where the second one was asked (with WHICHONE_WHISPER_MODEL).";
     report.table(title, note, heads, rows.iter().map(row).collect());
 }
 

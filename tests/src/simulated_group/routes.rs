@@ -64,9 +64,8 @@ impl SimulatedGroup {
             };
             let begun = &self.user.begun[utterance];
             let TimedUtterance { onset_s, end_s, .. } = begun.utterance;
-            let hypotheses = Ok(vec![Hypothesis::certain(begun.text.clone())]);
-            let span_s = (0.0, end_s - onset_s);
-            let segment = RecognisedSegment { span_s, snr_db: 40.0, hypotheses };
+            let hypotheses = vec![Hypothesis::certain(begun.text.clone())];
+            let segment = RecognisedSegment::accepted((0.0, end_s - onset_s), 40.0, hypotheses);
             let recognised = Recognised { sound, segments: Ok(vec![segment]) };
             self.inboxes.speech.push(speech::In::Recognised(recognised));
         }

@@ -1,6 +1,6 @@
 //! A line of the transcript.
 
-use messages::Outcome;
+use messages::{GateVerdict, Outcome};
 use serde::{Deserialize, Serialize};
 use service::view::Speaker;
 
@@ -23,6 +23,12 @@ pub struct Line {
     /// Probability of the text among all that it may have been.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confidence: Option<f32>,
+    /// What each recogniser thought, where two were asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recognisers: Option<Recognisers>,
+    /// Why it is not acted on: `no_words`, `other_talk` or `no_speech`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub verdict: Option<GateVerdict>,
     /// Possible meanings, most likely first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub understood: Vec<Meaning>,
@@ -54,6 +60,16 @@ pub enum Note {
     ServiceLost { service: String },
     /// A service is back, after its previous run ended like that.
     ServiceBack { service: String, exit: Option<String> },
+}
+
+/// What each recogniser thought.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Recognisers {
+    /// Best words of the first one.
+    pub first: String,
+    /// Words of the second one; there is none where it was too late.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub second: Option<String>,
 }
 
 /// One way to understand an utterance.

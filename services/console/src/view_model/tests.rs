@@ -1,11 +1,12 @@
 //! Messages folded into the view model, in the order and number in which services really send them.
 
-use super::line::Line;
+use super::line::{Line, Recognisers};
 use super::*;
 use dialogue::{Attributed, QuestionShare};
 use messages::{
-    ActKind, Ended, FixedText, InteractionId, Interpretation, MicrophoneState, Outcome, PickPhase,
-    PresentationState, PromptId, ReceiptStatus, UtteranceSeq, WireReading,
+    ActKind, Ended, FixedText, GateVerdict, InteractionId, Interpretation, MicrophoneState,
+    Outcome, PickPhase, PresentationState, PromptId, ReceiptStatus, SecondState, UtteranceSeq,
+    WireReading,
 };
 use scene::{AttributeId, Question, Reading, Response, ValueId};
 use serde_json::{Map, Value as Json};
@@ -173,6 +174,31 @@ fn transcript_shows_speech_not_for_the_robot_but_no_refusals() {
     let lines: Vec<(Speaker, String)> =
         model.transcript().lines().map(|line| (line.who, line.text.clone())).collect();
     assert_eq!(lines, [(Speaker::Unmeant, "nice weather".to_owned())]);
+}
+
+#[test]
+fn transcript_shows_what_each_recogniser_heard_and_why_nothing_followed() {
+    let mut model = model();
+    let text = |text: &str| FixedText::truncated(text);
+    let heard = Receipt {
+        verdict: GateVerdict::OtherTalk.code(),
+        second: SecondState::Heard.code(),
+        first_text: text("the kite bowl"),
+        second_text: text("nice weather"),
+        ..receipt(0, ReceiptStatus::NotForMe, "nice weather")
+    };
+    model.on_receipt(&heard, now(1));
+    let late = Receipt { second: SecondState::Late.code(), second_text: text(""), ..heard };
+    let late = Receipt { first_text: text("the bowl"), ..late };
+    model.on_receipt(&Receipt { seq: 4, status: ReceiptStatus::Accepted.code(), ..late }, now(2));
+    let lines: Vec<_> = model.transcript().lines().cloned().collect();
+    let views = |first: &str, second: Option<&str>| {
+        Some(Recognisers { first: first.to_owned(), second: second.map(str::to_owned) })
+    };
+    assert_eq!(lines[0].verdict, Some(GateVerdict::OtherTalk));
+    assert_eq!(lines[0].recognisers, views("the kite bowl", Some("nice weather")));
+    assert_eq!((lines[1].verdict, &lines[1].recognisers), (None, &views("the bowl", None)));
+    assert!(lines[0].to_text().contains(r#""verdict":"other_talk""#), "{}", lines[0].to_text());
 }
 
 #[test]

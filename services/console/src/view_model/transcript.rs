@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeSet, VecDeque};
 
-use messages::{Ended, Outcome, Presented, Receipt, ReceiptStatus, Source};
+use messages::{Ended, Outcome, Presented, Receipt, ReceiptStatus, SecondState, Source};
 use scene::{ObjectId, Scene};
 use service::Time;
 use service::status::ServiceStatus;
 use service::view::Speaker;
 
 use super::Now;
-use super::line::{Line, Note};
+use super::line::{Line, Note, Recognisers};
 use super::prompts::Prompt;
 use super::understood::Understood;
 use crate::hub::board::LINES_MAX;
@@ -62,10 +62,13 @@ impl Transcript {
                 seq: Some(receipt.seq),
                 source: source(receipt).to_owned(),
                 confidence: spoken.then_some(receipt.confidence),
+                recognisers: recognisers(receipt),
                 ..self.blank(Speaker::Person, text, now)
             },
             ReceiptStatus::NotForMe => Line {
                 source: source(receipt).to_owned(),
+                recognisers: recognisers(receipt),
+                verdict: Some(receipt.verdict.get()),
                 ..self.blank(Speaker::Unmeant, text, now)
             },
             _ => return false,
@@ -187,6 +190,8 @@ impl Transcript {
 
     fn blank(&self, who: Speaker, text: &str, now: Now) -> Line {
         Line {
+            recognisers: None,
+            verdict: None,
             id: self.next,
             at_ms: ms(now.at),
             unix_ms: now.unix_ms,
@@ -211,6 +216,17 @@ impl Transcript {
         }
         self.lines.push_back(line);
     }
+}
+
+/// Returns what each recogniser thought, where two were asked.
+fn recognisers(receipt: &Receipt) -> Option<Recognisers> {
+    let text = |text: Result<&str, _>| text.unwrap_or_default().to_owned();
+    let second = match receipt.second.get() {
+        SecondState::NotAsked => return None,
+        SecondState::Late => None,
+        SecondState::Heard => Some(text(receipt.second_text.as_str())),
+    };
+    Some(Recognisers { first: text(receipt.first_text.as_str()), second })
 }
 
 fn source(receipt: &Receipt) -> &'static str {

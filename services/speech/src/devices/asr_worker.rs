@@ -2,7 +2,7 @@
 //!
 //! Invariant: every accepted input yields exactly one result, in order. The thread accepts input at
 //! once; the recogniser follows when it has loaded. Interim results and early decoding delay no
-//! result.
+//! result, and a second opinion none longer than the closing pause.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -13,13 +13,16 @@ use config::Settings;
 use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
 use messages::EarState;
 
-use crate::devices::recogniser::{Backend, Gate, Recogniser};
+use crate::devices::recogniser::{Backend, Ensemble, Gate, Recogniser, SecondOpinion};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::SegmenterOptions;
 use crate::devices::worker_thread::{QueueError, WorkerThread};
 use crate::{In, RecognitionInput};
-use worker::{EarlyResults, Worker};
+use early::EarlyResults;
+use worker::Worker;
 
+mod doubt;
+mod early;
 mod interim;
 mod worker;
 
@@ -44,13 +47,19 @@ impl AsrWorker {
         let (scene, speech) = (settings.scene.clone(), &settings.speech);
         let gate = Gate::new(&scene, speech.accept_score_min as f32);
         let backend = Backend::of(speech, work);
-        let open = move || backend.open(&scene).map_err(|error| error.to_string());
+        let model = speech.whisper_model.clone();
+        let open = move || {
+            let (first, unpronounceable) =
+                backend.open(&scene).map_err(|error| error.to_string())?;
+            let second = model.map(|model| SecondOpinion::start(model, scene));
+            Ok(Opened { first, second, unpronounceable })
+        };
         let longest_s = speech.recording_max.as_secs_f64();
         Self::with(open, gate, SegmenterOptions::of(speech), longest_s)
     }
 
     fn with(
-        open: impl FnOnce() -> Opened + Send + 'static,
+        open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
         gate: Gate,
         segmenter: SegmenterOptions,
         longest_s: f64,
@@ -64,15 +73,18 @@ impl AsrWorker {
             // Without a receiver of its events the worker has no more to do.
             let publish = |state| drop(events.send(In::RecogniserState(state)));
             publish(EarState::Loading);
-            let recogniser = opened(open());
-            publish(if recogniser.is_ok() { EarState::Ready } else { EarState::Off });
-            let opener = recogniser.as_ref().ok().and_then(|it| it.interim_decoder());
+            let recognisers = open().map(|opened| opened.ready(gate)).inspect_err(|reason| {
+                tracing::warn!(reason, "speech cannot be recognised; typed text works");
+            });
+            publish(if recognisers.is_ok() { EarState::Ready } else { EarState::Off });
+            let opener = recognisers.as_ref().ok().and_then(Ensemble::interim_decoder);
             let results = events.clone();
             let interim =
                 opener.map(|open| thread::spawn(move || interim::run(open, &spoken, &results)));
             let (closed, early) = (worker_closed, EarlyResults::default());
-            let worker = Worker { recogniser, gate, segmenter, longest_s, closed, early };
-            worker.run(inputs, &hinted, &events);
+            let worker =
+                Worker { recognisers, segmenter, longest_s, closed, events, early, doubt: None };
+            worker.run(inputs, &hinted);
             // A panic of the thread has been logged.
             let _ = interim.map(JoinHandle::join);
         });
@@ -104,22 +116,21 @@ impl Drop for AsrWorker {
     }
 }
 
-/// A recogniser and the words that it cannot recognise, or why it is unavailable.
-type Opened = Result<(Box<dyn Recogniser>, Vec<String>), String>;
+/// The recognisers, and the words that the first one cannot recognise.
+struct Opened {
+    first: Box<dyn Recogniser>,
+    second: Option<SecondOpinion>,
+    unpronounceable: Vec<String>,
+}
 
-/// Returns the recogniser after a warning of what is missing.
-fn opened(opened: Opened) -> Result<Box<dyn Recogniser>, String> {
-    match opened {
-        Ok((recogniser, unpronounceable)) => {
-            if !unpronounceable.is_empty() {
-                tracing::warn!(?unpronounceable, "words of the scene that cannot be recognised");
-            }
-            Ok(recogniser)
+impl Opened {
+    /// Returns the recognisers after a warning of what is missing.
+    fn ready(self, gate: Gate) -> Ensemble {
+        let Self { first, second, unpronounceable } = self;
+        if !unpronounceable.is_empty() {
+            tracing::warn!(?unpronounceable, "words of the scene that cannot be recognised");
         }
-        Err(reason) => {
-            tracing::warn!(reason, "speech cannot be recognised; typed text works");
-            Err(reason)
-        }
+        Ensemble::new(first, second, gate)
     }
 }
 

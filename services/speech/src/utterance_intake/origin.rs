@@ -1,16 +1,19 @@
 //! Origin of an utterance: its request, segment, source and time.
 
 use crate::RecognisedSegment;
+use crate::devices::recogniser::{Heard, SecondView};
 use crate::pending_sounds::PendingSound;
 use crate::record::Accepted;
 use crate::utterance_content::UtteranceContent;
 use dialogue::Presentation;
 use dialogue::ids::PromptId;
-use messages::{FixedText, Injection, Receipt, ReceiptStatus, RequestKey, Source, UtteranceSeq};
+use messages::{
+    FixedText, Injection, Receipt, ReceiptStatus, RequestKey, SecondState, Source, UtteranceSeq,
+};
 use service::{Span, Time};
 
 /// Origin of an utterance.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct Origin {
     pub(super) key: RequestKey,
     /// Number and total of the segment.
@@ -22,6 +25,8 @@ pub(super) struct Origin {
     pub(super) seen: PromptId,
     /// Signal-to-noise ratio, decibels; 0 for text.
     pub(super) snr_db: f32,
+    /// What each recogniser thought, where sound was recognised.
+    pub(super) heard: Option<Heard>,
 }
 
 impl Origin {
@@ -31,22 +36,24 @@ impl Origin {
         let onset = reported(injection.onset_ns);
         let span = (onset, reported(injection.end_ns).max(onset));
         let seen = PromptId(injection.seen_prompt);
-        Self { key: injection.key, segment: (0, 1), source: Source::Text, span, seen, snr_db: 0.0 }
+        Self { span, seen, ..Self::new(injection.key, (0, 1), Source::Text) }
     }
 
     /// Returns the origin for the end of a client's stream.
     pub(super) fn closed(key: RequestKey, utterances: u32) -> Self {
-        let (segment, span) = ((u32::MAX, utterances), (Time(0), Time(0)));
-        let seen = PromptId(0);
-        Self { key, segment, source: Source::Microphone, span, seen, snr_db: 0.0 }
+        Self::new(key, (u32::MAX, utterances), Source::Microphone)
     }
 
     /// Returns the origin of segment `number` of `count` in a sound; a live sound is a segment itself.
     pub(super) fn of(sound: &PendingSound, number: u32, count: u32) -> Self {
         let segment = sound.segment.unwrap_or((number, count));
         let span = (sound.onset, sound.end.unwrap_or(Time(0)));
-        let seen = PromptId(0);
-        Self { key: sound.key, segment, source: sound.source, span, seen, snr_db: 0.0 }
+        Self { span, ..Self::new(sound.key, segment, sound.source) }
+    }
+
+    fn new(key: RequestKey, segment: (u32, u32), source: Source) -> Self {
+        let (span, seen) = ((Time(0), Time(0)), PromptId(0));
+        Self { key, segment, source, span, seen, snr_db: 0.0, heard: None }
     }
 
     /// Adds what the recogniser measured. The times of a live sound are known; those of a recording
@@ -55,18 +62,31 @@ impl Origin {
         let at = |s: f64| (self.span.0 + Span::from_s(s)).min(now);
         let recorded = (at(segment.span_s.0), at(segment.span_s.1));
         let span = if self.span.1 == Time(0) { recorded } else { self.span };
-        Self { span, snr_db: segment.snr_db, ..self }
+        Self { span, snr_db: segment.snr_db, heard: Some(segment.heard.clone()), ..self }
+    }
+
+    /// Adds what each recogniser thought to the receipt.
+    pub(super) fn with_views(&self, receipt: Receipt) -> Receipt {
+        let Some(Heard { first, second }) = &self.heard else { return receipt };
+        let first = first.first().map_or("", |best| best.text.as_str());
+        let (second, text) = match second {
+            SecondView::NotAsked => (SecondState::NotAsked, ""),
+            SecondView::Late => (SecondState::Late, ""),
+            SecondView::Heard(opinion) => (SecondState::Heard, opinion.text.as_str()),
+        };
+        let (first_text, second_text) = (FixedText::truncated(first), FixedText::truncated(text));
+        Receipt { first_text, second: second.code(), second_text, ..receipt }
     }
 
     /// Returns the utterance with its content, and the questions that it may answer.
     pub(super) fn accepted(
-        self,
+        &self,
         seq: UtteranceSeq,
         UtteranceContent { hypotheses, gesture }: UtteranceContent,
         mut asked: Vec<Presentation>,
         now: Time,
     ) -> Accepted {
-        let Self { key, segment, source, span: (onset, end), seen, snr_db } = self;
+        let Self { key, segment, source, span: (onset, end), seen, snr_db, .. } = *self;
         asked.retain(|question| seen == PromptId(0) || question.prompt <= seen);
         let accepted = now;
         Accepted {
@@ -86,7 +106,7 @@ impl Origin {
 
     /// Returns the receipt for a request or sound without a new utterance.
     pub(super) fn rejection(&self, status: ReceiptStatus, note: &str) -> Receipt {
-        Receipt {
+        self.with_views(Receipt {
             key: self.key.0,
             segment: self.segment.0,
             segments: self.segment.1,
@@ -97,6 +117,6 @@ impl Origin {
             source: self.source.code(),
             note: FixedText::truncated(note),
             ..Receipt::default()
-        }
+        })
     }
 }

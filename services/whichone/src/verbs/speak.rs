@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use messages::{Hypothesis, Receipt, ReceiptStatus, Service, Sound, Source};
+use messages::{
+    GateVerdict, Hypothesis, Receipt, ReceiptStatus, SecondState, Service, Sound, Source, WireError,
+};
 use serde::Serialize;
 use service::client::Client;
 use service::clock;
@@ -120,16 +122,70 @@ struct Printed<'a> {
     source: Source,
     confidence: f32,
     snr_db: f32,
+    verdict: GateVerdict,
+    gate_score: f32,
+    recognisers: Recognisers<'a>,
     onset_ns: u64,
     end_ns: u64,
 }
 
+/// What each recogniser thought; empty for text.
+#[derive(Serialize)]
+struct Recognisers<'a> {
+    first: &'a str,
+    second: SecondState,
+    second_text: &'a str,
+}
+
+impl<'a> Recognisers<'a> {
+    fn of(receipt: &'a Receipt) -> Result<Self, WireError> {
+        Ok(Self {
+            first: receipt.first_text.as_str()?,
+            second: receipt.second.get(),
+            second_text: receipt.second_text.as_str()?,
+        })
+    }
+
+    /// Returns both views where there are two.
+    fn as_text(&self) -> Option<String> {
+        let first = one_line(self.first);
+        Some(match self.second {
+            SecondState::NotAsked => return None,
+            SecondState::Late => format!("first recogniser: {first}; the second was too late"),
+            SecondState::Heard if self.second_text.is_empty() => {
+                format!("first recogniser: {first}; the second heard no words")
+            }
+            SecondState::Heard => {
+                format!("first recogniser: {first}; second: {}", one_line(self.second_text))
+            }
+        })
+    }
+}
+
+/// Returns what was heard and not acted on, and why.
+fn not_acted_on(receipt: &Receipt, note: &str) -> String {
+    match receipt.verdict.get() {
+        GateVerdict::NoWords => "heard, but no words were recognised".to_owned(),
+        GateVerdict::NoSpeech => {
+            format!("heard, but not acted on: {note} (no voice in it)")
+        }
+        GateVerdict::OtherTalk | GateVerdict::Passed => {
+            let score = receipt.gate_score;
+            format!(
+                "heard, but not acted on: {note} (about other things: {score:.2} is below \
+                 speech.accept_score_min)"
+            )
+        }
+    }
+}
+
 /// Prints the receipt of an utterance.
 pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Failure> {
-    let unclear = |error: messages::WireError| Failure::new(Exit::NotReached, error.to_string());
+    let unclear = |error: WireError| Failure::new(Exit::NotReached, error.to_string());
     let status = receipt.status.get();
     let source = receipt.source.get();
     let note = receipt.note.as_str().map_err(unclear)?;
+    let recognisers = Recognisers::of(receipt).map_err(unclear)?;
     let utterance = receipt.utterance().map(|seq| seq.0);
     if out.is_json() {
         return out.json(&Printed {
@@ -139,6 +195,9 @@ pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Failu
             source,
             confidence: receipt.confidence,
             snr_db: receipt.snr_db,
+            verdict: receipt.verdict.get(),
+            gate_score: receipt.gate_score,
+            recognisers,
             onset_ns: receipt.onset_ns,
             end_ns: receipt.end_ns,
         });
@@ -154,8 +213,7 @@ pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Failu
             out.line(format_args!("heard{seq}: {note}{how}"))?;
         }
         (ReceiptStatus::NotForMe, _) => {
-            let text = format!("heard, but not meant for the robot: {note}");
-            out.line(style.paint(Ink::Yellow, text))?;
+            out.line(style.paint(Ink::Yellow, not_acted_on(receipt, note)))?;
         }
         (ReceiptStatus::Over, _) if note.is_empty() => {}
         (ReceiptStatus::Over, _) => out.line(style.paint(Ink::Yellow, note))?,
@@ -163,9 +221,49 @@ pub(super) fn print(receipt: &Receipt, out: &mut Output<'_>) -> Result<(), Failu
             return Err(Failure::new(Exit::NotReached, format!("not accepted: {note}")));
         }
     }
+    if let Some(views) = recognisers.as_text() {
+        out.line(style.paint(Ink::Dim, views))?;
+    }
     let measured = spoken && receipt.snr_db > 0.0;
     match hearing::noise(receipt.snr_db).filter(|_| measured) {
         Some(noise) => out.line(style.paint(Ink::Yellow, noise)),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::FixedText;
+
+    #[test]
+    fn receipt_says_what_each_recogniser_heard_and_why_nothing_follows() {
+        let receipt = |verdict: GateVerdict, second: SecondState, words: &str| Receipt {
+            verdict: verdict.code(),
+            second: second.code(),
+            gate_score: 0.125,
+            first_text: FixedText::truncated("the kite"),
+            second_text: FixedText::truncated(words),
+            ..Receipt::default()
+        };
+        for (verdict, expected) in [
+            (GateVerdict::NoWords, "no words were recognised"),
+            (GateVerdict::OtherTalk, "the kite (about other things: 0.12 is below"),
+            (GateVerdict::NoSpeech, "the kite (no voice in it)"),
+        ] {
+            let text = not_acted_on(&receipt(verdict, SecondState::NotAsked, ""), "the kite");
+            assert!(text.contains(expected), "{text}");
+        }
+        for (second, words, expected) in [
+            (SecondState::NotAsked, "", None),
+            (SecondState::Late, "", Some("the kite; the second was too late")),
+            (SecondState::Heard, "", Some("the kite; the second heard no words")),
+            (SecondState::Heard, "the white", Some("the kite; second: the white")),
+        ] {
+            let receipt = receipt(GateVerdict::Passed, second, words);
+            let text = Recognisers::of(&receipt).unwrap().as_text();
+            let expected = expected.map(|text| format!("first recogniser: {text}"));
+            assert_eq!(text, expected);
+        }
     }
 }

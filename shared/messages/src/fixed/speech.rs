@@ -161,6 +161,32 @@ wire_enum! {
     }
 }
 
+wire_enum! {
+    /// Why speech is acted on or not.
+    GateVerdict {
+        /// It is about the scene.
+        Passed = 0,
+        /// No words were recognised.
+        NoWords = 1,
+        /// It is about other things.
+        OtherTalk = 2,
+        /// Nobody spoke.
+        NoSpeech = 3,
+    }
+}
+
+wire_enum! {
+    /// The second recogniser's part in an utterance.
+    SecondState {
+        /// There is none, or the first one was sure.
+        NotAsked = 0,
+        /// It was too late.
+        Late = 1,
+        /// It was heard.
+        Heard = 2,
+    }
+}
+
 wire_struct! {
     /// Answer to an injection, or what a microphone heard. Speech to clients.
     Receipt = "Receipt" {
@@ -180,14 +206,22 @@ wire_struct! {
         confidence: f32,
         /// Level of the speech above the noise around it, decibels, 0 to 60; 0 for text.
         snr_db: f32,
+        /// How much of it is about the scene, 0 to 1, where the verdict is [`GateVerdict::OtherTalk`].
+        gate_score: f32,
         /// [`ReceiptStatus`].
         status: Code<ReceiptStatus>,
         /// [`Source`].
         source: Code<Source>,
-        /// Zero.
-        reserved: [u8; 6],
+        /// [`GateVerdict`] on speech.
+        verdict: Code<GateVerdict>,
+        /// [`SecondState`].
+        second: Code<SecondState>,
         /// The text heard, or why it was refused.
         note: FixedText<500>,
+        /// Best words of the first recogniser; empty for text, and after a restart.
+        first_text: FixedText<200>,
+        /// Words of the second recogniser, where it was heard.
+        second_text: FixedText<200>,
     }
 }
 

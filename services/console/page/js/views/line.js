@@ -39,8 +39,10 @@ function understood(line, t) {
 
 function circumstances(line, t) {
   const notes = [];
-  if (line.who === "unmeant")
-    notes.push(h("span", { class: "note strong", text: t("line.unmeant") }));
+  if (line.who === "unmeant") {
+    const why = t(`line.verdict.${line.verdict ?? "other_talk"}`);
+    notes.push(h("span", { class: "note strong", text: why }));
+  }
   for (const { question, share } of line.answers ?? []) {
     if (share < SMALL) continue;
     const percent = share < SURE ? ` ${t.percent(share)}` : "";
@@ -50,8 +52,15 @@ function circumstances(line, t) {
     const share = t.percent(line.confidence);
     notes.push(h("span", { class: "note", text: t("line.confidence", { share }) }));
   }
+  if (line.recognisers) notes.push(h("span", { class: "note", text: views(line.recognisers, t) }));
   if (line.who === "person" && line.source && line.source !== "typed") {
     notes.push(h("span", { class: "note", text: t(`source.${line.source}`) }));
   }
   return notes;
+}
+
+/** What each recogniser thought. */
+function views({ first, second }, t) {
+  if (second === undefined) return t("line.second.late", { first });
+  return second ? t("line.second.heard", { first, second }) : t("line.second.silent", { first });
 }

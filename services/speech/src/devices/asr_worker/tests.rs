@@ -39,16 +39,22 @@ impl Recogniser for Stub {
     }
 }
 
-fn worker(open: impl FnOnce() -> Opened + Send + 'static) -> (AsrWorker, Receiver<In>) {
+fn worker(
+    open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
+) -> (AsrWorker, Receiver<In>) {
     let gate = Gate::new(&bowls(), Gate::THRESHOLD);
     let (worker, events) = AsrWorker::with(open, gate, SegmenterOptions::default(), 10.0);
     assert_eq!(next(&events), In::RecogniserState(EarState::Loading));
     (worker, events)
 }
 
+fn alone(stub: Stub) -> Opened {
+    Opened { first: Box::new(stub), second: None, unpronounceable: vec!["qwz".to_owned()] }
+}
+
 fn ready(fails: bool) -> (AsrWorker, Receiver<In>) {
     let stub = Stub { calls: unbounded().0, permission: None, is_quick: false, fails };
-    let (worker, events) = worker(move || Ok((Box::new(stub), vec!["qwz".to_owned()])));
+    let (worker, events) = worker(move || Ok(alone(stub)));
     assert_eq!(next(&events), In::RecogniserState(EarState::Ready));
     (worker, events)
 }
@@ -71,7 +77,7 @@ fn file(path: &Path) -> RecognitionInput {
 fn text(segment: &RecognisedSegment) -> &str {
     match &segment.hypotheses {
         Ok(hypotheses) => &hypotheses[0].text,
-        Err(text) => text,
+        Err(rejected) => &rejected.text,
     }
 }
 
@@ -107,6 +113,8 @@ fn asr_worker_recognises_a_segment_of_a_stream_as_a_whole() {
     assert_eq!((segment.span_s, text(segment)), ((0.5, 1.5), "white"));
 }
 
+mod doubt;
+
 #[test]
 fn asr_worker_reports_failures_with_their_reason() {
     let (failing, events) = ready(true);
@@ -128,7 +136,7 @@ fn asr_worker_bounds_its_queue_while_the_recogniser_loads() {
     let (worker, events) = worker(move || {
         wait.recv().map_err(|e| e.to_string())?;
         let stub = Stub { calls: unbounded().0, permission: None, is_quick: true, fails: false };
-        Ok((Box::new(stub), Vec::new()))
+        Ok(alone(stub))
     });
     let input = || RecognitionInput::Speech(segment(1_600));
     for sound in 0..WAITING_MAX as u64 {
@@ -158,7 +166,7 @@ fn asr_worker_reports_a_crash_of_its_thread() {
 fn waiting(is_quick: bool) -> (AsrWorker, Receiver<In>, Receiver<usize>, Sender<()>) {
     let ((calls, called), (go, permission)) = (unbounded(), unbounded());
     let stub = Stub { calls, permission: Some(permission), is_quick, fails: false };
-    let (worker, events) = worker(move || Ok((Box::new(stub), Vec::new())));
+    let (worker, events) = worker(move || Ok(alone(stub)));
     next(&events);
     (worker, events, called, go)
 }

@@ -1,58 +1,43 @@
-//! The worker's thread: decodes inputs in order, and possible ends of utterances while it is idle.
+//! The worker's thread: decodes inputs in order, and possible ends of utterances while it is idle. Where
+//! the first recogniser is in doubt it asks the second one, and goes on meanwhile.
 //!
-//! Invariant: an early result is used only for the very samples that were decoded.
+//! Invariant: no result waits for the second recogniser longer than the closing pause, nor does the
+//! next input.
 
-use std::collections::VecDeque;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, Sender, TryRecvError, select};
+use crossbeam_channel::{Receiver, Sender, TryRecvError, after, never, select};
 
+use super::doubt::Doubt;
+use super::early::EarlyResults;
 use crate::devices::audio::{read_wav, seconds, snr_db};
-use crate::devices::recogniser::{Gate, RecogniseError, Recogniser};
+use crate::devices::recogniser::{Ensemble, Heard, Opinion, SecondView};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
-use crate::{In, Recognised, RecognisedSegment, RecognitionInput};
-
-/// Early results that are kept: one for each speaker, and one that turned out to be too early.
-const EARLY_MAX: usize = 4;
+use crate::{Hypothesis, In, Recognised, RecognisedSegment, RecognitionInput};
 
 /// The thread's side.
 pub(super) struct Worker {
-    pub(super) recogniser: Result<Box<dyn Recogniser>, String>,
-    pub(super) gate: Gate,
+    pub(super) recognisers: Result<Ensemble, String>,
     pub(super) segmenter: SegmenterOptions,
     pub(super) longest_s: f64,
     pub(super) closed: Arc<AtomicBool>,
+    pub(super) events: Sender<In>,
     pub(super) early: EarlyResults,
+    pub(super) doubt: Option<Doubt>,
 }
 
-/// Results of segments that were decoded before their end was certain.
-#[derive(Default)]
-pub(super) struct EarlyResults {
-    results: VecDeque<(SpeechSegment, RecognisedSegment)>,
-    /// The inputs that were answered last: hints about them come too late.
-    answered: VecDeque<u64>,
-}
-
-impl EarlyResults {
-    fn take(&mut self, segment: &SpeechSegment) -> Option<RecognisedSegment> {
-        let is_same = |(known, _): &(SpeechSegment, _)| {
-            known.speech == segment.speech && known.samples == segment.samples
-        };
-        let at = self.results.iter().position(is_same)?;
-        self.results.remove(at).map(|(_, result)| result)
-    }
-}
-
-fn push<T>(queue: &mut VecDeque<T>, item: T) {
-    if queue.len() >= EARLY_MAX {
-        queue.pop_front();
-    }
-    queue.push_back(item);
+/// What the thread does next.
+enum Next {
+    Input(u64, RecognitionInput),
+    Hint(u64, SpeechSegment),
+    /// The second recogniser's opinion, or that it is late.
+    Opinion(Option<Opinion>),
+    Closed,
 }
 
 impl Worker {
@@ -60,100 +45,192 @@ impl Worker {
         mut self,
         inputs: &Receiver<(u64, RecognitionInput)>,
         hints: &Receiver<(u64, SpeechSegment)>,
-        events: &Sender<In>,
     ) {
         loop {
-            // Inputs have priority over hints.
-            let (sound, input) = match inputs.try_recv() {
-                Err(TryRecvError::Disconnected) => return,
-                Ok(next) => next,
-                Err(TryRecvError::Empty) => select! {
-                    recv(inputs) -> next => match next {
-                        Ok(next) => next,
-                        Err(_) => return,
-                    },
-                    recv(hints) -> hint => {
-                        // The newest hint is the most likely one.
-                        let newest = hints.try_iter().last().or(hint.ok());
-                        let Some((sound, segment)) = newest else { return };
-                        self.decode_early(sound, segment, events);
-                        continue;
-                    }
-                },
-            };
-            if self.closed.load(Ordering::SeqCst) {
-                return;
-            }
-            let segments = self.recognise(input);
-            for snr_db in segments.iter().flatten().map(|segment| segment.snr_db) {
-                if snr_db < SNR_MIN_DB {
-                    tracing::warn!(snr_db, "loud background noise; help: speak closer, or type");
-                }
-            }
-            push(&mut self.early.answered, sound);
-            if events.send(In::Recognised(Recognised { sound, segments })).is_err() {
-                return;
+            match self.next(inputs, hints) {
+                Next::Input(..) if self.closed.load(Ordering::SeqCst) => return,
+                Next::Input(sound, input) => self.on_input(sound, input),
+                Next::Hint(sound, segment) => self.on_hint(sound, segment),
+                Next::Opinion(opinion) => self.settle(opinion),
+                Next::Closed => return,
             }
         }
     }
 
-    fn decode_early(&mut self, sound: u64, segment: SpeechSegment, events: &Sender<In>) {
-        let Ok(recogniser) = &mut self.recogniser else { return };
-        if !recogniser.is_quick() || self.early.answered.contains(&sound) {
-            return;
+    fn next(
+        &self,
+        inputs: &Receiver<(u64, RecognitionInput)>,
+        hints: &Receiver<(u64, SpeechSegment)>,
+    ) -> Next {
+        // Inputs have priority over hints.
+        match inputs.try_recv() {
+            Ok((sound, input)) => return Next::Input(sound, input),
+            Err(TryRecvError::Disconnected) => return Next::Closed,
+            Err(TryRecvError::Empty) => {}
         }
-        // A failure is retried when the end is certain, and reported then.
-        let result = recognise_segment(recogniser.as_mut(), &self.gate, &segment).ok();
-        let at = segment.closing(Duration::ZERO);
-        if let Some(result) = &result {
-            push(&mut self.early.results, (segment, result.clone()));
+        let (opinion, until) = Doubt::awaited(self.doubt.as_ref());
+        let late = until
+            .map_or_else(never, |until| after(until.saturating_duration_since(Instant::now())));
+        select! {
+            recv(inputs) -> next => {
+                next.map_or(Next::Closed, |(sound, input)| Next::Input(sound, input))
+            }
+            recv(hints) -> hint => {
+                // The newest hint is the most likely one.
+                let newest = hints.try_iter().last().or(hint.ok());
+                newest.map_or(Next::Closed, |(sound, segment)| Next::Hint(sound, segment))
+            }
+            recv(opinion) -> opinion => Next::Opinion(opinion.ok()),
+            recv(late) -> _ => Next::Opinion(None),
         }
-        // Without a receiver of its events the worker ends with the next input.
-        let _ = events.send(In::EarlyResult { sound, at, result });
     }
 
-    fn recognise(&mut self, input: RecognitionInput) -> Result<Vec<RecognisedSegment>, String> {
-        let recogniser = match &mut self.recogniser {
-            Ok(recogniser) => recogniser.as_mut(),
-            Err(reason) => return Err(format!("speech recognition is off: {reason}")),
-        };
+    fn on_input(&mut self, sound: u64, input: RecognitionInput) {
+        if let (RecognitionInput::Speech(segment), Some(doubt)) = (&input, &mut self.doubt)
+            && doubt.is_about(sound, segment)
+            && !doubt.is_owed
+        {
+            return doubt.owe();
+        }
+        // Results keep their order.
+        self.settle(None);
         match input {
-            RecognitionInput::File(path) => self.recognise_file(Path::new(&path)),
-            RecognitionInput::Speech(segment) => match self.early.take(&segment) {
-                Some(result) => Ok(vec![result]),
-                None => recognise_segment(recogniser, &self.gate, &segment)
-                    .map(|result| vec![result])
-                    .map_err(|error| error.to_string()),
+            RecognitionInput::File(path) => {
+                let segments = self.recognise_file(Path::new(&path));
+                self.answer(sound, segments);
+            }
+            RecognitionInput::Speech(segment) => self.on_speech(sound, segment),
+        }
+    }
+
+    fn on_speech(&mut self, sound: u64, segment: SpeechSegment) {
+        if let Some(result) = self.early.take(&segment) {
+            return self.answer(sound, Ok(vec![result]));
+        }
+        match self.ask_first(&segment) {
+            Err(reason) => self.answer(sound, Err(reason)),
+            Ok(first) => match self.doubted(sound, &segment, &first) {
+                Some(mut doubt) => {
+                    doubt.owe();
+                    self.doubt = Some(doubt);
+                }
+                None => {
+                    let heard = Heard { first, second: SecondView::NotAsked };
+                    let result = self.result(&segment, heard, false);
+                    self.answer(sound, result.map(|result| vec![result]));
+                }
             },
         }
     }
 
+    fn on_hint(&mut self, sound: u64, segment: SpeechSegment) {
+        let is_quick = self.recognisers.as_ref().is_ok_and(Ensemble::is_quick);
+        if !is_quick || self.early.is_answered(sound) {
+            return;
+        }
+        // Whoever speaks on makes the question pointless.
+        let is_other = |doubt: &mut Doubt| !doubt.is_owed && !doubt.is_about(sound, &segment);
+        self.doubt.take_if(is_other);
+        // A failure is retried when the end is certain, and reported then.
+        let first = self.ask_first(&segment).ok();
+        let Some(first) = first else { return self.publish_early(sound, &segment, None) };
+        let result = Heard { first: first.clone(), second: SecondView::NotAsked };
+        match &mut self.doubt {
+            Some(doubt) if doubt.is_owed => {}
+            Some(doubt) => doubt.update(segment.clone(), first),
+            None => self.doubt = self.doubted(sound, &segment, &first),
+        }
+        let awaits_second =
+            self.doubt.as_ref().is_some_and(|doubt| doubt.is_about(sound, &segment));
+        let result = self.result(&segment, result, awaits_second).ok();
+        self.publish_early(sound, &segment, result.clone());
+        if let Some(result) = result.filter(|_| !awaits_second) {
+            self.early.keep(segment, result);
+        }
+    }
+
+    /// Ends the question to the second recogniser, if one is asked, with its opinion or without.
+    fn settle(&mut self, opinion: Option<Opinion>) {
+        let Some(doubt) = self.doubt.take() else { return };
+        let (sound, segment, heard, is_owed) = doubt.settled(opinion);
+        let result = self.result(&segment, heard, false);
+        if is_owed {
+            return self.answer(sound, result.map(|result| vec![result]));
+        }
+        if let Ok(result) = result {
+            self.publish_early(sound, &segment, Some(result.clone()));
+            self.early.keep(segment, result);
+        }
+    }
+
+    /// Asks the second recogniser where the first one is in doubt.
+    fn doubted(&self, sound: u64, segment: &SpeechSegment, first: &[Hypothesis]) -> Option<Doubt> {
+        let recognisers = self.recognisers.as_ref().ok().filter(|it| it.is_in_doubt(first))?;
+        Doubt::raise(recognisers, sound, segment.clone(), first.to_vec(), &self.segmenter)
+    }
+
+    fn ask_first(&mut self, segment: &SpeechSegment) -> Result<Vec<Hypothesis>, String> {
+        let recognisers = available(&mut self.recognisers)?;
+        let first = recognisers.ask_first(&segment.samples, segment.speech.clone());
+        first.map_err(|error| error.to_string())
+    }
+
+    fn result(
+        &self,
+        segment: &SpeechSegment,
+        heard: Heard,
+        awaits_second: bool,
+    ) -> Result<RecognisedSegment, String> {
+        let recognisers = self.recognisers.as_ref().map_err(Clone::clone)?;
+        let SpeechSegment { samples, speech, .. } = segment;
+        let result = judged(recognisers, samples, &(0..samples.len()), speech, heard);
+        Ok(RecognisedSegment { awaits_second, ..result })
+    }
+
     fn recognise_file(&mut self, path: &Path) -> Result<Vec<RecognisedSegment>, String> {
+        let recognisers = available(&mut self.recognisers)?;
         let samples = read_wav(path, self.longest_s).map_err(|error| error.to_string())?;
         let mut segmenter = Segmenter::new(self.segmenter.clone());
         let mut events = segmenter.push(&samples);
         events.extend(segmenter.finish());
         let mut segments = Vec::new();
-        let Ok(recogniser) = &mut self.recogniser else { return Ok(segments) };
         for event in events {
             let VadEvent::End { range, speech } = event else { continue };
             if self.closed.load(Ordering::SeqCst) {
                 break;
             }
-            let segment =
-                recognise_range(recogniser.as_mut(), &self.gate, &samples, range, &speech);
-            segments.push(segment.map_err(|error| error.to_string())?);
+            let voice = speech.start - range.start..speech.end - range.start;
+            let heard = recognisers.recognise(&samples[range.clone()], voice);
+            let heard = heard.map_err(|error| error.to_string())?;
+            segments.push(judged(recognisers, &samples, &range, &speech, heard));
         }
         Ok(segments)
     }
+
+    fn publish_early(
+        &self,
+        sound: u64,
+        segment: &SpeechSegment,
+        result: Option<RecognisedSegment>,
+    ) {
+        let at = segment.closing(Duration::ZERO);
+        // Without a receiver of its events the worker ends with the next input.
+        let _ = self.events.send(In::EarlyResult { sound, at, result: result.map(Box::new) });
+    }
+
+    fn answer(&mut self, sound: u64, segments: Result<Vec<RecognisedSegment>, String>) {
+        for segment in segments.iter().flatten() {
+            report(segment);
+        }
+        self.early.answered(sound);
+        // Without a receiver of its events nobody gives it more to do.
+        let _ = self.events.send(In::Recognised(Recognised { sound, segments }));
+    }
 }
 
-fn recognise_segment(
-    recogniser: &mut dyn Recogniser,
-    gate: &Gate,
-    SpeechSegment { samples, speech, .. }: &SpeechSegment,
-) -> Result<RecognisedSegment, RecogniseError> {
-    recognise_range(recogniser, gate, samples, 0..samples.len(), speech)
+/// Returns the recognisers, or why there are none.
+fn available(recognisers: &mut Result<Ensemble, String>) -> Result<&mut Ensemble, String> {
+    recognisers.as_mut().map_err(|reason| format!("speech recognition is off: {reason}"))
 }
 
 /// Signal-to-noise ratio, decibels, below which hardly half of the speech is understood.
@@ -161,30 +238,35 @@ const SNR_MIN_DB: f32 = 15.0;
 /// Smallest weight of a hypothesis that is handed on.
 const WEIGHT_MIN: f64 = 1e-3;
 
-fn recognise_range(
-    recogniser: &mut dyn Recogniser,
-    gate: &Gate,
+fn report(segment: &RecognisedSegment) {
+    let snr_db = segment.snr_db;
+    if snr_db < SNR_MIN_DB {
+        tracing::warn!(snr_db, "loud background noise; help: speak closer, or type");
+    }
+    if let Err(rejected) = &segment.hypotheses {
+        let (text, score, reason) = (&rejected.text, rejected.score, rejected.reason);
+        tracing::info!(text, score, ?reason, "speech rejected: not meant for the robot");
+    }
+}
+
+/// Returns the result for the samples of `range`, in which `speech` are those of the voice.
+fn judged(
+    recognisers: &Ensemble,
     samples: &[i16],
-    range: Range<usize>,
+    range: &Range<usize>,
     speech: &Range<usize>,
-) -> Result<RecognisedSegment, RecogniseError> {
-    let snr_db = snr_db(samples, &range, speech);
+    heard: Heard,
+) -> RecognisedSegment {
     let voice = speech.start - range.start..speech.end - range.start;
-    let hypotheses = gate.judge(recogniser.recognise(&samples[range], voice)?);
-    let hypotheses = match hypotheses {
-        Ok(mut hypotheses) => {
-            hypotheses.iter_mut().for_each(|h| h.weight = h.weight.max(WEIGHT_MIN));
-            Ok(hypotheses)
-        }
-        Err(rejected) => {
-            let (text, score) = (rejected.text, rejected.score);
-            tracing::info!(text, score, "speech rejected: not meant for the robot");
-            Err(text)
-        }
-    };
-    Ok(RecognisedSegment {
+    let mut hypotheses = recognisers.judge(&heard, &samples[range.clone()], &voice);
+    for hypothesis in hypotheses.iter_mut().flatten() {
+        hypothesis.weight = hypothesis.weight.max(WEIGHT_MIN);
+    }
+    RecognisedSegment {
         span_s: (seconds(speech.start), seconds(speech.end)),
-        snr_db,
+        snr_db: snr_db(samples, range, speech),
         hypotheses,
-    })
+        heard,
+        awaits_second: false,
+    }
 }

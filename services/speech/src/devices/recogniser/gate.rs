@@ -3,8 +3,10 @@
 use std::collections::BTreeSet;
 
 use language::{Language, Reader};
+use messages::GateVerdict;
 use scene::{Intent, ObjectId, Question, Reading, Response, Scene, WordId};
 
+use super::{Heard, SecondView};
 use crate::Hypothesis;
 use crate::devices::language_model::scene_sentences;
 
@@ -13,12 +15,16 @@ use crate::devices::language_model::scene_sentences;
 pub struct Rejected {
     /// The best hypothesis; empty if nothing was recognised.
     pub text: String,
-    /// [`Gate::score`] of the speech; `None` if no word was recognised.
-    pub score: Option<f64>,
+    /// Why it is not acted on.
+    pub reason: GateVerdict,
+    /// [`Gate::score`] of the speech, 0 to 1.
+    pub score: f64,
 }
 
 /// Share of a meaning in the scene's words alone from which it is accepted whatever else was heard.
 const PLAIN: f64 = 0.5;
+/// Share of a meaning from which it is clear: second opinions on it change nothing (docs/speech.md).
+const CLEAR: f64 = 0.9;
 /// A yes or no has a meaning only as an answer.
 const ANY_QUESTION: Question = Question::Point(ObjectId(0));
 
@@ -44,19 +50,29 @@ impl Gate {
         Self { words, reader, threshold: threshold.into() }
     }
 
-    /// Accepts or rejects all hypotheses of one utterance together; best hypothesis first.
+    /// Accepts or rejects all hypotheses of one utterance together; returns them, best first.
     ///
     /// # Errors
     /// If the speech is not meant for the robot.
-    pub fn judge(&self, hypotheses: Vec<Hypothesis>) -> Result<Vec<Hypothesis>, Rejected> {
-        let Some(best) = hypotheses.first() else {
-            return Err(Rejected { text: String::new(), score: None });
+    pub fn judge(&self, heard: &Heard) -> Result<Vec<Hypothesis>, Rejected> {
+        let hypotheses = heard.hypotheses();
+        let rejected = |reason, score| {
+            let text = hypotheses.first().map_or("", |best| best.text.as_str()).to_owned();
+            Err(Rejected { text, reason, score })
         };
-        let score = self.score(&hypotheses);
-        if score >= self.threshold || self.plain_content(&hypotheses) >= PLAIN {
-            return Ok(hypotheses);
+        if hypotheses.is_empty() {
+            return rejected(GateVerdict::NoWords, 0.0);
         }
-        Err(Rejected { text: best.text.clone(), score: Some(score) })
+        let score = self.score(&hypotheses);
+        if let SecondView::Heard(opinion) = &heard.second
+            && opinion.is_silence()
+        {
+            return rejected(GateVerdict::NoSpeech, score);
+        }
+        if score < self.threshold && self.plain_content(&hypotheses) < PLAIN {
+            return rejected(GateVerdict::OtherTalk, score);
+        }
+        Ok(hypotheses)
     }
 
     /// Returns how much the hypotheses are about the scene, 0 to 1: the mean share of the scene's
@@ -69,6 +85,11 @@ impl Gate {
         let share = hypotheses.iter().map(|h| h.weight * self.share(h)).sum::<f64>() / total;
         let meanings = self.meanings(hypotheses.iter(), Question::None);
         share.powi(6) * meanings.iter().map(|(_, weight)| *weight).fold(0.0, f64::max) / total
+    }
+
+    /// Returns whether the hypotheses leave so little doubt that another opinion would hardly matter.
+    pub fn is_clear(&self, hypotheses: &[Hypothesis]) -> bool {
+        self.score(hypotheses).max(self.plain_content(hypotheses)) >= CLEAR
     }
 
     /// Returns the share of the scene's words among all words.
@@ -143,6 +164,7 @@ impl Meaning {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::devices::recogniser::Opinion;
     use crate::devices::testing::bowls;
 
     fn hypotheses(weighed: &[(&str, f64)]) -> Vec<Hypothesis> {
@@ -153,20 +175,38 @@ mod tests {
         weighed.iter().map(hypothesis).collect()
     }
 
+    fn heard(weighed: &[(&str, f64)]) -> Heard {
+        Heard { first: hypotheses(weighed), second: SecondView::NotAsked }
+    }
+
     #[test]
     fn gate_accepts_speech_about_the_scene_and_short_answers_only() {
         let gate = Gate::new(&bowls(), Gate::THRESHOLD);
-        let judge = |weighed: &[(&str, f64)]| gate.judge(hypotheses(weighed));
+        let judge = |weighed: &[(&str, f64)]| gate.judge(&heard(weighed));
         assert_eq!(judge(&[("yes the white one", 0.9), ("yes", 0.1)]).unwrap().len(), 2);
         let rejected = judge(&[("the weather today", 0.9), ("the white one", 0.1)]).unwrap_err();
         assert_eq!(rejected.text, "the weather today");
-        assert!(rejected.score.unwrap() < gate.threshold);
+        assert!(rejected.score < gate.threshold);
+        assert_eq!(rejected.reason, GateVerdict::OtherTalk);
         let answer = [("yes", 0.7), ("years", 0.3)];
         assert!(gate.score(&hypotheses(&answer)) < gate.threshold);
         assert!(judge(&answer).is_ok(), "plain content");
         assert!(judge(&[("years", 0.6), ("yes", 0.4)]).is_err());
-        let nothing = Rejected { text: String::new(), score: None };
-        assert_eq!(Gate::new(&bowls(), 0.0).judge(Vec::new()), Err(nothing));
+        let nothing = Gate::new(&bowls(), 0.0).judge(&heard(&[])).unwrap_err();
+        assert_eq!((nothing.text.as_str(), nothing.reason), ("", GateVerdict::NoWords));
+    }
+
+    #[test]
+    fn gate_rejects_what_the_second_recogniser_takes_for_silence() {
+        let gate = Gate::new(&bowls(), Gate::THRESHOLD);
+        let second = |no_speech| {
+            let (text, ln_own) = ("yes".to_owned(), -1.0);
+            SecondView::Heard(Opinion { text, ln_own, ln_likelihood: vec![-1.0], no_speech })
+        };
+        let judge =
+            |no_speech| gate.judge(&Heard { second: second(no_speech), ..heard(&[("yes", 1.0)]) });
+        assert!(judge(0.2).is_ok());
+        assert_eq!(judge(0.7).unwrap_err().reason, GateVerdict::NoSpeech);
     }
 
     #[test]

@@ -1,11 +1,12 @@
 //! Speech recognition: from samples to words.
 
 mod command;
+mod ensemble;
 mod ffi;
 mod gate;
 mod pocketsphinx;
 mod scene_files;
-mod whisper;
+pub(crate) mod second_opinion;
 mod word_confidence;
 
 use std::io;
@@ -17,9 +18,10 @@ use scene::Scene;
 use crate::Hypothesis;
 
 pub use command::{Command, CommandOptions};
+pub use ensemble::{Ensemble, Heard, SecondView};
 pub use gate::{Gate, Rejected};
 pub use pocketsphinx::{PocketSphinx, PocketSphinxOptions};
-pub use whisper::WhisperOptions;
+pub use second_opinion::{Opinion, PendingOpinion, SecondOpinion};
 
 /// Error of decoding an utterance.
 ///
@@ -105,8 +107,6 @@ pub enum Backend {
     PocketSphinx(PocketSphinxOptions),
     /// A program chosen by the operator.
     Command(CommandOptions),
-    /// whisper.cpp, in builds that include it.
-    Whisper(WhisperOptions),
 }
 
 impl Backend {
@@ -116,10 +116,6 @@ impl Backend {
             config::Recogniser::Command => {
                 let command = speech.recogniser_command.clone().unwrap_or_default();
                 Self::Command(CommandOptions::new(command))
-            }
-            config::Recogniser::Whisper => {
-                let model = speech.whisper_model.clone().unwrap_or_default();
-                Self::Whisper(WhisperOptions::new(model))
             }
             _ => {
                 let options = PocketSphinxOptions::debian(work);
@@ -144,7 +140,6 @@ impl Backend {
                 (Box::new(recogniser), unpronounceable)
             }
             Self::Command(options) => (Box::new(Command::open(options.clone())?), Vec::new()),
-            Self::Whisper(options) => (options.open()?, Vec::new()),
         })
     }
 }

@@ -4,7 +4,9 @@ use std::time::Duration;
 use scene::Scene;
 use tempfile::TempDir;
 
-use super::super::{Gate, Rejected};
+use messages::GateVerdict;
+
+use super::super::{Gate, Heard, Rejected, SecondView};
 use super::*;
 use crate::devices::audio::{RATE_HZ, read_wav};
 use crate::devices::child_process;
@@ -110,7 +112,10 @@ fn pocketsphinx_rejects_talk_about_other_things_with_its_text() {
     for text in ["my brother works at the hospital in the city", "i have a meeting this afternoon"]
     {
         let rejected = recogniser.judge(&speech.say(speech.human(), text)).unwrap_err();
-        assert!(rejected.text.contains(' ') && rejected.score.is_some(), "{text}: {rejected:?}");
+        assert!(
+            rejected.text.contains(' ') && rejected.reason == GateVerdict::OtherTalk,
+            "{text}: {rejected:?}"
+        );
     }
     // Most of its words are words for the robot too; if it is accepted, it must carry no meaning.
     if let Ok(accepted) = recogniser.judge(&speech.say(speech.human(), "what time is it")) {
@@ -181,7 +186,7 @@ struct TestRecogniser {
 impl TestRecogniser {
     fn judge(&mut self, pcm: &[i16]) -> Result<Vec<Hypothesis>, Rejected> {
         let hypotheses = self.recognise(pcm);
-        self.gate.judge(hypotheses)
+        self.gate.judge(&Heard { first: hypotheses, second: SecondView::NotAsked })
     }
 
     /// Recognises the speech inside the quiet that [`Speech::say`] adds.

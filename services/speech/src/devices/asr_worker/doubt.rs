@@ -1,0 +1,76 @@
+//! An utterance about which the second recogniser was asked.
+
+use std::time::{Duration, Instant};
+
+use crossbeam_channel::{Receiver, never};
+use service::clock;
+
+use crate::Hypothesis;
+use crate::devices::audio::seconds;
+use crate::devices::recogniser::{Ensemble, Heard, Opinion, PendingOpinion, SecondView};
+use crate::devices::stream::SpeechSegment;
+use crate::devices::vad::SegmenterOptions;
+
+/// An utterance about which the second recogniser was asked.
+pub(super) struct Doubt {
+    pub(super) sound: u64,
+    /// The samples that were decoded.
+    pub(super) segment: SpeechSegment,
+    pub(super) first: Vec<Hypothesis>,
+    pending: PendingOpinion,
+    /// `true` if its end is certain, so that a result is owed.
+    pub(super) is_owed: bool,
+}
+
+impl Doubt {
+    /// Asks for a second opinion until the closing pause after the voice; `None` if there is none in
+    /// time.
+    pub(super) fn raise(
+        recognisers: &Ensemble,
+        sound: u64,
+        segment: SpeechSegment,
+        first: Vec<Hypothesis>,
+        SegmenterOptions { closing_pause_s, post_roll_s, .. }: &SegmenterOptions,
+    ) -> Option<Self> {
+        let closing = Duration::from_secs_f64(*closing_pause_s);
+        let ago = Duration::from_secs_f64(clock::now().since(segment.end).s());
+        let until = Instant::now() + closing.checked_sub(ago)?;
+        let pending = recognisers.ask_second(&segment.samples, &segment.speech, until)?;
+        // The hypotheses of an earlier pause are followed by those of this one, which are better.
+        if seconds(segment.samples.len() - segment.speech.end) >= *post_roll_s {
+            pending.ask_about(&first);
+        }
+        Some(Self { sound, segment, first, pending, is_owed: false })
+    }
+
+    /// Returns whether it is about the same speech, perhaps with another pause behind it.
+    pub(super) fn is_about(&self, sound: u64, segment: &SpeechSegment) -> bool {
+        self.sound == sound && self.segment.speech == segment.speech
+    }
+
+    /// Takes what was decoded with a longer pause.
+    pub(super) fn update(&mut self, segment: SpeechSegment, first: Vec<Hypothesis>) {
+        (self.segment, self.first) = (segment, first);
+        self.pending.ask_about(&self.first);
+    }
+
+    /// Records that the end is certain.
+    pub(super) fn owe(&mut self) {
+        self.is_owed = true;
+        self.pending.ask_about(&self.first);
+    }
+
+    /// Returns where the opinion arrives and when it is late.
+    pub(super) fn awaited(doubt: Option<&Self>) -> (Receiver<Opinion>, Option<Instant>) {
+        match doubt {
+            None => (never(), None),
+            Some(doubt) => (doubt.pending.opinion().clone(), Some(doubt.pending.until())),
+        }
+    }
+
+    /// Returns what both recognisers think; without an opinion it is late.
+    pub(super) fn settled(self, opinion: Option<Opinion>) -> (u64, SpeechSegment, Heard, bool) {
+        let second = opinion.map_or(SecondView::Late, SecondView::Heard);
+        (self.sound, self.segment, Heard { first: self.first, second }, self.is_owed)
+    }
+}

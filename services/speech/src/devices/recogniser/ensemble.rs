@@ -1,0 +1,146 @@
+//! The recognisers of one robot and its gate: from the samples of an utterance to what counts.
+
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
+use messages::GateVerdict;
+
+use super::{
+    Gate, InterimDecoderOpener, Opinion, PendingOpinion, RecogniseError, Recogniser, Rejected,
+    SecondOpinion,
+};
+use crate::Hypothesis;
+use crate::devices::audio::{RATE_HZ, voice_probability};
+
+/// Sound around the voice that the second recogniser hears.
+const AROUND: usize = RATE_HZ as usize / 5;
+/// Probability of a voice from which on doubtful words are words: 13 of 15 knocks have a lower one, and
+/// of 144 spoken clips one (`scripts/bench --speech`).
+const VOICE_MIN: f32 = 0.98;
+/// Time that the second recogniser has where nobody waits for the answer.
+const UNHURRIED: Duration = Duration::from_secs(20);
+
+/// The recogniser of the configuration, a second one that is asked where the first one is in doubt, if
+/// there is one, and the gate.
+pub struct Ensemble {
+    first: Box<dyn Recogniser>,
+    second: Option<SecondOpinion>,
+    gate: Gate,
+}
+
+/// What the recognisers think of one utterance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Heard {
+    /// Hypotheses of the first recogniser, best first.
+    pub first: Vec<Hypothesis>,
+    /// The second recogniser's view.
+    pub second: SecondView,
+}
+
+/// The second recogniser's view of one utterance.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SecondView {
+    /// There is no second recogniser, or the first one was sure.
+    NotAsked,
+    /// It was too late.
+    Late,
+    /// Its opinion.
+    Heard(Opinion),
+}
+
+impl Heard {
+    /// Returns the hypotheses of all recognisers, best first.
+    pub fn hypotheses(&self) -> Vec<Hypothesis> {
+        match &self.second {
+            SecondView::Heard(opinion) => opinion.combined_with(&self.first),
+            SecondView::NotAsked | SecondView::Late => self.first.clone(),
+        }
+    }
+}
+
+impl Ensemble {
+    /// Returns recognisers that are asked in this order.
+    pub fn new(first: Box<dyn Recogniser>, second: Option<SecondOpinion>, gate: Gate) -> Self {
+        Self { first, second, gate }
+    }
+
+    /// Asks the first recogniser; see [`Recogniser::recognise`].
+    ///
+    /// # Errors
+    /// If it fails on these samples.
+    pub fn ask_first(
+        &mut self,
+        pcm: &[i16],
+        speech: Range<usize>,
+    ) -> Result<Vec<Hypothesis>, RecogniseError> {
+        self.first.recognise(pcm, speech)
+    }
+
+    /// Returns whether the first recogniser's hypotheses are worth a second opinion.
+    pub fn is_in_doubt(&self, first: &[Hypothesis]) -> bool {
+        self.second.is_some() && !first.is_empty() && !self.gate.is_clear(first)
+    }
+
+    /// Asks the second recogniser, if there is one and it is free.
+    pub fn ask_second(
+        &self,
+        pcm: &[i16],
+        speech: &Range<usize>,
+        until: Instant,
+    ) -> Option<PendingOpinion> {
+        let end = pcm.len().min(speech.end + AROUND);
+        self.second.as_ref()?.begin(&pcm[speech.start.saturating_sub(AROUND)..end], until)
+    }
+
+    /// Asks all recognisers that are needed and waits for them.
+    ///
+    /// # Errors
+    /// If the first one fails on these samples.
+    pub fn recognise(
+        &mut self,
+        pcm: &[i16],
+        speech: Range<usize>,
+    ) -> Result<Heard, RecogniseError> {
+        let first = self.ask_first(pcm, speech.clone())?;
+        if !self.is_in_doubt(&first) {
+            return Ok(Heard { first, second: SecondView::NotAsked });
+        }
+        let asked = self.ask_second(pcm, &speech, Instant::now() + UNHURRIED);
+        let opinion = asked.and_then(|pending| pending.wait(&first));
+        Ok(Heard { first, second: opinion.map_or(SecondView::Late, SecondView::Heard) })
+    }
+
+    /// Returns the hypotheses that count for the samples, in which `speech` are those of the voice.
+    ///
+    /// # Errors
+    /// If nobody spoke, or the speech is not meant for the robot.
+    pub fn judge(
+        &self,
+        heard: &Heard,
+        pcm: &[i16],
+        speech: &Range<usize>,
+    ) -> Result<Vec<Hypothesis>, Rejected> {
+        let hypotheses = self.gate.judge(heard)?;
+        if self.is_voice(&hypotheses, pcm, speech) {
+            return Ok(hypotheses);
+        }
+        let text = hypotheses.first().map_or("", |best| best.text.as_str()).to_owned();
+        Err(Rejected { text, reason: GateVerdict::NoSpeech, score: self.gate.score(&hypotheses) })
+    }
+
+    /// Returns whether somebody spoke. Clear words need no other sign of it; knocks sound like doubtful
+    /// ones.
+    pub fn is_voice(&self, hypotheses: &[Hypothesis], pcm: &[i16], speech: &Range<usize>) -> bool {
+        self.gate.is_clear(hypotheses) || voice_probability(pcm, speech) >= VOICE_MIN
+    }
+
+    /// See [`Recogniser::is_quick`].
+    pub fn is_quick(&self) -> bool {
+        self.first.is_quick()
+    }
+
+    /// See [`Recogniser::interim_decoder`].
+    pub fn interim_decoder(&self) -> Option<InterimDecoderOpener> {
+        self.first.interim_decoder()
+    }
+}

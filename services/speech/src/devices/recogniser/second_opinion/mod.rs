@@ -1,0 +1,242 @@
+//! A second opinion on utterances: a network that was trained on many voices scores what the first
+//! recogniser heard, beside words of its own. It needs a model file of the operator's, and the feature
+//! `whisper`, because building its library takes a C++ compiler, cmake and libclang.
+//!
+//! Invariant: it never acts alone and never delays. Without it, and where it is late, the first
+//! recogniser's hypotheses count as they are.
+
+mod combine;
+#[cfg(feature = "whisper")]
+mod engine;
+#[cfg(feature = "whisper")]
+mod rendering;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use crossbeam_channel::{Receiver, Sender, bounded};
+use scene::Scene;
+
+use super::RecogniserUnavailable;
+use crate::Hypothesis;
+use crate::devices::worker_thread::WorkerThread;
+
+/// What the second recogniser thinks of an utterance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Opinion {
+    /// Its own words, empty if it heard none.
+    pub text: String,
+    /// Logarithm of the likelihood of its own words.
+    pub ln_own: f64,
+    /// Logarithm of the likelihood of each of the first recogniser's hypotheses.
+    pub ln_likelihood: Vec<f64>,
+    /// Probability that nobody spoke, 0 to 1.
+    pub no_speech: f32,
+}
+
+/// Probability from which on nobody spoke: that of words hardly exceeds 0.3.
+const NO_SPEECH: f32 = 0.4;
+
+impl Opinion {
+    /// Returns whether it heard no speech.
+    pub fn is_silence(&self) -> bool {
+        self.no_speech > NO_SPEECH
+    }
+
+    /// Returns the hypotheses of both recognisers, heaviest first.
+    pub fn combined_with(&self, first: &[Hypothesis]) -> Vec<Hypothesis> {
+        combine::combined(first, self)
+    }
+}
+
+/// When a question to the second recogniser is over: at a time, or when nobody waits any more.
+#[derive(Debug)]
+pub(crate) struct Limit {
+    until: Instant,
+    dropped: AtomicBool,
+}
+
+impl Limit {
+    pub(crate) fn is_over(&self) -> bool {
+        self.dropped.load(Ordering::Relaxed) || Instant::now() >= self.until
+    }
+}
+
+/// An utterance for the thread of the network.
+struct Job {
+    samples: Vec<i16>,
+    candidates: Receiver<Vec<String>>,
+    opinion: Sender<Opinion>,
+    limit: Arc<Limit>,
+}
+
+/// The second recogniser, on a thread of its own.
+pub struct SecondOpinion {
+    thread: WorkerThread<Job>,
+}
+
+/// An utterance that the second recogniser is listening to. Dropping it makes it stop.
+pub struct PendingOpinion {
+    candidates: Sender<Vec<String>>,
+    opinion: Receiver<Opinion>,
+    limit: Arc<Limit>,
+}
+
+/// A network that listens to utterances.
+pub(crate) trait Network {
+    /// Returns what it thinks of the samples; asks for the first recogniser's texts when its own words are
+    /// known. `None`: it was too late, or nobody waits any more, or it failed.
+    fn opinion(
+        &mut self,
+        samples: &[i16],
+        candidates: &dyn Fn() -> Option<Vec<String>>,
+        limit: &Limit,
+    ) -> Option<Opinion>;
+}
+
+/// Loads a model for the sentences of a scene.
+///
+/// # Errors
+/// If the file is missing or rejected, or this build lacks the library.
+#[cfg(feature = "whisper")]
+pub(crate) fn load(model: &Path, scene: &Scene) -> Result<Box<dyn Network>, RecogniserUnavailable> {
+    match engine::Engine::open(model, &rendering::example(scene)) {
+        Ok(engine) => Ok(Box::new(engine)),
+        Err(reason) => Err(RecogniserUnavailable(format!(
+            "speech.whisper_model: {} cannot be loaded: {reason}; help: fetch ggml-base-q8_0.bin of \
+             whisper.cpp, 81,768,585 bytes (docs/speech.md has its SHA-256)",
+            model.display()
+        ))),
+    }
+}
+
+/// Returns that this build lacks the library.
+///
+/// # Errors
+/// Always.
+#[cfg(not(feature = "whisper"))]
+pub(crate) fn load(_: &Path, _: &Scene) -> Result<Box<dyn Network>, RecogniserUnavailable> {
+    Err(RecogniserUnavailable(
+        "speech.whisper_model: the second recogniser is not part of this build; help: build with \
+         `--features speech/whisper` (WHICHONE_FEATURES=speech/whisper scripts/run), or remove the key"
+            .to_owned(),
+    ))
+}
+
+/// Scheduling priority relative to the threads that return results (nice).
+const NICENESS: i32 = 5;
+/// Utterances that may wait while the network notices that the one before is over.
+const WAITING_MAX: usize = 2;
+
+impl SecondOpinion {
+    /// Starts the thread, which first loads a model for the sentences of a scene; until then there is no
+    /// opinion.
+    pub fn start(model: PathBuf, scene: Scene) -> Self {
+        Self::with(move || match load(&model, &scene) {
+            Ok(network) => Some(network),
+            Err(error) => {
+                tracing::warn!(%error, "no second opinion on what is heard");
+                None
+            }
+        })
+    }
+
+    /// Starts a thread that asks the network of `open`.
+    pub(crate) fn with(open: impl FnOnce() -> Option<Box<dyn Network>> + Send + 'static) -> Self {
+        let run = move |jobs: &Receiver<Job>| {
+            let Some(mut network) = open() else { return };
+            // Without the permission it runs at normal priority.
+            let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), NICENESS);
+            for Job { samples, candidates, opinion, limit } in jobs {
+                let candidates = || candidates.recv_deadline(limit.until).ok();
+                if let Some(known) = network.opinion(&samples, &candidates, &limit) {
+                    // Nobody may wait for it any more.
+                    let _ = opinion.send(known);
+                }
+            }
+        };
+        Self { thread: WorkerThread::start(WAITING_MAX, run) }
+    }
+
+    /// Begins to listen to one utterance, 16 kHz mono, as it was recorded. `None`: no room.
+    pub fn begin(&self, samples: &[i16], until: Instant) -> Option<PendingOpinion> {
+        let limit = Arc::new(Limit { until, dropped: AtomicBool::new(false) });
+        let (candidates, asked) = bounded(1);
+        let (known, opinion) = bounded(1);
+        let samples = samples.to_vec();
+        let job = Job { samples, candidates: asked, opinion: known, limit: Arc::clone(&limit) };
+        self.thread.offer(job).ok()?;
+        Some(PendingOpinion { candidates, opinion, limit })
+    }
+}
+
+impl PendingOpinion {
+    /// Asks for the opinion on the first recogniser's hypotheses; the first call counts.
+    pub fn ask_about(&self, first: &[Hypothesis]) {
+        let texts = first.iter().map(|hypothesis| hypothesis.text.clone()).collect();
+        // The thread may have given up already.
+        let _ = self.candidates.try_send(texts);
+    }
+
+    /// Returns where the opinion arrives; disconnected where there will be none.
+    pub fn opinion(&self) -> &Receiver<Opinion> {
+        &self.opinion
+    }
+
+    /// Returns when it is late.
+    pub fn until(&self) -> Instant {
+        self.limit.until
+    }
+
+    /// Waits for the opinion on the first recogniser's hypotheses. `None`: it is late.
+    pub fn wait(self, first: &[Hypothesis]) -> Option<Opinion> {
+        self.ask_about(first);
+        self.opinion.recv_deadline(self.limit.until).ok()
+    }
+}
+
+impl Drop for PendingOpinion {
+    fn drop(&mut self) {
+        self.limit.dropped.store(true, Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::devices::testing::bowls;
+    use std::time::Duration;
+
+    #[test]
+    fn second_opinion_names_what_is_missing() {
+        let Err(error) = load(Path::new("/no/such/ggml-model.bin"), &bowls()) else {
+            panic!("a missing model opened")
+        };
+        let help =
+            if cfg!(feature = "whisper") { "ggml-base-q8_0.bin" } else { "not part of this build" };
+        assert!(error.to_string().contains(help), "{error}");
+    }
+
+    #[test]
+    #[ignore = "needs a model of whisper.cpp (WHICHONE_WHISPER_MODEL)"]
+    fn second_opinion_is_deterministic_and_keeps_its_limit() {
+        use crate::devices::testing::voice;
+        let model = std::env::var_os("WHICHONE_WHISPER_MODEL").expect("WHICHONE_WHISPER_MODEL");
+        let second = SecondOpinion::start(model.into(), bowls());
+        let first: Vec<_> =
+            ["the white one", "the white bowl", "yes"].map(Hypothesis::certain).into();
+        let listen = |samples: &[i16], within_s| {
+            let until = Instant::now() + Duration::from_secs(within_s);
+            second.begin(samples, until).unwrap().wait(&first)
+        };
+        let once = listen(&voice(2.0), 60).unwrap();
+        assert_eq!(listen(&voice(2.0), 60).unwrap(), once);
+        assert!(once.ln_likelihood.len() == 3 && once.ln_likelihood.iter().all(|ln| *ln <= 0.0));
+        assert!(listen(&[1; 100], 60).is_some());
+        assert_eq!(listen(&voice(2.0), 0), None);
+        drop(second.begin(&voice(2.0), Instant::now() + Duration::from_secs(60)));
+        assert!(listen(&voice(1.0), 60).is_some(), "usable behind what was dropped");
+    }
+}
