@@ -1,10 +1,11 @@
 //! Speech recognition on a thread of its own: from audio to segments of speech with hypotheses.
 //!
-//! Invariant: every accepted input yields exactly one result, in order. The thread accepts input at
+//! Invariant: every accepted input yields exactly one result; those of live utterances come in order, and
+//! so do those of files. What is said does not wait for a file. The thread accepts input at
 //! once; the recogniser follows when it has loaded. Interim results and early decoding delay no
 //! result.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -18,12 +19,12 @@ use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::SegmenterOptions;
 use crate::devices::worker_thread::{QueueError, WorkerThread};
 use crate::{In, RecognitionInput};
-use worker::{EarlyResults, Worker};
+use worker::{Channels, EarlyResults, Worker};
 
 mod interim;
 mod worker;
 
-/// Inputs that may wait.
+/// Live utterances that may wait, and files.
 pub(crate) const WAITING_MAX: usize = 8;
 /// Possible ends of utterances that may wait for early decoding.
 const HINTS_MAX: usize = 4;
@@ -32,9 +33,10 @@ const HINTS_MAX: usize = 4;
 pub(crate) struct AsrWorker {
     hints: Sender<(u64, SpeechSegment)>,
     blocks: Sender<(u64, Vec<i16>)>,
+    files: Sender<(u64, PathBuf)>,
     closed: Arc<AtomicBool>,
     /// Declared last: it ends once the channels above are closed.
-    thread: WorkerThread<(u64, RecognitionInput)>,
+    thread: WorkerThread<(u64, SpeechSegment)>,
 }
 
 impl AsrWorker {
@@ -57,6 +59,7 @@ impl AsrWorker {
     ) -> (Self, Receiver<In>) {
         let (hints, hinted) = bounded(HINTS_MAX);
         let (blocks, spoken) = bounded(interim::BLOCKS_MAX);
+        let (files, recorded) = bounded(WAITING_MAX);
         let (events, happened) = unbounded();
         let closed = Arc::new(AtomicBool::new(false));
         let worker_closed = Arc::clone(&closed);
@@ -72,11 +75,12 @@ impl AsrWorker {
                 opener.map(|open| thread::spawn(move || interim::run(open, &spoken, &results)));
             let (closed, early) = (worker_closed, EarlyResults::default());
             let worker = Worker { recogniser, gate, segmenter, longest_s, closed, early };
-            worker.run(inputs, &hinted, &events);
+            let (hints, files, events) = (&hinted, &recorded, &events);
+            worker.run(&Channels { live: inputs, hints, files, events });
             // A panic of the thread has been logged.
             let _ = interim.map(JoinHandle::join);
         });
-        (Self { hints, blocks, closed, thread }, happened)
+        (Self { hints, blocks, files, closed, thread }, happened)
     }
 
     /// Offers a possible end of utterance `sound`. A quick recogniser decodes it while it is idle, and
@@ -94,7 +98,12 @@ impl AsrWorker {
 
     /// Queues input. `sound` identifies it in the events.
     pub(crate) fn submit(&self, sound: u64, input: RecognitionInput) -> Result<(), QueueError> {
-        self.thread.offer((sound, input))
+        match input {
+            RecognitionInput::Speech(segment) => self.thread.offer((sound, segment)),
+            RecognitionInput::File(path) => {
+                self.files.try_send((sound, path.into())).map_err(QueueError::of)
+            }
+        }
     }
 }
 

@@ -1,22 +1,25 @@
-//! The worker's thread: decodes inputs in order, and possible ends of utterances while it is idle.
+//! The worker's thread: decodes what is said in order, possible ends of it while it is idle, and files
+//! beside that.
 //!
 //! Invariant: an early result is used only for the very samples that were decoded.
 
 use std::collections::VecDeque;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use crossbeam_channel::{Receiver, Sender, TryRecvError, select};
+use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
 
-use crate::devices::audio::{read_wav, seconds, snr_db};
+use crate::devices::audio::{RATE_HZ, read_wav, seconds, snr_db};
 use crate::devices::recogniser::{Gate, RecogniseError, Recogniser};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
-use crate::{In, Recognised, RecognisedSegment, RecognitionInput};
+use crate::{In, Recognised, RecognisedSegment};
 
+/// Samples of a file that are searched for speech at a time: one second.
+const PIECE: usize = RATE_HZ as usize;
 /// Early results that are kept: one for each speaker, and one that turned out to be too early.
 const EARLY_MAX: usize = 4;
 
@@ -55,46 +58,68 @@ fn push<T>(queue: &mut VecDeque<T>, item: T) {
     queue.push_back(item);
 }
 
+/// The ends of the worker's channels.
+pub(super) struct Channels<'a> {
+    /// What is said.
+    pub(super) live: &'a Receiver<(u64, SpeechSegment)>,
+    /// Possible ends of what is being said.
+    pub(super) hints: &'a Receiver<(u64, SpeechSegment)>,
+    pub(super) files: &'a Receiver<(u64, PathBuf)>,
+    pub(super) events: &'a Sender<In>,
+}
+
 impl Worker {
-    pub(super) fn run(
-        mut self,
-        inputs: &Receiver<(u64, RecognitionInput)>,
-        hints: &Receiver<(u64, SpeechSegment)>,
-        events: &Sender<In>,
-    ) {
-        loop {
-            // Inputs have priority over hints.
-            let (sound, input) = match inputs.try_recv() {
-                Err(TryRecvError::Disconnected) => return,
-                Ok(next) => next,
-                Err(TryRecvError::Empty) => select! {
-                    recv(inputs) -> next => match next {
-                        Ok(next) => next,
-                        Err(_) => return,
-                    },
-                    recv(hints) -> hint => {
-                        // The newest hint is the most likely one.
-                        let newest = hints.try_iter().last().or(hint.ok());
-                        let Some((sound, segment)) = newest else { return };
-                        self.decode_early(sound, segment, events);
-                        continue;
-                    }
-                },
-            };
-            if self.closed.load(Ordering::SeqCst) {
-                return;
-            }
-            let segments = self.recognise(input);
-            for snr_db in segments.iter().flatten().map(|segment| segment.snr_db) {
-                if snr_db < SNR_MIN_DB {
-                    tracing::warn!(snr_db, "loud background noise; help: speak closer, or type");
-                }
-            }
-            push(&mut self.early.answered, sound);
-            if events.send(In::Recognised(Recognised { sound, segments })).is_err() {
-                return;
+    pub(super) fn run(mut self, channels: &Channels<'_>) {
+        while self.serve(channels) {
+            let mut select = Select::new();
+            let file = select.recv(channels.files);
+            select.recv(channels.live);
+            select.recv(channels.hints);
+            if select.ready() == file
+                && let Ok((sound, path)) = channels.files.try_recv()
+            {
+                let segments = self.recognise_file(&path, channels);
+                self.answer(sound, segments, channels.events);
             }
         }
+    }
+
+    /// Decodes what is said, and its possible ends while nothing else waits. Returns whether more may
+    /// come.
+    fn serve(&mut self, channels: &Channels<'_>) -> bool {
+        while !self.closed.load(Ordering::SeqCst) {
+            match channels.live.try_recv() {
+                Ok((sound, segment)) => {
+                    let segments = self.recognise(&segment);
+                    self.answer(sound, segments, channels.events);
+                    continue;
+                }
+                Err(TryRecvError::Disconnected) => return false,
+                Err(TryRecvError::Empty) => {}
+            }
+            // The newest hint is the most likely one.
+            match channels.hints.try_iter().last() {
+                Some((sound, segment)) => self.decode_early(sound, segment, channels.events),
+                None => return true,
+            }
+        }
+        false
+    }
+
+    fn answer(
+        &mut self,
+        sound: u64,
+        segments: Result<Vec<RecognisedSegment>, String>,
+        events: &Sender<In>,
+    ) {
+        for snr_db in segments.iter().flatten().map(|segment| segment.snr_db) {
+            if snr_db < SNR_MIN_DB {
+                tracing::warn!(snr_db, "loud background noise; help: speak closer, or type");
+            }
+        }
+        push(&mut self.early.answered, sound);
+        // Without a receiver of its events the worker ends when it is closed.
+        let _ = events.send(In::Recognised(Recognised { sound, segments }));
     }
 
     fn decode_early(&mut self, sound: u64, segment: SpeechSegment, events: &Sender<In>) {
@@ -112,39 +137,50 @@ impl Worker {
         let _ = events.send(In::EarlyResult { sound, at, result });
     }
 
-    fn recognise(&mut self, input: RecognitionInput) -> Result<Vec<RecognisedSegment>, String> {
-        let recogniser = match &mut self.recogniser {
-            Ok(recogniser) => recogniser.as_mut(),
-            Err(reason) => return Err(format!("speech recognition is off: {reason}")),
-        };
-        match input {
-            RecognitionInput::File(path) => self.recognise_file(Path::new(&path)),
-            RecognitionInput::Speech(segment) => match self.early.take(&segment) {
-                Some(result) => Ok(vec![result]),
-                None => recognise_segment(recogniser, &self.gate, &segment)
-                    .map(|result| vec![result])
-                    .map_err(|error| error.to_string()),
-            },
+    fn recognise(&mut self, segment: &SpeechSegment) -> Result<Vec<RecognisedSegment>, String> {
+        if let Some(result) = self.early.take(segment) {
+            return Ok(vec![result]);
         }
+        let result = recognise_segment(available(&mut self.recogniser)?, &self.gate, segment);
+        result.map(|result| vec![result]).map_err(|error| error.to_string())
     }
 
-    fn recognise_file(&mut self, path: &Path) -> Result<Vec<RecognisedSegment>, String> {
+    /// Decodes a file piece by piece. What is said meanwhile comes first: it may be a stop.
+    fn recognise_file(
+        &mut self,
+        path: &Path,
+        channels: &Channels<'_>,
+    ) -> Result<Vec<RecognisedSegment>, String> {
+        available(&mut self.recogniser)?;
         let samples = read_wav(path, self.longest_s).map_err(|error| error.to_string())?;
         let mut segmenter = Segmenter::new(self.segmenter.clone());
-        let mut events = segmenter.push(&samples);
-        events.extend(segmenter.finish());
         let mut segments = Vec::new();
-        let Ok(recogniser) = &mut self.recogniser else { return Ok(segments) };
-        for event in events {
-            let VadEvent::End { range, speech } = event else { continue };
-            if self.closed.load(Ordering::SeqCst) {
+        for piece in samples.chunks(PIECE).map(Some).chain([None]) {
+            if !self.serve(channels) {
                 break;
             }
-            let segment =
-                recognise_range(recogniser.as_mut(), &self.gate, &samples, range, &speech);
-            segments.push(segment.map_err(|error| error.to_string())?);
+            let events = match piece {
+                Some(piece) => segmenter.push(piece),
+                None => segmenter.finish().into_iter().collect(),
+            };
+            for event in events {
+                let VadEvent::End { range, speech } = event else { continue };
+                let recogniser = available(&mut self.recogniser)?;
+                let segment = recognise_range(recogniser, &self.gate, &samples, range, &speech);
+                segments.push(segment.map_err(|error| error.to_string())?);
+            }
         }
         Ok(segments)
+    }
+}
+
+/// Returns the recogniser, or why there is none, for users.
+fn available(
+    recogniser: &mut Result<Box<dyn Recogniser>, String>,
+) -> Result<&mut dyn Recogniser, String> {
+    match recogniser {
+        Ok(recogniser) => Ok(recogniser.as_mut()),
+        Err(reason) => Err(format!("speech recognition is off: {reason}")),
     }
 }
 
