@@ -5,15 +5,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use language::{Language, Reader as Reading};
 use messages::{ArmStatus, PresentationState, Presented, Receipt, ReceiptStatus, Source, topics};
+use scene::{Intent, Question};
 use serde_json::json;
 use service::bus::Reader;
 use service::client::Client;
 use service::{Span, Time, clock};
 use speech::devices::audio::{read_wav, seconds};
+use speech::devices::recogniser::{PocketSphinx, PocketSphinxOptions, Recogniser};
 use speech::devices::voice::Synthesiser;
 use whichone_tests::console::Page;
-use whichone_tests::spoken::{Pink, Room, SPEECH_RMS, Speaker, levelled};
+use whichone_tests::spoken::{Pink, Room, SPEAKERS, SPEECH_RMS, Speaker, levelled};
 use whichone_tests::{Group, wait_for};
 
 use crate::console_voice::{ALOUD, ECHO_FREE, Stream, listening, receipt, said};
@@ -70,7 +73,7 @@ fn stop_is_obeyed_while_a_long_recording_is_decoded_on_busy_cores() {
     let (group, mut page) = listening(&["speech.recording_s_max=600"]);
     let sentence = "get me the small white plastic bowl from the counter in the kitchen please";
     let words = read_wav(Path::new(&spoken(sentence, folder.path())), 20.0).unwrap();
-    let long = [words, vec![0; 16_000]].concat().repeat(20);
+    let long = [words, vec![0; 16_000]].concat().repeat(8);
     let file = folder.path().join("long.wav");
     write_wav(&file, &long);
     let load = Load::begin();
@@ -80,9 +83,9 @@ fn stop_is_obeyed_while_a_long_recording_is_decoded_on_busy_cores() {
         let seconds = stops_by_word(&group, &mut page);
         eprintln!("stop while a recording is decoded: {seconds:.2} s");
         assert!(!listen.is_finished(), "it was decoded before the stop");
+        drop(load);
         listen.join().unwrap();
     });
-    drop(load);
     drop(page);
     group.down();
 }
@@ -180,18 +183,22 @@ impl Kitchen {
         Line { prompt: presented.prompt, began, ends }
     }
 
-    /// Has the user speak at `at`. Returns when the voice ends.
-    fn says(&mut self, at: Time, text: &str) -> Time {
-        let samples = self.user.samples(text).unwrap();
-        self.room.say(at, levelled(&samples)).1
+    /// What the user will say: a synthesiser takes its time.
+    fn words(&mut self, text: &str) -> Vec<i16> {
+        levelled(&self.user.samples(text).unwrap())
     }
 
-    fn receipt(&self) -> Receipt {
-        wait_for("what is heard at the microphone", 20.0, || {
+    /// Waits for the receipt of what ends at `end`. Where the machine is busy some of the robot's own voice
+    /// arrives late, and is heard before it.
+    fn receipt(&self, end: Time) -> Receipt {
+        let is_it = |receipt: &Receipt| {
+            receipt.source == Source::Microphone && Time(receipt.end_ns) + Span::from_ms(300) > end
+        };
+        wait_for("what is heard at the microphone", 40.0, || {
             let mut found = None;
             self.receipts
                 .drain(|receipt| {
-                    if receipt.source == Source::Microphone {
+                    if is_it(receipt) {
                         found = found.or(Some(*receipt));
                     }
                 })
@@ -214,11 +221,11 @@ impl Kitchen {
 #[ignore = "needs espeak-ng, flite and pocketsphinx"]
 fn answer_in_the_echo_of_the_question_is_heard_from_its_beginning() {
     let mut kitchen = Kitchen::new(&[ALOUD[0]]);
+    let no = kitchen.words("no");
     kitchen.group.say("get me the bowl");
     let line = kitchen.line_after(Time(0));
-    let begins = line.ends + Span::from_ms(170);
-    kitchen.says(begins, "no");
-    let receipt = kitchen.receipt();
+    let (begins, ends) = kitchen.room.say(line.ends + Span::from_ms(170), no);
+    let receipt = kitchen.receipt(ends);
     assert_eq!(receipt.status, ReceiptStatus::Accepted, "{receipt:?}");
     assert_eq!(receipt.note.as_str().unwrap(), "no");
     let late_s = Time(receipt.onset_ns).since(begins).s();
@@ -232,19 +239,70 @@ fn answer_in_the_echo_of_the_question_is_heard_from_its_beginning() {
 #[ignore = "needs espeak-ng, flite and pocketsphinx"]
 fn words_whose_beginning_the_robot_covers_are_asked_for_again() {
     let mut kitchen = Kitchen::new(&[ALOUD[0]]);
+    let words = kitchen.words("no it is not the small white plastic bowl");
+    let no = kitchen.words("no");
     kitchen.group.say("get me the bowl");
     let line = kitchen.line_after(Time(0));
-    kitchen.says(line.ends - Span::from_ms(500), "no it is not the small white plastic bowl");
-    let receipt = kitchen.receipt();
+    let (begins, ends) = kitchen.room.say(line.ends - Span::from_ms(500), words);
+    assert!(begins < line.ends, "the machine is too slow");
+    let receipt = kitchen.receipt(ends);
     assert_eq!(receipt.status, ReceiptStatus::NotForMe, "{receipt:?}");
     let heard = receipt.note.as_str().unwrap();
     assert!(heard.starts_with('…') && heard.contains("white"), "{heard}");
     let again = kitchen.line_after(line.ends);
     assert_eq!(again.prompt, line.prompt, "the same question");
-    kitchen.says(again.ends + Span::from_ms(700), "no");
-    let receipt = kitchen.receipt();
+    let (_, ends) = kitchen.room.say(again.ends + Span::from_ms(700), no);
+    let receipt = kitchen.receipt(ends);
     assert_eq!(receipt.status, ReceiptStatus::Accepted, "{receipt:?}");
     kitchen.down();
+}
+
+/// How often a stop is recognised, cut out of the sound perfectly; `robot_db` is the level of the robot's
+/// voice beside the user's.
+fn recognised_stops(robot_db: Option<f64>) -> (usize, usize) {
+    const STOPS: [&str; 8] =
+        ["stop", "stop stop", "halt", "stop it", "stop now", "freeze", "no stop", "wait stop"];
+    const LEAD: usize = 8_000;
+    let folder = tempfile::tempdir().unwrap();
+    let scene = whichone_tests::settings(&[]).scene;
+    let options = PocketSphinxOptions::debian(folder.path().join("recogniser"));
+    let mut recogniser = PocketSphinx::open(&scene, &options).unwrap();
+    let reader = Reading::new(&scene, Language::Careful);
+    let mut robot = Speaker::espeak("en-us", 165).synthesiser(&folder.path().join("robot"));
+    let line = "I will get the white plastic bowl on the counter, and bring it to you now.";
+    let line = levelled(&robot.samples(line).unwrap());
+    let gain = robot_db.map_or(0.0, |db| 10_f64.powf(db / 20.0));
+    let (mut found, mut all) = (0, 0);
+    for speaker in SPEAKERS {
+        let mut voice = speaker.synthesiser(&folder.path().join(speaker.name));
+        for text in STOPS {
+            let said = levelled(&voice.samples(text).unwrap());
+            let mut noise = Pink::new(SPEECH_RMS / 10_f64.powf(25.0 / 20.0), all as u64);
+            let sample = |n: usize| {
+                let user = n.checked_sub(LEAD).and_then(|n| said.get(n)).map_or(0, |s| *s);
+                let robot = line.get(n + LEAD).map_or(0, |s| *s);
+                (f64::from(user) + gain * f64::from(robot) + noise.next()) as i16
+            };
+            let pcm: Vec<i16> = (0..LEAD + said.len() + 3_200).map(sample).collect();
+            let heard = recogniser.recognise(&pcm, LEAD..LEAD + said.len()).unwrap();
+            let is_stop = |text: &str| reader.read(text, Question::None).intent == Intent::Stop;
+            found += usize::from(heard.first().is_some_and(|best| is_stop(&best.text)));
+            all += 1;
+        }
+    }
+    (found, all)
+}
+
+/// The reason why nothing listens for a stop while a microphone records the robot itself.
+#[test]
+#[ignore = "needs espeak-ng, flite and pocketsphinx"]
+fn stop_is_recognised_but_not_over_the_robots_own_voice() {
+    let (found, all) = recognised_stops(None);
+    eprintln!("recognised: {found} of {all}");
+    assert!(found * 10 > all * 7, "{found} of {all}");
+    let (found, all) = recognised_stops(Some(-12.0));
+    eprintln!("recognised with the robot 12 dB below the user: {found} of {all}");
+    assert!(found * 10 < all * 3, "{found} of {all}");
 }
 
 /// The limit without echo cancellation: `docs/speech.md` names what to use instead.
@@ -254,7 +312,8 @@ fn stop_is_not_heard_over_the_robots_own_voice_by_a_microphone_that_records_it()
     let mut kitchen = Kitchen::new(&["speech.voice=command", &slow_voice()]);
     kitchen.group.say("get me the bowl");
     let line = kitchen.line_after(Time(0));
-    let said = kitchen.says(clock::now() + Span::from_ms(500), "stop");
+    let stop = kitchen.words("stop");
+    let (_, said) = kitchen.room.say(clock::now() + Span::from_ms(500), stop);
     assert!(said < line.ends, "it was said while the robot spoke");
     std::thread::sleep(Duration::from_secs_f64(said.since(clock::now()).s() + 2.0));
     assert_eq!(kitchen.group.arm()["stopped"], false);
