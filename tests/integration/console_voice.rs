@@ -13,14 +13,14 @@ use crate::speech::spoken;
 
 const END: u8 = 1;
 const HELD: u8 = 2;
-const ECHO_FREE: u8 = 4;
+pub(crate) const ECHO_FREE: u8 = 4;
 /// Samples of a frame: 50 ms.
 const PIECE: usize = 800;
 /// Every sentence takes as long as it would sound.
-const ALOUD: [&str; 2] = ["speech.voice=espeak-ng", "speech.player=[\"none\"]"];
+pub(crate) const ALOUD: [&str; 2] = ["speech.voice=espeak-ng", "speech.player=[\"none\"]"];
 
 /// A stream of a page that sends it in real time.
-struct Stream {
+pub(crate) struct Stream {
     number: u32,
     sent: u64,
     began: Instant,
@@ -29,7 +29,7 @@ struct Stream {
 }
 
 impl Stream {
-    fn begin(page: &mut Page, number: u32) -> Self {
+    pub(crate) fn begin(page: &mut Page, number: u32) -> Self {
         page.send(&json!({ "t": "ping", "at": number }));
         let pong = page.until("a pong", |page| {
             page.messages
@@ -41,12 +41,18 @@ impl Stream {
         Self { number, sent: 0, began: Instant::now(), began_ms }
     }
 
-    fn ms(&self, sample: u64) -> f64 {
+    pub(crate) fn ms(&self, sample: u64) -> f64 {
         self.began_ms + sample as f64 / 16.0
     }
 
     /// Sends samples as they are taken, with the times that `clock` makes of the right ones.
-    fn send(&mut self, page: &mut Page, flags: u8, samples: &[i16], clock: impl Fn(f64) -> f64) {
+    pub(crate) fn send(
+        &mut self,
+        page: &mut Page,
+        flags: u8,
+        samples: &[i16],
+        clock: impl Fn(f64) -> f64,
+    ) {
         for piece in samples.chunks(PIECE) {
             let taken_ms = clock(self.ms(self.sent));
             page.send_raw(frame(self.number, flags, taken_ms, self.sent, piece));
@@ -56,7 +62,7 @@ impl Stream {
         }
     }
 
-    fn end(&self, page: &mut Page, flags: u8) {
+    pub(crate) fn end(&self, page: &mut Page, flags: u8) {
         page.send_raw(frame(self.number, flags | END, self.ms(self.sent), self.sent, &[]));
     }
 }
@@ -71,14 +77,14 @@ fn frame(stream: u32, flags: u8, taken_ms: f64, before: u64, samples: &[i16]) ->
 }
 
 /// The words with a fifth of a second of quiet before them and `behind_s` behind.
-fn said(text: &str, behind_s: f64) -> Vec<i16> {
+pub(crate) fn said(text: &str, behind_s: f64) -> Vec<i16> {
     let folder = tempfile::tempdir().unwrap();
     let words = read_wav(Path::new(&spoken(text, folder.path())), 20.0).unwrap();
     [vec![0; 3_200], words, vec![0; (behind_s * 16_000.0) as usize]].concat()
 }
 
 /// A group that hears, and a page that is in control of it.
-fn listening(settings: &[&str]) -> (Group, Page) {
+pub(crate) fn listening(settings: &[&str]) -> (Group, Page) {
     let group = Group::up(settings);
     let mut page = group.page(&Visitor::operator(1));
     page.until_part("hearing", |hearing| hearing["recogniser"] == "ready");
@@ -86,7 +92,7 @@ fn listening(settings: &[&str]) -> (Group, Page) {
     (group, page)
 }
 
-fn receipt(page: &mut Page, stream: u32, status: &str) -> Json {
+pub(crate) fn receipt(page: &mut Page, stream: u32, status: &str) -> Json {
     let is = |message: &&Json| {
         message["t"] == "receipt" && message["stream"] == stream && message["status"] == status
     };

@@ -18,6 +18,7 @@ mod hearing;
 mod isolation;
 mod journal_format;
 mod journal_loss;
+mod own_voice;
 mod planners;
 mod pointing;
 mod put_back;

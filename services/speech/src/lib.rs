@@ -23,6 +23,7 @@ mod tests;
 use messages::UtteranceSeq;
 use prompt_player::PromptPlayer;
 use record::Record;
+use scene::{Intent, Question};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use stream_events::StreamEvent;
 use utterance_intake::UtteranceIntake;
@@ -57,6 +58,13 @@ pub struct Config {
     pub utterance_bytes_max: usize,
     /// `true` if pointing gestures are accepted.
     pub gestures: bool,
+}
+
+impl Config {
+    /// Returns whether the words tell the robot to stop.
+    fn is_stop(&self, text: &str) -> bool {
+        self.reader.read(text, Question::None).intent == Intent::Stop
+    }
 }
 
 impl Node for SpeechNode {
@@ -121,12 +129,14 @@ impl SpeechNode {
                 }
             }
             In::Recognised(recognised) => {
-                self.intake.recognised(recognised, &self.player, now, fx);
+                if self.intake.recognised(recognised, &self.player, now, fx) {
+                    self.player.repeat();
+                }
                 self.send(now, fx);
             }
             In::Stream(event) => {
-                if matches!(&event, StreamEvent::Began(began) if began.interrupts) {
-                    self.player.interrupt(now, fx);
+                if let StreamEvent::Began(began) = &event {
+                    self.player.give_way(began.interrupts, now, fx);
                 }
                 self.intake.stream_event(event, now, fx);
             }

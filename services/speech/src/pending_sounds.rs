@@ -22,6 +22,8 @@ pub(crate) struct PendingSound {
     pub(crate) end: Option<Time>,
     /// `true` if its speaker can interrupt the robot.
     pub(crate) interrupts: bool,
+    /// `true` if the robot's own voice covers a part of it.
+    pub(crate) is_cut: bool,
 }
 
 impl PendingSound {
@@ -71,7 +73,8 @@ impl PendingSounds {
     pub(crate) fn add(&mut self, key: RequestKey, source: Source, onset: Time) -> u64 {
         self.last += 1;
         let segment = (source == Source::Microphone).then_some((0, 1));
-        let sound = PendingSound { key, segment, source, onset, end: None, interrupts: false };
+        let (end, interrupts, is_cut) = (None, false, false);
+        let sound = PendingSound { key, segment, source, onset, end, interrupts, is_cut };
         self.sounds.insert(self.last, sound);
         self.last
     }
@@ -86,8 +89,16 @@ impl PendingSounds {
             onset: began.at.min(now),
             end: None,
             interrupts: began.interrupts,
+            is_cut: false,
         };
         self.sounds.insert(began.sound, sound);
+    }
+
+    /// Records that the robot's own voice covers a part of a live sound.
+    pub(crate) fn cut(&mut self, sound: u64) {
+        if let Some(sound) = self.sounds.get_mut(&sound) {
+            sound.is_cut = true;
+        }
     }
 
     /// Records the end of a live sound. Returns whether the sound is known.

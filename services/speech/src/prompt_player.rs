@@ -25,6 +25,8 @@ pub(crate) struct PromptPlayer {
     last: Option<Presentation>,
     /// The latest interrupted presentation, until another one sounds.
     interrupted: Option<Presentation>,
+    /// The presentation that was repeated last because a user spoke while it sounded.
+    repeated: Option<(PromptId, u32)>,
     playing: Option<Playing>,
     waiting: Option<Waiting>,
     /// Number of the last playback.
@@ -132,6 +134,23 @@ impl PromptPlayer {
         }
         if let Some(waiting) = self.waiting.take() {
             self.play(waiting.presentation, waiting.text, now, fx);
+        }
+    }
+
+    /// Makes room for a user who begins to speak: one who can interrupt the robot does, and a prompt that
+    /// does not sound yet waits for everyone.
+    pub(crate) fn give_way(&mut self, interrupts: bool, now: Time, fx: &mut Fx) {
+        if interrupts || self.playing.as_ref().is_some_and(|playing| !playing.has_begun) {
+            self.interrupt(now, fx);
+        }
+    }
+
+    /// Has the latest prompt said again, once: a user spoke while it sounded.
+    pub(crate) fn repeat(&mut self) {
+        let last = self.last.filter(|last| self.repeated != Some((last.prompt, last.number)));
+        if let Some(last) = last.filter(|_| self.playing.is_none()) {
+            self.repeated = Some((last.prompt, last.number));
+            (self.last, self.interrupted) = (None, Some(last));
         }
     }
 

@@ -26,6 +26,11 @@ pub enum StreamEvent {
         /// The utterance so far.
         segment: SpeechSegment,
     },
+    /// The robot's own voice covers a part of the utterance, which may mean something else without it.
+    Cut {
+        /// The utterance.
+        sound: u64,
+    },
     /// The utterance ended.
     Ended {
         /// The utterance.

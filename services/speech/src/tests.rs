@@ -13,8 +13,8 @@ use crate::{
 };
 use language::{CompletenessJudge, Language, Reader};
 use messages::{
-    ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, PresentationState, Receipt,
-    RequestKey, RobotAct, Sound, Source, Utterance, WireCode,
+    ActKind, Activity, AppliedMark, FixedText, GateVerdict, Injection, MotionOrder,
+    PresentationState, Receipt, RequestKey, RobotAct, Sound, Source, Utterance, WireCode,
 };
 use scene::{AttributeId, Question, ValueId};
 use service::{Effects, Event, Node, Span, Time};
@@ -108,6 +108,11 @@ impl Outputs {
 
     fn stops_speaking(&self) -> bool {
         self.find(|out| matches!(out, Out::StopSpeaking).then_some(())).is_some()
+    }
+
+    fn stops_motion(&self) -> bool {
+        let stop = MotionOrder::Stop.code();
+        self.find(|out| matches!(out, Out::Motion(it) if it.order == stop).then_some(())).is_some()
     }
 
     fn recognises(&self) -> Option<u64> {
@@ -377,13 +382,17 @@ fn interim_results_are_published_until_the_result() {
     assert!(speech.records.is_empty(), "interim results are not journaled");
 }
 
-/// Returns the result for the pause at the end of [`segment`].
-fn early(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> In {
+/// Returns a result with these hypotheses, or one that the gate rejects.
+fn result(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> RecognisedSegment {
     let (reason, score) = (GateVerdict::OtherTalk, 0.1);
     let rejected = |text: &str| Rejected { text: text.to_owned(), reason, score };
-    let hypotheses = words.map_err(rejected);
-    let result = RecognisedSegment::accepted((0.2, 0.7), snr_db, Vec::new());
-    let result = Some(Box::new(RecognisedSegment { hypotheses, ..result }));
+    let accepted = RecognisedSegment::accepted((0.2, 0.7), snr_db, Vec::new());
+    RecognisedSegment { hypotheses: words.map_err(rejected), ..accepted }
+}
+
+/// Returns the result for the pause at the end of [`segment`].
+fn early(words: Result<Vec<Hypothesis>, &str>, snr_db: f32) -> In {
+    let result = Some(Box::new(result(words, snr_db)));
     let at = segment(Time(0)).closing(std::time::Duration::ZERO);
     In::EarlyResult { sound: SOUND, at, result }
 }
@@ -401,6 +410,9 @@ fn pause_that_ends_an_utterance_depends_on_what_was_said() {
         ("a correction interrupts", true, said("no"), 30.0, 310),
         ("leads on", true, said("no the"), 30.0, 900),
         ("in noise", true, said("yes"), 10.0, 500),
+        ("a stop in noise", false, said("stop"), 10.0, 120),
+        ("perhaps a stop", false, either("stop", "top", 0.4), 30.0, 120),
+        ("a stop that is not meant for the robot", false, Err("stop"), 30.0, 120),
         ("perhaps not complete", true, either("yes", "yes the", 0.3), 30.0, 500),
         ("hardly not complete", true, either("yes", "yes the", 0.1), 30.0, 120),
         ("not meant for the robot", true, Err("yes"), 30.0, 500),
@@ -417,6 +429,61 @@ fn pause_that_ends_an_utterance_depends_on_what_was_said() {
         let closes = speech.take(0.1, early(words, snr_db)).closes_ms();
         assert_eq!(closes, Some(expected), "{what}");
     }
+}
+
+#[test]
+fn words_whose_beginning_the_robot_covers_are_not_acted_on_and_its_question_is_repeated_once() {
+    let mut speech = Speech::new();
+    speech.take(0.0, ask(7));
+    speech.playback(0.1, 1, PlaybackState::Started);
+    speech.playback(1.0, 1, PlaybackState::Ended);
+    for (text, is_accepted, is_repeated) in
+        [("the white one", false, true), ("the white one", false, false), ("stop", true, false)]
+    {
+        let onset = speech.now;
+        speech.take(0.1, began(onset, false));
+        speech.take(0.0, In::Stream(StreamEvent::Cut { sound: SOUND }));
+        speech.take(0.4, ended(onset));
+        let result = recognised(SOUND, Some(vec![Hypothesis::certain(text)]));
+        let outputs = speech.take(0.1, result);
+        assert_eq!(outputs.utterance().is_some(), is_accepted, "{text}");
+        assert_eq!(outputs.stops_motion(), is_accepted, "{text}");
+        let receipt = outputs.receipt().unwrap();
+        let heard = if is_accepted { text.to_owned() } else { format!("… {text}") };
+        assert_eq!(receipt.note.as_str().unwrap(), heard);
+        let again = speech.take(0.1, ask(7)).spoken();
+        assert_eq!(again.is_some(), is_repeated, "{text}");
+        speech.playback(0.1, 2, PlaybackState::Started);
+        speech.playback(1.0, 2, PlaybackState::Ended);
+    }
+}
+
+/// The gate judges by words of the scene, of which a stop has none.
+#[test]
+fn stop_is_obeyed_though_it_is_not_taken_for_a_request() {
+    let mut speech = Speech::new();
+    for (text, is_obeyed) in [("the weather today", false), ("stop", true)] {
+        let onset = speech.now;
+        speech.take(0.1, began(onset, false));
+        speech.take(0.4, ended(onset));
+        let segment = result(Err(text), 30.0);
+        let recognised = Recognised { sound: SOUND, segments: Ok(vec![segment]) };
+        let outputs = speech.take(0.1, In::Recognised(recognised));
+        assert_eq!(outputs.stops_motion(), is_obeyed, "{text}");
+        assert_eq!(outputs.utterance().is_some(), is_obeyed, "{text}");
+    }
+}
+
+#[test]
+fn prompt_that_has_not_sounded_yet_waits_for_whoever_begins_to_speak() {
+    let mut speech = Speech::new();
+    assert!(speech.take(0.0, ask(7)).spoken().is_some());
+    let onset = speech.now;
+    assert!(speech.take(0.1, began(onset, false)).stops_speaking(), "nothing was heard of it");
+    speech.playback(0.0, 1, PlaybackState::Interrupted);
+    assert!(speech.take(0.1, ask(7)).spoken().is_none(), "the user is still speaking");
+    speech.take(0.5, ended(onset));
+    assert!(speech.take(0.1, recognised(SOUND, None)).spoken().is_some());
 }
 
 #[test]

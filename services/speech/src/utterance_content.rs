@@ -1,7 +1,6 @@
 //! Content of one utterance, and its validation.
 
 use messages::{HYPOTHESES_MAX, POINTED_AT_MAX_M, is_somewhere};
-use scene::{Intent, Question};
 
 use crate::{Config, Hypothesis};
 
@@ -63,9 +62,7 @@ impl UtteranceContent {
 
     /// Returns whether the words tell the robot to stop.
     pub(crate) fn is_stop(&self, config: &Config) -> bool {
-        self.hypotheses.first().is_some_and(|best| {
-            config.reader.read(&best.text, Question::None).intent == Intent::Stop
-        })
+        self.hypotheses.first().is_some_and(|best| config.is_stop(&best.text))
     }
 
     /// Returns the content if the configuration admits it.

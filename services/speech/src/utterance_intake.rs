@@ -6,6 +6,7 @@ mod hearing_status;
 mod origin;
 
 use crate::devices::microphone::MicrophoneStatus;
+use crate::devices::recogniser::Rejected;
 use crate::devices::vad::Closing;
 use crate::endpointing::EarlyDecoding;
 use crate::pending_sounds::{ClosedStream, PendingSound, PendingSounds};
@@ -18,7 +19,8 @@ use accepted::{AcceptedUtterances, Receipts};
 use hearing_status::HearingStatus;
 use language::Completeness;
 use messages::{
-    EarState, Injection, MotionCommand, MotionOrder, Receipt, ReceiptStatus, Sound, Source,
+    EarState, GateVerdict, Injection, MotionCommand, MotionOrder, Receipt, ReceiptStatus, Sound,
+    Source,
 };
 use origin::Origin;
 use scene::Question;
@@ -132,6 +134,7 @@ impl UtteranceIntake {
                 self.pending.began(&began, now);
                 self.status.set_onset(began.at.min(now));
             }
+            StreamEvent::Cut { sound } => return self.pending.cut(sound),
             StreamEvent::Ended { sound, segment } => {
                 let span = (segment.onset.min(now), segment.end.min(now));
                 if self.pending.ended(sound, span) {
@@ -185,7 +188,10 @@ impl UtteranceIntake {
         if let Some(text) = result.text() {
             self.publish_partial(&pending, text, false, fx);
         }
-        let judged = self.config.endpointing.judge(result, question);
+        let judged = match result.text() {
+            Some(text) if self.config.is_stop(text) => Completeness::Complete,
+            _ => self.config.endpointing.judge(result, question),
+        };
         let pause_s = self.config.endpointing.pause(judged, pending.interrupts).as_secs_f64();
         // What ends an utterance is what was said; no disk need be waited for.
         fx.publish_urgent(Out::Close(sound, Closing { pause_s, ..at }));
@@ -223,15 +229,16 @@ impl UtteranceIntake {
         fx.publish(Out::Activity(self.status.activity(self.pending.since(), pending)));
     }
 
-    /// Handles the result of the recogniser.
+    /// Handles the result of the recogniser. Returns whether the robot's own voice covers a part of what
+    /// a user said, who is not understood without it.
     pub(crate) fn recognised(
         &mut self,
         recognised: Recognised,
         player: &PromptPlayer,
         now: Time,
         fx: &mut Fx,
-    ) {
-        let Some(sound) = self.pending.remove(recognised.sound) else { return };
+    ) -> bool {
+        let Some(sound) = self.pending.remove(recognised.sound) else { return false };
         if sound.source == Source::Microphone {
             self.publish_partial(&sound, "", true, fx);
         }
@@ -243,15 +250,16 @@ impl UtteranceIntake {
             self.reject(&Origin::of(&sound, 0, 1), &reason, fx);
             Vec::new()
         });
-        let count = segments.len() as u32;
+        let (count, mut is_covered) = (segments.len() as u32, false);
         for (number, segment) in (0..).zip(segments) {
             let origin = Origin::of(&sound, number, count).measured(&segment, now);
             self.status.set_measured(origin.span.0, segment.snr_db);
-            match segment.hypotheses {
+            match self.meant(segment.hypotheses, sound.is_cut) {
                 Ok(hypotheses) => {
                     self.accept(origin, Ok(UtteranceContent::words(hypotheses)), player, now, fx);
                 }
                 Err(rejected) => {
+                    is_covered |= rejected.reason == GateVerdict::Covered;
                     let receipt = Receipt {
                         gate_score: rejected.score as f32,
                         verdict: rejected.reason.code(),
@@ -263,6 +271,30 @@ impl UtteranceIntake {
         }
         self.report_closed_streams(fx);
         self.publish(fx);
+        is_covered
+    }
+
+    /// Returns what a user tells the robot, or the words that are not acted on: a stop is obeyed whatever
+    /// else is unclear; of anything else the part that is missing may be its "not".
+    fn meant(
+        &self,
+        hypotheses: Result<Vec<Hypothesis>, Rejected>,
+        is_cut: bool,
+    ) -> Result<Vec<Hypothesis>, Rejected> {
+        let best = match &hypotheses {
+            Ok(hypotheses) => hypotheses.first().map_or("", |best| best.text.as_str()),
+            Err(rejected) => &rejected.text,
+        };
+        match hypotheses {
+            _ if self.config.is_stop(best) => {
+                hypotheses.or_else(|rejected| Ok(vec![Hypothesis::certain(rejected.text)]))
+            }
+            Ok(_) if is_cut => {
+                let text = format!("… {best}");
+                Err(Rejected { text, reason: GateVerdict::Covered, score: 1.0 })
+            }
+            hypotheses => hypotheses,
+        }
     }
 
     /// Accepts an utterance unless its content is invalid. Returns whether it is new.

@@ -4,10 +4,11 @@ use super::corpus::Clip;
 use crate::arm::thread_s;
 use ::speech::Hypothesis;
 use ::speech::devices::recogniser::{
-    Ensemble, Gate, PocketSphinx, PocketSphinxOptions, RecogniserUnavailable, SecondOpinion,
-    SecondView,
+    Ensemble, Gate, Opinion, PocketSphinx, PocketSphinxOptions, RecogniserUnavailable,
+    SecondOpinion, SecondView,
 };
 use ::speech::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
+use crossbeam_channel::{Receiver, Select};
 use scene::Scene;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -87,7 +88,12 @@ impl Listener {
         let decoded_at = range.end;
         let voice = speech.start - range.start..speech.end - range.start;
         let pcm = &samples[range];
-        let heard = self.recognisers.recognise(pcm, voice.clone()).ok()?;
+        let patiently = |opinion: &Receiver<Opinion>, until| {
+            let mut select = Select::new();
+            select.recv(opinion);
+            select.ready_deadline(until).is_ok()
+        };
+        let heard = self.recognisers.recognise(pcm, voice.clone(), patiently).ok()?;
         let _ = self.recognisers.judge(&heard, pcm, &voice);
         let took_s = (started.elapsed().as_secs_f64(), thread_s() - cpu_s);
         let hypotheses = heard.hypotheses();

@@ -25,10 +25,19 @@ const FRAME: usize = 320;
 /// Speech still to be heard: its first sample's number, and the samples.
 type Speech = VecDeque<(u64, Vec<i16>)>;
 
+/// What sounds in a room.
+#[derive(Debug, Default)]
+struct Sounds {
+    /// The user, whose sentences follow each other.
+    said: Speech,
+    /// A loudspeaker, over the user.
+    played: Speech,
+}
+
 /// The room. Dropping it ends its sound.
 #[derive(Debug)]
 pub struct Room {
-    speech: Arc<Mutex<Speech>>,
+    sounds: Arc<Mutex<Sounds>>,
     silent: Arc<AtomicBool>,
     began: Time,
     thread: Option<JoinHandle<()>>,
@@ -42,16 +51,16 @@ impl Room {
     pub fn open(path: &Path, noise: Pink) -> Self {
         let mode = Mode::RUSR | Mode::WUSR;
         mknodat(CWD, path, FileType::Fifo, mode, 0).expect("a named pipe");
-        let (speech, silent) = (Arc::default(), Arc::new(AtomicBool::new(false)));
+        let (sounds, silent) = (Arc::default(), Arc::new(AtomicBool::new(false)));
         let began = clock::now();
         let air = Air {
             path: path.to_owned(),
             noise,
-            speech: Arc::clone(&speech),
+            sounds: Arc::clone(&sounds),
             silent: Arc::clone(&silent),
         };
         let thread = std::thread::spawn(move || air.sound());
-        Self { speech, silent, began, thread: Some(thread) }
+        Self { sounds, silent, began, thread: Some(thread) }
     }
 
     /// Has speech begin at `at`, or when what was said before has ended. Returns when it begins and
@@ -60,14 +69,24 @@ impl Room {
     /// # Panics
     /// If the thread that makes the sound has panicked.
     pub fn say(&self, at: Time, samples: Vec<i16>) -> (Time, Time) {
-        let mut speech = self.speech.lock().unwrap_or_else(PoisonError::into_inner);
+        let said = &mut self.sounds.lock().unwrap_or_else(PoisonError::into_inner).said;
         let earliest = at.max(clock::now()).since(self.began).s() * RATE_HZ;
-        let free = speech.back().map_or(0, |(start, samples)| start + samples.len() as u64);
+        let free = said.back().map_or(0, |(start, samples)| start + samples.len() as u64);
         let start = (earliest as u64).max(free);
         let end = start + samples.len() as u64;
-        speech.push_back((start, samples));
+        said.push_back((start, samples));
         let time = |sample: u64| self.began + Span::from_s(sample as f64 / RATE_HZ);
         (time(start), time(end))
+    }
+
+    /// Has a loudspeaker play from `at` on; what is late of it is not heard.
+    ///
+    /// # Panics
+    /// If the thread that makes the sound has panicked.
+    pub fn play(&self, at: Time, samples: Vec<i16>) {
+        let start = (at.since(self.began).s() * RATE_HZ) as u64;
+        let played = &mut self.sounds.lock().unwrap_or_else(PoisonError::into_inner).played;
+        played.push_back((start, samples));
     }
 }
 
@@ -84,7 +103,7 @@ impl Drop for Room {
 struct Air {
     path: PathBuf,
     noise: Pink,
-    speech: Arc<Mutex<Speech>>,
+    sounds: Arc<Mutex<Sounds>>,
     silent: Arc<AtomicBool>,
 }
 
@@ -116,15 +135,18 @@ impl Air {
 
     fn frame(&mut self, first: u64) -> Vec<u8> {
         let mut samples: Vec<f64> = (0..FRAME).map(|_| self.noise.next()).collect();
-        let mut speech = self.speech.lock().unwrap_or_else(PoisonError::into_inner);
-        for (start, said) in speech.iter() {
+        let mut sounds = self.sounds.lock().unwrap_or_else(PoisonError::into_inner);
+        let Sounds { said, played } = &mut *sounds;
+        for (start, said) in said.iter().chain(&*played) {
             for (n, sample) in samples.iter_mut().enumerate() {
                 let at = (first + n as u64).checked_sub(*start);
                 let spoken = at.and_then(|at| said.get(at as usize));
                 *sample += spoken.map_or(0.0, |s| f64::from(*s));
             }
         }
-        speech.retain(|(start, said)| start + said.len() as u64 > first + FRAME as u64);
+        for speech in [said, played] {
+            speech.retain(|(start, said)| start + said.len() as u64 > first + FRAME as u64);
+        }
         let limit = f64::from(i16::MAX);
         let bytes = samples.iter().map(|s| s.clamp(-limit, limit) as i16);
         bytes.flat_map(i16::to_le_bytes).collect()

@@ -26,7 +26,7 @@ pub struct Line {
     /// What each recogniser thought, where two were asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub recognisers: Option<Recognisers>,
-    /// Why it is not acted on: `no_words`, `other_talk` or `no_speech`.
+    /// Why it is not acted on: `no_words`, `other_talk`, `no_speech` or `covered`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verdict: Option<GateVerdict>,
     /// Possible meanings, most likely first.

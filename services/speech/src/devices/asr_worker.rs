@@ -1,10 +1,11 @@
 //! Speech recognition on a thread of its own: from audio to segments of speech with hypotheses.
 //!
-//! Invariant: every accepted input yields exactly one result, in order. The thread accepts input at
+//! Invariant: every accepted input yields exactly one result; those of live utterances come in order, and
+//! so do those of files. What is said does not wait for a file. The thread accepts input at
 //! once; the recogniser follows when it has loaded. Interim results and early decoding delay no
 //! result, and a second opinion none longer than the closing pause.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
@@ -19,14 +20,14 @@ use crate::devices::vad::SegmenterOptions;
 use crate::devices::worker_thread::{QueueError, WorkerThread};
 use crate::{In, RecognitionInput};
 use early::EarlyResults;
-use worker::Worker;
+use worker::{Channels, Worker};
 
 mod doubt;
 mod early;
 mod interim;
 mod worker;
 
-/// Inputs that may wait.
+/// Live utterances that may wait, and files.
 pub(crate) const WAITING_MAX: usize = 8;
 /// Possible ends of utterances that may wait for early decoding.
 const HINTS_MAX: usize = 4;
@@ -35,9 +36,10 @@ const HINTS_MAX: usize = 4;
 pub(crate) struct AsrWorker {
     hints: Sender<(u64, SpeechSegment)>,
     blocks: Sender<(u64, Vec<i16>)>,
+    files: Sender<(u64, PathBuf)>,
     closed: Arc<AtomicBool>,
     /// Declared last: it ends once the channels above are closed.
-    thread: WorkerThread<(u64, RecognitionInput)>,
+    thread: WorkerThread<(u64, SpeechSegment)>,
 }
 
 impl AsrWorker {
@@ -66,6 +68,7 @@ impl AsrWorker {
     ) -> (Self, Receiver<In>) {
         let (hints, hinted) = bounded(HINTS_MAX);
         let (blocks, spoken) = bounded(interim::BLOCKS_MAX);
+        let (files, recorded) = bounded(WAITING_MAX);
         let (events, happened) = unbounded();
         let closed = Arc::new(AtomicBool::new(false));
         let worker_closed = Arc::clone(&closed);
@@ -84,11 +87,11 @@ impl AsrWorker {
             let (closed, early) = (worker_closed, EarlyResults::default());
             let worker =
                 Worker { recognisers, segmenter, longest_s, closed, events, early, doubt: None };
-            worker.run(inputs, &hinted);
+            worker.run(&Channels { live: inputs, hints: &hinted, files: &recorded });
             // A panic of the thread has been logged.
             let _ = interim.map(JoinHandle::join);
         });
-        (Self { hints, blocks, closed, thread }, happened)
+        (Self { hints, blocks, files, closed, thread }, happened)
     }
 
     /// Offers a possible end of utterance `sound`. A quick recogniser decodes it while it is idle, and
@@ -106,7 +109,12 @@ impl AsrWorker {
 
     /// Queues input. `sound` identifies it in the events.
     pub(crate) fn submit(&self, sound: u64, input: RecognitionInput) -> Result<(), QueueError> {
-        self.thread.offer((sound, input))
+        match input {
+            RecognitionInput::Speech(segment) => self.thread.offer((sound, segment)),
+            RecognitionInput::File(path) => {
+                self.files.try_send((sound, path.into())).map_err(QueueError::of)
+            }
+        }
     }
 }
 

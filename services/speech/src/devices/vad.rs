@@ -11,6 +11,7 @@ use earshot::Detector;
 
 use crate::devices::audio::RATE_HZ;
 use loudness::Loudness;
+pub(in crate::devices) use loudness::level_db;
 
 /// Samples per decision of the detector: 16 ms.
 const FRAME: usize = 256;

@@ -21,6 +21,15 @@ pub enum QueueError {
     Closed,
 }
 
+impl QueueError {
+    pub(crate) fn of<T>(error: TrySendError<T>) -> Self {
+        match error {
+            TrySendError::Full(_) => Self::Full,
+            TrySendError::Disconnected(_) => Self::Closed,
+        }
+    }
+}
+
 impl<T: Send + 'static> WorkerThread<T> {
     /// Starts the thread, which runs until its queue is closed.
     pub(crate) fn start(capacity: usize, run: impl FnOnce(&Receiver<T>) + Send + 'static) -> Self {
@@ -31,10 +40,7 @@ impl<T: Send + 'static> WorkerThread<T> {
     /// Queues work if there is room.
     pub(crate) fn offer(&self, work: T) -> Result<(), QueueError> {
         let queue = self.queue.as_ref().ok_or(QueueError::Closed)?;
-        queue.try_send(work).map_err(|error| match error {
-            TrySendError::Full(_) => QueueError::Full,
-            TrySendError::Disconnected(_) => QueueError::Closed,
-        })
+        queue.try_send(work).map_err(QueueError::of)
     }
 
     /// Returns the number of requests that wait.

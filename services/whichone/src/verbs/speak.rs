@@ -169,6 +169,9 @@ fn not_acted_on(receipt: &Receipt, note: &str) -> String {
         GateVerdict::NoSpeech => {
             format!("heard, but not acted on: {note} (no voice in it)")
         }
+        GateVerdict::Covered => {
+            format!("heard, but not acted on: {note} (the robot's voice covers the beginning)")
+        }
         GateVerdict::OtherTalk | GateVerdict::Passed => {
             let score = receipt.gate_score;
             format!(
@@ -250,6 +253,7 @@ mod tests {
             (GateVerdict::NoWords, "no words were recognised"),
             (GateVerdict::OtherTalk, "the kite (about other things: 0.12 is below"),
             (GateVerdict::NoSpeech, "the kite (no voice in it)"),
+            (GateVerdict::Covered, "the kite (the robot's voice covers the beginning)"),
         ] {
             let text = not_acted_on(&receipt(verdict, SecondState::NotAsked, ""), "the kite");
             assert!(text.contains(expected), "{text}");

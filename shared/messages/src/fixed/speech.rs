@@ -172,6 +172,8 @@ wire_enum! {
         OtherTalk = 2,
         /// Nobody spoke.
         NoSpeech = 3,
+        /// The robot's own voice covers its beginning.
+        Covered = 4,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use crossbeam_channel::{Receiver, never};
+use crossbeam_channel::{Receiver, TryRecvError, never};
 use service::clock;
 
 use crate::Hypothesis;
@@ -65,6 +65,16 @@ impl Doubt {
         match doubt {
             None => (never(), None),
             Some(doubt) => (doubt.pending.opinion().clone(), Some(doubt.pending.until())),
+        }
+    }
+
+    /// Returns the opinion, or `Some(None)` if it is late or there will be none; `None` as long as it may
+    /// come.
+    pub(super) fn outcome(&self) -> Option<Option<Opinion>> {
+        match self.pending.opinion().try_recv() {
+            Ok(opinion) => Some(Some(opinion)),
+            Err(TryRecvError::Empty) if Instant::now() < self.pending.until() => None,
+            Err(_) => Some(None),
         }
     }
 

@@ -119,8 +119,8 @@ mod doubt;
 fn asr_worker_reports_failures_with_their_reason() {
     let (failing, events) = ready(true);
     failing.submit(1, file(Path::new("/nonexistent/x.wav"))).unwrap();
-    failing.submit(2, RecognitionInput::Speech(segment(1_000))).unwrap();
     assert!(result(&events).segments.unwrap_err().contains("x.wav"));
+    failing.submit(2, RecognitionInput::Speech(segment(1_000))).unwrap();
     assert!(result(&events).segments.unwrap_err().contains("failed"));
     let (off, events) = worker(|| Err("install the package libpocketsphinx3".to_owned()));
     assert!(matches!(next(&events), In::RecogniserState(EarState::Off)));
@@ -229,4 +229,23 @@ fn asr_worker_ignores_hints_for_a_slow_recogniser() {
     go.send(()).unwrap();
     assert_eq!(result(&events).sound, 2);
     assert_eq!(called.try_iter().collect::<Vec<_>>(), [2_000]);
+}
+
+/// A motion stop must not wait for a recording.
+#[test]
+fn asr_worker_decodes_what_is_said_before_the_rest_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.wav");
+    let one = [vec![0; 16_000], testing::voice(1.0)].concat();
+    write_wav(&path, &[&one[..], &one, &one].concat()).unwrap();
+    let (worker, events, called, go) = waiting(true);
+    (0..WAITING_MAX as u64).for_each(|sound| worker.submit(sound, file(&path)).unwrap());
+    called.recv_timeout(PATIENCE).unwrap();
+    submit(&worker, 99, 1_000);
+    (0..3 * WAITING_MAX + 1).for_each(|_| go.send(()).unwrap());
+    assert_eq!(result(&events).sound, 99);
+    for sound in 0..WAITING_MAX as u64 {
+        let recognised = result(&events);
+        assert_eq!((recognised.sound, recognised.segments.unwrap().len()), (sound, 3));
+    }
 }

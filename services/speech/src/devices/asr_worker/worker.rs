@@ -1,24 +1,27 @@
-//! The worker's thread: decodes inputs in order, and possible ends of utterances while it is idle. Where
-//! the first recogniser is in doubt it asks the second one, and goes on meanwhile.
+//! The worker's thread: decodes what is said in order, possible ends of it while it is idle, and files
+//! beside that. Where the first recogniser is in doubt it asks the second one, and goes on meanwhile.
 //!
-//! Invariant: no result waits for the second recogniser longer than the closing pause, nor does the
-//! next input.
+//! Invariant: what is said waits for no file, and for the second recogniser no longer than the closing
+//! pause.
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
-use crossbeam_channel::{Receiver, Sender, TryRecvError, after, never, select};
+use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
 
 use super::doubt::Doubt;
 use super::early::EarlyResults;
-use crate::devices::audio::{read_wav, seconds, snr_db};
+use crate::devices::audio::{RATE_HZ, read_wav, seconds, snr_db};
 use crate::devices::recogniser::{Ensemble, Heard, Opinion, SecondView};
 use crate::devices::stream::SpeechSegment;
 use crate::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
-use crate::{Hypothesis, In, Recognised, RecognisedSegment, RecognitionInput};
+use crate::{Hypothesis, In, Recognised, RecognisedSegment};
+
+/// Samples of a file that are searched for speech at a time: one second.
+const PIECE: usize = RATE_HZ as usize;
 
 /// The thread's side.
 pub(super) struct Worker {
@@ -31,76 +34,71 @@ pub(super) struct Worker {
     pub(super) doubt: Option<Doubt>,
 }
 
-/// What the thread does next.
-enum Next {
-    Input(u64, RecognitionInput),
-    Hint(u64, SpeechSegment),
-    /// The second recogniser's opinion, or that it is late.
-    Opinion(Option<Opinion>),
-    Closed,
+/// The ends of the worker's channels.
+pub(super) struct Channels<'a> {
+    /// What is said.
+    pub(super) live: &'a Receiver<(u64, SpeechSegment)>,
+    /// Possible ends of what is being said.
+    pub(super) hints: &'a Receiver<(u64, SpeechSegment)>,
+    pub(super) files: &'a Receiver<(u64, PathBuf)>,
 }
 
 impl Worker {
-    pub(super) fn run(
-        mut self,
-        inputs: &Receiver<(u64, RecognitionInput)>,
-        hints: &Receiver<(u64, SpeechSegment)>,
-    ) {
-        loop {
-            match self.next(inputs, hints) {
-                Next::Input(..) if self.closed.load(Ordering::SeqCst) => return,
-                Next::Input(sound, input) => self.on_input(sound, input),
-                Next::Hint(sound, segment) => self.on_hint(sound, segment),
-                Next::Opinion(opinion) => self.settle(opinion),
-                Next::Closed => return,
+    pub(super) fn run(mut self, channels: &Channels<'_>) {
+        while self.serve(channels) {
+            let (opinion, until) = Doubt::awaited(self.doubt.as_ref());
+            let mut select = Select::new();
+            let file = select.recv(channels.files);
+            select.recv(channels.live);
+            select.recv(channels.hints);
+            select.recv(&opinion);
+            let ready = match until {
+                None => Ok(select.ready()),
+                Some(until) => select.ready_deadline(until),
+            };
+            if ready == Ok(file)
+                && let Ok((sound, path)) = channels.files.try_recv()
+            {
+                let segments = self.recognise_file(&path, channels);
+                self.answer(sound, segments);
             }
         }
     }
 
-    fn next(
-        &self,
-        inputs: &Receiver<(u64, RecognitionInput)>,
-        hints: &Receiver<(u64, SpeechSegment)>,
-    ) -> Next {
-        // Inputs have priority over hints.
-        match inputs.try_recv() {
-            Ok((sound, input)) => return Next::Input(sound, input),
-            Err(TryRecvError::Disconnected) => return Next::Closed,
-            Err(TryRecvError::Empty) => {}
-        }
-        let (opinion, until) = Doubt::awaited(self.doubt.as_ref());
-        let late = until
-            .map_or_else(never, |until| after(until.saturating_duration_since(Instant::now())));
-        select! {
-            recv(inputs) -> next => {
-                next.map_or(Next::Closed, |(sound, input)| Next::Input(sound, input))
+    /// Decodes what is said, settles what the second recogniser was asked, and decodes possible ends of
+    /// what is being said while nothing else waits. Returns whether more may come.
+    fn serve(&mut self, channels: &Channels<'_>) -> bool {
+        while !self.closed.load(Ordering::SeqCst) {
+            match channels.live.try_recv() {
+                Ok((sound, segment)) => {
+                    self.on_live(sound, segment);
+                    continue;
+                }
+                Err(TryRecvError::Disconnected) => return false,
+                Err(TryRecvError::Empty) => {}
             }
-            recv(hints) -> hint => {
-                // The newest hint is the most likely one.
-                let newest = hints.try_iter().last().or(hint.ok());
-                newest.map_or(Next::Closed, |(sound, segment)| Next::Hint(sound, segment))
+            if let Some(opinion) = self.doubt.as_ref().and_then(Doubt::outcome) {
+                self.settle(opinion);
             }
-            recv(opinion) -> opinion => Next::Opinion(opinion.ok()),
-            recv(late) -> _ => Next::Opinion(None),
+            // The newest hint is the most likely one.
+            match channels.hints.try_iter().last() {
+                Some((sound, segment)) => self.on_hint(sound, segment),
+                None => return true,
+            }
         }
+        false
     }
 
-    fn on_input(&mut self, sound: u64, input: RecognitionInput) {
-        if let (RecognitionInput::Speech(segment), Some(doubt)) = (&input, &mut self.doubt)
-            && doubt.is_about(sound, segment)
+    fn on_live(&mut self, sound: u64, segment: SpeechSegment) {
+        if let Some(doubt) = &mut self.doubt
+            && doubt.is_about(sound, &segment)
             && !doubt.is_owed
         {
             return doubt.owe();
         }
         // Results keep their order.
         self.settle(None);
-        match input {
-            RecognitionInput::File(path) => {
-                let segments = self.recognise_file(Path::new(&path));
-                self.answer(sound, segments);
-            }
-            RecognitionInput::Speech(segment) => self.on_speech(sound, segment),
-        }
+        self.on_speech(sound, segment);
     }
 
     fn on_speech(&mut self, sound: u64, segment: SpeechSegment) {
@@ -187,24 +185,51 @@ impl Worker {
         Ok(RecognisedSegment { awaits_second, ..result })
     }
 
-    fn recognise_file(&mut self, path: &Path) -> Result<Vec<RecognisedSegment>, String> {
-        let recognisers = available(&mut self.recognisers)?;
+    /// Decodes a file piece by piece. What is said meanwhile comes first: it may be a stop.
+    fn recognise_file(
+        &mut self,
+        path: &Path,
+        channels: &Channels<'_>,
+    ) -> Result<Vec<RecognisedSegment>, String> {
+        available(&mut self.recognisers)?;
         let samples = read_wav(path, self.longest_s).map_err(|error| error.to_string())?;
         let mut segmenter = Segmenter::new(self.segmenter.clone());
-        let mut events = segmenter.push(&samples);
-        events.extend(segmenter.finish());
         let mut segments = Vec::new();
-        for event in events {
-            let VadEvent::End { range, speech } = event else { continue };
-            if self.closed.load(Ordering::SeqCst) {
+        for piece in samples.chunks(PIECE).map(Some).chain([None]) {
+            if !self.serve(channels) {
                 break;
             }
-            let voice = speech.start - range.start..speech.end - range.start;
-            let heard = recognisers.recognise(&samples[range.clone()], voice);
-            let heard = heard.map_err(|error| error.to_string())?;
-            segments.push(judged(recognisers, &samples, &range, &speech, heard));
+            let events = match piece {
+                Some(piece) => segmenter.push(piece),
+                None => segmenter.finish().into_iter().collect(),
+            };
+            for event in events {
+                let VadEvent::End { range, speech } = event else { continue };
+                segments.push(self.recognise_range(&samples, &range, &speech, channels)?);
+            }
         }
         Ok(segments)
+    }
+
+    /// Decodes one utterance of a file. The second recogniser is not waited for where something is said.
+    fn recognise_range(
+        &mut self,
+        samples: &[i16],
+        range: &Range<usize>,
+        speech: &Range<usize>,
+        channels: &Channels<'_>,
+    ) -> Result<RecognisedSegment, String> {
+        let recognisers = available(&mut self.recognisers)?;
+        let (pcm, voice) = (&samples[range.clone()], voice_of(range, speech));
+        let heard = recognisers.recognise(pcm, voice, |opinion, until| {
+            let mut select = Select::new();
+            let answered = select.recv(opinion);
+            select.recv(channels.live);
+            select.recv(channels.hints);
+            select.ready_deadline(until) == Ok(answered)
+        });
+        let heard = heard.map_err(|error| error.to_string())?;
+        Ok(judged(recognisers, samples, range, speech, heard))
     }
 
     fn publish_early(
@@ -249,6 +274,11 @@ fn report(segment: &RecognisedSegment) {
     }
 }
 
+/// Returns the range of the voice within the samples of `range`.
+fn voice_of(range: &Range<usize>, speech: &Range<usize>) -> Range<usize> {
+    speech.start - range.start..speech.end - range.start
+}
+
 /// Returns the result for the samples of `range`, in which `speech` are those of the voice.
 fn judged(
     recognisers: &Ensemble,
@@ -257,7 +287,7 @@ fn judged(
     speech: &Range<usize>,
     heard: Heard,
 ) -> RecognisedSegment {
-    let voice = speech.start - range.start..speech.end - range.start;
+    let voice = voice_of(range, speech);
     let mut hypotheses = recognisers.judge(&heard, &samples[range.clone()], &voice);
     for hypothesis in hypotheses.iter_mut().flatten() {
         hypothesis.weight = hypothesis.weight.max(WEIGHT_MIN);

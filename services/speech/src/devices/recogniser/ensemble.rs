@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::time::{Duration, Instant};
 
+use crossbeam_channel::Receiver;
+
 use messages::GateVerdict;
 
 use super::{
@@ -92,7 +94,8 @@ impl Ensemble {
         self.second.as_ref()?.begin(&pcm[speech.start.saturating_sub(AROUND)..end], until)
     }
 
-    /// Asks all recognisers that are needed and waits for them.
+    /// Asks all recognisers that are needed. `wait` waits for the second one's opinion until a time and
+    /// returns whether it is there.
     ///
     /// # Errors
     /// If the first one fails on these samples.
@@ -100,13 +103,18 @@ impl Ensemble {
         &mut self,
         pcm: &[i16],
         speech: Range<usize>,
+        wait: impl FnOnce(&Receiver<Opinion>, Instant) -> bool,
     ) -> Result<Heard, RecogniseError> {
         let first = self.ask_first(pcm, speech.clone())?;
         if !self.is_in_doubt(&first) {
             return Ok(Heard { first, second: SecondView::NotAsked });
         }
         let asked = self.ask_second(pcm, &speech, Instant::now() + UNHURRIED);
-        let opinion = asked.and_then(|pending| pending.wait(&first));
+        let opinion = asked.and_then(|pending| {
+            pending.ask_about(&first);
+            let is_there = wait(pending.opinion(), pending.until());
+            pending.opinion().try_recv().ok().filter(|_| is_there)
+        });
         Ok(Heard { first, second: opinion.map_or(SecondView::Late, SecondView::Heard) })
     }
 

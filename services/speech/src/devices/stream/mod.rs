@@ -19,7 +19,7 @@ pub use audio::SampleClock;
 pub(crate) use audio::shifted;
 pub use closings::Closings;
 pub use half_duplex::{Duplex, MaskedStream};
-pub use playback_mask::PlaybackMask;
+pub use playback_mask::{OwnVoice, PlaybackMask};
 
 use crate::devices::audio::RATE_HZ;
 use crate::devices::vad::{Closing, Segmenter, SegmenterOptions, VadEvent};

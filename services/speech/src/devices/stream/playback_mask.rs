@@ -8,6 +8,18 @@ use service::{Span, Time};
 /// Playbacks that are remembered: samples arrive some tenths of a second after they were recorded.
 const PLAYBACKS_MAX: usize = 8;
 
+/// What a microphone in the room records of the robot itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum OwnVoice {
+    /// Nothing.
+    #[default]
+    Silent,
+    /// What remains of its voice in the room and in the buffers of the sound card.
+    Echo,
+    /// Its voice.
+    Speaking,
+}
+
 /// Times of the robot's own voice, which a microphone in the room records as well. Shared between
 /// voice and microphones.
 #[derive(Debug)]
@@ -41,12 +53,15 @@ impl PlaybackMask {
         }
     }
 
-    /// Returns whether a microphone may record the robot itself at `at`.
-    pub fn covers(&self, at: Time) -> bool {
-        let covers = |(began, ended): &(Time, Option<Time>)| {
-            *began <= at && ended.is_none_or(|ended| at < ended + self.echo)
+    /// Returns what a microphone may record of the robot at `at`.
+    pub fn own_voice(&self, at: Time) -> OwnVoice {
+        let own_voice = |(began, ended): &(Time, Option<Time>)| match ended {
+            _ if at < *began => OwnVoice::Silent,
+            Some(ended) if at >= *ended + self.echo => OwnVoice::Silent,
+            Some(ended) if at >= *ended => OwnVoice::Echo,
+            _ => OwnVoice::Speaking,
         };
-        self.playbacks().iter().any(covers)
+        self.playbacks().iter().map(own_voice).max().unwrap_or_default()
     }
 
     fn playbacks(&self) -> MutexGuard<'_, VecDeque<(Time, Option<Time>)>> {
@@ -63,14 +78,20 @@ mod tests {
     fn playback_mask_covers_playback_and_echo() {
         let mask = PlaybackMask::new(Span::from_ms(300));
         let ms = |ms: u64| Time(ms * 1_000_000);
-        assert!(!mask.covers(ms(0)));
+        let is = |at, expected: OwnVoice| assert_eq!(mask.own_voice(ms(at)), expected, "{at} ms");
+        is(0, OwnVoice::Silent);
         mask.begins(ms(1_000));
-        assert!(!mask.covers(ms(999)) && mask.covers(ms(1_000)) && mask.covers(ms(9_000)));
+        is(999, OwnVoice::Silent);
+        is(1_000, OwnVoice::Speaking);
+        is(9_000, OwnVoice::Speaking);
         mask.ends(ms(2_000));
         mask.ends(ms(5_000));
-        assert!(mask.covers(ms(2_299)) && !mask.covers(ms(2_300)));
-        mask.begins(ms(3_000));
-        assert!(mask.covers(ms(1_500)), "late samples are judged by their own time");
+        is(1_999, OwnVoice::Speaking);
+        is(2_299, OwnVoice::Echo);
+        is(2_300, OwnVoice::Silent);
+        mask.begins(ms(2_200));
+        is(2_250, OwnVoice::Speaking);
+        is(1_500, OwnVoice::Speaking);
         (0..100).for_each(|n| mask.begins(ms(10_000 + n)));
         assert!(mask.playbacks().len() <= PLAYBACKS_MAX);
     }

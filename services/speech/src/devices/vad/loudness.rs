@@ -64,7 +64,8 @@ impl Loudness {
     }
 }
 
-fn level_db(frame: &[i16]) -> f32 {
+/// Returns the level of samples, decibels relative to full scale.
+pub(in crate::devices) fn level_db(frame: &[i16]) -> f32 {
     let square = |sample: &i16| (f32::from(*sample) / 32_768.0).powi(2);
     let mean = frame.iter().map(square).sum::<f32>() / frame.len().max(1) as f32;
     (10.0 * mean.log10()).max(SILENCE_DB)

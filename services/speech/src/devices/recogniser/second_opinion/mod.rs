@@ -58,6 +58,7 @@ pub(crate) struct Limit {
     dropped: AtomicBool,
 }
 
+#[cfg(any(feature = "whisper", test))]
 impl Limit {
     pub(crate) fn is_over(&self) -> bool {
         self.dropped.load(Ordering::Relaxed) || Instant::now() >= self.until
@@ -189,12 +190,6 @@ impl PendingOpinion {
     pub fn until(&self) -> Instant {
         self.limit.until
     }
-
-    /// Waits for the opinion on the first recogniser's hypotheses. `None`: it is late.
-    pub fn wait(self, first: &[Hypothesis]) -> Option<Opinion> {
-        self.ask_about(first);
-        self.opinion.recv_deadline(self.limit.until).ok()
-    }
 }
 
 impl Drop for PendingOpinion {
@@ -229,7 +224,9 @@ mod tests {
             ["the white one", "the white bowl", "yes"].map(Hypothesis::certain).into();
         let listen = |samples: &[i16], within_s| {
             let until = Instant::now() + Duration::from_secs(within_s);
-            second.begin(samples, until).unwrap().wait(&first)
+            let pending = second.begin(samples, until).unwrap();
+            pending.ask_about(&first);
+            pending.opinion().recv_deadline(until).ok()
         };
         let once = listen(&voice(2.0), 60).unwrap();
         assert_eq!(listen(&voice(2.0), 60).unwrap(), once);
