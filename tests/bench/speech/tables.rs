@@ -5,6 +5,7 @@ use super::listener::THRESHOLDS;
 use super::score::{Gated, Score};
 use super::{Trial, corpus::Corpus};
 use crate::report::{Report, percentile};
+use ::speech::devices::vad::SegmenterOptions;
 use evaluation::simulation::{Interval, wilson};
 
 /// A row's name, and what it is about.
@@ -102,6 +103,7 @@ fn timed(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
         "second recogniser asked",
         "then to result, ms, p50",
         "p95",
+        "too late",
     ];
     let row = |(name, scores): &Row<'_>| {
         let of = |value: fn(&Score) -> f64| -> Vec<f64> {
@@ -120,13 +122,18 @@ fn timed(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
             true => String::new(),
             false => format!("{:.0}", percentile(&doubtful, share)),
         });
+        let options = SegmenterOptions::default();
+        let limit_ms = (options.closing_pause_s - options.early_roll_s) * 1e3;
+        let late = doubtful.iter().filter(|&&ms| ms > limit_ms).count();
+        let late = percent(late, doubtful.len());
         let row = std::iter::once((*name).to_owned()).chain(times).chain([load, asked]);
-        row.chain(second).collect()
+        row.chain(second).chain([late]).collect()
     };
     let title = format!("Spoken input, times: {corpus}");
     let note = "Onset and release: the detector's edges against the voice's. Decoding and its load are \
                 those of the first recogniser; the last columns are the time from the beginning of \
-                decoding to the result where the second one was asked (with WHICHONE_WHISPER_MODEL).";
+                decoding to the result where the second one was asked (with WHICHONE_WHISPER_MODEL); too late: \
+                after the closing pause, so that the first one counts.";
     report.table(title, note, heads, rows.iter().map(row).collect());
 }
 
