@@ -22,7 +22,8 @@ use crate::{Costs, Rng};
 pub(crate) struct Revealed<'a> {
     reduced: &'a Reduced,
     costs: Costs,
-    told: Told,
+    /// For classes of one object, and for the others if there are any.
+    told: Vec<Told>,
     questions: Vec<Question<'a>>,
     known: HashMap<u128, f64>,
     /// Beliefs that were looked at, and the most that may be.
@@ -89,10 +90,14 @@ impl<'a> Revealed<'a> {
         let questions: Vec<_> = reduced.queries.iter().map(question).collect::<Option<_>>()?;
         let cheapest =
             questions.iter().map(|q| q.channel).min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+        let several = reduced.share.iter().copied().filter(|share| *share < 1.0).reduce(f64::max);
+        let shares = std::iter::once(1.0).chain(several);
+        let told = shares.map(|share| Told::new(costs, cheapest, reduced.classes(), share));
+        let told: Vec<Told> = told.collect::<Option<_>>()?;
         Some(Self {
             reduced,
             costs: *costs,
-            told: Told::new(costs, cheapest, reduced.classes())?,
+            told,
             questions,
             known: HashMap::new(),
             looked_at: 0,
@@ -167,18 +172,25 @@ impl<'a> Revealed<'a> {
 
     /// What telling the class is worth.
     fn told_class(&self, at: &State) -> f64 {
-        let of = |class: &u16| at.entry(*class);
-        let (total, value) = at.left.iter().map(of).fold((0.0, 0.0), |(total, value), (m, log)| {
-            (total + m, value + m * self.told.value(m, log))
-        });
+        let (mut total, mut value) = (0.0, 0.0);
+        for class in &at.left {
+            let (mass, log) = at.entry(*class);
+            total += mass;
+            value += mass * self.told_of(*class).value(mass, log);
+        }
         value / total
+    }
+
+    fn told_of(&self, class: u16) -> &Told {
+        let several = self.reduced.share[usize::from(class)] < 1.0;
+        &self.told[usize::from(several)]
     }
 
     /// The better of picking and waiting. Whatever is picked, the classes that are left get their
     /// compensation, and what another class would get is at the expense of the picked one.
     fn stop(&self, at: &State) -> f64 {
         let Costs { correct, wrong, .. } = self.costs;
-        let paid = |class: usize| at.mass[class] * self.told.compensation(at.log[class]);
+        let paid = |class: usize| at.mass[class] * self.told[0].compensation(at.log[class]);
         let all: f64 = (0..at.mass.len()).map(paid).sum();
         let (mut left, mut total, mut top) = (0.0, 0.0, 0.0_f64);
         for class in at.left.iter().map(|class| usize::from(*class)) {
@@ -198,13 +210,13 @@ impl<'a> Revealed<'a> {
             let says = question.blocks.iter().zip(&at.mass);
             let yes: f64 =
                 says.filter(|(block, _)| **block == question.block).map(|(_, m)| m).sum();
-            let split = self.told.split(yes.clamp(0.0, 1.0));
+            let split = self.told[0].split(yes.clamp(0.0, 1.0));
             let (logs, mut sides, mut wrong) = ([own.ln(), other.ln()], [(0.0, 0.0); 2], 0.0);
             for &class in &at.left {
                 let ((mass, log), side) = (at.entry(class), question.side(usize::from(class)));
                 let after = |likelihood: f64, added: f64, heard: usize| {
                     let x = mass * likelihood / split.heard[heard];
-                    self.told.value(x, log + added - split.log[heard])
+                    self.told_of(class).value(x, log + added - split.log[heard])
                 };
                 sides[side].0 += mass;
                 sides[side].1 += mass * after(own, logs[0], side);

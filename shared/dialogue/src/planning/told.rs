@@ -36,6 +36,8 @@ struct Stakes {
     costs: Costs,
     channel: Channel,
     classes: usize,
+    /// Value of picking the class where it is wanted.
+    worth: f64,
     /// `B`.
     price: f64,
     /// `K`.
@@ -77,12 +79,25 @@ const AHEAD: f64 = 0.5;
 const SHORT: f64 = 1.5;
 
 impl Told {
-    /// The bounds for questions like this one, the cheapest; none if they cannot be shown.
-    pub(super) fn new(costs: &Costs, channel: &Channel, classes: usize) -> Option<Self> {
+    /// The bounds for questions like this one, the cheapest, about classes whose best object has that
+    /// share of them; none if they cannot be shown.
+    pub(super) fn new(
+        costs: &Costs,
+        channel: &Channel,
+        classes: usize,
+        share: f64,
+    ) -> Option<Self> {
         let (cost, discount) = (channel.price.cost, channel.price.discount);
         let price = (cost + (1.0 - discount) * AHEAD * costs.correct) / channel.capacity;
         let credit = costs.correct + costs.wrong - SHORT * cost;
-        let stakes = Stakes { costs: *costs, channel: *channel, classes, price, credit };
+        let stakes = Stakes {
+            costs: *costs,
+            channel: *channel,
+            classes,
+            worth: costs.pick_value(share),
+            price,
+            credit,
+        };
         let rest = (0..CELLS).map(|cell| costs.correct - price * span(cell)[0].ln()).collect();
         let mut told = Self { stakes, rest };
         let steps: Vec<Step> = (0..CELLS).map(|cell| stakes.step(span(cell))).collect();
@@ -188,12 +203,11 @@ impl Stakes {
 
     /// `stop − B ln x` at most. The picked class pays for the others, least if they are all alike.
     fn stop(&self, [low, high]: [f64; 2]) -> f64 {
-        let Costs { correct, wrong, .. } = self.costs;
         let log = self.price * low.ln();
         let others = self.credit + self.price * ((1.0 - high) / (self.classes as f64 - 1.0)).ln();
-        let own = correct - (1.0 - high) / high * others.max(0.0);
-        let idle = self.costs.wait_value().max(-wrong);
-        (own.max(idle) - log).max(self.credit - wrong)
+        let own = self.worth - (1.0 - high) / high * others.max(0.0);
+        let idle = self.costs.wait_value().max(-self.costs.wrong);
+        (own.max(idle) - log).max(self.credit - self.costs.wrong)
     }
 }
 
