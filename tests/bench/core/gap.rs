@@ -16,8 +16,8 @@ const HARD: [usize; 2] = [50, 100];
 /// How many hard scenes of a size there are.
 const DRAWS: u64 = 10;
 /// Beliefs of the search, and of the easier problem that bounds it.
-const EFFORTS: [(usize, usize); 5] =
-    [(1_000, 4_000), (4_000, 30_000), (16_000, 200_000), (50_000, 1_000_000), (100_000, 8_000_000)];
+const EFFORTS: [(usize, usize); 4] =
+    [(1_000, 3_000), (5_000, 30_000), (30_000, 300_000), (60_000, 2_000_000)];
 /// Dialogues less probable than this are cut short in the value of `lookahead`.
 const CUT: f64 = 1e-5;
 
