@@ -24,7 +24,12 @@ pub(crate) fn configured(name: &str) -> Scene {
 
 /// A model of objects with random values.
 pub(super) fn random(objects: usize, attributes: usize) -> Model {
-    let mut rng = Rng::new(1_000_003 * objects as u64 + attributes as u64);
+    drawn(objects, attributes, 0)
+}
+
+/// One of many such models.
+pub(super) fn drawn(objects: usize, attributes: usize, draw: u64) -> Model {
+    let mut rng = Rng::new(1_000_003 * objects as u64 + attributes as u64 + 7_919 * draw);
     let name = |k: usize, v: usize| format!("a{k}v{v}");
     let object = |i: usize| {
         let values = (0..attributes)

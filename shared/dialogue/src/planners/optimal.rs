@@ -26,12 +26,19 @@ pub struct Optimal {
     /// Gap between the bounds at which the value counts as known, as a share of what is at stake
     /// in a pick.
     pub tolerance: f64,
+    /// Most beliefs to look at for certifying a smaller gap where that one is not reached.
+    pub certify_max: usize,
     table: PolicyTable,
 }
 
 impl Default for Optimal {
     fn default() -> Self {
-        Self { beliefs_max: 50_000, tolerance: 2e-6, table: PolicyTable::default() }
+        Self {
+            beliefs_max: 50_000,
+            tolerance: 2e-6,
+            certify_max: 100_000,
+            table: PolicyTable::default(),
+        }
     }
 }
 
@@ -57,6 +64,7 @@ impl Optimal {
         searched(problem, belief, |reduced: &Reduced| Effort {
             beliefs_max: self.beliefs_max.min(affordable(reduced, WORK_MAX).max(BELIEFS_MIN)),
             tolerance: self.tolerance * stake,
+            certify_max: self.certify_max,
         })
     }
 }
@@ -87,6 +95,7 @@ impl Planner for Optimal {
         let quick = |reduced: &Reduced| Effort {
             beliefs_max: affordable(reduced, SMALL_WORK_MAX).max(1),
             tolerance,
+            certify_max: 0,
         };
         let bounds = searched(problem, &stands_for(belief, &belief.key()), quick).bounds;
         if bounds.is_some_and(|(lower, upper)| upper - lower <= tolerance) {

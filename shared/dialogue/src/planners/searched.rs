@@ -1,6 +1,6 @@
 //! A decision from searching the beliefs that questions lead to.
 
-use crate::planning::{Bound, Effort, Move, Reduced, Search};
+use crate::planning::{Bound, Effort, Move, Reduced, Revealed, Search, Value};
 use crate::{Action, Belief, Decision, DecisionProblem};
 
 use super::{alternatives, stop};
@@ -15,7 +15,9 @@ pub(super) fn searched(
     let reduced = Reduced::new(problem, belief);
     let bound = Bound::new(&reduced, &problem.costs);
     let mut search = Search::new(&reduced, &bound);
-    search.run(effort(&reduced));
+    let effort = effort(&reduced);
+    search.run(effort);
+    let certified = certify(&mut search, &reduced, problem, effort);
     let root = search.root();
     let does = |to| match to {
         Move::Ask(query) => Action::Ask(reduced.question(query)),
@@ -23,15 +25,33 @@ pub(super) fn searched(
     };
     let action =
         root.best().map_or_else(|| stop(problem, &reduced, root.class, root.stop), |b| does(b.to));
-    let value = root.best().map_or(root.stop, |branch| branch.value.estimate);
+    let value = root.best().map_or(root.stop, |branch| branch.value.estimate).min(certified);
     let weighed = root.branches.iter().map(|b| (does(b.to), b.value.estimate)).collect();
     Decision {
         action,
         value,
         alternatives: alternatives(problem, belief, weighed, action),
         expected_questions: questions_left(&search, &reduced, 0, 1.0),
-        bounds: Some((root.value.lower, root.value.upper)),
+        bounds: Some((root.value.lower, certified)),
     }
+}
+
+/// Upper bound on the value. Where the search leaves the bounds apart, the plan is rolled out and the
+/// easier problem is searched.
+fn certify(
+    search: &mut Search<'_>,
+    reduced: &Reduced,
+    problem: &DecisionProblem<'_>,
+    effort: Effort,
+) -> f64 {
+    if effort.certify_max == 0 || search.root().value.gap() <= effort.tolerance {
+        return search.root().value.upper;
+    }
+    search.roll_out(effort.beliefs_max + effort.certify_max);
+    let revealed = Revealed::of(reduced, &problem.costs);
+    let upper = revealed.map_or(f64::INFINITY, |mut easier| easier.upper(effort.certify_max));
+    let Value { lower, upper: searched, .. } = search.root().value;
+    searched.min(upper).max(lower)
 }
 
 /// Beliefs that are looked at with that much work, counted in classes looked at times attributes.

@@ -12,14 +12,17 @@ mod one_step_lookahead;
 mod outcome;
 mod partition;
 mod reduced;
+mod revealed;
 mod search;
+mod told;
 
 #[cfg(test)]
 mod tests;
 
-pub(crate) use bound::Bound;
+pub(crate) use bound::{Bound, Value};
 pub(crate) use channel::Query;
 pub(crate) use one_step_lookahead::{Choice, OneStepEvaluator, OneStepLookahead};
 pub(crate) use outcome::outcomes;
 pub(crate) use reduced::Reduced;
+pub(crate) use revealed::Revealed;
 pub(crate) use search::{Effort, Move, Search};

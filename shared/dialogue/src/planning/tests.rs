@@ -268,7 +268,7 @@ fn searching_only_tightens_the_bounds() {
         let mut before = search.root().value;
         let tolerance = 1e-6 * problem.costs.correct;
         for beliefs_max in [2, 8, 32, 128] {
-            search.run(Effort { beliefs_max, tolerance });
+            search.run(Effort { beliefs_max, tolerance, certify_max: 0 });
             let after = search.root().value;
             assert!(after.lower >= before.lower && after.upper <= before.upper, "{label}");
             assert!(after.lower <= after.upper, "{label}");
@@ -292,7 +292,7 @@ fn the_bowls_are_solved_in_few_beliefs() {
         let reduced = Reduced::new(&problem, &Belief::uniform(6));
         let bound = Bound::new(&reduced, &problem.costs);
         let mut search = Search::new(&reduced, &bound);
-        search.run(Effort { beliefs_max, tolerance: 5e-4 });
+        search.run(Effort { beliefs_max, tolerance: 5e-4, certify_max: 0 });
         assert!(search.root().value.gap() <= 5e-4, "{actions:?} {:?}", search.root().value);
     }
 }
@@ -305,8 +305,66 @@ fn a_search_that_tolerates_nothing_ends() {
     let reduced = Reduced::new(&problem, &Belief::uniform(6));
     let bound = Bound::new(&reduced, &problem.costs);
     let mut search = Search::new(&reduced, &bound);
-    search.run(Effort { beliefs_max: usize::MAX, tolerance: 0.0 });
+    search.run(Effort { beliefs_max: usize::MAX, tolerance: 0.0, certify_max: 0 });
     assert!(search.root().value.gap() < 1e-6, "{:?}", search.root().value);
+}
+
+/// The easier problem is worth no less than the real one, however much of it is searched, and
+/// searching it tightens the bound.
+#[test]
+fn revealed_errors_bound_the_value() {
+    let problems = std::cell::Cell::new(0);
+    for_many_problems(82, |problem, _, reduced, label| {
+        // The bound takes a while to set up: every fifth problem is checked.
+        problems.set(problems.get() + 1);
+        if problems.get() % 5 > 0 {
+            return;
+        }
+        let Some(mut easier) = Revealed::of(reduced, &problem.costs) else { return };
+        let bound = Bound::new(reduced, &problem.costs);
+        let mut search = Search::new(reduced, &bound);
+        let tolerance = 1e-6 * problem.costs.correct;
+        search.run(Effort { beliefs_max: 1_000, tolerance, certify_max: 0 });
+        let lower = search.root().value.lower;
+        let mut before = f64::INFINITY;
+        for beliefs_max in [0, 10, 300] {
+            let upper = easier.upper(beliefs_max);
+            assert!(lower <= upper + 1e-6, "{label}: {lower} above {upper}");
+            assert!(upper <= before + 1e-9, "{label}: {upper} above {before}");
+            before = upper;
+        }
+    });
+}
+
+/// No question improves on the value of being told the class, whatever it splits.
+#[test]
+fn no_question_beats_being_told_the_class() {
+    let (seed, mut rng) = (83, Rng::new(83));
+    for (name, costs) in Costs::PRESETS {
+        for (p_l, epsilon, classes) in [(0.95, 0.01, 50), (0.8, 0.1, 7), (0.99, 0.001, 400)] {
+            let params = Params { p_l, epsilon, ..Params::default() };
+            let channel = channel::Channel::yes_no(params, &costs, costs.attribute_s);
+            let share = if classes == 7 { 0.5 } else { 1.0 };
+            let told = told::Told::new(&costs, &channel, classes, share);
+            let Some(told) = told else { continue };
+            let value = |x: f64| told.value(x, x.ln());
+            for _ in 0..20_000 {
+                let odds = (16.0 * rng.uniform() - 12.0).exp();
+                let x = odds / (1.0 + odds);
+                let p = x + (1.0 - x) * rng.uniform().powi(4);
+                let split = told.split(p);
+                let after = [channel.own, channel.other].into_iter().zip(split.heard);
+                let after: f64 = after.map(|(l, heard)| l * value((x * l / heard).min(1.0))).sum();
+                let asked = channel.price.pay(after) + split.compensation[0];
+                let label = format!("seed {seed} {name} {params:?} x {x} p {p}");
+                assert!(asked <= value(x) + 1e-6, "{label}: {asked} above {}", value(x));
+                let others =
+                    (1.0 - x) / x * told.compensation(((1.0 - x) / (classes - 1) as f64).ln());
+                let picked = costs.pick_value(share) - others;
+                assert!(picked <= value(x) + 1e-6, "{label} picked");
+            }
+        }
+    }
 }
 
 /// The same problems, where picks can be denied.

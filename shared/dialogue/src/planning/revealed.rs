@@ -1,0 +1,255 @@
+//! An upper bound from an easier problem, for yes/no questions about attributes: whether an answer
+//! was right is revealed, for the compensation of [`Told`].
+//!
+//! What is revealed leaves a set of classes whose probabilities keep their proportions, since all of
+//! them answered alike. The robot's own belief goes on as ever: it says how probable answers are, and
+//! so what the compensation is. A right answer leads on; a wrong one, which is rare, is worth no more
+//! than telling the class. The questions available, how evenly they split, and what a verification
+//! leaves in doubt all count as they are, so this bound is tighter than any price of information.
+//!
+//! The search is depth-first, the most promising question first, and passes over the questions
+//! that are bounded by the best one. Of a belief it keeps the key and the bound.
+
+use std::collections::HashMap;
+
+use super::channel::{Channel, Query};
+use super::reduced::Reduced;
+use super::told::{Split, Told};
+use crate::{Costs, Rng};
+
+/// The easier problem.
+#[derive(Debug)]
+pub(crate) struct Revealed<'a> {
+    reduced: &'a Reduced,
+    costs: Costs,
+    /// For classes of one object, and for the others if there are any.
+    told: Vec<Told>,
+    questions: Vec<Question<'a>>,
+    known: HashMap<u128, f64>,
+    /// Beliefs that were looked at, and the most that may be.
+    looked_at: usize,
+    beliefs_max: usize,
+    /// Whether there was more to look into.
+    is_cut: bool,
+}
+
+/// "Is it of that block?"
+#[derive(Debug)]
+struct Question<'a> {
+    blocks: &'a [u16],
+    block: u16,
+    channel: &'a Channel,
+    /// Sums of these, less those of denied questions, tell beliefs apart.
+    code: u128,
+}
+
+/// The robot's belief, and what was revealed.
+struct State {
+    mass: Vec<f64>,
+    /// Logarithms of the same.
+    log: Vec<f64>,
+    /// The classes that the right answers leave.
+    left: Vec<u16>,
+    key: u128,
+}
+
+/// A question as it looks from one step ahead.
+struct Outlook {
+    question: usize,
+    split: Split,
+    value: f64,
+    /// Probability of each side among the classes that are left, and what a right answer is worth.
+    sides: [(f64, f64); 2],
+}
+
+impl Question<'_> {
+    /// Side of a class: 0 if it says yes.
+    fn side(&self, class: usize) -> usize {
+        usize::from(self.blocks[class] != self.block)
+    }
+}
+
+impl<'a> Revealed<'a> {
+    /// The easier problem; none where there are other questions or picks are announced.
+    pub(crate) fn of(reduced: &'a Reduced, costs: &Costs) -> Option<Self> {
+        let others = reduced.announced.is_some() || !reduced.pointed.is_empty();
+        if others || reduced.absent.is_some() || reduced.classes() < 2 {
+            return None;
+        }
+        let mut rng = Rng::new(0xc0de);
+        let mut code = || u128::from(rng.next_u64()) << 64 | u128::from(rng.next_u64());
+        let question = |query: &Query| match *query {
+            Query::Is { partition, block } => Some(Question {
+                blocks: &reduced.partition(partition).blocks,
+                block,
+                channel: reduced.channel(*query),
+                code: code(),
+            }),
+            _ => None,
+        };
+        let questions: Vec<_> = reduced.queries.iter().map(question).collect::<Option<_>>()?;
+        let cheapest =
+            questions.iter().map(|q| q.channel).min_by(|a, b| a.cost.total_cmp(&b.cost))?;
+        let several = reduced.share.iter().copied().filter(|share| *share < 1.0).reduce(f64::max);
+        let shares = std::iter::once(1.0).chain(several);
+        let told = shares.map(|share| Told::new(costs, cheapest, reduced.classes(), share));
+        let told: Vec<Told> = told.collect::<Option<_>>()?;
+        Some(Self {
+            reduced,
+            costs: *costs,
+            told,
+            questions,
+            known: HashMap::new(),
+            looked_at: 0,
+            beliefs_max: 0,
+            is_cut: false,
+        })
+    }
+
+    /// Upper bound on the value of the belief, from looking at that many beliefs: one question ahead,
+    /// then two, and so on.
+    pub(crate) fn upper(&mut self, beliefs_max: usize) -> f64 {
+        (self.looked_at, self.beliefs_max, self.is_cut) = (0, beliefs_max, true);
+        let root = State {
+            log: self.reduced.mass.iter().map(|m| m.ln()).collect(),
+            mass: self.reduced.mass.clone(),
+            left: (0..self.reduced.classes() as u16).collect(),
+            key: 0,
+        };
+        let mut upper = self.told_class(&root);
+        for questions in 1.. {
+            if !self.is_cut || self.looked_at >= beliefs_max {
+                break;
+            }
+            self.is_cut = false;
+            self.known.clear();
+            upper = upper.min(self.look_into(&root, questions));
+        }
+        upper
+    }
+
+    /// Looks that many questions ahead. Where one class is left, it is as good as told.
+    fn look_into(&mut self, at: &State, questions: u32) -> f64 {
+        let told = self.told_class(at);
+        if at.left.len() == 1 {
+            return told;
+        }
+        if questions == 0 || self.looked_at >= self.beliefs_max {
+            self.is_cut = true;
+            return told;
+        }
+        if let Some(known) = self.known.get(&at.key) {
+            return *known;
+        }
+        self.looked_at += 1;
+        let mut best = self.stop(at);
+        let mut outlooks = self.look_ahead(at);
+        outlooks.sort_by(|a, b| b.value.total_cmp(&a.value));
+        for outlook in &outlooks {
+            if outlook.value <= best {
+                break;
+            }
+            best = best.max(self.ask(at, outlook, questions, best));
+        }
+        let best = best.min(told);
+        self.known.insert(at.key, best);
+        best
+    }
+
+    /// Upper bound on the value of a question; the first that is not above `enough`.
+    fn ask(&mut self, at: &State, outlook: &Outlook, questions: u32, enough: f64) -> f64 {
+        let Channel { own, price, .. } = *self.questions[outlook.question].channel;
+        let mut value = outlook.value;
+        for (side, (share, right)) in outlook.sides.into_iter().enumerate() {
+            if share > 0.0 && value > enough {
+                let next = self.answered(at, outlook, side);
+                let after = self.look_into(&next, questions - 1);
+                value -= price.discount * own * share * (right - after);
+            }
+        }
+        value
+    }
+
+    /// What telling the class is worth.
+    fn told_class(&self, at: &State) -> f64 {
+        let (mut total, mut value) = (0.0, 0.0);
+        for class in &at.left {
+            let (mass, log) = at.entry(*class);
+            total += mass;
+            value += mass * self.told_of(*class).value(mass, log);
+        }
+        value / total
+    }
+
+    fn told_of(&self, class: u16) -> &Told {
+        let several = self.reduced.share[usize::from(class)] < 1.0;
+        &self.told[usize::from(several)]
+    }
+
+    /// The better of picking and waiting. Whatever is picked, the classes that are left get their
+    /// compensation, and what another class would get is at the expense of the picked one.
+    fn stop(&self, at: &State) -> f64 {
+        let Costs { correct, wrong, .. } = self.costs;
+        let paid = |class: usize| at.mass[class] * self.told[0].compensation(at.log[class]);
+        let all: f64 = (0..at.mass.len()).map(paid).sum();
+        let (mut left, mut total, mut top) = (0.0, 0.0, 0.0_f64);
+        for class in at.left.iter().map(|class| usize::from(*class)) {
+            left += paid(class);
+            total += at.mass[class];
+            top = top.max(at.mass[class] * self.reduced.share[class]);
+        }
+        let picked = left.max((correct + wrong) * top - (all - left)) / total - wrong;
+        picked.max(self.costs.wait_value())
+    }
+
+    fn look_ahead(&self, at: &State) -> Vec<Outlook> {
+        let total: f64 = at.left.iter().map(|class| at.entry(*class).0).sum();
+        let mut outlooks = Vec::with_capacity(self.questions.len());
+        for (index, question) in self.questions.iter().enumerate() {
+            let Channel { own, other, price, .. } = *question.channel;
+            let says = question.blocks.iter().zip(&at.mass);
+            let yes: f64 =
+                says.filter(|(block, _)| **block == question.block).map(|(_, m)| m).sum();
+            let split = self.told[0].split(yes.clamp(0.0, 1.0));
+            let (logs, mut sides, mut wrong) = ([own.ln(), other.ln()], [(0.0, 0.0); 2], 0.0);
+            for &class in &at.left {
+                let ((mass, log), side) = (at.entry(class), question.side(usize::from(class)));
+                let after = |likelihood: f64, added: f64, heard: usize| {
+                    let x = mass * likelihood / split.heard[heard];
+                    self.told_of(class).value(x, log + added - split.log[heard])
+                };
+                sides[side].0 += mass;
+                sides[side].1 += mass * after(own, logs[0], side);
+                wrong += mass * after(other, logs[1], 1 - side);
+            }
+            let right = sides[0].1 + sides[1].1;
+            let paid = sides[0].0 * split.compensation[0] + sides[1].0 * split.compensation[1];
+            let value = price.pay((own * right + other * wrong) / total) + paid / total;
+            let sides =
+                sides.map(|(mass, right)| (mass / total, right / mass.max(f64::MIN_POSITIVE)));
+            outlooks.push(Outlook { question: index, split, value, sides });
+        }
+        outlooks
+    }
+
+    /// The state after the right answer of that side.
+    fn answered(&self, at: &State, outlook: &Outlook, side: usize) -> State {
+        let question = &self.questions[outlook.question];
+        let Channel { own, other, .. } = *question.channel;
+        let scale = [own, other].map(|likelihood| likelihood / outlook.split.heard[side]);
+        let logs = scale.map(f64::ln);
+        let of = |class: usize| usize::from(question.side(class) != side);
+        let mass = at.mass.iter().enumerate().map(|(class, m)| m * scale[of(class)]).collect();
+        let log = at.log.iter().enumerate().map(|(class, log)| log + logs[of(class)]).collect();
+        let left = at.left.iter().copied().filter(|class| of(usize::from(*class)) == 0).collect();
+        let code = if side == 0 { question.code } else { question.code.wrapping_neg() };
+        State { mass, log, left, key: at.key.wrapping_add(code) }
+    }
+}
+
+impl State {
+    /// Probability of a class, and its logarithm.
+    fn entry(&self, class: u16) -> (f64, f64) {
+        (self.mass[usize::from(class)], self.log[usize::from(class)])
+    }
+}
