@@ -16,8 +16,8 @@ use crate::devices::audio::{RATE_HZ, voice_probability};
 
 /// Sound around the voice that the second recogniser hears.
 const AROUND: usize = RATE_HZ as usize / 5;
-/// Probability of a voice from which on doubtful words are words: 13 of 15 knocks have a lower one, and
-/// of 144 spoken clips one (`scripts/bench --speech`).
+/// Probability of a voice from which on doubtful words are words: that of most knocks is lower, and that
+/// of hardly any voice (docs/speech.md).
 const VOICE_MIN: f32 = 0.98;
 /// Time that the second recogniser has where nobody waits for the answer.
 const UNHURRIED: Duration = Duration::from_secs(20);
@@ -78,9 +78,11 @@ impl Ensemble {
         self.first.recognise(pcm, speech)
     }
 
-    /// Returns whether the first recogniser's hypotheses are worth a second opinion.
+    /// Returns whether the first recogniser's hypotheses are worth a second opinion. A stop waits for
+    /// none.
     pub fn is_in_doubt(&self, first: &[Hypothesis]) -> bool {
-        self.second.is_some() && !first.is_empty() && !self.gate.is_clear(first)
+        let is_open = |best| !self.gate.is_stop(best) && !self.gate.is_clear(first);
+        self.second.is_some() && first.first().is_some_and(is_open)
     }
 
     /// Asks the second recogniser, if there is one and it is free.

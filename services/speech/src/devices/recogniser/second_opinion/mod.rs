@@ -202,7 +202,6 @@ impl Drop for PendingOpinion {
 mod tests {
     use super::*;
     use crate::devices::testing::bowls;
-    use std::time::Duration;
 
     #[test]
     fn second_opinion_names_what_is_missing() {
@@ -214,10 +213,12 @@ mod tests {
         assert!(error.to_string().contains(help), "{error}");
     }
 
+    #[cfg(feature = "whisper")]
     #[test]
     #[ignore = "needs a model of whisper.cpp (WHICHONE_WHISPER_MODEL)"]
     fn second_opinion_is_deterministic_and_keeps_its_limit() {
         use crate::devices::testing::voice;
+        use std::time::Duration;
         let model = std::env::var_os("WHICHONE_WHISPER_MODEL").expect("WHICHONE_WHISPER_MODEL");
         let second = SecondOpinion::start(model.into(), bowls());
         let first: Vec<_> =
