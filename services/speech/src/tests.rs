@@ -475,7 +475,7 @@ fn stop_is_obeyed_though_it_is_not_taken_for_a_request() {
 }
 
 #[test]
-fn prompt_that_has_not_sounded_yet_waits_for_whoever_begins_to_speak() {
+fn prompt_that_has_not_sounded_yet_waits_for_a_user_who_begins_to_speak() {
     let mut speech = Speech::new();
     assert!(speech.take(0.0, ask(7)).spoken().is_some());
     let onset = speech.now;

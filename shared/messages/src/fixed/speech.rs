@@ -170,7 +170,7 @@ wire_enum! {
         NoWords = 1,
         /// It is about other things.
         OtherTalk = 2,
-        /// Nobody spoke.
+        /// There is no speech.
         NoSpeech = 3,
         /// The robot's own voice covers its beginning.
         Covered = 4,

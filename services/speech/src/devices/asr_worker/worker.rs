@@ -126,7 +126,7 @@ impl Worker {
         if !is_quick || self.early.is_answered(sound) {
             return;
         }
-        // Whoever speaks on makes the question pointless.
+        // If the user speaks on, the opinion is about half an utterance.
         let is_other = |doubt: &mut Doubt| !doubt.is_owed && !doubt.is_about(sound, &segment);
         self.doubt.take_if(is_other);
         // A failure is retried when the end is certain, and reported then.
@@ -248,7 +248,7 @@ impl Worker {
             report(segment);
         }
         self.early.answered(sound);
-        // Without a receiver of its events nobody gives it more to do.
+        // Without a receiver of its events no more work arrives.
         let _ = self.events.send(In::Recognised(Recognised { sound, segments }));
     }
 }

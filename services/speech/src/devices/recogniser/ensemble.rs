@@ -19,7 +19,7 @@ const AROUND: usize = RATE_HZ as usize / 5;
 /// Probability of a voice from which on doubtful words are words: that of most knocks is lower, and that
 /// of hardly any voice (docs/speech.md).
 const VOICE_MIN: f32 = 0.98;
-/// Time that the second recogniser has where nobody waits for the answer.
+/// Time limit of the second recogniser for recordings.
 const UNHURRIED: Duration = Duration::from_secs(20);
 
 /// The recogniser of the configuration, a second one that is asked where the first one is in doubt, if
@@ -123,7 +123,7 @@ impl Ensemble {
     /// Returns the hypotheses that count for the samples, in which `speech` are those of the voice.
     ///
     /// # Errors
-    /// If nobody spoke, or the speech is not meant for the robot.
+    /// If there is no speech, or it is not meant for the robot.
     pub fn judge(
         &self,
         heard: &Heard,
@@ -138,7 +138,7 @@ impl Ensemble {
         Err(Rejected { text, reason: GateVerdict::NoSpeech, score: self.gate.score(&hypotheses) })
     }
 
-    /// Returns whether somebody spoke. Clear words need no other sign of it; knocks sound like doubtful
+    /// Returns whether there is a voice. Clear words need no further evidence; knocks sound like doubtful
     /// ones.
     pub fn is_voice(&self, hypotheses: &[Hypothesis], pcm: &[i16], speech: &Range<usize>) -> bool {
         self.gate.is_clear(hypotheses) || voice_probability(pcm, speech) >= VOICE_MIN

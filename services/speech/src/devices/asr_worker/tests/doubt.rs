@@ -106,7 +106,7 @@ fn asr_worker_answers_with_the_first_opinion_where_the_second_is_late() {
 }
 
 #[test]
-fn asr_worker_asks_nobody_about_a_stop() {
+fn asr_worker_asks_for_no_second_opinion_on_a_stop() {
     let (worker, events, hears, _go) = unsure();
     worker.submit(1, RecognitionInput::Speech(paused(4_000, 512))).unwrap();
     assert_eq!(answer(&events).heard.second, SecondView::NotAsked);

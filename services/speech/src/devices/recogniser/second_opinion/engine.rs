@@ -133,15 +133,15 @@ impl Engine {
     }
 
     /// Decodes the start of a text behind the prompt, which the network remembers from listening.
-    /// Returns the probability that nobody spoke and the logarithms of those of the first token. (The
+    /// Returns the probability of no speech and the logarithms of those of the first token. (The
     /// library's own probability is taken behind the task and is always 0.)
     fn begin(&mut self) -> Result<(f32, Vec<f32>), WhisperError> {
         let (mut no_speech, mut row) = (0.0, Vec::new());
         for (n, token) in self.start.clone().into_iter().enumerate() {
             row = self.next(token, self.before + n)?;
             if n == 0 {
-                let nobody = usize::try_from(self.context.token_nosp()).ok();
-                no_speech = nobody.and_then(|token| row.get(token)).map_or(0.0, |ln_p| ln_p.exp());
+                let token = usize::try_from(self.context.token_nosp()).ok();
+                no_speech = token.and_then(|token| row.get(token)).map_or(0.0, |ln_p| ln_p.exp());
             }
         }
         Ok((no_speech, row))

@@ -32,11 +32,11 @@ pub struct Opinion {
     pub ln_own: f64,
     /// Logarithm of the likelihood of each of the first recogniser's hypotheses.
     pub ln_likelihood: Vec<f64>,
-    /// Probability that nobody spoke, 0 to 1.
+    /// Probability that there is no speech, 0 to 1.
     pub no_speech: f32,
 }
 
-/// Probability from which on nobody spoke: that of words hardly exceeds 0.3.
+/// Probability of no speech from which on there is none: that of words hardly exceeds 0.3.
 const NO_SPEECH: f32 = 0.4;
 
 impl Opinion {
@@ -51,7 +51,7 @@ impl Opinion {
     }
 }
 
-/// When a question to the second recogniser is over: at a time, or when nobody waits any more.
+/// Time limit of an opinion, which also ends when its receiver is dropped.
 #[derive(Debug)]
 pub(crate) struct Limit {
     until: Instant,
@@ -88,7 +88,7 @@ pub struct PendingOpinion {
 /// A network that listens to utterances.
 pub(crate) trait Network {
     /// Returns what it thinks of the samples; asks for the first recogniser's texts when its own words are
-    /// known. `None`: it was too late, or nobody waits any more, or it failed.
+    /// known. `None`: it was too late or not needed any more, or it failed.
     fn opinion(
         &mut self,
         samples: &[i16],
@@ -153,7 +153,7 @@ impl SecondOpinion {
             for Job { samples, candidates, opinion, limit } in jobs {
                 let candidates = || candidates.recv_deadline(limit.until).ok();
                 if let Some(known) = network.opinion(&samples, &candidates, &limit) {
-                    // Nobody may wait for it any more.
+                    // The receiver may have been dropped.
                     let _ = opinion.send(known);
                 }
             }
