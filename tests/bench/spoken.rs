@@ -4,11 +4,15 @@ use crate::options::Options;
 use crate::report::{Report, percentile, print};
 use std::path::Path;
 use std::process::Command;
-use whichone_tests::spoken::{Conditions, Held, Tally, tally};
+use whichone_tests::spoken::{Conditions, Held, Noise, Tally, tally};
 
-/// Noise under the speech: how far the speech stands above it, decibels, and how that is called.
-const NOISES: [(f64, &str); 2] = [(40.0, "quiet"), (20.0, "20 dB")];
-/// Dialogues in each noise where nothing else is said: alone, and among everything else.
+/// Noise under the speech: how far the speech stands above it, decibels, what it is, and its name.
+const NOISES: [(f64, Noise, &str); 3] = [
+    (40.0, Noise::Steady, "quiet"),
+    (20.0, Noise::Steady, "20 dB"),
+    (10.0, Noise::Babble, "babble, 10 dB"),
+];
+/// Dialogues in each noise unless a number is given: alone, and among everything else.
 const DIALOGUES: (u64, u64) = (60, 6);
 
 pub(crate) fn measure(report: &mut Report, options: &Options) {
@@ -19,9 +23,9 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
     let (dialogues, seed) = (options.dialogues.unwrap_or(usual), options.seed);
     let tallies: Vec<(&str, Tally)> = NOISES
         .iter()
-        .map(|(snr_db, name)| {
-            let conditions = Conditions { snr_db: *snr_db, number: 0, seed };
-            (*name, tally(conditions, dialogues, options.groups, show))
+        .map(|&(snr_db, noise, name)| {
+            let conditions = Conditions { snr_db, noise, number: 0, seed };
+            (name, tally(conditions, dialogues, options.groups, show))
         })
         .collect();
     keep(&tallies);

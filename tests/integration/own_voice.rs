@@ -277,13 +277,13 @@ fn recognised_stops(robot_db: Option<f64>) -> (usize, usize) {
         let mut voice = speaker.synthesiser(&folder.path().join(speaker.name));
         for text in STOPS {
             let said = levelled(&voice.samples(text).unwrap());
-            let mut noise = Pink::new(SPEECH_RMS / 10_f64.powf(25.0 / 20.0), all as u64);
-            let sample = |n: usize| {
+            let noise = Pink::new(SPEECH_RMS / 10_f64.powf(25.0 / 20.0), all as u64);
+            let sample = |(n, noise): (usize, f64)| {
                 let user = n.checked_sub(LEAD).and_then(|n| said.get(n)).map_or(0, |s| *s);
                 let robot = line.get(n + LEAD).map_or(0, |s| *s);
-                (f64::from(user) + gain * f64::from(robot) + noise.next()) as i16
+                (f64::from(user) + gain * f64::from(robot) + noise) as i16
             };
-            let pcm: Vec<i16> = (0..LEAD + said.len() + 3_200).map(sample).collect();
+            let pcm: Vec<i16> = (0..LEAD + said.len() + 3_200).zip(noise).map(sample).collect();
             let heard = recogniser.recognise(&pcm, LEAD..LEAD + said.len()).unwrap();
             let is_stop = |text: &str| reader.read(text, Question::None).intent == Intent::Stop;
             found += usize::from(heard.first().is_some_and(|best| is_stop(&best.text)));

@@ -3,7 +3,7 @@
 
 use messages::{PresentationState, Presented, topics};
 use service::client::Client;
-use whichone_tests::spoken::{Conditions, tally};
+use whichone_tests::spoken::{Conditions, Noise, tally};
 use whichone_tests::{Group, wait_for};
 
 /// The sound is kept for later prompts, too.
@@ -36,7 +36,7 @@ fn prompt_without_a_sound_card_lasts_as_long_as_its_sound() {
 #[test]
 #[ignore = "needs espeak-ng and pocketsphinx"]
 fn spoken_dialogues_deliver_the_right_bowl() {
-    let conditions = Conditions { snr_db: 40.0, number: 0, seed: 1 };
+    let conditions = Conditions { snr_db: 40.0, noise: Noise::Steady, number: 0, seed: 1 };
     let tally = tally(conditions, 3, 2, |_| {});
     for held in &tally.dialogues {
         assert!(held.is_right(), "{held:#?}");

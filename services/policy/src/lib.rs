@@ -122,8 +122,8 @@ impl Node for PolicyNode {
 
     fn snapshot(&self) -> Option<Vec<Record>> {
         let cause = Cause::Snapshot;
-        let record = Record { cause, at: self.state.act.decided, state: self.state.clone() };
-        self.state.open.is_none().then(|| vec![record])
+        // The state is whole in every record, also in the middle of an interaction.
+        Some(vec![Record { cause, at: self.state.act.decided, state: self.state.clone() }])
     }
 }
 

@@ -20,7 +20,7 @@ pub struct PolicyProgram;
 
 impl Program for PolicyProgram {
     const SERVICE: Service = Service::Policy;
-    const RECORD: Option<&'static str> = Some("policy/8");
+    const RECORD: Option<&'static str> = Some("policy/9");
     const ABOUT: &'static str = "maintains the belief over the objects and decides what to ask or do \
                                  [--planner NAME]";
     type Node = PolicyNode;

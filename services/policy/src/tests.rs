@@ -4,6 +4,7 @@ mod concede;
 mod correct;
 mod hand_over;
 mod held_back;
+mod long;
 mod person;
 mod pointing;
 mod prior;
@@ -185,7 +186,7 @@ fn silence_repeats_the_same_question_and_then_ends_the_interaction() {
     for n in 1..=manager.turns().repeats_max {
         state = manager.next(&state, &Cause::Silence, at(10 * u64::from(n)));
         assert_eq!((state.act.prompt, state.act.presentation), (first.prompt, 1 + n));
-        assert_eq!(state.open.as_ref().map(Interaction::questions), Some(1));
+        assert_eq!(state.open.as_ref().map(|open| open.questions), Some(1));
     }
     state = manager.next(&state, &Cause::Silence, at(100));
     assert_eq!(state.ended.map(|ended| ended.outcome), Some(Outcome::Abandoned));

@@ -85,7 +85,7 @@ pub(crate) fn view(manager: &Manager, state: &State, rejected: u64) -> PolicyVie
         expected_questions: state.act.expected_questions,
         bounds: state.act.bounds,
         attributed: state.attributed.clone(),
-        questions: open.map_or(0, Interaction::questions),
+        questions: open.map_or(0, |open| open.questions),
         utterances: utterances.map(|(UtteranceSeq(a), UtteranceSeq(b))| (a, b)).unwrap_or_default(),
         last: state.ended.clone(),
         refusable: delivery(manager, state),

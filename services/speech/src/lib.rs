@@ -114,7 +114,7 @@ impl Node for SpeechNode {
     }
 
     fn snapshot(&self) -> Option<Vec<Record>> {
-        let accepted = self.intake.accepted.snapshot()?.into_iter().map(Record::Accepted);
+        let accepted = self.intake.accepted.snapshot().map(Record::Accepted);
         Some(accepted.chain(self.player.snapshot().map(Record::Presented)).collect())
     }
 }

@@ -70,6 +70,11 @@ impl<T> Outbox<T> {
         self.waiting.iter().take(self.window)
     }
 
+    /// Returns all waiting messages, in order.
+    pub fn waiting(&self) -> impl Iterator<Item = &T> {
+        self.waiting.iter().map(|(_, message)| message)
+    }
+
     /// Returns the number of waiting messages.
     pub fn len(&self) -> usize {
         self.waiting.len()

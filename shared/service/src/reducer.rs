@@ -66,8 +66,8 @@ pub trait Node: Sized {
         None
     }
 
-    /// Returns records that replace the whole journal so far, if nothing is in progress, so
-    /// that the journal can be compacted.
+    /// Returns records that replace the whole journal so far, so that it can be compacted; `None` where
+    /// what is in progress does not permit that.
     fn snapshot(&self) -> Option<Vec<Self::Record>> {
         None
     }

@@ -1,8 +1,9 @@
 //! Circumstances in which sentences are heard: noise, room, distance, manner of speaking.
 
-use super::noise::{self, babble, bursts, pink, samples};
+use super::noise::{self, bursts, pink, samples};
 use super::room;
 use dialogue::Rng;
+use whichone_tests::spoken::babble;
 
 /// What is heard beside the voice.
 #[derive(Clone, Copy, Debug, PartialEq)]

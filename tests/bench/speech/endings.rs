@@ -250,7 +250,7 @@ impl<'a> Room<'a> {
     /// Says a sentence. Returns what was found, and when the voice resumed and ended, seconds.
     fn say(&mut self, sentence: &Hesitant, voice: usize, pause_ms: u32) -> (Vec<Found>, f64, f64) {
         let seed = u64::from(pause_ms) + voice as u64 * 1_000 + sentence.text().len() as u64;
-        let mut noise = Pink::new(SPEECH_RMS / 10_f64.powf(SNR_DB / 20.0), seed);
+        let noise = Pink::new(SPEECH_RMS / 10_f64.powf(SNR_DB / 20.0), seed);
         let quiet = |s: f64| vec![0; (s * f64::from(RATE_HZ)) as usize];
         let speak = |text: &str| match text {
             "" => Vec::new(),
@@ -262,7 +262,8 @@ impl<'a> Room<'a> {
         let voiced = [before, second].concat();
         let ended_s = voiced.len() as f64 / f64::from(RATE_HZ);
         let clip = [voiced, quiet(TAIL_S)].concat();
-        let noisy = clip.iter().map(|sample| (f64::from(*sample) + noise.next()) as i16);
+        let noisy =
+            clip.iter().zip(noise).map(|(sample, noise)| (f64::from(*sample) + noise) as i16);
         let found = self.listen(&noisy.collect::<Vec<_>>(), sentence.question);
         (found, resumed_s, ended_s)
     }

@@ -1,4 +1,4 @@
-//! Sounds that are not the voice: steady noise, babble, bursts, hum and music.
+//! Sounds that are not the voice: steady noise, bursts, hum and music.
 //!
 //! All have power 1 unless stated otherwise, and are the same for the same seed.
 
@@ -22,19 +22,6 @@ pub(super) fn pink(len: usize, seed: u64) -> Vec<f64> {
     transform.process(&mut spectrum, &mut noise).expect("vectors of the transform's own lengths");
     noise.truncate(len);
     levelled(noise)
-}
-
-/// Returns the voices of other speakers at once, repeated from random places on.
-pub(super) fn babble(len: usize, speakers: &[Vec<i16>], seed: u64) -> Vec<f64> {
-    let mut rng = Rng::new(seed);
-    let mut sum = vec![0.0; len];
-    for voice in speakers.iter().filter(|voice| !voice.is_empty()) {
-        let voice = levelled(voice.iter().map(|&s| f64::from(s)).collect());
-        let from = (rng.uniform() * voice.len() as f64) as usize;
-        let cycle = voice.iter().cycle().skip(from);
-        sum.iter_mut().zip(cycle).for_each(|(sum, sample)| *sum += sample);
-    }
-    levelled(sum)
 }
 
 /// Bursts per second.

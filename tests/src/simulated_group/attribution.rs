@@ -4,7 +4,7 @@
 //! pick is caused by timing where the same user with good timing gets the right object.
 
 use config::Settings;
-use dialogue::manager::{Cause, Interaction, Record};
+use dialogue::manager::{Cause, Record};
 use dialogue::{Model, NamedQuestion};
 use evaluation::simulation::users::{Domain, Habits};
 use scene::ObjectId;
@@ -105,7 +105,7 @@ impl Count {
             self.credited += right;
             self.miscredited += wrong;
         }
-        self.questions += u64::from(open.map_or(0, Interaction::questions));
+        self.questions += u64::from(open.map_or(0, |open| open.questions));
         self.seconds += group.seconds();
         if by_timing {
             let (wanted, picked): (_, Option<ObjectId>) = (group.user.wanted(), group.picked);

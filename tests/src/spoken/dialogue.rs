@@ -19,7 +19,7 @@ use service::{Span, Time};
 use speech::devices::voice::Synthesiser;
 
 use super::room::Room;
-use super::sound::{Pink, SPEAKERS, SPEECH_RMS, levelled};
+use super::sound::{Noise, SPEAKERS, SPEECH_RMS, levelled};
 use super::taps::{News, Said, Taps};
 use super::words::understand;
 use crate::{Group, wait_for};
@@ -29,6 +29,8 @@ use crate::{Group, wait_for};
 pub struct Conditions {
     /// Signal to noise ratio, decibels.
     pub snr_db: f64,
+    /// What the noise is.
+    pub noise: Noise,
     /// Number of the dialogue: determines the object, the voice, the words and the times.
     pub number: u64,
     /// Seed of all dialogues.
@@ -90,7 +92,8 @@ pub fn converse(conditions: Conditions) -> Held {
     let folder = tempfile::tempdir().expect("a folder");
     let pipe = folder.path().join("microphone");
     let noise = SPEECH_RMS / 10_f64.powf(conditions.snr_db / 20.0);
-    let noise = Pink::new(noise, conditions.seed ^ (conditions.number << 20));
+    let seed = conditions.seed ^ (conditions.number << 20);
+    let noise = conditions.noise.sound(noise, seed, folder.path());
     let room = Room::open(&pipe, noise);
     let settings = settings(&pipe);
     let group = Group::up(&settings.iter().map(String::as_str).collect::<Vec<_>>());

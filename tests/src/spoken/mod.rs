@@ -19,5 +19,5 @@ mod words;
 
 pub use dialogue::{Conditions, Held, converse};
 pub use room::Room;
-pub use sound::{Pink, SPEAKERS, SPEECH_RMS, Speaker, levelled};
+pub use sound::{Noise, Pink, SPEAKERS, SPEECH_RMS, Speaker, babble, levelled};
 pub use tally::{Tally, tally};

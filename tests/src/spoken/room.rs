@@ -15,8 +15,6 @@ use rustix::fs::{CWD, FileType, Mode, OFlags, mknodat};
 use service::clock;
 use service::{Span, Time};
 
-use super::sound::Pink;
-
 /// Samples a second.
 const RATE_HZ: f64 = 16_000.0;
 /// Samples that are written at a time: 20 ms.
@@ -44,11 +42,12 @@ pub struct Room {
 }
 
 impl Room {
-    /// A room with this noise whose sound comes out of the named pipe `path`, which is made.
+    /// A room with this noise, in samples without end, whose sound comes out of the named pipe `path`,
+    /// which is made.
     ///
     /// # Panics
     /// If the pipe cannot be made.
-    pub fn open(path: &Path, noise: Pink) -> Self {
+    pub fn open(path: &Path, noise: impl Iterator<Item = f64> + Send + 'static) -> Self {
         let mode = Mode::RUSR | Mode::WUSR;
         mknodat(CWD, path, FileType::Fifo, mode, 0).expect("a named pipe");
         let (sounds, silent) = (Arc::default(), Arc::new(AtomicBool::new(false)));
@@ -100,14 +99,14 @@ impl Drop for Room {
     }
 }
 
-struct Air {
+struct Air<N> {
     path: PathBuf,
-    noise: Pink,
+    noise: N,
     sounds: Arc<Mutex<Sounds>>,
     silent: Arc<AtomicBool>,
 }
 
-impl Air {
+impl<N: Iterator<Item = f64>> Air<N> {
     /// Writes each frame when its last sample has sounded. Without a reader, or with a slow one, it
     /// is lost as it would be from a real microphone.
     fn sound(mut self) {
@@ -134,7 +133,7 @@ impl Air {
     }
 
     fn frame(&mut self, first: u64) -> Vec<u8> {
-        let mut samples: Vec<f64> = (0..FRAME).map(|_| self.noise.next()).collect();
+        let mut samples: Vec<f64> = self.noise.by_ref().take(FRAME).collect();
         let mut sounds = self.sounds.lock().unwrap_or_else(PoisonError::into_inner);
         let Sounds { said, played } = &mut *sounds;
         for (start, said) in said.iter().chain(&*played) {
@@ -155,6 +154,7 @@ impl Air {
 
 #[cfg(test)]
 mod tests {
+    use super::super::sound::Pink;
     use super::*;
     use std::io::Read;
 

@@ -13,7 +13,7 @@ fn a_unique_description_is_fetched_without_a_question() {
         (state.act.kind, text(&state).as_str()),
         (ActKind::Pick, "I will get the clear bowl.")
     );
-    assert_eq!(state.open.expect("an open interaction").questions(), 0);
+    assert_eq!(state.open.expect("an open interaction").questions, 0);
 }
 
 #[test]

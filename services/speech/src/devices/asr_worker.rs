@@ -3,12 +3,13 @@
 //! Invariant: every accepted input yields exactly one result; those of live utterances come in order, and
 //! so do those of files. What is said does not wait for a file. The thread accepts input at
 //! once; the recogniser follows when it has loaded. Interim results and early decoding delay no
-//! result, and a second opinion none longer than the closing pause.
+//! result, and a second opinion none longer than the open pause.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
 use config::Settings;
 use crossbeam_channel::{Receiver, Sender, bounded, unbounded};
@@ -31,6 +32,27 @@ mod worker;
 pub(crate) const WAITING_MAX: usize = 8;
 /// Possible ends of utterances that may wait for early decoding.
 const HINTS_MAX: usize = 4;
+
+/// What bounds utterances and the work on them.
+#[derive(Clone, Debug)]
+struct Limits {
+    segmenter: SegmenterOptions,
+    /// Longest file, seconds.
+    longest_s: f64,
+    /// How long after the voice a second opinion is waited for.
+    patience: Duration,
+}
+
+impl Limits {
+    /// Returns the limits of the configuration. Who is in doubt waits as long as for words that lead on.
+    fn of(speech: &config::Speech) -> Self {
+        Self {
+            segmenter: SegmenterOptions::of(speech),
+            longest_s: speech.recording_max.as_secs_f64(),
+            patience: speech.open_pause.max(speech.closing_pause),
+        }
+    }
+}
 
 /// The worker's thread. Dropping it ends the thread after the segment that is being decoded.
 pub(crate) struct AsrWorker {
@@ -56,15 +78,13 @@ impl AsrWorker {
             let second = model.map(|model| SecondOpinion::start(model, scene));
             Ok(Opened { first, second, unpronounceable })
         };
-        let longest_s = speech.recording_max.as_secs_f64();
-        Self::with(open, gate, SegmenterOptions::of(speech), longest_s)
+        Self::with(open, gate, Limits::of(speech))
     }
 
     fn with(
         open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
         gate: Gate,
-        segmenter: SegmenterOptions,
-        longest_s: f64,
+        limits: Limits,
     ) -> (Self, Receiver<In>) {
         let (hints, hinted) = bounded(HINTS_MAX);
         let (blocks, spoken) = bounded(interim::BLOCKS_MAX);
@@ -85,8 +105,7 @@ impl AsrWorker {
             let interim =
                 opener.map(|open| thread::spawn(move || interim::run(open, &spoken, &results)));
             let (closed, early) = (worker_closed, EarlyResults::default());
-            let worker =
-                Worker { recognisers, segmenter, longest_s, closed, events, early, doubt: None };
+            let worker = Worker { recognisers, limits, closed, events, early, doubt: None };
             worker.run(&Channels { live: inputs, hints: &hinted, files: &recorded });
             // A panic of the thread has been logged.
             let _ = interim.map(JoinHandle::join);

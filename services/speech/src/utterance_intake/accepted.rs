@@ -93,9 +93,12 @@ impl AcceptedUtterances {
         self.outbox.len()
     }
 
-    /// Returns the utterances that a new journal must begin with; none while some are not applied yet.
-    pub(crate) fn snapshot(&self) -> Option<Vec<Accepted>> {
-        self.outbox.is_empty().then(|| self.recent.iter().cloned().collect())
+    /// Returns the utterances that a new journal must begin with, in order: those that are not applied
+    /// yet, and the latest ones.
+    pub(crate) fn snapshot(&self) -> impl Iterator<Item = Accepted> + '_ {
+        let recent = self.recent.front().map(|accepted| accepted.seq);
+        let older = move |accepted: &&Accepted| recent.is_some_and(|seq| accepted.seq < seq);
+        self.outbox.waiting().filter(older).chain(&self.recent).cloned()
     }
 }
 
@@ -122,11 +125,54 @@ impl Receipts {
     }
 }
 
+/// Utterances and receipts that are remembered for repeated requests.
+const ITEMS_MAX: usize = 128;
+
 /// Appends an item and drops the oldest beyond a limit.
 fn push_bounded<T>(queue: &mut VecDeque<T>, item: T) {
-    const ITEMS_MAX: usize = 128;
     if queue.len() >= ITEMS_MAX {
         queue.pop_front();
     }
     queue.push_back(item);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::Source;
+
+    fn accepted(seq: u64) -> Accepted {
+        Accepted {
+            seq: UtteranceSeq(seq),
+            key: RequestKey([0; 16]),
+            segment: (0, 1),
+            hypotheses: Vec::new(),
+            gesture: None,
+            source: Source::Text,
+            asked: Vec::new(),
+            onset: Time(seq),
+            end: Time(seq),
+            snr_db: 0.0,
+            accepted: Time(seq),
+        }
+    }
+
+    fn numbers(accepted: &AcceptedUtterances) -> Vec<u64> {
+        accepted.snapshot().map(|accepted| accepted.seq.0).collect()
+    }
+
+    #[test]
+    fn snapshot_holds_what_is_not_applied_and_what_may_be_repeated_each_once() {
+        let mut all = AcceptedUtterances::new();
+        assert!(numbers(&all).is_empty());
+        (1..=200).for_each(|seq| all.add(accepted(seq)));
+        assert_eq!(numbers(&all), (1..=200).collect::<Vec<_>>());
+        assert!(all.acknowledge(AppliedMark { seq: 50, ..AppliedMark::default() }));
+        assert_eq!(numbers(&all), (51..=200).collect::<Vec<_>>());
+        assert!(all.acknowledge(AppliedMark { seq: 200, ..AppliedMark::default() }));
+        assert_eq!(numbers(&all), (73..=200).collect::<Vec<_>>());
+        let mut recovered = AcceptedUtterances::new();
+        all.snapshot().for_each(|accepted| recovered.add(accepted));
+        assert_eq!(numbers(&recovered), numbers(&all));
+    }
 }

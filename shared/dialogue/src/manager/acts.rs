@@ -4,7 +4,7 @@ use scene::{ObjectId, Question};
 
 use super::Manager;
 use super::line::{Content, Line, Preface, Remark};
-use super::state::{Act, Basis, Interaction, Prompt, State};
+use super::state::{Act, Basis, Interaction, Prompt, State, push_bounded};
 use crate::ids::{PickId, PromptId};
 use crate::time::Time;
 use crate::{ActKind, Belief, NamedQuestion};
@@ -68,7 +68,7 @@ impl Manager {
         };
         let id = state.last_prompt;
         if let Some(open) = &mut state.open {
-            open.prompts.push(Prompt { id, question, named, answered: None, times: 0 });
+            open.add_prompt(Prompt { id, question, named, answered: None, times: 0 });
         }
         id
     }
@@ -180,13 +180,13 @@ impl Manager {
                 if state.to_put_back().is_some() {
                     state.note_putting_back(state.last_prompt);
                 } else if let Some(open) = &mut state.open {
-                    open.announced.push(state.last_prompt);
+                    open.announce(state.last_prompt);
                 }
             }
             _ => {
                 say(state, Content::Remark(remark), at);
                 if let Some(handed_over) = &mut state.handed_over {
-                    handed_over.lines.push(state.last_prompt);
+                    push_bounded(&mut handed_over.lines, state.last_prompt);
                 }
             }
         }

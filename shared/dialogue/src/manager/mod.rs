@@ -51,8 +51,8 @@ pub use line::{AboutObjects, Content, Line, Preface, Reason, Remark};
 pub use put_back::{Progress, PuttingBack, WithUser};
 pub use refold::{Mismatch, refold, refold_since};
 pub use state::{
-    Act, Basis, Cause, Deferred, Interaction, KnownObject, Preference, Prompt, Record, State,
-    Timing, Utterance,
+    Act, Basis, Cause, Deferred, Interaction, KnownObject, PROMPTS_MAX, Preference, Prompt, Record,
+    State, Timing, Utterance,
 };
 
 use acts::{order_again, say, set, set_reasons};
@@ -384,7 +384,7 @@ impl Manager {
         if let Some(with_user) = &mut state.with_user {
             with_user.at = at;
         }
-        let questions = open.questions();
+        let questions = open.questions;
         if let Some(person) = open.posterior.person() {
             state.person = Some(person.clone());
         }

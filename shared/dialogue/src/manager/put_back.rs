@@ -8,7 +8,7 @@ use super::Manager;
 use super::acts::{next_key, say, say_with, set};
 use super::attribution::Heard;
 use super::line::{Content, Line, Preface, Remark};
-use super::state::{Act, Basis, State, Utterance};
+use super::state::{Act, Basis, State, Utterance, push_bounded};
 use crate::ids::{InteractionId, PickId, PromptId};
 use crate::time::{Span, Time};
 use crate::{ActKind, Outcome, PickOutcome};
@@ -77,7 +77,7 @@ impl State {
     /// Notes a line about the object that goes back to its place.
     pub(super) fn note_putting_back(&mut self, prompt: PromptId) {
         if let Some(it) = &mut self.putting_back {
-            it.lines.push(prompt);
+            push_bounded(&mut it.lines, prompt);
         }
     }
 }

@@ -70,6 +70,17 @@ pub struct Timing {
     pub typed: Option<Reaction>,
 }
 
+/// Questions and lines of an interaction that are remembered: nobody answers older ones.
+pub const PROMPTS_MAX: usize = 64;
+
+/// Appends an item and drops the oldest beyond the limit.
+pub(super) fn push_bounded<T>(items: &mut Vec<T>, item: T) {
+    if items.len() >= PROMPTS_MAX {
+        items.remove(0);
+    }
+    items.push(item);
+}
+
 /// One interaction in progress.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Interaction {
@@ -87,8 +98,11 @@ pub struct Interaction {
     pub objects: Vec<KnownObject>,
     /// What the user said of attributes, by name.
     pub conceded: Conceded,
-    /// Every question asked, so that an answer can be scored against the one it was meant for.
+    /// The latest questions asked ([`PROMPTS_MAX`]), so that an answer can be scored against the one it
+    /// was meant for.
     pub prompts: Vec<Prompt>,
+    /// Number of questions asked, each counted once however often it was repeated.
+    pub questions: u32,
     /// Presentations of questions so far.
     pub presentations: u32,
     /// Decisions so far; seeds a planner's random numbers.
@@ -103,7 +117,7 @@ pub struct Interaction {
     pub pick: Option<(PickId, ObjectId)>,
     /// Name of its object.
     pub picked: String,
-    /// Lines said since it was ordered: each can be denied.
+    /// The latest lines said since it was ordered ([`PROMPTS_MAX`]): each can be denied.
     pub announced: Vec<PromptId>,
     /// A pick that waits for the release of the motion stop.
     pub held_back: Option<HeldBack>,
@@ -124,6 +138,7 @@ impl Interaction {
             objects: Vec::new(),
             conceded: Conceded::default(),
             prompts: Vec::new(),
+            questions: 0,
             presentations: 0,
             step: 0,
             silences: 0,
@@ -142,9 +157,15 @@ impl Interaction {
         self.posterior.belief()
     }
 
-    /// Returns the number of questions asked, each counted once however often it was repeated.
-    pub fn questions(&self) -> u32 {
-        self.prompts.len() as u32
+    /// Adds a question; the oldest one is dropped for lack of room.
+    pub(super) fn add_prompt(&mut self, prompt: Prompt) {
+        self.questions += 1;
+        push_bounded(&mut self.prompts, prompt);
+    }
+
+    /// Adds a line said since the pick was ordered; the oldest one is dropped for lack of room.
+    pub(super) fn announce(&mut self, line: PromptId) {
+        push_bounded(&mut self.announced, line);
     }
 
     pub(super) fn prompt(&self, id: PromptId) -> Option<&Prompt> {

@@ -22,25 +22,32 @@ pub(super) struct Doubt {
     pub(super) is_owed: bool,
 }
 
+/// Has the second recogniser listen to the segment until so long after the voice; `None` if that is over,
+/// or there is no second recogniser.
+pub(super) fn second_listens(
+    recognisers: &Ensemble,
+    segment: &SpeechSegment,
+    patience: Duration,
+) -> Option<PendingOpinion> {
+    let ago = Duration::from_secs_f64(clock::now().since(segment.end).s());
+    let until = Instant::now() + patience.checked_sub(ago)?;
+    recognisers.second_listens(&segment.samples, &segment.speech, until)
+}
+
 impl Doubt {
-    /// Asks for a second opinion until the closing pause after the voice; `None` if there is none in
-    /// time.
+    /// Asks for an opinion on the first recogniser's hypotheses.
     pub(super) fn raise(
-        recognisers: &Ensemble,
+        pending: PendingOpinion,
         sound: u64,
         segment: SpeechSegment,
         first: Vec<Hypothesis>,
-        SegmenterOptions { closing_pause_s, post_roll_s, .. }: &SegmenterOptions,
-    ) -> Option<Self> {
-        let closing = Duration::from_secs_f64(*closing_pause_s);
-        let ago = Duration::from_secs_f64(clock::now().since(segment.end).s());
-        let until = Instant::now() + closing.checked_sub(ago)?;
-        let pending = recognisers.ask_second(&segment.samples, &segment.speech, until)?;
+        segmenter: &SegmenterOptions,
+    ) -> Self {
         // The hypotheses of an earlier pause are followed by those of this one, which are better.
-        if seconds(segment.samples.len() - segment.speech.end) >= *post_roll_s {
+        if seconds(segment.samples.len() - segment.speech.end) >= segmenter.post_roll_s {
             pending.ask_about(&first);
         }
-        Some(Self { sound, segment, first, pending, is_owed: false })
+        Self { sound, segment, first, pending, is_owed: false }
     }
 
     /// Returns whether it is about the same speech, perhaps with another pause behind it.

@@ -43,7 +43,9 @@ fn worker(
     open: impl FnOnce() -> Result<Opened, String> + Send + 'static,
 ) -> (AsrWorker, Receiver<In>) {
     let gate = Gate::new(&bowls(), Gate::THRESHOLD);
-    let (worker, events) = AsrWorker::with(open, gate, SegmenterOptions::default(), 10.0);
+    let segmenter = SegmenterOptions::default();
+    let limits = Limits { segmenter, longest_s: 10.0, patience: Duration::from_millis(600) };
+    let (worker, events) = AsrWorker::with(open, gate, limits);
     assert_eq!(next(&events), In::RecogniserState(EarState::Loading));
     (worker, events)
 }

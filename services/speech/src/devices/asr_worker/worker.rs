@@ -1,7 +1,7 @@
 //! The worker's thread: decodes what is said in order, possible ends of it while it is idle, and files
 //! beside that. Where the first recogniser is in doubt it asks the second one, and goes on meanwhile.
 //!
-//! Invariant: what is said waits for no file, and for the second recogniser no longer than the closing
+//! Invariant: what is said waits for no file, and for the second recogniser no longer than the open
 //! pause.
 
 use std::ops::Range;
@@ -12,12 +12,13 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, Select, Sender, TryRecvError};
 
-use super::doubt::Doubt;
+use super::Limits;
+use super::doubt::{self, Doubt};
 use super::early::EarlyResults;
 use crate::devices::audio::{RATE_HZ, read_wav, seconds, snr_db};
-use crate::devices::recogniser::{Ensemble, Heard, Opinion, SecondView};
+use crate::devices::recogniser::{Ensemble, Heard, Opinion, PendingOpinion, SecondView};
 use crate::devices::stream::SpeechSegment;
-use crate::devices::vad::{Segmenter, SegmenterOptions, VadEvent};
+use crate::devices::vad::{Segmenter, VadEvent};
 use crate::{Hypothesis, In, Recognised, RecognisedSegment};
 
 /// Samples of a file that are searched for speech at a time: one second.
@@ -26,8 +27,7 @@ const PIECE: usize = RATE_HZ as usize;
 /// The thread's side.
 pub(super) struct Worker {
     pub(super) recognisers: Result<Ensemble, String>,
-    pub(super) segmenter: SegmenterOptions,
-    pub(super) longest_s: f64,
+    pub(super) limits: Limits,
     pub(super) closed: Arc<AtomicBool>,
     pub(super) events: Sender<In>,
     pub(super) early: EarlyResults,
@@ -105,9 +105,10 @@ impl Worker {
         if let Some(result) = self.early.take(&segment) {
             return self.answer(sound, Ok(vec![result]));
         }
+        let listening = self.second_listens(&segment);
         match self.ask_first(&segment) {
             Err(reason) => self.answer(sound, Err(reason)),
-            Ok(first) => match self.doubted(sound, &segment, &first) {
+            Ok(first) => match self.doubted(listening, sound, &segment, &first) {
                 Some(mut doubt) => {
                     doubt.owe();
                     self.doubt = Some(doubt);
@@ -129,6 +130,7 @@ impl Worker {
         // If the user speaks on, the opinion is about half an utterance.
         let is_other = |doubt: &mut Doubt| !doubt.is_owed && !doubt.is_about(sound, &segment);
         self.doubt.take_if(is_other);
+        let listening = self.doubt.is_none().then(|| self.second_listens(&segment)).flatten();
         // A failure is retried when the end is certain, and reported then.
         let first = self.ask_first(&segment).ok();
         let Some(first) = first else { return self.publish_early(sound, &segment, None) };
@@ -136,7 +138,7 @@ impl Worker {
         match &mut self.doubt {
             Some(doubt) if doubt.is_owed => {}
             Some(doubt) => doubt.update(segment.clone(), first),
-            None => self.doubt = self.doubted(sound, &segment, &first),
+            None => self.doubt = self.doubted(listening, sound, &segment, &first),
         }
         let awaits_second =
             self.doubt.as_ref().is_some_and(|doubt| doubt.is_about(sound, &segment));
@@ -161,10 +163,22 @@ impl Worker {
         }
     }
 
-    /// Asks the second recogniser where the first one is in doubt.
-    fn doubted(&self, sound: u64, segment: &SpeechSegment, first: &[Hypothesis]) -> Option<Doubt> {
-        let recognisers = self.recognisers.as_ref().ok().filter(|it| it.is_in_doubt(first))?;
-        Doubt::raise(recognisers, sound, segment.clone(), first.to_vec(), &self.segmenter)
+    /// Has the second recogniser listen while the first one decodes.
+    fn second_listens(&self, segment: &SpeechSegment) -> Option<PendingOpinion> {
+        doubt::second_listens(self.recognisers.as_ref().ok()?, segment, self.limits.patience)
+    }
+
+    /// Asks the second recogniser, which listens already, where the first one is in doubt.
+    fn doubted(
+        &self,
+        listening: Option<PendingOpinion>,
+        sound: u64,
+        segment: &SpeechSegment,
+        first: &[Hypothesis],
+    ) -> Option<Doubt> {
+        self.recognisers.as_ref().ok().filter(|recognisers| recognisers.is_in_doubt(first))?;
+        let pending = listening?;
+        Some(Doubt::raise(pending, sound, segment.clone(), first.to_vec(), &self.limits.segmenter))
     }
 
     fn ask_first(&mut self, segment: &SpeechSegment) -> Result<Vec<Hypothesis>, String> {
@@ -192,8 +206,8 @@ impl Worker {
         channels: &Channels<'_>,
     ) -> Result<Vec<RecognisedSegment>, String> {
         available(&mut self.recognisers)?;
-        let samples = read_wav(path, self.longest_s).map_err(|error| error.to_string())?;
-        let mut segmenter = Segmenter::new(self.segmenter.clone());
+        let samples = read_wav(path, self.limits.longest_s).map_err(|error| error.to_string())?;
+        let mut segmenter = Segmenter::new(self.limits.segmenter.clone());
         let mut segments = Vec::new();
         for piece in samples.chunks(PIECE).map(Some).chain([None]) {
             if !self.serve(channels) {

@@ -85,8 +85,9 @@ impl Ensemble {
         self.second.is_some() && first.first().is_some_and(is_open)
     }
 
-    /// Asks the second recogniser, if there is one and it is free.
-    pub fn ask_second(
+    /// Has the second recogniser listen, if there is one and it is free. Begun together with the first one
+    /// it is done the sooner; drop the result where that one is sure.
+    pub fn second_listens(
         &self,
         pcm: &[i16],
         speech: &Range<usize>,
@@ -107,12 +108,12 @@ impl Ensemble {
         speech: Range<usize>,
         wait: impl FnOnce(&Receiver<Opinion>, Instant) -> bool,
     ) -> Result<Heard, RecogniseError> {
-        let first = self.ask_first(pcm, speech.clone())?;
+        let listening = self.second_listens(pcm, &speech, Instant::now() + UNHURRIED);
+        let first = self.ask_first(pcm, speech)?;
         if !self.is_in_doubt(&first) {
             return Ok(Heard { first, second: SecondView::NotAsked });
         }
-        let asked = self.ask_second(pcm, &speech, Instant::now() + UNHURRIED);
-        let opinion = asked.and_then(|pending| {
+        let opinion = listening.and_then(|pending| {
             pending.ask_about(&first);
             let is_there = wait(pending.opinion(), pending.until());
             pending.opinion().try_recv().ok().filter(|_| is_there)
