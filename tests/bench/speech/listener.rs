@@ -12,7 +12,7 @@ use crossbeam_channel::{Receiver, Select};
 use scene::Scene;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A stretch of a clip that was taken for speech.
 pub(super) struct Heard {
@@ -27,8 +27,9 @@ pub(super) struct Heard {
     /// Seconds from there to the hypotheses, by the clock and of processor; the latter without the
     /// second recogniser's.
     pub(super) took_s: (f64, f64),
-    /// Whether the second recogniser was asked.
+    /// Whether the second recogniser was asked, and whether it was late.
     pub(super) asked: bool,
+    pub(super) late: bool,
 }
 
 /// Thresholds of the gate that are compared; the first is the one in use.
@@ -46,20 +47,27 @@ pub(super) fn second_model() -> Option<PathBuf> {
 pub(super) struct Listener {
     recognisers: Ensemble,
     gates: [Gate; THRESHOLDS.len()],
+    /// How long a second opinion is waited for.
+    pub(super) patience: Duration,
     /// Seconds from nothing to a recogniser that is ready.
     pub(super) start_s: f64,
 }
 
 impl Listener {
-    pub(super) fn new(scene: &Scene, work: &Path) -> Result<Self, RecogniserUnavailable> {
+    /// Opens the first recogniser with files in `work`, and the second one of a model.
+    pub(super) fn new(
+        scene: &Scene,
+        work: &Path,
+        model: Option<PathBuf>,
+    ) -> Result<Self, RecogniserUnavailable> {
         let started = Instant::now();
         let first = PocketSphinx::open(scene, &PocketSphinxOptions::debian(work))?;
         let start_s = started.elapsed().as_secs_f64();
-        let second = second_model().map(|model| SecondOpinion::start(model, scene.clone()));
+        let second = model.map(|model| SecondOpinion::start(model, scene.clone()));
         let gate = Gate::new(scene, Gate::THRESHOLD);
         let recognisers = Ensemble::new(Box::new(first), second, gate);
         let gates = THRESHOLDS.map(|threshold| Gate::new(scene, threshold));
-        Ok(Self { recognisers, gates, start_s })
+        Ok(Self { recognisers, gates, patience: Duration::MAX, start_s })
     }
 
     pub(super) fn hear(&mut self, clip: &Clip) -> Vec<Heard> {
@@ -88,9 +96,11 @@ impl Listener {
         let decoded_at = range.end;
         let voice = speech.start - range.start..speech.end - range.start;
         let pcm = &samples[range];
-        let patiently = |opinion: &Receiver<Opinion>, until| {
+        let patience = self.patience;
+        let patiently = |opinion: &Receiver<Opinion>, until: Instant| {
             let mut select = Select::new();
             select.recv(opinion);
+            let until = started.checked_add(patience).map_or(until, |limit| limit.min(until));
             select.ready_deadline(until).is_ok()
         };
         let heard = self.recognisers.recognise(pcm, voice.clone(), patiently).ok()?;
@@ -100,6 +110,7 @@ impl Listener {
         let is_voice = self.recognisers.is_voice(&hypotheses, pcm, &voice);
         let accepted = self.gates.each_ref().map(|gate| is_voice && gate.judge(&heard).is_ok());
         let asked = heard.second != SecondView::NotAsked;
-        Some(Heard { speech, decoded_at, hypotheses, accepted, took_s, asked })
+        let late = heard.second == SecondView::Late;
+        Some(Heard { speech, decoded_at, hypotheses, accepted, took_s, asked, late })
     }
 }

@@ -6,6 +6,7 @@
 
 mod conditions;
 mod corpus;
+mod delays;
 mod endings;
 mod listener;
 mod noise;
@@ -23,6 +24,7 @@ use corpus::{Corpus, Sentence};
 use language::{Language, Reader};
 use listener::Listener;
 use score::Score;
+use std::path::PathBuf;
 use voices::Voices;
 
 /// One clip's score, and what clip it is.
@@ -96,6 +98,9 @@ pub(crate) fn measure_endings(report: &mut Report, quick: bool) {
     }
     let voices = Voices::new().expect("a folder for what is spoken");
     endings::measure(report, &voices, quick);
+    if let Err(error) = delays::measure(report, &voices) {
+        print(&format!("delays of spoken input are left out: {error}"));
+    }
 }
 
 /// The ears of one robot for each scene of a corpus.
@@ -112,14 +117,18 @@ const STARTS: usize = 5;
 
 impl Ears {
     fn open(corpus: &Corpus) -> Result<Self, RecogniserUnavailable> {
+        Self::open_with(corpus, listener::second_model())
+    }
+
+    fn open_with(corpus: &Corpus, model: Option<PathBuf>) -> Result<Self, RecogniserUnavailable> {
         let work = tempfile::tempdir().expect("a folder for the recogniser");
         let (mut listeners, mut starts_ms) = (Vec::new(), Vec::new());
         for (n, scene) in corpus.scenes.iter().enumerate() {
             let folder = work.path().join(n.to_string());
             for _ in 1..STARTS {
-                starts_ms.push(Listener::new(scene, &folder)?.start_s * 1e3);
+                starts_ms.push(Listener::new(scene, &folder, None)?.start_s * 1e3);
             }
-            let listener = Listener::new(scene, &folder)?;
+            let listener = Listener::new(scene, &folder, model.clone())?;
             starts_ms.push(listener.start_s * 1e3);
             listeners.push(listener);
         }
