@@ -30,6 +30,14 @@ pub struct Topic {
     pub history: usize,
 }
 
+impl Topic {
+    /// Returns whether the topic is a state of which only the latest message counts, and which wakes
+    /// services: its writer repeats it, and wakes them when it has changed.
+    pub fn is_state(&self) -> bool {
+        self.buffer == 1 && !self.readers.is_empty()
+    }
+}
+
 /// Readers of one topic at a time: services, clients, consoles, recorders.
 pub const READERS_MAX: usize = 24;
 /// Clients that write at a time.

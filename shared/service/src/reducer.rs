@@ -66,6 +66,11 @@ pub trait Node: Sized {
         None
     }
 
+    /// Returns whether the node can do its work. Until then its service is not reported ready.
+    fn is_ready(&self) -> bool {
+        true
+    }
+
     /// Returns records that replace the whole journal so far, if nothing is in progress, so
     /// that the journal can be compacted.
     fn snapshot(&self) -> Option<Vec<Self::Record>> {
