@@ -29,8 +29,9 @@ use crate::server::web::Web;
 use crate::server::{Access, App};
 use crate::study::{self, Study};
 
-/// Longest sleep with and without viewers. Most topics are polled: only a prompt wakes the console.
-const LOOK_EVERY: (Span, Span) = (Span::from_ms(10), Span::from_ms(50));
+/// Longest sleep with and without viewers. Prompts, acts and phases of the arm wake the console; it polls
+/// the other topics.
+const LOOK_EVERY: (Span, Span) = (Span::from_ms(10), Span::from_ms(250));
 /// Most restarts that wait for the supervisor.
 const RESTARTS_MAX: usize = 8;
 

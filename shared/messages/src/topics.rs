@@ -117,16 +117,16 @@ pub const MARK: Topic = Topic {
     readers: &[Service::Speech],
     ..topic::<AppliedMark>("policy/mark", Some(Service::Policy))
 };
-/// Policy to speech and arm.
+/// Policy to speech and arm, and to the console, whose pages show it.
 pub const ACT: Topic = Topic {
-    readers: &[Service::Speech, Service::Arm],
+    readers: &[Service::Speech, Service::Arm, Service::Console],
     ..topic::<RobotAct>("policy/act", Some(Service::Policy))
 };
 /// Policy to clients.
 pub const VIEW: Topic = topic::<PolicyView>("policy/view", Some(Service::Policy));
-/// Arm to policy and speech.
+/// Arm to policy and speech, and to the console, whose pages show it.
 pub const STATUS: Topic = Topic {
-    readers: &[Service::Policy, Service::Speech],
+    readers: &[Service::Policy, Service::Speech, Service::Console],
     ..topic::<ArmStatus>("arm/status", Some(Service::Arm))
 };
 /// Arm to clients, 100 Hz.

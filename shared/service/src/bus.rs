@@ -235,7 +235,7 @@ pub trait WireMessage:
 {
 }
 
-impl<T: Schema + WireField + ZeroCopySend + Copy + PartialEq + std::fmt::Debug + 'static> WireMessage
-    for T
+impl<T: Schema + WireField + ZeroCopySend + Copy + PartialEq + std::fmt::Debug + 'static>
+    WireMessage for T
 {
 }

@@ -127,7 +127,10 @@ mod tests {
             assert!(is_readable(&receiver));
             receiver.clear();
             assert!(!is_readable(&receiver));
-            assert_eq!([receiver.take(), receiver.take(), receiver.take()], [Some(message), Some(message), None]);
+            assert_eq!(
+                [receiver.take(), receiver.take(), receiver.take()],
+                [Some(message), Some(message), None]
+            );
         }
     }
 }
