@@ -54,6 +54,8 @@ pub(super) fn open(bus: &Bus, service: Service) -> Result<PortFactory<Ipc>, BusE
         bus.node()
             .service_builder(&service_name)
             .event()
+            // Each wake-up looks at every number up to it.
+            .event_id_max_value(Joined::Service.event().as_value())
             .max_nodes(NODES_MAX)
             .max_notifiers(4 * NODES_MAX)
             .max_listeners(2)
