@@ -1,4 +1,4 @@
-//! Cost of an idle group: processor time and memory.
+//! Cost of an idle group: processor time, wake-ups and memory.
 
 use crate::peers::resident_mib;
 use crate::report::Report;
@@ -12,16 +12,19 @@ const WATCHED: Duration = Duration::from_secs(10);
 pub(crate) fn measure(report: &mut Report) {
     let group = Group::up(&["arm.time_scale=1.0"]);
     std::thread::sleep(Duration::from_secs(3));
-    let before = cpu_s(&group);
+    let before = used(&group);
     std::thread::sleep(WATCHED);
-    let after = cpu_s(&group);
-    let mut total = 0.0;
+    let after = used(&group);
+    let mut total = Used::default();
     for ((name, before), (_, after)) in before.iter().zip(&after) {
-        let percent = 100.0 * (after - before) / WATCHED.as_secs_f64();
-        total += percent;
-        report.add(&format!("idle CPU of {name}"), "% of a core", &[percent], "");
+        let percent = 100.0 * (after.cpu_s - before.cpu_s) / WATCHED.as_secs_f64();
+        let wakes = (after.wakes - before.wakes) / WATCHED.as_secs_f64();
+        total = Used { cpu_s: total.cpu_s + percent, wakes: total.wakes + wakes };
+        let note = format!("{wakes:.0} wake-ups a second");
+        report.add(&format!("idle CPU of {name}"), "% of a core", &[percent], &note);
     }
-    report.add("idle CPU of the group", "% of a core", &[total], "bar: 2 %");
+    report.add("idle CPU of the group", "% of a core", &[total.cpu_s], "bar: 1 %");
+    report.add("idle wake-ups of the group", "1/s", &[total.wakes], "voluntary context switches");
     for (name, pid) in pids(&group) {
         let mib = resident_mib(pid).unwrap_or(0.0);
         report.add(&format!("memory of {name}"), "MiB", &[mib], "resident");
@@ -29,20 +32,34 @@ pub(crate) fn measure(report: &mut Report) {
     group.down();
 }
 
-/// Processor seconds of each process, from the kernel's own account (user and system).
-fn cpu_s(group: &Group) -> Vec<(String, f64)> {
-    pids(group).into_iter().map(|(name, pid)| (name, process_cpu_s(pid))).collect()
+/// What a process has used so far.
+#[derive(Clone, Copy, Default)]
+struct Used {
+    /// Processor time by the kernel's own account (user and system), seconds.
+    cpu_s: f64,
+    /// How often its threads have gone to sleep.
+    wakes: f64,
 }
 
-fn process_cpu_s(pid: i32) -> f64 {
-    let runtime = std::fs::read_to_string(format!("/proc/{pid}/schedstat")).unwrap_or_default();
+fn used(group: &Group) -> Vec<(String, Used)> {
+    pids(group).into_iter().map(|(name, pid)| (name, of_process(pid))).collect()
+}
+
+/// Sums up the threads of a process.
+fn of_process(pid: i32) -> Used {
     let tasks = std::fs::read_dir(format!("/proc/{pid}/task"));
-    let of = |text: String| {
-        text.split(' ').next().and_then(|ns| ns.parse::<f64>().ok()).unwrap_or(0.0) / 1e9
-    };
-    let Ok(tasks) = tasks else { return of(runtime) };
-    let files = tasks.filter_map(Result::ok).map(|task| task.path().join("schedstat"));
-    files.map(|path| of(std::fs::read_to_string(path).unwrap_or_default())).sum()
+    let tasks = tasks.into_iter().flatten().filter_map(Result::ok).map(|task| task.path());
+    let read = |path: std::path::PathBuf| std::fs::read_to_string(path).unwrap_or_default();
+    let number = |text: Option<&str>| text.and_then(|it| it.trim().parse::<f64>().ok());
+    tasks.fold(Used::default(), |sum, task| {
+        let ran_ns = number(read(task.join("schedstat")).split(' ').next());
+        let status = read(task.join("status"));
+        let slept = status.lines().find_map(|line| line.strip_prefix("voluntary_ctxt_switches:"));
+        Used {
+            cpu_s: sum.cpu_s + ran_ns.unwrap_or(0.0) / 1e9,
+            wakes: sum.wakes + number(slept).unwrap_or(0.0),
+        }
+    })
 }
 
 fn pids(group: &Group) -> Vec<(String, i32)> {

@@ -12,6 +12,7 @@
 mod arm;
 mod console;
 mod core;
+mod hop;
 mod idle;
 mod jitter;
 mod latency;
@@ -59,6 +60,7 @@ fn measure(options: &Options, report: &mut Report) {
         arm::measure(report, options.quick);
     }
     if all || options.processes {
+        hop::measure(report);
         start::measure(report);
         latency::measure(report);
         idle::measure(report);

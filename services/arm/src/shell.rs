@@ -81,8 +81,14 @@ impl Shell<ArmNode> for ArmShell {
         })
     }
 
-    fn drain_urgent(&mut self, take: &mut dyn FnMut(In)) -> Result<(), PortError> {
-        self.stop.drain(|command, caller| take(In::StopOrder(command, caller)));
+    fn drain_urgent(
+        &mut self,
+        is_readable: bool,
+        take: &mut dyn FnMut(In),
+    ) -> Result<(), PortError> {
+        if is_readable {
+            self.stop.drain(|command, caller| take(In::StopOrder(command, caller)));
+        }
         self.motion.drain(|message| take(In::Motion(*message)))
     }
 

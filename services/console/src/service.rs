@@ -2,7 +2,6 @@
 
 use std::net::SocketAddr;
 use std::ops::ControlFlow;
-use std::os::fd::BorrowedFd;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
@@ -16,7 +15,7 @@ use service::clock;
 use service::console_link;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
-use service::lifecycle::{Cycle, Environment, Health, Lifecycle, drive};
+use service::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
 use service::service_loop;
 use service::worker_channel;
 use service::{Span, Time};
@@ -30,8 +29,9 @@ use crate::server::web::Web;
 use crate::server::{Access, App};
 use crate::study::{self, Study};
 
-/// Longest sleep with and without viewers. Most topics are polled: only a prompt wakes the console.
-const LOOK_EVERY: (Span, Span) = (Span::from_ms(10), Span::from_ms(50));
+/// Longest sleep with and without viewers. Prompts, acts and phases of the arm wake the console; it polls
+/// the other topics.
+const LOOK_EVERY: (Span, Span) = (Span::from_ms(10), Span::from_ms(250));
 /// Most restarts that wait for the supervisor.
 const RESTARTS_MAX: usize = 8;
 
@@ -140,12 +140,14 @@ fn page_settings(settings: &Settings, study: bool) -> PageSettings {
 }
 
 impl Cycle for Console {
-    fn wake(&self, now: Time) -> (Vec<BorrowedFd<'_>>, Time) {
+    fn wake(&self, now: Time) -> (Sources<'_>, Time) {
         let (watched, alone) = LOOK_EVERY;
         let is_watched = self.app.hub.viewers() > 0 || self.bridge.is_busy();
         let longest = if is_watched { watched } else { alone };
-        let fds = [self.inbox.motions.fd(), self.inbox.commands.fd(), self.wake_listener.fd()];
-        (fds.to_vec(), now + longest)
+        let Inbox { motions, commands } = &self.inbox;
+        let sources = [self.wake_listener.fd(), motions.fd(), commands.fd()].map(Some);
+        let [woken, motions, commands] = sources;
+        ([woken, motions, commands, None], now + longest)
     }
 
     fn shut_down(&mut self) {
@@ -153,12 +155,16 @@ impl Cycle for Console {
         self.is_ending = true;
     }
 
-    fn pass(&mut self) -> Result<ControlFlow<()>, Failure> {
+    fn pass(&mut self, ready: Ready) -> Result<ControlFlow<()>, Failure> {
         if self.is_ending {
             return Ok(ControlFlow::Break(()));
         }
         let began = Instant::now();
-        self.wake_listener.clear();
+        let [is_woken, ..] = ready;
+        if is_woken {
+            // It writes nothing that those who join could have missed.
+            self.wake_listener.take();
+        }
         self.bridge.pass(&self.inbox);
         self.app.hub.metrics.pass.observe(began.elapsed().as_secs_f64());
         let now = clock::now();

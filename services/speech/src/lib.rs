@@ -109,6 +109,11 @@ impl Node for SpeechNode {
         Some(self.player.deadline().map_or(self.next_send, |at| at.min(self.next_send)))
     }
 
+    /// Without the policy's mark no utterance can be numbered.
+    fn is_ready(&self) -> bool {
+        self.intake.accepted.is_marked()
+    }
+
     fn pending_since(&self) -> Option<Time> {
         self.intake.accepted.pending_since()
     }

@@ -29,7 +29,14 @@ struct Speech {
 }
 
 impl Speech {
+    /// With the policy's mark, as when it is ready.
     fn new() -> Self {
+        let mut speech = Self::before_mark();
+        speech.take(1.0, In::Mark(AppliedMark::default()));
+        speech
+    }
+
+    fn before_mark() -> Self {
         let reader = Reader::new(&testing::bowls(), Language::Careful);
         let ms = std::time::Duration::from_millis;
         let endpointing = Endpointing {
@@ -40,9 +47,7 @@ impl Speech {
         };
         let config = Config { reader, endpointing, utterance_bytes_max: 4000, gestures: false };
         let node = SpeechNode::recover(config, Vec::new()).unwrap();
-        let mut speech = Self { node, now: Time(0), records: Vec::new() };
-        speech.take(1.0, In::Mark(AppliedMark::default()));
-        speech
+        Self { node, now: Time(0), records: Vec::new() }
     }
 
     /// Handles a message after a delay.
@@ -178,6 +183,17 @@ fn ask(prompt: u64) -> In {
         text,
         ..RobotAct::default()
     }))
+}
+
+#[test]
+fn speech_is_ready_once_it_can_accept_an_utterance() {
+    let mut speech = Speech::before_mark();
+    let text = || Sound::Text("the white bowl".to_owned());
+    assert!(speech.inject(1.0, 1, text()).0.is_empty(), "without a mark there are no numbers");
+    assert!(!speech.node.is_ready());
+    speech.take(1.0, In::Mark(AppliedMark::default()));
+    assert!(speech.node.is_ready());
+    assert!(!speech.inject(1.0, 1, text()).0.is_empty());
 }
 
 #[test]

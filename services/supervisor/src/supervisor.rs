@@ -121,10 +121,12 @@ impl Supervisor {
     /// Handles events: notifications first, so that no service is stopped for a missed heartbeat
     /// that has already arrived.
     fn take(&mut self, ready: Ready, now: Time) {
-        if self.signals.asked_to_end() {
+        if ready.signal && self.signals.asked_to_end() {
             self.end(ending::Cause::Signal, now);
         }
-        for service in 0..self.services.len() {
+        let is_judged = self.group.deadline().is_some_and(|deadline| deadline <= now);
+        let voices = if is_judged { (0..self.services.len()).collect() } else { ready.voices };
+        for service in voices {
             self.listen(service, now);
         }
         for service in ready.ended {
@@ -132,7 +134,7 @@ impl Supervisor {
                 self.reap(service);
             }
         }
-        if self.signals.child_ended() {
+        if ready.signal && self.signals.child_ended() {
             self.clear_orphans();
         }
         if ready.listener {

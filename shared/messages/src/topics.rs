@@ -30,6 +30,14 @@ pub struct Topic {
     pub history: usize,
 }
 
+impl Topic {
+    /// Returns whether the topic is a state of which only the latest message counts, and which wakes
+    /// services: its writer repeats it, and wakes them when it has changed.
+    pub fn is_state(&self) -> bool {
+        self.buffer == 1 && !self.readers.is_empty()
+    }
+}
+
 /// Readers of one topic at a time: services, clients, consoles, recorders.
 pub const READERS_MAX: usize = 24;
 /// Clients that write at a time.
@@ -109,16 +117,16 @@ pub const MARK: Topic = Topic {
     readers: &[Service::Speech],
     ..topic::<AppliedMark>("policy/mark", Some(Service::Policy))
 };
-/// Policy to speech and arm.
+/// Policy to speech and arm, and to the console, whose pages show it.
 pub const ACT: Topic = Topic {
-    readers: &[Service::Speech, Service::Arm],
+    readers: &[Service::Speech, Service::Arm, Service::Console],
     ..topic::<RobotAct>("policy/act", Some(Service::Policy))
 };
 /// Policy to clients.
 pub const VIEW: Topic = topic::<PolicyView>("policy/view", Some(Service::Policy));
-/// Arm to policy and speech.
+/// Arm to policy and speech, and to the console, whose pages show it.
 pub const STATUS: Topic = Topic {
-    readers: &[Service::Policy, Service::Speech],
+    readers: &[Service::Policy, Service::Speech, Service::Console],
     ..topic::<ArmStatus>("arm/status", Some(Service::Arm))
 };
 /// Arm to clients, 100 Hz.

@@ -4,7 +4,10 @@
 use crate::group::{GroupPaths, ShmName};
 use iceoryx2::prelude::*;
 use messages::schema::Schema;
-use messages::{Epoch, Incarnation, Stamp, WireField};
+use messages::topics::Topic;
+use messages::{Epoch, Incarnation, Service, Stamp, WireField};
+use std::cell::RefCell;
+use std::rc::{Rc, Weak};
 
 mod encoded;
 mod gate;
@@ -13,6 +16,7 @@ mod ports;
 mod renewed;
 mod segment;
 mod segment_error;
+mod sender;
 mod variant;
 mod wake;
 
@@ -22,7 +26,7 @@ pub use open::Topics;
 pub use ports::{Reader, Writer};
 pub use segment_error::SegmentError;
 pub(crate) use variant::Ipc;
-pub use wake::{WakeListener, WakeNotifier};
+pub use wake::{Joined, WakeListener, WakeNotifier};
 
 /// A process's access to the group's topics. Not shared between threads.
 #[derive(Debug)]
@@ -30,6 +34,21 @@ pub struct Bus {
     node: Node<Ipc>,
     identity: Identity,
     paths: GroupPaths,
+    /// How this process joins: as a service or as a client.
+    joins: Joined,
+    /// Notifiers that are open, one for each service that is woken.
+    notifiers: RefCell<Vec<(Service, Rc<WakeNotifier>)>>,
+    /// Writers that are open.
+    writers: RefCell<Vec<Weak<dyn Connect>>>,
+}
+
+/// A writer that connects readers which have joined since its last message.
+trait Connect: std::fmt::Debug {
+    /// Connects them, and so hands them the latest messages.
+    fn connect(&self);
+
+    /// Wakes the topic's readers.
+    fn wake_readers(&self);
 }
 
 /// Identity of a process in its group.
@@ -157,7 +176,42 @@ impl Bus {
                 .signal_handling_mode(SignalHandlingMode::Disabled)
                 .create::<Ipc>()
         })?;
-        Ok(Self { node, identity, paths: paths.clone() })
+        let joins = Service::from_name(name).map_or(Joined::Client, |_| Joined::Service);
+        let (notifiers, writers) = (RefCell::default(), RefCell::default());
+        Ok(Self { node, identity, paths: paths.clone(), joins, notifiers, writers })
+    }
+
+    /// Connects the readers that have joined since this process's writers last sent something, and so
+    /// hands them the latest message of each topic now instead of with the next one.
+    pub fn connect(&self, joined: Joined) {
+        self.writers.borrow_mut().retain(|writer| writer.strong_count() > 0);
+        let writers: Vec<_> = self.writers.borrow().iter().filter_map(Weak::upgrade).collect();
+        writers.iter().for_each(|writer| writer.connect());
+        // Clients poll.
+        if joined == Joined::Service {
+            writers.iter().for_each(|writer| writer.wake_readers());
+        }
+    }
+
+    /// Asks the writer of a topic that this process has begun to read for its latest messages. Where
+    /// that fails they come with its next one.
+    fn greet(&self, topic: &Topic) {
+        let Some(service) = topic.writer.filter(|_| topic.history > 0) else { return };
+        match self.notifier(service) {
+            Ok(notifier) => notifier.greet(self.joins),
+            Err(error) => tracing::debug!(topic = topic.name, %error, "its writer is not asked"),
+        }
+    }
+
+    /// Returns the notifier of a service, which is opened once.
+    fn notifier(&self, service: Service) -> Result<Rc<WakeNotifier>, BusError> {
+        let is_of = |(of, _): &&(Service, _)| *of == service;
+        if let Some((_, notifier)) = self.notifiers.borrow().iter().find(is_of) {
+            return Ok(Rc::clone(notifier));
+        }
+        let notifier = Rc::new(WakeNotifier::open(self, service)?);
+        self.notifiers.borrow_mut().push((service, Rc::clone(&notifier)));
+        Ok(notifier)
     }
 
     /// Returns the identity of this process.
@@ -177,8 +231,11 @@ impl Bus {
 
 /// A message of fixed layout.
 pub trait WireMessage:
-    Schema + WireField + ZeroCopySend + Copy + std::fmt::Debug + 'static
+    Schema + WireField + ZeroCopySend + Copy + PartialEq + std::fmt::Debug + 'static
 {
 }
 
-impl<T: Schema + WireField + ZeroCopySend + Copy + std::fmt::Debug + 'static> WireMessage for T {}
+impl<T: Schema + WireField + ZeroCopySend + Copy + PartialEq + std::fmt::Debug + 'static>
+    WireMessage for T
+{
+}

@@ -13,8 +13,29 @@ use crate::{Span, Time};
 use messages::{Epoch, Injection, Receipt, RequestKey, Sound, topics};
 use std::time::Duration;
 
-/// Polling interval of the topics.
-const POLL_EVERY: Duration = Duration::from_millis(2);
+/// First and longest pause of a client that polls.
+const POLL_EVERY: (Duration, Duration) = (Duration::from_micros(200), Duration::from_millis(2));
+
+/// Pauses of a client that polls topics: short at first, because services answer within a millisecond
+/// or two, then longer.
+#[derive(Debug)]
+pub struct Polling {
+    pause: Duration,
+}
+
+impl Default for Polling {
+    fn default() -> Self {
+        Self { pause: POLL_EVERY.0 }
+    }
+}
+
+impl Polling {
+    /// Sleeps until the next look is due.
+    pub fn pause(&mut self) {
+        std::thread::sleep(self.pause);
+        self.pause = (self.pause * 5 / 4).min(POLL_EVERY.1);
+    }
+}
 
 /// A client's access to the group.
 #[derive(Debug)]
@@ -107,6 +128,7 @@ pub fn deliver(
     mut standstill: impl FnMut() -> Option<String>,
 ) -> Result<Vec<Receipt>, ClientError> {
     let mut submission = Submission::new(sound, said, clock::now(), patience);
+    let mut polling = Polling::default();
     while !submission.is_expired(clock::now()) {
         if let Some(request) = submission.due(clock::now()) {
             writer.send(request)?;
@@ -118,7 +140,7 @@ pub fn deliver(
         if let Some(why) = standstill() {
             return Err(ClientError::Standstill(why));
         }
-        std::thread::sleep(POLL_EVERY);
+        polling.pause();
     }
     Err(ClientError::Timeout { what: "speech", seconds: patience.s() })
 }

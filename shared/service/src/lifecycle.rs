@@ -20,8 +20,11 @@ use std::time::Duration;
 
 /// Timeout for the shutdown of a service whose supervisor has died, before it is killed.
 const ORPHAN_GRACE: Duration = Duration::from_secs(15);
+/// Timeout for what a service needs of others to be ready. One that is held or stopped keeps nobody
+/// from it: the service is then reported ready, and goes on when the other one returns.
+const READY_PATIENCE: Span = Span::from_ms(1_000);
 /// Maximum time between two heartbeats.
-const BEAT_MAX: Span = Span::from_ms(500);
+const BEAT_MAX: Span = Span::from_ms(1_000);
 
 /// The environment that the supervisor has set for this process.
 #[derive(Clone, Debug)]
@@ -88,6 +91,8 @@ pub struct Lifecycle {
     /// What the last beat said to be short.
     shortage: String,
     notifier: Notifier,
+    /// Whether the last poll has found a signal or the end of the lifeline.
+    is_called: bool,
 }
 
 impl Lifecycle {
@@ -125,30 +130,42 @@ impl Lifecycle {
             last_beat: None,
             shortage: String::new(),
             notifier,
+            is_called: false,
         })
     }
 
-    /// Descriptors to be polled: signals, and the lifeline where there is one.
-    fn fds(&self) -> impl Iterator<Item = BorrowedFd<'_>> {
-        std::iter::once(self.signals.as_fd()).chain(self.lifeline.as_ref().map(AsFd::as_fd))
-    }
-
-    /// Sleeps until one of `also` is readable, a signal arrives, the supervisor ends, or `longest`
-    /// has passed.
-    pub fn wait(&self, also: &[BorrowedFd<'_>], longest: Span) {
+    /// Sleeps until one of `sources` is readable, a signal arrives, the supervisor ends, or `longest`
+    /// has passed. Returns which sources are readable.
+    fn wait(&mut self, sources: &Sources<'_>, longest: Span) -> Ready {
         let timeout = rustix::time::Timespec {
             tv_sec: (longest.0 / 1_000_000_000) as i64,
             tv_nsec: (longest.0 % 1_000_000_000) as i64,
         };
-        let fds: Vec<BorrowedFd<'_>> = also.iter().copied().chain(self.fds()).collect();
-        let mut polled: Vec<PollFd<'_>> =
-            fds.iter().map(|fd| PollFd::new(fd, PollFlags::IN)).collect();
-        // Interrupted by a signal or not: the caller looks at everything afterwards.
-        let _ = poll(&mut polled, Some(&timeout));
+        let own = [Some(self.signals.as_fd()), self.lifeline.as_ref().map(AsFd::as_fd)];
+        let mut polled = [const { None }; SOURCES_MAX + 2];
+        for (entry, fd) in polled.iter_mut().zip(sources.iter().chain(&own)) {
+            *entry = *fd;
+        }
+        // An absent descriptor is one of which nothing is asked.
+        let mut polled = polled.map(|fd| match fd {
+            Some(fd) => PollFd::from_borrowed_fd(fd, PollFlags::IN),
+            None => PollFd::from_borrowed_fd(self.signals.as_fd(), PollFlags::empty()),
+        });
+        // After an interruption everything is looked at.
+        let is_interrupted = poll(&mut polled, Some(&timeout)).is_err();
+        let is_ready = polled.map(|fd| is_interrupted || !fd.revents().is_empty());
+        let mut ready = Ready::default();
+        let (others, own) = is_ready.split_at(SOURCES_MAX);
+        ready.copy_from_slice(others);
+        self.is_called = own.contains(&true);
+        ready
     }
 
     /// Returns true if the service has been asked to shut down.
-    pub fn shutdown_requested(&mut self) -> bool {
+    fn shutdown_requested(&mut self) -> bool {
+        if !self.is_called {
+            return false;
+        }
         let mut byte = [0_u8; 16];
         let signalled = std::io::Read::read(&mut self.signals, &mut byte).is_ok_and(|n| n > 0);
         signalled || self.lifeline.as_ref().is_some_and(orphaned)
@@ -187,19 +204,32 @@ impl Lifecycle {
     }
 }
 
+/// Most descriptors that end the sleep of a service.
+pub const SOURCES_MAX: usize = 4;
+/// Descriptors that end the sleep of a service; those that it lacks are `None`.
+pub type Sources<'a> = [Option<BorrowedFd<'a>>; SOURCES_MAX];
+/// Which of the [`Sources`] are readable, in their order.
+pub type Ready = [bool; SOURCES_MAX];
+
 /// A service as the main loop drives it: one pass after another until it has shut down.
 pub trait Cycle {
     /// Returns the descriptors that end the sleep, and when it ends at the latest.
-    fn wake(&self, now: Time) -> (Vec<BorrowedFd<'_>>, Time);
+    fn wake(&self, now: Time) -> (Sources<'_>, Time);
+
+    /// Returns whether the service can do its work; it is reported ready once it can.
+    fn is_ready(&self) -> bool {
+        true
+    }
 
     /// Starts the shutdown; further passes follow until one breaks the loop.
     fn shut_down(&mut self);
 
-    /// Processes pending inputs, decides and publishes; breaks once the service has shut down.
+    /// Processes pending inputs, decides and publishes; breaks once the service has shut down. Only what
+    /// is ready needs to be read, besides shared memory.
     ///
     /// # Errors
     /// A resource that the service requires is lost.
-    fn pass(&mut self) -> Result<ControlFlow<()>, Failure>;
+    fn pass(&mut self, ready: Ready) -> Result<ControlFlow<()>, Failure>;
 
     /// Returns the health of the service: without heartbeats the supervisor restarts it.
     fn health(&mut self, now: Time) -> Health;
@@ -225,19 +255,25 @@ pub enum Health {
 /// # Errors
 /// As [`Cycle::pass`].
 pub fn drive(mut lifecycle: Lifecycle, cycle: &mut impl Cycle) -> Result<(), Failure> {
-    lifecycle.ready();
-    tracing::info!("ready");
-    let mut is_ending = false;
+    let overdue = clock::now() + READY_PATIENCE;
+    let (mut is_ready, mut is_ending) = (false, false);
     loop {
         let now = clock::now();
-        let (fds, until) = cycle.wake(now);
-        lifecycle.wait(&fds, until.min(lifecycle.next_beat(now)).since(now));
+        if !is_ready && (cycle.is_ready() || now >= overdue) {
+            is_ready = true;
+            lifecycle.ready();
+            tracing::info!("ready");
+        }
+        let (sources, until) = cycle.wake(now);
+        let until = if is_ready { until } else { until.min(overdue) };
+        let longest = until.min(lifecycle.next_beat(now)).since(now);
+        let ready = lifecycle.wait(&sources, longest);
         if !is_ending && lifecycle.shutdown_requested() {
             is_ending = true;
             lifecycle.stopping();
             cycle.shut_down();
         }
-        let flow = cycle.pass()?;
+        let flow = cycle.pass(ready)?;
         let now = clock::now();
         if let Health::Working(pending_since) = cycle.health(now) {
             lifecycle.beat(now, pending_since, cycle.shortage());

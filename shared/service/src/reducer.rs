@@ -66,6 +66,11 @@ pub trait Node: Sized {
         None
     }
 
+    /// Returns whether the node can do its work. Until then its service is not reported ready.
+    fn is_ready(&self) -> bool {
+        true
+    }
+
     /// Returns records that replace the whole journal so far, so that it can be compacted; `None` where
     /// what is in progress does not permit that.
     fn snapshot(&self) -> Option<Vec<Self::Record>> {

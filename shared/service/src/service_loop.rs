@@ -10,7 +10,7 @@ use crate::clock;
 use crate::commit::Commit;
 use crate::exit::{Exit, Failure};
 use crate::inspection::{self, Finding, Part, SharedFacts};
-use crate::lifecycle::{Cycle, Environment, Health, Lifecycle, drive};
+use crate::lifecycle::{Cycle, Environment, Health, Lifecycle, Ready, Sources, drive};
 use crate::logging;
 use crate::notify::Notifier;
 use crate::worker_channel::{self, DeviceReceiver, DeviceSender};
@@ -94,11 +94,15 @@ pub trait Shell<N: Node>: Sized {
     fn open(context: &Context<'_, N::In>) -> Result<Self, Failure>;
 
     /// Hands every waiting urgent message to `take`: inputs that come before all others, and are taken
-    /// even while the service waits for storage.
+    /// even while the service waits for storage. `is_readable` is that of [`Shell::urgent_fd`].
     ///
     /// # Errors
     /// A topic cannot be read.
-    fn drain_urgent(&mut self, _take: &mut dyn FnMut(N::In)) -> Result<(), PortError> {
+    fn drain_urgent(
+        &mut self,
+        _is_readable: bool,
+        _take: &mut dyn FnMut(N::In),
+    ) -> Result<(), PortError> {
         Ok(())
     }
 
@@ -198,9 +202,10 @@ fn serve<P: Program>(arguments: Vec<String>) -> Result<(), Failure> {
         inbox,
         wake_listener,
         effects: Effects::default(),
+        arrived: Vec::new(),
         port_error: None,
         port_failure: None,
-        _bus: bus,
+        bus,
     };
     if let Some(set_aside) = set_aside {
         service.node.on(Event::SetAside(set_aside), clock::now(), &mut service.effects);
@@ -247,34 +252,46 @@ struct Loop<P: Program> {
     inbox: DeviceReceiver<In<P>>,
     wake_listener: WakeListener,
     effects: Effects<Out<P>, Record<P>>,
+    /// Messages of a pass, kept for its memory.
+    arrived: Vec<In<P>>,
     /// Failure of a topic in this pass.
     port_error: Option<PortError>,
     /// Failure of a topic in the last pass, and since when passes have had one.
     port_failure: Option<(String, Time)>,
-    _bus: Bus,
+    bus: Bus,
 }
 
 impl<P: Program> Cycle for Loop<P> {
-    fn wake(&self, now: Time) -> (Vec<BorrowedFd<'_>>, Time) {
+    fn wake(&self, now: Time) -> (Sources<'_>, Time) {
         let latest = now + LOOK_EVERY;
         let deadline = self.node.deadline().filter(|_| self.takes_ticks());
         let until = deadline.map_or(latest, |deadline| deadline.min(latest));
-        let fds = [self.commit.fd(), self.wake_listener.fd(), self.inbox.fd()];
-        (self.shell.urgent_fd().into_iter().chain(fds).collect(), until)
+        let Self { shell, wake_listener, commit, inbox, .. } = self;
+        let others = [wake_listener.fd(), commit.fd(), inbox.fd()].map(Some);
+        let [wake_listener, commit, inbox] = others;
+        ([shell.urgent_fd(), wake_listener, commit, inbox], until)
     }
 
     fn shut_down(&mut self) {
         self.node.on(Event::Shutdown, clock::now(), &mut self.effects);
     }
 
-    fn pass(&mut self) -> Result<ControlFlow<()>, Failure> {
-        self.port_error = self.take_in().err();
+    fn pass(&mut self, ready: Ready) -> Result<ControlFlow<()>, Failure> {
+        let [is_urgent, is_woken, _, _] = ready;
+        if is_woken && let Some(joined) = self.wake_listener.take() {
+            self.bus.connect(joined);
+        }
+        self.port_error = self.take_in(is_urgent).err();
         self.commit()?;
         self.judge_ports()?;
         // What waits for a full disk was never acknowledged, and is given up as by a kill.
         let is_done = self.commit.is_settled() || self.commit.is_short();
         let ends = self.effects.exits() && is_done;
         Ok(if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    }
+
+    fn is_ready(&self) -> bool {
+        self.node.is_ready()
     }
 
     fn health(&mut self, _now: Time) -> Health {
@@ -300,11 +317,10 @@ impl<P: Program> Loop<P> {
     }
 
     /// Feeds everything that waits to the node.
-    fn take_in(&mut self) -> Result<(), PortError> {
-        self.wake_listener.clear();
+    fn take_in(&mut self, is_urgent: bool) -> Result<(), PortError> {
         self.inbox.clear();
-        let mut arrived = Vec::new();
-        let mut result = self.shell.drain_urgent(&mut |message| arrived.push(message));
+        let mut arrived = std::mem::take(&mut self.arrived);
+        let mut result = self.shell.drain_urgent(is_urgent, &mut |message| arrived.push(message));
         if self.takes_inputs() {
             let ordinary = self.shell.drain(&mut |message| arrived.push(message));
             result = result.and(ordinary);
@@ -314,9 +330,10 @@ impl<P: Program> Loop<P> {
                 arrived.push(message);
             }
         }
-        for message in arrived {
+        for message in arrived.drain(..) {
             self.node.on(Event::Message(message), clock::now(), &mut self.effects);
         }
+        self.arrived = arrived;
         if self.takes_ticks() && self.node.deadline().is_some_and(|due| due <= clock::now()) {
             self.node.on(Event::Tick, clock::now(), &mut self.effects);
         }

@@ -5,8 +5,9 @@
 use iceoryx2::prelude::ZeroCopySend;
 use messages::schema::{Field, Schema};
 use messages::topics::{self, Topic};
-use messages::{AppliedMark, Epoch, Incarnation, PolicyView, Presented};
-use service::bus::{Bus, BusError, Identity};
+use messages::{AppliedMark, Epoch, Incarnation, PolicyView, Presented, Service};
+use rustix::event::{PollFd, PollFlags, poll};
+use service::bus::{Bus, BusError, Identity, Joined, WakeListener};
 use service::group::{GroupName, GroupPaths};
 use service::shm_cleanup;
 
@@ -38,7 +39,7 @@ impl Drop for Shm {
 
 /// As large as [`AppliedMark`] and of its name, but with another field.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, ZeroCopySend)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, ZeroCopySend)]
 #[type_name("AppliedMark")]
 struct OtherMark {
     utterance: u64,
@@ -120,5 +121,64 @@ fn payloads_grow_as_they_need() {
         let view = PolicyView { belief: vec![0.5; objects], ..PolicyView::default() };
         writer.send(&view).unwrap();
         assert_eq!(reader.latest().unwrap(), Some(view));
+    }
+}
+
+/// Returns whether a wake-up waits.
+fn is_woken(listener: &WakeListener) -> bool {
+    let now = rustix::time::Timespec { tv_sec: 0, tv_nsec: 0 };
+    let fd = listener.fd();
+    poll(&mut [PollFd::from_borrowed_fd(fd, PollFlags::IN)], Some(&now)).unwrap() > 0
+}
+
+#[test]
+fn reader_that_joins_gets_the_latest_message_before_there_is_another() {
+    let shm = Shm::new();
+    let policy = shm.join(1, 1);
+    let woken = policy.wake_listener(Service::Policy).unwrap();
+    let writer = policy.writer::<AppliedMark>(&topics::MARK).unwrap();
+    writer.send(&AppliedMark { seq: 7 }).unwrap();
+
+    let client = shm.join(1, 0);
+    let reader = client.reader::<AppliedMark>(&topics::MARK).unwrap();
+    assert_eq!(reader.latest().unwrap(), None, "nobody has connected it yet");
+    assert!(is_woken(&woken), "the writer is asked");
+    let joined = woken.take().unwrap();
+    assert_eq!(joined, Joined::Client);
+    policy.connect(joined);
+    assert_eq!(reader.latest().unwrap(), Some(AppliedMark { seq: 7 }));
+    assert_eq!(woken.take(), None);
+}
+
+#[test]
+fn service_that_joins_is_woken_when_it_is_connected() {
+    let shm = Shm::new();
+    let policy = shm.join(1, 1);
+    let woken = policy.wake_listener(Service::Policy).unwrap();
+    let writer = policy.writer::<AppliedMark>(&topics::MARK).unwrap();
+    writer.send(&AppliedMark { seq: 7 }).unwrap();
+
+    let identity = Identity { epoch: Epoch(1), incarnation: Incarnation(2) };
+    let speech = Bus::open(&shm.paths, Service::Speech.name(), identity).unwrap();
+    let listener = speech.wake_listener(Service::Speech).unwrap();
+    let reader = speech.reader::<AppliedMark>(&topics::MARK).unwrap();
+    assert!(!is_woken(&listener));
+    policy.connect(woken.take().unwrap());
+    assert!(is_woken(&listener));
+    assert_eq!(reader.latest().unwrap(), Some(AppliedMark { seq: 7 }));
+}
+
+#[test]
+fn repeated_state_wakes_its_readers_only_when_it_has_changed() {
+    let shm = Shm::new();
+    let bus = shm.join(1, 1);
+    let listener = bus.wake_listener(Service::Speech).unwrap();
+    let writer = bus.writer::<AppliedMark>(&topics::MARK).unwrap();
+    for (seq, wakes) in [(1, true), (1, false), (2, true), (2, false), (1, true)] {
+        writer.send(&AppliedMark { seq }).unwrap();
+        assert_eq!(is_woken(&listener), wakes, "mark {seq}");
+        if wakes {
+            assert_eq!(listener.take(), None);
+        }
     }
 }

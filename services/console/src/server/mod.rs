@@ -28,7 +28,7 @@ pub use access::Access;
 use connections::{Gate, Of};
 
 /// Interval of the server's progress reports.
-const PROGRESS_EVERY: Duration = Duration::from_millis(100);
+const PROGRESS_EVERY: Duration = Duration::from_millis(250);
 
 /// State and files that the server serves.
 #[derive(Debug)]

@@ -68,7 +68,7 @@ impl AcceptedUtterances {
         }
     }
 
-    pub(super) fn is_marked(&self) -> bool {
+    pub(crate) fn is_marked(&self) -> bool {
         self.is_marked
     }
 

@@ -8,9 +8,13 @@ use super::Supervisor;
 use crate::Time;
 use crate::server::Client;
 
-/// Result of one poll. Signals and notifications are not listed: every pass checks them.
+/// Result of one poll.
 #[derive(Debug, Default)]
 pub(super) struct Ready {
+    /// True if there may be a signal.
+    pub(super) signal: bool,
+    /// Services that have sent notifications.
+    pub(super) voices: Vec<usize>,
     /// Services whose process has ended.
     pub(super) ended: Vec<usize>,
     /// True if a client connects.
@@ -22,7 +26,7 @@ pub(super) struct Ready {
 #[derive(Clone, Copy)]
 enum Source {
     Signal,
-    Voice,
+    Voice(usize),
     Process(usize),
     Listener,
     Client(Client),
@@ -40,15 +44,16 @@ impl Supervisor {
         let timeout = self.until_next_deadline();
         let timeout = Timespec::try_from(timeout).expect("a second at most");
         if poll(&mut fds, Some(&timeout)).is_err() {
-            // Interrupted by a signal, whose pipe is looked at anyway.
-            return Ready::default();
+            // Interrupted by a signal.
+            return Ready { signal: true, ..Ready::default() };
         }
         let mut ready = Ready::default();
         for (source, fd) in sources.into_iter().zip(&fds) {
             let flags = fd.revents();
             match source {
                 _ if flags.is_empty() => {}
-                Source::Signal | Source::Voice => {}
+                Source::Signal => ready.signal = true,
+                Source::Voice(service) => ready.voices.push(service),
                 Source::Process(service) => ready.ended.push(service),
                 Source::Listener => ready.listener = true,
                 Source::Client(client) => ready.clients.push((client, flags)),
@@ -62,7 +67,7 @@ impl Supervisor {
         let running = self.services.iter().enumerate().filter_map(|(service, entry)| {
             let running = entry.running.as_ref()?;
             Some([
-                (Source::Voice, running.notify.as_fd(), PollFlags::IN),
+                (Source::Voice(service), running.notify.as_fd(), PollFlags::IN),
                 (Source::Process(service), running.child.as_fd(), PollFlags::IN),
             ])
         });

@@ -5,14 +5,13 @@
 
 use std::collections::{HashSet, VecDeque};
 use std::os::unix::fs::MetadataExt;
-use std::thread;
 use std::time::{Duration, Instant};
 
 use config::Settings;
 use messages::{Injection, PolicyView, PromptId, Receipt, RequestKey, Sound, topics};
 use scene::Scene;
 use service::bus::EncodedWriter;
-use service::client::Client;
+use service::client::{Client, Polling};
 use service::clock;
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -107,10 +106,11 @@ impl Conversation {
     /// Polls until the policy has published or a timeout has passed: the first utterance needs
     /// the state before it.
     pub(super) fn first_look(&mut self) -> Result<(), Failure> {
-        let until = Instant::now() + FIRST_PATIENCE;
+        let (until, mut polling) = (Instant::now() + FIRST_PATIENCE, Polling::default());
+        self.look()?;
         while Instant::now() < until && self.latest.view.is_none() {
+            polling.pause();
             self.look()?;
-            thread::sleep(LOOK_EVERY);
         }
         Ok(())
     }

@@ -1,16 +1,14 @@
 //! Quality of hearing, as text and JSON.
 
-use std::thread;
 use std::time::{Duration, Instant};
 
 use messages::{EarState, Hearing, MicrophoneState, topics};
-use service::client::Client;
+use service::client::{Client, Polling};
 use service::group::GroupPaths;
 
-use super::conversation::LOOK_EVERY;
 use crate::output::{Ink, Style};
 
-/// Time limit for a message; four are published per second.
+/// Time limit for a message.
 const TIMEOUT: Duration = Duration::from_secs(1);
 
 /// Signal-to-noise ratio, decibels, below which recognition is poor; it is good from 20 on.
@@ -20,11 +18,11 @@ const SNR_MIN_DB: f32 = 15.0;
 pub(super) fn look(paths: &GroupPaths) -> Option<Hearing> {
     let client = Client::join(paths).ok()?;
     let hearing = client.bus().reader::<Hearing>(&topics::HEARING).ok()?;
-    let until = Instant::now() + TIMEOUT;
+    let (until, mut polling) = (Instant::now() + TIMEOUT, Polling::default());
     loop {
         match hearing.latest() {
             Ok(Some(hearing)) => return Some(hearing),
-            Ok(None) if Instant::now() < until => thread::sleep(LOOK_EVERY),
+            Ok(None) if Instant::now() < until => polling.pause(),
             Ok(None) | Err(_) => return None,
         }
     }

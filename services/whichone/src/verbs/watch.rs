@@ -3,6 +3,7 @@
 use std::thread;
 use std::time::{Duration, Instant};
 
+use service::client::Polling;
 use service::control::{Reply, Request, call};
 use service::exit::{Exit, Failure};
 use service::group::GroupPaths;
@@ -87,10 +88,11 @@ fn draw_once(model: &WatchModel, out: &mut Output<'_>) -> Result<(), Failure> {
 
 /// Waits until every service has published something, up to [`FIRST_PATIENCE`].
 fn gather(model: &mut WatchModel) -> Result<(), Failure> {
-    let until = Instant::now() + FIRST_PATIENCE;
+    let (until, mut polling) = (Instant::now() + FIRST_PATIENCE, Polling::default());
+    model.look()?;
     while Instant::now() < until && !model.is_complete() {
+        polling.pause();
         model.look()?;
-        thread::sleep(LOOK_EVERY);
     }
     Ok(())
 }

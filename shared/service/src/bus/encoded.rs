@@ -5,8 +5,8 @@ use super::open::{notifiers, open_topic};
 use super::ports::subscribe;
 use super::renewed::Renewed;
 use super::segment_error::{self, SegmentError};
-use super::wake::WakeNotifier;
-use super::{Bus, BusError, Ipc, PortError, create};
+use super::sender::Sender;
+use super::{Bus, BusError, Connect, Ipc, PortError, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::{AllocationStrategy, BackpressureStrategy};
 use messages::Stamp;
@@ -15,6 +15,7 @@ use messages::topics::Topic;
 use serde::{Serialize, de::DeserializeOwned};
 use std::cell::Cell;
 use std::marker::PhantomData;
+use std::rc::Rc;
 
 /// First guess at the size of a payload, bytes; it grows as needed.
 const BYTES: usize = 4096;
@@ -41,15 +42,14 @@ impl Bus {
                     .create()
             })
         })?;
-        let notifiers = notifiers(self, topic)?;
+        let sender = Sender::open(self, name, publisher, notifiers(self, topic)?);
         let is_view = topic.writer.is_some();
         let (topic, stamp) = (topic.name, self.stamp());
         Ok(EncodedWriter {
             topic,
             is_view,
             is_short: Cell::new(false),
-            publisher,
-            notifiers,
+            sender,
             stamp,
             _payload: PhantomData,
         })
@@ -62,6 +62,7 @@ impl Bus {
     pub fn encoded_reader<T: Schema>(&self, topic: &Topic) -> Result<EncodedReader<T>, BusError> {
         let service = open_topic!(self, topic, [u8])?;
         let subscriber = subscribe(service, topic)?;
+        self.greet(topic);
         let gate = Gate::new(self, topic);
         Ok(EncodedReader { topic: topic.name, subscriber, gate, _payload: PhantomData })
     }
@@ -75,8 +76,7 @@ pub struct EncodedWriter<T: Schema> {
     is_view: bool,
     /// The last payload was dropped for want of shared memory.
     is_short: Cell<bool>,
-    publisher: Renewed<Publisher<Ipc, [u8], Stamp>>,
-    notifiers: Vec<WakeNotifier>,
+    sender: Rc<Sender<Publisher<Ipc, [u8], Stamp>>>,
     stamp: Stamp,
     _payload: PhantomData<T>,
 }
@@ -96,7 +96,7 @@ impl<T: Schema> EncodedWriter<T> {
         if bytes.len() > BYTES_MAX {
             return Err(failed(format!("{} bytes, {BYTES_MAX} at most", bytes.len())));
         }
-        let is_sent = self.publisher.with(|publisher| {
+        let is_sent = self.sender.with(|publisher| {
             segment_error::take();
             let mut sample = match publisher.loan_slice_uninit(bytes.len()) {
                 Ok(sample) => sample,
@@ -110,7 +110,7 @@ impl<T: Schema> EncodedWriter<T> {
         if !is_sent {
             return Ok(());
         }
-        self.notifiers.iter().for_each(WakeNotifier::notify);
+        self.sender.wake_readers();
         Ok(())
     }
 }

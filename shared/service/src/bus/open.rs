@@ -9,6 +9,7 @@ use iceoryx2::service::builder::publish_subscribe::{
 };
 use iceoryx2::service::port_factory::event::PortFactory;
 use messages::topics::{self, Topic};
+use std::rc::Rc;
 
 /// Opens the topic, creating it where this process is the first. A macro, because iceoryx2's
 /// builders for structs and for slices are different types without a common trait.
@@ -110,6 +111,6 @@ fn keep(bus: &Bus, topic: &Topic) -> Result<Box<dyn std::fmt::Debug>, BusError> 
 }
 
 /// The notifiers of a topic's readers.
-pub(super) fn notifiers(bus: &Bus, topic: &Topic) -> Result<Vec<WakeNotifier>, BusError> {
-    topic.readers.iter().map(|&service| WakeNotifier::open(bus, service)).collect()
+pub(super) fn notifiers(bus: &Bus, topic: &Topic) -> Result<Vec<Rc<WakeNotifier>>, BusError> {
+    topic.readers.iter().map(|&service| bus.notifier(service)).collect()
 }

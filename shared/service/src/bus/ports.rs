@@ -6,14 +6,16 @@
 use super::gate::{Gate, reject};
 use super::open::{notifiers, open_topic};
 use super::renewed::Renewed;
-use super::wake::WakeNotifier;
-use super::{Bus, BusError, Ipc, PortError, WireMessage, create};
+use super::sender::Sender;
+use super::{Bus, BusError, Connect, Ipc, PortError, WireMessage, create};
 use iceoryx2::port::{publisher::Publisher, subscriber::Subscriber};
 use iceoryx2::prelude::{BackpressureStrategy, IceoryxSend};
 use iceoryx2::service::port_factory::publish_subscribe::PortFactory;
 use messages::Stamp;
 use messages::topics::Topic;
+use std::cell::Cell;
 use std::fmt::Debug;
+use std::rc::Rc;
 
 impl Bus {
     /// Writes a fixed-layout topic.
@@ -33,8 +35,9 @@ impl Bus {
                     .create()
             })
         })?;
-        let notifiers = notifiers(self, topic)?;
-        Ok(Writer { topic: name, publisher, notifiers, stamp: self.stamp() })
+        let sender = Sender::open(self, name, publisher, notifiers(self, topic)?);
+        let latest = topic.is_state().then(Cell::default);
+        Ok(Writer { topic: name, sender, stamp: self.stamp(), latest })
     }
 
     /// Reads a fixed-layout topic.
@@ -44,6 +47,7 @@ impl Bus {
     pub fn reader<T: WireMessage>(&self, topic: &Topic) -> Result<Reader<T>, BusError> {
         let service = open_topic!(self, topic, T)?;
         let subscriber = subscribe(service, topic)?;
+        self.greet(topic);
         Ok(Reader { topic: topic.name, subscriber, gate: Gate::new(self, topic) })
     }
 }
@@ -70,27 +74,35 @@ pub(super) fn subscribe<P: IceoryxSend + Debug + ?Sized + 'static>(
 #[derive(Debug)]
 pub struct Writer<T: WireMessage> {
     topic: &'static str,
-    publisher: Renewed<Publisher<Ipc, T, Stamp>>,
-    notifiers: Vec<WakeNotifier>,
+    sender: Rc<Sender<Publisher<Ipc, T, Stamp>>>,
     stamp: Stamp,
+    /// The message sent last, where the topic is a state that is repeated.
+    latest: Option<Cell<Option<T>>>,
 }
 
 impl<T: WireMessage> Writer<T> {
-    /// Sends the message and wakes the topic's readers. That it was sent does not mean that it was
-    /// received.
+    /// Sends the message and wakes the topic's readers, unless it repeats a state: they take that with
+    /// their next pass. That it was sent does not mean that it was received.
     ///
     /// # Errors
     /// iceoryx2 is out of memory.
     pub fn send(&self, message: &T) -> Result<(), PortError> {
-        self.publisher.with(|publisher| {
+        self.sender.with(|publisher| {
             let loan = publisher.loan_uninit();
             let mut sample = loan.map_err(|e| PortError::new(self.topic, format!("{e:?}")))?;
             *sample.user_header_mut() = Stamp { sent_ns: crate::clock::now().ns(), ..self.stamp };
             let sent = sample.write_payload(*message).send();
             sent.map(drop).map_err(|e| PortError::new(self.topic, format!("{e:?}")))
         })?;
-        self.notifiers.iter().for_each(WakeNotifier::notify);
+        if self.is_news(message) {
+            self.sender.wake_readers();
+        }
         Ok(())
+    }
+
+    fn is_news(&self, message: &T) -> bool {
+        let Some(latest) = &self.latest else { return true };
+        latest.replace(Some(*message)).is_none_or(|latest| latest != *message)
     }
 }
 

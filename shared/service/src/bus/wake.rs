@@ -16,6 +16,29 @@ pub struct WakeListener {
     _topic: PortFactory<Ipc>,
 }
 
+/// Who has joined the group and asks writers for their latest messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Joined {
+    /// A client, which polls.
+    Client,
+    /// A service, which is to be woken.
+    Service,
+}
+
+impl Joined {
+    /// The event that says so; messages are event 0.
+    fn event(self) -> EventId {
+        EventId::new(match self {
+            Self::Client => 1,
+            Self::Service => 2,
+        })
+    }
+
+    fn of_event(event: EventId) -> Option<Self> {
+        [Self::Client, Self::Service].into_iter().find(|joined| joined.event() == event)
+    }
+}
+
 /// Wakes one service.
 #[derive(Debug)]
 pub struct WakeNotifier {
@@ -31,6 +54,8 @@ pub(super) fn open(bus: &Bus, service: Service) -> Result<PortFactory<Ipc>, BusE
         bus.node()
             .service_builder(&service_name)
             .event()
+            // Each wake-up looks at every number up to it.
+            .event_id_max_value(Joined::Service.event().as_value())
             .max_nodes(NODES_MAX)
             .max_notifiers(4 * NODES_MAX)
             .max_listeners(2)
@@ -61,12 +86,15 @@ impl WakeListener {
         }
     }
 
-    /// Discards all pending wake-ups.
-    pub fn clear(&self) {
-        let mut woken = 0_u32;
-        if let Err(error) = self.listener.try_wait(|_| woken += 1) {
+    /// Takes all pending wake-ups. Returns who has joined, if anybody: its readers wait for
+    /// [`Bus::connect`].
+    pub fn take(&self) -> Option<Joined> {
+        let mut joined = None;
+        let taken = self.listener.try_wait(|event| joined = joined.max(Joined::of_event(event.id)));
+        if let Err(error) = taken {
             tracing::debug!(?error, "wake-ups not taken; the next pass takes them");
         }
+        joined
     }
 }
 
@@ -81,6 +109,14 @@ impl WakeNotifier {
     pub(super) fn notify(&self) {
         if let Err(error) = self.notifier.notify() {
             tracing::debug!(?error, "wake-up not delivered");
+        }
+    }
+
+    /// Asks the service for the latest messages of its topics. A failure is harmless: they come with
+    /// its next ones.
+    pub(super) fn greet(&self, joins: Joined) {
+        if let Err(error) = self.notifier.notify_with_custom_event_id(joins.event()) {
+            tracing::debug!(?error, "greeting not delivered");
         }
     }
 }
