@@ -15,40 +15,59 @@ const LOOK_EVERY: Duration = Duration::from_millis(5);
 const REST: Duration = Duration::from_millis(500);
 /// Fetches in each situation.
 const FETCHES: usize = 20;
-/// Scenes with a request and its objects: short plans and long ones.
-const SCENES: [(&str, &str, &[&str]); 2] = [
-    ("bowls", "get me the bowl", &["white", "white2", "white3", "metal", "metal2", "clear"]),
-    ("tools", "get me the tool", &["m_red", "m_black", "p_blue", "s_red", "w_black", "w_red"]),
+
+/// A scene with a request and the objects that it may mean.
+struct Orders {
+    scene: &'static str,
+    request: &'static str,
+    objects: [&'static str; 6],
+}
+
+/// Short plans and long ones.
+const ORDERS: [Orders; 2] = [
+    Orders {
+        scene: "bowls",
+        request: "get me the bowl",
+        objects: ["white", "white2", "white3", "metal", "metal2", "clear"],
+    },
+    Orders {
+        scene: "tools",
+        request: "get me the tool",
+        objects: ["m_red", "m_black", "p_blue", "s_red", "w_black", "w_red"],
+    },
 ];
 
 pub(crate) fn measure(report: &mut Report, quick: bool) {
     let fetches = if quick { FETCHES / 5 } else { FETCHES };
-    for (scene, request, objects) in SCENES {
-        let setting = format!("group.scene={scene}");
-        let ups: [(&str, fn(&[&str]) -> Group); 2] =
-            [("disk", Group::up), ("a memory file system", Group::up_in_memory)];
-        for (place, up) in ups {
-            let group = up(&[&setting]);
-            let moments = fetch_all(&group, request, objects, fetches);
-            moments.add(report, &format!("{scene}, journals on {place}"));
-            group.down();
-        }
+    for orders in &ORDERS {
+        let setting = format!("group.scene={}", orders.scene);
+        orders.measure(report, "disk", &Group::up(&[&setting]), fetches);
+        let in_memory = Group::up_in_memory(&[&setting]);
+        orders.measure(report, "a memory file system", &in_memory, fetches);
     }
 }
 
-/// Fetches one object after another and returns the moments of each order.
-fn fetch_all(group: &Group, request: &str, objects: &[&str], fetches: usize) -> Moments {
-    let client = Client::join(group.paths()).expect("a running group");
-    let taps = Taps::open(&client);
-    let fetch = |object: &str| {
-        let outcome = group.fetch(request, object);
-        assert_eq!(outcome["object"], object, "{outcome}");
-        std::thread::sleep(REST);
-    };
-    std::thread::scope(|scope| {
-        let user = scope.spawn(|| (0..fetches).for_each(|n| fetch(objects[n % objects.len()])));
-        taps.watch(|| user.is_finished())
-    })
+impl Orders {
+    fn measure(&self, report: &mut Report, place: &str, group: &Group, fetches: usize) {
+        let moments = self.fetch_all(group, fetches);
+        moments.add(report, &format!("{}, journals on {place}", self.scene));
+    }
+
+    /// Fetches one object after another and returns the moments of each order.
+    fn fetch_all(&self, group: &Group, fetches: usize) -> Moments {
+        let client = Client::join(group.paths()).expect("a running group");
+        let taps = Taps::open(&client);
+        let fetch = |object: &str| {
+            let outcome = group.fetch(self.request, object);
+            assert_eq!(outcome["object"], object, "{outcome}");
+            std::thread::sleep(REST);
+        };
+        std::thread::scope(|scope| {
+            let user = scope
+                .spawn(|| (0..fetches).for_each(|n| fetch(self.objects[n % self.objects.len()])));
+            taps.watch(|| user.is_finished())
+        })
+    }
 }
 
 struct Taps {

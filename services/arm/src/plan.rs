@@ -69,7 +69,7 @@ pub(crate) struct Planning {
 enum Stage {
     #[default]
     Idle,
-    Requested(Basis, Time),
+    Requested(Box<Basis>, Time),
     Done(Box<Planned>),
 }
 
@@ -158,7 +158,7 @@ impl ArmNode {
             Stage::Done(_) | Stage::Requested(..) | Stage::Idle => {}
         }
         self.planning.number += 1;
-        self.planning.stage = Stage::Requested(basis.clone(), now);
+        self.planning.stage = Stage::Requested(Box::new(basis.clone()), now);
         fx.publish(Out::Plan(Box::new(PlanRequest {
             number: self.planning.number,
             config: Arc::clone(&self.config),
