@@ -2,7 +2,7 @@
 //! belief update cost and how good decisions are; how often and how fast poses are reached, beside
 //! other solvers; how fast the group starts and recovers, how long an utterance
 //! takes to become a decision and where the time goes, what it costs when nothing happens, how
-//! steadily joint states come, how much of spoken sentences is understood, how turns are taken in
+//! steadily joint states come, how soon the arm accepts an order, how much of spoken sentences is understood, how turns are taken in
 //! simulated time, what many open pages cost the console, how dialogues by voice end, and how soon
 //! the arm stops while something is short.
 //!
@@ -17,6 +17,7 @@ mod idle;
 mod jitter;
 mod latency;
 mod options;
+mod orders;
 mod peers;
 mod report;
 mod speech;
@@ -67,6 +68,9 @@ fn measure(options: &Options, report: &mut Report) {
     }
     if all || options.joints {
         jitter::measure(report);
+    }
+    if all || options.orders {
+        orders::measure(report, options.quick);
     }
     if all || options.stops {
         stops::measure(report, options.quick);

@@ -21,6 +21,9 @@ pub(crate) struct Options {
     /// Only how steadily joint states come
     #[arg(long)]
     pub(crate) joints: bool,
+    /// Only orders to the arm: how soon they are accepted, how steadily joint states come meanwhile
+    #[arg(long)]
+    pub(crate) orders: bool,
     /// Only spoken input: what is understood of spoken sentences, how late
     #[arg(long)]
     pub(crate) speech: bool,
@@ -62,9 +65,9 @@ pub(crate) struct Options {
 impl Options {
     /// Returns whether all parts are selected.
     pub(crate) fn wants_all(&self) -> bool {
-        let Self { core, kinematics, processes, joints, stops, .. } = *self;
+        let Self { core, kinematics, processes, joints, orders, stops, .. } = *self;
         let Self { speech, endings, turns, console, spoken, .. } = *self;
-        let measured = core || kinematics || processes || joints || stops;
+        let measured = core || kinematics || processes || joints || orders || stops;
         !(measured || speech || endings || turns || console || spoken)
     }
 }

@@ -1,11 +1,14 @@
 //! From the command to stop to joints that stand, with everything at hand and in each shortage, and
 //! the time until the group is whole again once a shortage ends.
 
-use crate::report::Report;
+use crate::report::{Report, percentile};
+use messages::MotionOrder;
 use rustix::process::{Pid, Signal, kill_process};
+use service::clock;
+use service::stop_socket::{StopClient, StopState};
 use std::time::{Duration, Instant};
 use whichone_tests::shortage::{
-    JointWatch, NoDescriptors, SmallDisk, SmallGroup, has_private_mounts,
+    BusyDisk, JointWatch, NoDescriptors, SmallDisk, SmallGroup, has_private_mounts,
 };
 use whichone_tests::{Group, wait_for};
 
@@ -13,6 +16,8 @@ use whichone_tests::{Group, wait_for};
 const STOPS: u32 = 8;
 /// Picks in each situation.
 const PICKS: u32 = 3;
+/// Orders to stop, and as many to resume, whose answers are timed.
+const ANSWERS: usize = 100;
 
 /// A group in which one pick after another is stopped several times.
 struct Stopped<'a> {
@@ -29,6 +34,12 @@ pub(crate) fn measure(report: &mut Report, quick: bool) {
     let group = Group::up(&settings);
     let stopped = |name| Stopped { name, group: &group, picks, kills_arm: false };
     stopped("nothing is short").measure(report, || (), |()| {});
+    add_answers(report, "nothing is short", &group);
+    let busy_disk = "another process writes and syncs";
+    stopped(busy_disk).measure(report, || BusyDisk::beside(&group), drop);
+    let busy = BusyDisk::beside(&group);
+    add_answers(report, busy_disk, &group);
+    drop(busy);
     let hang = |pid: Pid| kill_process(pid, Signal::STOP).map(|()| pid).expect("a process of ours");
     let go_on = |pid| kill_process(pid, Signal::CONT).expect("a process of ours");
     stopped("hung supervisor").measure(report, || hang(supervisor(&group)), go_on);
@@ -80,7 +91,8 @@ impl Stopped<'_> {
             assert_eq!(outcome["outcome"], "delivered", "{outcome}");
         }
         let name = self.name;
-        report.add(&format!("stop to rest: {name}"), "ms", &stops_ms, "bar: 100 ms of motion");
+        let note = format!("max {:.1} ms; bar: 100 ms of motion", percentile(&stops_ms, 1.0));
+        report.add(&format!("stop to rest: {name}"), "ms", &stops_ms, &note);
         report.add(&format!("whole again after: {name}"), "s", &recoveries_s, "");
     }
 
@@ -92,6 +104,32 @@ impl Stopped<'_> {
             rows.iter().all(|row| row["state"] == "ready" && row["why"].is_null())
         })
     }
+}
+
+/// Adds the time from a stop order to the arm's answer: what its main loop adds to the motion.
+fn add_answers(report: &mut Report, situation: &str, group: &Group) {
+    let client = StopClient::open(group.paths()).expect("a socket");
+    let orders = (0..ANSWERS).flat_map(|_| [MotionOrder::Stop, MotionOrder::Resume]);
+    let answers_ms: Vec<f64> = orders
+        .map(|order| {
+            std::thread::sleep(Duration::from_millis(20));
+            answer_ms(&client, order)
+        })
+        .collect();
+    let note = format!("max {:.2} ms", percentile(&answers_ms, 1.0));
+    report.add(&format!("stop order to the arm's answer: {situation}"), "ms", &answers_ms, &note);
+}
+
+/// Gives an order and returns the milliseconds until it is answered.
+fn answer_ms(client: &StopClient, order: MotionOrder) -> f64 {
+    let (begun, given) = (Instant::now(), clock::now());
+    client.send(order, given).expect("a running arm");
+    let is_answer = |state: StopState| state.given_ns == given.ns();
+    while !client.take().is_some_and(is_answer) {
+        assert!(begun.elapsed() < Duration::from_secs(30), "no answer");
+        std::thread::sleep(Duration::from_micros(50));
+    }
+    begun.elapsed().as_secs_f64() * 1e3
 }
 
 fn supervisor(group: &Group) -> Pid {

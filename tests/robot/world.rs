@@ -174,6 +174,9 @@ impl World {
                     self.orders.push((self.now, order.clone()));
                     commands.push(to_robot(order));
                 }
+                Out::Plan(request) => {
+                    self.to_arm.push(In::Planned(Box::new(request.solve())));
+                }
                 Out::Joints(_) | Out::World(_) | Out::Trajectory(_) | Out::StopState(..) => {}
             }
         }

@@ -8,9 +8,12 @@ use service::bus::Reader;
 use service::client::Client;
 use service::{Time, clock};
 use std::fs;
-use std::io::Write;
+use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Barrier};
+use std::thread::JoinHandle;
 
 /// Environment variable of a test that runs in mounts of its own.
 const PRIVATE: &str = "WHICHONE_PRIVATE_MOUNTS";
@@ -18,6 +21,9 @@ const PRIVATE: &str = "WHICHONE_PRIVATE_MOUNTS";
 const DISK_MIB: u32 = 24;
 /// Size of its shared memory, MiB.
 const SHARED_MIB: u32 = 128;
+/// Writers of [`BusyDisk`], and the size of the file of each, MiB.
+const FOREIGN_WRITERS: usize = 2;
+const FOREIGN_MIB: u32 = 256;
 /// A joint that is slower stands still, rad/s.
 const STILL_RAD_S: f64 = 1e-9;
 
@@ -130,6 +136,58 @@ pub fn in_private_mounts(test: &str, body: impl FnOnce()) {
         .env(PRIVATE, "1")
         .status();
     assert!(status.is_ok_and(|status| status.success()), "{test} failed in mounts of its own");
+}
+
+/// Another process's load on a disk: writes large files and syncs them, until dropped.
+#[derive(Debug)]
+pub struct BusyDisk {
+    over: Arc<AtomicBool>,
+    writers: Vec<JoinHandle<()>>,
+}
+
+impl BusyDisk {
+    /// Begins to write beside the group's folder. Returns once the disk has work.
+    ///
+    /// # Panics
+    /// If no file can be made there.
+    pub fn beside(group: &Group) -> Self {
+        let home = group.paths().home();
+        let folder = home.parent().expect("a folder of temporary folders").to_owned();
+        let over = Arc::new(AtomicBool::new(false));
+        let begun = Arc::new(Barrier::new(FOREIGN_WRITERS + 1));
+        let start = |_| {
+            let (over, begun) = (Arc::clone(&over), Arc::clone(&begun));
+            let file = tempfile::tempfile_in(&folder).expect("a file on the group's disk");
+            std::thread::spawn(move || keep_writing(file, &over, &begun))
+        };
+        let writers = (0..FOREIGN_WRITERS).map(start).collect();
+        begun.wait();
+        Self { over, writers }
+    }
+}
+
+/// Overwrites a file again and again, each time with a sync.
+fn keep_writing(mut file: fs::File, over: &AtomicBool, begun: &Barrier) {
+    let block = vec![0xa5; 1 << 20];
+    for round in 0.. {
+        for _ in 0..FOREIGN_MIB {
+            if over.load(Ordering::Relaxed) {
+                return;
+            }
+            file.write_all(&block).expect("space on the group's disk");
+        }
+        if round == 0 {
+            begun.wait();
+        }
+        file.sync_all().and_then(|()| file.rewind()).expect("a disk that syncs");
+    }
+}
+
+impl Drop for BusyDisk {
+    fn drop(&mut self) {
+        self.over.store(true, Ordering::Relaxed);
+        self.writers.drain(..).for_each(|writer| drop(writer.join()));
+    }
 }
 
 /// Leaves a process without a free descriptor, until dropped.

@@ -274,10 +274,16 @@ impl Group {
 
     fn route_arm(&mut self, outputs: Vec<<ArmNode as Node>::Out>) {
         for output in outputs {
-            if let arm::Out::Status(status) = output {
-                self.see_arm(&status);
-                self.inboxes.policy.push(policy::In::Arm(status));
-                self.inboxes.speech.push(speech::In::Arm(status));
+            match output {
+                arm::Out::Status(status) => {
+                    self.see_arm(&status);
+                    self.inboxes.policy.push(policy::In::Arm(status));
+                    self.inboxes.speech.push(speech::In::Arm(status));
+                }
+                arm::Out::Plan(request) => {
+                    self.inboxes.arm.push(arm::In::Planned(Box::new(request.solve())));
+                }
+                _ => {}
             }
         }
     }

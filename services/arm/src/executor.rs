@@ -21,7 +21,7 @@ pub(crate) enum Purpose {
 }
 
 /// Steps of one limb in order, each beginning where the one before ends.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Program {
     pub(crate) purpose: Purpose,
     pub(crate) limb: Limb,
@@ -29,7 +29,7 @@ pub(crate) struct Program {
 }
 
 /// One motion of the arm and its fingers.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Step {
     /// Kind of motion.
     pub(crate) kind: MotionPhase,

@@ -1,7 +1,9 @@
 //! Choice of the next goal, from the state, the standing act and the arm's posture;
-//! when it changes during a motion, the arm halts and replans from there.
+//! when it changes during a motion, the arm halts and replans from there. The arm stands while its next
+//! motion is being planned; a goal that changes meanwhile is planned instead.
 
 use crate::executor::{Executor, Program, Purpose};
+use crate::plan::Motion;
 use crate::program::{Planner, Refusal};
 use crate::recover::{Next, next};
 use crate::{ArmNode, Fx};
@@ -52,8 +54,9 @@ impl ArmNode {
                 if self.restocks() && self.limb_away().is_none() {
                     self.rest(now, fx);
                 }
-                if let Some(purpose) = wanted {
-                    self.start_goal(purpose, now, fx);
+                match wanted {
+                    Some(purpose) => self.start_goal(purpose, now, fx),
+                    None => self.planning.cancel(),
                 }
             }
         }
@@ -114,16 +117,14 @@ impl ArmNode {
 
     fn start_goal(&mut self, purpose: Purpose, now: Time, fx: &mut Fx) {
         if purpose == self.aimed.map_or(Purpose::Return, Purpose::Aim) && self.aimed.is_some() {
-            return;
+            return self.planning.cancel();
         }
-        let program = match purpose {
-            Purpose::Pick(_) => self.plan_pick(now, fx),
-            Purpose::Aim(object) => Some(self.planner_with(|planner| planner.aim(object))),
-            Purpose::Return => {
-                self.limb_away().map(|limb| self.planner_with(|planner| planner.rest(limb)))
-            }
+        let motion = match purpose {
+            Purpose::Pick(_) => self.motion_of_pick(now, fx),
+            Purpose::Aim(object) => Some(Motion::Aim(object)),
+            Purpose::Return => self.limb_away().map(Motion::Rest),
         };
-        match program {
+        match motion.and_then(|motion| self.plan(motion, now, fx)) {
             None => {}
             Some(Ok(program)) => self.start(program),
             Some(Err(refusal)) => self.refuse(purpose, refusal, now, fx),
@@ -148,21 +149,18 @@ impl ArmNode {
         self.executor.start(program);
     }
 
-    /// Returns the program for the open pick if it needs motion; what needs none is done at once.
-    fn plan_pick(&mut self, now: Time, fx: &mut Fx) -> Option<Result<Program, Refusal>> {
+    /// Returns the motion that the open pick needs next; what needs none is done at once.
+    fn motion_of_pick(&mut self, now: Time, fx: &mut Fx) -> Option<Motion> {
         let pick = *self.state.open_pick()?;
         let (limb, held) = (self.state.limb, self.state.held);
-        let holding = limb.and_then(|limb| self.driver.measured().holds(limb));
-        let at_goal =
-            limb.is_some_and(|limb| self.planner_with(|planner| planner.is_at_goal(&pick, limb)));
+        let measured = self.driver.measured();
+        let holding = limb.and_then(|limb| measured.holds(limb));
+        let planner = Planner::new(&self.config, &self.world, &self.state, &measured);
+        let at_goal = limb.is_some_and(|limb| planner.is_at_goal(&pick, limb));
         match (next(pick.phase, holding, at_goal), held, limb) {
-            (Next::Take, ..) => Some(self.planner_with(|planner| planner.take(&pick))),
-            (Next::Carry, Some(held), _) => {
-                Some(self.planner_with(|planner| planner.carry(&pick, &held)))
-            }
-            (Next::Release, Some(held), _) => {
-                Some(Ok(self.planner_with(|planner| planner.release(pick.id, &held))))
-            }
+            (Next::Take, ..) => Some(Motion::Take(pick)),
+            (Next::Carry, Some(held), _) => Some(Motion::Carry(pick, held)),
+            (Next::Release, Some(held), _) => Some(Motion::Release(pick, held)),
             (Next::Carry, None, Some(limb)) if pick.phase == PickPhase::Closing => {
                 self.hold(limb, now, fx);
                 None
@@ -172,18 +170,6 @@ impl ArmNode {
                 None
             }
         }
-    }
-
-    fn planner_with<R>(&self, plan: impl FnOnce(&Planner<'_>) -> R) -> R {
-        plan(&Planner {
-            robot: &self.config.setup.robot,
-            settings: &self.config.setup.plan,
-            grasps: &self.config.arm.grasp,
-            limb: self.config.setup.limb,
-            world: &self.world,
-            state: &self.state,
-            measured: &self.driver.measured(),
-        })
     }
 
     /// Handles a goal without a program: retry from rest, or give up.

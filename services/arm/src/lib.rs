@@ -5,7 +5,8 @@
 //! only once that phase is durable, and the next action depends on durable facts and
 //! sensors alone, so the arm can be killed at any instant and resumes from there: a phase is recorded
 //! in one tick, and its motion begins in a tick after [`Node::on_durable`]. A motion that has begun
-//! and a halt wait for no disk.
+//! and a halt wait for no disk. Motions are planned elsewhere ([`PlanRequest`]), so nothing waits for a
+//! plan but the motion itself.
 
 mod driver;
 mod executor;
@@ -14,6 +15,7 @@ mod inspection;
 mod motion;
 mod motion_inhibit;
 mod orders;
+mod plan;
 mod program;
 mod publish;
 pub mod recover;
@@ -29,6 +31,7 @@ pub use driver::{
     ArmDriver, BaxterDriver, Command, Fault, Fingers, Grip, KinematicArm, Measured, Order, Report,
     Source,
 };
+pub use plan::{PlanRequest, Planned};
 
 use executor::Executor;
 use goal::PlanFailures;
@@ -38,12 +41,14 @@ use messages::{
     RobotAct, TrajectoryView, WorldView,
 };
 use orders::StandingAct;
+use plan::Planning;
 use preflight::ArmSetup;
 use publish::{Facts, Publisher};
 use scene::{ObjectId, Scene};
 use service::stop_socket::{Caller, StopState};
 use service::{Effects, Event, Node, NodeError, SetAside, Span, Time};
 use state::{ArmState, Cause, Record};
+use std::sync::Arc;
 use trajectory_view::MotionView;
 use world::World;
 
@@ -58,6 +63,8 @@ pub enum In {
     StopOrder(MotionCommand, Caller),
     /// Report of a real robot.
     Robot(Report),
+    /// Result of a [`PlanRequest`].
+    Planned(Box<Planned>),
 }
 
 /// Outputs of the arm.
@@ -73,6 +80,8 @@ pub enum Out {
     Trajectory(Box<TrajectoryView>),
     /// Command to a real robot.
     Robot(Order),
+    /// A motion to be planned; its result is awaited as [`In::Planned`].
+    Plan(Box<PlanRequest>),
     /// Answer to an order to the motion stop.
     StopState(Caller, StopState),
 }
@@ -80,7 +89,7 @@ pub enum Out {
 type Fx = Effects<Out, Record>;
 
 /// Configuration of the arm.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Config {
     /// Driver, time scale, grasps, and the simulated world.
     pub arm: config::Arm,
@@ -92,8 +101,8 @@ pub struct Config {
 
 /// The arm as a reducer.
 pub struct ArmNode {
-    config: Config,
-    world: World,
+    config: Arc<Config>,
+    world: Arc<World>,
     state: ArmState,
     driver: Box<dyn ArmDriver>,
     executor: Executor,
@@ -102,6 +111,7 @@ pub struct ArmNode {
     act: StandingAct,
     /// Object that the gripper aims at, standing still.
     aimed: Option<ObjectId>,
+    planning: Planning,
     plan_failures: PlanFailures,
     /// Time of the last motion step.
     stepped: Time,
@@ -150,6 +160,9 @@ impl Node for ArmNode {
             }
             Event::Message(In::Act(act)) => self.on_act(&act, now, fx),
             Event::Message(In::Robot(report)) => self.driver.on_report(&report, now),
+            Event::Message(In::Planned(planned)) => {
+                self.urgent |= self.planning.on_planned(*planned);
+            }
             Event::Tick => self.tick(now, fx),
             Event::Shutdown => {
                 self.ending = true;
@@ -175,6 +188,10 @@ impl Node for ArmNode {
         Some(beat.map_or(due, |beat| due.min(self.stepped + beat)))
     }
 
+    fn pending_since(&self) -> Option<Time> {
+        self.planning.requested()
+    }
+
     fn snapshot(&self) -> Option<Vec<Record>> {
         if self.state.open_pick().is_some() || !self.executor.is_standing() {
             return None;
@@ -190,7 +207,7 @@ impl ArmNode {
         let settled = recover::other_scene(&state, &config.scene);
         let scene_changed = settled.is_some();
         Self {
-            world: World::new(&config.setup.robot, &config.scene),
+            world: Arc::new(World::new(&config.setup.robot, &config.scene)),
             publisher: Publisher::new(&config.arm),
             motion_view: MotionView::default(),
             state: settled.unwrap_or(state),
@@ -198,6 +215,7 @@ impl ArmNode {
             executor: Executor::default(),
             act: StandingAct::default(),
             aimed: None,
+            planning: Planning::default(),
             plan_failures: PlanFailures::default(),
             stepped: Time(0),
             recorded: Time(0),
@@ -208,7 +226,7 @@ impl ArmNode {
             unsynced: false,
             phase_unsynced: false,
             callers: Vec::new(),
-            config,
+            config: Arc::new(config),
         }
     }
 

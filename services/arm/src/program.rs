@@ -1,5 +1,6 @@
 //! Plans programs for the arm's goals, from any posture.
 
+use crate::Config;
 use crate::driver::{Fingers, Grip, Measured};
 use crate::executor::{Program, Purpose, Step};
 use crate::state::{ArmState, Held};
@@ -19,15 +20,15 @@ use std::collections::VecDeque;
 
 /// Inputs of a plan.
 pub(crate) struct Planner<'a> {
-    pub(crate) robot: &'a Robot,
-    pub(crate) settings: &'a PlanSettings,
+    robot: &'a Robot,
+    settings: &'a PlanSettings,
     /// Settings of grasps.
-    pub(crate) grasps: &'a Grasps,
+    grasps: &'a Grasps,
     /// Configured limb; `None` means the better one.
-    pub(crate) limb: Option<Limb>,
-    pub(crate) world: &'a World,
-    pub(crate) state: &'a ArmState,
-    pub(crate) measured: &'a Measured,
+    limb: Option<Limb>,
+    world: &'a World,
+    state: &'a ArmState,
+    measured: &'a Measured,
 }
 
 /// Reason for a missing program.
@@ -72,6 +73,25 @@ const REACH_M: f64 = 1.2;
 const RISES_M: [f64; 2] = [0.05, 0.15];
 /// Distance before and after a waypoint at which a corner is rounded, radians of joint distance.
 const BLEND_RAD: f64 = 0.15;
+
+impl<'a> Planner<'a> {
+    pub(crate) fn new(
+        config: &'a Config,
+        world: &'a World,
+        state: &'a ArmState,
+        measured: &'a Measured,
+    ) -> Self {
+        Self {
+            robot: &config.setup.robot,
+            settings: &config.setup.plan,
+            grasps: &config.arm.grasp,
+            limb: config.setup.limb,
+            world,
+            state,
+            measured,
+        }
+    }
+}
 
 impl Planner<'_> {
     /// Takes the object of a pick: from its place to hand it over, or from the user to put it back.

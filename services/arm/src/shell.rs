@@ -7,6 +7,7 @@ use messages::Service;
 use messages::{
     ArmStatus, JointStates, MotionCommand, RobotAct, TrajectoryView, WorldView, topics,
 };
+use planner::PlannerThread;
 use preflight::ArmSetup;
 use robot::RobotTopics;
 use service::bus::{EncodedWriter, PortError, Reader, Writer};
@@ -17,6 +18,7 @@ use service::service_loop::{Context, Program, Shell};
 use service::stop_socket::StopListener;
 use std::os::fd::BorrowedFd;
 
+mod planner;
 mod robot;
 
 /// The arm as a program.
@@ -50,7 +52,7 @@ impl Program for ArmProgram {
     }
 }
 
-/// The arm's topics.
+/// The arm's topics and its planner.
 #[derive(Debug)]
 pub struct ArmShell {
     motion: Reader<MotionCommand>,
@@ -60,6 +62,7 @@ pub struct ArmShell {
     world: EncodedWriter<WorldView>,
     trajectory: EncodedWriter<TrajectoryView>,
     stop: StopListener,
+    planner: PlannerThread,
     /// Topics of a real robot.
     robot: Option<RobotTopics>,
 }
@@ -77,6 +80,8 @@ impl Shell<ArmNode> for ArmShell {
             trajectory: bus.encoded_writer(&topics::TRAJECTORY)?,
             stop: StopListener::bind(paths)
                 .map_err(|error| Failure::file(&paths.stop_socket(), &error))?,
+            planner: PlannerThread::start(context.devices.clone())
+                .map_err(|error| Failure::new(Exit::NotReached, error.to_string()))?,
             robot: robot.transpose()?,
         })
     }
@@ -109,6 +114,10 @@ impl Shell<ArmNode> for ArmShell {
             Out::Trajectory(trajectory) => self.trajectory.send(&trajectory),
             Out::StopState(caller, state) => {
                 self.stop.answer(&caller, &state);
+                Ok(())
+            }
+            Out::Plan(request) => {
+                self.planner.submit(request);
                 Ok(())
             }
             Out::Robot(order) => self.robot.iter().try_for_each(|robot| robot.send(&order)),

@@ -150,6 +150,13 @@ impl ArmState {
         pick.map(|pick| pick.object)
     }
 
+    /// Returns whether every object is where it is in `other`, and is grasped in the same attempt.
+    pub(crate) fn has_same_objects(&self, other: &Self) -> bool {
+        (self.held, self.misses) == (other.held, other.misses)
+            && self.gone == other.gone
+            && self.handed_over == other.handed_over
+    }
+
     /// Returns the pick in progress.
     pub fn open_pick(&self) -> Option<&Pick> {
         self.pick.as_ref().filter(|pick| pick.phase != PickPhase::Done)

@@ -9,7 +9,7 @@ use scene::{ObjectId, Scene};
 use service::Time;
 
 /// The objects' places in the scene.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct World {
     robot: Robot,
     places: Vec<Option<ObjectPose>>,

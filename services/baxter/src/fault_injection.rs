@@ -31,7 +31,7 @@ pub fn kind(word: &str) -> Option<DrillKind> {
 
 /// Sends the drill to the robot of the group that the environment names.
 pub fn run(kind: DrillKind, arguments: &[String]) -> ExitCode {
-    service::logging::init();
+    let _log = service::logging::init();
     match send(kind, arguments) {
         Ok(()) => Exit::Ok.code(),
         Err(failure) => {

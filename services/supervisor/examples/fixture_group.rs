@@ -58,7 +58,7 @@ fn ten_seconds() -> u64 {
 }
 
 fn main() -> ExitCode {
-    service::logging::init();
+    let _log = service::logging::init();
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let paths = GroupPaths::resolve(&GroupName::new(&arguments[0]).unwrap()).unwrap();
     let file = PathBuf::from(&arguments[1]);

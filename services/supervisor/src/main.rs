@@ -53,7 +53,7 @@ fn main() -> ExitCode {
     };
     // Also of what the services create: they inherit it.
     rustix::process::umask(rustix::fs::Mode::RWXG | rustix::fs::Mode::RWXO);
-    service::logging::init();
+    let _log = service::logging::init();
     end_on_panic();
     if arguments.detached
         && let Err(error) = rustix::process::setsid()

@@ -1,36 +1,121 @@
 //! Structured logs on standard error, which the supervisor has pointed at the service's log file.
 //!
-//! Logging never ends or delays a process: a line that cannot be written at once is dropped, and
-//! the first one that can be written again is preceded by the number of lost lines.
+//! Logging never ends or delays a process. A thread writes the lines: a write to a file waits while others
+//! keep its disk busy, and the main loop of an arm that is to stop must not. A line that finds no room in
+//! the thread's queue, or in a pipe that nobody reads, is dropped, and the next one that can be written is
+//! preceded by the number of lost lines.
 
 use crate::group::ENV_LOG;
+use crossbeam_channel::{Receiver, Sender, bounded};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fs::{FileType, Mode, OFlags, fstat, open};
 use std::fs::File;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::os::fd::{AsFd, OwnedFd};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
 use tracing_subscriber::EnvFilter;
 
 /// Bytes that a descriptor takes without blocking once it polls as writable: a pipe's page.
 const CHUNK_BYTES: usize = 4096;
+/// Most lines that wait for the thread.
+const QUEUE_LEN: usize = 1024;
+/// Longest time for which the end of a program waits for its last lines.
+const FLUSH_MAX: Duration = Duration::from_secs(1);
 
 /// Begins logging. `WHICHONE_LOG` holds the filter (`info`, `policy=debug`, …) and
 /// `WHICHONE_LOG_FORMAT=json` asks for one JSON object a line.
-pub fn init() {
+///
+/// The program must keep the result to its end, so that its last lines are written.
+pub fn init() -> LogFlush {
     let filter = EnvFilter::try_from_env(ENV_LOG).unwrap_or_else(|_| EnvFilter::new("info"));
     let colour = io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let json = std::env::var("WHICHONE_LOG_FORMAT").is_ok_and(|format| format == "json");
-    let Ok(stderr) = standard_error() else { return };
+    let nowhere = LogFlush(None);
+    let Ok(stderr) = standard_error() else { return nowhere };
+    let Ok(queue) = Queue::start(LossyLog::new(stderr, json)) else { return nowhere };
+    let flush = LogFlush(Some(queue.jobs.clone()));
     let builder = tracing_subscriber::fmt()
         .with_env_filter(filter)
-        .with_writer(Arc::new(LossyLog::new(stderr, json)))
+        .with_writer(Arc::new(queue))
         // The report of a failed write would itself be written, and its failure is a panic.
         .log_internal_errors(false)
         .with_ansi(colour)
         .with_target(true);
     // A second call (tests in one process) leaves the first subscriber in place.
     let _ = if json { builder.json().try_init() } else { builder.try_init() };
+    flush
+}
+
+/// Waits when dropped, for a second at most, until the lines so far are written.
+#[derive(Debug)]
+#[must_use = "the last lines of a program are written when this is dropped"]
+pub struct LogFlush(Option<Sender<Job>>);
+
+impl Drop for LogFlush {
+    fn drop(&mut self) {
+        let Some(jobs) = &self.0 else { return };
+        let (done, is_done) = bounded(1);
+        if jobs.send_timeout(Job::Report(done), FLUSH_MAX).is_ok() {
+            // Late or not: the program ends.
+            let _ = is_done.recv_timeout(FLUSH_MAX);
+        }
+    }
+}
+
+/// Work for the thread.
+#[derive(Debug)]
+enum Job {
+    Line(Box<[u8]>),
+    /// Report that every line before is written.
+    Report(Sender<()>),
+}
+
+/// The program's side: never waits.
+struct Queue {
+    jobs: Sender<Job>,
+    /// Lines that found no room since the thread last looked.
+    dropped: Arc<AtomicU64>,
+}
+
+impl Queue {
+    /// Starts the thread, which writes to `log`.
+    fn start(log: LossyLog) -> io::Result<Self> {
+        let (jobs, waiting) = bounded(QUEUE_LEN);
+        let dropped = Arc::new(AtomicU64::new(0));
+        let lost = Arc::clone(&dropped);
+        let work = move || write_all(log, &waiting, &lost);
+        std::thread::Builder::new().name("log".into()).spawn(work)?;
+        Ok(Self { jobs, dropped })
+    }
+}
+
+impl Write for &Queue {
+    /// Takes one line, written later or not.
+    fn write(&mut self, line: &[u8]) -> io::Result<usize> {
+        if self.jobs.try_send(Job::Line(line.into())).is_err() {
+            self.dropped.fetch_add(1, Ordering::Relaxed);
+        }
+        Ok(line.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn write_all(mut log: LossyLog, jobs: &Receiver<Job>, dropped: &AtomicU64) {
+    for job in jobs {
+        match job {
+            Job::Line(line) => {
+                log.lose(dropped.swap(0, Ordering::Relaxed));
+                log.write(&line);
+            }
+            // Who asked may have given up.
+            Job::Report(done) => drop(done.try_send(())),
+        }
+    }
 }
 
 /// Standard error. A pipe and a terminal are opened again, so that writes to them do not block and
@@ -52,10 +137,6 @@ fn standard_error() -> io::Result<File> {
 /// A log that drops what cannot be written, and counts it.
 struct LossyLog {
     json: bool,
-    state: Mutex<State>,
-}
-
-struct State {
     file: File,
     lost: Option<Lost>,
 }
@@ -70,7 +151,35 @@ struct Lost {
 
 impl LossyLog {
     fn new(file: File, json: bool) -> Self {
-        Self { json, state: Mutex::new(State { file, lost: None }) }
+        Self { json, file, lost: None }
+    }
+
+    /// Counts lines that were lost before they came here.
+    fn lose(&mut self, lines: u64) {
+        if lines == 0 {
+            return;
+        }
+        let full = || Lost { lines: 0, error: ErrorKind::WouldBlock.into(), torn: false };
+        let lost = self.lost.get_or_insert_with(full);
+        lost.lines = lost.lines.saturating_add(lines);
+    }
+
+    /// Takes one line, written or not.
+    fn write(&mut self, line: &[u8]) {
+        let notice = self.lost.as_ref().map(|lost| self.notice(lost)).unwrap_or_default();
+        let bytes = [notice.as_bytes(), line].concat();
+        let (written, error) = write_now(&mut self.file, &bytes);
+        let Some(error) = error else {
+            self.lost = None;
+            return;
+        };
+        // A notice that was written whole is not repeated.
+        let before = self.lost.take().filter(|_| notice.is_empty() || written < notice.len());
+        self.lost = Some(Lost {
+            lines: before.as_ref().map_or(0, |lost| lost.lines).saturating_add(1),
+            error,
+            torn: written > 0 || before.is_some_and(|lost| lost.torn),
+        });
     }
 
     fn notice(&self, Lost { lines, error, torn }: &Lost) -> String {
@@ -82,32 +191,6 @@ impl LossyLog {
         } else {
             format!("{start} WARN {text}\n")
         }
-    }
-}
-
-impl Write for &LossyLog {
-    /// Takes one line, written or not.
-    fn write(&mut self, line: &[u8]) -> io::Result<usize> {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        let notice = state.lost.as_ref().map(|lost| self.notice(lost)).unwrap_or_default();
-        let bytes = [notice.as_bytes(), line].concat();
-        let (written, error) = write_now(&mut state.file, &bytes);
-        let Some(error) = error else {
-            state.lost = None;
-            return Ok(line.len());
-        };
-        // A notice that was written whole is not repeated.
-        let before = state.lost.take().filter(|_| notice.is_empty() || written < notice.len());
-        state.lost = Some(Lost {
-            lines: before.as_ref().map_or(0, |lost| lost.lines).saturating_add(1),
-            error,
-            torn: written > 0 || before.is_some_and(|lost| lost.torn),
-        });
-        Ok(line.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
     }
 }
 
@@ -140,23 +223,19 @@ mod tests {
     use rustix::pipe::pipe;
     use std::io::Read;
 
-    fn log(log: &LossyLog, line: &str) {
-        (&mut &*log).write_all(line.as_bytes()).unwrap();
-    }
-
     #[test]
     fn lines_that_find_no_room_are_dropped_counted_and_reported() {
         let (reader, writer) = pipe().unwrap();
-        let lossy = LossyLog::new(writer.into(), false);
+        let mut lossy = LossyLog::new(writer.into(), false);
         let line = format!("{}\n", "x".repeat(999));
         // Far more than a pipe holds: each call returns although nobody reads.
-        (0..1_000).for_each(|_| log(&lossy, &line));
+        (0..1_000).for_each(|_| lossy.write(line.as_bytes()));
         let mut reader = File::from(reader);
         let mut full = vec![0; 1 << 20];
         let held = reader.read(&mut full).unwrap();
         assert!(full[..held].starts_with(line.as_bytes()));
-        log(&lossy, "again\n");
-        log(&lossy, "and again\n");
+        lossy.write(b"again\n");
+        lossy.write(b"and again\n");
         drop(lossy);
         let mut rest = String::new();
         reader.read_to_string(&mut rest).unwrap();
@@ -171,15 +250,42 @@ mod tests {
     #[test]
     fn full_device_and_closed_pipe_are_survived() {
         let full = File::options().write(true).open("/dev/full").unwrap();
-        let lossy = LossyLog::new(full, true);
-        (0..3).for_each(|_| log(&lossy, "{}\n"));
-        let state = lossy.state.lock().unwrap();
-        let notice = lossy.notice(state.lost.as_ref().unwrap());
+        let mut lossy = LossyLog::new(full, true);
+        (0..3).for_each(|_| lossy.write(b"{}\n"));
+        let notice = lossy.notice(lossy.lost.as_ref().unwrap());
         assert!(notice.contains("\"3 log lines were lost: No space left"), "{notice}");
         let (reader, writer) = pipe().unwrap();
         drop(reader);
-        let lossy = LossyLog::new(writer.into(), false);
-        log(&lossy, "nobody reads\n");
-        assert_eq!(lossy.state.lock().unwrap().lost.as_ref().unwrap().lines, 1);
+        let mut lossy = LossyLog::new(writer.into(), false);
+        lossy.write(b"nobody reads\n");
+        assert_eq!(lossy.lost.as_ref().unwrap().lines, 1);
+    }
+
+    #[test]
+    fn a_log_that_takes_nothing_delays_nobody_and_its_losses_are_reported() {
+        let (reader, writer) = pipe().unwrap();
+        let (jobs, waiting) = bounded(2);
+        let queue = Queue { jobs, dropped: Arc::new(AtomicU64::new(0)) };
+        let line = |text: &str| assert_eq!((&queue).write(text.as_bytes()).unwrap(), text.len());
+        // The thread, as on a disk that is busy, does not come to them.
+        ["1\n", "2\n", "3\n", "4\n"].into_iter().for_each(line);
+        let dropped = Arc::clone(&queue.dropped);
+        drop(queue);
+        write_all(LossyLog::new(writer.into(), false), &waiting, &dropped);
+        let mut text = String::new();
+        File::from(reader).read_to_string(&mut text).unwrap();
+        assert_eq!(text, " WARN 2 log lines were lost: operation would block\n1\n2\n");
+    }
+
+    #[test]
+    fn end_of_a_program_waits_for_its_last_lines() {
+        let (reader, writer) = pipe().unwrap();
+        let queue = Queue::start(LossyLog::new(writer.into(), false)).unwrap();
+        let flush = LogFlush(Some(queue.jobs.clone()));
+        (&queue).write_all(b"the last line\n").unwrap();
+        drop(flush);
+        let mut text = [0; 64];
+        let len = rustix::io::read(&reader, &mut text).unwrap();
+        assert_eq!(&text[..len], b"the last line\n");
     }
 }

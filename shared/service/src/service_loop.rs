@@ -157,7 +157,7 @@ pub fn program(
     if arguments.iter().any(|a| a == "--help" || a == "-h") {
         return help(name, about);
     }
-    logging::init();
+    let _log = logging::init();
     match serve(arguments) {
         Ok(()) => Exit::Ok.code(),
         Err(failure) => {

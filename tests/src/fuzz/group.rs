@@ -140,7 +140,7 @@ impl Group {
         let policy = self.policy.start(now);
         policy.into_iter().for_each(|output| self.policy_says(output));
         let arm = self.arm.start(now);
-        arm.into_iter().for_each(|output| self.arm_says(&output));
+        arm.into_iter().for_each(|output| self.arm_says(output));
     }
 
     /// A user types.
@@ -197,7 +197,7 @@ impl Group {
         outputs.into_iter().for_each(|output| self.policy_says(output));
         let inbox = std::mem::take(&mut self.to_arm);
         let outputs = self.arm.wake(inbox, now);
-        outputs.into_iter().for_each(|output| self.arm_says(&output));
+        outputs.into_iter().for_each(|output| self.arm_says(output));
     }
 
     fn playback(&mut self, playback: u64, state: PlaybackState) {
@@ -251,11 +251,17 @@ impl Group {
         }
     }
 
-    fn arm_says(&mut self, output: &arm::Out) {
-        if let arm::Out::Status(status) = output {
-            self.latest.status = *status;
-            self.to_policy.push(policy::In::Arm(*status));
-            self.to_speech.push(speech::In::Arm(*status));
+    fn arm_says(&mut self, output: arm::Out) {
+        match output {
+            arm::Out::Status(status) => {
+                self.latest.status = status;
+                self.to_policy.push(policy::In::Arm(status));
+                self.to_speech.push(speech::In::Arm(status));
+            }
+            arm::Out::Plan(request) => {
+                self.to_arm.push(arm::In::Planned(Box::new(request.solve())));
+            }
+            _ => {}
         }
     }
 }

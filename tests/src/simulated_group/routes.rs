@@ -176,10 +176,17 @@ impl SimulatedGroup {
 
     pub(super) fn route_arm(&mut self, outputs: Vec<arm::Out>) {
         for output in outputs {
-            if let arm::Out::Status(status) = output {
-                let copies = self.faults.copies(self.now);
-                self.inboxes.policy.extend(repeat_n(policy::In::Arm(status), copies));
-                self.inboxes.speech.extend(repeat_n(speech::In::Arm(status), copies));
+            match output {
+                arm::Out::Status(status) => {
+                    let copies = self.faults.copies(self.now);
+                    self.inboxes.policy.extend(repeat_n(policy::In::Arm(status), copies));
+                    self.inboxes.speech.extend(repeat_n(speech::In::Arm(status), copies));
+                }
+                // A result that comes while the arm is down is lost, as with its thread.
+                arm::Out::Plan(request) => {
+                    self.inboxes.arm.push(arm::In::Planned(Box::new(request.solve())));
+                }
+                _ => {}
             }
         }
     }

@@ -5,6 +5,7 @@ mod full_disk;
 mod grasp;
 mod kills;
 mod orders;
+mod planning;
 mod point;
 mod publish;
 mod put_back;
@@ -16,7 +17,7 @@ mod trajectory_view;
 use crate::driver::ArmDriver;
 use crate::recover;
 use crate::state::Record;
-use crate::{ArmNode, Config, In, Out};
+use crate::{ArmNode, Config, In, Out, PlanRequest};
 use config::Settings;
 use manipulation::{Joints, Limb};
 use messages::WireCode;
@@ -33,6 +34,9 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 const OBJECTS: u16 = 6;
+
+/// Time that a plan takes, unless a test says otherwise.
+const PLANNING: Span = Span::from_ms(5);
 
 /// Returns the shipped configuration, with a profile and overrides.
 pub(crate) fn shipped(profile: Option<&str>, over: &[(String, String)]) -> Config {
@@ -110,6 +114,9 @@ struct Machine {
     /// The policy's standing act, sent again every 250 ms.
     act: Option<RobotAct>,
     waiting: Vec<In>,
+    /// Requested plans, with the times at which they are there.
+    planning: Vec<(Time, PlanRequest)>,
+    planning_time: Span,
     passes: u64,
     exited: bool,
     joints: Vec<JointStates>,
@@ -134,6 +141,8 @@ impl Machine {
             now: Time(1_000_000_000),
             act: None,
             waiting: Vec::new(),
+            planning: Vec::new(),
+            planning_time: PLANNING,
             passes: 0,
             exited: false,
             joints: Vec::new(),
@@ -150,6 +159,7 @@ impl Machine {
     /// The process starts again, on the robot as it stands now.
     fn restart(&mut self) {
         self.waiting_for_disk = None;
+        self.planning.clear();
         self.robot.stand_still();
         let state = recover::state(&self.config, self.journal.clone()).unwrap();
         let driver = Box::new(self.robot.clone());
@@ -217,6 +227,9 @@ impl Machine {
                 Out::World(world) => self.worlds.push(*world),
                 Out::Trajectory(view) => self.trajectories.push(*view),
                 Out::StopState(_, state) => self.stop_states.push(state),
+                Out::Plan(request) => {
+                    self.planning.push((self.now + self.planning_time, *request));
+                }
                 Out::Robot(order) => panic!("a model gets no orders: {order:?}"),
             }
         }
@@ -230,6 +243,9 @@ impl Machine {
         if self.passes.is_multiple_of(25) {
             self.waiting.extend(self.act.iter().map(|act| In::Act(Box::new(*act))));
         }
+        let now = self.now;
+        let planned = self.planning.extract_if(.., |(ready, _)| *ready <= now);
+        self.waiting.extend(planned.map(|(_, request)| In::Planned(Box::new(request.solve()))));
         let events = self.waiting.drain(..).map(Event::Message).collect();
         self.pass(events, death);
     }

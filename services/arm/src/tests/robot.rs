@@ -76,6 +76,18 @@ impl Robot {
         self.0.borrow_mut().velocity_is_zero = true;
     }
 
+    /// Somebody moves a limb at rest: every joint by `angle_rad`, towards the middle of its range.
+    pub(super) fn push(&self, limb: Limb, angle_rad: f64) {
+        let mut body = self.0.borrow_mut();
+        let mut q = body.arm.measured().posture.joints[limb];
+        for (q, (lower, upper)) in q.iter_mut().zip(body.limbs[limb].limits.position.0) {
+            *q += angle_rad.copysign(0.5 * (lower + upper) - *q);
+        }
+        let still = [0.0; 7];
+        let command = Command { limb, q, qd: still, qdd: still, t_s: 0.0, fingers: Fingers::Stay };
+        body.arm.command(&command, 0.0);
+    }
+
     pub(super) fn posture(&self) -> Posture {
         self.0.borrow().arm.measured().posture
     }

@@ -1,0 +1,170 @@
+//! Planning apart from the reducer: a request states all that a plan depends on, and its result comes
+//! back as an input. The service solves requests on a thread of its own, a simulation in its only one.
+
+use crate::driver::Measured;
+use crate::executor::Program;
+use crate::program::{Planner, Refusal};
+use crate::state::{ArmState, Held};
+use crate::world::World;
+use crate::{ArmNode, Config, Fx, Out};
+use manipulation::Limb;
+use messages::pick::Pick;
+use scene::ObjectId;
+use service::Time;
+use std::sync::Arc;
+
+/// Change of the fingers' width that a plan bears, metres: the pause after they open covers it.
+const WIDTH_M: f64 = 0.002;
+
+/// A motion that the arm wants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Motion {
+    /// Take the object of a pick and bring it to where it is let go.
+    Take(Pick),
+    /// Carry the held object on to where it is let go.
+    Carry(Pick, Held),
+    /// Let go of the held object.
+    Release(Pick, Held),
+    /// Aim at an object.
+    Aim(ObjectId),
+    /// Bring a limb to rest.
+    Rest(Limb),
+}
+
+/// The facts that a plan rests on.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Basis {
+    pub(crate) motion: Motion,
+    pub(crate) state: ArmState,
+    pub(crate) measured: Measured,
+}
+
+/// A motion to be planned.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanRequest {
+    /// Number in this run of the service.
+    number: u64,
+    config: Arc<Config>,
+    world: Arc<World>,
+    basis: Basis,
+}
+
+/// A request with its result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Planned {
+    number: u64,
+    basis: Basis,
+    program: Result<Program, Refusal>,
+}
+
+/// Planning of the wanted motion. At most one request counts; the results of earlier ones are dropped.
+#[derive(Debug, Default)]
+pub(crate) struct Planning {
+    /// Number of the latest request.
+    number: u64,
+    stage: Stage,
+}
+
+#[derive(Debug, Default)]
+enum Stage {
+    #[default]
+    Idle,
+    Requested(Box<Basis>, Time),
+    Done(Box<Planned>),
+}
+
+impl Basis {
+    /// Returns whether a plan that rests on these facts can be carried out on the present ones: the same
+    /// motion among the same objects, and the arm where it was.
+    fn fits(&self, present: &Self) -> bool {
+        self.motion == present.motion
+            && self.state.has_same_objects(&present.state)
+            && self.measured.stands_as(&present.measured)
+    }
+}
+
+impl Measured {
+    fn stands_as(&self, other: &Self) -> bool {
+        let near = |a: &[f64], b: &[f64], within: f64| {
+            a.iter().zip(b).all(|(a, b)| (a - b).abs() <= within)
+        };
+        let (own, others) = (&self.posture, &other.posture);
+        Limb::BOTH
+            .into_iter()
+            .all(|limb| near(&own.joints[limb], &others.joints[limb], self.accuracy_rad))
+            && near(&own.width_m, &others.width_m, WIDTH_M)
+    }
+}
+
+impl PlanRequest {
+    /// Plans the motion. Equal requests have equal results.
+    pub fn solve(self) -> Planned {
+        let Self { number, config, world, basis } = self;
+        let planner = Planner::new(&config, &world, &basis.state, &basis.measured);
+        let program = match &basis.motion {
+            Motion::Take(pick) => planner.take(pick),
+            Motion::Carry(pick, held) => planner.carry(pick, held),
+            Motion::Release(pick, held) => Ok(planner.release(pick.id, held)),
+            Motion::Aim(object) => planner.aim(*object),
+            Motion::Rest(limb) => planner.rest(*limb),
+        };
+        Planned { number, basis, program }
+    }
+}
+
+impl Planning {
+    /// Takes the result of the latest request. Returns whether it is one.
+    pub(crate) fn on_planned(&mut self, planned: Planned) -> bool {
+        let is_awaited =
+            matches!(self.stage, Stage::Requested(..)) && planned.number == self.number;
+        if is_awaited {
+            self.stage = Stage::Done(Box::new(planned));
+        }
+        is_awaited
+    }
+
+    /// Gives up the plan.
+    pub(crate) fn cancel(&mut self) {
+        self.stage = Stage::Idle;
+    }
+
+    /// Returns the time of the request that is being solved.
+    pub(crate) fn requested(&self) -> Option<Time> {
+        match self.stage {
+            Stage::Requested(_, at) => Some(at),
+            Stage::Idle | Stage::Done(_) => None,
+        }
+    }
+}
+
+impl ArmNode {
+    /// Returns the plan of `motion`, or the reason why there is none. `None` means that it is being
+    /// planned: it is requested unless it was, once every record so far is durable.
+    pub(crate) fn plan(
+        &mut self,
+        motion: Motion,
+        now: Time,
+        fx: &mut Fx,
+    ) -> Option<Result<Program, Refusal>> {
+        let (state, measured) = (self.state.clone(), self.driver.measured());
+        let basis = Basis { motion, state, measured };
+        match std::mem::take(&mut self.planning.stage) {
+            Stage::Done(planned) if planned.basis.fits(&basis) => return Some(planned.program),
+            Stage::Requested(requested, at) if requested.fits(&basis) => {
+                self.planning.stage = Stage::Requested(requested, at);
+                return None;
+            }
+            // What it rested on has changed.
+            Stage::Done(_) | Stage::Requested(..) | Stage::Idle => {}
+        }
+        self.planning.number += 1;
+        self.planning.stage = Stage::Requested(Box::new(basis.clone()), now);
+        fx.publish(Out::Plan(Box::new(PlanRequest {
+            number: self.planning.number,
+            config: Arc::clone(&self.config),
+            world: Arc::clone(&self.world),
+            basis,
+        })));
+        None
+    }
+}
