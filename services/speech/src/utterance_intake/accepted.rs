@@ -167,9 +167,9 @@ mod tests {
         assert!(numbers(&all).is_empty());
         (1..=200).for_each(|seq| all.add(accepted(seq)));
         assert_eq!(numbers(&all), (1..=200).collect::<Vec<_>>());
-        assert!(all.acknowledge(AppliedMark { seq: 50, ..AppliedMark::default() }));
+        assert!(all.acknowledge(AppliedMark { seq: 50 }));
         assert_eq!(numbers(&all), (51..=200).collect::<Vec<_>>());
-        assert!(all.acknowledge(AppliedMark { seq: 200, ..AppliedMark::default() }));
+        assert!(all.acknowledge(AppliedMark { seq: 200 }));
         assert_eq!(numbers(&all), (73..=200).collect::<Vec<_>>());
         let mut recovered = AcceptedUtterances::new();
         all.snapshot().for_each(|accepted| recovered.add(accepted));

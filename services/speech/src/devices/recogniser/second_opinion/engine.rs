@@ -136,17 +136,21 @@ impl Engine {
     /// Returns the probability of no speech and the logarithms of those of the first token. (The
     /// library's own probability is taken behind the task and is always 0.)
     fn begin(&mut self) -> Result<(f32, Vec<f32>), WhisperError> {
-        let start = self.start.clone();
-        let (first, rest) = start.split_at(1);
-        let row = self.next(first, self.before)?;
-        let token = usize::try_from(self.context.token_nosp()).ok();
-        let no_speech = token.and_then(|token| row.get(token)).map_or(0.0, |ln_p| ln_p.exp());
-        Ok((no_speech, self.next(rest, self.before + 1)?))
+        let (mut no_speech, mut row) = (0.0, Vec::new());
+        for (n, token) in self.start.clone().into_iter().enumerate() {
+            row = self.next(token, self.before + n)?;
+            if n == 0 {
+                let token = usize::try_from(self.context.token_nosp()).ok();
+                no_speech = token.and_then(|token| row.get(token)).map_or(0.0, |ln_p| ln_p.exp());
+            }
+        }
+        Ok((no_speech, row))
     }
 
-    /// Decodes tokens behind `past` others. Returns the logarithms of the probabilities of the next.
-    fn next(&mut self, tokens: &[WhisperTokenId], past: usize) -> Result<Vec<f32>, WhisperError> {
-        self.state.decode(tokens, past, self.threads)?;
+    /// Decodes one token behind `past` others. Returns the logarithms of the probabilities of the next.
+    /// (Of several tokens the library returns another row than the last one.)
+    fn next(&mut self, token: WhisperTokenId, past: usize) -> Result<Vec<f32>, WhisperError> {
+        self.state.decode(&[token], past, self.threads)?;
         Ok(log_softmax(self.state.get_logits()?))
     }
 }
@@ -196,7 +200,7 @@ impl Scorer<'_> {
                     if self.limit.is_over() {
                         return Ok(None);
                     }
-                    rows.push(self.engine.next(&text[n - 1..n], past + n)?);
+                    rows.push(self.engine.next(text[n - 1], past + n)?);
                 }
                 let ln_p = usize::try_from(*token).ok().and_then(|token| rows[n].get(token));
                 score += ln_p.map_or(f64::NEG_INFINITY, |ln_p| f64::from(*ln_p));
