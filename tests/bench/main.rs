@@ -16,6 +16,7 @@ mod hop;
 mod idle;
 mod jitter;
 mod latency;
+mod long;
 mod options;
 mod orders;
 mod peers;
@@ -65,6 +66,9 @@ fn measure(options: &Options, report: &mut Report) {
         start::measure(report);
         latency::measure(report);
         idle::measure(report);
+    }
+    if all || options.long {
+        long::measure(report, options);
     }
     if all || options.joints {
         jitter::measure(report);

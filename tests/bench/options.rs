@@ -18,6 +18,9 @@ pub(crate) struct Options {
     /// Only the running group: start, recovery, latency through all processes, idle load
     #[arg(long)]
     pub(crate) processes: bool,
+    /// Only one interaction of very many utterances: journals, memory, restart
+    #[arg(long)]
+    pub(crate) long: bool,
     /// Only how steadily joint states come
     #[arg(long)]
     pub(crate) joints: bool,
@@ -48,6 +51,9 @@ pub(crate) struct Options {
     /// Dialogues of --turns [500] and, in each noise, of --spoken [60; 6 among all parts]
     #[arg(long, value_name = "N")]
     pub(crate) dialogues: Option<u64>,
+    /// Utterances of --long [20000; 1000 among all parts]
+    #[arg(long, value_name = "N")]
+    pub(crate) utterances: Option<u64>,
     /// Seed of these dialogues
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub(crate) seed: u64,
@@ -65,9 +71,9 @@ pub(crate) struct Options {
 impl Options {
     /// Returns whether all parts are selected.
     pub(crate) fn wants_all(&self) -> bool {
-        let Self { core, kinematics, processes, joints, orders, stops, .. } = *self;
+        let Self { core, kinematics, processes, long, joints, orders, stops, .. } = *self;
         let Self { speech, endings, turns, console, spoken, .. } = *self;
-        let measured = core || kinematics || processes || joints || orders || stops;
+        let measured = core || kinematics || processes || long || joints || orders || stops;
         !(measured || speech || endings || turns || console || spoken)
     }
 }

@@ -56,7 +56,7 @@ fn starts() -> (f64, f64) {
 }
 
 /// Kills a service and returns the milliseconds until it is ready again.
-fn restart(group: &Group, service: &str) -> f64 {
+pub(crate) fn restart(group: &Group, service: &str) -> f64 {
     std::thread::sleep(REST);
     let before = status(group, service).incarnation;
     let process = group.pid(service);
