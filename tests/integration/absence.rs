@@ -4,17 +4,24 @@ use whichone_tests::{Group, wait_for};
 
 const ABSENT: &str = "dialogue.prior.absent=0.1";
 
+/// Says something as utterance `n`; returns the dialogue once it is applied.
+fn said(group: &Group, text: &str, n: u64) -> serde_json::Value {
+    group.say(text);
+    wait_for("the utterance to be applied", 10.0, || {
+        Some(group.dialogue()).filter(|dialogue| dialogue["applied"] == n)
+    })
+}
+
 #[test]
 fn denying_everything_ends_with_not_here() {
     let group = Group::up(&[ABSENT]);
-    group.say("get me the bowl");
-    for _ in 0..40 {
-        if group.dialogue()["interaction"] == 0 {
+    let mut dialogue = said(&group, "get me the bowl", 1);
+    for n in 2..40 {
+        if dialogue["interaction"] == 0 {
             break;
         }
-        group.say("no");
+        dialogue = said(&group, "no", n);
     }
-    let dialogue = group.dialogue();
     assert!(dialogue["text"].as_str().unwrap().contains("does not seem to be here"), "{dialogue}");
     let outcome = group.await_pick(None);
     assert_eq!(outcome["outcome"], "not_here", "{outcome}");

@@ -3,7 +3,8 @@
 
 use rustix::process::Signal;
 use service::shm_cleanup::leftovers;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, ErrorKind};
+use std::path::Path;
 use std::process::Stdio;
 use whichone_tests::{Group, wait_for};
 
@@ -114,9 +115,16 @@ fn clear_shared_memory(group: &Group, topics_only: bool) {
         let is_topic = file.extension().is_some_and(|extension| extension == "dynamic");
         match file.is_dir() {
             _ if topics_only && !is_topic => {}
-            true => std::fs::remove_dir_all(file).unwrap(),
+            true => remove_folder(&file),
             false => std::fs::remove_file(file).unwrap(),
         }
+    }
+}
+
+/// Removes a folder in which services may make files meanwhile.
+fn remove_folder(folder: &Path) {
+    while let Err(error) = std::fs::remove_dir_all(folder) {
+        assert_eq!(error.kind(), ErrorKind::DirectoryNotEmpty, "{}", folder.display());
     }
 }
 
