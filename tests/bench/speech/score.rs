@@ -28,8 +28,9 @@ pub(super) struct Score {
     pub(super) cpu_s: f64,
     /// Seconds from the beginning of decoding to the hypotheses.
     pub(super) wall_s: f64,
-    /// True if the second recogniser was asked.
+    /// True if the second recogniser was asked, and if it had no opinion.
     pub(super) asked: bool,
+    pub(super) without_opinion: bool,
     /// Seconds of sound.
     pub(super) sound_s: f64,
     /// Seconds by which the detector is late.
@@ -89,6 +90,7 @@ impl Score {
             cpu_s: heard.iter().map(|heard| heard.took_s.1).sum(),
             wall_s: heard.iter().map(|heard| heard.took_s.0).sum(),
             asked: heard.iter().any(|heard| heard.asked),
+            without_opinion: heard.iter().any(|heard| heard.late),
             sound_s: seconds(clip.samples.len()),
             onset_s: timing.onset_s,
             release_s: timing.release_s,

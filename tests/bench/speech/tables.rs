@@ -104,6 +104,7 @@ fn timed(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
         "then to result, ms, p50",
         "p95",
         "too late",
+        "never came",
     ];
     let row = |(name, scores): &Row<'_>| {
         let of = |value: fn(&Score) -> f64| -> Vec<f64> {
@@ -127,14 +128,20 @@ fn timed(report: &mut Report, corpus: &str, rows: &[Row<'_>]) {
         let late = doubtful.iter().filter(|&&ms| ms > limit_ms).count();
         let late = percent(late, doubtful.len());
         let row = std::iter::once((*name).to_owned()).chain(times).chain([load, asked]);
-        row.chain(second).chain([late]).collect()
+        let never = without_opinion(scores);
+        row.chain(second).chain([late, never]).collect()
     };
     let title = format!("Spoken input, times: {corpus}");
     let note = "Onset and release: the detector's edges against the voice's. Decoding and its load are \
                 those of the first recogniser; the last columns are the time from the beginning of \
                 decoding to the result where the second one was asked (with WHICHONE_WHISPER_MODEL); too late: \
-                after the closing pause, so that the first one counts.";
+                after the closing pause; never came: there was no opinion, as where the model cannot be loaded.";
     report.table(title, note, heads, rows.iter().map(row).collect());
+}
+
+/// Number of clips about which the second recogniser was asked and had no opinion.
+fn without_opinion(scores: &[&Score]) -> String {
+    scores.iter().filter(|score| score.without_opinion).count().to_string()
 }
 
 /// Share of right words by the recogniser's confidence.
