@@ -58,7 +58,6 @@ pub(crate) struct Limit {
     dropped: AtomicBool,
 }
 
-#[cfg(any(feature = "whisper", test))]
 impl Limit {
     pub(crate) fn is_over(&self) -> bool {
         self.dropped.load(Ordering::Relaxed) || Instant::now() >= self.until
@@ -129,7 +128,7 @@ pub(crate) fn load(_: &Path, _: &Scene) -> Result<Box<dyn Network>, RecogniserUn
 /// Scheduling priority relative to the threads that return results (nice).
 const NICENESS: i32 = 5;
 /// Utterances that may wait while the network notices that the one before is over.
-const WAITING_MAX: usize = 2;
+const WAITING_MAX: usize = 8;
 
 impl SecondOpinion {
     /// Starts the thread, which first loads a model for the sentences of a scene; until then there is no
@@ -150,7 +149,10 @@ impl SecondOpinion {
             let Some(mut network) = open() else { return };
             // Without the permission it runs at normal priority.
             let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), NICENESS);
-            for Job { samples, candidates, opinion, limit } in jobs {
+            // What was dropped meanwhile would only keep the next utterance waiting.
+            for Job { samples, candidates, opinion, limit } in
+                jobs.iter().filter(|job| !job.limit.is_over())
+            {
                 let candidates = || candidates.recv_deadline(limit.until).ok();
                 if let Some(known) = network.opinion(&samples, &candidates, &limit) {
                     // The receiver may have been dropped.
@@ -211,6 +213,39 @@ mod tests {
         let help =
             if cfg!(feature = "whisper") { "ggml-base-q8_0.bin" } else { "not part of this build" };
         assert!(error.to_string().contains(help), "{error}");
+    }
+
+    /// Answers "yes" once it is permitted to.
+    struct Slow(Receiver<()>);
+
+    impl Network for Slow {
+        fn opinion(
+            &mut self,
+            _: &[i16],
+            _: &dyn Fn() -> Option<Vec<String>>,
+            _: &Limit,
+        ) -> Option<Opinion> {
+            self.0.recv().ok()?;
+            let text = "yes".to_owned();
+            Some(Opinion { text, ln_own: 0.0, ln_likelihood: Vec::new(), no_speech: 0.0 })
+        }
+    }
+
+    #[test]
+    fn second_opinion_skips_what_was_dropped_while_it_was_busy() {
+        let (permit, permission) = bounded(2);
+        let second = SecondOpinion::with(move || Some(Box::new(Slow(permission))));
+        let until = Instant::now() + std::time::Duration::from_secs(60);
+        let first = second.begin(&[1], until).unwrap();
+        for _ in 1..WAITING_MAX - 1 {
+            drop(second.begin(&[1], until).expect("room"));
+        }
+        let last = second.begin(&[1], until).expect("room");
+        // As many permissions as utterances that count.
+        (0..2).for_each(|_| permit.send(()).unwrap());
+        for pending in [first, last] {
+            assert_eq!(pending.opinion().recv_deadline(until).unwrap().text, "yes");
+        }
     }
 
     #[cfg(feature = "whisper")]
