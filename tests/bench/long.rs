@@ -23,7 +23,11 @@ const SAID: [&str; 4] = ["the white one", "the metal one", "no", "the plastic on
 pub(crate) fn measure(report: &mut Report, options: &Options) {
     let usual = if options.wants_all() { UTTERANCES.1 } else { UTTERANCES.0 };
     let utterances = options.utterances.unwrap_or(usual);
-    let group = Group::up(&["dialogue.turns.questions_max=1000"]);
+    let group = Group::up(&[
+        "dialogue.turns.questions_max=1000",
+        "group.restart.backoff_first_ms=1",
+        "group.restart.backoff_max_ms=2",
+    ]);
     // Nothing is fetched, so that the interaction stays open.
     group.must(&["stop-motion"]);
     let mut rows = Vec::new();
