@@ -1,6 +1,7 @@
 //! One interaction of very many utterances: what the group keeps of it, and how long a restart takes.
 
 use crate::options::Options;
+use crate::peers::resident_mib;
 use crate::report::Report;
 use crate::start::restart;
 use messages::{Injection, Receipt, Sound, topics};
@@ -37,16 +38,16 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         let a_second = (utterances / LOOKS) as f64 / began.elapsed().as_secs_f64();
         let bytes = |name| journal_bytes(&group.paths().journal(), name);
         let megabytes = |bytes: u64| format!("{:.1}", bytes as f64 / 1e6);
-        let resident = resident_bytes(group.pid("policy").as_raw_nonzero().get());
+        let resident = memory(&group);
         let restart_ms = restart(&group, "policy");
         rows.push(vec![
             (look * utterances / LOOKS).to_string(),
             format!("{a_second:.0}"),
             megabytes(bytes("speech")),
             megabytes(bytes("policy")),
-            megabytes(resident),
+            resident,
             format!("{restart_ms:.0}"),
-            megabytes(resident_bytes(group.pid("policy").as_raw_nonzero().get())),
+            memory(&group),
         ]);
     }
     let heads = [
@@ -54,9 +55,9 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         "a second",
         "speech's journals, MB",
         "policy's journals, MB",
-        "policy's memory, MB",
+        "policy's memory, MiB",
         "kill to ready, ms",
-        "then memory, MB",
+        "then memory, MiB",
     ];
     let note = format!(
         "One open interaction, {CLIENTS} clients at once, each waiting for its receipt. Journals: with the \
@@ -88,6 +89,12 @@ fn speak(group: &Group, utterances: u64) {
     });
 }
 
+/// Resident memory of the policy, MiB.
+fn memory(group: &Group) -> String {
+    let pid = group.pid("policy").as_raw_nonzero().get();
+    resident_mib(pid).map_or(String::new(), |mib| format!("{mib:.1}"))
+}
+
 /// Bytes of a journal and of the files that it continued from.
 fn journal_bytes(folder: &Path, name: &str) -> u64 {
     let files = std::fs::read_dir(folder).expect("a folder of journals").flatten();
@@ -95,12 +102,4 @@ fn journal_bytes(folder: &Path, name: &str) -> u64 {
         file.file_name().to_string_lossy().starts_with(&format!("{name}.journal"))
     };
     files.filter(is_part).filter_map(|file| file.metadata().ok()).map(|meta| meta.len()).sum()
-}
-
-/// Memory of a process in use, bytes.
-fn resident_bytes(process: i32) -> u64 {
-    let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-    line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<u64>().ok()).unwrap_or(0)
-        * 1024
 }

@@ -5,6 +5,7 @@ use super::conditions::QUIET;
 use super::corpus::Corpus;
 use super::listener::second_model;
 use super::voices::Voices;
+use crate::peers::resident_mib;
 use crate::report::{Report, percentile};
 use ::speech::devices::recogniser::RecogniserUnavailable;
 use ::speech::devices::vad::SegmenterOptions;
@@ -24,12 +25,12 @@ pub(super) fn measure(report: &mut Report, voices: &Voices) -> Result<(), Recogn
         if with_second && second_model().is_none() {
             continue;
         }
-        let before_kb = resident_kb();
+        let before_mib = own_memory_mib();
         let mut ears = Ears::open_with(&corpus, with_second.then(second_model).flatten())?;
         let name = if with_second { "both" } else { "the first alone" };
         // The first utterances wait for the model.
         hear(&mut ears, &corpus, voices, 10 * EVERY, Duration::from_secs(60));
-        let memory = format!("{}", (resident_kb() - before_kb) / 1000);
+        let memory = format!("{:.0}", own_memory_mib() - before_mib);
         for (machine, is_busy) in [("idle", false), ("busy", true)] {
             let heard =
                 among_busy_loops(is_busy, || hear(&mut ears, &corpus, voices, EVERY, PATIENCE));
@@ -47,7 +48,7 @@ pub(super) fn measure(report: &mut Report, voices: &Voices) -> Result<(), Recogn
         "p95",
         "within the closing pause",
         "too late",
-        "memory, MB",
+        "memory, MiB",
     ];
     let note = "Decoding begins 32 ms behind the detected end of the voice. Busy: one endless loop for each \
                 processor beside it. Too late: after the open pause, so that the first recogniser's \
@@ -128,9 +129,6 @@ fn among_busy_loops<T>(is_busy: bool, work: impl FnOnce() -> T) -> T {
     })
 }
 
-/// Memory of this process in use, kilobytes.
-fn resident_kb() -> i64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-    line.and_then(|line| line.trim().trim_end_matches(" kB").parse().ok()).unwrap_or(0)
+fn own_memory_mib() -> f64 {
+    resident_mib(std::process::id() as i32).unwrap_or(f64::NAN)
 }
