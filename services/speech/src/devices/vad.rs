@@ -3,6 +3,7 @@
 //! Invariant: segments are ordered and do not overlap; every frame of speech that opened a segment lies
 //! in exactly one. The state advances by samples alone, never by a clock.
 
+mod babble;
 mod loudness;
 
 use std::ops::Range;
@@ -10,6 +11,7 @@ use std::ops::Range;
 use earshot::Detector;
 
 use crate::devices::audio::RATE_HZ;
+use babble::Babble;
 use loudness::Loudness;
 pub(in crate::devices) use loudness::level_db;
 
@@ -107,6 +109,7 @@ pub struct Segmenter {
     options: SegmenterOptions,
     detector: Box<Detector>,
     loudness: Loudness,
+    babble: Babble,
     /// Samples of an incomplete frame.
     rest: Vec<i16>,
     track: Track,
@@ -119,6 +122,7 @@ impl Segmenter {
             options,
             detector: Box::default(),
             loudness: Loudness::default(),
+            babble: Babble::default(),
             rest: Vec::with_capacity(FRAME),
             track: Track::default(),
         }
@@ -132,8 +136,10 @@ impl Segmenter {
         let mut frames = rest.chunks_exact(FRAME);
         for frame in &mut frames {
             let is_speech = self.detector.predict_i16(frame) > self.options.threshold;
-            let is_loud = self.loudness.is_voice(frame, self.track.open.is_some());
-            self.track.frame(is_speech && is_loud, &self.options, &mut events);
+            let level_db = level_db(frame);
+            let is_loud = self.loudness.is_voice(level_db, self.track.open.is_some());
+            let is_user = self.babble.is_user(level_db, is_speech);
+            self.track.frame(is_speech && is_loud && is_user, &self.options, &mut events);
         }
         self.rest = frames.remainder().to_vec();
         events
@@ -163,6 +169,7 @@ impl Segmenter {
         self.rest.clear();
         self.detector.reset();
         self.loudness = Loudness::default();
+        self.babble = Babble::default();
         let open = track.open?;
         // Speech in the last frame may continue in the incomplete one.
         let speech_end = if open.speech_end == track.at { end } else { open.speech_end };

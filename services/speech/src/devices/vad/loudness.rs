@@ -35,10 +35,9 @@ impl Default for Loudness {
 }
 
 impl Loudness {
-    /// Takes the next frame. Returns whether it is loud enough for a voice: always outside segments,
-    /// where a soft beginning must not be lost.
-    pub(super) fn is_voice(&mut self, frame: &[i16], is_open: bool) -> bool {
-        let level_db = level_db(frame);
+    /// Takes the level of the next frame. Returns whether it is loud enough for a voice: always outside
+    /// segments, where a soft beginning must not be lost.
+    pub(super) fn is_voice(&mut self, level_db: f32, is_open: bool) -> bool {
         if !is_open {
             self.voice_db = None;
             self.take_background(level_db);
@@ -75,12 +74,6 @@ pub(in crate::devices) fn level_db(frame: &[i16]) -> f32 {
 mod tests {
     use super::*;
 
-    /// Returns a frame of this level.
-    fn frame(db: f32) -> [i16; 256] {
-        let amplitude = 32_768.0 * 10_f32.powf(db / 20.0);
-        std::array::from_fn(|n| if n % 2 == 0 { amplitude as i16 } else { -amplitude as i16 })
-    }
-
     #[test]
     fn frame_is_voice_by_its_level_relative_to_voice_and_background() {
         for (what, background_db, level_db, expected) in [
@@ -92,19 +85,19 @@ mod tests {
         ] {
             let mut loudness = Loudness::default();
             for _ in 0..40 {
-                assert!(loudness.is_voice(&frame(background_db), false), "{what}");
+                assert!(loudness.is_voice(background_db, false), "{what}");
             }
-            assert!(loudness.is_voice(&frame(-20.0), true), "{what}");
-            assert_eq!(loudness.is_voice(&frame(level_db), true), expected, "{what}");
+            assert!(loudness.is_voice(-20.0, true), "{what}");
+            assert_eq!(loudness.is_voice(level_db, true), expected, "{what}");
         }
     }
 
     #[test]
     fn frames_of_a_stream_that_begins_within_a_voice_are_judged_by_the_voice() {
         let mut loudness = Loudness::default();
-        (0..3).for_each(|_| assert!(loudness.is_voice(&frame(-20.0), false)));
-        assert!(loudness.is_voice(&frame(-30.0), true));
-        assert!(loudness.is_voice(&frame(-45.0), true), "{loudness:?}");
-        assert!(!loudness.is_voice(&frame(-80.0), true), "{loudness:?}");
+        (0..3).for_each(|_| assert!(loudness.is_voice(-20.0, false)));
+        assert!(loudness.is_voice(-30.0, true));
+        assert!(loudness.is_voice(-45.0, true), "{loudness:?}");
+        assert!(!loudness.is_voice(-80.0, true), "{loudness:?}");
     }
 }
