@@ -14,8 +14,6 @@ const NOISES: [(f64, Noise, &str); 3] = [
 ];
 /// Dialogues in each noise unless a number is given: alone, and among everything else.
 const DIALOGUES: (u64, u64) = (60, 6);
-/// Most dialogues in babble: hardly one of them ends before its time is over.
-const IN_BABBLE_MAX: u64 = 6;
 
 pub(crate) fn measure(report: &mut Report, options: &Options) {
     if !can_speak() {
@@ -27,11 +25,7 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         .iter()
         .map(|&(snr_db, noise, name)| {
             let conditions = Conditions { snr_db, noise, number: 0, seed };
-            let count = match noise {
-                Noise::Steady => dialogues,
-                Noise::Babble => dialogues.min(IN_BABBLE_MAX),
-            };
-            (name, tally(conditions, count, options.groups, show))
+            (name, tally(conditions, dialogues, options.groups, show))
         })
         .collect();
     keep(&tallies);
@@ -48,9 +42,9 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
         "p95",
     ];
     let note = format!(
-        "{dialogues} dialogues of seed {seed} over the six bowls in each noise, at most {IN_BABBLE_MAX} in \
-         babble, with the real processes: a synthesised person speaks into the microphone's program in real time, and \
-         answers after the robot's real questions. Every dialogue is in target/bench/spoken.json."
+        "{dialogues} dialogues of seed {seed} over the six bowls in each noise, with the real processes: a synthesised \
+         person speaks into the microphone's program in real time, and answers after the robot's real questions. \
+         Every dialogue is in target/bench/spoken.json."
     );
     let rows = tallies.iter().map(|(name, tally)| row(name, tally)).collect();
     report.table("Spoken dialogues", note, heads, rows);

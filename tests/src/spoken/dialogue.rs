@@ -83,6 +83,8 @@ const PATIENCE_S: f64 = 6.0;
 const LOOK: Duration = Duration::from_millis(4);
 /// Tolerance of the detected onset and end, seconds.
 const EDGE_S: f64 = 0.6;
+/// How long the robot has listened to the room before the first request.
+const LISTENED: Span = Span::from_ms(4_000);
 
 /// Runs a dialogue with its own group.
 ///
@@ -209,7 +211,7 @@ impl Talk {
             (self.taps.ear == Some(EarState::Ready)).then_some(())
         });
         let request = self.turn(|user, domain| user.request(domain));
-        self.say(clock::now() + Span::from_ms(800), request, Question::None);
+        self.say(clock::now() + LISTENED, request, Question::None);
         let begun = Instant::now();
         while self.taps.view.last.is_none() && begun.elapsed() < LONGEST {
             let news = self.taps.look();

@@ -162,14 +162,13 @@ impl Segmenter {
         }
     }
 
-    /// Ends the stream and an open segment with it, and resets the segmenter.
+    /// Ends the stream and an open segment with it. The next one begins in the same room: its background
+    /// stays known.
     pub fn finish(&mut self) -> Option<VadEvent> {
         let track = std::mem::take(&mut self.track);
         let end = track.at + self.rest.len();
         self.rest.clear();
         self.detector.reset();
-        self.loudness = Loudness::default();
-        self.babble = Babble::default();
         let open = track.open?;
         // Speech in the last frame may continue in the incomplete one.
         let speech_end = if open.speech_end == track.at { end } else { open.speech_end };
