@@ -57,6 +57,9 @@ pub(crate) struct Options {
     /// Seed of these dialogues
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub(crate) seed: u64,
+    /// Only this noise of --spoken: quiet, steady or babble
+    #[arg(long, value_name = "NOISE", requires = "spoken")]
+    pub(crate) noise: Option<SpokenNoise>,
     /// Groups that hold spoken dialogues at a time
     #[arg(long, value_name = "N", default_value_t = 3)]
     pub(crate) groups: usize,
@@ -76,4 +79,15 @@ impl Options {
         let measured = core || kinematics || processes || long || joints || orders || stops;
         !(measured || speech || endings || turns || console || spoken)
     }
+}
+
+/// A noise under spoken dialogues.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum SpokenNoise {
+    /// Steady, at 40 dB.
+    Quiet,
+    /// Steady, at 20 dB.
+    Steady,
+    /// Six people who talk to each other, at 10 dB.
+    Babble,
 }

@@ -1,16 +1,16 @@
 //! Spoken dialogues with the real group.
 
-use crate::options::Options;
+use crate::options::{Options, SpokenNoise};
 use crate::report::{Report, percentile, print};
 use std::path::Path;
 use std::process::Command;
 use whichone_tests::spoken::{Conditions, Held, Noise, Tally, tally};
 
-/// Noise under the speech: how far the speech stands above it, decibels, what it is, and its name.
-const NOISES: [(f64, Noise, &str); 3] = [
-    (40.0, Noise::Steady, "quiet"),
-    (20.0, Noise::Steady, "20 dB"),
-    (10.0, Noise::Babble, "babble, 10 dB"),
+/// Noise under the speech: its option, how far the speech stands above it, decibels, what it is, and its name.
+const NOISES: [(SpokenNoise, f64, Noise, &str); 3] = [
+    (SpokenNoise::Quiet, 40.0, Noise::Steady, "quiet"),
+    (SpokenNoise::Steady, 20.0, Noise::Steady, "20 dB"),
+    (SpokenNoise::Babble, 10.0, Noise::Babble, "babble, 10 dB"),
 ];
 /// Dialogues in each noise unless a number is given: alone, and among everything else.
 const DIALOGUES: (u64, u64) = (60, 6);
@@ -23,7 +23,8 @@ pub(crate) fn measure(report: &mut Report, options: &Options) {
     let (dialogues, seed) = (options.dialogues.unwrap_or(usual), options.seed);
     let tallies: Vec<(&str, Tally)> = NOISES
         .iter()
-        .map(|&(snr_db, noise, name)| {
+        .filter(|(option, ..)| options.noise.is_none_or(|wanted| wanted == *option))
+        .map(|&(_, snr_db, noise, name)| {
             let conditions = Conditions { snr_db, noise, number: 0, seed };
             (name, tally(conditions, dialogues, options.groups, show))
         })

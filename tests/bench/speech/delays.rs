@@ -3,7 +3,6 @@
 use super::Ears;
 use super::conditions::QUIET;
 use super::corpus::Corpus;
-use super::listener::second_model;
 use super::voices::Voices;
 use crate::peers::resident_mib;
 use crate::report::{Report, percentile};
@@ -11,6 +10,7 @@ use ::speech::devices::recogniser::RecogniserUnavailable;
 use ::speech::devices::vad::SegmenterOptions;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
+use whichone_tests::spoken::second_model;
 
 /// Every how many sentences of the main corpus one is heard, in one voice.
 const EVERY: usize = 3;

@@ -35,14 +35,6 @@ pub(super) struct Heard {
 /// Thresholds of the gate that are compared; the first is the one in use.
 pub(super) const THRESHOLDS: [f32; 7] = [Gate::THRESHOLD, 0.15, 0.25, 0.35, 0.45, 0.55, 0.7];
 
-/// Names the model of the second recogniser.
-const MODEL: &str = "WHICHONE_WHISPER_MODEL";
-
-/// Returns the model of the second recogniser, if one is to be measured.
-pub(super) fn second_model() -> Option<PathBuf> {
-    std::env::var_os(MODEL).map(PathBuf::from)
-}
-
 /// One robot's ears.
 pub(super) struct Listener {
     recognisers: Ensemble,

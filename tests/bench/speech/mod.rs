@@ -117,7 +117,7 @@ const STARTS: usize = 5;
 
 impl Ears {
     fn open(corpus: &Corpus) -> Result<Self, RecogniserUnavailable> {
-        Self::open_with(corpus, listener::second_model())
+        Self::open_with(corpus, whichone_tests::spoken::second_model())
     }
 
     fn open_with(corpus: &Corpus, model: Option<PathBuf>) -> Result<Self, RecogniserUnavailable> {

@@ -2,7 +2,7 @@
 //! gets something.
 
 use std::collections::HashSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use dialogue::{Model, Params, Rng};
@@ -110,16 +110,28 @@ pub fn converse(conditions: Conditions) -> Held {
     held
 }
 
+/// Names the model of the second recogniser, where one is to be used.
+const MODEL: &str = "WHICHONE_WHISPER_MODEL";
+
+/// Returns the model of the second recogniser, if the environment names one.
+pub fn second_model() -> Option<PathBuf> {
+    std::env::var_os(MODEL).map(PathBuf::from)
+}
+
 /// The shipped speech settings with the pipe for a microphone, and a voice that takes its time.
 fn settings(pipe: &Path) -> Vec<String> {
-    vec![
+    let model = second_model();
+    let model = model.map(|model| format!("speech.whisper_model=\"{}\"", model.display()));
+    let mut settings = vec![
         "speech.voice=espeak-ng".to_owned(),
         "speech.player=[\"none\"]".to_owned(),
         "speech.recogniser=pocketsphinx".to_owned(),
         "speech.microphone.mode=hands-free".to_owned(),
         format!("speech.microphone.command=[\"cat\", \"{}\"]", pipe.display()),
         "speech.microphone.barge_in=false".to_owned(),
-    ]
+    ];
+    settings.extend(model);
+    settings
 }
 
 /// An utterance of the user.
