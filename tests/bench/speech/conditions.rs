@@ -61,18 +61,24 @@ pub(super) const OTHER: [Condition; 8] = [
     Condition { pitch: 1.15, ..Condition::steady("voice 1.15 times as high, 25 dB", 25.0) },
 ];
 
-/// Quiet before and behind the voice, seconds.
-pub(super) const LEAD_S: f64 = 0.5;
+/// What is heard before and behind the voice, seconds; talk is known after some seconds only.
+const LEAD_S: f64 = 0.5;
+const BABBLE_LEAD_S: f64 = 5.0;
 const TAIL_S: f64 = 0.8;
 /// Level of noise that begins.
 const BEGINNING_DB: f64 = 10.0;
 
 impl Condition {
+    /// Returns how much is heard before the voice, seconds.
+    pub(super) fn lead_s(&self) -> f64 {
+        if self.noise == Noise::Babble { BABBLE_LEAD_S } else { LEAD_S }
+    }
+
     /// Returns the voice with everything around it.
     pub(super) fn heard(&self, spoken: &[i16], others: &[Vec<i16>], seed: u64) -> Vec<i16> {
         let spoken: Vec<f64> = spoken.iter().map(|&s| f64::from(s)).collect();
         let level = noise::rms(&spoken);
-        let (lead, tail) = (samples(LEAD_S), samples(TAIL_S));
+        let (lead, tail) = (samples(self.lead_s()), samples(TAIL_S));
         let len = lead + spoken.len() + tail;
         let voice = match self.distance_m {
             Some(metres) => room::heard(&spoken, metres, seed),

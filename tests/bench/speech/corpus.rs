@@ -1,6 +1,6 @@
 //! The corpora: sentences, the questions that they answer, voices.
 
-use super::conditions::{Condition, LEAD_S, Noise};
+use super::conditions::{Condition, Noise};
 use super::noise::samples;
 use super::score::has_content;
 use super::voices::Voices;
@@ -116,7 +116,7 @@ impl Corpus {
         let babblers = if at.noise == Noise::Babble { BABBLERS } else { 0 };
         let others: Vec<Vec<i16>> = (1..=babblers).map(|k| speak(n + 7 * k, voice + k)).collect();
         let seed = (n * self.voices.len() + voice) as u64 * 1_000 + at.snr_db as u64;
-        let lead = samples(LEAD_S);
+        let lead = samples(at.lead_s());
         let samples = at.heard(&spoken, &others, seed);
         Clip { samples, speech: lead..lead + spoken.len() }
     }

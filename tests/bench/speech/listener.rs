@@ -3,6 +3,7 @@
 use super::corpus::Clip;
 use crate::arm::thread_s;
 use ::speech::Hypothesis;
+use ::speech::devices::audio::RATE_HZ;
 use ::speech::devices::recogniser::{
     Ensemble, Gate, Opinion, PocketSphinx, PocketSphinxOptions, RecogniserUnavailable,
     SecondOpinion, SecondView,
@@ -62,17 +63,24 @@ impl Listener {
         Ok(Self { recognisers, gates, patience: Duration::MAX, start_s })
     }
 
+    /// Returns what is heard from half a second before the voice on.
     pub(super) fn hear(&mut self, clip: &Clip) -> Vec<Heard> {
-        self.hear_samples(&clip.samples)
+        let from = clip.speech.start.saturating_sub(RATE_HZ as usize / 2);
+        self.hear_from(&clip.samples, from)
     }
 
+    /// Returns what is heard.
     pub(super) fn hear_samples(&mut self, samples: &[i16]) -> Vec<Heard> {
+        self.hear_from(samples, 0)
+    }
+
+    fn hear_from(&mut self, samples: &[i16], from: usize) -> Vec<Heard> {
         let mut segmenter = Segmenter::new(SegmenterOptions::default());
         let mut events = segmenter.push(samples);
         events.extend(segmenter.finish());
         let ends = events.into_iter().filter_map(|event| match event {
-            VadEvent::End { range, speech } => Some((range, speech)),
-            VadEvent::Onset { .. } | VadEvent::Pause { .. } => None,
+            VadEvent::End { range, speech } if speech.end >= from => Some((range, speech)),
+            VadEvent::End { .. } | VadEvent::Onset { .. } | VadEvent::Pause { .. } => None,
         });
         ends.filter_map(|(range, speech)| self.decode(samples, range, speech)).collect()
     }
