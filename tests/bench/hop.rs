@@ -4,8 +4,9 @@
 use crate::report::{Report, percentile};
 use messages::topics::{self, Topic};
 use messages::{ArmStatus, Service};
-use rustix::event::{EventfdFlags, PollFd, PollFlags, eventfd, poll};
+use rustix::event::{EventfdFlags, eventfd};
 use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
+use service::Span;
 use service::bus::{Bus, Identity};
 use service::group::GroupPaths;
 use service::shm_cleanup;
@@ -19,6 +20,8 @@ const ROUNDS: usize = 20_000;
 const WARM_UP: usize = 1_000;
 /// Other descriptors that a service sleeps on: signals, lifeline, journal, devices, urgent messages.
 const OTHERS: usize = 5;
+/// Longest sleep of a service.
+const LONGEST: Span = Span::from_ms(500);
 const DATAGRAM: &str = "64 B in a datagram with postcard, one way, one CPU";
 
 const PING: Topic =
@@ -154,13 +157,8 @@ impl End {
     /// Sleeps until there is a message, as the main loop of a service does.
     fn receive(&self) -> ArmStatus {
         loop {
-            let fds = self
-                .others
-                .each_ref()
-                .map(|fd| PollFd::from_borrowed_fd(fd.as_fd(), PollFlags::IN));
-            let listener = PollFd::from_borrowed_fd(self.listener.fd(), PollFlags::IN);
-            let [a, b, c, d, e] = fds;
-            poll(&mut [listener, a, b, c, d, e], None).expect("descriptors that can be polled");
+            let sources = self.others.each_ref().map(|fd| Some(fd.as_fd()));
+            self.listener.sleep(&sources, LONGEST);
             self.listener.take();
             if let Some(message) = self.reader.take(|message| *message).expect("a topic") {
                 return message;

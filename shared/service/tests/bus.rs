@@ -6,7 +6,7 @@ use iceoryx2::prelude::ZeroCopySend;
 use messages::schema::{Field, Schema};
 use messages::topics::{self, Topic};
 use messages::{AppliedMark, Epoch, Incarnation, PolicyView, Presented, Service};
-use rustix::event::{PollFd, PollFlags, poll};
+use service::Span;
 use service::bus::{Bus, BusError, Identity, Joined, WakeListener};
 use service::group::{GroupName, GroupPaths};
 use service::shm_cleanup;
@@ -126,9 +126,7 @@ fn payloads_grow_as_they_need() {
 
 /// Returns whether a wake-up waits.
 fn is_woken(listener: &WakeListener) -> bool {
-    let now = rustix::time::Timespec { tv_sec: 0, tv_nsec: 0 };
-    let fd = listener.fd();
-    poll(&mut [PollFd::from_borrowed_fd(fd, PollFlags::IN)], Some(&now)).unwrap() > 0
+    listener.sleep(&[], Span(0)).by_wake
 }
 
 #[test]
@@ -178,6 +176,45 @@ fn repeated_state_wakes_its_readers_only_when_it_has_changed() {
         writer.send(&AppliedMark { seq }).unwrap();
         assert_eq!(is_woken(&listener), wakes, "mark {seq}");
         if wakes {
+            assert_eq!(listener.take(), None);
+        }
+    }
+}
+
+#[test]
+fn every_message_wakes_its_reader_whoever_sends_and_however_often() {
+    let shm = Shm::new();
+    let bus = shm.join(1, 1);
+    let listener = bus.wake_listener(Service::Speech).unwrap();
+    let reader = bus.reader::<AppliedMark>(&topics::MARK).unwrap();
+    let mut seq = 0;
+    // Each writer is another process, which ends; some messages come while earlier ones are unread.
+    for round in 0..8 {
+        let writing = shm.join(1, round + 2);
+        let writer = writing.writer::<AppliedMark>(&topics::MARK).unwrap();
+        for burst in (1..=40).cycle().take(400) {
+            for _ in 0..burst {
+                seq += 1;
+                writer.send(&AppliedMark { seq }).unwrap();
+            }
+            assert!(is_woken(&listener), "message {seq}");
+            assert_eq!(listener.take(), None);
+            assert_eq!(reader.latest().unwrap(), Some(AppliedMark { seq }));
+        }
+    }
+}
+
+#[test]
+fn reader_that_starts_again_is_woken_by_a_writer_that_went_on() {
+    let shm = Shm::new();
+    let policy = shm.join(1, 1);
+    let writer = policy.writer::<AppliedMark>(&topics::MARK).unwrap();
+    for seq in 1..=6 {
+        let speech = shm.join(1, 2);
+        let listener = speech.wake_listener(Service::Speech).unwrap();
+        for seq in [10 * seq, 10 * seq + 1] {
+            writer.send(&AppliedMark { seq }).unwrap();
+            assert!(is_woken(&listener), "message {seq}");
             assert_eq!(listener.take(), None);
         }
     }
