@@ -158,7 +158,9 @@ impl Sleeper {
         }
         // A full pipe is one reason for a datagram.
         self.pipes.borrow_mut().iter_mut().flatten().for_each(Pipe::empty);
-        let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(1))];
+        // iceoryx2 has each datagram carry its sender's credentials.
+        const SPACE: usize = rustix::cmsg_space!(ScmRights(1), ScmCredentials(1));
+        let mut space = [MaybeUninit::uninit(); SPACE];
         let flags = RecvFlags::DONTWAIT | RecvFlags::CMSG_CLOEXEC;
         loop {
             let mut control = RecvAncillaryBuffer::new(&mut space);
@@ -198,6 +200,13 @@ mod tests {
     use std::io::IoSlice;
     use std::os::unix::net::UnixDatagram;
 
+    /// A wake-up socket as iceoryx2 makes it, and one that is connected to it.
+    fn sockets() -> (UnixDatagram, UnixDatagram) {
+        let (here, there) = UnixDatagram::pair().unwrap();
+        rustix::net::sockopt::set_socket_passcred(&here, true).unwrap();
+        (here, there)
+    }
+
     fn is_woken(sleeper: &Sleeper) -> bool {
         sleeper.sleep(&[], Span(0)).by_wake
     }
@@ -216,7 +225,7 @@ mod tests {
 
     #[test]
     fn bytes_of_a_pipe_wake_each_time_until_its_writer_ends() {
-        let (here, there) = UnixDatagram::pair().unwrap();
+        let (here, there) = sockets();
         let sleeper = Sleeper::new(here.as_fd()).unwrap();
         let pipe = offer(&there);
         assert!(is_woken(&sleeper), "by the datagram");
@@ -234,7 +243,7 @@ mod tests {
 
     #[test]
     fn pipe_beyond_the_bound_is_closed_so_that_its_writer_uses_the_socket() {
-        let (here, there) = UnixDatagram::pair().unwrap();
+        let (here, there) = sockets();
         let sleeper = Sleeper::new(here.as_fd()).unwrap();
         let pipes: Vec<OwnedFd> = (0..=PIPES_MAX)
             .map(|_| {
@@ -251,7 +260,7 @@ mod tests {
 
     #[test]
     fn sources_are_reported_in_their_places() {
-        let (here, _there) = UnixDatagram::pair().unwrap();
+        let (here, _there) = sockets();
         let (source, other) = UnixDatagram::pair().unwrap();
         let sleeper = Sleeper::new(here.as_fd()).unwrap();
         let sources = [None, Some(source.as_fd())];
