@@ -124,6 +124,55 @@ fn payloads_grow_as_they_need() {
     }
 }
 
+/// Returns whether a mapping of `/dev/shm` holds the address.
+fn is_shared(address: usize) -> bool {
+    let maps = std::fs::read_to_string("/proc/self/maps").unwrap();
+    maps.lines().filter(|line| line.contains("/dev/shm/")).any(|line| {
+        let (from, to) = line.split_whitespace().next().unwrap().split_once('-').unwrap();
+        let number = |text| usize::from_str_radix(text, 16).unwrap();
+        (number(from)..number(to)).contains(&address)
+    })
+}
+
+#[test]
+fn messages_are_filled_and_read_in_shared_memory() {
+    let shm = Shm::new();
+    let bus = shm.join(1, 1);
+    let writer = bus.writer::<AppliedMark>(&topics::MARK).unwrap();
+    let reader = bus.reader::<AppliedMark>(&topics::MARK).unwrap();
+    let fill = |mark: &mut AppliedMark| {
+        assert!(is_shared(std::ptr::from_mut(mark) as usize));
+        assert_eq!(*mark, AppliedMark::default(), "nothing of an earlier message");
+        mark.seq = 5;
+    };
+    writer.send(&AppliedMark { seq: 4 }).unwrap();
+    for _ in 0..4 {
+        writer.send_with(fill).unwrap();
+        let read = |mark: &AppliedMark| (mark.seq, is_shared(std::ptr::from_ref(mark) as usize));
+        assert_eq!(reader.take(read).unwrap(), Some((5, true)));
+    }
+}
+
+#[test]
+fn encoded_bytes_are_read_where_they_lie_and_invalid_ones_are_skipped() {
+    let shm = Shm::new();
+    let bus = shm.join(1, 1);
+    let topic = Topic { buffer: 2, ..topics::VIEW };
+    let writer = bus.encoded_writer::<PolicyView>(&topic).unwrap();
+    let reader = bus.encoded_reader::<PolicyView>(&topic).unwrap();
+    for text in ["first", "second"] {
+        let view = PolicyView { text: text.to_owned(), ..PolicyView::default() };
+        writer.send(&view).unwrap();
+    }
+    let decode = |bytes: &[u8]| {
+        assert!(is_shared(bytes.as_ptr() as usize));
+        let view: PolicyView = postcard::from_bytes(bytes)?;
+        if view.text == "first" { Err(postcard::Error::DeserializeBadBool) } else { Ok(view.text) }
+    };
+    assert_eq!(reader.take_with(decode).unwrap().as_deref(), Some("second"));
+    assert_eq!(reader.take_with(decode).unwrap(), None);
+}
+
 /// Returns whether a wake-up waits.
 fn is_woken(listener: &WakeListener) -> bool {
     listener.sleep(&[], Span(0)).by_wake
